@@ -1,0 +1,9 @@
+//! Real-time strand hair as mass-spring chains, solved implicitly by a direct banded solver whose cost is
+//! linear in the strand's points.
+//!
+//! SI units throughout: metres, kilograms, seconds, newtons, pascals; right-handed, Y up.
+
+pub mod body;
+pub mod groom;
+pub mod material;
+pub mod scene;

@@ -1,0 +1,60 @@
+//! What the hair is made of: constants of the human fibre, and presets of style.
+
+use serde::{Deserialize, Serialize};
+
+/// The fibre of one group of strands: physical constants, and dimensionless multipliers for the artist.
+///
+/// The constants are those of human hair (Robbins 2012, *Chemical and Physical Behavior of Human Hair*).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Material {
+    /// Fibre radius [m], over the groom's own; `None`: the groom's. Human hair: 25e-6 to 50e-6.
+    pub radius: Option<f32>,
+    /// Density of the fibre [kg/m³]. Default 1310: dry hair, 1300 to 1320.
+    pub density: f32,
+    /// Young's modulus along the fibre [Pa]. Default 3.9e9.
+    pub young: f32,
+    /// Multiplier over the bending stiffness EI, 0 or more. Default 1: a single hair. A styled head is held
+    /// by wax and neighbours, so presets use more.
+    pub bend: f32,
+    /// Bending stiffness at the tip as a fraction of that at the root, 0 to 1 or more. Default 1.
+    pub bend_tip: f32,
+    /// Relaxation time of the fibre's bending [s], 0 or more: larger stops the hair's own vibrations sooner. Default 0.004.
+    pub damping: f32,
+    /// Multiplier over the drag of the air on a lone fibre, 0 or more. Default 0.15: inside a head of hair the air
+    /// moves along with it.
+    pub drag: f32,
+    /// Coulomb friction against the body, 0 to 1. Default 0.3: hair on skin, 0.1 to 0.3 along the scales, higher against.
+    pub friction: f32,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            radius: None,
+            density: 1310.0,
+            young: 3.9e9,
+            bend: 1.0,
+            bend_tip: 1.0,
+            damping: 0.004,
+            drag: 0.15,
+            friction: 0.3,
+        }
+    }
+}
+
+/// Names of the presets, in the order that [`preset`] knows them.
+pub const PRESETS: [&str; 5] = ["straight", "wavy", "curly", "coily", "short-fur"];
+
+/// The preset of this name: `straight`, `wavy`, `curly`, `coily` or `short-fur`; `None` for any other.
+pub fn preset(name: &str) -> Option<Material> {
+    let base = Material::default();
+    Some(match name {
+        "straight" => Material { bend: 2.0, ..base },
+        "wavy" => Material { bend: 4.0, damping: 0.006, ..base },
+        "curly" => Material { bend: 8.0, damping: 0.008, drag: 0.2, ..base },
+        "coily" => Material { bend: 16.0, damping: 0.01, drag: 0.3, ..base },
+        "short-fur" => Material { radius: Some(25e-6), bend: 1.0, bend_tip: 0.5, drag: 0.3, ..base },
+        _ => return None,
+    })
+}

@@ -1,0 +1,95 @@
+//! Settings of a scene that both code and scene files set; each field's default is the value that a file may leave out.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Which strands of a groom are simulated; the others follow them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Guides {
+    /// The strands that the groom file names as guides; 2,000 chosen ones where it names none. The default.
+    #[default]
+    FromGroom,
+    /// So many strands, spread over the scalp per group.
+    Count(u32),
+    /// Every strand.
+    All,
+}
+
+/// What is laid over follow hairs after the guides have placed them (DESIGN §7). All off by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Effects {
+    /// How far tips are drawn to their first guide, 0 (not) to 1 (wholly); grows from root to tip.
+    pub clump: f32,
+    /// Radius of curls added to follow hairs [m], 0 or more.
+    pub curl_radius: f32,
+    /// Length of hair in one turn of those curls [m], above 0. Default 0.03.
+    pub curl_length: f32,
+    /// Amplitude of the flyaway noise at the tip [m], 0 or more.
+    pub noise: f32,
+}
+
+/// Moving air, the same everywhere but for gusts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Wind {
+    /// Mean velocity of the air [m/s]. Default 0.
+    pub velocity: Vec3,
+    /// How much gusts add and take, as a fraction of the mean, 0 to 1. Default 0.
+    pub gust: f32,
+    /// Gusts a second [Hz]. 0: none.
+    pub gust_rate: f32,
+}
+
+/// Time steps and contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Solver {
+    /// Substeps in a frame of 1/60 s, 1 to 64. Default 4: the substep is 1/240 s whatever the frame rate.
+    pub substeps: u32,
+    /// Whether rest shapes are solved so that the groom starts in balance under gravity. Default true.
+    pub sag_free: bool,
+    /// Whether hair collides with the body's mesh. Default true.
+    pub collide_body: bool,
+    /// Iterations of fast projection a substep (Goldenthal 2007), 0 to 20. Default 3.
+    pub projections: u32,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self { substeps: 4, sag_free: true, collide_body: true, projections: 3 }
+    }
+}
+
+/// A simple shape that hair collides with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Collider {
+    /// Name of the body's joint that moves it; `None`: joint 0, or fixed without a body.
+    #[serde(default)]
+    pub joint: Option<String>,
+    /// The shape, in the space of the body's rest pose [m].
+    pub shape: Shape,
+}
+
+/// The shapes of a [`Collider`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Shape {
+    /// A ball.
+    Sphere {
+        /// Middle [m].
+        center: Vec3,
+        /// Radius [m], above 0.
+        radius: f32,
+    },
+    /// All places nearer than `radius` to the line from `a` to `b`.
+    Capsule {
+        /// One end of the axis [m].
+        a: Vec3,
+        /// The other end [m].
+        b: Vec3,
+        /// Radius [m], above 0.
+        radius: f32,
+    },
+}
