@@ -85,11 +85,10 @@ impl Grid {
     pub(crate) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let top = (self.size - UVec3::ONE).as_vec3() - Vec3::splat(1e-3);
         let g = (p - V3::splat(simd, self.origin)) * F::splat(simd, 1.0 / self.cell);
-        let clamp = |v: F<S>, top: f32| v.max_precise(0.0).min(top);
         let c = V3 {
-            x: clamp(g.x, top.x),
-            y: clamp(g.y, top.y),
-            z: clamp(g.z, top.z),
+            x: g.x.max_precise(0.0).min(top.x),
+            y: g.y.max_precise(0.0).min(top.y),
+            z: g.z.max_precise(0.0).min(top.z),
         };
         let mut k = [Row::default(); 8];
         for lane in 0..LANES {
@@ -98,9 +97,18 @@ impl Grid {
                 row.0[lane] = corner;
             }
         }
-        let k = k.map(|row| load(simd, &row));
+        let [k0, k1, k2, k3, k4, k5, k6, k7] = k;
+        let k = [
+            load(simd, &k0),
+            load(simd, &k1),
+            load(simd, &k2),
+            load(simd, &k3),
+            load(simd, &k4),
+            load(simd, &k5),
+            load(simd, &k6),
+            load(simd, &k7),
+        ];
         let (fx, fy, fz) = (c.x - c.x.floor(), c.y - c.y.floor(), c.z - c.z.floor());
-        let mix = |a: F<S>, b: F<S>, t: F<S>| (b - a).mul_add(t, a);
         let x = [
             mix(k[0], k[1], fx),
             mix(k[2], k[3], fx),
@@ -121,4 +129,10 @@ impl Grid {
         let beyond = out.dot(out).sqrt() * self.cell;
         (mix(y[0], y[1], fz) + beyond, gradient.length_and_unit().1)
     }
+}
+
+/// `a` at `t` = 0, `b` at 1.
+#[inline(always)]
+fn mix<S: Simd>(a: F<S>, b: F<S>, t: F<S>) -> F<S> {
+    (b - a).mul_add(t, a)
 }

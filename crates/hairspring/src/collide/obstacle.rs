@@ -131,18 +131,14 @@ impl Obstacle {
 
     #[inline(always)]
     fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
-        let ball = |d: V3<S>, radius: f32| {
-            let (length, normal) = d.length_and_unit();
-            (length - radius, normal)
-        };
         match self {
-            Obstacle::Sphere { center, radius } => ball(p - V3::splat(simd, *center), *radius),
+            Obstacle::Sphere { center, radius } => ball_lanes(p - V3::splat(simd, *center), *radius),
             Obstacle::Capsule { a, b, radius } => {
                 let axis = *b - *a;
                 let from = p - V3::splat(simd, *a);
                 let t = from.dot(V3::splat(simd, axis)) * (1.0 / axis.length_squared().max(1e-12));
                 let t = t.max(0.0).min(1.0);
-                ball(from - V3::splat(simd, axis) * t, *radius)
+                ball_lanes(from - V3::splat(simd, axis) * t, *radius)
             }
             Obstacle::Field(grid) => grid.distance_lanes(simd, p),
         }
@@ -189,4 +185,11 @@ pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<
         }
         _ => rigid,
     }
+}
+
+/// Distance and normal of a ball of `radius`, `d` from its middle.
+#[inline(always)]
+fn ball_lanes<S: Simd>(d: V3<S>, radius: f32) -> (F<S>, V3<S>) {
+    let (length, normal) = d.length_and_unit();
+    (length - radius, normal)
 }

@@ -83,6 +83,31 @@ impl Simulation {
         name.split('(').next().unwrap_or_default().to_lowercase()
     }
 
+    /// Uses an older instruction set of this processor than the best one, by the name that
+    /// [`Simulation::instruction_set`] gives it: for comparisons and for tests. False, and nothing changes, where the
+    /// processor has none of that name.
+    pub fn use_instruction_set(&mut self, name: &str) -> bool {
+        let best = Level::new();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let known = [
+            best.as_avx512().map(Level::Avx512),
+            best.as_avx2().map(Level::Avx2),
+            best.as_sse4_2().map(Level::Sse4_2),
+            best.as_sse2().map(Level::Sse2),
+        ];
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let known = [Some(best)];
+        let before = self.level;
+        for level in known.into_iter().flatten() {
+            self.level = level;
+            if self.instruction_set() == name {
+                return true;
+            }
+        }
+        self.level = before;
+        false
+    }
+
     /// The simulated strands, as indices of the groom, in the order given to [`Simulation::new`].
     pub fn strands(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
         self.places.iter().map(|p| self.lanes[*p as usize])

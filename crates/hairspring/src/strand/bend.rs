@@ -51,9 +51,8 @@ pub fn bend<S: Simd>(
     let bab = implicit * alpha * beta;
     let baa = implicit * alpha * alpha;
     // Pᵀ = a1 I − d ûᵀ
-    let row = |di: F<S>| u0 * (-(di * bab));
     let mut q = M3 {
-        rows: [row(d.x), row(d.y), row(d.z)],
+        rows: [u0 * -(d.x * bab), u0 * -(d.y * bab), u0 * -(d.z * bab)],
     };
     let diagonal = bab * a1;
     q.rows[0].x += diagonal;
@@ -61,14 +60,13 @@ pub fn bend<S: Simd>(
     q.rows[2].z += diagonal;
     // PᵀP = a1² I − a1 (û dᵀ + d ûᵀ) + d dᵀ
     let w = d * F::splat(d.x.simd, 0.5) - u0 * a1;
-    let p = |x: F<S>, y: F<S>, wx: F<S>, wy: F<S>| baa * x.mul_add(wy, y * wx);
     let g = Sym3 {
-        xx: p(d.x, d.x, w.x, w.x),
-        xy: p(d.x, d.y, w.x, w.y),
-        xz: p(d.x, d.z, w.x, w.z),
-        yy: p(d.y, d.y, w.y, w.y),
-        yz: p(d.y, d.z, w.y, w.z),
-        zz: p(d.z, d.z, w.z, w.z),
+        xx: baa * (d.x * w.x + d.x * w.x),
+        xy: baa * d.x.mul_add(w.y, d.y * w.x),
+        xz: baa * d.x.mul_add(w.z, d.z * w.x),
+        yy: baa * (d.y * w.y + d.y * w.y),
+        yz: baa * d.y.mul_add(w.z, d.z * w.y),
+        zz: baa * (d.z * w.z + d.z * w.z),
     }
     .add_identity(baa * a1 * a1);
     Bend {

@@ -294,18 +294,13 @@ impl<S: Simd> Sym3<S> {
     pub fn minus_transposed_product(self, a: &M3<S>, b: &M3<S>) -> Self {
         let [a0, a1, a2] = a.rows;
         let [b0, b1, b2] = b.rows;
-        let sub = |s: F<S>, p: [(F<S>, F<S>); 3]| {
-            let s = (-p[0].0).mul_add(p[0].1, s);
-            let s = (-p[1].0).mul_add(p[1].1, s);
-            (-p[2].0).mul_add(p[2].1, s)
-        };
         Self {
-            xx: sub(self.xx, [(a0.x, b0.x), (a1.x, b1.x), (a2.x, b2.x)]),
-            xy: sub(self.xy, [(a0.x, b0.y), (a1.x, b1.y), (a2.x, b2.y)]),
-            xz: sub(self.xz, [(a0.x, b0.z), (a1.x, b1.z), (a2.x, b2.z)]),
-            yy: sub(self.yy, [(a0.y, b0.y), (a1.y, b1.y), (a2.y, b2.y)]),
-            yz: sub(self.yz, [(a0.y, b0.z), (a1.y, b1.z), (a2.y, b2.z)]),
-            zz: sub(self.zz, [(a0.z, b0.z), (a1.z, b1.z), (a2.z, b2.z)]),
+            xx: minus_products(self.xx, [(a0.x, b0.x), (a1.x, b1.x), (a2.x, b2.x)]),
+            xy: minus_products(self.xy, [(a0.x, b0.y), (a1.x, b1.y), (a2.x, b2.y)]),
+            xz: minus_products(self.xz, [(a0.x, b0.z), (a1.x, b1.z), (a2.x, b2.z)]),
+            yy: minus_products(self.yy, [(a0.y, b0.y), (a1.y, b1.y), (a2.y, b2.y)]),
+            yz: minus_products(self.yz, [(a0.y, b0.z), (a1.y, b1.z), (a2.y, b2.z)]),
+            zz: minus_products(self.zz, [(a0.z, b0.z), (a1.z, b1.z), (a2.z, b2.z)]),
         }
     }
 
@@ -347,13 +342,11 @@ impl<S: Simd> Sym3<S> {
     /// `self` B.
     #[inline(always)]
     pub fn mul_mat(self, b: &M3<S>) -> M3<S> {
-        let [b0, b1, b2] = b.rows;
-        let row = |p: F<S>, q: F<S>, r: F<S>| b0.mul_add(p, b1.mul_add(q, b2 * r));
         M3 {
             rows: [
-                row(self.xx, self.xy, self.xz),
-                row(self.xy, self.yy, self.yz),
-                row(self.xz, self.yz, self.zz),
+                combine(b, V3::zero(self.xx.simd), [self.xx, self.xy, self.xz]),
+                combine(b, V3::zero(self.xx.simd), [self.xy, self.yy, self.yz]),
+                combine(b, V3::zero(self.xx.simd), [self.xz, self.yz, self.zz]),
             ],
         }
     }
@@ -427,14 +420,11 @@ impl<S: Simd> M3<S> {
     #[inline(always)]
     pub fn minus_transposed_product(self, a: &M3<S>, b: &M3<S>) -> Self {
         let [a0, a1, a2] = a.rows;
-        let [b0, b1, b2] = b.rows;
-        let row =
-            |r: V3<S>, p: F<S>, q: F<S>, s: F<S>| b0.mul_add(-p, b1.mul_add(-q, b2.mul_add(-s, r)));
         M3 {
             rows: [
-                row(self.rows[0], a0.x, a1.x, a2.x),
-                row(self.rows[1], a0.y, a1.y, a2.y),
-                row(self.rows[2], a0.z, a1.z, a2.z),
+                combine(b, self.rows[0], [-a0.x, -a1.x, -a2.x]),
+                combine(b, self.rows[1], [-a0.y, -a1.y, -a2.y]),
+                combine(b, self.rows[2], [-a0.z, -a1.z, -a2.z]),
             ],
         }
     }
@@ -467,4 +457,21 @@ impl<S: Simd> Sub for M3<S> {
             ],
         }
     }
+}
+
+// Functions, not closures, wherever lanes are computed: a closure is not always inlined into the dispatched kernel, and
+// then every operation is a call.
+
+/// `s` − Σ pairs' products.
+#[inline(always)]
+fn minus_products<S: Simd>(s: F<S>, p: [(F<S>, F<S>); 3]) -> F<S> {
+    let s = (-p[0].0).mul_add(p[0].1, s);
+    let s = (-p[1].0).mul_add(p[1].1, s);
+    (-p[2].0).mul_add(p[2].1, s)
+}
+
+/// `r` + Σ c_k times row k of `b`.
+#[inline(always)]
+fn combine<S: Simd>(b: &M3<S>, r: V3<S>, c: [F<S>; 3]) -> V3<S> {
+    b.rows[0].mul_add(c[0], b.rows[1].mul_add(c[1], b.rows[2].mul_add(c[2], r)))
 }

@@ -43,12 +43,7 @@ pub fn limit<S: Simd>(
         let length = load(simd, &rows(tile.rest, i - 1, rest::ROWS)[rest::LENGTH]);
         let clearance = load(simd, &rows(tile.rest, i, rest::ROWS)[rest::CLEARANCE]);
         let old = V3::load(simd, &rows(tile.state, i, state::ROWS)[state::X..]);
-        let clamp = |p: V3<S>| {
-            let e = p - before;
-            let (l, u) = e.length_and_unit();
-            before + u * l.min(length * (1.0 + LIMIT)).max(length * (1.0 - LIMIT))
-        };
-        let mut p = clamp(V3::load(simd, &x[3 * i..]));
+        let mut p = clamp(V3::load(simd, &x[3 * i..]), before, length);
         for pose in &substep.obstacles {
             let world = p + root.position;
             let (distance, normal) = contact(simd, pose, world);
@@ -61,7 +56,7 @@ pub fn limit<S: Simd>(
                 let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
                 let held = pushed - tangent * hold.min(1.0);
                 // The limit again, and out once more: what the segment then lacks is of second order.
-                let again = clamp(held);
+                let again = clamp(held, before, length);
                 let (distance, normal) = contact(simd, pose, again + root.position);
                 let out = again + normal * (clearance - distance).max(0.0);
                 p = V3::select(depth.simd_gt(0.0), out, p);
@@ -72,4 +67,11 @@ pub fn limit<S: Simd>(
         p.store(&mut at[state::X..state::X + 3]);
         before = p;
     }
+}
+
+/// `p` moved along the segment from `before` until its length is `length` ± [`LIMIT`].
+#[inline(always)]
+fn clamp<S: Simd>(p: V3<S>, before: V3<S>, length: F<S>) -> V3<S> {
+    let (l, u) = (p - before).length_and_unit();
+    before + u * l.min(length * (1.0 + LIMIT)).max(length * (1.0 - LIMIT))
 }

@@ -35,11 +35,10 @@ impl<S: Simd> Root<S> {
         let turn = Q4::load(simd, &rows[strand::TURN_START..])
             .nlerp(Q4::load(simd, &rows[strand::TURN_END..]), t);
         let local = (end - start).mul_add(t, start);
-        let rotate = |v: V3<S>| transform(simd, &anchor.0, v);
         Self {
-            position: rotate(local) + V3::splat(simd, anchor.1),
-            first: rotate(turn.rotate(V3::load(simd, &rows[strand::FIRST..]))),
-            normal: rotate(turn.rotate(V3::load(simd, &rows[strand::NORMAL..]))),
+            position: transform(simd, &anchor.0, local) + V3::splat(simd, anchor.1),
+            first: transform(simd, &anchor.0, turn.rotate(V3::load(simd, &rows[strand::FIRST..]))),
+            normal: transform(simd, &anchor.0, turn.rotate(V3::load(simd, &rows[strand::NORMAL..]))),
         }
     }
 

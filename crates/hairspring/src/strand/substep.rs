@@ -98,7 +98,8 @@ fn solve<S: Simd>(
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) {
-    let splat = |v: f32| F::<S>::splat(simd, v);
+    let nought = F::<S>::splat(simd, 0.0);
+    let one = F::<S>::splat(simd, 1.0);
     let n = tile.points;
     let h = interval.h;
     let inv_h = 1.0 / h;
@@ -106,6 +107,7 @@ fn solve<S: Simd>(
     let implicit_scale = damping * inv_h + 1.0;
     let gravity = V3::splat(simd, interval.gravity);
     let wind = V3::splat(simd, substep.wind);
+    let root_velocity = moved * F::splat(simd, inv_h);
 
     // The driven segment and its frame at the end of the substep.
     let zero = V3::zero(simd);
@@ -117,7 +119,7 @@ fn solve<S: Simd>(
     let mut u0 = e0.length_and_unit().1;
     let mut normal = root.normal;
     let length0 = load(simd, &rows(tile.rest, 0, rest::ROWS)[rest::LENGTH]);
-    let mut alpha = splat(1.0) / length0.max(1e-12);
+    let mut alpha = one / length0.max(1e-12);
 
     let mut band = Band::new(simd);
     for i in 0..n {
@@ -135,7 +137,7 @@ fn solve<S: Simd>(
             let e1 = x2 - x1;
             let (l1, u1) = e1.length_and_unit();
             let u1 = V3::select(real, u1, zero);
-            let beta = real.select(splat(1.0) / length.max(1e-12), splat(0.0));
+            let beta = real.select(one / length.max(1e-12), nought);
 
             // d = R_i turn: the frame (normal, binormal, tangent) on segment i.
             let turn = V3::load(simd, &at[rest::TURN..]);
@@ -171,7 +173,7 @@ fn solve<S: Simd>(
             band.rhs[2] += joint.force[2];
 
             // Segment i+1.
-            let k = real.select(mass * (STRETCH * inv_h * inv_h), splat(0.0));
+            let k = real.select(mass * (STRETCH * inv_h * inv_h), nought);
             let tension = load(simd, &rows(tile.state, i + 1, state::ROWS)[state::TENSION]);
             let (force, block) = stretch((l1, u1), length, k, tension);
             band.diag[1] = band.diag[1] + block;
@@ -184,9 +186,9 @@ fn solve<S: Simd>(
             let v = V3::load(simd, &rows(tile.state, i + 1, state::ROWS)[state::V..]);
             let m_h = mass * inv_h;
             let air = mass * drag;
-            let slip = wind - moved * splat(inv_h);
+            let slip = wind - root_velocity;
             let slip = slip - u1 * (u1.dot(slip) * 0.5);
-            let inertia = (v - moved * splat(inv_h)) * m_h + slip * air + gravity * mass;
+            let inertia = (v - root_velocity) * m_h + slip * air + gravity * mass;
             band.rhs[1] += inertia;
             let across = air * inv_h;
             band.diag[1] = band.diag[1] + super::lanes::Sym3::outer(u1, across * -0.5);
