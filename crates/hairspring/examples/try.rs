@@ -22,7 +22,10 @@ fn main() {
         b.simulation.instruction_set(),
         b.simulation.bytes() as f64 / b.simulation.point_count() as f64
     );
-    if let Ok(l) = std::env::var("ISA") { assert!(b.simulation.use_instruction_set(&l)); println!("{}", b.simulation.instruction_set()); }
+    if let Ok(l) = std::env::var("ISA") {
+        assert!(b.simulation.use_instruction_set(&l));
+        println!("{}", b.simulation.instruction_set());
+    }
     let mut times = vec![];
     let mut worst = 0f64;
     let mut depth = 0f64;

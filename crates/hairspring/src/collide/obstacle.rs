@@ -132,7 +132,9 @@ impl Obstacle {
     #[inline(always)]
     fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         match self {
-            Obstacle::Sphere { center, radius } => ball_lanes(p - V3::splat(simd, *center), *radius),
+            Obstacle::Sphere { center, radius } => {
+                ball_lanes(p - V3::splat(simd, *center), *radius)
+            }
             Obstacle::Capsule { a, b, radius } => {
                 let axis = *b - *a;
                 let from = p - V3::splat(simd, *a);

@@ -222,6 +222,11 @@ impl Lane<'_> {
                 rows[rest::BEND].0[lane] = p.bend as f32;
                 Self::write_vector(&mut rows[rest::TURN..], lane, p.turn.as_vec3());
                 self.state[i * state::ROWS + state::TENSION].0[lane] = p.tension as f32;
+                Self::write_vector(
+                    &mut self.state[i * state::ROWS + state::NORMAL..],
+                    lane,
+                    p.normal.as_vec3(),
+                );
             }
             let at = points[i.min(last)];
             let depth = obstacles
@@ -253,7 +258,7 @@ impl Lane<'_> {
         Self::write_vector(
             &mut self.strand[strand::NORMAL..],
             lane,
-            shape.normal.as_vec3(),
+            shape.points[0].normal.as_vec3(),
         );
     }
 }

@@ -47,14 +47,14 @@ pub struct RestPoint {
     pub turn: DVec3,
     /// Tension of the segment from here at the start [N].
     pub tension: f64,
+    /// The frame's normal on the segment from here.
+    pub normal: DVec3,
 }
 
 /// The rest shape of a strand.
 pub struct RestShape {
     /// Shape `[points]`.
     pub points: Vec<RestPoint>,
-    /// The frame's normal on the first segment.
-    pub normal: DVec3,
     /// Joints whose stiffness was raised for the sag-free start.
     pub stiffened: usize,
 }
@@ -132,17 +132,17 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     }
 
     // Into the frame carried along the strand (the same transport as `bend::transport`).
-    let normal = t[0].any_orthonormal_vector();
-    let mut frame = normal;
+    let mut frame = t[0].any_orthonormal_vector();
+    rest[0].normal = frame;
     for i in 1..n - 1 {
         let d = rest[i].turn;
         rest[i].turn = DVec3::new(d.dot(frame), d.dot(t[i - 1].cross(frame)), d.dot(t[i - 1]));
         let scale = frame.dot(t[i]) / (1.0 + t[i - 1].dot(t[i])).max(1e-3);
         frame = (frame - (t[i - 1] + t[i]) * scale).normalize_or(frame);
+        rest[i].normal = frame;
     }
     RestShape {
         points: rest,
-        normal,
         stiffened,
     }
 }

@@ -37,8 +37,16 @@ impl<S: Simd> Root<S> {
         let local = (end - start).mul_add(t, start);
         Self {
             position: transform(simd, &anchor.0, local) + V3::splat(simd, anchor.1),
-            first: transform(simd, &anchor.0, turn.rotate(V3::load(simd, &rows[strand::FIRST..]))),
-            normal: transform(simd, &anchor.0, turn.rotate(V3::load(simd, &rows[strand::NORMAL..]))),
+            first: transform(
+                simd,
+                &anchor.0,
+                turn.rotate(V3::load(simd, &rows[strand::FIRST..])),
+            ),
+            normal: transform(
+                simd,
+                &anchor.0,
+                turn.rotate(V3::load(simd, &rows[strand::NORMAL..])),
+            ),
         }
     }
 
@@ -50,6 +58,49 @@ impl<S: Simd> Root<S> {
             load(simd, &rows[strand::DAMPING]),
             load(simd, &rows[strand::FRICTION]),
         )
+    }
+}
+
+/// A root's rotation from one time to another.
+#[derive(Clone, Copy)]
+pub struct RootTurn<S: Simd> {
+    from: [V3<S>; 3],
+    to: [V3<S>; 3],
+    /// False where no root of the tile turned: nothing to do.
+    turned: bool,
+}
+
+impl<S: Simd> RootTurn<S> {
+    #[inline(always)]
+    pub fn between(from: &Root<S>, to: &Root<S>) -> Self {
+        let change = (to.first - from.first).dot(to.first - from.first)
+            + (to.normal - from.normal).dot(to.normal - from.normal);
+        let turned = change.simd_gt(0.0).any_true();
+        Self {
+            from: from.axes(),
+            to: to.axes(),
+            turned,
+        }
+    }
+
+    /// `v` turned with the root.
+    #[inline(always)]
+    pub fn rotate(&self, v: V3<S>) -> V3<S> {
+        if !self.turned {
+            return v;
+        }
+        let [a, b, c] = self.from;
+        let [p, q, r] = self.to;
+        p * v.dot(a) + q * v.dot(b) + r * v.dot(c)
+    }
+}
+
+impl<S: Simd> Root<S> {
+    /// Normal, binormal, tangent.
+    #[inline(always)]
+    fn axes(&self) -> [V3<S>; 3] {
+        let tangent = self.first.length_and_unit().1;
+        [self.normal, tangent.cross(self.normal), tangent]
     }
 }
 

@@ -11,12 +11,12 @@
 
 use super::{
     band::{Band, FACTOR_ROWS, back_substitute},
-    bend::{bend, transport},
+    bend::{bend, follow_twist, transport},
     interval::{Interval, Substep},
     lanes::{F, Row, V3, load, store},
     limit::limit,
     project::{self, project},
-    root::Root,
+    root::{Root, RootTurn},
     stretch::{STRETCH, stretch},
     tile::{Tile, rest, rows, rows_mut, state},
 };
@@ -62,8 +62,16 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
     for substep in &interval.substeps {
         let next = Root::at(simd, tile.strand, substep);
         let moved = next.position - root.position;
+        let turn = RootTurn::between(&root, &next);
         root = next;
-        solve(simd, interval, substep, &root, moved, tile, scratch);
+        solve(
+            simd,
+            interval,
+            substep,
+            (&root, moved, &turn),
+            tile,
+            scratch,
+        );
         for _ in 0..interval.projections {
             let Scratch {
                 factors,
@@ -93,8 +101,7 @@ fn solve<S: Simd>(
     simd: S,
     interval: &Interval,
     substep: &Substep,
-    root: &Root<S>,
-    moved: V3<S>,
+    (root, moved, turn): (&Root<S>, V3<S>, &RootTurn<S>),
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) {
@@ -118,6 +125,7 @@ fn solve<S: Simd>(
     let mut e0 = x1 - x0;
     let mut u0 = e0.length_and_unit().1;
     let mut normal = root.normal;
+    let mut carried = root.normal;
     let length0 = load(simd, &rows(tile.rest, 0, rest::ROWS)[rest::LENGTH]);
     let mut alpha = one / length0.max(1e-12);
 
@@ -140,8 +148,11 @@ fn solve<S: Simd>(
             let beta = real.select(one / length.max(1e-12), nought);
 
             // d = R_i turn: the frame (normal, binormal, tangent) on segment i.
-            let turn = V3::load(simd, &at[rest::TURN..]);
-            let d = normal.mul_add(turn.x, u0.cross(normal).mul_add(turn.y, u0 * turn.z));
+            let rest_turn = V3::load(simd, &at[rest::TURN..]);
+            let d = normal.mul_add(
+                rest_turn.x,
+                u0.cross(normal).mul_add(rest_turn.y, u0 * rest_turn.z),
+            );
             let stiffness = load(simd, &at[rest::BEND]);
             let joint = bend(
                 (e0, e1),
@@ -194,7 +205,10 @@ fn solve<S: Simd>(
             band.diag[1] = band.diag[1] + super::lanes::Sym3::outer(u1, across * -0.5);
             band.diag[1] = band.diag[1].add_identity(m_h * inv_h + across);
 
-            normal = V3::select(real, transport(normal, u0, u1), normal);
+            carried = V3::select(real, transport(carried, u0, u1), carried);
+            let own = &mut rows_mut(tile.state, i + 1, state::ROWS)[state::NORMAL..];
+            normal = follow_twist(turn.rotate(V3::load(simd, own)), u1, carried, h);
+            normal.store(own);
             (x0, x1, e0, u0, alpha) = (x1, x2, e1, u1, beta);
         }
         if i >= 2 {

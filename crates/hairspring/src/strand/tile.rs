@@ -14,8 +14,10 @@ pub mod state {
     pub const V: usize = 3;
     /// Tension of the segment from this point to the next, found by the last substep [N].
     pub const TENSION: usize = 6;
+    /// The frame's normal on the segment from this point to the next, 3 rows.
+    pub const NORMAL: usize = 7;
     /// Rows a point.
-    pub const ROWS: usize = 7;
+    pub const ROWS: usize = 10;
 }
 
 /// Rows of the rest shape a point.
