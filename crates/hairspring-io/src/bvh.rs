@@ -93,8 +93,8 @@ const UNITS: [(f32, &str); 5] = [
     (0.1, "decimetres"),
 ];
 
-/// Height of a person, foot to crown or the last joint there is [m].
-const PERSON: std::ops::RangeInclusive<f32> = 1.5..=1.95;
+/// Height of a person's skeleton [m]: it ends some 10 cm below the crown and at the ankle or the toe.
+const PERSON: std::ops::RangeInclusive<f32> = 1.35..=1.95;
 
 /// Reads a `.bvh` file into metres and Y up, with notes on what was guessed: the unit and the axis from the person's
 /// height in the frames.
