@@ -95,6 +95,8 @@ const UNITS: [(f32, &str); 5] = [
 
 /// Height of a person's skeleton [m]: it ends some 10 cm below the crown and at the ankle or the toe.
 const PERSON: std::ops::RangeInclusive<f32> = 1.35..=1.95;
+/// Height that is assumed where no known unit gives a person [m].
+const TYPICAL: f32 = 1.6;
 
 /// Reads a `.bvh` file into metres and Y up, with notes on what was guessed: the unit and the axis from the person's
 /// height in the frames.
@@ -116,7 +118,7 @@ pub(crate) fn read_in_metres(
         let unit = UNITS.iter().find(|(metres, _)| PERSON.contains(&(height * metres)));
         let (scale, name) = match unit {
             Some((metres, name)) => (*metres, (*name).to_owned()),
-            None if height > 0.0 => (1.7 / height, format!("units of {:.5} m", 1.7 / height)),
+            None if height > 0.0 => (TYPICAL / height, format!("units of {:.5} m", TYPICAL / height)),
             None => (1.0, "metres".into()),
         };
         notes.push(format!(

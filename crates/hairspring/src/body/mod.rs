@@ -2,8 +2,11 @@
 
 mod clip;
 mod mesh;
+mod nearest;
 mod pose;
 
 pub use clip::{Clip, Trs};
 pub use mesh::{Mesh, Part};
+pub(crate) use nearest::at as place_on;
+pub use nearest::{NearestPlace, NearestTree};
 pub use pose::{Body, Joint, Skin};
