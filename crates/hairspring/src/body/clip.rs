@@ -15,11 +15,7 @@ pub struct Trs {
 
 impl Default for Trs {
     fn default() -> Self {
-        Self {
-            translation: Vec3::ZERO,
-            rotation: Quat::IDENTITY,
-            scale: Vec3::ONE,
-        }
+        Self { translation: Vec3::ZERO, rotation: Quat::IDENTITY, scale: Vec3::ONE }
     }
 }
 
@@ -55,15 +51,19 @@ pub struct Clip {
 impl Clip {
     /// Number of frames.
     pub fn frame_count(&self) -> usize {
-        self.samples
-            .len()
-            .checked_div(self.joint_count)
-            .unwrap_or(0)
+        self.samples.len().checked_div(self.joint_count).unwrap_or(0)
     }
 
     /// From the first frame to the last [s].
     pub fn duration(&self) -> f32 {
         self.frame_count().saturating_sub(1) as f32 / self.rate
+    }
+
+    /// The clip from frame `first` on; the last frame alone where there is no such frame.
+    pub fn from_frame(mut self, first: usize) -> Self {
+        let first = first.min(self.frame_count().saturating_sub(1));
+        self.samples.drain(..first * self.joint_count);
+        self
     }
 
     /// Local transforms at `time` [s], held at the ends; shape `[joints]`.
@@ -72,10 +72,6 @@ impl Clip {
         let at = (time * self.rate).clamp(0.0, last as f32);
         let (i, t) = (at as usize, at.fract());
         let frame = |f: usize| &self.samples[f.min(last) * self.joint_count..][..self.joint_count];
-        frame(i)
-            .iter()
-            .zip(frame(i + 1))
-            .map(|(a, b)| a.lerp(b, t))
-            .collect()
+        frame(i).iter().zip(frame(i + 1)).map(|(a, b)| a.lerp(b, t)).collect()
     }
 }
