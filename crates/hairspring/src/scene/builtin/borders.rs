@@ -43,14 +43,23 @@ pub fn cut_along(mesh: &mut Mesh, side: impl Fn(Vec3) -> f32) {
             triangles.push(t);
             continue;
         };
-        let lone = if crosses((first + 2) % 3) { first } else { (first + 1) % 3 };
+        let lone = if crosses((first + 2) % 3) {
+            first
+        } else {
+            (first + 1) % 3
+        };
         let [a, b, c] = [t[lone], t[(lone + 1) % 3], t[(lone + 2) % 3]];
         let mut middle = |a: u32, b: u32| {
             *split.entry([a.min(b), a.max(b)]).or_insert_with(|| {
                 let (i, j) = (a.min(b) as usize, a.max(b) as usize);
                 let at = values[i] / (values[i] - values[j]);
-                mesh.positions.push(mesh.positions[i].lerp(mesh.positions[j], at));
-                mesh.normals.push(mesh.normals[i].lerp(mesh.normals[j], at).normalize_or(Vec3::Y));
+                mesh.positions
+                    .push(mesh.positions[i].lerp(mesh.positions[j], at));
+                mesh.normals.push(
+                    mesh.normals[i]
+                        .lerp(mesh.normals[j], at)
+                        .normalize_or(Vec3::Y),
+                );
                 (mesh.positions.len() - 1) as u32
             })
         };

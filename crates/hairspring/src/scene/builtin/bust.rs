@@ -17,15 +17,28 @@ pub const HEAD: usize = 2;
 
 /// Where the joints are in the rest pose [m]: between the shoulder blades, at the base of the neck (vertebra C7),
 /// at the top of the spine (atlas, between the ears).
-const JOINTS: [(&str, Vec3); 3] =
-    [("chest", vec3(0.0, -0.27, -0.05)), ("neck", vec3(0.0, -0.155, -0.05)), ("head", vec3(0.0, -0.022, -0.02))];
+const JOINTS: [(&str, Vec3); 3] = [
+    ("chest", vec3(0.0, -0.27, -0.05)),
+    ("neck", vec3(0.0, -0.155, -0.05)),
+    ("head", vec3(0.0, -0.022, -0.02)),
+];
 
 /// The bust that is drawn and that hair grows on.
 pub fn drawn() -> Body {
     let axes = [
-        nets::planes(-0.26, 0.26, |x| 0.0020 + 0.06 * (x.abs() - 0.045).clamp(0.0, 0.04) + 0.3 * (x.abs() - 0.092).clamp(0.0, 0.025)),
-        nets::planes(-0.31, 0.125, |y| 0.0019 + 0.2 * ((y + 0.03).abs() - 0.054).clamp(0.0, 0.030) + 0.1 * (-0.12 - y).clamp(0.0, 0.02)),
-        nets::planes(-0.16, 0.125, |z| 0.0020 + 0.06 * (0.050 - z).clamp(0.0, 0.04) + 0.2 * (-0.045 - z).clamp(0.0, 0.02)),
+        nets::planes(-0.26, 0.26, |x| {
+            0.0020
+                + 0.06 * (x.abs() - 0.045).clamp(0.0, 0.04)
+                + 0.3 * (x.abs() - 0.092).clamp(0.0, 0.025)
+        }),
+        nets::planes(-0.31, 0.125, |y| {
+            0.0019
+                + 0.2 * ((y + 0.03).abs() - 0.054).clamp(0.0, 0.030)
+                + 0.1 * (-0.12 - y).clamp(0.0, 0.02)
+        }),
+        nets::planes(-0.16, 0.125, |z| {
+            0.0020 + 0.06 * (0.050 - z).clamp(0.0, 0.04) + 0.2 * (-0.045 - z).clamp(0.0, 0.02)
+        }),
     ];
     let mut mesh = nets::mesh(&axes, shape::distance, shape::normal);
     borders::cut_along(&mut mesh, shape::clothes);
@@ -41,13 +54,21 @@ pub fn drawn() -> Body {
 /// A coarser closed mesh, a hair's breadth (0.5 mm) inside the drawn one, for hair to collide with.
 pub fn collision() -> Body {
     let axes = [
-        nets::planes(-0.26, 0.26, |x| 0.009 + 0.09 * (x.abs() - 0.09).clamp(0.0, 0.08)),
-        nets::planes(-0.32, 0.13, |y| 0.0085 + 0.09 * (-0.13 - y).clamp(0.0, 0.08)),
+        nets::planes(-0.26, 0.26, |x| {
+            0.009 + 0.09 * (x.abs() - 0.09).clamp(0.0, 0.08)
+        }),
+        nets::planes(-0.32, 0.13, |y| {
+            0.0085 + 0.09 * (-0.13 - y).clamp(0.0, 0.08)
+        }),
         nets::planes(-0.16, 0.13, |_| 0.009),
     ];
     // Below the lids the drawn bust is hollow: the eyeballs close it.
     let distance = |p: Vec3| {
-        let eye = sphere(vec3(p.x.abs(), p.y, p.z), shape::EYE_CENTER, shape::EYE_RADIUS);
+        let eye = sphere(
+            vec3(p.x.abs(), p.y, p.z),
+            shape::EYE_CENTER,
+            shape::EYE_RADIUS,
+        );
         shape::distance(p).min(eye) + 5e-4
     };
     let normal = |p: Vec3| {
@@ -62,16 +83,30 @@ fn rigged(mesh: Mesh) -> Body {
     let mut joints = Vec::new();
     let mut above = Vec3::ZERO;
     for (i, (name, at)) in JOINTS.into_iter().enumerate() {
-        let rest = Trs { translation: at - above, ..Trs::default() };
-        joints.push(Joint { name: name.into(), parent: i.checked_sub(1).map(|p| p as u32), rest });
+        let rest = Trs {
+            translation: at - above,
+            ..Trs::default()
+        };
+        joints.push(Joint {
+            name: name.into(),
+            parent: i.checked_sub(1).map(|p| p as u32),
+            rest,
+        });
         above = at;
     }
     let skin = Skin {
         joints: vec![[CHEST as u16, NECK as u16, HEAD as u16, 0]; mesh.positions.len()],
         weights: mesh.positions.iter().map(|p| weights(*p)).collect(),
-        inverse_bind: JOINTS.iter().map(|(_, at)| Affine3A::from_translation(-*at)).collect(),
+        inverse_bind: JOINTS
+            .iter()
+            .map(|(_, at)| Affine3A::from_translation(-*at))
+            .collect(),
     };
-    Body { mesh, joints, skin: Some(skin) }
+    Body {
+        mesh,
+        joints,
+        skin: Some(skin),
+    }
 }
 
 /// How much the chest, the neck and the head move a point of the rest pose [m]; the fourth is unused.
@@ -105,7 +140,12 @@ fn color(mesh: &mut Mesh) {
     ];
     for (i, (name, color, roughness)) in looks.into_iter().enumerate() {
         let run = |limit: usize| sorted.partition_point(|(part, _)| *part < limit) as u32;
-        mesh.parts.push(Part { name: name.into(), triangles: run(i)..run(i + 1), color, roughness });
+        mesh.parts.push(Part {
+            name: name.into(),
+            triangles: run(i)..run(i + 1),
+            color,
+            roughness,
+        });
     }
 }
 
@@ -114,7 +154,9 @@ fn add_eye(mesh: &mut Mesh, side: f32) {
     /// Points round the axis.
     const ROUND: usize = 40;
     /// Angles from the axis of gaze of the rings between the poles [rad]. The second ends the pupil, the sixth the iris.
-    const RINGS: [f32; 13] = [0.07, 0.155, 0.22, 0.28, 0.35, 0.42, 0.48, 0.62, 0.85, 1.15, 1.57, 2.1, 2.65];
+    const RINGS: [f32; 13] = [
+        0.07, 0.155, 0.22, 0.28, 0.35, 0.42, 0.48, 0.62, 0.85, 1.15, 1.57, 2.1, 2.65,
+    ];
     let center = shape::EYE_CENTER * vec3(side, 1.0, 1.0);
     // Lines of sight meet some 2 m ahead: nearly parallel, 1° outwards of the sockets' own axis, a little up.
     let gaze = glam::Quat::from_rotation_x(-0.01);
@@ -124,7 +166,8 @@ fn add_eye(mesh: &mut Mesh, side: f32) {
         let n = gaze * vec3(s * turn.cos(), s * turn.sin(), c);
         // The cornea: the iris bulges out a little.
         let bulge = 0.0006 * (1.0 - smoothstep(0.2, 0.52, angle));
-        mesh.positions.push(center + n * (shape::EYE_RADIUS + bulge));
+        mesh.positions
+            .push(center + n * (shape::EYE_RADIUS + bulge));
         mesh.normals.push(n);
     };
     point(0.0, 0.0);
@@ -137,25 +180,46 @@ fn add_eye(mesh: &mut Mesh, side: f32) {
     let vertex = |ring: usize, i: usize| first + 1 + (ring * ROUND + i % ROUND) as u32;
     let last = first + 1 + (RINGS.len() * ROUND) as u32;
     let name = if side > 0.0 { "left" } else { "right" };
-    let mut part = |mesh: &mut Mesh, what: &str, rings: std::ops::Range<usize>, color: Vec3, roughness: f32| {
+    let mut part = |mesh: &mut Mesh,
+                    what: &str,
+                    rings: std::ops::Range<usize>,
+                    color: Vec3,
+                    roughness: f32| {
         let from = mesh.triangles.len() as u32;
         for ring in rings {
             for i in 0..ROUND {
                 if ring == 0 {
                     mesh.triangles.push([first, vertex(0, i), vertex(0, i + 1)]);
                 } else if ring == RINGS.len() {
-                    mesh.triangles.push([vertex(ring - 1, i), last, vertex(ring - 1, i + 1)]);
+                    mesh.triangles
+                        .push([vertex(ring - 1, i), last, vertex(ring - 1, i + 1)]);
                 } else {
-                    let (a, b, c, d) = (vertex(ring - 1, i), vertex(ring, i), vertex(ring, i + 1), vertex(ring - 1, i + 1));
+                    let (a, b, c, d) = (
+                        vertex(ring - 1, i),
+                        vertex(ring, i),
+                        vertex(ring, i + 1),
+                        vertex(ring - 1, i + 1),
+                    );
                     mesh.triangles.extend([[a, b, c], [a, c, d]]);
                 }
             }
         }
         let triangles = from..mesh.triangles.len() as u32;
-        mesh.parts.push(Part { name: format!("{name} {what}"), triangles, color, roughness });
+        mesh.parts.push(Part {
+            name: format!("{name} {what}"),
+            triangles,
+            color,
+            roughness,
+        });
     };
     part(mesh, "pupil", 0..2, vec3(0.006, 0.005, 0.005), 0.12);
     part(mesh, "iris", 2..6, vec3(0.13, 0.075, 0.035), 0.15);
     part(mesh, "iris rim", 6..7, vec3(0.035, 0.02, 0.012), 0.15);
-    part(mesh, "eye white", 7..RINGS.len() + 1, vec3(0.70, 0.66, 0.63), 0.2);
+    part(
+        mesh,
+        "eye white",
+        7..RINGS.len() + 1,
+        vec3(0.70, 0.66, 0.63),
+        0.2,
+    );
 }

@@ -23,20 +23,29 @@ pub struct Field {
 impl Field {
     /// Samples the bust.
     pub fn new() -> Self {
-        let size = ((HIGH - LOW) / CELL).to_array().map(|n| n.ceil() as usize + 1);
+        let size = ((HIGH - LOW) / CELL)
+            .to_array()
+            .map(|n| n.ceil() as usize + 1);
         let mut values = vec![0.0; size[0] * size[1] * size[2]];
-        values.par_chunks_mut(size[0]).enumerate().for_each(|(row, values)| {
-            let (y, z) = (row % size[1], row / size[1]);
-            for (x, value) in values.iter_mut().enumerate() {
-                *value = shielded(LOW + vec3(x as f32, y as f32, z as f32) * CELL);
-            }
-        });
+        values
+            .par_chunks_mut(size[0])
+            .enumerate()
+            .for_each(|(row, values)| {
+                let (y, z) = (row % size[1], row / size[1]);
+                for (x, value) in values.iter_mut().enumerate() {
+                    *value = shielded(LOW + vec3(x as f32, y as f32, z as f32) * CELL);
+                }
+            });
         Self { size, values }
     }
 
     /// Distance [m] and unit outward direction at `p` [m], trilinear.
     pub fn at(&self, p: Vec3) -> (f32, Vec3) {
-        let limit = vec3(self.size[0] as f32, self.size[1] as f32, self.size[2] as f32) - 1.001;
+        let limit = vec3(
+            self.size[0] as f32,
+            self.size[1] as f32,
+            self.size[2] as f32,
+        ) - 1.001;
         let g = ((p - LOW) / CELL).clamp(Vec3::ZERO, limit);
         let [x, y, z] = g.to_array().map(|v| v as usize);
         let f = g.fract();
@@ -49,7 +58,11 @@ impl Field {
         let along = |r: (f32, f32)| mix(r.0, r.1, f.x);
         let (near, far) = (mix(along(a), along(b), f.y), mix(along(c), along(d), f.y));
         let gradient = vec3(
-            mix(mix(a.1 - a.0, b.1 - b.0, f.y), mix(c.1 - c.0, d.1 - d.0, f.y), f.z),
+            mix(
+                mix(a.1 - a.0, b.1 - b.0, f.y),
+                mix(c.1 - c.0, d.1 - d.0, f.y),
+                f.z,
+            ),
             mix(along(b) - along(a), along(d) - along(c), f.z),
             far - near,
         );

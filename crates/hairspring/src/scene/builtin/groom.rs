@@ -44,7 +44,11 @@ pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> 
     let field = Field::new();
     let tier = |count: usize, purpose: u32| -> Vec<Strand> {
         let roots = roots(mesh, count, seed ^ purpose.wrapping_mul(0x9E37_79B9));
-        roots.par_iter().enumerate().map(|(i, (p, n))| grown(&field, cut, Place::new(*p, *n), seed, purpose, i)).collect()
+        roots
+            .par_iter()
+            .enumerate()
+            .map(|(i, (p, n))| grown(&field, cut, Place::new(*p, *n), seed, purpose, i))
+            .collect()
     };
     // Locks are made of wisps, wisps of hairs: each tier gathers about the one before.
     let locks = tier(count.div_ceil(LOCK), 2);
@@ -53,15 +57,25 @@ pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> 
     let mut hairs = tier(count, 4);
     gather(&mut hairs, &wisps, cut.clump, 0.25);
 
-    let mut groom = Groom { offsets: (0..=count).map(|s| (s * points) as u32).collect(), ..Groom::default() };
+    let mut groom = Groom {
+        offsets: (0..=count).map(|s| (s * points) as u32).collect(),
+        ..Groom::default()
+    };
     groom.points = vec![Vec3::ZERO; count * points];
-    groom.points.par_chunks_mut(points.max(1)).zip(&hairs).enumerate().for_each(|(i, (out, hair))| {
-        let curve = waved(&field, cut, hair, Random::new(seed, 5, i as u32));
-        resample(&curve, hair.length, out);
-        settle(out);
-    });
+    groom
+        .points
+        .par_chunks_mut(points.max(1))
+        .zip(&hairs)
+        .enumerate()
+        .for_each(|(i, (out, hair))| {
+            let curve = waved(&field, cut, hair, Random::new(seed, 5, i as u32));
+            resample(&curve, hair.length, out);
+            settle(out);
+        });
     // Human hair is thinner at its tip, where it is oldest and, in part, only just grown.
-    let taper = |k: usize| DEFAULT_RADIUS * (1.0 - 0.6 * smoothstep(0.6, 1.0, k as f32 / (points - 1).max(1) as f32));
+    let taper = |k: usize| {
+        DEFAULT_RADIUS * (1.0 - 0.6 * smoothstep(0.6, 1.0, k as f32 / (points - 1).max(1) as f32))
+    };
     let radii: Vec<f32> = (0..points).map(taper).collect();
     groom.radii = radii.repeat(count);
     groom.group_names = GROUPS.map(String::from).to_vec();
@@ -72,18 +86,36 @@ pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> 
 /// Index in [`GROUPS`] of a root.
 fn group(place: &Place) -> u16 {
     let angle = place.root.x.abs().atan2(place.root.z + 0.015);
-    if angle < 0.75 { 0 } else if angle < 1.9 { 1 } else { 2 }
+    if angle < 0.75 {
+        0
+    } else if angle < 1.9 {
+        1
+    } else {
+        2
+    }
 }
 
 /// Grows the `index`-th course of a tier.
 fn grown(field: &Field, cut: &Cut, place: Place, seed: u32, purpose: u32, index: usize) -> Strand {
     let mut random = Random::new(seed, purpose, index as u32);
     let layer = (1.0 - place.from_parting / 0.22).clamp(0.05, 1.0) * random.within(0.75, 1.1);
-    let length = (cut.length - cut.level * place.from_parting).max(cut.shortest) * (1.0 + 0.07 * random.normal()).max(0.6);
+    let length = (cut.length - cut.level * place.from_parting).max(cut.shortest)
+        * (1.0 + 0.07 * random.normal()).max(0.6);
     let sway = random.normal3() * 0.10;
     let course = course(field, cut, &place, length, layer, sway);
-    let (phase, pitch, amplitude) = (random.within(0.0, TAU), random.within(0.85, 1.2), random.within(0.7, 1.3));
-    Strand { place, length, course, phase, pitch, amplitude }
+    let (phase, pitch, amplitude) = (
+        random.within(0.0, TAU),
+        random.within(0.85, 1.2),
+        random.within(0.7, 1.3),
+    );
+    Strand {
+        place,
+        length,
+        course,
+        phase,
+        pitch,
+        amplitude,
+    }
 }
 
 /// Draws every strand towards the nearest of `centers` on its side of the parting: by `strength` at the tip.
@@ -102,7 +134,8 @@ fn gather(strands: &mut [Strand], centers: &[Strand], strength: f32, jitter: f32
             let at = if k <= last {
                 center.course[k]
             } else {
-                center.course[last] + (center.course[last] - center.course[last - 1]) * (k - last) as f32
+                center.course[last]
+                    + (center.course[last] - center.course[last - 1]) * (k - last) as f32
             };
             // Locks taper: a hair keeps its place in the lock at the root, and less and less of it along the way.
             let target = at + offset * (1.0 - 0.85 * smoothstep(0.1, 1.0, t));
@@ -138,7 +171,12 @@ impl Nearest {
             for z in -reach..=reach {
                 for y in -reach..=reach {
                     for x in -reach..=reach {
-                        for i in self.cells.get(&(home + IVec3::new(x, y, z))).into_iter().flatten() {
+                        for i in self
+                            .cells
+                            .get(&(home + IVec3::new(x, y, z)))
+                            .into_iter()
+                            .flatten()
+                        {
                             let c = &centers[*i as usize].place;
                             let apart = if c.side == place.side { 0.0 } else { 1.0 };
                             let distance = c.root.distance(place.root) + apart;
@@ -197,7 +235,10 @@ fn resample(curve: &[Vec3], length: f32, out: &mut [Vec3]) {
         loop {
             let l = curve[segment].distance(curve[segment + 1]);
             if covered + l >= wanted || segment + 2 >= curve.len() {
-                *point = curve[segment].lerp(curve[segment + 1], ((wanted - covered) / l.max(1e-9)).min(1.0));
+                *point = curve[segment].lerp(
+                    curve[segment + 1],
+                    ((wanted - covered) / l.max(1e-9)).min(1.0),
+                );
                 break;
             }
             covered += l;

@@ -34,7 +34,12 @@ impl Place {
         let chord = root.distance(vec3(nearest.x, PARTING_HEIGHT, nearest.y));
         // The way over the skull is longer than the chord through it (radius about 9 cm).
         let from_parting = 0.18 * (chord / 0.18).min(0.98).asin();
-        Self { root, normal, side, from_parting }
+        Self {
+            root,
+            normal,
+            side,
+            from_parting,
+        }
     }
 }
 
@@ -47,22 +52,29 @@ fn on_parting(p: Vec2) -> Vec2 {
 /// The course of the hair at `place`, of at least `length` [m]: points [`STEP`] apart, root first.
 ///
 /// `layer`, 0 to 1, is how far out among the layers it lies; `sway` turns its fall a little [unit vectors a metre].
-pub fn course(field: &Field, cut: &Cut, place: &Place, length: f32, layer: f32, sway: Vec3) -> Vec<Vec3> {
+pub fn course(
+    field: &Field,
+    cut: &Cut,
+    place: &Place,
+    length: f32,
+    layer: f32,
+    sway: Vec3,
+) -> Vec<Vec3> {
     let steps = (length / STEP).ceil() as usize + 2;
     let mut points = Vec::with_capacity(steps);
     points.push(place.root);
     let mut p = place.root;
-    let mut heading = combed(field, cut, place, p, sway);
+    let mut heading = combed(field, cut, place, p, 0.0, sway);
     heading = (heading * (1.0 - cut.lift) + place.normal * cut.lift).normalize_or(place.normal);
     for i in 1..steps {
         let s = i as f32 * STEP;
-        let wish = combed(field, cut, place, p, sway);
+        // Rest upon the layers below: height grows over the first centimetres.
+        let floor = 0.0006 + cut.volume * layer * smoothstep(0.0, 0.09, s);
+        let wish = combed(field, cut, place, p, floor, sway);
         // A hair turns gradually: over some 2 cm near the skin, 4 cm in its fall.
         let turn = if s < 0.05 { 0.28 } else { 0.16 };
         heading = (heading + (wish - heading) * turn).normalize_or(heading);
         let mut next = p + heading * STEP;
-        // Rest upon the layers below: height grows over the first centimetres.
-        let floor = 0.0006 + cut.volume * layer * smoothstep(0.0, 0.09, s);
         for _ in 0..2 {
             let (d, n) = field.at(next);
             if d < floor {
@@ -77,8 +89,8 @@ pub fn course(field: &Field, cut: &Cut, place: &Place, length: f32, layer: f32, 
     points
 }
 
-/// Where hair at `p` wants to go (unit).
-fn combed(field: &Field, cut: &Cut, place: &Place, p: Vec3, sway: Vec3) -> Vec3 {
+/// Where hair at `p` wants to go (unit); its layer is `floor` above the skin [m].
+fn combed(field: &Field, cut: &Cut, place: &Place, p: Vec3, floor: f32, sway: Vec3) -> Vec3 {
     let (d, n) = field.at(p);
     // Away from the parting: to the side before the crown, all round behind it; never into the face.
     let mut away = (p.xz() - on_parting(p.xz())).normalize_or(vec2(place.side, 0.0));
@@ -89,6 +101,8 @@ fn combed(field: &Field, cut: &Cut, place: &Place, p: Vec3, sway: Vec3) -> Vec3 
     // On the dome the comb rules, below the temples gravity.
     let comb = smoothstep(-0.02, 0.09, p.y);
     let mut wish = vec3(away.x, 0.0, away.y) * (0.12 + 0.9 * comb) - Vec3::Y * (1.15 - 0.75 * comb);
+    // Lie on the layer below rather than stand off the head.
+    wish -= n * (smoothstep(-0.06, 0.0, p.y) * ((d - floor) / 0.012).clamp(0.0, 1.2));
     // Over the shoulder: to the front or to the back, by where the root is.
     let shoulder = smoothstep(-0.06, -0.17, p.y) * smoothstep(0.05, 0.01, d);
     let ahead = if place.root.z > 0.012 { 0.55 } else { -0.65 };
@@ -96,7 +110,9 @@ fn combed(field: &Field, cut: &Cut, place: &Place, p: Vec3, sway: Vec3) -> Vec3 
     wish += sway;
     // Along the surface while on it.
     let on = smoothstep(0.035, 0.008, d);
-    wish -= n * wish.dot(n).min(0.0) * on;
+    if d < floor + 0.004 {
+        wish -= n * wish.dot(n).min(0.0) * on;
+    }
     let wish = wish.normalize_or(-Vec3::Y);
     // Hair that stands: outwards, with a little of the comb.
     (wish + (n - wish) * cut.stand).normalize_or(wish)

@@ -19,7 +19,11 @@ pub fn planes(from: f32, to: f32, spacing: impl Fn(f32) -> f32) -> Vec<f32> {
 ///
 /// `axes` are the planes along x, y and z [m]. `distance` must not exceed the true distance by half or more.
 /// Vertices lie on the surface; normals are its own (from `normal`).
-pub fn mesh(axes: &[Vec<f32>; 3], distance: impl Fn(Vec3) -> f32 + Sync, normal: impl Fn(Vec3) -> Vec3 + Sync) -> Mesh {
+pub fn mesh(
+    axes: &[Vec<f32>; 3],
+    distance: impl Fn(Vec3) -> f32 + Sync,
+    normal: impl Fn(Vec3) -> Vec3 + Sync,
+) -> Mesh {
     let nodes = usizevec3(axes[0].len(), axes[1].len(), axes[2].len());
     let at = |n: USizeVec3| Vec3::new(axes[0][n.x], axes[1][n.y], axes[2][n.z]);
     let values = sample(nodes, at, &distance);
@@ -72,7 +76,11 @@ pub fn mesh(axes: &[Vec<f32>; 3], distance: impl Fn(Vec3) -> f32 + Sync, normal:
                 quad.reverse();
             }
             let p = quad.map(|i| mesh.positions[i as usize]);
-            let split = if p[0].distance_squared(p[2]) < p[1].distance_squared(p[3]) { 0 } else { 1 };
+            let split = if p[0].distance_squared(p[2]) < p[1].distance_squared(p[3]) {
+                0
+            } else {
+                1
+            };
             let q = |i: usize| quad[(i + split) % 4];
             mesh.triangles.push([q(0), q(1), q(2)]);
             mesh.triangles.push([q(0), q(2), q(3)]);
@@ -83,7 +91,11 @@ pub fn mesh(axes: &[Vec<f32>; 3], distance: impl Fn(Vec3) -> f32 + Sync, normal:
 }
 
 /// Moves every vertex onto the surface and fills the normals.
-pub fn settle(mesh: &mut Mesh, distance: impl Fn(Vec3) -> f32 + Sync, normal: impl Fn(Vec3) -> Vec3 + Sync) {
+pub fn settle(
+    mesh: &mut Mesh,
+    distance: impl Fn(Vec3) -> f32 + Sync,
+    normal: impl Fn(Vec3) -> Vec3 + Sync,
+) {
     mesh.positions.par_iter_mut().for_each(|p| {
         // Newton along the normal: twice is enough from within half a cell of a smooth surface. Steps are limited
         // so that a vertex at a crease stays in its cell.
@@ -96,33 +108,49 @@ pub fn settle(mesh: &mut Mesh, distance: impl Fn(Vec3) -> f32 + Sync, normal: im
 
 /// All grid coordinates below `size`, x fastest.
 fn each(size: USizeVec3) -> impl Iterator<Item = USizeVec3> {
-    (0..size.z).flat_map(move |z| (0..size.y).flat_map(move |y| (0..size.x).map(move |x| usizevec3(x, y, z))))
+    (0..size.z).flat_map(move |z| {
+        (0..size.y).flat_map(move |y| (0..size.x).map(move |x| usizevec3(x, y, z)))
+    })
 }
 
 /// Distance at every node; blocks of nodes far from the surface are filled with the value at their middle.
-fn sample(nodes: USizeVec3, at: impl Fn(USizeVec3) -> Vec3 + Sync, distance: impl Fn(Vec3) -> f32 + Sync) -> Vec<f32> {
+fn sample(
+    nodes: USizeVec3,
+    at: impl Fn(USizeVec3) -> Vec3 + Sync,
+    distance: impl Fn(Vec3) -> f32 + Sync,
+) -> Vec<f32> {
     /// Nodes along a block's edge.
     const BLOCK: usize = 6;
     let mut values = vec![0.0; nodes.x * nodes.y * nodes.z];
-    values.par_chunks_mut(nodes.x * nodes.y * BLOCK).enumerate().for_each(|(slab, values)| {
-        let z0 = slab * BLOCK;
-        for y0 in (0..nodes.y).step_by(BLOCK) {
-            for x0 in (0..nodes.x).step_by(BLOCK) {
-                let (lo, hi) = (usizevec3(x0, y0, z0), (usizevec3(x0, y0, z0) + (BLOCK - 1)).min(nodes - 1));
-                let (a, b) = (at(lo), at(hi));
-                let middle = distance((a + b) * 0.5);
-                // 1.5: the shapes' distance may be that much too small or large away from the surface.
-                let far = middle.abs() > 0.75 * a.distance(b);
-                for z in lo.z..=hi.z {
-                    for y in lo.y..=hi.y {
-                        for x in lo.x..=hi.x {
-                            let value = if far { middle } else { distance(at(usizevec3(x, y, z))) };
-                            values[((z - z0) * nodes.y + y) * nodes.x + x] = value;
+    values
+        .par_chunks_mut(nodes.x * nodes.y * BLOCK)
+        .enumerate()
+        .for_each(|(slab, values)| {
+            let z0 = slab * BLOCK;
+            for y0 in (0..nodes.y).step_by(BLOCK) {
+                for x0 in (0..nodes.x).step_by(BLOCK) {
+                    let (lo, hi) = (
+                        usizevec3(x0, y0, z0),
+                        (usizevec3(x0, y0, z0) + (BLOCK - 1)).min(nodes - 1),
+                    );
+                    let (a, b) = (at(lo), at(hi));
+                    let middle = distance((a + b) * 0.5);
+                    // 1.5: the shapes' distance may be that much too small or large away from the surface.
+                    let far = middle.abs() > 0.75 * a.distance(b);
+                    for z in lo.z..=hi.z {
+                        for y in lo.y..=hi.y {
+                            for x in lo.x..=hi.x {
+                                let value = if far {
+                                    middle
+                                } else {
+                                    distance(at(usizevec3(x, y, z)))
+                                };
+                                values[((z - z0) * nodes.y + y) * nodes.x + x] = value;
+                            }
                         }
                     }
                 }
             }
-        }
-    });
+        });
     values
 }

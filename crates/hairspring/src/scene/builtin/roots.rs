@@ -24,14 +24,22 @@ pub fn roots(mesh: &Mesh, count: usize, seed: u32) -> Vec<(Vec3, Vec3)> {
     let mut covered = 0.0;
     for (i, piece) in pieces.iter().enumerate() {
         covered += area(piece);
-        let until = if i + 1 == pieces.len() { count } else { (covered / total * count as f64 + 0.5) as usize };
+        let until = if i + 1 == pieces.len() {
+            count
+        } else {
+            (covered / total * count as f64 + 0.5) as usize
+        };
         let mut random = Random::new(seed, 1, i as u32);
         let (mut u, mut v) = (random.unit(), random.unit());
         while roots.len() < until.min(count) {
             // R2 sequence (Roberts 2018) from a random start, folded into the triangle.
             u = (u + 0.754_877_7).fract();
             v = (v + 0.569_840_3).fract();
-            let (s, t) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let (s, t) = if u + v > 1.0 {
+                (1.0 - u, 1.0 - v)
+            } else {
+                (u, v)
+            };
             let p = piece[0] + (piece[1] - piece[0]) * s + (piece[2] - piece[0]) * t;
             let n = piece[3] + (piece[4] - piece[3]) * s + (piece[5] - piece[3]) * t;
             roots.push((p, n.normalize_or(Vec3::Y)));

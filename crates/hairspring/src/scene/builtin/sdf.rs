@@ -37,7 +37,11 @@ pub fn ellipsoid(p: Vec3, center: Vec3, radii: Vec3) -> f32 {
     let q = (p - center) / radii;
     let (k0, k1) = (q.length(), (q / radii).length());
     // At the very middle both vanish; the inscribed ball's depth is the right value there.
-    if k1 < 1e-12 { -radii.min_element() } else { k0 * (k0 - 1.0) / k1 }
+    if k1 < 1e-12 {
+        -radii.min_element()
+    } else {
+        k0 * (k0 - 1.0) / k1
+    }
 }
 
 /// An ellipsoid turned by `rotation` about its middle.
@@ -63,6 +67,10 @@ pub fn almond(p: Vec2, half_width: f32, half_height: f32) -> f32 {
 pub fn elliptic_ring(p: Vec3, radii: Vec2, thickness: f32) -> f32 {
     let q = p.xy() / radii;
     let (k0, k1) = (q.length(), (q / radii).length());
-    let plane = if k1 < 1e-12 { -radii.min_element() } else { k0 * (k0 - 1.0) / k1 };
+    let plane = if k1 < 1e-12 {
+        -radii.min_element()
+    } else {
+        k0 * (k0 - 1.0) / k1
+    };
     Vec2::new(plane, p.z).length() - thickness
 }

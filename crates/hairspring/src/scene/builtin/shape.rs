@@ -5,7 +5,9 @@
 //! **millimetres**, the unit in which heads are measured; the public functions take and give metres.
 //! The head is symmetric: everything is modelled for x ≥ 0.
 
-use super::sdf::{almond, both, cut, ellipsoid, elliptic_ring, limb, smoothstep, sphere, turned_ellipsoid, union};
+use super::sdf::{
+    almond, both, cut, ellipsoid, elliptic_ring, limb, smoothstep, sphere, turned_ellipsoid, union,
+};
 use glam::{Quat, Vec3, vec2, vec3};
 
 /// Millimetres in a metre.
@@ -51,8 +53,16 @@ pub fn normal(p: Vec3) -> Vec3 {
 /// Cranium, face and ears.
 fn head(q: Vec3) -> f32 {
     let mut d = ellipsoid(q, vec3(0.0, 37.0, -24.0), vec3(75.0, 77.0, 82.0));
-    d = union(d, ellipsoid(q, vec3(0.0, 33.0, 8.0), vec3(66.0, 71.0, 75.0)), 24.0);
-    d = union(d, ellipsoid(q, vec3(0.0, -4.0, -42.0), vec3(59.0, 46.0, 52.0)), 30.0);
+    d = union(
+        d,
+        ellipsoid(q, vec3(0.0, 33.0, 8.0), vec3(66.0, 71.0, 75.0)),
+        24.0,
+    );
+    d = union(
+        d,
+        ellipsoid(q, vec3(0.0, -4.0, -42.0), vec3(59.0, 46.0, 52.0)),
+        30.0,
+    );
     d = face(q, d);
     ear(q, d)
 }
@@ -61,13 +71,39 @@ fn head(q: Vec3) -> f32 {
 fn face(q: Vec3, d: f32) -> f32 {
     // The mask from brow to jaw, the jawline and the chin.
     let mut f = ellipsoid(q, vec3(0.0, -22.0, 17.0), vec3(60.0, 86.0, 64.5));
-    f = union(f, limb(q, vec3(44.0, -50.0, 0.0), 15.0, vec3(13.0, -97.0, 57.0), 13.0), 30.0);
-    f = union(f, ellipsoid(q, vec3(0.0, -101.0, 64.0), vec3(16.0, 13.5, 16.5)), 26.0);
+    f = union(
+        f,
+        limb(
+            q,
+            vec3(44.0, -50.0, 0.0),
+            15.0,
+            vec3(13.0, -97.0, 57.0),
+            13.0,
+        ),
+        30.0,
+    );
+    f = union(
+        f,
+        ellipsoid(q, vec3(0.0, -101.0, 64.0), vec3(16.0, 13.5, 16.5)),
+        26.0,
+    );
     let mut d = union(d, f, 22.0);
     // Cheekbones, the round of the muzzle under the lips, a soft brow.
-    d = union(d, ellipsoid(q, vec3(38.0, -21.0, 47.0), vec3(21.0, 16.0, 21.0)), 30.0);
-    d = union(d, ellipsoid(q, vec3(0.0, -68.0, 58.0), vec3(30.0, 25.0, 28.0)), 18.0);
-    d = union(d, limb(q, vec3(4.0, 20.0, 73.0), 8.5, vec3(46.0, 20.0, 53.0), 8.0), 26.0);
+    d = union(
+        d,
+        ellipsoid(q, vec3(38.0, -21.0, 47.0), vec3(21.0, 16.0, 21.0)),
+        30.0,
+    );
+    d = union(
+        d,
+        ellipsoid(q, vec3(0.0, -68.0, 58.0), vec3(30.0, 25.0, 28.0)),
+        18.0,
+    );
+    d = union(
+        d,
+        limb(q, vec3(4.0, 20.0, 73.0), 8.5, vec3(46.0, 20.0, 53.0), 8.0),
+        26.0,
+    );
     d = eyes(q, d);
     d = nose(q, d);
     mouth(q, d)
@@ -76,13 +112,24 @@ fn face(q: Vec3, d: f32) -> f32 {
 /// Hollows the eye sockets and lays the lids over the eyeball, which is a mesh of its own.
 fn eyes(q: Vec3, d: f32) -> f32 {
     let c = EYE_CENTER * MM;
-    let d = cut(d, ellipsoid(q, c + vec3(0.0, 1.5, 27.0), vec3(19.0, 11.0, 15.0)), 16.0);
+    let d = cut(
+        d,
+        ellipsoid(q, c + vec3(0.0, 1.5, 27.0), vec3(19.0, 11.0, 15.0)),
+        16.0,
+    );
     let lids = sphere(q, c, EYE_RADIUS * MM + 1.7);
     let d = union(d, lids, 7.0);
     // The fold above the upper lid.
     let across = vec2(q.x - c.x, q.y - c.y);
-    let fold = vec2(across.y - 8.6 + across.x * across.x * 0.024, q.z - c.z - 14.5);
-    let d = if q.z > c.z { cut(d, (fold.length() - 0.7).max(across.x.abs() - 15.0), 2.4) } else { d };
+    let fold = vec2(
+        across.y - 8.6 + across.x * across.x * 0.024,
+        q.z - c.z - 14.5,
+    );
+    let d = if q.z > c.z {
+        cut(d, (fold.length() - 0.7).max(across.x.abs() - 15.0), 2.4)
+    } else {
+        d
+    };
     // The opening: an almond, its outer corner a little higher, cut as deep as the middle of the ball.
     let (s, k) = (0.09f32, 0.9959f32);
     let tilted = vec2(across.x * k + across.y * s, across.y * k - across.x * s);
@@ -94,20 +141,37 @@ fn eyes(q: Vec3, d: f32) -> f32 {
 fn nose(q: Vec3, d: f32) -> f32 {
     let mut n = limb(q, vec3(0.0, 12.0, 74.0), 6.5, vec3(0.0, -33.0, 93.5), 6.5);
     n = union(n, sphere(q, vec3(0.0, -36.5, 95.5), 7.6), 8.0);
-    n = union(n, ellipsoid(q, vec3(9.5, -40.5, 85.5), vec3(6.0, 5.6, 8.5)), 7.0);
+    n = union(
+        n,
+        ellipsoid(q, vec3(9.5, -40.5, 85.5), vec3(6.0, 5.6, 8.5)),
+        7.0,
+    );
     let d = union(d, n, 12.0);
-    cut(d, ellipsoid(q, vec3(5.6, -47.5, 92.0), vec3(3.0, 4.0, 4.6)), 3.0)
+    cut(
+        d,
+        ellipsoid(q, vec3(5.6, -47.5, 92.0), vec3(3.0, 4.0, 4.6)),
+        3.0,
+    )
 }
 
 /// Adds the lips and parts them.
 fn mouth(q: Vec3, d: f32) -> f32 {
     // The groove under the nose.
-    let d = cut(d, limb(q, vec3(0.0, -50.0, 95.0), 3.0, vec3(0.0, -59.0, 93.5), 4.0), 6.0);
+    let d = cut(
+        d,
+        limb(q, vec3(0.0, -50.0, 95.0), 3.0, vec3(0.0, -59.0, 93.5), 4.0),
+        6.0,
+    );
     // The mouth bends back round the teeth: its own depth at each x.
     let bend = vec3(0.0, 0.0, q.x * q.x * 0.016);
     let p = q + bend;
     let upper = union(
-        turned_ellipsoid(p, vec3(8.5, -63.6, 83.0), vec3(14.0, 4.6, 7.6), Quat::from_rotation_z(-0.2)),
+        turned_ellipsoid(
+            p,
+            vec3(8.5, -63.6, 83.0),
+            vec3(14.0, 4.6, 7.6),
+            Quat::from_rotation_z(-0.2),
+        ),
         sphere(p, vec3(0.0, -65.5, 85.0), 4.2),
         4.0,
     );
@@ -115,8 +179,15 @@ fn mouth(q: Vec3, d: f32) -> f32 {
     let lips = union(upper, lower, 1.5);
     let d = union(d, lips, 4.0);
     // The line between them, and the dimple at the corner.
-    let line = vec2(p.y + 68.0 - 1.4 * (q.x / 9.0).min(2.0 - q.x / 9.0).max(-1.0) * 0.6, p.z - 91.5);
-    let d = cut(d, (vec2(line.x, line.y * 0.3).length() - 0.5).max(q.x - 22.0), 2.6);
+    let line = vec2(
+        p.y + 68.0 - 1.4 * (q.x / 9.0).min(2.0 - q.x / 9.0).max(-1.0) * 0.6,
+        p.z - 91.5,
+    );
+    let d = cut(
+        d,
+        (vec2(line.x, line.y * 0.3).length() - 0.5).max(q.x - 22.0),
+        2.6,
+    );
     cut(d, sphere(q, vec3(25.5, -68.5, 80.0), 3.0), 9.0)
 }
 
@@ -132,29 +203,97 @@ fn ear(q: Vec3, d: f32) -> f32 {
     // Narrower towards the lobe.
     e.x *= 1.0 - (e.y / 31.0).clamp(-1.0, 1.0) * 0.22;
     let mut shell = ellipsoid(e, Vec3::ZERO, vec3(16.5, 29.0, 5.0));
-    shell = union(shell, elliptic_ring(e - vec3(0.0, 2.0, 2.5), vec2(14.6, 26.0), 2.6), 3.0);
-    shell = cut(shell, ellipsoid(e, vec3(1.0, -2.0, 8.5), vec3(8.0, 13.0, 6.0)), 4.0);
-    shell = union(shell, ellipsoid(e, vec3(-1.0, -25.0, 1.0), vec3(8.0, 8.0, 4.5)), 8.0);
+    shell = union(
+        shell,
+        elliptic_ring(e - vec3(0.0, 2.0, 2.5), vec2(14.6, 26.0), 2.6),
+        3.0,
+    );
+    shell = cut(
+        shell,
+        ellipsoid(e, vec3(1.0, -2.0, 8.5), vec3(8.0, 13.0, 6.0)),
+        4.0,
+    );
+    shell = union(
+        shell,
+        ellipsoid(e, vec3(-1.0, -25.0, 1.0), vec3(8.0, 8.0, 4.5)),
+        8.0,
+    );
     let root = ellipsoid(q, vec3(64.0, -8.0, -10.0), vec3(10.0, 22.0, 13.0));
     let d = union(d, union(root, shell, 6.0), 7.0);
-    union(d, ellipsoid(q, vec3(70.0, -11.0, 4.0), vec3(4.0, 7.0, 4.5)), 4.0)
+    union(
+        d,
+        ellipsoid(q, vec3(70.0, -11.0, 4.0), vec3(4.0, 7.0, 4.5)),
+        4.0,
+    )
 }
 
 /// The neck: a leaning column with the muscles that turn the head.
 fn neck(q: Vec3) -> f32 {
-    let column = limb(q, vec3(0.0, -40.0, -22.0), 45.0, vec3(0.0, -195.0, -46.0), 47.0);
-    let muscle = limb(q, vec3(50.0, -45.0, -26.0), 8.0, vec3(14.0, -202.0, 0.0), 6.5);
+    let column = limb(
+        q,
+        vec3(0.0, -40.0, -22.0),
+        45.0,
+        vec3(0.0, -195.0, -46.0),
+        47.0,
+    );
+    let muscle = limb(
+        q,
+        vec3(50.0, -45.0, -26.0),
+        8.0,
+        vec3(14.0, -202.0, 0.0),
+        6.5,
+    );
     union(column, muscle, 18.0)
 }
 
 /// Trapezius, shoulders, chest and back.
 fn torso(q: Vec3) -> f32 {
     let mut d = ellipsoid(q, vec3(0.0, -300.0, -48.0), vec3(165.0, 105.0, 88.0));
-    d = union(d, limb(q, vec3(20.0, -150.0, -66.0), 20.0, vec3(125.0, -222.0, -58.0), 20.0), 44.0);
-    d = union(d, limb(q, vec3(60.0, -232.0, -52.0), 44.0, vec3(160.0, -240.0, -55.0), 42.0), 40.0);
-    d = union(d, limb(q, vec3(168.0, -245.0, -55.0), 47.0, vec3(182.0, -330.0, -52.0), 40.0), 30.0);
+    d = union(
+        d,
+        limb(
+            q,
+            vec3(20.0, -150.0, -66.0),
+            20.0,
+            vec3(125.0, -222.0, -58.0),
+            20.0,
+        ),
+        44.0,
+    );
+    d = union(
+        d,
+        limb(
+            q,
+            vec3(60.0, -232.0, -52.0),
+            44.0,
+            vec3(160.0, -240.0, -55.0),
+            42.0,
+        ),
+        40.0,
+    );
+    d = union(
+        d,
+        limb(
+            q,
+            vec3(168.0, -245.0, -55.0),
+            47.0,
+            vec3(182.0, -330.0, -52.0),
+            40.0,
+        ),
+        30.0,
+    );
     // Collar bones.
-    d = union(d, limb(q, vec3(16.0, -209.0, 5.0), 5.5, vec3(130.0, -206.0, -32.0), 7.0), 20.0);
+    d = union(
+        d,
+        limb(
+            q,
+            vec3(16.0, -209.0, 5.0),
+            5.5,
+            vec3(130.0, -206.0, -32.0),
+            7.0,
+        ),
+        20.0,
+    );
     d
 }
 
@@ -183,12 +322,21 @@ pub fn scalp(p: Vec3) -> f32 {
     let q = vec3(p.x.abs(), p.y, p.z) * MM;
     // Height of the hairline by the angle round the head, 0 at the front and π at the nape.
     let angle = q.x.atan2(q.z + 15.0);
-    let line = HAIRLINE.windows(2).find(|w| angle <= w[1].0).map_or(HAIRLINE[HAIRLINE.len() - 1].1, |w| {
-        let t = ((angle - w[0].0) / (w[1].0 - w[0].0)).clamp(0.0, 1.0);
-        w[0].1 + (w[1].1 - w[0].1) * smoothstep(0.0, 1.0, t)
-    });
+    let line =
+        HAIRLINE
+            .windows(2)
+            .find(|w| angle <= w[1].0)
+            .map_or(HAIRLINE[HAIRLINE.len() - 1].1, |w| {
+                let t = ((angle - w[0].0) / (w[1].0 - w[0].0)).clamp(0.0, 1.0);
+                w[0].1 + (w[1].1 - w[0].1) * smoothstep(0.0, 1.0, t)
+            });
     // Not on the ear itself.
-    let ear = turned_ellipsoid(q, vec3(77.0, -8.0, -15.0), vec3(13.0, 36.0, 20.0), Quat::from_rotation_x(0.15));
+    let ear = turned_ellipsoid(
+        q,
+        vec3(77.0, -8.0, -15.0),
+        vec3(13.0, 36.0, 20.0),
+        Quat::from_rotation_x(0.15),
+    );
     (q.y - line).min(ear) / MM
 }
 

@@ -51,7 +51,13 @@ pub struct Cut {
 
 impl Style {
     /// All styles, in the order of [`material::PRESETS`].
-    pub const ALL: [Style; 5] = [Style::Straight, Style::Wavy, Style::Curly, Style::Coily, Style::ShortFur];
+    pub const ALL: [Style; 5] = [
+        Style::Straight,
+        Style::Wavy,
+        Style::Curly,
+        Style::Coily,
+        Style::ShortFur,
+    ];
 
     /// Its name, one of [`material::PRESETS`].
     pub fn name(self) -> &'static str {
@@ -90,7 +96,16 @@ impl Style {
             points: 32,
         };
         match self {
-            Style::Straight => Cut { length: 0.46, volume: 0.014, lift: 0.25, wave: 0.0012, wave_length: 0.16, clump: 0.45, frizz: 0.0008, ..wavy },
+            Style::Straight => Cut {
+                length: 0.46,
+                volume: 0.014,
+                lift: 0.25,
+                wave: 0.0012,
+                wave_length: 0.16,
+                clump: 0.45,
+                frizz: 0.0008,
+                ..wavy
+            },
             Style::Wavy => wavy,
             Style::Curly => Cut {
                 length: 0.33,
@@ -146,6 +161,9 @@ impl Style {
             Style::Coily => [vec3(0.014, 0.009, 0.007), vec3(0.028, 0.017, 0.012)],
             Style::ShortFur => [vec3(0.16, 0.095, 0.045), vec3(0.34, 0.22, 0.11)],
         };
-        HairLook { root_color: colors[0], tip_color: colors[1] }
+        HairLook {
+            root_color: colors[0],
+            tip_color: colors[1],
+        }
     }
 }
