@@ -74,6 +74,6 @@ impl Field {
 fn shielded(p: Vec3) -> f32 {
     let q = vec3(p.x.abs(), p.y, p.z);
     let face = ellipsoid(q, vec3(0.0, -0.045, 0.050), vec3(0.063, 0.098, 0.066));
-    let ear = ellipsoid(q, vec3(0.066, -0.008, -0.014), vec3(0.019, 0.038, 0.030));
+    let ear = ellipsoid(q, vec3(0.060, -0.008, -0.014), vec3(0.024, 0.050, 0.040));
     union(union(shape::distance(p), face, 0.03), ear, 0.02)
 }

@@ -53,7 +53,7 @@ pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> 
     // Locks are made of wisps, wisps of hairs: each tier gathers about the one before.
     let locks = tier(count.div_ceil(LOCK), 2);
     let mut wisps = tier(count.div_ceil(WISP), 3);
-    gather(&mut wisps, &locks, cut.clump * 0.8, 1.0);
+    gather(&mut wisps, &locks, cut.clump * 0.8, 0.4);
     let mut hairs = tier(count, 4);
     gather(&mut hairs, &wisps, cut.clump, 0.25);
 

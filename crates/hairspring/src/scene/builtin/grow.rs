@@ -72,7 +72,7 @@ pub fn course(
         let floor = 0.0006 + cut.volume * layer * smoothstep(0.0, 0.09, s);
         let wish = combed(field, cut, place, p, floor, sway);
         // A hair turns gradually: over some 2 cm near the skin, 4 cm in its fall.
-        let turn = if s < 0.05 { 0.28 } else { 0.16 };
+        let turn = if s < 0.16 { 0.38 } else { 0.2 };
         heading = (heading + (wish - heading) * turn).normalize_or(heading);
         let mut next = p + heading * STEP;
         for _ in 0..2 {
@@ -97,22 +97,22 @@ fn combed(field: &Field, cut: &Cut, place: &Place, p: Vec3, floor: f32, sway: Ve
     if away.x * place.side < 0.35 && p.z > PARTING[1].y {
         away.x = place.side * 0.35;
     }
-    away.y = away.y.min(0.0) - 0.30 * smoothstep(-0.02, 0.06, p.z);
+    away.y = away.y.min(0.0) - 0.20 * smoothstep(-0.02, 0.06, p.z);
     // On the dome the comb rules, below the temples gravity.
     let comb = smoothstep(-0.02, 0.09, p.y);
     let mut wish = vec3(away.x, 0.0, away.y) * (0.12 + 0.9 * comb) - Vec3::Y * (1.15 - 0.75 * comb);
-    // Lie on the layer below rather than stand off the head.
-    wish -= n * (smoothstep(-0.06, 0.0, p.y) * ((d - floor) / 0.012).clamp(0.0, 1.2));
-    // Over the shoulder: to the front or to the back, by where the root is.
-    let shoulder = smoothstep(-0.06, -0.17, p.y) * smoothstep(0.05, 0.01, d);
-    let ahead = if place.root.z > 0.012 { 0.55 } else { -0.65 };
-    wish += Vec3::Z * ahead * shoulder;
+    // Over the shoulder: to the front or to the back, by where the root is, and not off its side.
+    let shoulder =
+        smoothstep(-0.05, -0.10, p.y) * smoothstep(0.15, 0.55, n.y) * smoothstep(0.06, 0.02, d);
+    let ahead = if place.root.z > 0.012 { 0.45 } else { -0.45 };
+    wish = wish.lerp(vec3(-0.2 * p.x.signum(), -0.8, ahead), shoulder);
     wish += sway;
-    // Along the surface while on it.
-    let on = smoothstep(0.035, 0.008, d);
-    if d < floor + 0.004 {
-        wish -= n * wish.dot(n).min(0.0) * on;
-    }
+    // Along the surface while on it; on the head also drawn back to its layer where it stands off.
+    let on = smoothstep(floor + 0.012, floor + 0.003, d);
+    let head = smoothstep(-0.03, 0.03, p.y);
+    let outward = wish.dot(n);
+    wish -= n * (outward.min(0.0) * on + outward.max(0.0) * head);
+    wish -= n * (head * ((d - floor) / 0.006).clamp(0.0, 1.5));
     let wish = wish.normalize_or(-Vec3::Y);
     // Hair that stands: outwards, with a little of the comb.
     (wish + (n - wish) * cut.stand).normalize_or(wish)

@@ -82,13 +82,13 @@ impl Style {
     /// Its shape.
     pub(super) fn cut(self) -> Cut {
         let wavy = Cut {
-            length: 0.43,
+            length: 0.40,
             level: 0.9,
             shortest: 0.12,
-            volume: 0.020,
+            volume: 0.016,
             lift: 0.35,
             stand: 0.0,
-            wave: 0.0065,
+            wave: 0.0085,
             wave_length: 0.085,
             roundness: 0.5,
             clump: 0.75,
