@@ -4,7 +4,7 @@ mod body;
 mod hair;
 
 use crate::{
-    groom::Groom,
+    groom::{Groom, bind_roots},
     scene::{HairLook, Scene},
     simulation::{Air, Measure, StepReport},
 };
@@ -95,9 +95,13 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Sets the scene up at time 0: the body in the first pose of its clip, the hair at rest on it.
+    /// Sets the scene up at time 0: the body in the first pose of its clip, the hair at rest on it. Roots without a binding are
+    /// bound to the nearest place of the body.
     pub fn new(mut scene: Scene) -> Result<Self, StageError> {
         check(&scene)?;
+        if let Some(body) = &scene.body {
+            scene.grooms.iter_mut().for_each(|g| bind_roots(&mut g.groom, &body.mesh));
+        }
         let body = StagedBody::new(&scene)?;
         let grooms = std::mem::take(&mut scene.grooms);
         let hair = grooms.into_iter().map(|groom| StagedHair::new(groom, &scene, &body)).collect();
