@@ -13,6 +13,7 @@ use crate::{
     tile::{Brush, PIXELS, SIDE, Tiles},
     tonemap::Encoder,
 };
+use fearless_simd::Level;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -66,6 +67,7 @@ impl Renderer {
             view,
             tiles: self.tiles,
             shadow: &self.shadow,
+            level: Level::new(),
             shader: Shader::new(&frame.lighting, view.eye),
             depths: [(middle - reach).max(0.0), middle.max(0.0) + reach],
         };

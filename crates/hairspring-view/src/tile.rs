@@ -10,6 +10,7 @@ use crate::{
     sort,
     tonemap::{Encoder, filmic},
 };
+use fearless_simd::dispatch;
 use glam::{Vec2, Vec3, Vec4};
 
 /// Side of a tile [pixels].
@@ -71,6 +72,27 @@ impl Default for Brush {
     }
 }
 
+/// Draws a tile's pieces, nearest first, until nothing shows through any more.
+#[inline(always)]
+fn lay_hair(canvas: &mut Canvas, entries: &[u64], chunks: &[Chunk], origin: Vec2) {
+    let mut fetched = [Piece::default(); BATCH];
+    for (round, few) in entries.chunks(BATCH).enumerate() {
+        for (piece, e) in fetched.iter_mut().zip(few) {
+            let chunk = *e >> PIECE_BITS & ((1 << CHUNK_BITS) - 1);
+            *piece = chunks[chunk as usize].pieces[(*e & ((1 << PIECE_BITS) - 1)) as usize];
+        }
+        for piece in &fetched[..few.len()] {
+            let mut open = piece.open();
+            open.a -= origin;
+            open.b -= origin;
+            canvas.draw(&open);
+        }
+        if round % 16 == 15 && canvas.pixels.iter().all(|p| p.w <= CLOSED) {
+            break;
+        }
+    }
+}
+
 /// Pieces fetched from memory together, so that their cache misses overlap.
 const BATCH: usize = 32;
 
@@ -95,25 +117,7 @@ impl Brush {
         }
         sort::sort(&mut self.entries, &mut self.scratch);
         let origin = Vec2::new(corner[0] as f32, corner[1] as f32);
-        for batch in self.entries.chunks(BATCH * 16) {
-            let mut fetched = [Piece::default(); BATCH];
-            for few in batch.chunks(BATCH) {
-                for (piece, e) in fetched.iter_mut().zip(few) {
-                    let chunk = *e >> PIECE_BITS & ((1 << CHUNK_BITS) - 1);
-                    *piece = chunks[chunk as usize].pieces[(*e & ((1 << PIECE_BITS) - 1)) as usize];
-                }
-                for piece in &fetched[..few.len()] {
-                    let mut open = piece.open();
-                    open.a -= origin;
-                    open.b -= origin;
-                    canvas.draw(&open);
-                }
-            }
-            let closed = |i: usize| canvas.pixels[i].w <= CLOSED;
-            if (0..PIXELS).all(closed) {
-                break;
-            }
-        }
+        dispatch!(setup.level, _simd => lay_hair(canvas, &self.entries, chunks, origin));
         if body {
             (0..PIXELS).filter(|i| self.surfaces[*i].cover > 0.0).for_each(|i| {
                 if canvas.body_depth[i].is_finite() {

@@ -55,7 +55,8 @@ impl Canvas {
         }
     }
 
-    /// Draws a piece whose coordinates count from the tile's corner.
+    /// Draws a piece whose coordinates count from the tile's corner. Call it inside a `dispatch!`.
+    #[inline(always)]
     pub fn draw(&mut self, piece: &Open) {
         let d = piece.b - piece.a;
         if d.x.abs() >= d.y.abs() {

@@ -11,6 +11,7 @@ use crate::{
     sort::KEY_BITS,
     tile::{SIDE, Tiles},
 };
+use fearless_simd::{Simd, dispatch};
 use glam::{Vec2, Vec3, Vec4};
 use std::ops::Range;
 
@@ -33,6 +34,8 @@ pub(crate) struct Setup<'a> {
     pub tiles: Tiles,
     pub shadow: &'a Shadow,
     pub shader: Shader,
+    /// Instruction set to use.
+    pub level: fearless_simd::Level,
     /// Nearest and farthest depth of hair [m].
     pub depths: [f32; 2],
 }
@@ -94,6 +97,11 @@ impl Chunk {
 
     /// Draws a run of strands into pieces.
     pub fn fill(&mut self, setup: &Setup, run: &Run) {
+        dispatch!(setup.level, simd => self.fill_with(simd, setup, run));
+    }
+
+    #[inline(always)]
+    fn fill_with<S: Simd>(&mut self, simd: S, setup: &Setup, run: &Run) {
         self.pieces.clear();
         self.unsorted.clear();
         let hair = &setup.frame.hair[run.hair];
@@ -110,7 +118,7 @@ impl Chunk {
                 let amount = 1.0 + look.variation.clamp(0.0, 1.0) * random * 0.6;
                 self.light(setup, hair, range, ends, amount);
                 let fibre = Fibre::new(look, shade::random(!(s as u32)));
-                setup.shader.shade(&fibre, &mut self.blocks);
+                setup.shader.shade(simd, &fibre, &mut self.blocks);
                 self.cut(setup);
             }
         }
@@ -118,6 +126,7 @@ impl Chunk {
     }
 
     /// Projects a strand; false if all of it is off one side of the picture.
+    #[inline(always)]
     fn project(&mut self, setup: &Setup, hair: &HairDraw, range: Range<usize>) -> bool {
         let scale = 2.0 * hair.width_scale * setup.view.focal;
         self.dots.clear();
@@ -139,10 +148,11 @@ impl Chunk {
     }
 
     /// Gathers what the shader needs at every point.
+    #[inline(always)]
     fn light(&mut self, setup: &Setup, hair: &HairDraw, range: Range<usize>, ends: [Vec3; 2], amount: f32) {
         let points = &hair.points[range.clone()];
         let n = points.len();
-        self.blocks.clear();
+        // Lanes past the last point keep old numbers, which nobody reads.
         self.blocks.resize(n.div_ceil(LANES), Block::default());
         let per_point = 1.0 / (n - 1) as f32;
         for (i, p) in points.iter().enumerate() {
@@ -159,6 +169,7 @@ impl Chunk {
     }
 
     /// Cuts the strand's smooth curve into straight pieces.
+    #[inline(always)]
     fn cut(&mut self, setup: &Setup) {
         let tolerance = setup.frame.quality.smoothness.clamp(0.02, 4.0);
         let n = self.dots.len();
@@ -207,6 +218,7 @@ impl Chunk {
     }
 
     /// Files one piece under every tile that it touches.
+    #[inline(always)]
     fn push(&mut self, setup: &Setup, a: Dot, b: Dot, color: [Vec4; 2], cap: [bool; 2]) {
         let [w, h] = setup.tiles.size();
         let reach = 0.5 * a.width.max(b.width) + 1.0;
@@ -248,6 +260,7 @@ impl Chunk {
     }
 
     /// Brings the entries into the order of the tiles.
+    #[inline(always)]
     fn file(&mut self, tiles: usize) {
         self.starts.clear();
         self.starts.resize(tiles + 1, 0);
@@ -267,6 +280,7 @@ impl Chunk {
 }
 
 /// Cubic through `a` and `b` with tangents `ta` and `tb`.
+#[inline(always)]
 fn hermite(a: Vec2, b: Vec2, ta: Vec2, tb: Vec2, u: f32) -> Vec2 {
     let (u2, u3) = (u * u, u * u * u);
     a * (2.0 * u3 - 3.0 * u2 + 1.0) + b * (3.0 * u2 - 2.0 * u3) + ta * (u3 - 2.0 * u2 + u) + tb * (u3 - u2)

@@ -6,7 +6,7 @@
 //! as the logarithm of colour, so that paths through the fibre, mixtures and shadow are sums and products.
 
 use crate::lighting::Lighting;
-use fearless_simd::{Level, dispatch, f32x8, prelude::*};
+use fearless_simd::{f32x8, prelude::*};
 use glam::{Vec3, Vec4};
 use hairspring::scene::HairLook;
 
@@ -35,7 +35,6 @@ pub(crate) struct Block {
 /// What all strands of a frame share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader {
-    level: Level,
     eye: Vec3,
     /// Unit directions and colours of key, rim and fill: the order of the optical depths.
     lamps: [(Vec3, Vec3); 3],
@@ -80,7 +79,6 @@ impl Shader {
     pub fn new(lighting: &Lighting, eye: Vec3) -> Self {
         let lamp = |l: &crate::lighting::Light| (l.direction.normalize_or(Vec3::Y), l.color);
         Self {
-            level: Level::new(),
             eye,
             lamps: [lamp(&lighting.key), lamp(&lighting.rim), lamp(&lighting.fill)],
             sky: lighting.sky,
@@ -88,31 +86,36 @@ impl Shader {
         }
     }
 
-    /// Fills `color` of every block.
-    pub fn shade(&self, fibre: &Fibre, blocks: &mut [Block]) {
-        dispatch!(self.level, simd => blocks.iter_mut().for_each(|block| shade(simd, self, fibre, block)));
+    /// Fills `color` of every block. Call it inside a `dispatch!`.
+    // Loops are written out and helpers are inlined always: only then does all of it compile for the chosen instruction set.
+    #[inline(always)]
+    pub fn shade<S: Simd>(&self, simd: S, fibre: &Fibre, blocks: &mut [Block]) {
+        for block in blocks {
+            shade(simd, self, fibre, block);
+        }
     }
 }
 
+/// A vector of each of eight points.
 #[derive(Clone, Copy)]
 struct V<S: Simd>([f32x8<S>; 3]);
 
 impl<S: Simd> V<S> {
     #[inline(always)]
-    fn load(simd: S, rows: &[Row; 3]) -> Self {
-        Self(rows.map(|r| f32x8::simd_from(simd, r)))
+    fn load(simd: S, [x, y, z]: &[Row; 3]) -> Self {
+        Self([f32x8::simd_from(simd, *x), f32x8::simd_from(simd, *y), f32x8::simd_from(simd, *z)])
     }
     #[inline(always)]
     fn dot(self, o: Self) -> f32x8<S> {
-        self.0[0] * o.0[0] + self.0[1] * o.0[1] + self.0[2] * o.0[2]
+        self.0[0].mul_add(o.0[0], self.0[1].mul_add(o.0[1], self.0[2] * o.0[2]))
     }
     #[inline(always)]
     fn dot3(self, o: Vec3) -> f32x8<S> {
         self.0[0] * o.x + self.0[1] * o.y + self.0[2] * o.z
     }
     #[inline(always)]
-    fn map(self, f: impl Fn(f32x8<S>) -> f32x8<S>) -> Self {
-        Self([f(self.0[0]), f(self.0[1]), f(self.0[2])])
+    fn scale(self, k: f32x8<S>) -> Self {
+        Self([self.0[0] * k, self.0[1] * k, self.0[2] * k])
     }
 }
 
@@ -157,27 +160,32 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
     let eye = shader.eye.to_array();
     let to_eye = V([-p.0[0] + eye[0], -p.0[1] + eye[1], -p.0[2] + eye[2]]);
     let scale = f32x8::splat(simd, 1.0) / to_eye.dot(to_eye).max(1e-12).sqrt();
-    let v = to_eye.map(|c| c * scale);
+    let v = to_eye.scale(scale);
 
     // Angles from the plane across the fibre, as sines.
     let sin_v = t.dot(v).max(-1.0).min(1.0);
     let cos2_v = (-(sin_v * sin_v) + 1.0).max(1e-4);
     let cos_v = cos2_v.sqrt();
     // The direction across the fibre that looks at the camera.
-    let across = V([0, 1, 2].map(|i| (v.0[i] - t.0[i] * sin_v) / cos_v));
+    let inverse = f32x8::splat(simd, 1.0) / cos_v;
+    let [vx, vy, vz] = v.0;
+    let [tx, ty, tz] = t.0;
+    let across = V([vx - tx * sin_v, vy - ty * sin_v, vz - tz * sin_v]).scale(inverse);
     // What scattering between strands multiplies by: √colour (Karis 2016, slide 33).
-    let soft = pigment.map(|c| exp2(c * 0.5));
+    let [c0, c1, c2] = pigment.0;
+    let soft = [exp2(c0 * 0.5), exp2(c1 * 0.5), exp2(c2 * 0.5)];
     let mut sum = [zero; 3];
 
-    for (k, (l, lamp)) in shader.lamps.iter().enumerate() {
+    for k in 0..3 {
+        let (l, lamp) = shader.lamps[k];
         let depth = f32x8::simd_from(simd, block.light[k]);
         let body = if k == 0 { f32x8::simd_from(simd, block.body) } else { zero + 1.0 };
         let beam = exp2(depth * (-BEAM * std::f32::consts::LOG2_E)) * body;
 
-        let sin_l = t.dot3(*l).max(-1.0).min(1.0);
+        let sin_l = t.dot3(l).max(-1.0).min(1.0);
         let cos2_l = (-(sin_l * sin_l) + 1.0).max(1e-4);
         let cos_l = cos2_l.sqrt();
-        let vl = v.dot3(*l);
+        let vl = v.dot3(l);
         let cos_phi = ((vl - sin_l * sin_v) / (cos_l * cos_v)).max(-1.0).min(1.0);
         let cos_half = (cos_phi * 0.5 + 0.5).sqrt();
         let cos_d = ((cos_l * cos_v + sin_l * sin_v) * 0.5 + 0.5).max(1e-3).sqrt();
@@ -209,14 +217,14 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let trt_path = f32x8::splat(simd, 0.8) / cos_d;
 
         // Strand to strand: as from a matt surface across the fibre, wrapped all round, its colour deepening with the way through the hair.
-        let facing = ((across.dot3(*l) + 1.0) * 0.25).max(0.0) * fibre.scatter;
+        let facing = ((across.dot3(l) + 1.0) * 0.25).max(0.0) * fibre.scatter;
         let flat = cos_l * 0.35 * fibre.scatter;
         let color = lamp.to_array();
         for i in 0..3 {
             let c = pigment.0[i];
             let single = (r + tt * exp2(c * tt_path) + trt * exp2(c * trt_path)) * beam * std::f32::consts::PI;
             let lost = (c * SCATTERED.1 - SCATTERED.0) * (depth + (-body + 1.0) * 12.0) * std::f32::consts::LOG2_E;
-            let multiple = soft.0[i] * exp2(c * 0.5 + lost) * (facing * 0.7 + flat);
+            let multiple = soft[i] * exp2(c * 0.5 + lost) * (facing * 0.7 + flat);
             sum[i] += (single * cos_l + multiple) * color[i];
         }
     }
@@ -252,7 +260,7 @@ pub(crate) fn pigment(color: Vec3) -> Vec3 {
 
 impl Block {
     /// Writes one point.
-    #[inline]
+    #[inline(always)]
     pub fn set(&mut self, lane: usize, p: Vec3, t: Vec3, pigment: Vec3, light: Vec4, body: f32) {
         for i in 0..3 {
             self.p[i][lane] = p[i];
@@ -269,6 +277,7 @@ impl Block {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fearless_simd::{Level, dispatch};
 
     #[test]
     fn powers_of_two_are_close() {

@@ -63,7 +63,7 @@ impl Shadow {
     }
 
     /// Optical depth of hair and far bodies towards key, rim and fill, and the share of sky seen; trilinear.
-    #[inline]
+    #[inline(always)]
     pub fn light(&self, p: Vec3) -> Vec4 {
         const CLEAR: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
         let q = (p - self.grid.origin) / self.grid.voxel;
@@ -73,14 +73,14 @@ impl Shadow {
             return CLEAR;
         }
         let at = (z * ny + y) * nx + x;
-        let (f, slice) = (q - q.floor(), nx * ny);
+        let (f, slice) = (q - Vec3::new(x as f32, y as f32, z as f32), nx * ny);
         let line = |i: usize| self.light[i].lerp(self.light[i + 1], f.x);
         let face = |i: usize| line(i).lerp(line(i + nx), f.y);
         face(at).lerp(face(at + slice), f.z)
     }
 
     /// Share of the key lamp that bodies let through to `p`.
-    #[inline]
+    #[inline(always)]
     pub fn body(&self, p: Vec3, bias: f32, radius: i32) -> f32 {
         self.map.light(p, bias, radius)
     }
