@@ -5,7 +5,8 @@ use crate::{
     camera::View,
     frame::Frame,
     hair::{
-        ribbon::{self, Chunk, Setup},
+        order::Order,
+        ribbon::{CHUNK_BITS, Chunk, Setup},
         shade::Shader,
     },
     image::Image,
@@ -22,6 +23,7 @@ use std::time::{Duration, Instant};
 pub struct Renderer {
     image: Image,
     tiles: Tiles,
+    order: Order,
     shadow: Shadow,
     bodies: Bodies,
     chunks: Vec<Chunk>,
@@ -55,7 +57,8 @@ impl Renderer {
         let [width, height] = self.tiles.size();
         let view = View::new(&frame.camera, width as u32, height as u32);
         let bounds = shadow::bounds(frame.hair);
-        self.shadow.fill(frame, bounds);
+        self.order.fill(frame, bounds.unwrap_or_default(), 1 << CHUNK_BITS);
+        self.shadow.fill(frame, bounds, &self.order);
         let shaded = Instant::now();
 
         // The view depths of the hair's box are the range of sort keys.
@@ -66,16 +69,17 @@ impl Renderer {
             frame,
             view,
             tiles: self.tiles,
+            order: &self.order,
             shadow: &self.shadow,
             level: Level::new(),
             shader: Shader::new(&frame.lighting, view.eye),
             depths: [(middle - reach).max(0.0), middle.max(0.0) + reach],
         };
-        let runs = ribbon::runs(frame);
+        let runs = &self.order.runs;
         self.chunks.resize_with(runs.len(), Chunk::default);
         let (chunks, bodies, tiles) = (&mut self.chunks, &mut self.bodies, &mut self.drawn);
         rayon::join(
-            || chunks.par_iter_mut().zip(&runs).with_max_len(1).for_each(|(chunk, run)| chunk.fill(&setup, run)),
+            || chunks.par_iter_mut().zip(runs).with_max_len(1).for_each(|(chunk, run)| chunk.fill(&setup, run)),
             || bodies.project(frame, &view, width, height),
         );
         let cut = Instant::now();

@@ -38,6 +38,7 @@ pub(crate) struct Open {
 }
 
 impl Piece {
+    #[inline(always)]
     pub fn pack(open: &Open) -> Self {
         let width = |w: f32, cap: bool| {
             let root = ((w / MAX_WIDTH).clamp(0.0, 1.0).sqrt() * 32767.0 + 0.5) as u16;
@@ -69,6 +70,7 @@ impl Piece {
     }
 }
 
+#[inline(always)]
 fn pack_color(c: Vec3) -> u32 {
     let root = |c: f32, top: f32| ((c * (1.0 / MAX_LIGHT)).clamp(0.0, 1.0).sqrt() * top + 0.5) as u32;
     root(c.x, 2047.0) | root(c.y, 2047.0) << 11 | root(c.z, 1023.0) << 22

@@ -1,6 +1,7 @@
 //! Strands to ribbons: a run of strands is lit, projected, smoothed, cut into straight pieces, and filed by picture tile.
 
 use super::{
+    order::{Order, Run},
     piece::{MAX_WIDTH, Open, Piece},
     shade::{self, Block, Fibre, LANES, Shader},
 };
@@ -15,8 +16,6 @@ use fearless_simd::{Simd, dispatch};
 use glam::{Vec2, Vec3, Vec4};
 use std::ops::Range;
 
-/// Points of a chunk, about: its pieces stay in the second-level cache while they are filed.
-const CHUNK_POINTS: usize = 8192;
 /// Bits of an entry below the depth key: a chunk's number and a piece's number in it.
 pub(crate) const PIECE_BITS: u32 = 24;
 pub(crate) const CHUNK_BITS: u32 = 64 - KEY_BITS - PIECE_BITS;
@@ -32,39 +31,13 @@ pub(crate) struct Setup<'a> {
     pub frame: &'a Frame<'a>,
     pub view: View,
     pub tiles: Tiles,
+    pub order: &'a Order,
     pub shadow: &'a Shadow,
     pub shader: Shader,
     /// Instruction set to use.
     pub level: fearless_simd::Level,
     /// Nearest and farthest depth of hair [m].
     pub depths: [f32; 2],
-}
-
-/// A run of strands of one style.
-#[derive(Clone, Debug)]
-pub(crate) struct Run {
-    hair: usize,
-    strands: Range<usize>,
-}
-
-/// Splits the frame's strands into runs of about the same number of points; the split depends on the strands alone.
-pub(crate) fn runs(frame: &Frame) -> Vec<Run> {
-    let mut runs = Vec::new();
-    // A chunk's number has a limit: more points than any machine draws only make the chunks longer.
-    let points: usize = frame.hair.iter().map(|h| h.points.len()).sum();
-    let size = CHUNK_POINTS.max(points >> (CHUNK_BITS - 1));
-    for (hair, h) in frame.hair.iter().enumerate() {
-        let mut first = 0;
-        let mut count = 0;
-        for s in 0..h.strand_count() {
-            count += h.range(s).len();
-            if count >= size || s + 1 == h.strand_count() {
-                runs.push(Run { hair, strands: first..s + 1 });
-                (first, count) = (s + 1, 0);
-            }
-        }
-    }
-    runs
 }
 
 /// A point on the screen.
@@ -107,7 +80,7 @@ impl Chunk {
         let hair = &setup.frame.hair[run.hair];
         let look = hair.look;
         let ends = [look.root_color, look.tip_color].map(shade::pigment);
-        for s in run.strands.clone() {
+        for s in setup.order.strands(run) {
             let range = hair.range(s);
             if range.len() < 2 {
                 continue;
@@ -191,9 +164,13 @@ impl Chunk {
                 let length = a.at.distance(b.at);
                 // Tangents at the joints halve the angle there: a Catmull-Rom curve by chord length, which has no
                 // loops or overshoot where points are spaced unevenly.
-                let (ta, tb) = ((before + here).normalize_or(here), (here + next).normalize_or(here));
-                let bend = length * 0.125 * ((ta - here).length() + (tb - here).length());
+                let turn = |other: Vec2| if other == Vec2::ZERO { 0.0 } else { (other - here).length() };
+                let bend = length * 0.0625 * (turn(before) + turn(next));
                 let count = (bend / tolerance).sqrt().ceil().clamp(1.0, MAX_PIECES);
+                let (ta, tb) = match count > 1.0 {
+                    true => ((before + here).normalize_or(here), (here + next).normalize_or(here)),
+                    false => (here, here),
+                };
                 let (mut p, mut start) = (a, from);
                 for k in 1..=count as usize {
                     let u = k as f32 / count;

@@ -3,7 +3,10 @@
 //! A voxel's density is the share of light that a beam along the grid loses in it for small amounts: the strands' length × diameter in it
 //! over the area of its face. Sums are fixed-point integers, so that any split over threads gives the same bits.
 
-use crate::frame::{Frame, HairDraw};
+use crate::{
+    frame::{Frame, HairDraw},
+    hair::order::Order,
+};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -91,7 +94,7 @@ pub(crate) struct Density {
 
 impl Density {
     /// Fills the grid from the frame's strands and bodies.
-    pub fn fill(&mut self, frame: &Frame, bounds: (Vec3, Vec3)) {
+    pub fn fill(&mut self, frame: &Frame, bounds: (Vec3, Vec3), order: &Order) {
         self.grid = Grid::around(bounds, frame.quality.shadow_voxels);
         let (grid, len) = (self.grid, self.grid.len());
         // One grid a thread; more than eight would cost more to add up than they save.
@@ -100,9 +103,9 @@ impl Density {
         self.partial.par_iter_mut().enumerate().for_each(|(part, sum)| {
             sum.clear();
             sum.resize(len, 0);
-            for hair in frame.hair {
-                let n = hair.strand_count();
-                splat(&grid, hair, part * n / parts..(part + 1) * n / parts, sum);
+            let n = order.runs.len();
+            for run in &order.runs[part * n / parts..(part + 1) * n / parts] {
+                splat(&grid, &frame.hair[run.hair], order.strands(run), sum);
             }
         });
         let [nx, ny, _] = grid.size;
@@ -126,7 +129,7 @@ impl Density {
 }
 
 /// Adds strands at evenly spaced places, at most one voxel apart.
-fn splat(grid: &Grid, hair: &HairDraw, strands: std::ops::Range<usize>, sum: &mut [u32]) {
+fn splat(grid: &Grid, hair: &HairDraw, strands: impl Iterator<Item = usize>, sum: &mut [u32]) {
     let per_voxel = 1.0 / (grid.voxel * grid.voxel);
     let scale = 2.0 * hair.width_scale * hair.look.shadow * per_voxel * UNIT;
     for s in strands {

@@ -4,7 +4,7 @@ mod density;
 mod depth_map;
 mod sweep;
 
-use crate::frame::Frame;
+use crate::{frame::Frame, hair::order::Order};
 use density::{Density, Grid};
 pub(crate) use density::bounds;
 use depth_map::DepthMap;
@@ -33,11 +33,11 @@ const SKY: [Vec3; 5] = [
 
 impl Shadow {
     /// Works out the shadow of a frame whose hair lies in `bounds`; `None`: no hair.
-    pub fn fill(&mut self, frame: &Frame, bounds: Option<(Vec3, Vec3)>) {
+    pub fn fill(&mut self, frame: &Frame, bounds: Option<(Vec3, Vec3)>, order: &Order) {
         self.map.fill(frame);
         self.light.clear();
         let Some(bounds) = bounds else { return };
-        self.density.fill(frame, bounds);
+        self.density.fill(frame, bounds, order);
         let density = &self.density;
         let grid = density.grid;
         self.grid = grid;
