@@ -4,6 +4,9 @@
 //! SI units throughout: metres, kilograms, seconds, newtons, pascals; right-handed, Y up.
 
 pub mod body;
+pub mod collide;
 pub mod groom;
 pub mod material;
 pub mod scene;
+pub mod simulation;
+pub(crate) mod strand;
