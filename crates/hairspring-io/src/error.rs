@@ -29,7 +29,7 @@ pub enum Error {
         source: io::Error,
     },
     /// The file is not what its format asks for.
-    #[error("{path}, {problem}", path = path.display())]
+    #[error("{path}{between}{problem}", path = path.display(), between = problem.between())]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -37,7 +37,7 @@ pub enum Error {
         problem: Problem,
     },
     /// The file asks for more than the reader's limits.
-    #[error("{path}, {problem}", path = path.display())]
+    #[error("{path}{between}{problem}", path = path.display(), between = problem.between())]
     Limit {
         /// The file.
         path: PathBuf,
@@ -163,6 +163,11 @@ impl Problem {
             text: text.into(),
             limit: true,
         }
+    }
+
+    /// What stands between a file's name and the problem: the place is part of the name, the sentence is not.
+    fn between(&self) -> &'static str {
+        if self.place == Place::Whole { ": " } else { ", " }
     }
 
     /// The error of the file at `path`.

@@ -3,7 +3,7 @@
 //! A bone's head is the middle of a group of helper vertices of the mesh (`joint-…`), or of vertices named one by one.
 //! Bones are taken as not turned in the rest pose: skinning needs only their places, and retargeting aligns the bones.
 
-use crate::{Character, Place, Problem, obj, skin::four_heaviest};
+use crate::{Character, Place, Problem, skin::four_heaviest};
 use glam::{Affine3A, Vec3};
 use hairspring::body::{Body, Joint, Mesh, Skin, Trs};
 use serde::Deserialize;
@@ -33,13 +33,12 @@ struct WeightFile {
     weights: BTreeMap<String, Vec<(u32, f32)>>,
 }
 
-/// Reads mesh, rig and weights into a skinned body, in the mesh's own units.
+/// Joins a mesh, its rig and its weights into a skinned body, in the mesh's own units.
 ///
 /// # Errors
 /// JSON of another shape, bones in a circle, or references to vertices, groups or bones that are not there; the problem
-/// says in which of the three files.
-pub fn parse(mesh: &[u8], rig: &[u8], weights: &[u8]) -> Result<Character, Problem> {
-    let mesh = obj::parse(mesh)?;
+/// says in which of the files.
+pub fn parse(mesh: Mesh, rig: &[u8], weights: &[u8]) -> Result<Character, Problem> {
     let bones: BTreeMap<String, Bone> = json(rig, "rig")?;
     let WeightFile { weights } = json(weights, "weights")?;
     if bones.len() > u16::MAX as usize {
