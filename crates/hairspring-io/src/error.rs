@@ -29,7 +29,7 @@ pub enum Error {
         source: io::Error,
     },
     /// The file is not what its format asks for.
-    #[error("{path}, {problem}", path = path.display())]
+    #[error("{path}{between}{problem}", path = path.display(), between = problem.between())]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -37,7 +37,7 @@ pub enum Error {
         problem: Problem,
     },
     /// The file asks for more than the reader's limits.
-    #[error("{path}, {problem}", path = path.display())]
+    #[error("{path}{between}{problem}", path = path.display(), between = problem.between())]
     Limit {
         /// The file.
         path: PathBuf,
@@ -155,6 +155,11 @@ impl Problem {
     /// More than the reader takes.
     pub(crate) fn limit(place: Place, text: impl Into<String>) -> Self {
         Self { place, text: text.into(), limit: true }
+    }
+
+    /// What stands between a file's name and the problem: the place is part of the name, the sentence is not.
+    fn between(&self) -> &'static str {
+        if self.place == Place::Whole { ": " } else { ", " }
     }
 
     /// The error of the file at `path`.
