@@ -31,6 +31,8 @@ pub struct Cut {
     pub shortest: f32,
     /// Height of the outermost layer over the skull [m].
     pub volume: f32,
+    /// Length of hair over which it rises to its layer [m].
+    pub rise: f32,
     /// How steeply hair leaves the skin, 0 (flat) to 1 (straight out).
     pub lift: f32,
     /// How much hair keeps growing outward rather than falling, 0 (falls) to 1 (stands).
@@ -86,9 +88,10 @@ impl Style {
             level: 0.9,
             shortest: 0.12,
             volume: 0.016,
+            rise: 0.09,
             lift: 0.35,
             stand: 0.0,
-            wave: 0.0085,
+            wave: 0.0105,
             wave_length: 0.085,
             roundness: 0.5,
             clump: 0.75,
@@ -97,7 +100,7 @@ impl Style {
         };
         match self {
             Style::Straight => Cut {
-                length: 0.46,
+                length: 0.42,
                 volume: 0.014,
                 lift: 0.25,
                 wave: 0.0012,
@@ -110,14 +113,14 @@ impl Style {
             Style::Curly => Cut {
                 length: 0.33,
                 level: 0.8,
-                volume: 0.034,
-                lift: 0.6,
+                volume: 0.024,
+                lift: 0.45,
                 stand: 0.1,
-                wave: 0.008,
-                wave_length: 0.034,
+                wave: 0.0105,
+                wave_length: 0.042,
                 roundness: 0.9,
-                clump: 0.85,
-                frizz: 0.0016,
+                clump: 0.92,
+                frizz: 0.0010,
                 points: 64,
                 ..wavy
             },
@@ -126,6 +129,7 @@ impl Style {
                 level: 0.12,
                 shortest: 0.06,
                 volume: 0.0,
+                rise: 0.09,
                 lift: 0.9,
                 stand: 0.93,
                 wave: 0.0038,
@@ -140,6 +144,7 @@ impl Style {
                 level: 0.09,
                 shortest: 0.012,
                 volume: 0.004,
+                rise: 0.02,
                 lift: 0.55,
                 stand: 0.25,
                 wave: 0.0006,
@@ -165,5 +170,13 @@ impl Style {
             root_color: colors[0],
             tip_color: colors[1],
         }
+    }
+}
+
+impl Cut {
+    /// Distance between the points of a hair's course while it grows [m]: short against its length, the skull's radius
+    /// and its waves.
+    pub fn step(&self) -> f32 {
+        (self.length / 48.0).min(self.wave_length / 8.0).min(0.007)
     }
 }
