@@ -6,7 +6,7 @@ mod look;
 mod settings;
 
 pub use camera::Camera;
-pub use look::HairLook;
+pub use look::{HairColor, HairLook};
 pub use settings::{Collider, Effects, Guides, Shape, Solver, Wind};
 
 use crate::{
