@@ -1,8 +1,7 @@
 //! The hairstyles: what makes one differ from another, in numbers.
 
 use crate::material::{self, Material};
-use crate::scene::HairLook;
-use glam::{Vec3, vec3};
+use crate::scene::{HairColor, HairLook};
 
 /// A hairstyle of the built-in scene, one for each of [`material::PRESETS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -159,17 +158,13 @@ impl Style {
 
     /// Its colour.
     pub(super) fn look(self) -> HairLook {
-        let colors: [Vec3; 2] = match self {
-            Style::Straight => [vec3(0.020, 0.012, 0.009), vec3(0.040, 0.023, 0.015)],
-            Style::Wavy => [vec3(0.085, 0.036, 0.016), vec3(0.19, 0.088, 0.038)],
-            Style::Curly => [vec3(0.110, 0.034, 0.012), vec3(0.21, 0.072, 0.024)],
-            Style::Coily => [vec3(0.014, 0.009, 0.007), vec3(0.028, 0.017, 0.012)],
-            Style::ShortFur => [vec3(0.16, 0.095, 0.045), vec3(0.34, 0.22, 0.11)],
-        };
-        HairLook {
-            root_color: colors[0],
-            tip_color: colors[1],
-        }
+        HairLook::from(match self {
+            Style::Straight => HairColor::DarkBrown,
+            Style::Wavy => HairColor::Brown,
+            Style::Curly => HairColor::Red,
+            Style::Coily => HairColor::Black,
+            Style::ShortFur => HairColor::Blonde,
+        })
     }
 }
 
