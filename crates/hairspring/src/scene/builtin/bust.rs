@@ -1,10 +1,6 @@
 //! The bust as a body: meshes with coloured parts, skeleton and skin weights.
 
-use super::{
-    borders, nets,
-    sdf::{smoothstep, sphere},
-    shape,
-};
+use super::{borders, nets, sdf::smoothstep, shape};
 use crate::body::{Body, Joint, Mesh, Part, Skin, Trs};
 use glam::{Affine3A, Vec3, vec3};
 
@@ -39,6 +35,7 @@ pub fn drawn() -> Body {
     let mut mesh = nets::mesh(&axes, shape::distance, shape::normal);
     borders::cut_along(&mut mesh, shape::clothes);
     borders::cut_along(&mut mesh, shape::lips);
+    borders::cut_along(&mut mesh, shape::scalp);
     nets::settle(&mut mesh, shape::distance, shape::normal);
     color(&mut mesh);
     for side in [1.0, -1.0] {
@@ -47,18 +44,17 @@ pub fn drawn() -> Body {
     rigged(mesh)
 }
 
-/// A coarser closed mesh, a hair's breadth (0.5 mm) inside the drawn one, for hair to collide with.
+/// How far the collision mesh lies inside the skin [m]: so that no hair of the rest pose starts in contact.
+const INSET: f32 = 5e-4;
+
+/// A coarser closed mesh, [`INSET`] inside the drawn one, for hair to collide with.
 pub fn collision() -> Body {
     let axes = [
-        nets::planes(-0.26, 0.26, |x| 0.009 + 0.09 * (x.abs() - 0.09).clamp(0.0, 0.08)),
-        nets::planes(-0.32, 0.13, |y| 0.0085 + 0.09 * (-0.13 - y).clamp(0.0, 0.08)),
-        nets::planes(-0.16, 0.13, |_| 0.009),
+        nets::planes(-0.27, 0.27, |x| 0.009 + 0.12 * (x.abs() - 0.09).clamp(0.0, 0.08)),
+        nets::planes(-0.32, 0.14, |y| 0.0105 + 0.12 * (-0.13 - y).clamp(0.0, 0.08)),
+        nets::planes(-0.16, 0.14, |_| 0.0115),
     ];
-    // Below the lids the drawn bust is hollow: the eyeballs close it.
-    let distance = |p: Vec3| {
-        let eye = sphere(vec3(p.x.abs(), p.y, p.z), shape::EYE_CENTER, shape::EYE_RADIUS);
-        shape::distance(p).min(eye) + 5e-4
-    };
+    let distance = |p: Vec3| shape::plain_distance(p) + INSET;
     let normal = |p: Vec3| {
         let along = |axis: Vec3| distance(p + axis * 1e-3) - distance(p - axis * 1e-3);
         vec3(along(Vec3::X), along(Vec3::Y), along(Vec3::Z)).normalize_or(Vec3::Y)
@@ -98,7 +94,8 @@ fn color(mesh: &mut Mesh) {
     let part = |t: &[u32; 3]| {
         let middle = t.iter().map(|i| mesh.positions[*i as usize]).sum::<Vec3>() / 3.0;
         match () {
-            () if shape::clothes(middle) > 0.0 => 2,
+            () if shape::clothes(middle) > 0.0 => 3,
+            () if shape::scalp(middle) > 0.0 => 2,
             () if shape::lips(middle) > 0.0 => 1,
             () => 0,
         }
@@ -108,8 +105,10 @@ fn color(mesh: &mut Mesh) {
     mesh.triangles = sorted.iter().map(|(_, t)| *t).collect();
     // Linear RGB.
     let looks = [
-        ("skin", vec3(0.60, 0.37, 0.27), 0.55),
-        ("lips", vec3(0.48, 0.17, 0.15), 0.40),
+        ("skin", vec3(0.44, 0.262, 0.186), 0.58),
+        ("lips", vec3(0.33, 0.115, 0.100), 0.42),
+        // Stubble-dark between the roots.
+        ("scalp", vec3(0.29, 0.17, 0.125), 0.75),
         ("clothes", vec3(0.030, 0.033, 0.040), 0.85),
     ];
     for (i, (name, color, roughness)) in looks.into_iter().enumerate() {

@@ -12,7 +12,7 @@ const LOW: Vec3 = vec3(-0.29, -0.33, -0.20);
 /// See [`LOW`].
 const HIGH: Vec3 = vec3(0.29, 0.19, 0.20);
 /// Edge of a cell [m]: finer than the gentle shapes that a comb follows; points near the skin are settled exactly afterwards.
-const CELL: f32 = 0.005;
+pub const CELL: f32 = 0.005;
 
 /// Distance to the bust *as a comb sees it*: the face and the ears under a smooth shield that keeps hair out of them.
 pub struct Field {

@@ -1,7 +1,7 @@
 //! The groom: courses gathered into locks, waved, and laid clear of the skin.
 
 use super::{
-    field::Field,
+    field::{CELL, Field},
     grow::{Place, course},
     random::Random,
     roots::roots,
@@ -53,16 +53,18 @@ pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> 
     // Locks are made of wisps, wisps of hairs: each tier gathers about the one before.
     let locks = tier(count.div_ceil(LOCK), 2);
     let mut wisps = tier(count.div_ceil(WISP), 3);
-    gather(&mut wisps, &locks, cut.clump * 0.8, 0.4);
+    // The parting separates locks, but for hair that stands.
+    let apart = if cut.stand > 0.5 { 0.0 } else { 1.0 };
+    gather(&mut wisps, &locks, cut.clump * 0.8, 0.4, apart);
     let mut hairs = tier(count, 4);
-    gather(&mut hairs, &wisps, cut.clump, 0.25);
+    gather(&mut hairs, &wisps, cut.clump, 0.25, apart);
 
     let mut groom = Groom { offsets: (0..=count).map(|s| (s * points) as u32).collect(), ..Groom::default() };
     groom.points = vec![Vec3::ZERO; count * points];
     groom.points.par_chunks_mut(points.max(1)).zip(&hairs).enumerate().for_each(|(i, (out, hair))| {
         let curve = waved(&field, cut, hair, Random::new(seed, 5, i as u32));
-        resample(&curve, hair.length, out);
-        settle(out);
+        resample(&curve, hair.length / cut.step(), out);
+        settle(&field, out);
     });
     // Human hair is thinner at its tip, where it is oldest and, in part, only just grown.
     let taper =
@@ -101,11 +103,12 @@ fn grown(field: &Field, cut: &Cut, place: Place, seed: u32, purpose: u32, index:
 
 /// Draws every strand towards the nearest of `centers` on its side of the parting: by `strength` at the tip.
 ///
-/// Waves are the center's, off by up to `jitter` of a turn.
-fn gather(strands: &mut [Strand], centers: &[Strand], strength: f32, jitter: f32) {
+/// Waves are the center's but for a share `jitter` of the strand's own; `apart` is how much farther a center counts that
+/// lies across the parting [m].
+fn gather(strands: &mut [Strand], centers: &[Strand], strength: f32, jitter: f32, apart: f32) {
     let index = Nearest::new(centers);
     strands.par_iter_mut().for_each(|strand| {
-        let center = &centers[index.find(centers, &strand.place)];
+        let center = &centers[index.find(centers, &strand.place, apart)];
         let offset = strand.place.root - center.place.root;
         let last = center.course.len() - 1;
         let steps = strand.course.len() as f32;
@@ -144,7 +147,7 @@ impl Nearest {
         Self { cell, cells }
     }
 
-    fn find(&self, centers: &[Strand], place: &Place) -> usize {
+    fn find(&self, centers: &[Strand], place: &Place, apart: f32) -> usize {
         let home = key(place, self.cell);
         let mut best = (f32::INFINITY, 0);
         for reach in 1..12 {
@@ -153,7 +156,7 @@ impl Nearest {
                     for x in -reach..=reach {
                         for i in self.cells.get(&(home + IVec3::new(x, y, z))).into_iter().flatten() {
                             let c = &centers[*i as usize].place;
-                            let apart = if c.side == place.side { 0.0 } else { 1.0 };
+                            let apart = if c.side == place.side { 0.0 } else { apart };
                             let distance = c.root.distance(place.root) + apart;
                             if distance < best.0 {
                                 best = (distance, *i as usize);
@@ -199,10 +202,10 @@ fn waved(field: &Field, cut: &Cut, hair: &Strand, mut random: Random) -> Vec<Vec
         .collect()
 }
 
-/// Writes points evenly spaced along the first `length` [m] of `curve`'s own course.
-fn resample(curve: &[Vec3], length: f32, out: &mut [Vec3]) {
+/// Writes points evenly spaced along the first `steps` segments of `curve`.
+fn resample(curve: &[Vec3], steps: f32, out: &mut [Vec3]) {
     let whole: f32 = curve.windows(2).map(|w| w[0].distance(w[1])).sum();
-    let share = length / (0.006 * (curve.len() - 1) as f32);
+    let share = steps / (curve.len() - 1) as f32;
     let step = whole * share.min(1.0) / (out.len() - 1).max(1) as f32;
     let (mut segment, mut covered) = (0, 0.0);
     for (k, point) in out.iter_mut().enumerate() {
@@ -220,8 +223,12 @@ fn resample(curve: &[Vec3], length: f32, out: &mut [Vec3]) {
 }
 
 /// Moves every point but the root to at least [`CLEARANCE`] from the skin.
-fn settle(points: &mut [Vec3]) {
+fn settle(field: &Field, points: &mut [Vec3]) {
     for p in points.iter_mut().skip(1) {
+        // The grid is too coarse to settle by, but tells what is far: it never errs by as much as a cell.
+        if field.at(*p).0 > CELL {
+            continue;
+        }
         for _ in 0..4 {
             let d = shape::distance(*p);
             if d >= CLEARANCE {

@@ -3,9 +3,6 @@
 use super::{field::Field, sdf::smoothstep, style::Cut};
 use glam::{Vec2, Vec3, Vec3Swizzles, vec2, vec3};
 
-/// Distance between the points of a course [m]: short against the skull's radius.
-const STEP: f32 = 0.006;
-
 /// The parting seen from above (x, z) [m]: from the hairline to the crown, where the hair turns.
 const PARTING: [Vec2; 2] = [vec2(0.026, 0.085), vec2(0.008, -0.050)];
 /// Height of the parting [m].
@@ -44,34 +41,35 @@ fn on_parting(p: Vec2) -> Vec2 {
     PARTING[0] + line * ((p - PARTING[0]).dot(line) / line.length_squared()).clamp(0.0, 1.0)
 }
 
-/// The course of the hair at `place`, of at least `length` [m]: points [`STEP`] apart, root first.
+/// The course of the hair at `place`, of at least `length` [m]: points [`Cut::step`] apart, root first.
 ///
 /// `layer`, 0 to 1, is how far out among the layers it lies; `sway` turns its fall a little [unit vectors a metre].
 pub fn course(field: &Field, cut: &Cut, place: &Place, length: f32, layer: f32, sway: Vec3) -> Vec<Vec3> {
-    let steps = (length / STEP).ceil() as usize + 2;
+    let step = cut.step();
+    let steps = (length / step).ceil() as usize + 2;
     let mut points = Vec::with_capacity(steps);
     points.push(place.root);
     let mut p = place.root;
     let mut heading = combed(field, cut, place, p, 0.0, sway);
     heading = (heading * (1.0 - cut.lift) + place.normal * cut.lift).normalize_or(place.normal);
     for i in 1..steps {
-        let s = i as f32 * STEP;
+        let s = i as f32 * step;
         // Rest upon the layers below: height grows over the first centimetres.
-        let floor = 0.0006 + cut.volume * layer * smoothstep(0.0, 0.09, s);
+        let floor = 0.0006 + cut.volume * layer * smoothstep(0.0, cut.rise, s);
         let wish = combed(field, cut, place, p, floor, sway);
-        // A hair turns gradually: over some 2 cm near the skin, 4 cm in its fall.
-        let turn = if s < 0.16 { 0.38 } else { 0.2 };
+        // A hair turns gradually: over some 1 cm near the skin, 3 cm in its fall.
+        let turn = 1.0 - (-step / if s < 0.16 { 0.0125 } else { 0.027 }).exp();
         heading = (heading + (wish - heading) * turn).normalize_or(heading);
-        let mut next = p + heading * STEP;
+        let mut next = p + heading * step;
         for _ in 0..2 {
             let (d, n) = field.at(next);
             if d < floor {
                 // At most a third of a step at once, so that the course stays smooth.
-                next += n * (floor - d).min(STEP * 0.35);
+                next += n * (floor - d).min(step * 0.35);
             }
         }
         heading = (next - p).normalize_or(heading);
-        p += heading * STEP;
+        p += heading * step;
         points.push(p);
     }
     points

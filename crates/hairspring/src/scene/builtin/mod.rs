@@ -1,6 +1,7 @@
 //! The built-in scene: a bust with a full head of hair that nods, turns and shakes. Made by code, no file needed.
 
 mod borders;
+mod brows;
 mod bust;
 mod field;
 mod groom;
@@ -15,7 +16,8 @@ mod style;
 
 pub use style::Style;
 
-use super::{Camera, Guides, Scene, SceneGroom};
+use super::{Camera, Guides, HairLook, Scene, SceneGroom};
+use crate::material::Material;
 use glam::{Vec3, vec3};
 
 /// What to build.
@@ -58,9 +60,20 @@ pub fn scene(options: &BuiltinOptions) -> Scene {
         look: options.style.look(),
         ..SceneGroom::default()
     };
+    let face_hair = SceneGroom {
+        groom: brows::groom(options.seed),
+        materials: vec![Material::default()],
+        guides: Guides::All,
+        look: HairLook {
+            root_color: vec3(0.02, 0.012, 0.008),
+            tip_color: vec3(0.03, 0.018, 0.012),
+            ..HairLook::default()
+        },
+        ..SceneGroom::default()
+    };
     Scene {
         name: format!("built-in, {}", options.style.name()),
-        grooms: vec![hair],
+        grooms: vec![hair, face_hair],
         clip: Some(motion::clip(&body)),
         body: Some(body),
         collision: Some(collision),

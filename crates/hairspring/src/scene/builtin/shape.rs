@@ -8,7 +8,7 @@
 use super::sdf::{
     almond, both, cut, ellipsoid, elliptic_ring, limb, smoothstep, sphere, turned_ellipsoid, union,
 };
-use glam::{Quat, Vec3, vec2, vec3};
+use glam::{Quat, Vec2, Vec3, vec2, vec3};
 
 /// Millimetres in a metre.
 const MM: f32 = 1000.0;
@@ -24,15 +24,28 @@ pub const BASE: f32 = -0.30;
 
 /// Signed distance to the skin and the clothes [m] at `p` [m]. Slightly below the true distance where shapes blend.
 pub fn distance(p: Vec3) -> f32 {
+    bust(p, ear)
+}
+
+/// [`distance`] with closed eyes and ears without hollows: what a coarse mesh can follow.
+pub fn plain_distance(p: Vec3) -> f32 {
+    let eye = sphere(vec3(p.x.abs(), p.y, p.z), EYE_CENTER, EYE_RADIUS);
+    let ear = |q, d| {
+        union(d, turned_ellipsoid(q, EAR - vec3(2.0, 0.0, 0.0), vec3(15.0, 28.0, 7.0), ear_turn()), 8.0)
+    };
+    bust(p, ear).min(eye)
+}
+
+/// The bust with ears that `ear` adds to the head.
+fn bust(p: Vec3, ear: impl Fn(Vec3, f32) -> f32) -> f32 {
     let q = mirrored(p);
     let body = torso(q);
-    // Far below the head its details cannot matter: the blend reaches 60 mm.
+    // Far below the head its details cannot matter.
     if q.y < -265.0 {
         return both(body, BASE * MM - q.y, 6.0) / MM;
     }
-    let neck = neck(q);
-    let head = head(q);
-    let d = union(union(body, neck, 36.0), head, 14.0);
+    let head = ear(q, head(q));
+    let d = union(union(body, neck(q), 36.0), head, 14.0);
     both(d, BASE * MM - q.y, 6.0) / MM
 }
 
@@ -50,13 +63,12 @@ pub fn normal(p: Vec3) -> Vec3 {
     vec3(along(Vec3::X), along(Vec3::Y), along(Vec3::Z)).normalize_or(Vec3::Y)
 }
 
-/// Cranium, face and ears.
+/// Cranium and face.
 fn head(q: Vec3) -> f32 {
     let mut d = ellipsoid(q, vec3(0.0, 37.0, -24.0), vec3(75.0, 77.0, 82.0));
     d = union(d, ellipsoid(q, vec3(0.0, 33.0, 8.0), vec3(66.0, 71.0, 75.0)), 24.0);
     d = union(d, ellipsoid(q, vec3(0.0, -4.0, -42.0), vec3(59.0, 46.0, 52.0)), 30.0);
-    d = face(q, d);
-    ear(q, d)
+    face(q, d)
 }
 
 /// Adds the face to the cranium `d`.
@@ -86,10 +98,24 @@ fn eyes(q: Vec3, d: f32) -> f32 {
     let fold = vec2(across.y - 8.6 + across.x * across.x * 0.024, q.z - c.z - 14.5);
     let d = if q.z > c.z { cut(d, (fold.length() - 0.7).max(across.x.abs() - 15.0), 2.4) } else { d };
     // The opening: an almond, its outer corner a little higher, cut as deep as the middle of the ball.
-    let (s, k) = (0.09f32, 0.9959f32);
-    let tilted = vec2(across.x * k + across.y * s, across.y * k - across.x * s);
-    let opening = almond(tilted + vec2(0.0, 1.0), 13.4, 4.7).max(c.z - q.z);
+    let tilted = Vec2::from_angle(-LID_TILT).rotate(across);
+    let opening = almond(tilted - LID_MIDDLE, LID_SIZE.x, LID_SIZE.y).max(c.z - q.z);
     cut(d, opening, 1.6)
+}
+
+/// How far the outer corner of the lids lies higher than the inner [rad].
+const LID_TILT: f32 = 0.09;
+/// Half the width and the height of the opening between the lids [mm].
+const LID_SIZE: Vec2 = vec2(13.4, 4.7);
+/// Its middle, from the eyeball's, before the tilt [mm].
+const LID_MIDDLE: Vec2 = vec2(0.0, -1.0);
+
+/// The edge of the upper lid, from the inner corner (`u` = −1) to the outer (1): (x, y) [m].
+pub fn upper_lid(u: f32) -> Vec2 {
+    let (w, h) = (LID_SIZE.x, LID_SIZE.y);
+    let drop = (w * w - h * h) / (2.0 * h);
+    let edge = vec2(u * w, ((drop + h) * (drop + h) - u * u * w * w).sqrt() - drop);
+    Vec2::from_angle(LID_TILT).rotate(edge + LID_MIDDLE) / MM + vec2(EYE_CENTER.x, EYE_CENTER.y)
 }
 
 /// Adds the nose: bridge, tip, wings, nostrils.
@@ -122,15 +148,21 @@ fn mouth(q: Vec3, d: f32) -> f32 {
     cut(d, sphere(q, vec3(25.5, -68.5, 80.0), 3.0), 9.0)
 }
 
+/// Middle of the ear [mm].
+const EAR: Vec3 = vec3(73.5, -7.0, -14.0);
+
+/// From the ear's own space: z out of it, x to the back of the head, y up along its length.
+fn ear_turn() -> Quat {
+    Quat::from_rotation_y(1.15) * Quat::from_rotation_z(0.20)
+}
+
 /// Adds the ear: a shell that stands off the head, its rim, bowl, lobe and tragus.
 fn ear(q: Vec3, d: f32) -> f32 {
-    let middle = vec3(73.5, -7.0, -14.0);
-    if q.distance(middle) > 60.0 {
+    // Beyond its reach and its blend.
+    if q.distance(EAR) > 60.0 {
         return d;
     }
-    // Into the ear's own space: z out of the ear, x to the back of the head, y up along its length.
-    let turn = Quat::from_rotation_y(1.15) * Quat::from_rotation_z(0.20);
-    let mut e = turn.inverse() * (q - middle);
+    let mut e = ear_turn().inverse() * (q - EAR);
     // Narrower towards the lobe.
     e.x *= 1.0 - (e.y / 31.0).clamp(-1.0, 1.0) * 0.22;
     let mut shell = ellipsoid(e, Vec3::ZERO, vec3(16.5, 29.0, 5.0));

@@ -1,8 +1,7 @@
 //! The hairstyles: what makes one differ from another, in numbers.
 
 use crate::material::{self, Material};
-use crate::scene::HairLook;
-use glam::{Vec3, vec3};
+use crate::scene::{HairColor, HairLook};
 
 /// A hairstyle of the built-in scene, one for each of [`material::PRESETS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,6 +30,8 @@ pub struct Cut {
     pub shortest: f32,
     /// Height of the outermost layer over the skull [m].
     pub volume: f32,
+    /// Length of hair over which it rises to its layer [m].
+    pub rise: f32,
     /// How steeply hair leaves the skin, 0 (flat) to 1 (straight out).
     pub lift: f32,
     /// How much hair keeps growing outward rather than falling, 0 (falls) to 1 (stands).
@@ -80,9 +81,10 @@ impl Style {
             level: 0.9,
             shortest: 0.12,
             volume: 0.016,
+            rise: 0.09,
             lift: 0.35,
             stand: 0.0,
-            wave: 0.0085,
+            wave: 0.0105,
             wave_length: 0.085,
             roundness: 0.5,
             clump: 0.75,
@@ -91,7 +93,7 @@ impl Style {
         };
         match self {
             Style::Straight => Cut {
-                length: 0.46,
+                length: 0.42,
                 volume: 0.014,
                 lift: 0.25,
                 wave: 0.0012,
@@ -104,14 +106,14 @@ impl Style {
             Style::Curly => Cut {
                 length: 0.33,
                 level: 0.8,
-                volume: 0.034,
-                lift: 0.6,
+                volume: 0.024,
+                lift: 0.45,
                 stand: 0.1,
-                wave: 0.008,
-                wave_length: 0.034,
+                wave: 0.0105,
+                wave_length: 0.042,
                 roundness: 0.9,
-                clump: 0.85,
-                frizz: 0.0016,
+                clump: 0.92,
+                frizz: 0.0010,
                 points: 64,
                 ..wavy
             },
@@ -120,6 +122,7 @@ impl Style {
                 level: 0.12,
                 shortest: 0.06,
                 volume: 0.0,
+                rise: 0.09,
                 lift: 0.9,
                 stand: 0.93,
                 wave: 0.0038,
@@ -134,6 +137,7 @@ impl Style {
                 level: 0.09,
                 shortest: 0.012,
                 volume: 0.004,
+                rise: 0.02,
                 lift: 0.55,
                 stand: 0.25,
                 wave: 0.0006,
@@ -148,13 +152,20 @@ impl Style {
 
     /// Its colour.
     pub(super) fn look(self) -> HairLook {
-        let colors: [Vec3; 2] = match self {
-            Style::Straight => [vec3(0.020, 0.012, 0.009), vec3(0.040, 0.023, 0.015)],
-            Style::Wavy => [vec3(0.085, 0.036, 0.016), vec3(0.19, 0.088, 0.038)],
-            Style::Curly => [vec3(0.110, 0.034, 0.012), vec3(0.21, 0.072, 0.024)],
-            Style::Coily => [vec3(0.014, 0.009, 0.007), vec3(0.028, 0.017, 0.012)],
-            Style::ShortFur => [vec3(0.16, 0.095, 0.045), vec3(0.34, 0.22, 0.11)],
-        };
-        HairLook { root_color: colors[0], tip_color: colors[1] }
+        HairLook::from(match self {
+            Style::Straight => HairColor::DarkBrown,
+            Style::Wavy => HairColor::Brown,
+            Style::Curly => HairColor::Red,
+            Style::Coily => HairColor::Black,
+            Style::ShortFur => HairColor::Blonde,
+        })
+    }
+}
+
+impl Cut {
+    /// Distance between the points of a hair's course while it grows [m]: short against its length, the skull's radius
+    /// and its waves.
+    pub fn step(&self) -> f32 {
+        (self.length / 48.0).min(self.wave_length / 8.0).min(0.007)
     }
 }
