@@ -55,11 +55,9 @@ const INSET: f32 = 5e-4;
 pub fn collision() -> Body {
     let axes = [
         nets::planes(-0.27, 0.27, |x| {
-            0.009 + 0.12 * (x.abs() - 0.09).clamp(0.0, 0.08)
+            0.0105 + 0.12 * (x.abs() - 0.09).clamp(0.0, 0.08)
         }),
-        nets::planes(-0.32, 0.14, |y| {
-            0.0105 + 0.12 * (-0.13 - y).clamp(0.0, 0.08)
-        }),
+        nets::planes(-0.32, 0.14, |y| 0.012 + 0.12 * (-0.13 - y).clamp(0.0, 0.08)),
         nets::planes(-0.16, 0.14, |_| 0.0115),
     ];
     let distance = |p: Vec3| shape::plain_distance(p) + INSET;

@@ -98,8 +98,8 @@ pub fn scene(options: &BuiltinOptions) -> Scene {
 /// A portrait: three quarters from her left, a little above the eyes, from where a face is not foreshortened.
 fn camera() -> Camera {
     Camera {
-        position: vec3(0.62, 0.06, 1.28),
-        target: Vec3::new(0.0, -0.055, -0.005),
-        fov: 20.0,
+        position: vec3(0.60, 0.05, 1.28),
+        target: Vec3::new(0.0, -0.06, -0.005),
+        fov: 18.0,
     }
 }
