@@ -20,7 +20,7 @@ use std::collections::HashMap;
 /// A scene small enough for a test.
 fn small(style: Style) -> Scene {
     scene(&BuiltinOptions {
-        strands: 6_000,
+        strands: 2_500,
         ..BuiltinOptions::new(style)
     })
 }
@@ -111,7 +111,7 @@ fn skin_weights_add_up_and_the_shoulders_stay() {
 fn roots_are_on_the_skin_and_all_else_is_outside() {
     for style in Style::ALL {
         let scene = scene(&BuiltinOptions {
-            strands: 1_500,
+            strands: 1_000,
             ..BuiltinOptions::new(style)
         });
         let surface = Surface::new(&scene.body.as_ref().unwrap().mesh);

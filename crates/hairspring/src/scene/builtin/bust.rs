@@ -173,11 +173,11 @@ fn add_eye(mesh: &mut Mesh, side: f32) {
     let vertex = |ring: usize, i: usize| first + 1 + (ring * ROUND + i % ROUND) as u32;
     let last = first + 1 + (RINGS.len() * ROUND) as u32;
     let name = if side > 0.0 { "left" } else { "right" };
-    let mut part = |mesh: &mut Mesh,
-                    what: &str,
-                    rings: std::ops::Range<usize>,
-                    color: Vec3,
-                    roughness: f32| {
+    let part = |mesh: &mut Mesh,
+                what: &str,
+                rings: std::ops::Range<usize>,
+                color: Vec3,
+                roughness: f32| {
         let from = mesh.triangles.len() as u32;
         for ring in rings {
             for i in 0..ROUND {
