@@ -167,7 +167,11 @@ impl Problem {
 
     /// What stands between a file's name and the problem: the place is part of the name, the sentence is not.
     fn between(&self) -> &'static str {
-        if self.place == Place::Whole { ": " } else { ", " }
+        if self.place == Place::Whole {
+            ": "
+        } else {
+            ", "
+        }
     }
 
     /// The error of the file at `path`.

@@ -6,8 +6,8 @@ mod motion;
 mod sentence;
 
 use crate::{
-    Character, Error, Format, Loaded, Problem, ReadOptions, Result, load, makehuman, obj, read_body, read_bones, read_groom,
-    tfxbone::RootBones, text::as_text, units,
+    Character, Error, Format, Loaded, Problem, ReadOptions, Result, load, makehuman, obj,
+    read_body, read_bones, read_groom, text::as_text, tfxbone::RootBones, units,
 };
 use file::{BodyFile, FileName, GroomFile, OneOrMore, SceneFile};
 use glam::{Affine3A, EulerRot, Quat};
@@ -28,12 +28,21 @@ use std::path::{Path, PathBuf};
 pub fn read_scene(path: &Path) -> Result<Loaded<Scene>> {
     if Format::of(path) != Some(Format::Scene) {
         let reason = "a scene is read from .toml, told by the extension".into();
-        return Err(Error::Unsupported { path: path.to_owned(), reason });
+        return Err(Error::Unsupported {
+            path: path.to_owned(),
+            reason,
+        });
     }
     let data = load::bytes_of(path)?;
     let text = as_text(&data);
     let file = parse(&text).map_err(|p| p.in_file(path))?;
-    Reader { path, text: &text, notes: Vec::new(), repairs: Repairs::default() }.scene(file)
+    Reader {
+        path,
+        text: &text,
+        notes: Vec::new(),
+        repairs: Repairs::default(),
+    }
+    .scene(file)
 }
 
 /// Reads the text of a scene file without the files that it names: whether all fields are known and in range.
@@ -54,36 +63,61 @@ fn parse(text: &str) -> std::result::Result<SceneFile, Problem> {
 }
 
 /// The materials of a groom, one a group.
-fn materials(text: &str, scene: &SceneFile, groom: &GroomFile) -> std::result::Result<Vec<Material>, Problem> {
+fn materials(
+    text: &str,
+    scene: &SceneFile,
+    groom: &GroomFile,
+) -> std::result::Result<Vec<Material>, Problem> {
     let names: &[String] = match &groom.material {
         None => &[],
         Some(OneOrMore::One(name)) => std::slice::from_ref(name),
         Some(OneOrMore::More(names)) => names,
     };
-    let known = || scene.material.keys().map(String::as_str).chain(material::PRESETS);
+    let known = || {
+        scene
+            .material
+            .keys()
+            .map(String::as_str)
+            .chain(material::PRESETS)
+    };
     names
         .iter()
-        .map(|name| match (scene.material.get(name), material::preset(name)) {
-            (Some(table), _) => overlaid(text, table),
-            (None, Some(preset)) => Ok(preset),
-            (None, None) => {
-                let line = line_of_key(text, line_at(text, groom.file.span().start), "material").unwrap_or(1);
-                Err(Problem::line(line, format!("the material {}", unknown(name, known()))))
-            }
-        })
+        .map(
+            |name| match (scene.material.get(name), material::preset(name)) {
+                (Some(table), _) => overlaid(text, table),
+                (None, Some(preset)) => Ok(preset),
+                (None, None) => {
+                    let line =
+                        line_of_key(text, line_at(text, groom.file.span().start), "material")
+                            .unwrap_or(1);
+                    Err(Problem::line(
+                        line,
+                        format!("the material {}", unknown(name, known())),
+                    ))
+                }
+            },
+        )
         .collect()
 }
 
 /// A `[material.NAME]`: its preset with the given fields over it.
-fn overlaid(text: &str, table: &toml::Spanned<toml::Table>) -> std::result::Result<Material, Problem> {
+fn overlaid(
+    text: &str,
+    table: &toml::Spanned<toml::Table>,
+) -> std::result::Result<Material, Problem> {
     let start = table.span().start;
     let mut fields = table.get_ref().clone();
     let base = match fields.remove("preset") {
         None => Material::default(),
         Some(value) => value.as_str().and_then(material::preset).ok_or_else(|| {
             let line = line_of_key(text, line_at(text, start), "preset").unwrap_or(1);
-            let name = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-            Problem::line(line, format!("the preset {}", unknown(&name, material::PRESETS)))
+            let name = value
+                .as_str()
+                .map_or_else(|| value.to_string(), str::to_owned);
+            Problem::line(
+                line,
+                format!("the preset {}", unknown(&name, material::PRESETS)),
+            )
         })?,
     };
     let in_table = |e: &toml::de::Error| problem_in_table(text, start, e);
@@ -104,8 +138,16 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn scene(mut self, file: SceneFile) -> Result<Loaded<Scene>> {
-        let character = file.body.as_ref().map(|b| self.body(b, "body")).transpose()?;
-        let collision = file.collision.as_ref().map(|b| self.body(b, "collision mesh")).transpose()?;
+        let character = file
+            .body
+            .as_ref()
+            .map(|b| self.body(b, "body"))
+            .transpose()?;
+        let collision = file
+            .collision
+            .as_ref()
+            .map(|b| self.body(b, "collision mesh"))
+            .transpose()?;
         let mut scene = Scene {
             name: file.name.clone().unwrap_or_else(|| stem(self.path)),
             colliders: file.collider.clone(),
@@ -117,21 +159,34 @@ impl Reader<'_> {
         };
         for groom in &file.groom {
             let materials = materials(self.text, &file, groom).map_err(|p| p.in_file(self.path))?;
-            scene.grooms.push(self.groom(groom, materials, character.as_ref().map(|c| &c.body))?);
+            scene
+                .grooms
+                .push(self.groom(groom, materials, character.as_ref().map(|c| &c.body))?);
         }
         let (body, clip) = self.motion(file.clip.as_ref(), character)?;
         scene.collision = match (collision, &body, &file.collision) {
-            (Some(collision), Some(body), Some(named)) => Some(self.carried(collision.body, body, named)?),
+            (Some(collision), Some(body), Some(named)) => {
+                Some(self.carried(collision.body, body, named)?)
+            }
             (collision, ..) => collision.map(|c| c.body),
         };
         (scene.body, scene.clip) = (body, clip);
         self.colliders(&scene)?;
-        Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs: self.repairs, notes: self.notes })
+        Ok(Loaded {
+            value: scene,
+            format: Format::Scene,
+            scale: 1.0,
+            repairs: self.repairs,
+            notes: self.notes,
+        })
     }
 
     /// The path of a file that the scene names.
     fn resolve(&self, name: &FileName) -> PathBuf {
-        self.path.parent().unwrap_or(Path::new("")).join(name.get_ref())
+        self.path
+            .parent()
+            .unwrap_or(Path::new(""))
+            .join(name.get_ref())
     }
 
     /// What a reader returned for the file `name`, with who asked for it if it is not there.
@@ -139,7 +194,10 @@ impl Reader<'_> {
         result.map_err(|error| match error {
             Error::NotFound { path, .. } => {
                 let line = line_at(self.text, name.span().start);
-                let why = format!(": it is the {what} that {}, line {line}, names", self.path.display());
+                let why = format!(
+                    ": it is the {what} that {}, line {line}, names",
+                    self.path.display()
+                );
                 Error::NotFound { path, why }
             }
             other => other,
@@ -148,7 +206,8 @@ impl Reader<'_> {
 
     fn note(&mut self, file: &Path, notes: Vec<String>) {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
-        self.notes.extend(notes.into_iter().map(|n| format!("{name}: {n}")));
+        self.notes
+            .extend(notes.into_iter().map(|n| format!("{name}: {n}")));
     }
 
     /// The error that the value of the key nearest after `near` is wrong.
@@ -159,7 +218,10 @@ impl Reader<'_> {
 
     fn body(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
         let path = self.resolve(&named.file);
-        let options = ReadOptions { scale: named.scale, up: named.up };
+        let options = ReadOptions {
+            scale: named.scale,
+            up: named.up,
+        };
         let mut character = match (&named.rig, &named.weights) {
             (Some(rig), Some(weights)) => self.rigged(named, rig, weights, &options)?,
             (None, None) => {
@@ -176,7 +238,10 @@ impl Reader<'_> {
         if let Some(parts) = &named.parts {
             let known: Vec<String> = body.mesh.parts.iter().map(|p| p.name.clone()).collect();
             if let Some(wrong) = parts.iter().find(|p| !known.contains(p)) {
-                let text = format!("the part {}", unknown(wrong, known.iter().map(String::as_str)));
+                let text = format!(
+                    "the part {}",
+                    unknown(wrong, known.iter().map(String::as_str))
+                );
                 return Err(self.wrong(named.file.span().start, "parts", text));
             }
             body.keep_parts(|name| parts.iter().any(|p| p == name));
@@ -197,20 +262,42 @@ impl Reader<'_> {
     }
 
     /// A MakeHuman mesh with its rig.
-    fn rigged(&self, named: &BodyFile, rig: &FileName, weights: &FileName, options: &ReadOptions) -> Result<Character> {
-        let bytes = |name: &FileName, what: &str| self.named(load::bytes_of(&self.resolve(name)), name, what);
+    fn rigged(
+        &self,
+        named: &BodyFile,
+        rig: &FileName,
+        weights: &FileName,
+        options: &ReadOptions,
+    ) -> Result<Character> {
+        let bytes = |name: &FileName, what: &str| {
+            self.named(load::bytes_of(&self.resolve(name)), name, what)
+        };
         let mesh = bytes(&named.file, "body")?;
         let (rig_data, weight_data) = (bytes(rig, "rig")?, bytes(weights, "weight file")?);
         let mesh = obj::parse(&mesh).map_err(|p| p.in_file(&self.resolve(&named.file)))?;
-        let mut character = makehuman::parse(mesh, &rig_data, &weight_data).map_err(|p| p.in_file(&self.resolve(rig)))?;
+        let mut character = makehuman::parse(mesh, &rig_data, &weight_data)
+            .map_err(|p| p.in_file(&self.resolve(rig)))?;
         let turn = units::turn_of(options.up.unwrap_or(crate::Axis::Y));
-        units::apply_to_body(&mut character.body, &mut [], options.scale.unwrap_or(makehuman::SCALE), turn);
+        units::apply_to_body(
+            &mut character.body,
+            &mut [],
+            options.scale.unwrap_or(makehuman::SCALE),
+            turn,
+        );
         Ok(character)
     }
 
-    fn groom(&mut self, named: &GroomFile, materials: Vec<Material>, body: Option<&Body>) -> Result<SceneGroom> {
+    fn groom(
+        &mut self,
+        named: &GroomFile,
+        materials: Vec<Material>,
+        body: Option<&Body>,
+    ) -> Result<SceneGroom> {
         let path = self.resolve(&named.file);
-        let options = ReadOptions { scale: named.scale, up: named.up };
+        let options = ReadOptions {
+            scale: named.scale,
+            up: named.up,
+        };
         let loaded = self.named(read_groom(&path, &options), &named.file, "groom")?;
         self.note(&path, loaded.notes);
         let r = loaded.repairs;
@@ -221,34 +308,63 @@ impl Reader<'_> {
         let mut groom = loaded.value;
         let t = named.transform;
         let [x, y, z] = t.rotation.to_array().map(f32::to_radians);
-        let place = Affine3A::from_scale_rotation_translation(t.scale, Quat::from_euler(EulerRot::ZYX, z, y, x), t.position);
+        let place = Affine3A::from_scale_rotation_translation(
+            t.scale,
+            Quat::from_euler(EulerRot::ZYX, z, y, x),
+            t.position,
+        );
         if place != Affine3A::IDENTITY {
-            groom.points.iter_mut().for_each(|p| *p = place.transform_point3(*p));
+            groom
+                .points
+                .iter_mut()
+                .for_each(|p| *p = place.transform_point3(*p));
         }
         if let Some(bones) = &named.bones {
             let read = self.named(read_bones(&self.resolve(bones)), bones, "bone file")?;
-            self.bind_by_bones(&mut groom, &read, body).map_err(|text| self.wrong(bones.span().start, "bones", text))?;
+            self.bind_by_bones(&mut groom, &read, body)
+                .map_err(|text| self.wrong(bones.span().start, "bones", text))?;
         }
-        Ok(SceneGroom { groom, materials, guides: named.guides, effects: named.effects, look: named.look.clone() })
+        Ok(SceneGroom {
+            groom,
+            materials,
+            guides: named.guides,
+            effects: named.effects,
+            look: named.look.clone(),
+        })
     }
 
     /// Binds each root to skin that follows one of its bones.
-    fn bind_by_bones(&self, groom: &mut Groom, bones: &RootBones, body: Option<&Body>) -> std::result::Result<(), String> {
+    fn bind_by_bones(
+        &self,
+        groom: &mut Groom,
+        bones: &RootBones,
+        body: Option<&Body>,
+    ) -> std::result::Result<(), String> {
         let Some((body, skin)) = body.and_then(|b| b.skin.as_ref().map(|s| (b, s))) else {
             return Err("bones of roots need a [body] that is skinned".into());
         };
         if bones.bones.len() != groom.strand_count() {
             let (n, strands) = (bones.bones.len(), groom.strand_count());
-            return Err(format!("the file holds the bones of {n} roots, but the groom has {strands} strands"));
+            return Err(format!(
+                "the file holds the bones of {n} roots, but the groom has {strands} strands"
+            ));
         }
-        let joint: Vec<Option<u16>> = bones.names.iter().map(|n| body.joint(n).map(|j| j as u16)).collect();
+        let joint: Vec<Option<u16>> = bones
+            .names
+            .iter()
+            .map(|n| body.joint(n).map(|j| j as u16))
+            .collect();
         let of_root = |s: usize| {
             let pairs = bones.bones[s].iter().zip(bones.weights[s]);
-            pairs.filter(|(_, w)| *w > 0.0).filter_map(|(b, _)| joint[*b as usize])
+            pairs
+                .filter(|(_, w)| *w > 0.0)
+                .filter_map(|(b, _)| joint[*b as usize])
         };
         let follows = |t: usize, j: u16| {
             let corners = body.mesh.triangles[t].iter().map(|v| *v as usize);
-            corners.flat_map(|v| skin.joints[v].into_iter().zip(skin.weights[v])).any(|(k, w)| k == j && w > 0.0)
+            corners
+                .flat_map(|v| skin.joints[v].into_iter().zip(skin.weights[v]))
+                .any(|(k, w)| k == j && w > 0.0)
         };
         bind_roots_where(groom, &body.mesh, |s, t| of_root(s).any(|j| follows(t, j)));
         Ok(())
@@ -260,23 +376,45 @@ impl Reader<'_> {
         let inverse_bind: Vec<Affine3A> = rest.iter().map(|w| w.inverse()).collect();
         let of = |name: &str| {
             body.joint(name).map(|j| j as u16).ok_or_else(|| {
-                let text = format!("the joint {}", unknown(name, body.joints.iter().map(|j| j.name.as_str())));
+                let text = format!(
+                    "the joint {}",
+                    unknown(name, body.joints.iter().map(|j| j.name.as_str()))
+                );
                 self.wrong(named.file.span().start, "joint", text)
             })
         };
         collision.skin = match (&collision.skin, &named.joint) {
             // Skinned over joints of its own: the body's of the same names.
             (Some(skin), None) => {
-                let map: Vec<u16> = collision.joints.iter().map(|j| of(&j.name)).collect::<Result<_>>()?;
-                let joints = skin.joints.iter().map(|four| four.map(|j| map[j as usize])).collect();
-                let inverse_bind = body.skin.as_ref().map_or(inverse_bind, |s| s.inverse_bind.clone());
-                Some(Skin { joints, weights: skin.weights.clone(), inverse_bind })
+                let map: Vec<u16> = collision
+                    .joints
+                    .iter()
+                    .map(|j| of(&j.name))
+                    .collect::<Result<_>>()?;
+                let joints = skin
+                    .joints
+                    .iter()
+                    .map(|four| four.map(|j| map[j as usize]))
+                    .collect();
+                let inverse_bind = body
+                    .skin
+                    .as_ref()
+                    .map_or(inverse_bind, |s| s.inverse_bind.clone());
+                Some(Skin {
+                    joints,
+                    weights: skin.weights.clone(),
+                    inverse_bind,
+                })
             }
             (None, None) if body.joints.len() == 1 => None,
             (_, name) => {
                 let joint = name.as_deref().map_or(Ok(0), of)?;
                 let count = collision.mesh.positions.len();
-                Some(Skin { joints: vec![[joint, 0, 0, 0]; count], weights: vec![[1.0, 0.0, 0.0, 0.0]; count], inverse_bind })
+                Some(Skin {
+                    joints: vec![[joint, 0, 0, 0]; count],
+                    weights: vec![[1.0, 0.0, 0.0, 0.0]; count],
+                    inverse_bind,
+                })
             }
         };
         collision.joints = body.joints.clone();
@@ -286,10 +424,15 @@ impl Reader<'_> {
     /// Checks that the joints of colliders are there.
     fn colliders(&self, scene: &Scene) -> Result<()> {
         for collider in &scene.colliders {
-            let Some(name) = &collider.joint else { continue };
+            let Some(name) = &collider.joint else {
+                continue;
+            };
             let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
             if !joints.iter().any(|j| j.name.eq_ignore_ascii_case(name)) {
-                let text = format!("the joint {}", unknown(name, joints.iter().map(|j| j.name.as_str())));
+                let text = format!(
+                    "the joint {}",
+                    unknown(name, joints.iter().map(|j| j.name.as_str()))
+                );
                 return Err(self.wrong(self.text.find("[[collider]]").unwrap_or(0), "joint", text));
             }
         }
@@ -299,10 +442,17 @@ impl Reader<'_> {
 
 /// A body as one rigid piece that a clip of one joint moves.
 fn rigid(body: Body) -> Body {
-    if body.skin.is_none() && body.joints.len() == 1 { body } else { Body::rigid(body.mesh) }
+    if body.skin.is_none() && body.joints.len() == 1 {
+        body
+    } else {
+        Body::rigid(body.mesh)
+    }
 }
 
 /// A file's name without folder and extension.
 fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
 }
