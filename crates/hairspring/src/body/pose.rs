@@ -65,11 +65,19 @@ impl Body {
         let old = std::mem::take(&mut mesh.triangles);
         for part in parts.into_iter().filter(|p| keep(&p.name)) {
             let first = mesh.triangles.len() as u32;
-            mesh.triangles.extend_from_slice(&old[part.triangles.start as usize..part.triangles.end as usize]);
-            mesh.parts.push(Part { triangles: first..mesh.triangles.len() as u32, ..part });
+            mesh.triangles.extend_from_slice(
+                &old[part.triangles.start as usize..part.triangles.end as usize],
+            );
+            mesh.parts.push(Part {
+                triangles: first..mesh.triangles.len() as u32,
+                ..part
+            });
         }
         let mut used = vec![false; mesh.positions.len()];
-        mesh.triangles.iter().flatten().for_each(|i| used[*i as usize] = true);
+        mesh.triangles
+            .iter()
+            .flatten()
+            .for_each(|i| used[*i as usize] = true);
         let mut next = 0;
         let moved: Vec<u32> = used
             .iter()
@@ -78,7 +86,10 @@ impl Body {
                 next.wrapping_sub(1)
             })
             .collect();
-        mesh.triangles.iter_mut().flatten().for_each(|i| *i = moved[*i as usize]);
+        mesh.triangles
+            .iter_mut()
+            .flatten()
+            .for_each(|i| *i = moved[*i as usize]);
         retain_used(&mut mesh.positions, &used);
         retain_used(&mut mesh.normals, &used);
         retain_used(&mut mesh.uvs, &used);
@@ -155,7 +166,12 @@ mod tests {
 
     #[test]
     fn keeping_a_part_keeps_its_triangles_and_vertices_only() {
-        let part = |name: &str, triangles| Part { name: name.into(), triangles, color: Vec3::ONE, roughness: 1.0 };
+        let part = |name: &str, triangles| Part {
+            name: name.into(),
+            triangles,
+            color: Vec3::ONE,
+            roughness: 1.0,
+        };
         let mut body = Body::rigid(Mesh {
             positions: (0..6).map(|i| Vec3::splat(i as f32)).collect(),
             normals: vec![Vec3::Y; 6],
@@ -165,7 +181,16 @@ mod tests {
         });
         body.keep_parts(|name| name == "body");
         assert_eq!(body.mesh.triangles, [[0, 1, 2], [2, 0, 1]]);
-        assert_eq!(body.mesh.positions, [Vec3::splat(3.0), Vec3::splat(4.0), Vec3::splat(5.0)]);
-        assert_eq!((body.mesh.normals.len(), body.mesh.parts[0].triangles.clone()), (3, 0..2));
+        assert_eq!(
+            body.mesh.positions,
+            [Vec3::splat(3.0), Vec3::splat(4.0), Vec3::splat(5.0)]
+        );
+        assert_eq!(
+            (
+                body.mesh.normals.len(),
+                body.mesh.parts[0].triangles.clone()
+            ),
+            (3, 0..2)
+        );
     }
 }
