@@ -1,6 +1,6 @@
 //! `[clip]`: which motion, and how it moves the body.
 
-use super::{Reader, file::ClipFile, rigid, sentence::unknown};
+use super::{Reader, body::rigid, file::ClipFile, sentence::unknown};
 use crate::{Character, ReadOptions, Result, load::pick_clip, read_motion};
 use hairspring::body::{Body, Clip, HeadMotion, head_motion, retarget};
 
