@@ -216,10 +216,34 @@ fn a_gltf_that_runs_in_circles_or_abroad_is_refused() {
     );
 }
 
+#[test]
+fn a_rig_that_runs_in_circles_is_refused() {
+    let mesh = || hairspring_io::obj::parse(samples::mesh().as_bytes()).unwrap();
+    let end = r#""head": {"strategy": "VERTEX", "vertex_index": 0}"#;
+    for (rig, why) in [
+        (format!(r#"{{"": {{{end}, "parent": ""}}}}"#), "no name"),
+        (
+            format!(r#"{{"a": {{{end}, "parent": "b"}}, "b": {{{end}, "parent": "a"}}}}"#),
+            "each other's parents",
+        ),
+        (
+            format!(r#"{{"a": {{{end}, "parent": "c"}}}}"#),
+            "does not have",
+        ),
+    ] {
+        let problem =
+            hairspring_io::makehuman::parse(mesh(), rig.as_bytes(), samples::WEIGHTS).unwrap_err();
+        assert!(problem.text.contains(why), "{problem}");
+    }
+}
+
+/// Made once: the noise comes many times.
+static SAMPLES: std::sync::LazyLock<Vec<samples::Sample>> = std::sync::LazyLock::new(samples::all);
+
 proptest! {
     #[test]
     fn noise_is_refused(noise in prop::collection::vec(any::<u8>(), 0..400)) {
-        for (_, file, read) in samples::all() {
+        for (_, file, read) in SAMPLES.iter() {
             let _ = read(&noise);
             // Noise after a sound beginning.
             let mut half = file[..file.len() / 2].to_vec();
