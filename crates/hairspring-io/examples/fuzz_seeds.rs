@@ -10,10 +10,7 @@ fn main() -> io::Result<()> {
         return Err(io::Error::other("name the folder: fuzz_seeds fuzz/corpus"));
     };
     let rig = [samples::RIG, samples::WEIGHTS].join(&0);
-    let scene = include_str!("../../../docs/scene.md")
-        .split("```")
-        .nth(1)
-        .unwrap_or_default();
+    let scene = include_str!("../../../docs/scene.md").split("```").nth(1).unwrap_or_default();
     let scene = scene.trim_start_matches("toml\n").as_bytes().to_vec();
     for (name, bytes, _) in samples::all() {
         let (target, bytes) = match name {
@@ -23,11 +20,7 @@ fn main() -> io::Result<()> {
             "toml" => ("scene", scene.clone()),
             _ => (name, bytes),
         };
-        let targets = if target == "data" {
-            vec!["data", "sanitize"]
-        } else {
-            vec![target]
-        };
+        let targets = if target == "data" { vec!["data", "sanitize"] } else { vec![target] };
         for target in targets {
             fs::create_dir_all(folder.join(target))?;
             fs::write(folder.join(target).join(format!("seed-{name}")), &bytes)?;

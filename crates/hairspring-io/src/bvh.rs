@@ -39,11 +39,7 @@ pub fn parse(data: &[u8]) -> Result<Motion, Problem> {
 fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
     let text = as_text(data);
     let mut words = Words::new(&text);
-    let Hierarchy {
-        joints,
-        ends,
-        channels,
-    } = hierarchy(&mut words)?;
+    let Hierarchy { joints, ends, channels } = hierarchy(&mut words)?;
     words.expect("Frames:")?;
     let frames: usize = words.number("the number of frames")?;
     let line = words.line();
@@ -60,27 +56,18 @@ fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
     let width: usize = channels.iter().map(Vec::len).sum();
     // A number and a space are two bytes at least; a file without channels has one still frame.
     if frames == 0 || frames.saturating_mul(width.max(1)) > text.len() / 2 + 1 {
-        let text = format!(
-            "{frames} frames of {width} numbers do not fit into a file of {} bytes",
-            text.len()
-        );
+        let text =
+            format!("{frames} frames of {width} numbers do not fit into a file of {} bytes", text.len());
         return Err(Problem::line(line, text));
     }
     check_samples(frames, joints.len(), Place::Line(line))?;
     let mut samples = Vec::with_capacity(frames * joints.len());
     for frame in 0..frames {
         for (joint, channels) in joints.iter().zip(&channels) {
-            samples.push(local(joint, channels, || {
-                words.finite(&format!("a number of frame {frame}"))
-            })?);
+            samples.push(local(joint, channels, || words.finite(&format!("a number of frame {frame}")))?);
         }
     }
-    let clip = Clip {
-        name: String::new(),
-        rate: 1.0 / frame_time,
-        joint_count: joints.len(),
-        samples,
-    };
+    let clip = Clip { name: String::new(), rate: 1.0 / frame_time, joint_count: joints.len(), samples };
     Ok((Motion { joints, clip }, ends))
 }
 
@@ -107,9 +94,7 @@ pub(crate) fn read_in_metres(
     let (mut motion, ends) = read(data)?;
     let mut notes = Vec::new();
     let size = median_size(&motion, &ends);
-    let up = options
-        .up
-        .unwrap_or(if size.z > size.y { Axis::Z } else { Axis::Y });
+    let up = options.up.unwrap_or(if size.z > size.y { Axis::Z } else { Axis::Y });
     if options.up.is_none() && up == Axis::Z {
         notes.push("read as Z up, since the person is tallest along Z; `up` sets another".into());
     }
@@ -128,21 +113,13 @@ pub(crate) fn read_in_metres(
         scale
     });
     let turn = turn_of(up);
-    apply_to_motion(
-        &mut motion.joints,
-        std::slice::from_mut(&mut motion.clip),
-        scale,
-        turn,
-    );
+    apply_to_motion(&mut motion.joints, std::slice::from_mut(&mut motion.clip), scale, turn);
     Ok((motion, scale, notes))
 }
 
 /// Size of the box around the joints and ends, the median over some frames, by axis [file units].
 fn median_size(motion: &Motion, ends: &[(u32, Vec3)]) -> Vec3 {
-    let body = Body {
-        joints: motion.joints.clone(),
-        ..Body::default()
-    };
+    let body = Body { joints: motion.joints.clone(), ..Body::default() };
     let clip = &motion.clip;
     let step = clip.frame_count().div_ceil(64).max(1);
     let sizes: Vec<Vec3> = (0..clip.frame_count())
@@ -150,23 +127,15 @@ fn median_size(motion: &Motion, ends: &[(u32, Vec3)]) -> Vec3 {
         .map(|f| {
             let world = body.world(&clip.samples[f * clip.joint_count..][..clip.joint_count]);
             let joints = world.iter().map(|w| Vec3::from(w.translation));
-            let ends = ends
-                .iter()
-                .map(|(j, offset)| world[*j as usize].transform_point3(*offset));
+            let ends = ends.iter().map(|(j, offset)| world[*j as usize].transform_point3(*offset));
             let (lo, hi) = joints
                 .chain(ends)
-                .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| {
-                    (lo.min(p), hi.max(p))
-                });
+                .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
             hi - lo
         })
         .collect();
     let median = |axis: usize| {
-        let mut along: Vec<f32> = sizes
-            .iter()
-            .map(|s| s[axis])
-            .filter(|x| x.is_finite())
-            .collect();
+        let mut along: Vec<f32> = sizes.iter().map(|s| s[axis]).filter(|x| x.is_finite()).collect();
         along.sort_by(f32::total_cmp);
         along.get(along.len() / 2).copied().unwrap_or(0.0)
     };
@@ -184,25 +153,15 @@ fn local(
         let value = number()?;
         match channel {
             Channel::Position(axis) => trs.translation[*axis] = value,
-            Channel::Rotation(axis) => {
-                trs.rotation *= Quat::from_axis_angle(*axis, value.to_radians())
-            }
+            Channel::Rotation(axis) => trs.rotation *= Quat::from_axis_angle(*axis, value.to_radians()),
         }
     }
-    trs.rotation = if trs.rotation.is_finite() {
-        trs.rotation.normalize()
-    } else {
-        Quat::IDENTITY
-    };
+    trs.rotation = if trs.rotation.is_finite() { trs.rotation.normalize() } else { Quat::IDENTITY };
     Ok(trs)
 }
 
 fn hierarchy(words: &mut Words<'_>) -> Result<Hierarchy, Problem> {
-    let mut read = Hierarchy {
-        joints: Vec::new(),
-        ends: Vec::new(),
-        channels: Vec::new(),
-    };
+    let mut read = Hierarchy { joints: Vec::new(), ends: Vec::new(), channels: Vec::new() };
     // Joints whose braces are open; `None` for an end site.
     let mut open: Vec<Option<u32>> = Vec::new();
     words.expect("HIERARCHY")?;
@@ -211,25 +170,15 @@ fn hierarchy(words: &mut Words<'_>) -> Result<Hierarchy, Problem> {
         match word.map(str::to_ascii_uppercase).as_deref() {
             Some(kind @ ("ROOT" | "JOINT")) => {
                 if (kind == "ROOT") != open.is_empty() || open.last().is_some_and(Option::is_none) {
-                    return Err(Problem::line(
-                        words.line(),
-                        format!("{kind} can not stand here"),
-                    ));
+                    return Err(Problem::line(words.line(), format!("{kind} can not stand here")));
                 }
                 let name = opened(words)?;
                 if read.joints.len() > u16::MAX as usize {
-                    return Err(Problem::limit(
-                        Place::Line(words.line()),
-                        "more than 65,536 joints",
-                    ));
+                    return Err(Problem::limit(Place::Line(words.line()), "more than 65,536 joints"));
                 }
                 let parent = open.last().copied().flatten();
                 open.push(Some(read.joints.len() as u32));
-                read.joints.push(Joint {
-                    name,
-                    parent,
-                    rest: Trs::default(),
-                });
+                read.joints.push(Joint { name, parent, rest: Trs::default() });
                 read.channels.push(Vec::new());
             }
             Some("END") => {
@@ -254,16 +203,14 @@ fn hierarchy(words: &mut Words<'_>) -> Result<Hierarchy, Problem> {
                 let count: usize = words.number("the number of channels")?;
                 for _ in 0..count {
                     let name = words.word();
-                    let channel = name
-                        .and_then(channel)
-                        .ok_or_else(|| words.missing("a channel's name", name))?;
+                    let channel =
+                        name.and_then(channel).ok_or_else(|| words.missing("a channel's name", name))?;
                     read.channels[*j as usize].push(channel);
                 }
             }
             Some("}") => {
-                open.pop().ok_or_else(|| {
-                    Problem::line(words.line(), "a brace is closed that was not opened")
-                })?;
+                open.pop()
+                    .ok_or_else(|| Problem::line(words.line(), "a brace is closed that was not opened"))?;
             }
             Some("MOTION") if open.is_empty() && !read.joints.is_empty() => return Ok(read),
             Some(_) => {

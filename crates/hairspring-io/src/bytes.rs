@@ -56,15 +56,12 @@ impl<'a> Bytes<'a> {
 
     /// The next value.
     pub(crate) fn value<T: Pod>(&mut self, what: &str) -> Result<T, Problem> {
-        self.take(size_of::<T>(), what)
-            .map(bytemuck::pod_read_unaligned)
+        self.take(size_of::<T>(), what).map(bytemuck::pod_read_unaligned)
     }
 
     /// The next `count` values; nothing is allocated unless the bytes are there.
     pub(crate) fn array<T: Pod>(&mut self, count: usize, what: &str) -> Result<Vec<T>, Problem> {
-        let size = count
-            .checked_mul(size_of::<T>())
-            .ok_or_else(|| self.cut_short(count, what))?;
+        let size = count.checked_mul(size_of::<T>()).ok_or_else(|| self.cut_short(count, what))?;
         let bytes = self.take(size, &format!("{what} ({count} values)"))?;
         Ok(bytemuck::pod_collect_to_vec(bytes))
     }

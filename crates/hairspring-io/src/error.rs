@@ -139,11 +139,7 @@ pub struct Problem {
 impl Problem {
     /// A breach of the format at `place`.
     pub(crate) fn new(place: Place, text: impl Into<String>) -> Self {
-        Self {
-            place,
-            text: text.into(),
-            limit: false,
-        }
+        Self { place, text: text.into(), limit: false }
     }
 
     /// A breach of the format in line `line`, counted from 1.
@@ -158,35 +154,21 @@ impl Problem {
 
     /// More than the reader takes.
     pub(crate) fn limit(place: Place, text: impl Into<String>) -> Self {
-        Self {
-            place,
-            text: text.into(),
-            limit: true,
-        }
+        Self { place, text: text.into(), limit: true }
     }
 
     /// What stands between a file's name and the problem: the place is part of the name, the sentence is not.
     fn between(&self) -> &'static str {
-        if self.place == Place::Whole {
-            ": "
-        } else {
-            ", "
-        }
+        if self.place == Place::Whole { ": " } else { ", " }
     }
 
     /// The error of the file at `path`.
     pub fn in_file(self, path: &Path) -> Error {
         let path = path.to_owned();
         if self.limit {
-            Error::Limit {
-                path,
-                problem: self,
-            }
+            Error::Limit { path, problem: self }
         } else {
-            Error::Malformed {
-                path,
-                problem: self,
-            }
+            Error::Malformed { path, problem: self }
         }
     }
 }

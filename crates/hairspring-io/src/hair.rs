@@ -68,9 +68,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     } else {
         let per_strand = header.segments as usize + 1;
         // Every strand has at least one point, so `strands` is bounded by `points`, and that by the file.
-        if strands.checked_mul(per_strand) != Some(points)
-            || points > bytes.remaining() / size_of::<Vec3>()
-        {
+        if strands.checked_mul(per_strand) != Some(points) || points > bytes.remaining() / size_of::<Vec3>() {
             let text = format!(
                 "{strands} strands of {per_strand} points (the header's default) are not the {points} points that it names, or the file is cut short"
             );
@@ -78,10 +76,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         }
         gather_offsets(std::iter::repeat_n(per_strand, strands), points, 4)?
     };
-    let mut groom = Groom {
-        offsets,
-        ..Groom::default()
-    };
+    let mut groom = Groom { offsets, ..Groom::default() };
     groom.points = bytes.array(points, "the points")?;
     let ours = header.info.starts_with(MARK);
     let mut notes = Vec::new();
@@ -91,9 +86,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     };
     if header.flags & HAS_TRANSPARENCY != 0 {
         let _: Vec<f32> = bytes.array(points, "the transparencies")?;
-        notes.push(
-            "the transparency of each point is not used: it follows from the fibre's width".into(),
-        );
+        notes.push("the transparency of each point is not used: it follows from the fibre's width".into());
     }
     if header.flags & HAS_COLORS != 0 {
         groom.colors = bytes.array(points, "the colours")?;
@@ -105,24 +98,12 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         None => None,
     };
     let units = if ours {
-        FileUnits {
-            scale: Some(1.0),
-            up: Some(Axis::Y),
-        }
+        FileUnits { scale: Some(1.0), up: Some(Axis::Y) }
     } else {
         notes.push("read as Z up, as .hair models are; `up` sets another".into());
-        FileUnits {
-            scale: None,
-            up: Some(Axis::Z),
-        }
+        FileUnits { scale: None, up: Some(Axis::Z) }
     };
-    Ok(Read {
-        groom,
-        radii,
-        true_radii: ours,
-        units,
-        notes,
-    })
+    Ok(Read { groom, radii, true_radii: ours, units, notes })
 }
 
 /// Writes strands as a `.hair` file in metres, Y up.
@@ -132,11 +113,9 @@ pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()
     let radius = strands.radii.first().copied().unwrap_or(DEFAULT_RADIUS);
     let one_radius = strands.radii.iter().all(|r| *r == radius);
     let mut flags = HAS_POINTS;
-    for (flag, on) in [
-        (HAS_SEGMENTS, !uniform),
-        (HAS_THICKNESS, !one_radius),
-        (HAS_COLORS, !strands.colors.is_empty()),
-    ] {
+    for (flag, on) in
+        [(HAS_SEGMENTS, !uniform), (HAS_THICKNESS, !one_radius), (HAS_COLORS, !strands.colors.is_empty())]
+    {
         if on {
             flags |= flag;
         }
@@ -146,11 +125,7 @@ pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()
         strands: counts.len() as u32,
         points: strands.points.len() as u32,
         flags,
-        segments: if uniform {
-            counts.first().copied().unwrap_or(0) as u32
-        } else {
-            0
-        },
+        segments: if uniform { counts.first().copied().unwrap_or(0) as u32 } else { 0 },
         thickness: radius * 2.0,
         transparency: 0.0,
         color: [0.0; 3],

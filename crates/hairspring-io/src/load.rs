@@ -110,13 +110,7 @@ pub fn read_groom(path: &Path, options: &ReadOptions) -> Result<Loaded<Groom>> {
     }
     let (mut groom, scale, notes) = read.finish(options);
     let repairs = sanitize(&mut groom);
-    Ok(Loaded {
-        value: groom,
-        format,
-        scale,
-        repairs,
-        notes,
-    })
+    Ok(Loaded { value: groom, format, scale, repairs, notes })
 }
 
 /// Reads a body from a `.gltf`, `.glb`, `.obj` or `.tfxmesh` file, with the motions that it holds.
@@ -124,11 +118,7 @@ pub fn read_groom(path: &Path, options: &ReadOptions) -> Result<Loaded<Groom>> {
 /// # Errors
 /// A file that is missing, unreadable, of another kind or broken.
 pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
-    let format = format_of(
-        path,
-        &[Format::Gltf, Format::Obj, Format::TfxMesh],
-        "a body",
-    )?;
+    let format = format_of(path, &[Format::Gltf, Format::Obj, Format::TfxMesh], "a body")?;
     check_scale(path, options)?;
     let data = bytes_of(path)?;
     let mut units = FileUnits::default();
@@ -145,61 +135,26 @@ pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>
     let extent = extent(character.body.mesh.positions.iter().copied());
     let (scale, turn) = settle(options, units, Subject::Body, extent, &mut notes);
     apply_to_body(&mut character.body, &mut character.clips, scale, turn);
-    Ok(Loaded {
-        value: character,
-        format,
-        scale,
-        repairs: Repairs::default(),
-        notes,
-    })
+    Ok(Loaded { value: character, format, scale, repairs: Repairs::default(), notes })
 }
 
 /// Reads a motion from a `.bvh` file, or the animation called `name` (the first without one) from a `.gltf` or `.glb`.
 ///
 /// # Errors
 /// A file that is missing, unreadable, of another kind or broken, or an animation that is not there.
-pub fn read_motion(
-    path: &Path,
-    name: Option<&str>,
-    options: &ReadOptions,
-) -> Result<Loaded<Motion>> {
+pub fn read_motion(path: &Path, name: Option<&str>, options: &ReadOptions) -> Result<Loaded<Motion>> {
     let format = format_of(path, &[Format::Bvh, Format::Gltf], "a motion")?;
     if format == Format::Bvh {
         check_scale(path, options)?;
         let data = bytes_of(path)?;
-        let (mut motion, scale, notes) =
-            bvh::read_in_metres(&data, options).map_err(|p| p.in_file(path))?;
-        motion.clip.name = path
-            .file_stem()
-            .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        return Ok(Loaded {
-            value: motion,
-            format,
-            scale,
-            repairs: Repairs::default(),
-            notes,
-        });
+        let (mut motion, scale, notes) = bvh::read_in_metres(&data, options).map_err(|p| p.in_file(path))?;
+        motion.clip.name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        return Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes });
     }
-    let Loaded {
-        value: character,
-        scale,
-        notes,
-        ..
-    } = read_body(path, options)?;
-    let clip = pick_clip(&character.clips, name)
-        .map_err(|text| Problem::whole(text).in_file(path))?
-        .clone();
-    let motion = Motion {
-        joints: character.body.joints,
-        clip,
-    };
-    Ok(Loaded {
-        value: motion,
-        format,
-        scale,
-        repairs: Repairs::default(),
-        notes,
-    })
+    let Loaded { value: character, scale, notes, .. } = read_body(path, options)?;
+    let clip = pick_clip(&character.clips, name).map_err(|text| Problem::whole(text).in_file(path))?.clone();
+    let motion = Motion { joints: character.body.joints, clip };
+    Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes })
 }
 
 /// Reads the bones of a groom's roots from a `.tfxbone` file.
@@ -223,10 +178,7 @@ pub(crate) fn pick_clip<'a>(
     found.ok_or_else(|| {
         let known: Vec<&str> = clips.iter().map(|c| c.name.as_str()).collect();
         match name {
-            Some(name) => format!(
-                "there is no motion called {name:?}; there are: {}",
-                list(&known)
-            ),
+            Some(name) => format!("there is no motion called {name:?}; there are: {}", list(&known)),
             None => "the file holds no motion".into(),
         }
     })
@@ -234,45 +186,27 @@ pub(crate) fn pick_clip<'a>(
 
 /// Names in a sentence.
 pub(crate) fn list(names: &[&str]) -> String {
-    if names.is_empty() {
-        "none".into()
-    } else {
-        names.join(", ")
-    }
+    if names.is_empty() { "none".into() } else { names.join(", ") }
 }
 
 fn still(body: Body) -> Character {
-    Character {
-        body,
-        clips: Vec::new(),
-    }
+    Character { body, clips: Vec::new() }
 }
 
 /// The format of `path`, which must be among `known`.
 fn format_of(path: &Path, known: &[Format], what: &str) -> Result<Format> {
-    Format::of(path)
-        .filter(|f| known.contains(f))
-        .ok_or_else(|| {
-            let names: Vec<String> = known.iter().map(|f| format!(".{}", f.name())).collect();
-            let reason = format!(
-                "{what} is read from {}, told by the extension",
-                names.join(", ")
-            );
-            Error::Unsupported {
-                path: path.to_owned(),
-                reason,
-            }
-        })
+    Format::of(path).filter(|f| known.contains(f)).ok_or_else(|| {
+        let names: Vec<String> = known.iter().map(|f| format!(".{}", f.name())).collect();
+        let reason = format!("{what} is read from {}, told by the extension", names.join(", "));
+        Error::Unsupported { path: path.to_owned(), reason }
+    })
 }
 
 fn check_scale(path: &Path, options: &ReadOptions) -> Result<()> {
     match options.scale {
         Some(s) if !(s.is_finite() && s > 0.0) => {
             let reason = format!("a scale of {s} metres a unit is not above 0");
-            Err(Error::Unsupported {
-                path: path.to_owned(),
-                reason,
-            })
+            Err(Error::Unsupported { path: path.to_owned(), reason })
         }
         _ => Ok(()),
     }
@@ -281,14 +215,8 @@ fn check_scale(path: &Path, options: &ReadOptions) -> Result<()> {
 /// All bytes of a file.
 pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
     let unreadable = |source: io::Error| match source.kind() {
-        io::ErrorKind::NotFound => Error::NotFound {
-            path: path.to_owned(),
-            why: String::new(),
-        },
-        _ => Error::Unreadable {
-            path: path.to_owned(),
-            source,
-        },
+        io::ErrorKind::NotFound => Error::NotFound { path: path.to_owned(), why: String::new() },
+        _ => Error::Unreadable { path: path.to_owned(), source },
     };
     let size = std::fs::metadata(path).map_err(unreadable)?.len();
     if size > MAX_FILE {
@@ -300,9 +228,7 @@ pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
 
 /// The bytes of a file beside `path`: in its folder or below, never above.
 fn sibling(path: &Path, name: &str) -> Option<Vec<u8>> {
-    let inside = Path::new(name)
-        .components()
-        .all(|c| matches!(c, std::path::Component::Normal(_)));
+    let inside = Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
     let beside = path.parent().unwrap_or(Path::new("")).join(name);
     inside.then(|| bytes_of(&beside).ok()).flatten()
 }

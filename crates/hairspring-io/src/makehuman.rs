@@ -42,46 +42,25 @@ pub fn parse(mesh: Mesh, rig: &[u8], weights: &[u8]) -> Result<Character, Proble
     let bones: BTreeMap<String, Bone> = json(rig, "rig")?;
     let WeightFile { weights } = json(weights, "weights")?;
     if bones.len() > u16::MAX as usize {
-        return Err(Problem::limit(
-            Place::Whole,
-            "the rig has more than 65,535 bones",
-        ));
+        return Err(Problem::limit(Place::Whole, "the rig has more than 65,535 bones"));
     }
     let groups = group_centers(&mesh);
     let order = parents_first(&bones)?;
-    let index: HashMap<&str, usize> = order
-        .iter()
-        .enumerate()
-        .map(|(i, name)| (*name, i))
-        .collect();
-    let places: Vec<Vec3> = order
-        .iter()
-        .map(|name| place(&mesh, &groups, name, &bones[*name].head))
-        .collect::<Result<_, _>>()?;
+    let index: HashMap<&str, usize> = order.iter().enumerate().map(|(i, name)| (*name, i)).collect();
+    let places: Vec<Vec3> =
+        order.iter().map(|name| place(&mesh, &groups, name, &bones[*name].head)).collect::<Result<_, _>>()?;
     let joints = order.iter().enumerate().map(|(i, name)| {
         let parent = index.get(bones[*name].parent.as_str()).copied();
         let from = parent.map_or(Vec3::ZERO, |p| places[p]);
-        let rest = Trs {
-            translation: places[i] - from,
-            ..Trs::default()
-        };
-        Joint {
-            name: (*name).to_owned(),
-            parent: parent.map(|p| p as u32),
-            rest,
-        }
+        let rest = Trs { translation: places[i] - from, ..Trs::default() };
+        Joint { name: (*name).to_owned(), parent: parent.map(|p| p as u32), rest }
     });
     let joints = joints.collect();
-    let inverse_bind = places
-        .iter()
-        .map(|p| Affine3A::from_translation(-*p))
-        .collect();
+    let inverse_bind = places.iter().map(|p| Affine3A::from_translation(-*p)).collect();
     let mut pairs: Vec<Vec<(u16, f32)>> = vec![Vec::new(); mesh.positions.len()];
     for (name, list) in &weights {
         let bone = *index.get(name.as_str()).ok_or_else(|| {
-            Problem::whole(format!(
-                "the weights name bone {name:?}, which the rig does not have"
-            ))
+            Problem::whole(format!("the weights name bone {name:?}, which the rig does not have"))
         })?;
         for (vertex, weight) in list {
             let of = pairs.get_mut(*vertex as usize).ok_or_else(|| {
@@ -94,19 +73,8 @@ pub fn parse(mesh: Mesh, rig: &[u8], weights: &[u8]) -> Result<Character, Proble
         }
     }
     let (of, weights) = pairs.into_iter().map(four_heaviest).unzip();
-    let skin = Skin {
-        joints: of,
-        weights,
-        inverse_bind,
-    };
-    Ok(Character {
-        body: Body {
-            mesh,
-            joints,
-            skin: Some(skin),
-        },
-        clips: Vec::new(),
-    })
+    let skin = Skin { joints: of, weights, inverse_bind };
+    Ok(Character { body: Body { mesh, joints, skin: Some(skin) }, clips: Vec::new() })
 }
 
 fn json<'a, T: Deserialize<'a>>(data: &'a [u8], what: &str) -> Result<T, Problem> {
@@ -155,37 +123,18 @@ fn parents_first(bones: &BTreeMap<String, Bone>) -> Result<Vec<&str>, Problem> {
         stack.extend(children.get(name).into_iter().flatten());
     }
     if order.len() < bones.len() {
-        return Err(Problem::whole(
-            "some bones of the rig are each other's parents",
-        ));
+        return Err(Problem::whole("some bones of the rig are each other's parents"));
     }
     Ok(order)
 }
 
 /// Where an end of bone `name` is [file units].
-fn place(
-    mesh: &Mesh,
-    groups: &HashMap<&str, Vec3>,
-    name: &str,
-    end: &End,
-) -> Result<Vec3, Problem> {
-    let missing = |what: &str| {
-        Problem::whole(format!(
-            "bone {name:?} stands at {what}, which the mesh does not have"
-        ))
-    };
-    let vertex = |v: &u32| {
-        mesh.positions
-            .get(*v as usize)
-            .copied()
-            .ok_or_else(|| missing(&format!("vertex {v}")))
-    };
-    match (
-        end.strategy.as_str(),
-        &end.cube_name,
-        &end.vertex_indices,
-        end.vertex_index,
-    ) {
+fn place(mesh: &Mesh, groups: &HashMap<&str, Vec3>, name: &str, end: &End) -> Result<Vec3, Problem> {
+    let missing =
+        |what: &str| Problem::whole(format!("bone {name:?} stands at {what}, which the mesh does not have"));
+    let vertex =
+        |v: &u32| mesh.positions.get(*v as usize).copied().ok_or_else(|| missing(&format!("vertex {v}")));
+    match (end.strategy.as_str(), &end.cube_name, &end.vertex_indices, end.vertex_index) {
         ("CUBE", Some(group), ..) => groups
             .get(group.as_str())
             .copied()

@@ -31,26 +31,14 @@ pub fn parse(data: &[u8]) -> Result<Mesh, Problem> {
         let line_number = i + 1;
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => {
-                mesh.positions
-                    .push(Vec3::from(numbers(&mut words, line_number, "a vertex")?))
-            }
-            Some("vt") => uvs.push(Vec2::from(numbers(
-                &mut words,
-                line_number,
-                "a texture coordinate",
-            )?)),
+            Some("v") => mesh.positions.push(Vec3::from(numbers(&mut words, line_number, "a vertex")?)),
+            Some("vt") => uvs.push(Vec2::from(numbers(&mut words, line_number, "a texture coordinate")?)),
             Some("f") => {
                 face.clear();
                 vertex_uv.resize(mesh.positions.len(), u32::MAX);
                 for corner in words {
                     let mut fields = corner.split('/');
-                    let v = index(
-                        fields.next().unwrap_or(""),
-                        mesh.positions.len(),
-                        line_number,
-                        "vertex",
-                    )?;
+                    let v = index(fields.next().unwrap_or(""), mesh.positions.len(), line_number, "vertex")?;
                     if let Some(uv) = fields.next().filter(|f| !f.is_empty()) {
                         let uv = index(uv, uvs.len(), line_number, "texture coordinate")?;
                         let slot = &mut vertex_uv[v as usize];
@@ -70,19 +58,12 @@ pub fn parse(data: &[u8]) -> Result<Mesh, Problem> {
             _ => {}
         }
     }
-    if u32::try_from(mesh.positions.len()).is_err() || u32::try_from(mesh.triangles.len()).is_err()
-    {
-        return Err(Problem::limit(
-            Place::Whole,
-            "more than 4 billion vertices or triangles",
-        ));
+    if u32::try_from(mesh.positions.len()).is_err() || u32::try_from(mesh.triangles.len()).is_err() {
+        return Err(Problem::limit(Place::Whole, "more than 4 billion vertices or triangles"));
     }
     if vertex_uv.iter().any(|uv| *uv != u32::MAX) {
         vertex_uv.resize(mesh.positions.len(), u32::MAX);
-        mesh.uvs = vertex_uv
-            .iter()
-            .map(|uv| uvs.get(*uv as usize).copied().unwrap_or_default())
-            .collect();
+        mesh.uvs = vertex_uv.iter().map(|uv| uvs.get(*uv as usize).copied().unwrap_or_default()).collect();
     }
     mesh.parts = parts.finish(mesh.triangles.len());
     mesh.compute_normals();
@@ -99,13 +80,7 @@ fn numbers<'a, const N: usize>(
     for x in &mut out {
         let word = words.next().unwrap_or("");
         *x = finite(word).ok_or_else(|| {
-            Problem::line(
-                line,
-                format!(
-                    "expected {what} of {N} numbers, found `{}`",
-                    shortened(word)
-                ),
-            )
+            Problem::line(line, format!("expected {what} of {N} numbers, found `{}`", shortened(word)))
         })?;
     }
     Ok(out)
@@ -114,22 +89,13 @@ fn numbers<'a, const N: usize>(
 /// Index from 0 of an `.obj` reference: from 1, or from the end where it is negative.
 fn index(word: &str, count: usize, line: usize, what: &str) -> Result<u32, Problem> {
     let n: i64 = word.parse().map_err(|_| {
-        Problem::line(
-            line,
-            format!(
-                "expected a face of vertex numbers, found `{}`",
-                shortened(word)
-            ),
-        )
+        Problem::line(line, format!("expected a face of vertex numbers, found `{}`", shortened(word)))
     })?;
     let i = if n < 0 { count as i64 + n } else { n - 1 };
     if (0..count as i64).contains(&i) {
         Ok(i as u32)
     } else {
-        Err(Problem::line(
-            line,
-            format!("the face names {what} {n}, but {count} are known so far"),
-        ))
+        Err(Problem::line(line, format!("the face names {what} {n}, but {count} are known so far")))
     }
 }
 
@@ -162,10 +128,6 @@ impl Parts {
     /// All parts; none where the file names none.
     fn finish(mut self, triangles: usize) -> Vec<Part> {
         self.close(triangles);
-        if self.parts.iter().all(|p| p.name.is_empty()) {
-            Vec::new()
-        } else {
-            self.parts
-        }
+        if self.parts.iter().all(|p| p.name.is_empty()) { Vec::new() } else { self.parts }
     }
 }

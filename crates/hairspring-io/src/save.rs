@@ -20,28 +20,14 @@ pub fn write_groom(path: &Path, groom: &Groom) -> Result<Vec<String>> {
         (!groom.scales.is_empty(), "multipliers of single strands"),
         (!groom.guides.is_empty(), "guide weights"),
         (!groom.roots.is_empty(), "root bindings"),
-        (
-            !groom.root_uvs.is_empty() && format != Format::Tfx,
-            "texture coordinates",
-        ),
+        (!groom.root_uvs.is_empty() && format != Format::Tfx, "texture coordinates"),
         (!groom.colors.is_empty() && format == Format::Usc, "colours"),
-        (
-            varies_along(groom) && format == Format::Tfx,
-            "radii that vary along a strand",
-        ),
+        (varies_along(groom) && format == Format::Tfx, "radii that vary along a strand"),
         (format == Format::Usc, "radii"),
     ];
-    let names: Vec<&str> = parts
-        .iter()
-        .filter(|(there, _)| *there)
-        .map(|(_, name)| *name)
-        .collect();
+    let names: Vec<&str> = parts.iter().filter(|(there, _)| *there).map(|(_, name)| *name).collect();
     if !names.is_empty() {
-        lost.push(format!(
-            "a .{} file has no place for {}: left out",
-            format.name(),
-            names.join(", ")
-        ));
+        lost.push(format!("a .{} file has no place for {}: left out", format.name(), names.join(", ")));
     }
     Ok(lost)
 }
@@ -51,13 +37,9 @@ pub fn write_groom(path: &Path, groom: &Groom) -> Result<Vec<String>> {
 /// # Errors
 /// As [`write_groom`].
 pub fn write_strands(path: &Path, strands: Strands<'_>) -> Result<Format> {
-    let unwritable = |reason: String| Error::Unwritable {
-        path: path.to_owned(),
-        reason,
-    };
-    let format = Format::of(path)
-        .filter(|f| Format::GROOMS.contains(f))
-        .ok_or_else(|| Error::Unsupported {
+    let unwritable = |reason: String| Error::Unwritable { path: path.to_owned(), reason };
+    let format =
+        Format::of(path).filter(|f| Format::GROOMS.contains(f)).ok_or_else(|| Error::Unsupported {
             path: path.to_owned(),
             reason: "a hairstyle is written as .hair, .tfx or .data, told by the extension".into(),
         })?;
@@ -65,7 +47,9 @@ pub fn write_strands(path: &Path, strands: Strands<'_>) -> Result<Format> {
     let misfit = match format {
         Format::Tfx => tfx::misfit(&strands),
         Format::Hair => strands.counts().position(|n| n > 1 << 16).map(|s| {
-            format!("strand {s} has more than the 65,536 points that a .hair file can hold; write .data instead")
+            format!(
+                "strand {s} has more than the 65,536 points that a .hair file can hold; write .data instead"
+            )
         }),
         _ => None,
     };
@@ -77,10 +61,7 @@ pub fn write_strands(path: &Path, strands: Strands<'_>) -> Result<Format> {
         Format::Tfx => tfx::write(out, &strands),
         _ => usc::write(out, &strands),
     })
-    .map_err(|source| Error::Write {
-        path: path.to_owned(),
-        source,
-    })?;
+    .map_err(|source| Error::Write { path: path.to_owned(), source })?;
     Ok(format)
 }
 
@@ -94,10 +75,7 @@ fn varies_along(groom: &Groom) -> bool {
 
 /// Has `write` fill a temporary file in the folder of `path`, then renames it.
 fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hairspring-");
     // Temporary files are private by default; a finished one has the usual rights (cut by the umask).

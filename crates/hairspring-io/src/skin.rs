@@ -4,11 +4,7 @@
 pub(crate) fn normalised(weights: [f32; 4]) -> [f32; 4] {
     let clean = weights.map(|w| if w.is_finite() && w > 0.0 { w } else { 0.0 });
     let sum: f32 = clean.iter().sum();
-    if sum.is_finite() && sum > 0.0 {
-        clean.map(|w| w / sum)
-    } else {
-        [1.0, 0.0, 0.0, 0.0]
-    }
+    if sum.is_finite() && sum > 0.0 { clean.map(|w| w / sum) } else { [1.0, 0.0, 0.0, 0.0] }
 }
 
 /// The four heaviest of any number of `(joint, weight)` pairs, normalised.

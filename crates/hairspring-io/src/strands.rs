@@ -50,9 +50,7 @@ impl Strands<'_> {
         let (points, strands) = (self.points.len(), self.strand_count());
         let ordered = self.offsets.first().is_none_or(|o| *o == 0) && self.offsets.is_sorted();
         if !ordered || self.offsets.last().map_or(0, |o| *o as usize) != points {
-            return Err(format!(
-                "its offsets do not run in order from 0 to its {points} points"
-            ));
+            return Err(format!("its offsets do not run in order from 0 to its {points} points"));
         }
         for (name, len, want) in [
             ("radii", self.radii.len(), points),
@@ -64,9 +62,7 @@ impl Strands<'_> {
             }
         }
         match self.counts().position(|n| n == 0) {
-            Some(s) => Err(format!(
-                "strand {s} has no points; run the groom through `sanitize` first"
-            )),
+            Some(s) => Err(format!("strand {s} has no points; run the groom through `sanitize` first")),
             None => Ok(()),
         }
     }
@@ -92,9 +88,7 @@ const BELIEVABLE_RADIUS: std::ops::RangeInclusive<f32> = 2e-6..=300e-6;
 impl Read {
     /// The groom in the file's own units.
     pub fn in_file_units(mut self) -> Groom {
-        self.groom.radii = self
-            .radii
-            .unwrap_or_else(|| vec![DEFAULT_RADIUS; self.groom.points.len()]);
+        self.groom.radii = self.radii.unwrap_or_else(|| vec![DEFAULT_RADIUS; self.groom.points.len()]);
         self.groom
     }
 
@@ -107,8 +101,7 @@ impl Read {
             None => vec![DEFAULT_RADIUS; self.groom.points.len()],
             Some(mut radii) => {
                 radii.iter_mut().for_each(|r| *r *= scale);
-                let mut sorted: Vec<f32> =
-                    radii.iter().copied().filter(|r| r.is_finite()).collect();
+                let mut sorted: Vec<f32> = radii.iter().copied().filter(|r| r.is_finite()).collect();
                 let middle = sorted.len() / 2;
                 let median = if sorted.is_empty() {
                     0.0
@@ -153,7 +146,6 @@ pub(crate) fn gather_offsets(
         );
         return Err(Problem::new(Place::Byte(at), text));
     }
-    u32::try_from(points)
-        .map_err(|_| Problem::limit(Place::Byte(at), "more than 4 billion points"))?;
+    u32::try_from(points).map_err(|_| Problem::limit(Place::Byte(at), "more than 4 billion points"))?;
     Ok(offsets)
 }

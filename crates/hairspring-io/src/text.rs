@@ -13,11 +13,7 @@ pub(crate) struct Words<'a> {
 
 impl<'a> Words<'a> {
     pub(crate) fn new(text: &'a str) -> Self {
-        Self {
-            lines: text.lines().enumerate(),
-            words: "".split_whitespace(),
-            line: 1,
-        }
+        Self { lines: text.lines().enumerate(), words: "".split_whitespace(), line: 1 }
     }
 
     /// Line of the last word, counted from 1.
@@ -61,17 +57,12 @@ impl<'a> Words<'a> {
     /// The next word as a finite number, which `what` names.
     pub(crate) fn finite(&mut self, what: &str) -> Result<f32, Problem> {
         let word = self.word();
-        word.and_then(finite)
-            .ok_or_else(|| self.missing(what, word))
+        word.and_then(finite).ok_or_else(|| self.missing(what, word))
     }
 
     /// The next three words as finite numbers, each of which `what` names.
     pub(crate) fn vector(&mut self, what: &str) -> Result<Vec3, Problem> {
-        Ok(Vec3::new(
-            self.finite(what)?,
-            self.finite(what)?,
-            self.finite(what)?,
-        ))
+        Ok(Vec3::new(self.finite(what)?, self.finite(what)?, self.finite(what)?))
     }
 
     /// The problem that `what` should stand here and `found` does.
@@ -91,11 +82,7 @@ pub(crate) fn finite(word: &str) -> Option<f32> {
 
 /// A word of the file for a message: its first 40 characters.
 pub(crate) fn shortened(word: &str) -> String {
-    if word.chars().count() <= 40 {
-        word.into()
-    } else {
-        word.chars().take(40).chain(['…']).collect()
-    }
+    if word.chars().count() <= 40 { word.into() } else { word.chars().take(40).chain(['…']).collect() }
 }
 
 /// A file's bytes as text; bytes that are no UTF-8 (names in old encodings) become replacement characters.

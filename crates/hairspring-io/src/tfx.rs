@@ -80,18 +80,11 @@ pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
 pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let mut bytes = Bytes::new(data);
     let layout = layout(&mut bytes)?;
-    let Layout {
-        strands,
-        points_per_strand,
-        ..
-    } = layout;
-    let points = strands
-        .checked_mul(points_per_strand)
-        .filter(|n| u32::try_from(*n).is_ok())
-        .ok_or_else(|| {
-            let text = format!(
-                "{strands} strands of {points_per_strand} points are more than 4 billion points"
-            );
+    let Layout { strands, points_per_strand, .. } = layout;
+    let points =
+        strands.checked_mul(points_per_strand).filter(|n| u32::try_from(*n).is_ok()).ok_or_else(|| {
+            let text =
+                format!("{strands} strands of {points_per_strand} points are more than 4 billion points");
             Problem::limit(Place::Byte(4), text)
         })?;
     if points_per_strand == 0 && strands > 0 {
@@ -104,20 +97,11 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     bytes.seek(layout.positions, "the array of positions")?;
     groom.points = match layout.width {
         3 => bytes.array(points, "the positions")?,
-        _ => bytes
-            .array::<Vec4>(points, "the positions")?
-            .iter()
-            .map(|p| p.truncate())
-            .collect(),
+        _ => bytes.array::<Vec4>(points, "the positions")?.iter().map(|p| p.truncate()).collect(),
     };
-    groom.offsets = (0..=strands)
-        .map(|s| (s * points_per_strand) as u32)
-        .collect();
+    groom.offsets = (0..=strands).map(|s| (s * points_per_strand) as u32).collect();
     if layout.strand_uvs != 0 {
-        bytes.seek(
-            layout.strand_uvs as usize,
-            "the array of strand texture coordinates",
-        )?;
+        bytes.seek(layout.strand_uvs as usize, "the array of strand texture coordinates")?;
         groom.root_uvs = bytes.array(strands, "the strand texture coordinates")?;
     }
     if layout.colors != 0 {
@@ -128,26 +112,12 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let radii = if layout.thickness != 0 {
         bytes.seek(layout.thickness as usize, "the array of thicknesses")?;
         let diameters: Vec<f32> = bytes.array(strands, "the thicknesses")?;
-        Some(
-            diameters
-                .iter()
-                .flat_map(|d| std::iter::repeat_n(d * 0.5, points_per_strand))
-                .collect(),
-        )
+        Some(diameters.iter().flat_map(|d| std::iter::repeat_n(d * 0.5, points_per_strand)).collect())
     } else {
         None
     };
-    let units = FileUnits {
-        scale: layout.ours.then_some(1.0),
-        up: Some(Axis::Y),
-    };
-    Ok(Read {
-        groom,
-        radii,
-        true_radii: layout.ours,
-        units,
-        notes: layout.notes,
-    })
+    let units = FileUnits { scale: layout.ours.then_some(1.0), up: Some(Axis::Y) };
+    Ok(Read { groom, radii, true_radii: layout.ours, units, notes: layout.notes })
 }
 
 fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
@@ -209,13 +179,7 @@ pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()
     let count = strands.strand_count();
     let per_strand = strands.counts().next().unwrap_or(0);
     let points = strands.points.len();
-    let radius = |s: usize| {
-        strands
-            .radii
-            .get(s * per_strand)
-            .copied()
-            .unwrap_or(DEFAULT_RADIUS)
-    };
+    let radius = |s: usize| strands.radii.get(s * per_strand).copied().unwrap_or(DEFAULT_RADIUS);
     let mut at = size_of::<Header4>();
     let mut place = |present: bool, bytes: usize| {
         let here = if present { at as u32 } else { 0 };
@@ -237,12 +201,8 @@ pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()
     out.write_all(bytes_of(&header))?;
     for w in strands.offsets.windows(2) {
         // Inverse mass: the first two points are driven by the scalp.
-        let run = strands.points[w[0] as usize..w[1] as usize]
-            .iter()
-            .enumerate();
-        let run: Vec<Vec4> = run
-            .map(|(i, p)| p.extend(if i < 2 { 0.0 } else { 1.0 }))
-            .collect();
+        let run = strands.points[w[0] as usize..w[1] as usize].iter().enumerate();
+        let run: Vec<Vec4> = run.map(|(i, p)| p.extend(if i < 2 { 0.0 } else { 1.0 })).collect();
         out.write_all(cast_slice(&run))?;
     }
     out.write_all(cast_slice(strands.root_uvs))?;

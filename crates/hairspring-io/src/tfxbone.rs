@@ -18,9 +18,7 @@ impl RootBones {
     /// The bones of root `s` that weigh more than nothing, by name.
     pub fn of(&self, s: usize) -> impl Iterator<Item = &str> {
         let pairs = self.bones[s].into_iter().zip(self.weights[s]);
-        pairs
-            .filter(|(_, w)| *w > 0.0)
-            .map(|(b, _)| self.names[b as usize].as_str())
+        pairs.filter(|(_, w)| *w > 0.0).map(|(b, _)| self.names[b as usize].as_str())
     }
 }
 
@@ -40,11 +38,8 @@ pub fn parse(data: &[u8]) -> Result<RootBones, Problem> {
         names.push(String::from_utf8_lossy(name).into_owned());
     }
     let strands = count(&mut bytes, "the strand count", 36, u32::MAX as usize)?;
-    let mut read = RootBones {
-        names,
-        bones: Vec::with_capacity(strands),
-        weights: Vec::with_capacity(strands),
-    };
+    let mut read =
+        RootBones { names, bones: Vec::with_capacity(strands), weights: Vec::with_capacity(strands) };
     for s in 0..strands {
         in_order(&mut bytes, s, "strand")?;
         let (mut of, mut weights) = ([0u16; 4], [0.0f32; 4]);
@@ -71,10 +66,7 @@ fn count(bytes: &mut Bytes<'_>, what: &str, size: usize, limit: usize) -> Result
     let at = bytes.at();
     let n = bytes.value::<u32>(what)? as usize;
     if n > limit || n > bytes.remaining() / size {
-        return Err(Problem::new(
-            Place::Byte(at),
-            format!("{what} is {n}, more than the file can hold"),
-        ));
+        return Err(Problem::new(Place::Byte(at), format!("{what} is {n}, more than the file can hold")));
     }
     Ok(n)
 }

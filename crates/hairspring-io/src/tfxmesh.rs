@@ -18,11 +18,8 @@ use hairspring::body::{Body, Joint, Mesh, Part, Skin, Trs};
 /// Missing sections, indices out of order or out of range, or a file cut short.
 pub fn parse(data: &[u8]) -> Result<Body, Problem> {
     // Comments run to the end of their line; blanking them keeps the line numbers.
-    let text: String = as_text(data)
-        .lines()
-        .map(|l| l.split('#').next().unwrap_or(""))
-        .collect::<Vec<_>>()
-        .join("\n");
+    let text: String =
+        as_text(data).lines().map(|l| l.split('#').next().unwrap_or("")).collect::<Vec<_>>().join("\n");
     let mut words = Words::new(&text);
     let bones = count(&mut words, "numOfBones", u16::MAX as usize, text.len() / 2)?;
     let mut joints = Vec::with_capacity(bones);
@@ -32,29 +29,16 @@ pub fn parse(data: &[u8]) -> Result<Body, Problem> {
         if name.is_empty() {
             return Err(Problem::line(words.line(), format!("bone {i} has no name")));
         }
-        joints.push(Joint {
-            name,
-            parent: None,
-            rest: Trs::default(),
-        });
+        joints.push(Joint { name, parent: None, rest: Trs::default() });
     }
-    let vertices = count(
-        &mut words,
-        "numOfVertices",
-        u32::MAX as usize,
-        text.len() / 30,
-    )?;
+    let vertices = count(&mut words, "numOfVertices", u32::MAX as usize, text.len() / 30)?;
     let mut mesh = Mesh::default();
-    let mut skin = Skin {
-        joints: Vec::new(),
-        weights: Vec::new(),
-        inverse_bind: vec![Affine3A::IDENTITY; bones],
-    };
+    let mut skin =
+        Skin { joints: Vec::new(), weights: Vec::new(), inverse_bind: vec![Affine3A::IDENTITY; bones] };
     for i in 0..vertices {
         in_order(&mut words, i, "vertex")?;
         mesh.positions.push(words.vector("a position")?);
-        mesh.normals
-            .push(words.vector("a normal")?.normalize_or(Vec3::Y));
+        mesh.normals.push(words.vector("a normal")?.normalize_or(Vec3::Y));
         let mut of = [0u16; 4];
         for j in &mut of {
             *j = words.number("a joint's index")?;
@@ -72,12 +56,7 @@ pub fn parse(data: &[u8]) -> Result<Body, Problem> {
         skin.joints.push(of);
         skin.weights.push(normalised(weights));
     }
-    let triangles = count(
-        &mut words,
-        "numOfTriangles",
-        u32::MAX as usize,
-        text.len() / 8,
-    )?;
+    let triangles = count(&mut words, "numOfTriangles", u32::MAX as usize, text.len() / 8)?;
     for i in 0..triangles {
         in_order(&mut words, i, "triangle")?;
         let mut corners = [0u32; 3];
@@ -101,11 +80,7 @@ pub fn parse(data: &[u8]) -> Result<Body, Problem> {
     if joints.is_empty() {
         return Ok(Body::rigid(mesh));
     }
-    Ok(Body {
-        mesh,
-        joints,
-        skin: Some(skin),
-    })
+    Ok(Body { mesh, joints, skin: Some(skin) })
 }
 
 /// The count after the word `name`; at most `limit`, and no more than the file's text has room for.
@@ -128,9 +103,6 @@ fn in_order(words: &mut Words<'_>, i: usize, what: &str) -> Result<(), Problem> 
     if found == i {
         Ok(())
     } else {
-        Err(Problem::line(
-            words.line(),
-            format!("expected {what} {i}, found {found}: they must be in order"),
-        ))
+        Err(Problem::line(words.line(), format!("expected {what} {i}, found {found}: they must be in order")))
     }
 }

@@ -63,12 +63,8 @@ impl Subject {
 }
 
 /// Units that files are made in.
-const UNITS: [(f32, &str); 4] = [
-    (1.0, "metres"),
-    (0.1, "decimetres"),
-    (0.01, "centimetres"),
-    (0.001, "millimetres"),
-];
+const UNITS: [(f32, &str); 4] =
+    [(1.0, "metres"), (0.1, "decimetres"), (0.01, "centimetres"), (0.001, "millimetres")];
 
 /// Scale and turn to apply, with a note on whatever was guessed. `extent`: the box's longest side [file units].
 pub(crate) fn settle(
@@ -108,13 +104,9 @@ fn guess(subject: Subject, extent: f32) -> (f32, Option<String>) {
     }
     let off = |scale: f32| {
         let typical = subject.typical().iter();
-        typical
-            .map(|t| (extent * scale / t).ln().abs())
-            .fold(f32::INFINITY, f32::min)
+        typical.map(|t| (extent * scale / t).ln().abs()).fold(f32::INFINITY, f32::min)
     };
-    let nearest = UNITS
-        .into_iter()
-        .min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
+    let nearest = UNITS.into_iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
     let (scale, name) = nearest.unwrap_or(UNITS[0]);
     let size = extent * scale;
     let note = if subject.range().contains(&size) {
@@ -141,19 +133,12 @@ pub(crate) fn extent(points: impl IntoIterator<Item = Vec3>) -> f32 {
 
 /// Turns `p` by `turn`, exactly where there is nothing to turn, and by ±90° about X without rounding.
 fn turned(turn: Quat, p: Vec3) -> Vec3 {
-    if turn == Quat::IDENTITY {
-        p
-    } else {
-        Vec3::new(p.x, p.z, -p.y)
-    }
+    if turn == Quat::IDENTITY { p } else { Vec3::new(p.x, p.z, -p.y) }
 }
 
 /// Brings a groom into metres and Y up.
 pub(crate) fn apply_to_groom(groom: &mut Groom, scale: f32, turn: Quat) {
-    groom
-        .points
-        .iter_mut()
-        .for_each(|p| *p = turned(turn, *p) * scale);
+    groom.points.iter_mut().for_each(|p| *p = turned(turn, *p) * scale);
 }
 
 /// Brings joints' local transforms into metres and Y up; shape `[joints]`.
@@ -174,11 +159,7 @@ pub(crate) fn apply_to_locals<'a>(
 /// Brings a motion's joints and clips into metres and Y up.
 pub(crate) fn apply_to_motion(joints: &mut [Joint], clips: &mut [Clip], scale: f32, turn: Quat) {
     let roots: Vec<bool> = joints.iter().map(|j| j.parent.is_none()).collect();
-    apply_to_locals(
-        joints.iter_mut().map(|j| (&mut j.rest, j.parent.is_none())),
-        scale,
-        turn,
-    );
+    apply_to_locals(joints.iter_mut().map(|j| (&mut j.rest, j.parent.is_none())), scale, turn);
     for clip in clips {
         let flags = roots.iter().copied().cycle();
         apply_to_locals(clip.samples.iter_mut().zip(flags), scale, turn);
@@ -196,12 +177,9 @@ pub(crate) fn apply_to_body(body: &mut Body, clips: &mut [Clip], scale: f32, tur
     if let Some(skin) = &mut body.skin {
         // B' = S B (R S)⁻¹: the joint's space is scaled, not turned.
         let back =
-            glam::Affine3A::from_scale_rotation_translation(Vec3::splat(scale), turn, Vec3::ZERO)
-                .inverse();
+            glam::Affine3A::from_scale_rotation_translation(Vec3::splat(scale), turn, Vec3::ZERO).inverse();
         let scaled = glam::Affine3A::from_scale(Vec3::splat(scale));
-        skin.inverse_bind
-            .iter_mut()
-            .for_each(|b| *b = scaled * *b * back);
+        skin.inverse_bind.iter_mut().for_each(|b| *b = scaled * *b * back);
     }
     apply_to_motion(&mut body.joints, clips, scale, turn);
 }

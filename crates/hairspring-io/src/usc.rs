@@ -24,37 +24,22 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let mut bytes = Bytes::new(data);
     let strands: i32 = bytes.value("the strand count")?;
     // Four bytes a strand at the least.
-    let strands = usize::try_from(strands)
-        .ok()
-        .filter(|n| *n <= bytes.remaining() / 4)
-        .ok_or_else(|| {
-            Problem::new(
-                Place::Byte(0),
-                format!(
-                    "{strands} strands do not fit into a file of {} bytes",
-                    data.len()
-                ),
-            )
-        })?;
-    let mut groom = Groom {
-        offsets: Vec::with_capacity(strands + 1),
-        ..Groom::default()
-    };
+    let strands = usize::try_from(strands).ok().filter(|n| *n <= bytes.remaining() / 4).ok_or_else(|| {
+        Problem::new(
+            Place::Byte(0),
+            format!("{strands} strands do not fit into a file of {} bytes", data.len()),
+        )
+    })?;
+    let mut groom = Groom { offsets: Vec::with_capacity(strands + 1), ..Groom::default() };
     groom.offsets.push(0);
     for s in 0..strands {
         let at = bytes.at();
         let count: i32 = bytes.value("a strand's point count")?;
         let count = usize::try_from(count).map_err(|_| {
-            Problem::new(
-                Place::Byte(at),
-                format!("strand {s} names {count} points: a count below zero"),
-            )
+            Problem::new(Place::Byte(at), format!("strand {s} names {count} points: a count below zero"))
         })?;
         let run = bytes.take(count.saturating_mul(size_of::<Vec3>()), "a strand's points")?;
-        groom.points.extend(
-            run.chunks_exact(size_of::<Vec3>())
-                .map(bytemuck::pod_read_unaligned::<Vec3>),
-        );
+        groom.points.extend(run.chunks_exact(size_of::<Vec3>()).map(bytemuck::pod_read_unaligned::<Vec3>));
         groom.offsets.push(groom.points.len() as u32);
     }
     if bytes.remaining() > 0 {
@@ -64,17 +49,8 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         );
         return Err(Problem::new(Place::Byte(bytes.at()), text));
     }
-    let units = FileUnits {
-        scale: None,
-        up: Some(Axis::Y),
-    };
-    Ok(Read {
-        groom,
-        radii: None,
-        true_radii: false,
-        units,
-        notes: Vec::new(),
-    })
+    let units = FileUnits { scale: None, up: Some(Axis::Y) };
+    Ok(Read { groom, radii: None, true_radii: false, units, notes: Vec::new() })
 }
 
 /// Writes strands as a `.data` file: positions only.

@@ -22,17 +22,7 @@ fn sound_files_are_read() {
 #[test]
 fn binary_files_cut_at_any_length_are_refused() {
     for (name, file, read) in samples::all() {
-        if ![
-            "hair",
-            "hair-even",
-            "tfx-4",
-            "tfx-3",
-            "data",
-            "tfxbone",
-            "glb",
-        ]
-        .contains(&name)
-        {
+        if !["hair", "hair-even", "tfx-4", "tfx-3", "data", "tfxbone", "glb"].contains(&name) {
             continue;
         }
         for length in 0..file.len() {
@@ -50,10 +40,7 @@ fn text_files_cut_at_any_length_come_back() {
     for (name, file, read) in samples::all() {
         for length in 0..file.len() {
             if let Err(problem) = read(&file[..length]) {
-                assert!(
-                    !problem.text.contains('\n'),
-                    "{name} cut at {length}: {problem}"
-                );
+                assert!(!problem.text.contains('\n'), "{name} cut at {length}: {problem}");
             }
         }
     }
@@ -71,15 +58,9 @@ fn every_byte_and_word_may_lie() {
                 lying[at] = file[at];
             }
             if at % 4 == 0 && at + 4 <= file.len() {
-                for value in [
-                    0u32,
-                    1,
-                    0x7fff_ffff,
-                    0x8000_0000,
-                    0xffff_ffff,
-                    f32::NAN.to_bits(),
-                    f32::MAX.to_bits(),
-                ] {
+                for value in
+                    [0u32, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, f32::NAN.to_bits(), f32::MAX.to_bits()]
+                {
                     lying[at..at + 4].copy_from_slice(&value.to_le_bytes());
                     let _ = read(&lying);
                     lying[at..at + 4].copy_from_slice(&file[at..at + 4]);
@@ -100,24 +81,12 @@ fn numbers_in_text_may_lie() {
             .scan(0, |at, piece| {
                 let start = *at;
                 *at += piece.len();
-                Some((
-                    start,
-                    start + piece.trim_end_matches(|c: char| !c.is_ascii_digit()).len(),
-                ))
+                Some((start, start + piece.trim_end_matches(|c: char| !c.is_ascii_digit()).len()))
             })
             .filter(|(a, b)| a < b)
             .collect();
         for (a, b) in numbers {
-            for number in [
-                "99999999999999999999",
-                "4294967295",
-                "1000000",
-                "-1",
-                "nan",
-                "inf",
-                "1e38",
-                "",
-            ] {
+            for number in ["99999999999999999999", "4294967295", "1000000", "-1", "nan", "inf", "1e38", ""] {
                 let lying = format!("{}{number}{}", &text[..a], &text[b..]);
                 if let Err(problem) = read(lying.as_bytes()) {
                     assert!(!problem.text.contains('\n'), "{name}: {problem}");
@@ -143,77 +112,44 @@ fn the_sentence_has_file_place_and_remedy() {
     fs::write(path("b.obj"), "v 0 0 0\nv 1 0 zero\n").unwrap();
     let error = read_body(&path("b.obj"), &options).unwrap_err();
     assert!(
-        error
-            .to_string()
-            .contains("b.obj, line 2: expected a vertex of 3 numbers, found `zero`"),
+        error.to_string().contains("b.obj, line 2: expected a vertex of 3 numbers, found `zero`"),
         "{error}"
     );
 
-    fs::write(
-        path("c.bvh"),
-        "HIERARCHY\nROOT Hips\n{\n}\nMOTION\nFrames: 5\nFrame Time: 0\n",
-    )
-    .unwrap();
+    fs::write(path("c.bvh"), "HIERARCHY\nROOT Hips\n{\n}\nMOTION\nFrames: 5\nFrame Time: 0\n").unwrap();
     let error = read_motion(&path("c.bvh"), None, &options).unwrap_err();
     assert!(error.to_string().contains("c.bvh, line 7"), "{error}");
 
     fs::write(path("d.tfx"), 9f32.to_le_bytes()).unwrap();
     let error = read_groom(&path("d.tfx"), &options).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .contains("version 9 of .tfx is not known: 3 and 4 are"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("version 9 of .tfx is not known: 3 and 4 are"), "{error}");
 
     fs::write(path("empty.data"), 0i32.to_le_bytes()).unwrap();
     let error = read_groom(&path("empty.data"), &options).unwrap_err();
     assert!(error.to_string().contains("no strands"), "{error}");
 
-    assert_eq!(
-        read_groom(&path("none.hair"), &options).unwrap_err().kind(),
-        ErrorKind::NotFound
-    );
-    assert_eq!(
-        read_groom(&path("b.obj"), &options).unwrap_err().kind(),
-        ErrorKind::Unsupported
-    );
-    let wrong = ReadOptions {
-        scale: Some(0.0),
-        ..options
-    };
-    assert_eq!(
-        read_groom(&path("a.hair"), &wrong).unwrap_err().kind(),
-        ErrorKind::Unsupported
-    );
+    assert_eq!(read_groom(&path("none.hair"), &options).unwrap_err().kind(), ErrorKind::NotFound);
+    assert_eq!(read_groom(&path("b.obj"), &options).unwrap_err().kind(), ErrorKind::Unsupported);
+    let wrong = ReadOptions { scale: Some(0.0), ..options };
+    assert_eq!(read_groom(&path("a.hair"), &wrong).unwrap_err().kind(), ErrorKind::Unsupported);
     fs::create_dir(path("folder.hair")).unwrap();
-    assert_eq!(
-        read_groom(&path("folder.hair"), &options)
-            .unwrap_err()
-            .kind(),
-        ErrorKind::Unreadable
-    );
+    assert_eq!(read_groom(&path("folder.hair"), &options).unwrap_err().kind(), ErrorKind::Unreadable);
 }
 
 #[test]
 fn a_gltf_that_runs_in_circles_or_abroad_is_refused() {
-    let read = |json: &str| {
-        hairspring_io::gltf::parse(json.as_bytes(), &|_| None)
-            .map(drop)
-            .unwrap_err()
-    };
-    let circle = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}"#;
+    let read = |json: &str| hairspring_io::gltf::parse(json.as_bytes(), &|_| None).map(drop).unwrap_err();
+    let circle =
+        r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}"#;
     assert!(read(circle).text.contains("its own ancestor"));
-    let abroad = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"https://example.org/a.bin","byteLength":4}]}"#;
+    let abroad =
+        r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"https://example.org/a.bin","byteLength":4}]}"#;
     assert!(read(abroad).text.contains("on a network"));
     let absent = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"a.bin","byteLength":4}]}"#;
     assert!(read(absent).text.contains("a.bin"));
     let draco = r#"{"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"]}"#;
     let problem = read(draco);
-    assert!(
-        problem.place == Place::Whole && !problem.text.contains('\n'),
-        "{problem}"
-    );
+    assert!(problem.place == Place::Whole && !problem.text.contains('\n'), "{problem}");
 }
 
 #[test]
@@ -226,13 +162,9 @@ fn a_rig_that_runs_in_circles_is_refused() {
             format!(r#"{{"a": {{{end}, "parent": "b"}}, "b": {{{end}, "parent": "a"}}}}"#),
             "each other's parents",
         ),
-        (
-            format!(r#"{{"a": {{{end}, "parent": "c"}}}}"#),
-            "does not have",
-        ),
+        (format!(r#"{{"a": {{{end}, "parent": "c"}}}}"#), "does not have"),
     ] {
-        let problem =
-            hairspring_io::makehuman::parse(mesh(), rig.as_bytes(), samples::WEIGHTS).unwrap_err();
+        let problem = hairspring_io::makehuman::parse(mesh(), rig.as_bytes(), samples::WEIGHTS).unwrap_err();
         assert!(problem.text.contains(why), "{problem}");
     }
 }

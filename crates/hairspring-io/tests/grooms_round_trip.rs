@@ -21,23 +21,13 @@ fn point() -> impl Strategy<Value = Vec3> {
 fn groom(even: bool) -> impl Strategy<Value = Groom> {
     let strands = (1usize..9).prop_flat_map(move |n| {
         let counts = if even { n..n + 1 } else { 1..10 };
-        prop::collection::vec(
-            prop::collection::vec((point(), point(), 1e-7f32..1.0), counts),
-            0..8,
-        )
+        prop::collection::vec(prop::collection::vec((point(), point(), 1e-7f32..1.0), counts), 0..8)
     });
     (strands, any::<bool>(), any::<bool>()).prop_map(move |(strands, colored, with_uvs)| {
-        let mut groom = Groom::from_strands(
-            strands
-                .iter()
-                .map(|s| s.iter().map(|p| p.0).collect::<Vec<_>>()),
-            0.0,
-        );
+        let mut groom =
+            Groom::from_strands(strands.iter().map(|s| s.iter().map(|p| p.0).collect::<Vec<_>>()), 0.0);
         let radius = |s: &[(Vec3, Vec3, f32)], i: usize| if even { s[0].2 } else { s[i].2 };
-        groom.radii = strands
-            .iter()
-            .flat_map(|s| (0..s.len()).map(move |i| radius(s, i)))
-            .collect();
+        groom.radii = strands.iter().flat_map(|s| (0..s.len()).map(move |i| radius(s, i))).collect();
         if colored {
             groom.colors = strands.iter().flatten().map(|p| p.1).collect();
         }
@@ -53,11 +43,7 @@ fn bytes(groom: &Groom, extension: &str) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(format!("groom.{extension}"));
     write_groom(&path, groom).unwrap();
-    assert_eq!(
-        fs::read_dir(folder.path()).unwrap().count(),
-        1,
-        "nothing but the file itself is left"
-    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing but the file itself is left");
     fs::read(path).unwrap()
 }
 
@@ -84,30 +70,17 @@ proptest! {
 fn our_own_files_come_back_in_metres_with_nothing_guessed() {
     let folder = tempfile::tempdir().unwrap();
     // A hundredth of the size of a head: a guess would go wrong.
-    let strand = |i: usize| {
-        (0..5)
-            .map(|k| Vec3::new(1e-4 * i as f32, 3e-4 * k as f32, 0.0))
-            .collect::<Vec<_>>()
-    };
+    let strand =
+        |i: usize| (0..5).map(|k| Vec3::new(1e-4 * i as f32, 3e-4 * k as f32, 0.0)).collect::<Vec<_>>();
     let groom = Groom::from_strands((0..4).map(strand), 7e-4);
     for extension in ["hair", "tfx"] {
         let path = folder.path().join(format!("a.{extension}"));
         assert_eq!(write_groom(&path, &groom).unwrap(), Vec::<String>::new());
         let loaded = read_groom(&path, &ReadOptions::default()).unwrap();
-        assert_eq!(
-            (loaded.scale, loaded.notes, loaded.value),
-            (1.0, vec![], groom.clone()),
-            "{extension}"
-        );
-        let options = ReadOptions {
-            scale: Some(100.0),
-            up: Some(Axis::Z),
-        };
+        assert_eq!((loaded.scale, loaded.notes, loaded.value), (1.0, vec![], groom.clone()), "{extension}");
+        let options = ReadOptions { scale: Some(100.0), up: Some(Axis::Z) };
         let scaled = read_groom(&path, &options).unwrap().value;
-        assert_eq!(
-            scaled.strand(0)[4],
-            Vec3::new(0.0, 0.0, -3e-4 * 4.0) * 100.0
-        );
+        assert_eq!(scaled.strand(0)[4], Vec3::new(0.0, 0.0, -3e-4 * 4.0) * 100.0);
     }
 }
 
@@ -116,19 +89,10 @@ fn a_frame_is_written_from_borrowed_points() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("frame.0001.hair");
     let points: Vec<Vec3> = (0..6).map(|i| Vec3::splat(i as f32)).collect();
-    let frame = Strands {
-        points: &points,
-        offsets: &[0, 3, 6],
-        radii: &[],
-        colors: &[],
-        root_uvs: &[],
-    };
+    let frame = Strands { points: &points, offsets: &[0, 3, 6], radii: &[], colors: &[], root_uvs: &[] };
     write_strands(&path, frame).unwrap();
     let read = read_groom(&path, &ReadOptions::default()).unwrap().value;
-    assert_eq!(
-        (read.points.as_slice(), read.radii),
-        (points.as_slice(), vec![DEFAULT_RADIUS; 6])
-    );
+    assert_eq!((read.points.as_slice(), read.radii), (points.as_slice(), vec![DEFAULT_RADIUS; 6]));
 }
 
 #[test]
@@ -140,36 +104,20 @@ fn what_does_not_fit_is_refused_or_said() {
     let error = write_groom(&path("a.tfx"), &uneven).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Unsupported);
     assert!(
-        error
-            .to_string()
-            .contains("strand 0 has 3 and strand 1 has 5; write .hair or .data instead"),
+        error.to_string().contains("strand 0 has 3 and strand 1 has 5; write .hair or .data instead"),
         "{error}"
     );
     let error = write_groom(&path("a.abc"), &uneven).unwrap_err();
-    assert!(
-        error.to_string().contains(".hair, .tfx or .data"),
-        "{error}"
-    );
+    assert!(error.to_string().contains(".hair, .tfx or .data"), "{error}");
     let mut broken = uneven.clone();
     broken.offsets[1] = 9;
-    assert!(
-        write_groom(&path("a.hair"), &broken)
-            .unwrap_err()
-            .to_string()
-            .contains("offsets")
-    );
+    assert!(write_groom(&path("a.hair"), &broken).unwrap_err().to_string().contains("offsets"));
     let mut grouped = uneven.clone();
     grouped.groups = vec![0, 1];
     let lost = write_groom(&path("b.data"), &grouped).unwrap();
-    assert_eq!(
-        lost,
-        ["a .data file has no place for groups, radii: left out"]
-    );
+    assert_eq!(lost, ["a .data file has no place for groups, radii: left out"]);
     // Nothing is left of those that were refused.
-    let names: Vec<_> = fs::read_dir(folder.path())
-        .unwrap()
-        .map(|f| f.unwrap().file_name())
-        .collect();
+    let names: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name()).collect();
     assert_eq!(names, ["b.data"]);
 }
 
@@ -180,10 +128,7 @@ fn a_file_that_is_there_is_replaced_whole_or_kept() {
     fs::write(&path, "old").unwrap();
     let groom = Groom::from_strands([[Vec3::ZERO, Vec3::X, Vec3::Y]], 4e-5);
     write_groom(&path, &groom).unwrap();
-    assert_eq!(
-        usc::parse(&fs::read(&path).unwrap()).unwrap().points,
-        groom.points
-    );
+    assert_eq!(usc::parse(&fs::read(&path).unwrap()).unwrap().points, groom.points);
     let error = write_groom(&folder.path().join("no/such/a.data"), &groom).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Write);
 }

@@ -20,16 +20,9 @@ use tempfile::TempDir;
 /// A folder with a groom `hair.data` and a mesh `head.obj`.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let strands = (0..5).map(|i| {
-        (0..4)
-            .map(|k| Vec3::new(0.1 * i as f32, 0.1 * k as f32, 0.0))
-            .collect::<Vec<_>>()
-    });
-    write_groom(
-        &folder.path().join("hair.data"),
-        &Groom::from_strands(strands, 4e-5),
-    )
-    .unwrap();
+    let strands =
+        (0..5).map(|i| (0..4).map(|k| Vec3::new(0.1 * i as f32, 0.1 * k as f32, 0.0)).collect::<Vec<_>>());
+    write_groom(&folder.path().join("hair.data"), &Groom::from_strands(strands, 4e-5)).unwrap();
     let mesh = "g scalp\nv 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\nf 1 2 3\ng neck\nf 1 3 4\n";
     fs::write(folder.path().join("head.obj"), mesh).unwrap();
     let nod = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 1 0\nCHANNELS 3 Zrotation Yrotation Xrotation\nJOINT Head\n{\nOFFSET 0 0.6 0\n\
@@ -49,9 +42,7 @@ fn read(folder: &Path, text: &str) -> Result<Loaded<Scene>, Error> {
 fn message(text: &str) -> String {
     let folder = folder();
     let error = read(folder.path(), text).expect_err(text);
-    error
-        .to_string()
-        .replace(&format!("{}/", folder.path().display()), "")
+    error.to_string().replace(&format!("{}/", folder.path().display()), "")
 }
 
 #[test]
@@ -78,27 +69,14 @@ fn a_scene_is_what_its_file_describes() {
         [wind]
         velocity = [1, 0, 0]
     "#;
-    let Loaded {
-        value: scene,
-        notes,
-        ..
-    } = read(folder.path(), text).unwrap();
-    assert_eq!(
-        (scene.name.as_str(), scene.gravity),
-        ("scene", Vec3::new(0.0, -1.6, 0.0))
-    );
+    let Loaded { value: scene, notes, .. } = read(folder.path(), text).unwrap();
+    assert_eq!((scene.name.as_str(), scene.gravity), ("scene", Vec3::new(0.0, -1.6, 0.0)));
     assert!(notes.is_empty(), "{notes:?}");
     let body = scene.body.as_ref().unwrap();
-    assert_eq!(
-        (body.mesh.triangles.len(), body.mesh.positions.len()),
-        (1, 3)
-    );
+    assert_eq!((body.mesh.triangles.len(), body.mesh.positions.len()), (1, 3));
     assert_eq!(body.mesh.parts[0].color, Vec3::new(0.1, 0.2, 0.3));
     let groom = &scene.grooms[0];
-    assert_eq!(
-        (groom.guides, groom.groom.strand_count()),
-        (Guides::Count(3), 5)
-    );
+    assert_eq!((groom.guides, groom.groom.strand_count()), (Guides::Count(3), 5));
     // 0.1 → 0.2 m a strand along x, turned by 90° about Y to −z, then moved.
     assert!(
         groom.groom.strand(1)[0].distance(Vec3::new(0.0, 0.0, 0.8)) < 1e-6,
@@ -106,18 +84,9 @@ fn a_scene_is_what_its_file_describes() {
         groom.groom.strand(1)[0]
     );
     let curly = hairspring::material::preset("curly").unwrap();
-    assert_eq!(
-        (groom.materials[0].bend, groom.materials[0].friction),
-        (curly.bend, 0.5)
-    );
-    assert_eq!(
-        groom.materials[1],
-        hairspring::material::preset("coily").unwrap()
-    );
-    assert!(matches!(
-        scene.colliders[0].shape,
-        Shape::Sphere { radius: 0.5, .. }
-    ));
+    assert_eq!((groom.materials[0].bend, groom.materials[0].friction), (curly.bend, 0.5));
+    assert_eq!(groom.materials[1], hairspring::material::preset("coily").unwrap());
+    assert!(matches!(scene.colliders[0].shape, Shape::Sphere { radius: 0.5, .. }));
     assert_eq!(scene.solver, Default::default());
 }
 
@@ -132,11 +101,7 @@ fn a_head_joint_drives_a_bust() {
     // Relative to the first used frame; about X, as in the file, whatever the order of channels.
     let want = glam::Quat::from_rotation_x(10f32.to_radians());
     assert!(clip.samples[0].rotation.dot(glam::Quat::IDENTITY).abs() > 0.999999);
-    assert!(
-        clip.samples[1].rotation.dot(want).abs() > 0.999999,
-        "{}",
-        clip.samples[1].rotation
-    );
+    assert!(clip.samples[1].rotation.dot(want).abs() > 0.999999, "{}", clip.samples[1].rotation);
     let body: &Body = scene.body.as_ref().unwrap();
     assert_eq!(body.joints.len(), 1);
 }
@@ -145,18 +110,9 @@ fn a_head_joint_drives_a_bust() {
 fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
     const GROOM: &str = "[[groom]]\nfile = \"hair.data\"\n";
     for (text, parts) in [
-        (
-            format!("{GROOM}giudes = 3\n"),
-            &["scene.toml, line 3", "`giudes`", "did you mean `guides`?"][..],
-        ),
-        (
-            format!("[solver]\nsubstep = 3\n{GROOM}"),
-            &["line 2", "did you mean `substeps`?"],
-        ),
-        (
-            format!("[slover]\n{GROOM}"),
-            &["line 1", "did you mean `solver`?"],
-        ),
+        (format!("{GROOM}giudes = 3\n"), &["scene.toml, line 3", "`giudes`", "did you mean `guides`?"][..]),
+        (format!("[solver]\nsubstep = 3\n{GROOM}"), &["line 2", "did you mean `substeps`?"]),
+        (format!("[slover]\n{GROOM}"), &["line 1", "did you mean `solver`?"]),
         (
             format!("{GROOM}[material.a]\npreset = \"wavvy\"\n")
                 .replace("data\"\n", "data\"\nmaterial = \"a\"\n"),
@@ -166,30 +122,15 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
             format!("{GROOM}material = \"a\"\n[material.a]\n\nfrictoin = 1\n"),
             &["line 6", "did you mean `friction`?"],
         ),
-        (
-            format!("{GROOM}material = \"coly\"\n"),
-            &["line 3", "did you mean `coily`?"],
-        ),
+        (format!("{GROOM}material = \"coly\"\n"), &["line 3", "did you mean `coily`?"]),
         (
             format!("{GROOM}guides = \"many\"\n"),
             &["line 3", "a number of guides above 0, \"all\" or \"file\""],
         ),
-        (
-            format!("{GROOM}look = {{ root_colour = [0, 0, 0] }}\n"),
-            &["line 3", "did you mean `root_color`?"],
-        ),
-        (
-            format!("{GROOM}[solver]\nsubsteps = 0\n"),
-            &["line 4", "1 to 64"],
-        ),
-        (
-            format!("{GROOM}[camera]\nfov = 200\n"),
-            &["line 4", "1 to 170"],
-        ),
-        (
-            format!("{GROOM}material = \"a\"\n[material.a]\nfriction = 7\n"),
-            &["line 5", "0 to 1"],
-        ),
+        (format!("{GROOM}look = {{ root_colour = [0, 0, 0] }}\n"), &["line 3", "did you mean `root_color`?"]),
+        (format!("{GROOM}[solver]\nsubsteps = 0\n"), &["line 4", "1 to 64"]),
+        (format!("{GROOM}[camera]\nfov = 200\n"), &["line 4", "1 to 170"]),
+        (format!("{GROOM}material = \"a\"\n[material.a]\nfriction = 7\n"), &["line 5", "0 to 1"]),
         (
             "[[groom]]\nfile = \"hiar.data\"\n".into(),
             &["hiar.data was not found", "the groom that", "line 2"],
@@ -202,14 +143,8 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
             format!("[body]\nfile = \"head.obj\"\nparts = [\"sclap\"]\n{GROOM}"),
             &["line 3", "did you mean `scalp`?"],
         ),
-        (
-            format!("[body]\nfile = \"head.obj\"\nrig = \"x.json\"\n{GROOM}"),
-            &["line 3", "`weights`"],
-        ),
-        (
-            format!("{GROOM}[clip]\nfile = \"nod.bvh\"\n"),
-            &["line 4", "no [body]"],
-        ),
+        (format!("[body]\nfile = \"head.obj\"\nrig = \"x.json\"\n{GROOM}"), &["line 3", "`weights`"]),
+        (format!("{GROOM}[clip]\nfile = \"nod.bvh\"\n"), &["line 4", "no [body]"]),
         (
             format!(
                 "[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nfile = \"nod.bvh\"\njoint = \"Haed\"\npivot = [0, 0, 0]\n"
@@ -217,39 +152,28 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
             &["line 7", "did you mean `Head`?"],
         ),
         (
-            format!(
-                "[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nfile = \"nod.bvh\"\njoint = \"Head\"\n"
-            ),
+            format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nfile = \"nod.bvh\"\njoint = \"Head\"\n"),
             &["line 7", "`pivot`"],
         ),
         (
             format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nfile = \"nod.bvh\"\n"),
             &["line 6", "no joint of the motion"],
         ),
-        (
-            format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nname = \"dance\"\n"),
-            &["line 6", "\"dance\""],
-        ),
+        (format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nname = \"dance\"\n"), &["line 6", "\"dance\""]),
         (
             format!(
                 "{GROOM}[[collider]]\njoint = \"x\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"
             ),
             &["line 4", "`x`"],
         ),
-        (
-            format!("{GROOM}bones = \"x.tfxbone\"\n"),
-            &["x.tfxbone was not found"],
-        ),
+        (format!("{GROOM}bones = \"x.tfxbone\"\n"), &["x.tfxbone was not found"]),
         ("name = \"empty\"\n".into(), &["scene.toml", "[[groom]]"]),
         ("gravity = [0, 1\n".into(), &["line 1"]),
     ] {
         let message = message(&text);
         println!("{message}");
         for part in parts {
-            assert!(
-                message.contains(part),
-                "{text}\n gives\n{message}\nwithout {part:?}"
-            );
+            assert!(message.contains(part), "{text}\n gives\n{message}\nwithout {part:?}");
         }
         assert!(!message.contains('\n'), "one sentence: {message}");
     }
@@ -259,30 +183,17 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
 fn missing_and_broken_files_differ_in_kind() {
     let folder = folder();
     fs::write(folder.path().join("broken.data"), b"\x05\0\0\0").unwrap();
-    let kind = |file: &str| {
-        read(folder.path(), &format!("[[groom]]\nfile = {file:?}\n"))
-            .unwrap_err()
-            .kind()
-    };
+    let kind = |file: &str| read(folder.path(), &format!("[[groom]]\nfile = {file:?}\n")).unwrap_err().kind();
     assert_eq!(kind("none.data"), ErrorKind::NotFound);
     assert_eq!(kind("broken.data"), ErrorKind::Malformed);
     assert_eq!(kind("head.obj"), ErrorKind::Unsupported);
-    assert_eq!(
-        read_scene(&folder.path().join("no.toml"))
-            .unwrap_err()
-            .kind(),
-        ErrorKind::NotFound
-    );
+    assert_eq!(read_scene(&folder.path().join("no.toml")).unwrap_err().kind(), ErrorKind::NotFound);
 }
 
 #[test]
 fn the_page_that_documents_scenes_is_right() {
     let page = include_str!("../../../docs/scene.md");
-    let example = page
-        .split("```toml\n")
-        .nth(1)
-        .and_then(|rest| rest.split("```").next())
-        .unwrap();
+    let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     check_text(example).unwrap();
     // The fields that stand in comments there, since they exclude others.
     check_text(
@@ -307,11 +218,7 @@ fn the_cmu_rig_walks() {
         rig = base.with_file_name("rig.cmu_mb.json"),
         weights = base.with_file_name("weights.cmu_mb.json"),
     );
-    let Loaded {
-        value: scene,
-        notes,
-        ..
-    } = read(folder.path(), &text).unwrap();
+    let Loaded { value: scene, notes, .. } = read(folder.path(), &text).unwrap();
     println!("{notes:?}");
     let (body, clip) = (scene.body.unwrap(), scene.clip.unwrap());
     assert_eq!((body.mesh.positions.len(), body.joints.len()), (13_380, 31));
@@ -323,27 +230,14 @@ fn the_cmu_rig_walks() {
     for f in (0..clip.frame_count()).step_by(20) {
         let world = body.world(&clip.sample(f as f32 / clip.rate));
         body.skinned(&world, &mut positions, &mut normals);
-        let (lo, hi) = positions
-            .iter()
-            .fold((positions[0], positions[0]), |(lo, hi), p| {
-                (lo.min(*p), hi.max(*p))
-            });
+        let (lo, hi) =
+            positions.iter().fold((positions[0], positions[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
         // Upright, on the floor where the rest pose stands, arms down, one stride long.
         let floor = body.mesh.bounds().unwrap().0.y;
         println!("frame {f}: {lo} {hi} head {}", world[head].translation);
-        assert!(
-            (lo.y - floor).abs() < 0.12,
-            "frame {f}: lowest {} over a floor at {floor}",
-            lo.y
-        );
-        assert!(
-            (1.45..1.85).contains(&(hi.y - lo.y)),
-            "frame {f}: {lo} {hi}"
-        );
-        assert!(
-            hi.x - lo.x < 1.2 && hi.z - lo.z < 1.3,
-            "frame {f}: {lo} {hi}"
-        );
+        assert!((lo.y - floor).abs() < 0.12, "frame {f}: lowest {} over a floor at {floor}", lo.y);
+        assert!((1.45..1.85).contains(&(hi.y - lo.y)), "frame {f}: {lo} {hi}");
+        assert!(hi.x - lo.x < 1.2 && hi.z - lo.z < 1.3, "frame {f}: {lo} {hi}");
         last = Some(world[head].translation);
     }
     // It walks along +Z, as the capture does.

@@ -1,20 +1,13 @@
 use hairspring::scene::{Solver, bench::Bench};
 use std::time::Instant;
 fn main() {
-    let a: Vec<u32> = std::env::args()
-        .skip(1)
-        .map(|a| a.parse().unwrap())
-        .collect();
+    let a: Vec<u32> = std::env::args().skip(1).map(|a| a.parse().unwrap()).collect();
     let (strands, points, substeps, frames) = (a[0], a[1], a[2], a[3]);
     let t = Instant::now();
     let mut b = Bench::new(
         strands,
         points,
-        Solver {
-            substeps,
-            projections: a.get(4).copied().unwrap_or(3),
-            ..Solver::default()
-        },
+        Solver { substeps, projections: a.get(4).copied().unwrap_or(3), ..Solver::default() },
     );
     println!(
         "build {:?} {} bytes/pt {:.1}",

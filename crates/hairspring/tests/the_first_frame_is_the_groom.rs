@@ -20,11 +20,7 @@ fn groom() -> Groom {
     for k in 0..64 {
         let a = k as f32 * 2.4;
         let y = 1.0 - 2.0 * (k as f32 + 0.5) / 64.0;
-        let out = Vec3::new(
-            (1.0 - y * y).sqrt() * a.cos(),
-            y,
-            (1.0 - y * y).sqrt() * a.sin(),
-        );
+        let out = Vec3::new((1.0 - y * y).sqrt() * a.cos(), y, (1.0 - y * y).sqrt() * a.sin());
         let (side, up) = out.any_orthonormal_pair();
         let n = 16 + (k % 3) * 8;
         let length = 0.04 + 0.21 * (k % 5) as f32 / 4.0;
@@ -52,10 +48,7 @@ fn a_groom_at_rest_stays_where_it_was_authored() {
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
     let roots: Vec<Rigid> = all
         .iter()
-        .map(|s| Rigid {
-            translation: groom.strand(*s as usize)[0],
-            rotation: Quat::IDENTITY,
-        })
+        .map(|s| Rigid { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
         .collect();
     for name in PRESETS {
         let mut simulation = Simulation::new(
@@ -70,15 +63,8 @@ fn a_groom_at_rest_stays_where_it_was_authored() {
         let mut out = vec![Vec3::ZERO; simulation.point_count()];
         simulation.write_points(&mut out);
         let error = |out: &[Vec3]| {
-            let d: Vec<f32> = out
-                .iter()
-                .zip(&groom.points)
-                .map(|(a, b)| a.distance(*b))
-                .collect();
-            (
-                d.iter().sum::<f32>() / d.len() as f32,
-                d.into_iter().fold(0.0, f32::max),
-            )
+            let d: Vec<f32> = out.iter().zip(&groom.points).map(|(a, b)| a.distance(*b)).collect();
+            (d.iter().sum::<f32>() / d.len() as f32, d.into_iter().fold(0.0, f32::max))
         };
         assert!(error(&out).1 < 1e-6, "{name}: the first frame is the file");
         for _ in 0..60 {
@@ -92,13 +78,7 @@ fn a_groom_at_rest_stays_where_it_was_authored() {
         }
         simulation.write_points(&mut out);
         let (mean, worst) = error(&out);
-        println!(
-            "{name}: mean {mean}, worst {worst}, {} joints stiffened",
-            simulation.stiffened_joints()
-        );
-        assert!(
-            mean < 1e-5,
-            "{name}: the mean point moved {mean} m in a second"
-        );
+        println!("{name}: mean {mean}, worst {worst}, {} joints stiffened", simulation.stiffened_joints());
+        assert!(mean < 1e-5, "{name}: the mean point moved {mean} m in a second");
     }
 }

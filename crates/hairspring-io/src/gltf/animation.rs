@@ -32,9 +32,7 @@ pub(super) fn clips(
     let mut clips = Vec::new();
     let mut samples_so_far = 0usize;
     for animation in document.animations() {
-        let name = animation
-            .name()
-            .map_or_else(|| format!("animation{}", animation.index()), str::to_owned);
+        let name = animation.name().map_or_else(|| format!("animation{}", animation.index()), str::to_owned);
         let mut tracks = Vec::new();
         for channel in animation.channels() {
             let target = channel.target();
@@ -48,16 +46,8 @@ pub(super) fn clips(
                 }
             }
         }
-        let start = tracks
-            .iter()
-            .filter_map(|t| t.times.first())
-            .copied()
-            .fold(f32::INFINITY, f32::min);
-        let end = tracks
-            .iter()
-            .filter_map(|t| t.times.last())
-            .copied()
-            .fold(f32::NEG_INFINITY, f32::max);
+        let start = tracks.iter().filter_map(|t| t.times.first()).copied().fold(f32::INFINITY, f32::min);
+        let end = tracks.iter().filter_map(|t| t.times.last()).copied().fold(f32::NEG_INFINITY, f32::max);
         if !(end - start).is_finite() {
             continue;
         }
@@ -65,9 +55,7 @@ pub(super) fn clips(
         let frames = ((end - start) * RATE + 0.25).floor() as usize;
         let frames = frames.saturating_add(1);
         let joint_count = skeleton.joints.len();
-        samples_so_far = frames
-            .saturating_mul(joint_count)
-            .saturating_add(samples_so_far);
+        samples_so_far = frames.saturating_mul(joint_count).saturating_add(samples_so_far);
         check_samples(samples_so_far, 1, Place::Whole)?;
         let mut samples = Vec::with_capacity(frames * joint_count);
         for frame in 0..frames {
@@ -78,12 +66,7 @@ pub(super) fn clips(
                 track.apply(time, &mut samples[first + track.joint]);
             }
         }
-        clips.push(Clip {
-            name,
-            rate: RATE,
-            joint_count,
-            samples,
-        });
+        clips.push(Clip { name, rate: RATE, joint_count, samples });
     }
     Ok(clips)
 }
@@ -102,46 +85,22 @@ impl Track {
             .collect();
         let values: Vec<Vec4> = if property == Property::Rotation {
             let values = components::<4>(&sampler.output(), buffers, "rotations of an animation")?;
-            values
-                .iter()
-                .map(|v| Vec4::from(v.map(|x| x as f32)))
-                .collect()
+            values.iter().map(|v| Vec4::from(v.map(|x| x as f32))).collect()
         } else {
             let values = components::<3>(&sampler.output(), buffers, "values of an animation")?;
-            values
-                .iter()
-                .map(|v| Vec3::from(v.map(|x| x as f32)).extend(0.0))
-                .collect()
+            values.iter().map(|v| Vec3::from(v.map(|x| x as f32)).extend(0.0)).collect()
         };
         let interpolation = sampler.interpolation();
-        let per_key = if interpolation == Interpolation::CubicSpline {
-            3
-        } else {
-            1
-        };
+        let per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         if times.is_empty() || values.len() != times.len() * per_key {
-            let text = format!(
-                "an animation has {} keys but {} values",
-                times.len(),
-                values.len()
-            );
+            let text = format!("an animation has {} keys but {} values", times.len(), values.len());
             return Err(Problem::whole(text));
         }
-        if !times.iter().all(|t| t.is_finite())
-            || !times.is_sorted()
-            || !values.iter().all(|v| v.is_finite())
+        if !times.iter().all(|t| t.is_finite()) || !times.is_sorted() || !values.iter().all(|v| v.is_finite())
         {
-            return Err(Problem::whole(
-                "the keys of an animation are not finite or not in order of time",
-            ));
+            return Err(Problem::whole("the keys of an animation are not finite or not in order of time"));
         }
-        Ok(Self {
-            joint,
-            property,
-            interpolation,
-            times,
-            values,
-        })
+        Ok(Self { joint, property, interpolation, times, values })
     }
 
     /// Sets this track's property of `local` to its value at `time` [s].
@@ -163,18 +122,11 @@ impl Track {
         let after = self.times.partition_point(|t| *t <= time);
         let (i, j) = (after.saturating_sub(1), after.min(last));
         let span = self.times[j] - self.times[i];
-        let t = if span > 0.0 {
-            ((time - self.times[i]) / span).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
+        let t = if span > 0.0 { ((time - self.times[i]) / span).clamp(0.0, 1.0) } else { 0.0 };
         match self.interpolation {
             Interpolation::Step => self.values[i],
             Interpolation::Linear if self.property == Property::Rotation => {
-                let (a, b) = (
-                    self.values[i].try_normalize(),
-                    self.values[j].try_normalize(),
-                );
+                let (a, b) = (self.values[i].try_normalize(), self.values[j].try_normalize());
                 match a.zip(b) {
                     Some((a, b)) => Quat::from_vec4(a).slerp(Quat::from_vec4(b), t).into(),
                     None => self.values[i],

@@ -14,16 +14,9 @@ pub(super) fn open(
     data: &[u8],
     sibling: &dyn Fn(&str) -> Option<Vec<u8>>,
 ) -> Result<(Document, Buffers), Problem> {
-    let (json, mut blob) = if data.starts_with(b"glTF") {
-        chunks(data)?
-    } else {
-        (data, None)
-    };
+    let (json, mut blob) = if data.starts_with(b"glTF") { chunks(data)? } else { (data, None) };
     let invalid = |e: &dyn std::fmt::Display| {
-        Problem::whole(format!(
-            "this is no valid glTF: {}",
-            first_line(&e.to_string())
-        ))
+        Problem::whole(format!("this is no valid glTF: {}", first_line(&e.to_string())))
     };
     let root = gltf::json::Root::from_slice(json).map_err(|e| invalid(&e))?;
     trusted_indices(&root)?;
@@ -31,10 +24,9 @@ pub(super) fn open(
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
         let bytes = match buffer.source() {
-            Source::Bin => blob
-                .take()
-                .ok_or_else(|| Problem::whole("the file's binary chunk is missing"))?
-                .to_vec(),
+            Source::Bin => {
+                blob.take().ok_or_else(|| Problem::whole("the file's binary chunk is missing"))?.to_vec()
+            }
             Source::Uri(uri) => resolve(uri, sibling)?,
         };
         if bytes.len() < buffer.length() {
@@ -53,14 +45,9 @@ pub(super) fn open(
 fn trusted_indices(root: &gltf::json::Root) -> Result<(), Problem> {
     for animation in &root.animations {
         // Samplers are validated by the crate, channels are not.
-        let mut lost = animation
-            .channels
-            .iter()
-            .any(|c| c.sampler.value() >= animation.samplers.len());
+        let mut lost = animation.channels.iter().any(|c| c.sampler.value() >= animation.samplers.len());
         for channel in &animation.channels {
-            channel
-                .target
-                .validate(root, Path::new, &mut |_, _| lost = true);
+            channel.target.validate(root, Path::new, &mut |_, _| lost = true);
         }
         if lost {
             return Err(Problem::whole(
@@ -69,14 +56,8 @@ fn trusted_indices(root: &gltf::json::Root) -> Result<(), Problem> {
         }
     }
     for primitive in root.meshes.iter().flat_map(|m| &m.primitives) {
-        if primitive
-            .attributes
-            .values()
-            .any(|a| a.value() >= root.accessors.len())
-        {
-            return Err(Problem::whole(
-                "a mesh names an accessor that the file does not have",
-            ));
+        if primitive.attributes.values().any(|a| a.value() >= root.accessors.len()) {
+            return Err(Problem::whole("a mesh names an accessor that the file does not have"));
         }
     }
     Ok(())
@@ -88,9 +69,8 @@ fn chunks(data: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     bytes.take(4, "the magic")?;
     let version: u32 = bytes.value("the version")?;
     if version != 2 {
-        let text = format!(
-            "version {version} of GLB is not known: version 2 is; export it again as glTF 2.0"
-        );
+        let text =
+            format!("version {version} of GLB is not known: version 2 is; export it again as glTF 2.0");
         return Err(Problem::new(Place::Byte(4), text));
     }
     let _length: u32 = bytes.value("the file's length")?;
@@ -98,20 +78,13 @@ fn chunks(data: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
         let length: u32 = bytes.value("a chunk's length")?;
         let at = bytes.at();
         if bytes.take(4, "a chunk's kind")? != kind {
-            return Err(Problem::new(
-                Place::Byte(at),
-                "expected the JSON chunk and after it the binary one",
-            ));
+            return Err(Problem::new(Place::Byte(at), "expected the JSON chunk and after it the binary one"));
         }
         bytes.take(length as usize, "a chunk")
     };
     let json = chunk(b"JSON")?;
     let after = 20 + json.len();
-    let blob = if data.len() > after {
-        Some(chunk(b"BIN\0")?)
-    } else {
-        None
-    };
+    let blob = if data.len() > after { Some(chunk(b"BIN\0")?) } else { None };
     Ok((json, blob))
 }
 
@@ -132,10 +105,5 @@ fn resolve(uri: &str, sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Vec<u
 
 /// The first line of a message, cut at 300 characters.
 fn first_line(text: &str) -> String {
-    text.lines()
-        .next()
-        .unwrap_or_default()
-        .chars()
-        .take(300)
-        .collect()
+    text.lines().next().unwrap_or_default().chars().take(300).collect()
 }

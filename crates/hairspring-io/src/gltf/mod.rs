@@ -54,42 +54,18 @@ pub fn parse(
         }
     }
     if build.skipped > 0 {
-        notes.push(format!(
-            "{} primitives of lines, points, strips or fans are not read",
-            build.skipped
-        ));
+        notes.push(format!("{} primitives of lines, points, strips or fans are not read", build.skipped));
     }
-    let Build {
-        mut mesh,
-        joints,
-        weights,
-        ..
-    } = build;
+    let Build { mut mesh, joints, weights, .. } = build;
     if mesh.normals.contains(&Vec3::ZERO) {
         let given = std::mem::take(&mut mesh.normals);
         mesh.compute_normals();
         let given = given.into_iter().zip(&mut mesh.normals);
-        given
-            .filter(|(n, _)| *n != Vec3::ZERO)
-            .for_each(|(n, slot)| *slot = n);
+        given.filter(|(n, _)| *n != Vec3::ZERO).for_each(|(n, slot)| *slot = n);
     }
     let clips = animation::clips(&document, &buffers, &skeleton, &mut notes)?;
-    let skin = Skin {
-        joints,
-        weights,
-        inverse_bind: skeleton.inverse_bind,
-    };
-    Ok((
-        Character {
-            body: Body {
-                mesh,
-                joints: skeleton.joints,
-                skin: Some(skin),
-            },
-            clips,
-        },
-        notes,
-    ))
+    let skin = Skin { joints, weights, inverse_bind: skeleton.inverse_bind };
+    Ok((Character { body: Body { mesh, joints: skeleton.joints, skin: Some(skin) }, clips }, notes))
 }
 
 /// The mesh as it grows, primitive by primitive.
@@ -134,11 +110,7 @@ impl Build<'_> {
         let count = positions.len();
         let whole = |given: usize, what: &str| {
             let text = format!("a mesh has {count} positions but {given} {what}");
-            if given == count {
-                Ok(())
-            } else {
-                Err(Problem::whole(text))
-            }
+            if given == count { Ok(()) } else { Err(Problem::whole(text)) }
         };
         // Into the rest pose: by the skin's bind space, or by the node that carries the mesh.
         let (placed, own_joint) = match node.skin() {
@@ -162,38 +134,26 @@ impl Build<'_> {
             let uvs = components::<2>(&uvs, buffers, "texture coordinates")?;
             whole(uvs.len(), "texture coordinates")?;
             self.mesh.uvs.resize(first, Vec2::ZERO);
-            self.mesh
-                .uvs
-                .extend(uvs.into_iter().map(|uv| Vec2::from(uv.map(|x| x as f32))));
+            self.mesh.uvs.extend(uvs.into_iter().map(|uv| Vec2::from(uv.map(|x| x as f32))));
         } else if !self.mesh.uvs.is_empty() {
             self.mesh.uvs.resize(first + count, Vec2::ZERO);
         }
-        self.mesh
-            .positions
-            .extend(positions.iter().map(|p| placed.transform_point3(*p)));
+        self.mesh.positions.extend(positions.iter().map(|p| placed.transform_point3(*p)));
         match node.skin() {
-            Some(skin) => self.weigh(
-                primitive,
-                &self.skeleton.skins[skin.index()].joints,
-                count,
-                buffers,
-            )?,
+            Some(skin) => self.weigh(primitive, &self.skeleton.skins[skin.index()].joints, count, buffers)?,
             None => {
                 self.joints.resize(first + count, [own_joint, 0, 0, 0]);
                 self.weights.resize(first + count, [1.0, 0.0, 0.0, 0.0]);
             }
         }
         let indices: Vec<u32> = match primitive.indices() {
-            Some(accessor) => components::<1>(&accessor, buffers, "indices")?
-                .into_iter()
-                .map(|[i]| i as u32)
-                .collect(),
+            Some(accessor) => {
+                components::<1>(&accessor, buffers, "indices")?.into_iter().map(|[i]| i as u32).collect()
+            }
             None => (0..count as u32).collect(),
         };
         if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
-            return Err(Problem::whole(format!(
-                "a triangle names vertex {i} of a mesh of {count}"
-            )));
+            return Err(Problem::whole(format!("a triangle names vertex {i} of a mesh of {count}")));
         }
         let mirrored = placed.matrix3.determinant() < 0.0;
         self.mesh.triangles.extend(indices.chunks_exact(3).map(|t| {
@@ -215,20 +175,14 @@ impl Build<'_> {
         let mut sets = Vec::new();
         // Four sets are sixteen weights a vertex: more than any program writes.
         for set in 0..4 {
-            let pair = primitive
-                .get(&Semantic::Joints(set))
-                .zip(primitive.get(&Semantic::Weights(set)));
+            let pair = primitive.get(&Semantic::Joints(set)).zip(primitive.get(&Semantic::Weights(set)));
             let Some((joints, weights)) = pair else { break };
             sets.push((
                 components::<4>(&joints, buffers, "joints")?,
                 components::<4>(&weights, buffers, "weights")?,
             ));
         }
-        if sets.is_empty()
-            || sets
-                .iter()
-                .any(|(j, w)| j.len() != count || w.len() != count)
-        {
+        if sets.is_empty() || sets.iter().any(|(j, w)| j.len() != count || w.len() != count) {
             return Err(Problem::whole(
                 "a mesh that has a skin needs joints and weights for each of its vertices",
             ));
@@ -238,10 +192,7 @@ impl Build<'_> {
             for (joints, weights) in &sets {
                 for (j, w) in joints[v].iter().zip(weights[v]) {
                     let joint = skin_joints.get(*j as usize).ok_or_else(|| {
-                        Problem::whole(format!(
-                            "a vertex names joint {j} of a skin of {}",
-                            skin_joints.len()
-                        ))
+                        Problem::whole(format!("a vertex names joint {j} of a skin of {}", skin_joints.len()))
                     })?;
                     pairs.push((*joint, w as f32));
                 }
@@ -254,27 +205,16 @@ impl Build<'_> {
     }
 
     /// Closes the part that began at `first_triangle`.
-    fn part(
-        &mut self,
-        mesh: &gltf::Mesh<'_>,
-        primitive: &gltf::Primitive<'_>,
-        first_triangle: usize,
-    ) {
+    fn part(&mut self, mesh: &gltf::Mesh<'_>, primitive: &gltf::Primitive<'_>, first_triangle: usize) {
         let material = primitive.material();
         let pbr = material.pbr_metallic_roughness();
         let [r, g, b, _] = pbr.base_color_factor();
-        let mesh_name = mesh
-            .name()
-            .map_or_else(|| format!("mesh{}", mesh.index()), str::to_owned);
+        let mesh_name = mesh.name().map_or_else(|| format!("mesh{}", mesh.index()), str::to_owned);
         let name = match material.name() {
             Some(material) => format!("{mesh_name}.{material}"),
             None => mesh_name,
         };
-        let color = if material.index().is_some() {
-            Vec3::new(r, g, b)
-        } else {
-            DEFAULT_COLOR
-        };
+        let color = if material.index().is_some() { Vec3::new(r, g, b) } else { DEFAULT_COLOR };
         self.mesh.parts.push(Part {
             name,
             triangles: first_triangle as u32..self.mesh.triangles.len() as u32,
@@ -287,9 +227,6 @@ impl Build<'_> {
 /// The transform without what can not be undone: `None` if it is singular or not finite.
 fn invertible(m: Affine3A) -> Option<Affine3A> {
     let determinant = m.matrix3.determinant();
-    (m.is_finite()
-        && determinant.is_finite()
-        && determinant.abs() > 1e-20
-        && m.inverse().is_finite())
-    .then_some(m)
+    (m.is_finite() && determinant.is_finite() && determinant.abs() > 1e-20 && m.inverse().is_finite())
+        .then_some(m)
 }

@@ -51,14 +51,8 @@ impl Skeleton {
                 .map_err(|_| Problem::limit(Place::Whole, "more than 65,536 joints"))?;
             joint_of[n] = Some(index);
             let rest = local(&nodes[n])?;
-            let name = nodes[n]
-                .name()
-                .map_or_else(|| format!("node{n}"), str::to_owned);
-            joints.push(Joint {
-                name,
-                parent: parents[n].and_then(|p| joint_of[p]).map(u32::from),
-                rest,
-            });
+            let name = nodes[n].name().map_or_else(|| format!("node{n}"), str::to_owned);
+            joints.push(Joint { name, parent: parents[n].and_then(|p| joint_of[p]).map(u32::from), rest });
             defaults.push(rest);
         }
         let mut skeleton = Self {
@@ -95,13 +89,9 @@ impl Skeleton {
         let node_world = world(&self.joints, |j| self.defaults[j].to_affine());
         let mut bound: Vec<Option<Affine3A>> = vec![None; self.joints.len()];
         for skin in document.skins() {
-            let joints: Option<Vec<u16>> =
-                skin.joints().map(|n| self.joint_of[n.index()]).collect();
+            let joints: Option<Vec<u16>> = skin.joints().map(|n| self.joint_of[n.index()]).collect();
             let joints = joints.ok_or_else(|| {
-                Problem::whole(format!(
-                    "skin {} has a joint outside the scene",
-                    skin.index()
-                ))
+                Problem::whole(format!("skin {} has a joint outside the scene", skin.index()))
             })?;
             let binds = match skin.inverse_bind_matrices() {
                 Some(accessor) => components::<16>(&accessor, buffers, "inverse bind matrices")?
@@ -119,12 +109,8 @@ impl Skeleton {
             // The root: the joint that stands first, since parents come before children.
             let root = joints.iter().zip(&binds).min_by_key(|(j, _)| **j);
             let placed = root.map_or(Affine3A::IDENTITY, |(j, b)| node_world[*j as usize] * *b);
-            let singular = || {
-                Problem::whole(format!(
-                    "skin {} has a matrix that can not be inverted",
-                    skin.index()
-                ))
-            };
+            let singular =
+                || Problem::whole(format!("skin {} has a matrix that can not be inverted", skin.index()));
             let placed = invertible(placed).ok_or_else(singular)?;
             for (j, bind) in joints.iter().zip(&binds) {
                 let bind = invertible(*bind * placed.inverse()).ok_or_else(singular)?;
@@ -134,17 +120,11 @@ impl Skeleton {
         }
         let mut rest: Vec<Affine3A> = Vec::with_capacity(self.joints.len());
         for (j, joint) in self.joints.iter_mut().enumerate() {
-            let parent = joint
-                .parent
-                .map_or(Affine3A::IDENTITY, |p| rest[p as usize]);
+            let parent = joint.parent.map_or(Affine3A::IDENTITY, |p| rest[p as usize]);
             if let Some(bind) = bound[j] {
                 let (scale, rotation, translation) =
                     (parent.inverse() * bind.inverse()).to_scale_rotation_translation();
-                let trs = Trs {
-                    translation,
-                    rotation,
-                    scale,
-                };
+                let trs = Trs { translation, rotation, scale };
                 // A sheared or degenerate bind pose keeps the node's own transform; skinning stays exact either way.
                 if translation.is_finite() && rotation.is_finite() && scale.is_finite() {
                     joint.rest = trs;
@@ -155,10 +135,7 @@ impl Skeleton {
         self.inverse_bind = bound
             .iter()
             .zip(&rest)
-            .map(|(bind, rest)| {
-                bind.or(invertible(*rest).map(|r| r.inverse()))
-                    .unwrap_or(Affine3A::IDENTITY)
-            })
+            .map(|(bind, rest)| bind.or(invertible(*rest).map(|r| r.inverse())).unwrap_or(Affine3A::IDENTITY))
             .collect();
         self.world = rest;
         Ok(())
@@ -169,17 +146,13 @@ impl Skeleton {
 #[allow(clippy::type_complexity)]
 fn walk(document: &gltf::Document) -> Result<(Vec<usize>, Vec<Option<usize>>, Vec<bool>), Problem> {
     let count = document.nodes().len();
-    let children: Vec<Vec<usize>> = document
-        .nodes()
-        .map(|n| n.children().map(|c| c.index()).collect())
-        .collect();
+    let children: Vec<Vec<usize>> =
+        document.nodes().map(|n| n.children().map(|c| c.index()).collect()).collect();
     let mut parents: Vec<Option<usize>> = vec![None; count];
     for (n, list) in children.iter().enumerate() {
         list.iter().for_each(|c| parents[*c] = Some(n));
     }
-    let scene = document
-        .default_scene()
-        .or_else(|| document.scenes().next());
+    let scene = document.default_scene().or_else(|| document.scenes().next());
     let mut stack: Vec<usize> = match scene {
         Some(scene) => scene.nodes().map(|n| n.index()).collect(),
         None => (0..count).filter(|n| parents[*n].is_none()).collect(),
@@ -205,24 +178,12 @@ fn walk(document: &gltf::Document) -> Result<(Vec<usize>, Vec<Option<usize>>, Ve
 /// Which nodes must be joints: those that skins, animations and rigid meshes name, and all their ancestors.
 fn needed(document: &gltf::Document, parents: &[Option<usize>], reached: &[bool]) -> Vec<bool> {
     let mut needed = vec![false; parents.len()];
-    let skins = document
-        .skins()
-        .flat_map(|s| s.joints().map(|n| n.index()).collect::<Vec<_>>());
-    let animated = document.animations().flat_map(|a| {
-        a.channels()
-            .map(|c| c.target().node().index())
-            .collect::<Vec<_>>()
-    });
-    let rigid = document
-        .nodes()
-        .filter(|n| n.mesh().is_some() && n.skin().is_none())
-        .map(|n| n.index());
-    for first in skins
-        .chain(animated)
-        .chain(rigid)
-        .filter(|n| reached[*n])
-        .collect::<Vec<_>>()
-    {
+    let skins = document.skins().flat_map(|s| s.joints().map(|n| n.index()).collect::<Vec<_>>());
+    let animated = document
+        .animations()
+        .flat_map(|a| a.channels().map(|c| c.target().node().index()).collect::<Vec<_>>());
+    let rigid = document.nodes().filter(|n| n.mesh().is_some() && n.skin().is_none()).map(|n| n.index());
+    for first in skins.chain(animated).chain(rigid).filter(|n| reached[*n]).collect::<Vec<_>>() {
         let mut at = Some(first);
         while let Some(n) = at.filter(|n| !needed[*n]) {
             needed[n] = true;
@@ -235,37 +196,22 @@ fn needed(document: &gltf::Document, parents: &[Option<usize>], reached: &[bool]
 /// A node's local transform.
 fn local(node: &gltf::Node<'_>) -> Result<Trs, Problem> {
     let (t, r, s) = node.transform().decomposed();
-    let trs = Trs {
-        translation: Vec3::from(t),
-        rotation: Quat::from_array(r),
-        scale: Vec3::from(s),
-    };
+    let trs = Trs { translation: Vec3::from(t), rotation: Quat::from_array(r), scale: Vec3::from(s) };
     let length = trs.rotation.length();
-    if !(trs.translation.is_finite()
-        && trs.scale.is_finite()
-        && length.is_finite()
-        && length > 1e-6)
-    {
+    if !(trs.translation.is_finite() && trs.scale.is_finite() && length.is_finite() && length > 1e-6) {
         return Err(Problem::whole(format!(
             "the transform of node {} is not finite or turns by nothing",
             node.index()
         )));
     }
-    Ok(Trs {
-        rotation: trs.rotation.normalize(),
-        ..trs
-    })
+    Ok(Trs { rotation: trs.rotation.normalize(), ..trs })
 }
 
 /// Places of all joints from their local transforms.
 fn world(joints: &[Joint], local: impl Fn(usize) -> Affine3A) -> Vec<Affine3A> {
     let mut world: Vec<Affine3A> = Vec::with_capacity(joints.len());
     for (j, joint) in joints.iter().enumerate() {
-        world.push(
-            joint
-                .parent
-                .map_or(local(j), |p| world[p as usize] * local(j)),
-        );
+        world.push(joint.parent.map_or(local(j), |p| world[p as usize] * local(j)));
     }
     world
 }

@@ -45,55 +45,25 @@ fn first_failure(text: &str, from: usize, checks: &[Check]) -> Result<(), Proble
 pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     let section = |name: &str| text.find(name).map_or(1, |at| line_at(text, at));
     if scene.groom.is_empty() {
-        return Err(Problem::whole(
-            "the scene has no [[groom]]: name one with `file = …`",
-        ));
+        return Err(Problem::whole("the scene has no [[groom]]: name one with `file = …`"));
     }
-    first_failure(
-        text,
-        1,
-        &[(
-            finite(scene.gravity),
-            "gravity",
-            "three finite numbers [m/s²]",
-        )],
-    )?;
+    first_failure(text, 1, &[(finite(scene.gravity), "gravity", "three finite numbers [m/s²]")])?;
     for body in scene.body.iter().chain(&scene.collision) {
         body_ranges(text, body)?;
     }
     if let Some(clip) = &scene.clip {
         let checks = [
             (above_0(clip.scale), "scale", "above 0 [m a unit]"),
-            (
-                clip.pivot.is_none_or(finite),
-                "pivot",
-                "three finite numbers [m]",
-            ),
-            (
-                clip.facing.is_none_or(f32::is_finite),
-                "facing",
-                "a finite number [degrees]",
-            ),
-            (
-                clip.pivot.is_none() || clip.joint.is_some(),
-                "pivot",
-                "left out where there is no `joint`",
-            ),
+            (clip.pivot.is_none_or(finite), "pivot", "three finite numbers [m]"),
+            (clip.facing.is_none_or(f32::is_finite), "facing", "a finite number [degrees]"),
+            (clip.pivot.is_none() || clip.joint.is_some(), "pivot", "left out where there is no `joint`"),
             (
                 clip.rest_frame.is_none() || clip.joint.is_some(),
                 "rest_frame",
                 "left out where there is no `joint`",
             ),
-            (
-                clip.travel.is_none() || clip.joint.is_some(),
-                "travel",
-                "left out where there is no `joint`",
-            ),
-            (
-                clip.facing.is_none() || clip.joint.is_some(),
-                "facing",
-                "left out where there is no `joint`",
-            ),
+            (clip.travel.is_none() || clip.joint.is_some(), "travel", "left out where there is no `joint`"),
+            (clip.facing.is_none() || clip.joint.is_some(), "facing", "left out where there is no `joint`"),
             (
                 clip.joint.is_none() || clip.file.is_some(),
                 "joint",
@@ -108,23 +78,11 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         let checks = [
             (above_0(groom.scale), "scale", "above 0 [m a unit]"),
             (finite(t.position), "position", "three finite numbers [m]"),
-            (
-                finite(t.rotation),
-                "rotation",
-                "three finite numbers [degrees]",
-            ),
-            (
-                finite(t.scale) && t.scale.abs().min_element() > 0.0,
-                "scale",
-                "finite and not 0",
-            ),
+            (finite(t.rotation), "rotation", "three finite numbers [degrees]"),
+            (finite(t.scale) && t.scale.abs().min_element() > 0.0, "scale", "finite and not 0"),
             ((0.0..=1.0).contains(&effects.clump), "clump", "0 to 1"),
             (from_0(effects.curl_radius), "curl_radius", "0 or more [m]"),
-            (
-                above_0(Some(effects.curl_length)),
-                "curl_length",
-                "above 0 [m]",
-            ),
+            (above_0(Some(effects.curl_length)), "curl_length", "above 0 [m]"),
             (from_0(effects.noise), "noise", "0 or more [m]"),
         ];
         first_failure(text, line_at(text, groom.file.span().start), &checks)?;
@@ -142,41 +100,25 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     }
     let (wind, solver) = (&scene.wind, &scene.solver);
     let winds = [
-        (
-            finite(wind.velocity),
-            "velocity",
-            "three finite numbers [m/s]",
-        ),
+        (finite(wind.velocity), "velocity", "three finite numbers [m/s]"),
         ((0.0..=1.0).contains(&wind.gust), "gust", "0 to 1"),
         (from_0(wind.gust_rate), "gust_rate", "0 or more [Hz]"),
     ];
     first_failure(text, section("[wind]"), &winds)?;
     let solvers = [
         ((1..=64).contains(&solver.substeps), "substeps", "1 to 64"),
-        (
-            (0..=20).contains(&solver.projections),
-            "projections",
-            "0 to 20",
-        ),
+        ((0..=20).contains(&solver.projections), "projections", "0 to 20"),
     ];
     first_failure(text, section("[solver]"), &solvers)?;
     if let Some(camera) = &scene.camera {
         let cameras = [
-            (
-                finite(camera.position),
-                "position",
-                "three finite numbers [m]",
-            ),
+            (finite(camera.position), "position", "three finite numbers [m]"),
             (
                 finite(camera.target) && camera.target != camera.position,
                 "target",
                 "finite, and not where the camera stands",
             ),
-            (
-                (1.0..=170.0).contains(&camera.fov),
-                "fov",
-                "1 to 170 [degrees]",
-            ),
+            ((1.0..=170.0).contains(&camera.fov), "fov", "1 to 170 [degrees]"),
         ];
         first_failure(text, section("[camera]"), &cameras)?;
     }
@@ -186,16 +128,8 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
 fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
     let checks = [
         (above_0(body.scale), "scale", "above 0 [m a unit]"),
-        (
-            body.color.is_none_or(color),
-            "color",
-            "three numbers from 0 to 1",
-        ),
-        (
-            body.roughness.is_none_or(|r| (0.0..=1.0).contains(&r)),
-            "roughness",
-            "0 to 1",
-        ),
+        (body.color.is_none_or(color), "color", "three numbers from 0 to 1"),
+        (body.roughness.is_none_or(|r| (0.0..=1.0).contains(&r)), "roughness", "0 to 1"),
     ];
     first_failure(text, line_at(text, body.file.span().start), &checks)
 }

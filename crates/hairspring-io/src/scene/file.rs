@@ -163,11 +163,7 @@ pub(super) struct Placement {
 
 impl Default for Placement {
     fn default() -> Self {
-        Self {
-            position: Vec3::ZERO,
-            rotation: Vec3::ZERO,
-            scale: Vec3::ONE,
-        }
+        Self { position: Vec3::ZERO, rotation: Vec3::ZERO, scale: Vec3::ONE }
     }
 }
 
@@ -186,10 +182,7 @@ fn earth() -> Vec3 {
 /// A number of guides, `"all"` or `"file"`.
 fn guides<'de, D: Deserializer<'de>>(from: D) -> Result<Guides, D::Error> {
     #[derive(Deserialize)]
-    #[serde(
-        untagged,
-        expecting = "expected a number of guides above 0, \"all\" or \"file\""
-    )]
+    #[serde(untagged, expecting = "expected a number of guides above 0, \"all\" or \"file\"")]
     enum Named {
         Count(u32),
         Name(String),
@@ -198,9 +191,7 @@ fn guides<'de, D: Deserializer<'de>>(from: D) -> Result<Guides, D::Error> {
         Named::Count(n) if n > 0 => Ok(Guides::Count(n)),
         Named::Name(name) if name == "all" => Ok(Guides::All),
         Named::Name(name) if name == "file" => Ok(Guides::FromGroom),
-        _ => Err(de::Error::custom(
-            "expected a number of guides above 0, \"all\" or \"file\"",
-        )),
+        _ => Err(de::Error::custom("expected a number of guides above 0, \"all\" or \"file\"")),
     }
 }
 

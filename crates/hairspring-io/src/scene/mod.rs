@@ -7,8 +7,8 @@ mod motion;
 mod sentence;
 
 use crate::{
-    Error, Format, Loaded, Problem, ReadOptions, Result, load, read_bones, read_groom,
-    text::as_text, tfxbone::RootBones,
+    Error, Format, Loaded, Problem, ReadOptions, Result, load, read_bones, read_groom, text::as_text,
+    tfxbone::RootBones,
 };
 use file::{FileName, GroomFile, OneOrMore, SceneFile};
 use glam::{Affine3A, EulerRot, Quat};
@@ -29,21 +29,12 @@ use std::path::{Path, PathBuf};
 pub fn read_scene(path: &Path) -> Result<Loaded<Scene>> {
     if Format::of(path) != Some(Format::Scene) {
         let reason = "a scene is read from .toml, told by the extension".into();
-        return Err(Error::Unsupported {
-            path: path.to_owned(),
-            reason,
-        });
+        return Err(Error::Unsupported { path: path.to_owned(), reason });
     }
     let data = load::bytes_of(path)?;
     let text = as_text(&data);
     let file = parse(&text).map_err(|p| p.in_file(path))?;
-    Reader {
-        path,
-        text: &text,
-        notes: Vec::new(),
-        repairs: Repairs::default(),
-    }
-    .scene(file)
+    Reader { path, text: &text, notes: Vec::new(), repairs: Repairs::default() }.scene(file)
 }
 
 /// Reads the text of a scene file without the files that it names: whether all fields are known and in range.
@@ -74,51 +65,30 @@ fn materials(
         Some(OneOrMore::One(name)) => std::slice::from_ref(name),
         Some(OneOrMore::More(names)) => names,
     };
-    let known = || {
-        scene
-            .material
-            .keys()
-            .map(String::as_str)
-            .chain(material::PRESETS)
-    };
+    let known = || scene.material.keys().map(String::as_str).chain(material::PRESETS);
     names
         .iter()
-        .map(
-            |name| match (scene.material.get(name), material::preset(name)) {
-                (Some(table), _) => overlaid(text, table),
-                (None, Some(preset)) => Ok(preset),
-                (None, None) => {
-                    let line =
-                        line_of_key(text, line_at(text, groom.file.span().start), "material")
-                            .unwrap_or(1);
-                    Err(Problem::line(
-                        line,
-                        format!("the material {}", unknown(name, known())),
-                    ))
-                }
-            },
-        )
+        .map(|name| match (scene.material.get(name), material::preset(name)) {
+            (Some(table), _) => overlaid(text, table),
+            (None, Some(preset)) => Ok(preset),
+            (None, None) => {
+                let line = line_of_key(text, line_at(text, groom.file.span().start), "material").unwrap_or(1);
+                Err(Problem::line(line, format!("the material {}", unknown(name, known()))))
+            }
+        })
         .collect()
 }
 
 /// A `[material.NAME]`: its preset with the given fields over it.
-fn overlaid(
-    text: &str,
-    table: &toml::Spanned<toml::Table>,
-) -> std::result::Result<Material, Problem> {
+fn overlaid(text: &str, table: &toml::Spanned<toml::Table>) -> std::result::Result<Material, Problem> {
     let start = table.span().start;
     let mut fields = table.get_ref().clone();
     let base = match fields.remove("preset") {
         None => Material::default(),
         Some(value) => value.as_str().and_then(material::preset).ok_or_else(|| {
             let line = line_of_key(text, line_at(text, start), "preset").unwrap_or(1);
-            let name = value
-                .as_str()
-                .map_or_else(|| value.to_string(), str::to_owned);
-            Problem::line(
-                line,
-                format!("the preset {}", unknown(&name, material::PRESETS)),
-            )
+            let name = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+            Problem::line(line, format!("the preset {}", unknown(&name, material::PRESETS)))
         })?,
     };
     let in_table = |e: &toml::de::Error| problem_in_table(text, start, e);
@@ -139,16 +109,8 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn scene(mut self, file: SceneFile) -> Result<Loaded<Scene>> {
-        let character = file
-            .body
-            .as_ref()
-            .map(|b| self.body(b, "body"))
-            .transpose()?;
-        let collision = file
-            .collision
-            .as_ref()
-            .map(|b| self.body(b, "collision mesh"))
-            .transpose()?;
+        let character = file.body.as_ref().map(|b| self.body(b, "body")).transpose()?;
+        let collision = file.collision.as_ref().map(|b| self.body(b, "collision mesh")).transpose()?;
         let mut scene = Scene {
             name: file.name.clone().unwrap_or_else(|| stem(self.path)),
             colliders: file.collider.clone(),
@@ -160,15 +122,11 @@ impl Reader<'_> {
         };
         for groom in &file.groom {
             let materials = materials(self.text, &file, groom).map_err(|p| p.in_file(self.path))?;
-            scene
-                .grooms
-                .push(self.groom(groom, materials, character.as_ref().map(|c| &c.body))?);
+            scene.grooms.push(self.groom(groom, materials, character.as_ref().map(|c| &c.body))?);
         }
         let (body, clip) = self.motion(file.clip.as_ref(), character)?;
         scene.collision = match (collision, &body, &file.collision) {
-            (Some(collision), Some(body), Some(named)) => {
-                Some(self.carried(collision.body, body, named)?)
-            }
+            (Some(collision), Some(body), Some(named)) => Some(self.carried(collision.body, body, named)?),
             (collision, ..) => collision.map(|c| c.body),
         };
         (scene.body, scene.clip) = (body, clip);
@@ -184,10 +142,7 @@ impl Reader<'_> {
 
     /// The path of a file that the scene names.
     fn resolve(&self, name: &FileName) -> PathBuf {
-        self.path
-            .parent()
-            .unwrap_or(Path::new(""))
-            .join(name.get_ref())
+        self.path.parent().unwrap_or(Path::new("")).join(name.get_ref())
     }
 
     /// What a reader returned for the file `name`, with who asked for it if it is not there.
@@ -195,10 +150,7 @@ impl Reader<'_> {
         result.map_err(|error| match error {
             Error::NotFound { path, .. } => {
                 let line = line_at(self.text, name.span().start);
-                let why = format!(
-                    ": it is the {what} that {}, line {line}, names",
-                    self.path.display()
-                );
+                let why = format!(": it is the {what} that {}, line {line}, names", self.path.display());
                 Error::NotFound { path, why }
             }
             other => other,
@@ -207,8 +159,7 @@ impl Reader<'_> {
 
     fn note(&mut self, file: &Path, notes: Vec<String>) {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
-        self.notes
-            .extend(notes.into_iter().map(|n| format!("{name}: {n}")));
+        self.notes.extend(notes.into_iter().map(|n| format!("{name}: {n}")));
     }
 
     /// The error that the value of the key nearest after `near` is wrong.
@@ -224,10 +175,7 @@ impl Reader<'_> {
         body: Option<&Body>,
     ) -> Result<SceneGroom> {
         let path = self.resolve(&named.file);
-        let options = ReadOptions {
-            scale: named.scale,
-            up: named.up,
-        };
+        let options = ReadOptions { scale: named.scale, up: named.up };
         let loaded = self.named(read_groom(&path, &options), &named.file, "groom")?;
         self.note(&path, loaded.notes);
         let r = loaded.repairs;
@@ -244,10 +192,7 @@ impl Reader<'_> {
             t.position,
         );
         if place != Affine3A::IDENTITY {
-            groom
-                .points
-                .iter_mut()
-                .for_each(|p| *p = place.transform_point3(*p));
+            groom.points.iter_mut().for_each(|p| *p = place.transform_point3(*p));
         }
         if let Some(bones) = &named.bones {
             let read = self.named(read_bones(&self.resolve(bones)), bones, "bone file")?;
@@ -279,16 +224,10 @@ impl Reader<'_> {
                 "the file holds the bones of {n} roots, but the groom has {strands} strands"
             ));
         }
-        let joint: Vec<Option<u16>> = bones
-            .names
-            .iter()
-            .map(|n| body.joint(n).map(|j| j as u16))
-            .collect();
+        let joint: Vec<Option<u16>> = bones.names.iter().map(|n| body.joint(n).map(|j| j as u16)).collect();
         let of_root = |s: usize| {
             let pairs = bones.bones[s].iter().zip(bones.weights[s]);
-            pairs
-                .filter(|(_, w)| *w > 0.0)
-                .filter_map(|(b, _)| joint[*b as usize])
+            pairs.filter(|(_, w)| *w > 0.0).filter_map(|(b, _)| joint[*b as usize])
         };
         let follows = |t: usize, j: u16| {
             let corners = body.mesh.triangles[t].iter().map(|v| *v as usize);
@@ -308,10 +247,7 @@ impl Reader<'_> {
             };
             let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
             if !joints.iter().any(|j| j.name.eq_ignore_ascii_case(name)) {
-                let text = format!(
-                    "the joint {}",
-                    unknown(name, joints.iter().map(|j| j.name.as_str()))
-                );
+                let text = format!("the joint {}", unknown(name, joints.iter().map(|j| j.name.as_str())));
                 return Err(self.wrong(self.text.find("[[collider]]").unwrap_or(0), "joint", text));
             }
         }
@@ -321,8 +257,5 @@ impl Reader<'_> {
 
 /// A file's name without folder and extension.
 fn stem(path: &Path) -> String {
-    path.file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }

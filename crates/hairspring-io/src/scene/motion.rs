@@ -14,34 +14,20 @@ impl Reader<'_> {
         let Some(named) = named else {
             return Ok((character.map(|c| c.body), None));
         };
-        let near = named
-            .file
-            .as_ref()
-            .map_or_else(|| self.text.find("[clip]").unwrap_or(0), |f| f.span().start);
+        let near =
+            named.file.as_ref().map_or_else(|| self.text.find("[clip]").unwrap_or(0), |f| f.span().start);
         let Some(character) = character else {
-            return Err(self.wrong(
-                near,
-                "file",
-                "[clip] moves a body, but there is no [body]".into(),
-            ));
+            return Err(self.wrong(near, "file", "[clip] moves a body, but there is no [body]".into()));
         };
         let Some(file) = &named.file else {
             let clip = pick_clip(&character.clips, named.name.as_deref());
-            let clip = clip
-                .map_err(|text| self.wrong(near, "name", format!("in the body's file {text}")))?
-                .clone();
+            let clip =
+                clip.map_err(|text| self.wrong(near, "name", format!("in the body's file {text}")))?.clone();
             return Ok((Some(character.body), Some(self.cut(clip, named, near)?)));
         };
         let path = self.resolve(file);
-        let options = ReadOptions {
-            scale: named.scale,
-            up: named.up,
-        };
-        let loaded = self.named(
-            read_motion(&path, named.name.as_deref(), &options),
-            file,
-            "motion",
-        )?;
+        let options = ReadOptions { scale: named.scale, up: named.up };
+        let loaded = self.named(read_motion(&path, named.name.as_deref(), &options), file, "motion")?;
         self.note(&path, loaded.notes);
         let (joints, clip) = (loaded.value.joints, loaded.value.clip);
         let Some(joint) = &named.joint else {
@@ -50,16 +36,8 @@ impl Reader<'_> {
                 self.wrong(near, "file", text.into())
             })?;
             let (matched, all) = (carried.matched, character.body.joints.len());
-            self.note(
-                &path,
-                vec![format!(
-                    "moves {matched} of the body's {all} joints, by their names"
-                )],
-            );
-            return Ok((
-                Some(character.body),
-                Some(self.cut(carried.clip, named, near)?),
-            ));
+            self.note(&path, vec![format!("moves {matched} of the body's {all} joints, by their names")]);
+            return Ok((Some(character.body), Some(self.cut(carried.clip, named, near)?)));
         };
         let Some(pivot) = named.pivot else {
             let text = "`joint` needs `pivot`: the point of the body that it turns about [m], such as the top of the neck";
@@ -77,16 +55,10 @@ impl Reader<'_> {
             return Err(self.wrong(near, "rest_frame", text));
         }
         let driven = head_motion(&joints, &clip, joint, &options).ok_or_else(|| {
-            let text = format!(
-                "the joint {}",
-                unknown(joint, joints.iter().map(|j| j.name.as_str()))
-            );
+            let text = format!("the joint {}", unknown(joint, joints.iter().map(|j| j.name.as_str())));
             self.wrong(near, "joint", text)
         })?;
-        Ok((
-            Some(rigid(character.body)),
-            Some(self.cut(driven, named, near)?),
-        ))
+        Ok((Some(rigid(character.body)), Some(self.cut(driven, named, near)?)))
     }
 
     /// The clip from its first used frame on.

@@ -12,9 +12,6 @@ pub fn data(relative: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    println!(
-        "skipped: {relative} is not under {} (set HAIRSPRING_DATA)",
-        root.display()
-    );
+    println!("skipped: {relative} is not under {} (set HAIRSPRING_DATA)", root.display());
     None
 }

@@ -11,17 +11,10 @@ pub type Sample = (&'static str, Vec<u8>, fn(&[u8]) -> Result<(), Problem>);
 
 /// Three strands of `points` points, with colours and texture coordinates.
 pub fn groom(points: usize) -> Groom {
-    let strands = (0..3).map(|s| {
-        (0..points)
-            .map(|i| Vec3::new(s as f32, 0.1 * i as f32, 0.5))
-            .collect::<Vec<_>>()
-    });
+    let strands =
+        (0..3).map(|s| (0..points).map(|i| Vec3::new(s as f32, 0.1 * i as f32, 0.5)).collect::<Vec<_>>());
     let mut groom = Groom::from_strands(strands, 4e-5);
-    groom
-        .radii
-        .iter_mut()
-        .enumerate()
-        .for_each(|(i, r)| *r += 1e-6 * (i / points) as f32);
+    groom.radii.iter_mut().enumerate().for_each(|(i, r)| *r += 1e-6 * (i / points) as f32);
     groom.colors = groom.points.iter().map(|p| p.fract()).collect();
     groom.root_uvs = vec![Vec2::new(0.25, 0.5); 3];
     groom
@@ -40,43 +33,25 @@ pub fn all() -> Vec<Sample> {
     let mut uneven = groom(4);
     uneven.offsets = vec![0, 3, 8, 12];
     vec![
-        ("hair", written(&uneven, "hair"), |b| {
-            hair::parse(b).map(drop)
-        }),
-        ("hair-even", written(&groom(4), "hair"), |b| {
-            hair::parse(b).map(drop)
-        }),
-        ("tfx-4", written(&groom(4), "tfx"), |b| {
-            tfx::parse(b).map(drop)
-        }),
+        ("hair", written(&uneven, "hair"), |b| hair::parse(b).map(drop)),
+        ("hair-even", written(&groom(4), "hair"), |b| hair::parse(b).map(drop)),
+        ("tfx-4", written(&groom(4), "tfx"), |b| tfx::parse(b).map(drop)),
         ("tfx-3", tfx_3(), |b| tfx::parse(b).map(drop)),
-        ("data", written(&uneven, "data"), |b| {
-            usc::parse(b).map(drop)
-        }),
+        ("data", written(&uneven, "data"), |b| usc::parse(b).map(drop)),
         ("tfxbone", bones(), |b| tfxbone::parse(b).map(drop)),
-        ("tfxmesh", skinned_mesh().into_bytes(), |b| {
-            tfxmesh::parse(b).map(drop)
-        }),
+        ("tfxmesh", skinned_mesh().into_bytes(), |b| tfxmesh::parse(b).map(drop)),
         ("obj", mesh().into_bytes(), |b| obj::parse(b).map(drop)),
         ("bvh", motion().into_bytes(), |b| bvh::parse(b).map(drop)),
         ("glb", glb(), |b| gltf::parse(b, &|_| None).map(drop)),
-        ("rig", RIG.into(), |b| {
-            makehuman::parse(obj::parse(mesh().as_bytes())?, b, WEIGHTS).map(drop)
+        ("rig", RIG.into(), |b| makehuman::parse(obj::parse(mesh().as_bytes())?, b, WEIGHTS).map(drop)),
+        ("weights", WEIGHTS.into(), |b| makehuman::parse(obj::parse(mesh().as_bytes())?, RIG, b).map(drop)),
+        ("toml", include_bytes!("../../../../docs/scene.md").to_vec(), |b| {
+            let page = String::from_utf8_lossy(b);
+            let text = page
+                .split_once("```toml\n")
+                .map_or(&*page, |(_, rest)| rest.trim_end().trim_end_matches("```"));
+            scene::check_text(text)
         }),
-        ("weights", WEIGHTS.into(), |b| {
-            makehuman::parse(obj::parse(mesh().as_bytes())?, RIG, b).map(drop)
-        }),
-        (
-            "toml",
-            include_bytes!("../../../../docs/scene.md").to_vec(),
-            |b| {
-                let page = String::from_utf8_lossy(b);
-                let text = page
-                    .split_once("```toml\n")
-                    .map_or(&*page, |(_, rest)| rest.trim_end().trim_end_matches("```"));
-                scene::check_text(text)
-            },
-        ),
     ]
 }
 
@@ -132,40 +107,27 @@ fn motion() -> String {
 }
 
 /// A rig of two bones over [`mesh`].
-pub const RIG: &[u8] =
-    br#"{"hip": {"head": {"strategy": "CUBE", "cube_name": "joint-a"}, "parent": ""},
+pub const RIG: &[u8] = br#"{"hip": {"head": {"strategy": "CUBE", "cube_name": "joint-a"}, "parent": ""},
   "arm": {"head": {"strategy": "MEAN", "vertex_indices": [0, 1]}, "parent": "hip"}}"#;
 
 /// Weights for [`RIG`].
-pub const WEIGHTS: &[u8] =
-    br#"{"weights": {"hip": [[0, 1.0], [1, 0.5]], "arm": [[1, 0.5], [2, 1.0]]}}"#;
+pub const WEIGHTS: &[u8] = br#"{"weights": {"hip": [[0, 1.0], [1, 0.5]], "arm": [[1, 0.5], [2, 1.0]]}}"#;
 
 /// A GLB of one skinned triangle and one that a node carries, with an animation of every interpolation.
 pub fn glb() -> Vec<u8> {
     let mut bin: Vec<u8> = Vec::new();
     let mut views = Vec::new();
     let mut add = |bytes: Vec<u8>| {
-        views.push(format!(
-            r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#,
-            bin.len(),
-            bytes.len()
-        ));
+        views.push(format!(r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#, bin.len(), bytes.len()));
         bin.extend(bytes);
         bin.resize(bin.len().next_multiple_of(4), 0);
     };
-    let floats = |values: &[f32]| {
-        values
-            .iter()
-            .flat_map(|v| v.to_le_bytes())
-            .collect::<Vec<u8>>()
-    };
+    let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
     add(floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0])); // 0: positions
     add(vec![0, 0, 1, 0, 2, 0]); // 1: indices, u16
     add(vec![0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]); // 2: joints, u8
     add(vec![255, 0, 0, 0, 128, 127, 0, 0, 255, 0, 0, 0]); // 3: weights, normalised u8
-    let identity = [
-        1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
-    ];
+    let identity = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     let mut down = identity;
     down[13] = -1.0;
     add(floats(&[identity, down].concat())); // 4: inverse bind matrices
@@ -174,9 +136,7 @@ pub fn glb() -> Vec<u8> {
     add(floats(&[0.0; 18])); // 7: cubic translations
     add(floats(&[1.0; 6])); // 8: scales
     let accessor = |view: usize, kind: u32, count: usize, shape: &str, more: &str| {
-        format!(
-            r#"{{"bufferView":{view},"componentType":{kind},"count":{count},"type":"{shape}"{more}}}"#
-        )
+        format!(r#"{{"bufferView":{view},"componentType":{kind},"count":{count},"type":"{shape}"{more}}}"#)
     };
     let accessors = [
         accessor(0, 5126, 3, "VEC3", r#","min":[0,0,-1],"max":[1,0,0]"#),

@@ -38,14 +38,10 @@ struct Node {
 impl<'a> NearestTree<'a> {
     /// Builds the tree; splits at the median centroid along the longest axis.
     pub fn new(mesh: &'a Mesh) -> Self {
-        let centroids: Vec<Vec3> = (0..mesh.triangles.len())
-            .map(|t| mesh.corners(t).into_iter().sum::<Vec3>() / 3.0)
-            .collect();
-        let mut tree = Self {
-            mesh,
-            nodes: Vec::new(),
-            triangles: (0..mesh.triangles.len() as u32).collect(),
-        };
+        let centroids: Vec<Vec3> =
+            (0..mesh.triangles.len()).map(|t| mesh.corners(t).into_iter().sum::<Vec3>() / 3.0).collect();
+        let mut tree =
+            Self { mesh, nodes: Vec::new(), triangles: (0..mesh.triangles.len() as u32).collect() };
         if !tree.triangles.is_empty() {
             tree.split(0, tree.triangles.len(), &centroids);
         }
@@ -55,26 +51,17 @@ impl<'a> NearestTree<'a> {
     fn split(&mut self, first: usize, count: usize, centroids: &[Vec3]) {
         let run = &mut self.triangles[first..first + count];
         let corners = run.iter().flat_map(|t| self.mesh.corners(*t as usize));
-        let (lo, hi) = corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| {
-            (lo.min(p), hi.max(p))
-        });
+        let (lo, hi) =
+            corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
         let index = self.nodes.len();
-        self.nodes.push(Node {
-            lo,
-            hi,
-            first: first as u32,
-            count: count as u32,
-            second: 0,
-        });
+        self.nodes.push(Node { lo, hi, first: first as u32, count: count as u32, second: 0 });
         if count <= LEAF {
             return;
         }
         let axis = (hi - lo).max_position();
         let middle = count / 2;
         run.select_nth_unstable_by(middle, |a, b| {
-            centroids[*a as usize][axis]
-                .total_cmp(&centroids[*b as usize][axis])
-                .then(a.cmp(b))
+            centroids[*a as usize][axis].total_cmp(&centroids[*b as usize][axis]).then(a.cmp(b))
         });
         self.split(first, middle, centroids);
         self.nodes[index].second = self.nodes.len() as u32;
@@ -102,21 +89,17 @@ impl<'a> NearestTree<'a> {
                     let corners = self.mesh.corners(t as usize);
                     let barycentric = nearest_on_triangle(p, corners);
                     let distance_squared = at(barycentric, corners).distance_squared(p);
-                    let better = best
-                        .is_none_or(|b| (distance_squared, t) < (b.distance_squared, b.triangle));
+                    let better =
+                        best.is_none_or(|b| (distance_squared, t) < (b.distance_squared, b.triangle));
                     if better && distance_squared.is_finite() {
-                        best = Some(NearestPlace {
-                            triangle: t,
-                            barycentric,
-                            distance_squared,
-                        });
+                        best = Some(NearestPlace { triangle: t, barycentric, distance_squared });
                     }
                 }
             } else {
                 // The nearer child is looked into first.
                 let (a, b) = (n + 1, node.second as usize);
-                let near_first = box_distance_squared(&self.nodes[a], p)
-                    <= box_distance_squared(&self.nodes[b], p);
+                let near_first =
+                    box_distance_squared(&self.nodes[a], p) <= box_distance_squared(&self.nodes[b], p);
                 stack.extend(if near_first { [b, a] } else { [a, b] });
             }
         }
@@ -167,11 +150,7 @@ fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
         return Vec3::new(0.0, 1.0 - w, w);
     }
     let sum = va + vb + vc;
-    if sum > 0.0 {
-        Vec3::new(va, vb, vc) / sum
-    } else {
-        Vec3::X
-    }
+    if sum > 0.0 { Vec3::new(va, vb, vc) / sum } else { Vec3::X }
 }
 
 #[cfg(test)]

@@ -39,23 +39,13 @@ pub struct Body {
 impl Body {
     /// A body that does not deform, with one joint at the origin to move it by.
     pub fn rigid(mesh: Mesh) -> Self {
-        let joints = vec![Joint {
-            name: "root".into(),
-            parent: None,
-            rest: Trs::default(),
-        }];
-        Self {
-            mesh,
-            joints,
-            skin: None,
-        }
+        let joints = vec![Joint { name: "root".into(), parent: None, rest: Trs::default() }];
+        Self { mesh, joints, skin: None }
     }
 
     /// Index of the joint of this name, upper and lower case alike.
     pub fn joint(&self, name: &str) -> Option<usize> {
-        self.joints
-            .iter()
-            .position(|j| j.name.eq_ignore_ascii_case(name))
+        self.joints.iter().position(|j| j.name.eq_ignore_ascii_case(name))
     }
 
     /// Keeps only the triangles of the parts that `keep` names true, and the vertices that they use.
@@ -65,19 +55,12 @@ impl Body {
         let old = std::mem::take(&mut mesh.triangles);
         for part in parts.into_iter().filter(|p| keep(&p.name)) {
             let first = mesh.triangles.len() as u32;
-            mesh.triangles.extend_from_slice(
-                &old[part.triangles.start as usize..part.triangles.end as usize],
-            );
-            mesh.parts.push(Part {
-                triangles: first..mesh.triangles.len() as u32,
-                ..part
-            });
+            mesh.triangles
+                .extend_from_slice(&old[part.triangles.start as usize..part.triangles.end as usize]);
+            mesh.parts.push(Part { triangles: first..mesh.triangles.len() as u32, ..part });
         }
         let mut used = vec![false; mesh.positions.len()];
-        mesh.triangles
-            .iter()
-            .flatten()
-            .for_each(|i| used[*i as usize] = true);
+        mesh.triangles.iter().flatten().for_each(|i| used[*i as usize] = true);
         let mut next = 0;
         let moved: Vec<u32> = used
             .iter()
@@ -86,10 +69,7 @@ impl Body {
                 next.wrapping_sub(1)
             })
             .collect();
-        mesh.triangles
-            .iter_mut()
-            .flatten()
-            .for_each(|i| *i = moved[*i as usize]);
+        mesh.triangles.iter_mut().flatten().for_each(|i| *i = moved[*i as usize]);
         retain_used(&mut mesh.positions, &used);
         retain_used(&mut mesh.normals, &used);
         retain_used(&mut mesh.uvs, &used);
@@ -122,26 +102,11 @@ impl Body {
         let Some(skin) = &self.skin else {
             let m = world.first().copied().unwrap_or(Affine3A::IDENTITY);
             positions.extend(self.mesh.positions.iter().map(|p| m.transform_point3(*p)));
-            normals.extend(
-                self.mesh
-                    .normals
-                    .iter()
-                    .map(|n| m.transform_vector3(*n).normalize_or(Vec3::Y)),
-            );
+            normals.extend(self.mesh.normals.iter().map(|n| m.transform_vector3(*n).normalize_or(Vec3::Y)));
             return;
         };
-        let matrices: Vec<Affine3A> = world
-            .iter()
-            .zip(&skin.inverse_bind)
-            .map(|(w, b)| *w * *b)
-            .collect();
-        for ((p, joints), weights) in self
-            .mesh
-            .positions
-            .iter()
-            .zip(&skin.joints)
-            .zip(&skin.weights)
-        {
+        let matrices: Vec<Affine3A> = world.iter().zip(&skin.inverse_bind).map(|(w, b)| *w * *b).collect();
+        for ((p, joints), weights) in self.mesh.positions.iter().zip(&skin.joints).zip(&skin.weights) {
             let mut at = Vec3A::ZERO;
             for (j, w) in joints.iter().zip(weights) {
                 if *w > 0.0 {
@@ -166,12 +131,8 @@ mod tests {
 
     #[test]
     fn keeping_a_part_keeps_its_triangles_and_vertices_only() {
-        let part = |name: &str, triangles| Part {
-            name: name.into(),
-            triangles,
-            color: Vec3::ONE,
-            roughness: 1.0,
-        };
+        let part =
+            |name: &str, triangles| Part { name: name.into(), triangles, color: Vec3::ONE, roughness: 1.0 };
         let mut body = Body::rigid(Mesh {
             positions: (0..6).map(|i| Vec3::splat(i as f32)).collect(),
             normals: vec![Vec3::Y; 6],
@@ -181,16 +142,7 @@ mod tests {
         });
         body.keep_parts(|name| name == "body");
         assert_eq!(body.mesh.triangles, [[0, 1, 2], [2, 0, 1]]);
-        assert_eq!(
-            body.mesh.positions,
-            [Vec3::splat(3.0), Vec3::splat(4.0), Vec3::splat(5.0)]
-        );
-        assert_eq!(
-            (
-                body.mesh.normals.len(),
-                body.mesh.parts[0].triangles.clone()
-            ),
-            (3, 0..2)
-        );
+        assert_eq!(body.mesh.positions, [Vec3::splat(3.0), Vec3::splat(4.0), Vec3::splat(5.0)]);
+        assert_eq!((body.mesh.normals.len(), body.mesh.parts[0].triangles.clone()), (3, 0..2));
     }
 }

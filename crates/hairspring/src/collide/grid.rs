@@ -36,26 +36,17 @@ impl Grid {
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
         let x = [0, 2, 4, 6].map(|k| mix(c00[k], c00[k + 1], fx));
         let y = [mix(x[0], x[1], fy), mix(x[2], x[3], fy)];
-        let gx = mix(
-            mix(c00[1] - c00[0], c00[3] - c00[2], fy),
-            mix(c00[5] - c00[4], c00[7] - c00[6], fy),
-            fz,
-        );
+        let gx =
+            mix(mix(c00[1] - c00[0], c00[3] - c00[2], fy), mix(c00[5] - c00[4], c00[7] - c00[6], fy), fz);
         let gradient = Vec3::new(gx, mix(x[1] - x[0], x[3] - x[2], fz), y[1] - y[0]);
-        (
-            mix(y[0], y[1], fz) + (g - c).length() * self.cell,
-            gradient.normalize_or(Vec3::Y),
-        )
+        (mix(y[0], y[1], fz) + (g - c).length() * self.cell, gradient.normalize_or(Vec3::Y))
     }
 
     /// How far the surface nearest to `p` [m] moved in the last interval [m]; 0 for a rigid one.
     pub fn displacement(&self, p: Vec3) -> Vec3 {
         let top = (self.size - UVec3::ONE).as_vec3();
         let c = ((p - self.origin) / self.cell).max(Vec3::ZERO).min(top);
-        self.displacements
-            .get(self.index(c.round().as_uvec3()))
-            .copied()
-            .unwrap_or_default()
+        self.displacements.get(self.index(c.round().as_uvec3())).copied().unwrap_or_default()
     }
 
     fn index(&self, at: UVec3) -> usize {
@@ -68,16 +59,7 @@ impl Grid {
         let i = self.index(c.as_uvec3());
         let (dy, dz) = (self.size.x as usize, (self.size.x * self.size.y) as usize);
         let d = &self.distances[i..i + dz + dy + 2];
-        [
-            d[0],
-            d[1],
-            d[dy],
-            d[dy + 1],
-            d[dz],
-            d[dz + 1],
-            d[dz + dy],
-            d[dz + dy + 1],
-        ]
+        [d[0], d[1], d[dy], d[dy + 1], d[dz], d[dz + 1], d[dz + dy], d[dz + dy + 1]]
     }
 
     /// [`Grid::distance_and_normal`] of eight points.
@@ -109,19 +91,10 @@ impl Grid {
             load(simd, &k7),
         ];
         let (fx, fy, fz) = (c.x - c.x.floor(), c.y - c.y.floor(), c.z - c.z.floor());
-        let x = [
-            mix(k[0], k[1], fx),
-            mix(k[2], k[3], fx),
-            mix(k[4], k[5], fx),
-            mix(k[6], k[7], fx),
-        ];
+        let x = [mix(k[0], k[1], fx), mix(k[2], k[3], fx), mix(k[4], k[5], fx), mix(k[6], k[7], fx)];
         let y = [mix(x[0], x[1], fy), mix(x[2], x[3], fy)];
         let gradient = V3 {
-            x: mix(
-                mix(k[1] - k[0], k[3] - k[2], fy),
-                mix(k[5] - k[4], k[7] - k[6], fy),
-                fz,
-            ),
+            x: mix(mix(k[1] - k[0], k[3] - k[2], fy), mix(k[5] - k[4], k[7] - k[6], fy), fz),
             y: mix(x[1] - x[0], x[3] - x[2], fz),
             z: y[1] - y[0],
         };

@@ -20,10 +20,7 @@ pub struct Rigid {
 
 impl Default for Rigid {
     fn default() -> Self {
-        Self {
-            rotation: Quat::IDENTITY,
-            translation: Vec3::ZERO,
-        }
+        Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO }
     }
 }
 
@@ -31,10 +28,7 @@ impl Rigid {
     /// The rotation and translation of a joint's matrix; its scale is dropped.
     pub fn from_affine(m: &Affine3A) -> Self {
         let (_, rotation, translation) = m.to_scale_rotation_translation();
-        Self {
-            rotation: rotation.normalize(),
-            translation,
-        }
+        Self { rotation: rotation.normalize(), translation }
     }
 
     /// Between `self` (`t` = 0) and `other` (`t` = 1), on the shorter arc; exactly either one at its end.
@@ -104,8 +98,7 @@ impl ObstaclePose {
     /// The distance from `p` [m] (world) to the surface at the end of the substep, negative inside; one point, for
     /// checks and for follow hairs.
     pub fn distance(&self, p: Vec3) -> f32 {
-        self.shape
-            .distance(self.end.0.transpose() * (p - self.end.1))
+        self.shape.distance(self.end.0.transpose() * (p - self.end.1))
     }
 }
 
@@ -132,9 +125,7 @@ impl Obstacle {
     #[inline(always)]
     fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         match self {
-            Obstacle::Sphere { center, radius } => {
-                ball_lanes(p - V3::splat(simd, *center), *radius)
-            }
+            Obstacle::Sphere { center, radius } => ball_lanes(p - V3::splat(simd, *center), *radius),
             Obstacle::Capsule { a, b, radius } => {
                 let axis = *b - *a;
                 let from = p - V3::splat(simd, *a);
@@ -150,11 +141,7 @@ impl Obstacle {
 /// World distance to the surface, and normal, of eight points at the end of a substep.
 #[inline(always)]
 pub(crate) fn contact<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>, V3<S>) {
-    let local = transform(
-        simd,
-        &pose.end.0.transpose(),
-        p - V3::splat(simd, pose.end.1),
-    );
+    let local = transform(simd, &pose.end.0.transpose(), p - V3::splat(simd, pose.end.1));
     let (distance, normal) = pose.shape.distance_lanes(simd, local);
     (distance, transform(simd, &pose.end.0, normal))
 }
@@ -162,28 +149,19 @@ pub(crate) fn contact<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>,
 /// How far the surface at `p` (world, end of the substep) moved in the substep [m].
 #[inline(always)]
 pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> V3<S> {
-    let local = transform(
-        simd,
-        &pose.end.0.transpose(),
-        p - V3::splat(simd, pose.end.1),
-    );
+    let local = transform(simd, &pose.end.0.transpose(), p - V3::splat(simd, pose.end.1));
     let before = transform(simd, &pose.start.0, local) + V3::splat(simd, pose.start.1);
     let rigid = p - before;
     match &pose.shape {
         Obstacle::Field(grid) if grid.deforms() => {
             let mut own = [super::super::strand::lanes::Row::default(); 3];
             for lane in 0..crate::strand::lanes::LANES {
-                let d = grid.displacement(Vec3::new(local.x[lane], local.y[lane], local.z[lane]))
-                    * pose.share;
+                let d =
+                    grid.displacement(Vec3::new(local.x[lane], local.y[lane], local.z[lane])) * pose.share;
                 let d = pose.end.0 * d;
                 (own[0].0[lane], own[1].0[lane], own[2].0[lane]) = (d.x, d.y, d.z);
             }
-            rigid
-                + V3 {
-                    x: load(simd, &own[0]),
-                    y: load(simd, &own[1]),
-                    z: load(simd, &own[2]),
-                }
+            rigid + V3 { x: load(simd, &own[0]), y: load(simd, &own[1]), z: load(simd, &own[2]) }
         }
         _ => rigid,
     }

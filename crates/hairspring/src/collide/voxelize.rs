@@ -45,20 +45,10 @@ impl Voxelizer {
         triangles: &[[u32; 3]],
         cell: f32,
     ) {
-        let used = || {
-            triangles
-                .iter()
-                .flatten()
-                .map(|i| positions[*i as usize])
-                .filter(|p| p.is_finite())
-        };
+        let used = || triangles.iter().flatten().map(|i| positions[*i as usize]).filter(|p| p.is_finite());
         let lo = used().fold(Vec3::splat(f32::MAX), Vec3::min);
         let hi = used().fold(Vec3::splat(f32::MIN), Vec3::max);
-        let (lo, hi) = if lo.cmple(hi).all() {
-            (lo, hi)
-        } else {
-            (Vec3::ZERO, Vec3::ZERO)
-        };
+        let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (Vec3::ZERO, Vec3::ZERO) };
         let mut cell = cell.max(1e-6);
         loop {
             let nodes = (hi - lo) / cell + Vec3::splat(2.0 * BAND + 2.0);
@@ -71,17 +61,12 @@ impl Voxelizer {
         grid.origin = lo - margin;
         grid.cell = cell;
         grid.size = ((hi - lo + 2.0 * margin) / cell).ceil().as_uvec3() + UVec3::ONE;
-        let (nx, ny, nz) = (
-            grid.size.x as usize,
-            grid.size.y as usize,
-            grid.size.z as usize,
-        );
+        let (nx, ny, nz) = (grid.size.x as usize, grid.size.y as usize, grid.size.z as usize);
         let count = nx * ny * nz;
         grid.distances.clear();
         grid.distances.resize(count, BAND * cell);
         grid.displacements.clear();
-        grid.displacements
-            .resize(if before.is_some() { count } else { 0 }, Vec3::ZERO);
+        grid.displacements.resize(if before.is_some() { count } else { 0 }, Vec3::ZERO);
         self.crossings.clear();
         self.crossings.resize(count, 0);
 
@@ -89,8 +74,7 @@ impl Voxelizer {
         self.layers.resize_with(nz.max(self.layers.len()), Vec::new);
         self.layers.iter_mut().for_each(Vec::clear);
         let origin = grid.origin;
-        let corners =
-            |t: u32| triangles[t as usize].map(|i| (positions[i as usize] - origin) / cell);
+        let corners = |t: u32| triangles[t as usize].map(|i| (positions[i as usize] - origin) / cell);
         for t in 0..triangles.len() as u32 {
             let c = corners(t);
             if !c.iter().all(|p| p.is_finite()) {
@@ -98,9 +82,7 @@ impl Voxelizer {
             }
             let z0 = (c[0].z.min(c[1].z).min(c[2].z) - BAND).max(0.0) as usize;
             let z1 = (c[0].z.max(c[1].z).max(c[2].z) + BAND).max(0.0) as usize;
-            self.layers[z0..=z1.min(nz - 1)]
-                .iter_mut()
-                .for_each(|l| l.push(t));
+            self.layers[z0..=z1.min(nz - 1)].iter_mut().for_each(|l| l.push(t));
         }
 
         // Distances and crossings, a layer at a time.
@@ -116,10 +98,7 @@ impl Voxelizer {
         let displaced: Vec<&mut [Vec3]> = if before.is_some() {
             grid.displacements.chunks_mut(nx * ny).collect()
         } else {
-            no_displacements
-                .iter_mut()
-                .map(|e| e.as_mut_slice())
-                .collect()
+            no_displacements.iter_mut().map(|e| e.as_mut_slice()).collect()
         };
         let layers = &self.layers;
         grid.distances
@@ -139,9 +118,8 @@ impl Voxelizer {
                         for x in range(lo.x, hi.x, nx) {
                             let p = Vec3::new(x as f32, y as f32, z as f32);
                             let weights = nearest_on_triangle(p, &c);
-                            let d = (c[0] * weights.x + c[1] * weights.y + c[2] * weights.z)
-                                .distance(p)
-                                * cell;
+                            let d =
+                                (c[0] * weights.x + c[1] * weights.y + c[2] * weights.z).distance(p) * cell;
                             let at = y * nx + x;
                             if d < distances[at] {
                                 distances[at] = d;
@@ -172,23 +150,16 @@ impl Voxelizer {
 
 /// Extends distances through the inside beyond the band: one round of fast sweeping for |∇d| = 1 (Zhao 2005).
 fn sweep_inside(grid: &mut Grid) {
-    let (nx, ny, nz) = (
-        grid.size.x as usize,
-        grid.size.y as usize,
-        grid.size.z as usize,
-    );
+    let (nx, ny, nz) = (grid.size.x as usize, grid.size.y as usize, grid.size.z as usize);
     let known = -(BAND - 0.01) * grid.cell;
     let far = -1e3_f32;
-    let inside: Vec<usize> = (0..grid.distances.len())
-        .filter(|i| grid.distances[*i] <= known)
-        .collect();
+    let inside: Vec<usize> = (0..grid.distances.len()).filter(|i| grid.distances[*i] <= known).collect();
     inside.iter().for_each(|i| grid.distances[*i] = far);
     let (sy, sz) = (nx, nx * ny);
     let mut update = |i: usize| {
         let d = &grid.distances;
         // The nearer of both neighbours on each axis, as positive depths.
-        let mut a =
-            [(i - 1, i + 1), (i - sy, i + sy), (i - sz, i + sz)].map(|(p, n)| -d[p].max(d[n]));
+        let mut a = [(i - 1, i + 1), (i - sy, i + sy), (i - sz, i + sz)].map(|(p, n)| -d[p].max(d[n]));
         a.sort_by(f32::total_cmp);
         let h = grid.cell;
         let mut u = a[0] + h;
@@ -227,11 +198,7 @@ fn count_crossings(c: &[Vec3; 3], z: usize, (nx, ny): (usize, usize), crossings:
     }
     for y in y0..=(y1 as usize) {
         let q = DVec2::new(y as f64, z as f64);
-        let w = [
-            side(p[1], p[2], q),
-            side(p[2], p[0], q),
-            side(p[0], p[1], q),
-        ];
+        let w = [side(p[1], p[2], q), side(p[2], p[0], q), side(p[0], p[1], q)];
         let all = |s: bool| w.iter().all(|(positive, _)| *positive == s);
         if !all(true) && !all(false) {
             continue;
@@ -303,18 +270,10 @@ mod tests {
     /// An octahedron's surface, subdivided onto the sphere of `radius` around `center`.
     fn ball(center: Vec3, radius: f32, levels: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let v = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
-        let mut faces: Vec<[Vec3; 3]> = [
-            [0, 1, 2],
-            [1, 3, 2],
-            [3, 4, 2],
-            [4, 0, 2],
-            [1, 0, 5],
-            [3, 1, 5],
-            [4, 3, 5],
-            [0, 4, 5],
-        ]
-        .map(|f: [usize; 3]| f.map(|i| v[i]))
-        .to_vec();
+        let mut faces: Vec<[Vec3; 3]> =
+            [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
+                .map(|f: [usize; 3]| f.map(|i| v[i]))
+                .to_vec();
         for _ in 0..levels {
             faces = faces
                 .iter()
@@ -325,17 +284,8 @@ mod tests {
                 })
                 .collect();
         }
-        let positions = faces
-            .iter()
-            .flatten()
-            .map(|p| *p * radius + center)
-            .collect();
-        (
-            positions,
-            (0..faces.len() as u32)
-                .map(|f| [3 * f, 3 * f + 1, 3 * f + 2])
-                .collect(),
-        )
+        let positions = faces.iter().flatten().map(|p| *p * radius + center).collect();
+        (positions, (0..faces.len() as u32).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect())
     }
 
     #[test]
@@ -344,26 +294,18 @@ mod tests {
         let (positions, triangles) = ball(center, radius, 4);
         let grid = voxelize(&positions, &triangles, 0.005);
         for i in 0..2000u32 {
-            let hash = |k: u32| {
-                ((i * 4 + k).wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32 - 0.5
-            };
+            let hash = |k: u32| ((i * 4 + k).wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32 - 0.5;
             let p = center + Vec3::new(hash(0), hash(1), hash(2)) * 0.24;
             let (d, n) = grid.distance_and_normal(p);
             let exact = p.distance(center) - radius;
             let tolerance = if exact > -0.012 { 0.0005 } else { 0.004 };
             if exact < 0.01 {
-                assert!(
-                    (d - exact).abs() < tolerance,
-                    "at {p}: {d} instead of {exact}"
-                );
+                assert!((d - exact).abs() < tolerance, "at {p}: {d} instead of {exact}");
             } else {
                 assert!(d > 0.009, "at {p}: {d} instead of {exact}");
             }
             if exact.abs() < 0.009 {
-                assert!(
-                    n.dot((p - center).normalize()) > 0.995,
-                    "normal at {p}: {n}"
-                );
+                assert!(n.dot((p - center).normalize()) > 0.995, "normal at {p}: {n}");
             }
         }
     }

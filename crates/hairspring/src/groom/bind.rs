@@ -21,11 +21,7 @@ impl RootBinding {
     /// The binding of root `p` [m] to the place `barycentric` of the triangle of `corners`, which `triangle` numbers.
     pub fn new(triangle: u32, barycentric: Vec3, corners: [Vec3; 3], p: Vec3) -> Self {
         let offset = triangle_frame(corners).inverse() * (p - place_on(barycentric, corners));
-        Self {
-            triangle,
-            barycentric,
-            offset,
-        }
+        Self { triangle, barycentric, offset }
     }
 
     /// Where the root is when its triangle has these corners [m].
@@ -42,14 +38,8 @@ impl RootBinding {
 
 /// Orientation of a triangle: x along the first edge, y along the normal; any such frame where it is degenerate.
 fn triangle_frame([a, b, c]: [Vec3; 3]) -> Quat {
-    let x = (b - a)
-        .try_normalize()
-        .or((c - a).try_normalize())
-        .unwrap_or(Vec3::X);
-    let y = (b - a)
-        .cross(c - a)
-        .try_normalize()
-        .unwrap_or_else(|| x.any_orthonormal_vector());
+    let x = (b - a).try_normalize().or((c - a).try_normalize()).unwrap_or(Vec3::X);
+    let y = (b - a).cross(c - a).try_normalize().unwrap_or_else(|| x.any_orthonormal_vector());
     Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize()
 }
 
@@ -60,11 +50,7 @@ pub fn bind_roots(groom: &mut Groom, mesh: &Mesh) {
 }
 
 /// As [`bind_roots`], but strand `s` binds only to triangles `t` with `allowed(s, t)`, as far as there are any.
-pub fn bind_roots_where(
-    groom: &mut Groom,
-    mesh: &Mesh,
-    allowed: impl Fn(usize, usize) -> bool + Sync,
-) {
+pub fn bind_roots_where(groom: &mut Groom, mesh: &Mesh, allowed: impl Fn(usize, usize) -> bool + Sync) {
     if !groom.roots.is_empty() {
         return;
     }
@@ -73,16 +59,9 @@ pub fn bind_roots_where(
         .into_par_iter()
         .map(|s| {
             let root = groom.strand(s).first().copied().unwrap_or(Vec3::ZERO);
-            let place = tree
-                .nearest(root, |t| allowed(s, t))
-                .or_else(|| tree.nearest(root, |_| true))?;
+            let place = tree.nearest(root, |t| allowed(s, t)).or_else(|| tree.nearest(root, |_| true))?;
             let corners = mesh.corners(place.triangle as usize);
-            Some(RootBinding::new(
-                place.triangle,
-                place.barycentric,
-                corners,
-                root,
-            ))
+            Some(RootBinding::new(place.triangle, place.barycentric, corners, root))
         })
         .collect();
     groom.roots = roots.unwrap_or_default();
@@ -102,12 +81,7 @@ mod tests {
     }
 
     fn groom_at(roots: &[Vec3]) -> Groom {
-        Groom::from_strands(
-            roots
-                .iter()
-                .map(|r| [*r, *r + Vec3::Y * 0.1, *r + Vec3::Y * 0.2]),
-            4e-5,
-        )
+        Groom::from_strands(roots.iter().map(|r| [*r, *r + Vec3::Y * 0.1, *r + Vec3::Y * 0.2]), 4e-5)
     }
 
     #[test]
@@ -117,11 +91,7 @@ mod tests {
         bind_roots(&mut groom, &mesh);
         let root = groom.roots[0];
         assert_eq!(root.triangle, 0);
-        assert!(
-            root.offset.distance(Vec3::Y * 0.02) < 1e-6,
-            "{}",
-            root.offset
-        );
+        assert!(root.offset.distance(Vec3::Y * 0.02) < 1e-6, "{}", root.offset);
     }
 
     #[test]

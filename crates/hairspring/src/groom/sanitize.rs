@@ -82,23 +82,13 @@ fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
         if places.is_empty() {
             // A strand without points has no place either: a stub at the origin.
             groom.points.extend([Vec3::ZERO; 3]);
-            groom
-                .radii
-                .extend([DEFAULT_RADIUS; 3].iter().filter(|_| has_radii));
-            groom
-                .colors
-                .extend([Vec3::ZERO; 3].iter().filter(|_| has_colors));
+            groom.radii.extend([DEFAULT_RADIUS; 3].iter().filter(|_| has_radii));
+            groom.colors.extend([Vec3::ZERO; 3].iter().filter(|_| has_colors));
         }
         for (a, b, t) in places {
-            groom.points.push(if a == b {
-                old.points[a]
-            } else {
-                old.points[a].lerp(old.points[b], t)
-            });
+            groom.points.push(if a == b { old.points[a] } else { old.points[a].lerp(old.points[b], t) });
             if has_radii {
-                groom
-                    .radii
-                    .push(old.radii[a] + (old.radii[b] - old.radii[a]) * t);
+                groom.radii.push(old.radii[a] + (old.radii[b] - old.radii[a]) * t);
             }
             if has_colors {
                 groom.colors.push(old.colors[a].lerp(old.colors[b], t));
@@ -153,20 +143,14 @@ fn spread_zero_segments(points: &mut [Vec3]) -> usize {
     let segments = points.len() - 1;
     let length: f32 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
     // Below the spacing of f32 at these coordinates a length is noise.
-    let reach = points
-        .iter()
-        .map(|p| p.abs().max_element())
-        .fold(0.0, f32::max);
+    let reach = points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
     let noise = noise_of(points.len(), reach);
     if length < SHORTEST_STRAND.max(noise) {
         stub(points, noise);
         return segments;
     }
     let shortest = SHORTEST_SEGMENT * length / segments as f32;
-    let short = points
-        .windows(2)
-        .filter(|w| w[0].distance(w[1]) < shortest)
-        .count();
+    let short = points.windows(2).filter(|w| w[0].distance(w[1]) < shortest).count();
     if short == 0 {
         return 0;
     }
@@ -243,33 +227,20 @@ fn within_reach(p: Vec3) -> Vec3 {
 fn along(points: &[Vec3], at: &[f32], d: f32) -> Vec3 {
     let j = at.partition_point(|a| *a < d).clamp(1, points.len() - 1);
     let span = at[j] - at[j - 1];
-    let t = if span > 0.0 {
-        ((d - at[j - 1]) / span).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let t = if span > 0.0 { ((d - at[j - 1]) / span).clamp(0.0, 1.0) } else { 0.0 };
     points[j - 1].lerp(points[j], t)
 }
 
 /// Replaces radii that are not positive and finite by the mean of the strand's good ones, or the default. Returns how many.
 fn mend_radii(radii: &mut [f32]) -> usize {
     let good = |r: f32| r.is_finite() && r > 0.0;
-    let (count, sum) = radii
-        .iter()
-        .filter(|r| good(**r))
-        .fold((0, 0.0f64), |(n, sum), r| (n + 1, sum + *r as f64));
+    let (count, sum) =
+        radii.iter().filter(|r| good(**r)).fold((0, 0.0f64), |(n, sum), r| (n + 1, sum + *r as f64));
     if count == radii.len() {
         return 0;
     }
-    let mean = if count > 0 {
-        (sum / count as f64) as f32
-    } else {
-        DEFAULT_RADIUS
-    };
-    radii
-        .iter_mut()
-        .filter(|r| !good(**r))
-        .for_each(|r| *r = mean);
+    let mean = if count > 0 { (sum / count as f64) as f32 } else { DEFAULT_RADIUS };
+    radii.iter_mut().filter(|r| !good(**r)).for_each(|r| *r = mean);
     radii.len() - count
 }
 
@@ -288,44 +259,25 @@ mod tests {
 
     #[test]
     fn a_lost_point_goes_between_its_neighbours() {
-        let mut groom = Groom::from_strands(
-            [[Vec3::ZERO, Vec3::NAN, Vec3::Y * 0.2, Vec3::INFINITY]],
-            4e-5,
-        );
+        let mut groom = Groom::from_strands([[Vec3::ZERO, Vec3::NAN, Vec3::Y * 0.2, Vec3::INFINITY]], 4e-5);
         assert_eq!(sanitize(&mut groom).non_finite_points, 2);
-        assert_eq!(
-            groom.points,
-            [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2, Vec3::Y * 0.3]
-        );
+        assert_eq!(groom.points, [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2, Vec3::Y * 0.3]);
     }
 
     #[test]
     fn doubled_points_are_spread_and_root_and_tip_stay() {
-        let strand = [
-            Vec3::ZERO,
-            Vec3::ZERO,
-            Vec3::Y * 0.1,
-            Vec3::Y * 0.1 + Vec3::X * 1e-7,
-            Vec3::new(0.1, 0.1, 0.0),
-        ];
+        let strand =
+            [Vec3::ZERO, Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.1 + Vec3::X * 1e-7, Vec3::new(0.1, 0.1, 0.0)];
         let mut groom = Groom::from_strands([strand], 4e-5);
         assert_eq!(sanitize(&mut groom).zero_segments, 2);
         assert_eq!((groom.points[0], groom.points[4]), (strand[0], strand[4]));
-        assert!(
-            groom.points.windows(2).all(|w| w[0].distance(w[1]) > 4e-4),
-            "{:?}",
-            groom.points
-        );
+        assert!(groom.points.windows(2).all(|w| w[0].distance(w[1]) > 4e-4), "{:?}", groom.points);
     }
 
     #[test]
     fn short_strands_get_points_and_their_neighbours_keep_theirs() {
-        let strands: [&[Vec3]; 4] = [
-            &[Vec3::X],
-            &[],
-            &[Vec3::ZERO, Vec3::Y],
-            &[Vec3::ZERO, Vec3::Y, Vec3::Y * 2.0],
-        ];
+        let strands: [&[Vec3]; 4] =
+            [&[Vec3::X], &[], &[Vec3::ZERO, Vec3::Y], &[Vec3::ZERO, Vec3::Y, Vec3::Y * 2.0]];
         let mut groom = Groom::from_strands(strands, 4e-5);
         groom.colors = groom.points.clone();
         let repairs = sanitize(&mut groom);

@@ -44,9 +44,7 @@ pub fn groom(strands: u32, points: u32) -> Groom {
             // In f64: the angle of the last strands is large.
             let angle = (s as f64 * golden as f64) % std::f64::consts::TAU;
             let out = Vec3::new(r * angle.cos() as f32, y, r * angle.sin() as f32);
-            (0..points)
-                .map(|i| out * (RADIUS + LENGTH * i as f32 / (points - 1) as f32))
-                .collect::<Vec<_>>()
+            (0..points).map(|i| out * (RADIUS + LENGTH * i as f32 / (points - 1) as f32)).collect::<Vec<_>>()
         }),
         crate::groom::DEFAULT_RADIUS,
     )
@@ -56,24 +54,13 @@ impl Bench {
     /// The scene at rest, hair standing out; `points` 3 or more a strand.
     pub fn new(strands: u32, points: u32, solver: Solver) -> Self {
         let groom = Arc::new(groom(strands, points));
-        let shape = Obstacle::Sphere {
-            center: Vec3::ZERO,
-            radius: RADIUS,
-        };
+        let shape = Obstacle::Sphere { center: Vec3::ZERO, radius: RADIUS };
         let rest = (Mat3::IDENTITY, Vec3::ZERO);
-        let pose = ObstaclePose {
-            shape: shape.clone(),
-            start: rest,
-            end: rest,
-            share: 1.0,
-        };
+        let pose = ObstaclePose { shape: shape.clone(), start: rest, end: rest, share: 1.0 };
         let roots: Vec<Vec3> = (0..strands as usize).map(|s| groom.strand(s)[0]).collect();
         let all: Vec<u32> = (0..strands).collect();
         // Hair falls from standing out: a start in balance would be one that no fibre holds.
-        let solver = Solver {
-            sag_free: false,
-            ..solver
-        };
+        let solver = Solver { sag_free: false, ..solver };
         let simulation = Simulation::new(
             groom,
             &all,
@@ -85,19 +72,9 @@ impl Bench {
         );
         Self {
             simulation,
-            poses: roots
-                .iter()
-                .map(|p| Rigid {
-                    translation: *p,
-                    ..Rigid::default()
-                })
-                .collect(),
+            poses: roots.iter().map(|p| Rigid { translation: *p, ..Rigid::default() }).collect(),
             roots,
-            obstacle: MovingObstacle {
-                shape,
-                start: Rigid::default(),
-                end: Rigid::default(),
-            },
+            obstacle: MovingObstacle { shape, start: Rigid::default(), end: Rigid::default() },
             frame: 0,
         }
     }
@@ -107,20 +84,13 @@ impl Bench {
         self.frame += 1;
         let at = |frame: u32| {
             let phase = std::f32::consts::TAU * RATE * frame as f32 * FRAME;
-            Rigid {
-                translation: Vec3::X * (AMPLITUDE * phase.sin()),
-                ..Rigid::default()
-            }
+            Rigid { translation: Vec3::X * (AMPLITUDE * phase.sin()), ..Rigid::default() }
         };
         let (start, end) = (at(self.frame - 1), at(self.frame));
         for (pose, root) in self.poses.iter_mut().zip(&self.roots) {
             pose.translation = end.point(*root);
         }
-        self.obstacle = MovingObstacle {
-            start,
-            end,
-            ..self.obstacle.clone()
-        };
+        self.obstacle = MovingObstacle { start, end, ..self.obstacle.clone() };
         self.simulation.step(&Drive {
             dt: FRAME,
             anchor: end,
@@ -132,7 +102,6 @@ impl Bench {
 
     /// Figures at the end of the last frame.
     pub fn measure(&self) -> Measure {
-        self.simulation
-            .measure(std::slice::from_ref(&self.obstacle))
+        self.simulation.measure(std::slice::from_ref(&self.obstacle))
     }
 }

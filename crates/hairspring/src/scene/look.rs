@@ -15,9 +15,6 @@ pub struct HairLook {
 
 impl Default for HairLook {
     fn default() -> Self {
-        Self {
-            root_color: Vec3::new(0.045, 0.022, 0.011),
-            tip_color: Vec3::new(0.10, 0.05, 0.024),
-        }
+        Self { root_color: Vec3::new(0.045, 0.022, 0.011), tip_color: Vec3::new(0.10, 0.05, 0.024) }
     }
 }

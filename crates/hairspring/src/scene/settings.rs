@@ -31,12 +31,7 @@ pub struct Effects {
 
 impl Default for Effects {
     fn default() -> Self {
-        Self {
-            clump: 0.0,
-            curl_radius: 0.0,
-            curl_length: 0.03,
-            noise: 0.0,
-        }
+        Self { clump: 0.0, curl_radius: 0.0, curl_length: 0.03, noise: 0.0 }
     }
 }
 
@@ -68,12 +63,7 @@ pub struct Solver {
 
 impl Default for Solver {
     fn default() -> Self {
-        Self {
-            substeps: 4,
-            sag_free: true,
-            collide_body: true,
-            projections: 3,
-        }
+        Self { substeps: 4, sag_free: true, collide_body: true, projections: 3 }
     }
 }
 

@@ -58,11 +58,7 @@ impl Simulation {
             .chunks(LANES)
             .map(|lane| {
                 let count = |s: &u32| {
-                    if *s == u32::MAX {
-                        0
-                    } else {
-                        groom.range(*s as usize).len()
-                    }
+                    if *s == u32::MAX { 0 } else { groom.range(*s as usize).len() }
                 };
                 let points = lane.iter().map(count).max().unwrap_or(0).max(3) as u32;
                 let place = TilePlace { first, points };
@@ -78,11 +74,7 @@ impl Simulation {
             groom,
             lanes,
             tiles,
-            settings: Settings {
-                solver,
-                gravity,
-                anchor,
-            },
+            settings: Settings { solver, gravity, anchor },
             level: Level::new(),
             places,
             stiffened: 0,
@@ -93,28 +85,17 @@ impl Simulation {
 
     fn fill(&mut self, materials: &[Material], obstacles: &[ObstaclePose]) {
         let fallback = Material::default();
-        let material = |group: u16| {
-            materials
-                .get(group as usize)
-                .or(materials.last())
-                .unwrap_or(&fallback)
-        };
-        let gravity = if self.settings.solver.sag_free {
-            self.settings.gravity.as_dvec3()
-        } else {
-            DVec3::ZERO
-        };
+        let material = |group: u16| materials.get(group as usize).or(materials.last()).unwrap_or(&fallback);
+        let gravity =
+            if self.settings.solver.sag_free { self.settings.gravity.as_dvec3() } else { DVec3::ZERO };
         let groom = &*self.groom;
         let anchor = self.settings.anchor;
 
         let mut rest_of = self.rest.as_mut_slice();
         let mut state_of = self.state.as_mut_slice();
         let mut work = Vec::with_capacity(self.tiles.len());
-        for ((tile, lanes), strand) in self
-            .tiles
-            .iter()
-            .zip(self.lanes.chunks(LANES))
-            .zip(self.strand.chunks_mut(strand::ROWS))
+        for ((tile, lanes), strand) in
+            self.tiles.iter().zip(self.lanes.chunks(LANES)).zip(self.strand.chunks_mut(strand::ROWS))
         {
             let (rest, more_rest) = rest_of.split_at_mut(tile.points as usize * rest::ROWS);
             let (state, more_state) = state_of.split_at_mut(tile.points as usize * state::ROWS);
@@ -127,13 +108,8 @@ impl Simulation {
             .map(|(lanes, count, strand, rest, state)| {
                 let mut stiffened = 0;
                 for (lane, s) in lanes.iter().enumerate() {
-                    let mut into = Lane {
-                        lane,
-                        count,
-                        strand: &mut *strand,
-                        rest: &mut *rest,
-                        state: &mut *state,
-                    };
+                    let mut into =
+                        Lane { lane, count, strand: &mut *strand, rest: &mut *rest, state: &mut *state };
                     if *s == u32::MAX {
                         into.write_idle();
                         continue;
@@ -229,36 +205,19 @@ impl Lane<'_> {
                 );
             }
             let at = points[i.min(last)];
-            let depth = obstacles
-                .iter()
-                .map(|o| o.distance(at))
-                .fold(0.0_f32, f32::min);
+            let depth = obstacles.iter().map(|o| o.distance(at)).fold(0.0_f32, f32::min);
             rows[rest::CLEARANCE].0[lane] = depth;
-            Self::write_vector(
-                &mut self.state[i * state::ROWS + state::X..],
-                lane,
-                at - points[0],
-            );
+            Self::write_vector(&mut self.state[i * state::ROWS + state::X..], lane, at - points[0]);
         }
         let root = anchor.inverse_point(points[0]);
         let turn = anchor.rotation.inverse();
-        for (at, rotation) in [
-            (strand::ROOT_START, strand::TURN_START),
-            (strand::ROOT_END, strand::TURN_END),
-        ] {
+        for (at, rotation) in [(strand::ROOT_START, strand::TURN_START), (strand::ROOT_END, strand::TURN_END)]
+        {
             Self::write_vector(&mut self.strand[at..], lane, root);
             Self::write_vector(&mut self.strand[rotation..], lane, turn.xyz());
             self.strand[rotation + 3].0[lane] = turn.w;
         }
-        Self::write_vector(
-            &mut self.strand[strand::FIRST..],
-            lane,
-            points[1] - points[0],
-        );
-        Self::write_vector(
-            &mut self.strand[strand::NORMAL..],
-            lane,
-            shape.points[0].normal.as_vec3(),
-        );
+        Self::write_vector(&mut self.strand[strand::FIRST..], lane, points[1] - points[0]);
+        Self::write_vector(&mut self.strand[strand::NORMAL..], lane, shape.points[0].normal.as_vec3());
     }
 }

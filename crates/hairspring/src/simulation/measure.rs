@@ -25,11 +25,8 @@ impl Simulation {
     /// Measures the state against the colliders at the end of their frame.
     pub fn measure(&self, obstacles: &[MovingObstacle]) -> Measure {
         let poses: Vec<_> = obstacles.iter().map(|o| (o, o.end)).collect();
-        let (sum, segments, figures) = self
-            .places
-            .par_iter()
-            .map(|&place| self.measure_strand(place as usize, &poses))
-            .reduce(
+        let (sum, segments, figures) =
+            self.places.par_iter().map(|&place| self.measure_strand(place as usize, &poses)).reduce(
                 || (0.0, 0, Measure::default()),
                 |(s1, n1, a), (s2, n2, b)| {
                     let merged = Measure {
@@ -43,10 +40,7 @@ impl Simulation {
                     (s1 + s2, n1 + n2, merged)
                 },
             );
-        Measure {
-            stretch_mean: sum / segments.max(1) as f64,
-            ..figures
-        }
+        Measure { stretch_mean: sum / segments.max(1) as f64, ..figures }
     }
 
     fn measure_strand(
@@ -59,16 +53,8 @@ impl Simulation {
         let root = self.root_position(place);
         let n = self.groom.range(self.lanes[place] as usize).len();
         for i in 0..n {
-            let (x, v) = (
-                self.vector(place, i, state::X),
-                self.vector(place, i, state::V),
-            );
-            out.non_finite += x
-                .to_array()
-                .iter()
-                .chain(&v.to_array())
-                .filter(|c| !c.is_finite())
-                .count();
+            let (x, v) = (self.vector(place, i, state::X), self.vector(place, i, state::V));
+            out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
             out.speed_max = out.speed_max.max(v.length() as f64);
             if i + 1 < n {
                 let next = self.vector(place, i + 1, state::X);

@@ -60,9 +60,7 @@ impl Simulation {
 
     /// Number of simulated points, padding left out.
     pub fn point_count(&self) -> usize {
-        self.strands()
-            .map(|s| self.groom.range(s as usize).len())
-            .sum()
+        self.strands().map(|s| self.groom.range(s as usize).len()).sum()
     }
 
     /// Joints whose bending stiffness the sag-free start had to raise to hold the groom's shape.
@@ -124,26 +122,19 @@ impl Simulation {
             pieces.push((place as usize, piece));
             rest = more;
         }
-        pieces
-            .into_par_iter()
-            .with_min_len(256)
-            .for_each(|(place, piece)| {
-                let root = self.root_position(place);
-                for (i, p) in piece.iter_mut().enumerate() {
-                    *p = root + self.vector(place, i, state::X);
-                }
-            });
+        pieces.into_par_iter().with_min_len(256).for_each(|(place, piece)| {
+            let root = self.root_position(place);
+            for (i, p) in piece.iter_mut().enumerate() {
+                *p = root + self.vector(place, i, state::X);
+            }
+        });
     }
 
     /// A vector of state of point `i` of the strand in lane `place`.
     fn vector(&self, place: usize, i: usize, component: usize) -> Vec3 {
         let (tile, lane) = (place / LANES, place % LANES);
         let at = (self.tiles[tile].first as usize + i) * state::ROWS + component;
-        Vec3::new(
-            self.state[at].0[lane],
-            self.state[at + 1].0[lane],
-            self.state[at + 2].0[lane],
-        )
+        Vec3::new(self.state[at].0[lane], self.state[at + 1].0[lane], self.state[at + 2].0[lane])
     }
 
     /// A number of the rest shape.
@@ -156,11 +147,8 @@ impl Simulation {
     fn root_position(&self, place: usize) -> Vec3 {
         let (tile, lane) = (place / LANES, place % LANES);
         let at = tile * strand::ROWS + strand::ROOT_END;
-        let local = Vec3::new(
-            self.strand[at].0[lane],
-            self.strand[at + 1].0[lane],
-            self.strand[at + 2].0[lane],
-        );
+        let local =
+            Vec3::new(self.strand[at].0[lane], self.strand[at + 1].0[lane], self.strand[at + 2].0[lane]);
         let (m, t) = self.settings.anchor.matrix();
         // The same arithmetic as the kernel's, so that a body at rest has the same bits.
         m.x_axis * local.x + m.y_axis * local.y + m.z_axis * local.z + t

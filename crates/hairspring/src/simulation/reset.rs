@@ -10,10 +10,7 @@ use glam::{Quat, Vec3};
 /// Whether every number of these rows is finite.
 pub(super) fn all_finite(rows: &[Row]) -> bool {
     // x·0 is 0 for finite x and NaN otherwise; the sum has no branch.
-    rows.iter()
-        .map(|row| row.0.iter().map(|x| x * 0.0).sum::<f32>())
-        .sum::<f32>()
-        == 0.0
+    rows.iter().map(|row| row.0.iter().map(|x| x * 0.0).sum::<f32>()).sum::<f32>() == 0.0
 }
 
 impl Simulation {
@@ -25,9 +22,7 @@ impl Simulation {
             let first = self.tiles[tile].first as usize * state::ROWS;
             let rows = first..first + self.tiles[tile].points as usize * state::ROWS;
             if self.lanes[place] != u32::MAX
-                && self.state[rows.clone()]
-                    .iter()
-                    .any(|r| !r.0[lane].is_finite())
+                && self.state[rows.clone()].iter().any(|r| !r.0[lane].is_finite())
             {
                 self.reset_strand(place);
                 count += 1;
@@ -43,16 +38,11 @@ impl Simulation {
         let at = tile * strand::ROWS + strand::TURN_END;
         let local = Quat::from_array([0, 1, 2, 3].map(|k| self.strand[at + k].0[lane]));
         let turn = self.settings.anchor.rotation * local;
-        let turn = if turn.is_finite() {
-            turn.normalize()
-        } else {
-            Quat::IDENTITY
-        };
+        let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
         let points = self.groom.strand(self.lanes[place] as usize);
         for i in 0..self.tiles[tile].points as usize {
             let p: Vec3 = turn * (points[i.min(points.len() - 1)] - points[0]);
-            let rows = &mut self.state[(self.tiles[tile].first as usize + i) * state::ROWS..]
-                [..state::ROWS];
+            let rows = &mut self.state[(self.tiles[tile].first as usize + i) * state::ROWS..][..state::ROWS];
             rows.iter_mut().for_each(|r| r.0[lane] = 0.0);
             for (row, x) in rows[state::X..].iter_mut().zip(p.to_array()) {
                 row.0[lane] = x;

@@ -90,11 +90,7 @@ impl Simulation {
     /// # Panics
     /// If `drive.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
     pub fn step(&mut self, drive: &Drive) -> StepReport {
-        assert_eq!(
-            drive.roots.len(),
-            self.places.len(),
-            "one root pose for each simulated strand"
-        );
+        assert_eq!(drive.roots.len(), self.places.len(), "one root pose for each simulated strand");
         assert!(drive.dt > 0.0, "a step takes time");
         let solver = self.settings.solver;
         let h = FRAME / solver.substeps.max(1) as f32;
@@ -112,10 +108,7 @@ impl Simulation {
         );
         self.settings.anchor = drive.anchor;
         let reset_strands = if reset { self.reset_non_finite() } else { 0 };
-        StepReport {
-            substeps,
-            reset_strands,
-        }
+        StepReport { substeps, reset_strands }
     }
 
     fn interval(&self, drive: &Drive, count: u32) -> Interval {
@@ -184,36 +177,14 @@ fn run(
     first: u32,
 ) -> bool {
     if tiles.len() > TILES_PER_TASK {
-        let half = (tiles.len() / 2)
-            .next_multiple_of(TILES_PER_TASK)
-            .min(tiles.len() - 1);
+        let half = (tiles.len() / 2).next_multiple_of(TILES_PER_TASK).min(tiles.len() - 1);
         let points = (tiles[half].first - first) as usize;
         let (strand_a, strand_b) = strand.split_at_mut(half * strand::ROWS);
         let (state_a, state_b) = state.split_at_mut(points * state::ROWS);
         let (rest_a, rest_b) = rest.split_at(points * rest::ROWS);
         let (a, b) = rayon::join(
-            || {
-                run(
-                    level,
-                    interval,
-                    &tiles[..half],
-                    strand_a,
-                    rest_a,
-                    state_a,
-                    first,
-                )
-            },
-            || {
-                run(
-                    level,
-                    interval,
-                    &tiles[half..],
-                    strand_b,
-                    rest_b,
-                    state_b,
-                    tiles[half].first,
-                )
-            },
+            || run(level, interval, &tiles[..half], strand_a, rest_a, state_a, first),
+            || run(level, interval, &tiles[half..], strand_b, rest_b, state_b, tiles[half].first),
         );
         return a | b;
     }

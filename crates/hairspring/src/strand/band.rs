@@ -33,12 +33,7 @@ impl<S: Simd> Band<S> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let zero = Sym3::scaled_identity(super::lanes::F::<S>::splat(simd, 0.0));
-        Self {
-            diag: [zero; 3],
-            upper: [M3::zero(simd); 2],
-            far: M3::zero(simd),
-            rhs: [V3::zero(simd); 3],
-        }
+        Self { diag: [zero; 3], upper: [M3::zero(simd); 2], far: M3::zero(simd), rhs: [V3::zero(simd); 3] }
     }
 
     /// Eliminates point i and writes its factors.

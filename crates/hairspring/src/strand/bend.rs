@@ -51,9 +51,7 @@ pub fn bend<S: Simd>(
     let bab = implicit * alpha * beta;
     let baa = implicit * alpha * alpha;
     // Pᵀ = a1 I − d ûᵀ
-    let mut q = M3 {
-        rows: [u0 * -(d.x * bab), u0 * -(d.y * bab), u0 * -(d.z * bab)],
-    };
+    let mut q = M3 { rows: [u0 * -(d.x * bab), u0 * -(d.y * bab), u0 * -(d.z * bab)] };
     let diagonal = bab * a1;
     q.rows[0].x += diagonal;
     q.rows[1].y += diagonal;
@@ -69,12 +67,7 @@ pub fn bend<S: Simd>(
         zz: baa * (d.z * w.z + d.z * w.z),
     }
     .add_identity(baa * a1 * a1);
-    Bend {
-        g,
-        q,
-        b: implicit * beta * beta,
-        force: [f0, -(f0 + f2), f2],
-    }
+    Bend { g, q, b: implicit * beta * beta, force: [f0, -(f0 + f2), f2] }
 }
 
 /// The frame's normal carried from segment `u0` to segment `u1` by the least rotation (parallel transport;

@@ -45,11 +45,7 @@ pub struct V3<S: Simd> {
 impl<S: Simd> V3<S> {
     #[inline(always)]
     pub fn splat(simd: S, v: glam::Vec3) -> Self {
-        Self {
-            x: F::splat(simd, v.x),
-            y: F::splat(simd, v.y),
-            z: F::splat(simd, v.z),
-        }
+        Self { x: F::splat(simd, v.x), y: F::splat(simd, v.y), z: F::splat(simd, v.z) }
     }
 
     #[inline(always)]
@@ -60,11 +56,7 @@ impl<S: Simd> V3<S> {
     /// Three rows that follow each other.
     #[inline(always)]
     pub fn load(simd: S, rows: &[Row]) -> Self {
-        Self {
-            x: load(simd, &rows[0]),
-            y: load(simd, &rows[1]),
-            z: load(simd, &rows[2]),
-        }
+        Self { x: load(simd, &rows[0]), y: load(simd, &rows[1]), z: load(simd, &rows[2]) }
     }
 
     #[inline(always)]
@@ -91,11 +83,7 @@ impl<S: Simd> V3<S> {
     /// `self * s + o`.
     #[inline(always)]
     pub fn mul_add(self, s: F<S>, o: Self) -> Self {
-        Self {
-            x: self.x.mul_add(s, o.x),
-            y: self.y.mul_add(s, o.y),
-            z: self.z.mul_add(s, o.z),
-        }
+        Self { x: self.x.mul_add(s, o.x), y: self.y.mul_add(s, o.y), z: self.z.mul_add(s, o.z) }
     }
 
     /// Length, and the unit vector; (tiny, zero) for a zero vector.
@@ -107,11 +95,7 @@ impl<S: Simd> V3<S> {
 
     #[inline(always)]
     pub fn select(mask: fearless_simd::mask32x8<S>, a: Self, b: Self) -> Self {
-        Self {
-            x: mask.select(a.x, b.x),
-            y: mask.select(a.y, b.y),
-            z: mask.select(a.z, b.z),
-        }
+        Self { x: mask.select(a.x, b.x), y: mask.select(a.y, b.y), z: mask.select(a.z, b.z) }
     }
 }
 
@@ -119,11 +103,7 @@ impl<S: Simd> Add for V3<S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        Self {
-            x: self.x + o.x,
-            y: self.y + o.y,
-            z: self.z + o.z,
-        }
+        Self { x: self.x + o.x, y: self.y + o.y, z: self.z + o.z }
     }
 }
 
@@ -131,11 +111,7 @@ impl<S: Simd> Sub for V3<S> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        Self {
-            x: self.x - o.x,
-            y: self.y - o.y,
-            z: self.z - o.z,
-        }
+        Self { x: self.x - o.x, y: self.y - o.y, z: self.z - o.z }
     }
 }
 
@@ -157,11 +133,7 @@ impl<S: Simd> Neg for V3<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self {
-            x: -self.x,
-            y: -self.y,
-            z: -self.z,
-        }
+        Self { x: -self.x, y: -self.y, z: -self.z }
     }
 }
 
@@ -169,11 +141,7 @@ impl<S: Simd> Mul<F<S>> for V3<S> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, s: F<S>) -> Self {
-        Self {
-            x: self.x * s,
-            y: self.y * s,
-            z: self.z * s,
-        }
+        Self { x: self.x * s, y: self.y * s, z: self.z * s }
     }
 }
 
@@ -188,10 +156,7 @@ impl<S: Simd> Q4<S> {
     /// Four rows that follow each other: x, y, z, w.
     #[inline(always)]
     pub fn load(simd: S, rows: &[Row]) -> Self {
-        Self {
-            v: V3::load(simd, rows),
-            w: load(simd, &rows[3]),
-        }
+        Self { v: V3::load(simd, rows), w: load(simd, &rows[3]) }
     }
 
     /// Between `self` (`t` = 0) and `o` (`t` = 1) on the chord, normalised. `o` must lie on the near side.
@@ -200,10 +165,7 @@ impl<S: Simd> Q4<S> {
         let v = (o.v - self.v).mul_add(t, self.v);
         let w = (o.w - self.w).mul_add(t, self.w);
         let inv = F::splat(w.simd, 1.0) / v.dot(v).mul_add(1.0, w * w).max(1e-30).sqrt();
-        Self {
-            v: v * inv,
-            w: w * inv,
-        }
+        Self { v: v * inv, w: w * inv }
     }
 
     #[inline(always)]
@@ -231,38 +193,19 @@ impl<S: Simd> Sym3<S> {
     #[inline(always)]
     pub fn scaled_identity(s: F<S>) -> Self {
         let o = F::splat(s.simd, 0.0);
-        Self {
-            xx: s,
-            xy: o,
-            xz: o,
-            yy: s,
-            yz: o,
-            zz: s,
-        }
+        Self { xx: s, xy: o, xz: o, yy: s, yz: o, zz: s }
     }
 
     /// `s` u uᵀ.
     #[inline(always)]
     pub fn outer(u: V3<S>, s: F<S>) -> Self {
         let v = u * s;
-        Self {
-            xx: u.x * v.x,
-            xy: u.x * v.y,
-            xz: u.x * v.z,
-            yy: u.y * v.y,
-            yz: u.y * v.z,
-            zz: u.z * v.z,
-        }
+        Self { xx: u.x * v.x, xy: u.x * v.y, xz: u.x * v.z, yy: u.y * v.y, yz: u.y * v.z, zz: u.z * v.z }
     }
 
     #[inline(always)]
     pub fn add_identity(self, s: F<S>) -> Self {
-        Self {
-            xx: self.xx + s,
-            yy: self.yy + s,
-            zz: self.zz + s,
-            ..self
-        }
+        Self { xx: self.xx + s, yy: self.yy + s, zz: self.zz + s, ..self }
     }
 
     /// The full matrix.
@@ -270,21 +213,9 @@ impl<S: Simd> Sym3<S> {
     pub fn full(self) -> M3<S> {
         M3 {
             rows: [
-                V3 {
-                    x: self.xx,
-                    y: self.xy,
-                    z: self.xz,
-                },
-                V3 {
-                    x: self.xy,
-                    y: self.yy,
-                    z: self.yz,
-                },
-                V3 {
-                    x: self.xz,
-                    y: self.yz,
-                    z: self.zz,
-                },
+                V3 { x: self.xx, y: self.xy, z: self.xz },
+                V3 { x: self.xy, y: self.yy, z: self.yz },
+                V3 { x: self.xz, y: self.yz, z: self.zz },
             ],
         }
     }
@@ -307,14 +238,7 @@ impl<S: Simd> Sym3<S> {
     /// The inverse of a positive definite matrix, by cofactors.
     #[inline(always)]
     pub fn inverse(self) -> Self {
-        let Self {
-            xx,
-            xy,
-            xz,
-            yy,
-            yz,
-            zz,
-        } = self;
+        let Self { xx, xy, xz, yy, yz, zz } = self;
         let cxx = yy.mul_sub(zz, yz * yz);
         let cxy = xz.mul_sub(yz, xy * zz);
         let cxz = xy.mul_sub(yz, xz * yy);
@@ -376,21 +300,13 @@ pub struct M3<S: Simd> {
 impl<S: Simd> M3<S> {
     #[inline(always)]
     pub fn zero(simd: S) -> Self {
-        M3 {
-            rows: [V3::zero(simd); 3],
-        }
+        M3 { rows: [V3::zero(simd); 3] }
     }
 
     /// Nine rows that follow each other.
     #[inline(always)]
     pub fn load(simd: S, rows: &[Row]) -> Self {
-        M3 {
-            rows: [
-                V3::load(simd, &rows[0..3]),
-                V3::load(simd, &rows[3..6]),
-                V3::load(simd, &rows[6..9]),
-            ],
-        }
+        M3 { rows: [V3::load(simd, &rows[0..3]), V3::load(simd, &rows[3..6]), V3::load(simd, &rows[6..9])] }
     }
 
     #[inline(always)]
@@ -402,11 +318,7 @@ impl<S: Simd> M3<S> {
 
     #[inline(always)]
     pub fn mul_vec(&self, v: V3<S>) -> V3<S> {
-        V3 {
-            x: self.rows[0].dot(v),
-            y: self.rows[1].dot(v),
-            z: self.rows[2].dot(v),
-        }
+        V3 { x: self.rows[0].dot(v), y: self.rows[1].dot(v), z: self.rows[2].dot(v) }
     }
 
     /// `o` − selfᵀ v.
@@ -435,13 +347,7 @@ impl<S: Simd> Sub<Sym3<S>> for M3<S> {
     #[inline(always)]
     fn sub(self, o: Sym3<S>) -> Self {
         let o = o.full().rows;
-        M3 {
-            rows: [
-                self.rows[0] - o[0],
-                self.rows[1] - o[1],
-                self.rows[2] - o[2],
-            ],
-        }
+        M3 { rows: [self.rows[0] - o[0], self.rows[1] - o[1], self.rows[2] - o[2]] }
     }
 }
 
@@ -449,13 +355,7 @@ impl<S: Simd> Sub for M3<S> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        M3 {
-            rows: [
-                self.rows[0] - o.rows[0],
-                self.rows[1] - o.rows[1],
-                self.rows[2] - o.rows[2],
-            ],
-        }
+        M3 { rows: [self.rows[0] - o.rows[0], self.rows[1] - o.rows[1], self.rows[2] - o.rows[2]] }
     }
 }
 

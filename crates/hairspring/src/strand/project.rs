@@ -75,11 +75,7 @@ pub fn project<S: Simd>(
         let at = &work[i * scratch::ROWS..(i + 1) * scratch::ROWS];
         let u = V3::load(simd, &at[scratch::U..]);
         let d = load(simd, &at[scratch::D]);
-        lambda = if i + 2 < points {
-            load(simd, &at[scratch::C]).mul_add(lambda, d)
-        } else {
-            d
-        };
+        lambda = if i + 2 < points { load(simd, &at[scratch::C]).mul_add(lambda, d) } else { d };
         let own = u * lambda;
         let w1 = load(simd, &inverse_mass[i + 1]);
         let p = V3::load(simd, &x[3 * (i + 1)..]);

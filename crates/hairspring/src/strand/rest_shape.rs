@@ -71,8 +71,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
 
     let mut rest = vec![RestPoint::default(); n];
     for i in 0..n {
-        let half = 0.5
-            * (if i > 0 { lengths[i - 1] } else { 0.0 } + lengths.get(i).copied().unwrap_or(0.0));
+        let half = 0.5 * (if i > 0 { lengths[i - 1] } else { 0.0 } + lengths.get(i).copied().unwrap_or(0.0));
         let r = fibre.radii[i] as f64;
         rest[i].mass = fibre.density * std::f64::consts::PI * r * r * half;
         rest[i].length = lengths.get(i).copied().unwrap_or(0.0);
@@ -85,11 +84,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let ei = young * std::f64::consts::FRAC_PI_4 * r.powi(4);
         // The driven first segment is rigid: its compliance is given to the first joint, so that the strand bends
         // like one clamped at its root.
-        let mean = if j == 1 {
-            lengths[0] + 0.5 * lengths[1]
-        } else {
-            0.5 * (lengths[j - 1] + lengths[j])
-        };
+        let mean = if j == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[j - 1] + lengths[j]) };
         rest[j].bend = ei / mean;
     }
 
@@ -109,13 +104,10 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             let axial = carried.dot(t[i]);
             let moment = carried - t[i] * axial;
             rest[i].tension = axial / lengths[i];
-            let mean = if i == 1 {
-                lengths[0] + 0.5 * lengths[1]
-            } else {
-                0.5 * (lengths[i - 1] + lengths[i])
-            };
-            let needed = (moment.length() / LARGEST_SAG)
-                .max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
+            let mean =
+                if i == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[i - 1] + lengths[i]) };
+            let needed =
+                (moment.length() / LARGEST_SAG).max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
             if needed > rest[i].bend {
                 rest[i].bend = needed;
                 stiffened += 1;
@@ -141,8 +133,5 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         frame = (frame - (t[i - 1] + t[i]) * scale).normalize_or(frame);
         rest[i].normal = frame;
     }
-    RestShape {
-        points: rest,
-        stiffened,
-    }
+    RestShape { points: rest, stiffened }
 }

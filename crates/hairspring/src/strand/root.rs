@@ -32,21 +32,13 @@ impl<S: Simd> Root<S> {
         let t = F::<S>::splat(simd, fraction);
         let start = V3::load(simd, &rows[strand::ROOT_START..]);
         let end = V3::load(simd, &rows[strand::ROOT_END..]);
-        let turn = Q4::load(simd, &rows[strand::TURN_START..])
-            .nlerp(Q4::load(simd, &rows[strand::TURN_END..]), t);
+        let turn =
+            Q4::load(simd, &rows[strand::TURN_START..]).nlerp(Q4::load(simd, &rows[strand::TURN_END..]), t);
         let local = (end - start).mul_add(t, start);
         Self {
             position: transform(simd, &anchor.0, local) + V3::splat(simd, anchor.1),
-            first: transform(
-                simd,
-                &anchor.0,
-                turn.rotate(V3::load(simd, &rows[strand::FIRST..])),
-            ),
-            normal: transform(
-                simd,
-                &anchor.0,
-                turn.rotate(V3::load(simd, &rows[strand::NORMAL..])),
-            ),
+            first: transform(simd, &anchor.0, turn.rotate(V3::load(simd, &rows[strand::FIRST..]))),
+            normal: transform(simd, &anchor.0, turn.rotate(V3::load(simd, &rows[strand::NORMAL..]))),
         }
     }
 
@@ -76,11 +68,7 @@ impl<S: Simd> RootTurn<S> {
         let change = (to.first - from.first).dot(to.first - from.first)
             + (to.normal - from.normal).dot(to.normal - from.normal);
         let turned = change.simd_gt(0.0).any_true();
-        Self {
-            from: from.axes(),
-            to: to.axes(),
-            turned,
-        }
+        Self { from: from.axes(), to: to.axes(), turned }
     }
 
     /// `v` turned with the root.
@@ -107,7 +95,5 @@ impl<S: Simd> Root<S> {
 /// One matrix, the same for all lanes, times a vector of each.
 #[inline(always)]
 pub fn transform<S: Simd>(simd: S, m: &Mat3, v: V3<S>) -> V3<S> {
-    V3::splat(simd, m.x_axis) * v.x
-        + V3::splat(simd, m.y_axis) * v.y
-        + V3::splat(simd, m.z_axis) * v.z
+    V3::splat(simd, m.x_axis) * v.x + V3::splat(simd, m.y_axis) * v.y + V3::splat(simd, m.z_axis) * v.z
 }

@@ -24,12 +24,7 @@ const EXPLICIT_TENSION: f32 = 0.25;
 /// Lagrangian does) makes a strand at rest stay at rest exactly, whatever the stiffness of the spring. Its sideways stiffness
 /// T/ℓ is left out of the matrix while explicit treatment is stable, because there it keeps the swing alive.
 #[inline(always)]
-pub fn stretch<S: Simd>(
-    (length, u): (F<S>, V3<S>),
-    rest: F<S>,
-    k: F<S>,
-    tension: F<S>,
-) -> (V3<S>, Sym3<S>) {
+pub fn stretch<S: Simd>((length, u): (F<S>, V3<S>), rest: F<S>, k: F<S>, tension: F<S>) -> (V3<S>, Sym3<S>) {
     let force = u * (k.mul_add(length - rest, tension));
     let slack = k * (F::splat(rest.simd, 1.0) - rest / length);
     let taut = tension / length - k * (EXPLICIT_TENSION / STRETCH);

@@ -50,9 +50,7 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
     for i in 0..tile.points {
         let at = rows(tile.rest, i, rest::ROWS);
         let mut w = load(simd, &at[rest::MASS]);
-        w = w
-            .simd_gt(0.0)
-            .select(F::splat(simd, 1.0) / w, F::splat(simd, 0.0));
+        w = w.simd_gt(0.0).select(F::splat(simd, 1.0) / w, F::splat(simd, 0.0));
         if i < 2 {
             w = F::splat(simd, 0.0);
         }
@@ -64,34 +62,15 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
         let moved = next.position - root.position;
         let turn = RootTurn::between(&root, &next);
         root = next;
-        solve(
-            simd,
-            interval,
-            substep,
-            (&root, moved, &turn),
-            tile,
-            scratch,
-        );
+        solve(simd, interval, substep, (&root, moved, &turn), tile, scratch);
         for _ in 0..interval.projections {
-            let Scratch {
-                factors,
-                x,
-                inverse_mass,
-            } = &mut *scratch;
+            let Scratch { factors, x, inverse_mass } = &mut *scratch;
             debug_assert!(project::scratch::ROWS <= FACTOR_ROWS);
             if !project(simd, interval.h, tile, inverse_mass, x, factors) {
                 break;
             }
         }
-        limit(
-            simd,
-            interval.h,
-            substep,
-            &root,
-            moved,
-            tile,
-            &mut scratch.x,
-        );
+        limit(simd, interval.h, substep, &root, moved, tile, &mut scratch.x);
     }
 }
 
@@ -118,8 +97,7 @@ fn solve<S: Simd>(
 
     // The driven segment and its frame at the end of the substep.
     let zero = V3::zero(simd);
-    root.first
-        .store(&mut rows_mut(tile.state, 1, state::ROWS)[state::X..]);
+    root.first.store(&mut rows_mut(tile.state, 1, state::ROWS)[state::X..]);
     let mut x0 = zero;
     let mut x1 = root.first;
     let mut e0 = x1 - x0;
@@ -149,19 +127,9 @@ fn solve<S: Simd>(
 
             // d = R_i turn: the frame (normal, binormal, tangent) on segment i.
             let rest_turn = V3::load(simd, &at[rest::TURN..]);
-            let d = normal.mul_add(
-                rest_turn.x,
-                u0.cross(normal).mul_add(rest_turn.y, u0 * rest_turn.z),
-            );
+            let d = normal.mul_add(rest_turn.x, u0.cross(normal).mul_add(rest_turn.y, u0 * rest_turn.z));
             let stiffness = load(simd, &at[rest::BEND]);
-            let joint = bend(
-                (e0, e1),
-                u0,
-                (alpha, beta),
-                d,
-                stiffness,
-                stiffness * implicit_scale,
-            );
+            let joint = bend((e0, e1), u0, (alpha, beta), d, stiffness, stiffness * implicit_scale);
             band.diag[0] = band.diag[0] + joint.g;
             band.upper[0] = band.upper[0] - joint.q - joint.g;
             band.far = joint.q;
@@ -221,12 +189,8 @@ fn solve<S: Simd>(
     let (mut next, mut after) = (zero, zero);
     let mut outer = zero;
     for i in (2..n).rev() {
-        let delta = back_substitute(
-            simd,
-            &scratch.factors[i * FACTOR_ROWS..(i + 1) * FACTOR_ROWS],
-            next,
-            after,
-        );
+        let delta =
+            back_substitute(simd, &scratch.factors[i * FACTOR_ROWS..(i + 1) * FACTOR_ROWS], next, after);
         let x = V3::load(simd, &rows(tile.state, i, state::ROWS)[state::X..]);
         (x + delta).store(&mut scratch.x[3 * i..3 * i + 3]);
         if i + 1 < n {
@@ -243,21 +207,12 @@ fn solve<S: Simd>(
 
 /// Adds to the tension of segment `i` what its spring took in the solve: k (ℓ − L + û·(δ_{i+1} − δ_i)).
 #[inline(always)]
-fn add_tension<S: Simd>(
-    simd: S,
-    tile: &mut Tile,
-    i: usize,
-    (e, stretched): (V3<S>, V3<S>),
-    inv_h: f32,
-) {
+fn add_tension<S: Simd>(simd: S, tile: &mut Tile, i: usize, (e, stretched): (V3<S>, V3<S>), inv_h: f32) {
     let at = rows(tile.rest, i, rest::ROWS);
     let length = load(simd, &at[rest::LENGTH]);
     let k = load(simd, &at[rest::MASS]) * (STRETCH * inv_h * inv_h);
     let (l, u) = e.length_and_unit();
     let row = &mut rows_mut(tile.state, i, state::ROWS)[state::TENSION];
     let tension = load(simd, row) + k * (l - length + u.dot(stretched));
-    store(
-        length.simd_gt(0.0).select(tension, F::splat(simd, 0.0)),
-        row,
-    );
+    store(length.simd_gt(0.0).select(tension, F::splat(simd, 0.0)), row);
 }
