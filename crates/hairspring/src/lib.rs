@@ -5,8 +5,10 @@
 
 pub mod body;
 pub mod collide;
+pub mod follow;
 pub mod groom;
 pub mod material;
 pub mod scene;
 pub mod simulation;
+pub mod stage;
 pub(crate) mod strand;

@@ -1,12 +1,13 @@
 //! A scene: everything that a shot needs, in memory, however it was made (by code, or read from a file by `hairspring-io`).
 
 pub mod bench;
+pub mod builtin;
 mod camera;
 mod look;
 mod settings;
 
 pub use camera::Camera;
-pub use look::HairLook;
+pub use look::{HairColor, HairLook};
 pub use settings::{Collider, Effects, Guides, Shape, Solver, Wind};
 
 use crate::{

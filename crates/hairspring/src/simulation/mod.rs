@@ -2,6 +2,7 @@
 
 mod build;
 mod measure;
+mod place;
 mod reset;
 mod step;
 

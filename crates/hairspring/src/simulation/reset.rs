@@ -33,7 +33,7 @@ impl Simulation {
         count
     }
 
-    fn reset_strand(&mut self, place: usize) {
+    pub(super) fn reset_strand(&mut self, place: usize) {
         let (tile, lane) = (place / LANES, place % LANES);
         let at = tile * strand::ROWS + strand::TURN_END;
         let local = Quat::from_array([0, 1, 2, 3].map(|k| self.strand[at + k].0[lane]));
@@ -44,6 +44,7 @@ impl Simulation {
             let p: Vec3 = turn * (points[i.min(points.len() - 1)] - points[0]);
             let rows = &mut self.state[(self.tiles[tile].first as usize + i) * state::ROWS..][..state::ROWS];
             rows.iter_mut().for_each(|r| r.0[lane] = 0.0);
+            rows[state::TENSION].0[lane] = if tension.is_finite() { tension } else { 0.0 };
             for (row, x) in rows[state::X..].iter_mut().zip(p.to_array()) {
                 row.0[lane] = x;
             }

@@ -11,7 +11,8 @@
 //! δd = (û × δû) × d, so the energy is invariant under rotation and the force keeps angular momentum up to the twist
 //! that a frame without twist forgets. With a = û·d the gradient of r is P = (1 + a) I − û dᵀ on segment j−1:
 //!
-//!     δr = δe_j / L_j − P δe_{j−1} / L_{j−1}
+//! ```text
+//! δr = δe_j / L_j − P δe_{j−1} / L_{j−1}
 //!
 //! and the Gauss–Newton matrix B JᵀJ is positive semi-definite whatever the strain (cf. Choi & Ko 2002).
 

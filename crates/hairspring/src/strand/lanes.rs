@@ -14,13 +14,6 @@ pub const LANES: usize = 8;
 #[repr(C, align(32))]
 pub struct Row(pub [f32; LANES]);
 
-impl Row {
-    /// The same number for every strand.
-    pub const fn splat(value: f32) -> Self {
-        Row([value; LANES])
-    }
-}
-
 /// Eight numbers in a register.
 pub type F<S> = f32x8<S>;
 

@@ -16,6 +16,10 @@ use fearless_simd::prelude::*;
 /// Largest relative change of a segment's length that leaves a substep [1].
 pub const LIMIT: f32 = 0.01;
 
+/// Times that a point in contact goes out of the collider and back to its segment's length: what is left is of this order in the
+/// segment's length over the collider's radius.
+const CORRECTIONS: usize = 2;
+
 /// Applies strain limit and contact to the new positions `x` of shape `[points][3]`, and writes state.
 #[inline(always)]
 pub fn limit<S: Simd>(
@@ -55,11 +59,14 @@ pub fn limit<S: Simd>(
                 let tangent = slide - normal * normal.dot(slide);
                 let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
                 let held = pushed - tangent * hold.min(1.0);
-                // The limit again, and out once more: what the segment then lacks is of second order.
-                let again = clamp(held, before, length);
-                let (distance, normal) = contact(simd, pose, again + root.position);
-                let out = again + normal * (clearance - distance).max(0.0);
-                p = V3::select(depth.simd_gt(0.0), out, p);
+                // The limit again, then out and back: both hold where they can, and where a strand is caught (behind an
+                // ear) its length goes before its depth, so that it slips free in time.
+                let mut q = clamp(held, before, length);
+                for _ in 0..CORRECTIONS {
+                    let (distance, normal) = contact(simd, pose, q + root.position);
+                    q = clamp(q + normal * (clearance - distance).max(0.0), before, length);
+                }
+                p = V3::select(depth.simd_gt(0.0), q, p);
             }
         }
         let at = rows_mut(tile.state, i, state::ROWS);

@@ -1,0 +1,98 @@
+//! The colour of a body's surface under the three lamps and the sky.
+
+use crate::{
+    camera::View,
+    frame::{Frame, MeshDraw},
+    shadow::Shadow,
+};
+use glam::{Vec2, Vec3};
+use std::f32::consts::PI;
+
+/// Base colour and roughness of triangles that belong to no part: light skin.
+const SKIN: (Vec3, f32) = (Vec3::new(0.62, 0.38, 0.28), 0.5);
+/// Light bleeds into the shadow side of skin, red farthest: how far the lit half is wrapped past the terminator
+/// (d'Eon & Luebke 2007 give the scattering distances 3.7, 1.4, 0.7 mm for red, green, blue; the ratio is kept).
+const WRAP: Vec3 = Vec3::new(0.32, 0.16, 0.10);
+/// How fast hair takes the key lamp's light from skin: strands pass on part of it.
+const HAIR_SHADE: f32 = 0.75;
+
+/// Light leaving triangle `t` of `body` towards the camera, at the pixel position `at`.
+pub(super) fn light(
+    frame: &Frame,
+    body: &MeshDraw,
+    t: usize,
+    view: &View,
+    shadow: &Shadow,
+    at: Vec2,
+) -> Vec3 {
+    let [ia, ib, ic] = body.triangles[t].map(|i| i as usize);
+    let [a, b, c] = [ia, ib, ic].map(|i| body.positions[i]);
+    let ray = view.ray(at.x, at.y);
+    let (p, weight) = meet(view.eye, ray, a, b, c);
+    let flat = (b - a).cross(c - a).normalize_or(Vec3::Y);
+    let smooth = match body.normals.len() == body.positions.len() {
+        true => body.normals[ia] * weight.x + body.normals[ib] * weight.y + body.normals[ic] * weight.z,
+        false => flat,
+    };
+    let eye = -ray.normalize();
+    // Open meshes are seen from both sides.
+    let facing = if flat.dot(eye) < 0.0 && smooth.dot(eye) < 0.0 { -1.0 } else { 1.0 };
+    let n = smooth.try_normalize().unwrap_or(flat) * facing;
+    let part = body.parts.iter().find(|p| p.triangles.contains(&(t as u32)));
+    let (base, roughness) = part.map_or(SKIN, |p| (p.color, p.roughness.clamp(0.15, 1.0)));
+    let lamps = &frame.lighting;
+
+    // Shadow is looked up a little off the surface, where the surface's own voxels do not count.
+    let depth = shadow.light(p + n * (2.5 * shadow.voxel()));
+    let key_open = shadow.body(p + n * 5e-4, 8e-4, 4) * (-HAIR_SHADE * depth.x).exp();
+    let open = [key_open, (-HAIR_SHADE * depth.y).exp(), (-HAIR_SHADE * depth.z).exp()];
+    let nv = n.dot(eye).max(1e-3);
+    let mut diffuse = Vec3::ZERO;
+    let mut gloss = Vec3::ZERO;
+    for (light, open) in [&lamps.key, &lamps.fill, &lamps.rim].into_iter().zip([open[0], open[2], open[1]]) {
+        let l = light.direction.normalize_or(Vec3::Y);
+        let nl = n.dot(l);
+        // Wrapped Lambert, normalised so that the total stays the same.
+        let wrapped = ((Vec3::splat(nl) + WRAP) / (Vec3::ONE + WRAP)).max(Vec3::ZERO) / (Vec3::ONE + WRAP);
+        // Red light leaks round the edge of a shadow as it does round the terminator.
+        let tinted = Vec3::new(open.powf(0.75), open, open.powf(1.1));
+        diffuse += light.color * wrapped * tinted;
+        gloss += light.color * (specular(n, eye, l, roughness, nv) * nl.max(0.0) * open);
+    }
+    let sky = lamps.ground.lerp(lamps.sky, 0.5 + 0.5 * n.y) * depth.w;
+    // A grazing sheen, from peach fuzz and the oil on skin.
+    let sheen = 0.25 * (1.0 - nv).powi(4) * depth.w;
+    let lit = base * (diffuse + sky) + gloss + lamps.sky * sheen;
+    if lit.is_finite() { lit } else { Vec3::ZERO }
+}
+
+/// Two GGX lobes, as skin has (d'Eon & Luebke 2007), Fresnel by Schlick at the skin's reflectance of 2.8 %.
+fn specular(n: Vec3, v: Vec3, l: Vec3, roughness: f32, nv: f32) -> f32 {
+    let h = (v + l).normalize_or(n);
+    let (nh, nl) = (n.dot(h).max(0.0), n.dot(l).max(1e-3));
+    let lobe = |roughness: f32| {
+        let a2 = roughness.powi(4);
+        let d = nh * nh * (a2 - 1.0) + 1.0;
+        let k = 0.5 * roughness * roughness;
+        let visible = (nl * (1.0 - k) + k) * (nv * (1.0 - k) + k);
+        // Lamps are in units of a white card: π leaves the lobe's 1/π.
+        a2 / (d * d) / (4.0 * visible)
+    };
+    let fresnel = 0.028 + 0.972 * (1.0 - v.dot(h).max(0.0)).powi(5);
+    fresnel * (0.75 * lobe(roughness) + 0.25 * lobe(0.6 * roughness)).min(4.0 * PI)
+}
+
+/// Where the ray meets the triangle's plane, and the corners' weights there, kept inside the triangle.
+fn meet(eye: Vec3, ray: Vec3, a: Vec3, b: Vec3, c: Vec3) -> (Vec3, Vec3) {
+    let (e1, e2) = (b - a, c - a);
+    let q = ray.cross(e2);
+    let det = e1.dot(q);
+    let s = eye - a;
+    let u = s.dot(q) / det;
+    let v = ray.dot(s.cross(e1)) / det;
+    let weight = Vec3::new(1.0 - u - v, u, v);
+    let weight =
+        if weight.is_finite() { weight.clamp(Vec3::ZERO, Vec3::ONE) } else { Vec3::splat(1.0 / 3.0) };
+    let weight = weight / weight.element_sum();
+    (a * weight.x + b * weight.y + c * weight.z, weight)
+}

@@ -1,0 +1,123 @@
+//! Pieces into pixels: how much of each pixel a ribbon covers, and what that adds.
+//!
+//! A pixel holds (red, green, blue, what still shows through). Pieces come nearest first, so a covering `a` of colour `c` adds
+//! `through · a · (c, −1)`: one multiply and add of four lanes, and nothing behind a closed pixel counts.
+//!
+//! The ribbon is walked along its longer axis, one column (or row) of pixels a step. In a column it is an interval as long as its width over
+//! the cosine of its slope, and a pixel's covering is the interval's length in it: exact area, for any width. An interval shorter than a pixel
+//! is drawn a pixel long and fainter by the same factor, so it always lies on two pixels in proportion to its place: as the hair
+//! moves, light moves from pixel to pixel without a jump, and its sum stays.
+
+use super::piece::Open;
+use crate::tile::{PIXELS, SIDE};
+use glam::{Vec2, Vec4};
+
+/// Light that still passes where a pixel counts as closed: under half a step of 8 bits.
+pub(crate) const CLOSED: f32 = 0.002;
+
+/// One tile while it is being drawn.
+pub(crate) struct Canvas {
+    /// (red, green, blue, what still shows through).
+    pub pixels: [Vec4; PIXELS],
+    /// Share of the frame's depth range at which the body lies; infinite: none, or already laid in.
+    pub body_depth: [f32; PIXELS],
+    /// Colour × covering of the body, and −covering.
+    pub body: [Vec4; PIXELS],
+}
+
+impl Default for Canvas {
+    fn default() -> Self {
+        Self { pixels: [Vec4::W; PIXELS], body_depth: [f32::INFINITY; PIXELS], body: [Vec4::ZERO; PIXELS] }
+    }
+}
+
+impl Canvas {
+    /// Lays the body into a pixel.
+    #[inline]
+    pub fn lay_body(&mut self, pixel: usize) {
+        let through = self.pixels[pixel].w;
+        self.pixels[pixel] += self.body[pixel] * through;
+        self.body_depth[pixel] = f32::INFINITY;
+    }
+
+    #[inline(always)]
+    fn add(&mut self, pixel: usize, cover: f32, color: Vec4, depth: f32) {
+        if depth > self.body_depth[pixel] {
+            self.lay_body(pixel);
+        }
+        let at = &mut self.pixels[pixel];
+        if at.w > CLOSED {
+            *at += color * (at.w * cover);
+        }
+    }
+
+    /// Draws a piece whose coordinates count from the tile's corner. Call it inside a `dispatch!`.
+    #[inline(always)]
+    pub fn draw(&mut self, piece: &Open) {
+        let d = piece.b - piece.a;
+        if d.x.abs() >= d.y.abs() {
+            self.walk::<1, SIDE>(piece, piece.a, piece.b);
+        } else {
+            self.walk::<SIDE, 1>(piece, Vec2::new(piece.a.y, piece.a.x), Vec2::new(piece.b.y, piece.b.x));
+        }
+    }
+
+    /// Walks along x; a step along x moves `ALONG` pixels in memory, along y `ACROSS`.
+    #[inline(always)]
+    fn walk<const ALONG: usize, const ACROSS: usize>(&mut self, piece: &Open, a: Vec2, b: Vec2) {
+        // From left to right.
+        let (a, b, from, to) = if a.x <= b.x { (a, b, 0, 1) } else { (b, a, 1, 0) };
+        let d = b - a;
+        if !(d.x > 1e-6) {
+            return;
+        }
+        let inverse = 1.0 / d.x;
+        // Interval across the walk: width / cosine of the slope, halved.
+        let lean = 0.5 * (1.0 + (d.y * inverse).powi(2)).sqrt();
+        let (half0, half1) = (piece.width[from] * lean, piece.width[to] * lean);
+        // A joint belongs to the piece in whose span the column's middle lies, so joints neither gape nor double. At
+        // the strand's own ends the last column counts by the share of it that is reached.
+        let first = if piece.cap[from] { a.x.floor() } else { (a.x - 0.5).ceil() };
+        let last = if piece.cap[to] { b.x.ceil() } else { (b.x - 0.5).ceil() };
+        let (first, last) = (first.max(0.0) as i32, (last.min(SIDE as f32)) as i32);
+        let thin = half0.max(half1) <= 0.5;
+        for column in first..last {
+            let x = column as f32;
+            let t = ((x + 0.5 - a.x) * inverse).clamp(0.0, 1.0);
+            let y = a.y + d.y * t;
+            let half = half0 + (half1 - half0) * t;
+            let mut strength = 1.0;
+            if piece.cap[from] {
+                strength *= (x + 1.0 - a.x).min(1.0);
+            }
+            if piece.cap[to] {
+                strength *= (b.x - x).min(1.0);
+            }
+            let color = piece.color[from] + (piece.color[to] - piece.color[from]) * t;
+            let color = color.with_w(-1.0);
+            let depth = piece.depth[from] + (piece.depth[to] - piece.depth[from]) * t;
+            let base = column as usize * ALONG;
+            if thin {
+                let cover = 2.0 * half * strength;
+                let top = (y - 0.5).floor();
+                let share = y - 0.5 - top;
+                let row = top as i32;
+                if (0..SIDE as i32).contains(&row) {
+                    self.add(base + row as usize * ACROSS, cover * (1.0 - share), color, depth);
+                }
+                if (-1..SIDE as i32 - 1).contains(&row) {
+                    self.add(base + (row + 1) as usize * ACROSS, cover * share, color, depth);
+                }
+            } else {
+                let reach = half.max(0.5);
+                let faint = strength * half / reach;
+                let (low, high) = (y - reach, y + reach);
+                let rows = (low.floor().max(0.0) as i32)..(high.ceil().min(SIDE as f32) as i32);
+                for row in rows {
+                    let cover = (high.min(row as f32 + 1.0) - low.max(row as f32)) * faint;
+                    self.add(base + row as usize * ACROSS, cover, color, depth);
+                }
+            }
+        }
+    }
+}

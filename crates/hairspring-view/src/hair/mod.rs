@@ -1,0 +1,7 @@
+//! Strands: from points in space to shaded pieces on the screen.
+
+pub(crate) mod blend;
+pub(crate) mod order;
+pub(crate) mod piece;
+pub(crate) mod ribbon;
+pub(crate) mod shade;

@@ -1,0 +1,75 @@
+//! The order in which strands are worked on: neighbours together.
+//!
+//! Files keep strands in any order. Strands that lie side by side read the same voxels and fall on the same tiles, so taking them along a space-filling
+//! curve turns most reads from memory into reads from cache. It changes no result but which of two pieces at exactly the same depth comes first.
+
+use crate::frame::Frame;
+use glam::Vec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Points of a run, about: its pieces stay in the second-level cache while they are filed.
+const RUN_POINTS: usize = 8192;
+
+/// A run of neighbouring strands of one style.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    /// Index of the style.
+    pub hair: usize,
+    /// Which of the ordered strands.
+    range: Range<usize>,
+}
+
+/// All strands of a frame, cut into runs.
+#[derive(Debug, Default)]
+pub(crate) struct Order {
+    /// Place on the curve and strand number, style after style.
+    strands: Vec<(u32, u32)>,
+    pub runs: Vec<Run>,
+}
+
+impl Order {
+    /// Orders the frame's strands, whose hair lies in `bounds`, into at most `limit` runs. The result depends on the strands alone.
+    pub fn fill(&mut self, frame: &Frame, bounds: (Vec3, Vec3), limit: usize) {
+        self.strands.clear();
+        self.runs.clear();
+        let points: usize = frame.hair.iter().map(|h| h.points.len()).sum();
+        let size = RUN_POINTS.max(2 * points / limit);
+        let scale = 1023.0 / (bounds.1 - bounds.0).max_element().max(1e-9);
+        for (hair, h) in frame.hair.iter().enumerate() {
+            let first = self.strands.len();
+            // Strands are told apart by their middles: roots alone lie close together.
+            self.strands.par_extend((0..h.strand_count()).into_par_iter().map(|s| {
+                let range = h.range(s);
+                let middle = h.points.get(range.start + range.len() / 2).copied().unwrap_or_default();
+                (curve((middle - bounds.0) * scale), s as u32)
+            }));
+            self.strands[first..].par_sort_unstable();
+            let (mut start, mut count) = (first, 0);
+            for i in first..self.strands.len() {
+                count += h.range(self.strands[i].1 as usize).len();
+                if count >= size || i + 1 == self.strands.len() {
+                    self.runs.push(Run { hair, range: start..i + 1 });
+                    (start, count) = (i + 1, 0);
+                }
+            }
+        }
+    }
+
+    /// Strand numbers of a run.
+    pub fn strands(&self, run: &Run) -> impl Iterator<Item = usize> {
+        self.strands[run.range.clone()].iter().map(|s| s.1 as usize)
+    }
+}
+
+/// Place on the Z-order curve (Morton 1966) of a position in 0..1024 per axis.
+fn curve(p: Vec3) -> u32 {
+    let spread = |x: f32| {
+        let mut x = x.clamp(0.0, 1023.0) as u32;
+        x = (x | x << 16) & 0x0300_00ff;
+        x = (x | x << 8) & 0x0300_f00f;
+        x = (x | x << 4) & 0x030c_30c3;
+        (x | x << 2) & 0x0924_9249
+    };
+    spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
+}

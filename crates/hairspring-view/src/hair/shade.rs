@@ -1,0 +1,302 @@
+//! Light from a strand towards the camera, at every point, eight points at once.
+//!
+//! The fibre model of Marschner et al. 2003 ("Light Scattering from Human Hair Fibers") in the cheap form of Karis 2016
+//! ("Physically Based Hair Shading in Unreal"): R, the white highlight off the cuticle; TT, light that passes through; TRT, the coloured
+//! highlight that has been in and out again; and light that went from strand to strand before it reached the eye. Pigment is kept
+//! as the logarithm of colour, so that paths through the fibre, mixtures and shadow are sums and products.
+
+use crate::lighting::Lighting;
+use fearless_simd::{f32x8, prelude::*};
+use glam::{Vec3, Vec4};
+use hairspring::scene::HairLook;
+
+/// Points shaded at once.
+pub(crate) const LANES: usize = 8;
+type Row = [f32; LANES];
+
+/// Eight points of a strand.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(32))]
+pub(crate) struct Block {
+    /// Place [m].
+    pub p: [Row; 3],
+    /// Unit direction, root to tip.
+    pub t: [Row; 3],
+    /// Logarithm to base 2 of the colour.
+    pub pigment: [Row; 3],
+    /// Optical depth towards key, rim, fill; share of the sky seen.
+    pub light: [Row; 4],
+    /// Share of the key lamp that bodies let through.
+    pub body: Row,
+    /// Result: linear RGB.
+    pub color: [Row; 3],
+}
+
+/// What all strands of a frame share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shader {
+    eye: Vec3,
+    /// Unit directions and colours of key, rim and fill: the order of the optical depths.
+    lamps: [(Vec3, Vec3); 3],
+    sky: Vec3,
+    ground: Vec3,
+}
+
+/// What the points of one strand share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fibre {
+    /// Shift of the highlights [rad], this strand's own part included.
+    tilt: f32,
+    /// Spread of R, TT and TRT [rad].
+    spread: [f32; 3],
+    specular: f32,
+    backlight: f32,
+    scatter: f32,
+}
+
+impl Fibre {
+    /// `random` is this strand's number from −1 to 1.
+    pub fn new(look: &HairLook, random: f32) -> Self {
+        let rough = look.roughness.clamp(0.1, 1.0).powi(2);
+        Self {
+            tilt: (look.cuticle.clamp(0.0, 10.0) + 1.2 * random).to_radians(),
+            // Karis 2016, slide 18: β, β/2 and 2β.
+            spread: [rough, 0.5 * rough, 2.0 * rough].map(|b| b + 0.02),
+            specular: look.specular.max(0.0),
+            backlight: look.backlight.max(0.0),
+            scatter: look.scatter.max(0.0),
+        }
+    }
+}
+
+/// Light lost by the straight beam per optical depth. Below 1: much of what hits a strand goes on forward.
+const BEAM: f32 = 0.62;
+/// Light lost per optical depth by what went on from strand to strand, per channel: a floor, and a part that grows
+/// with pigment (the forward attenuation of dual scattering, Zinke et al. 2008).
+const SCATTERED: (f32, f32) = (0.07, 0.075);
+
+impl Shader {
+    pub fn new(lighting: &Lighting, eye: Vec3) -> Self {
+        let lamp = |l: &crate::lighting::Light| (l.direction.normalize_or(Vec3::Y), l.color);
+        Self {
+            eye,
+            lamps: [lamp(&lighting.key), lamp(&lighting.rim), lamp(&lighting.fill)],
+            sky: lighting.sky,
+            ground: lighting.ground,
+        }
+    }
+
+    /// Fills `color` of every block. Call it inside a `dispatch!`.
+    // Loops are written out and helpers are inlined always: only then does all of it compile for the chosen instruction set.
+    #[inline(always)]
+    pub fn shade<S: Simd>(&self, simd: S, fibre: &Fibre, blocks: &mut [Block]) {
+        for block in blocks {
+            shade(simd, self, fibre, block);
+        }
+    }
+}
+
+/// A vector of each of eight points.
+#[derive(Clone, Copy)]
+struct V<S: Simd>([f32x8<S>; 3]);
+
+impl<S: Simd> V<S> {
+    #[inline(always)]
+    fn load(simd: S, [x, y, z]: &[Row; 3]) -> Self {
+        Self([f32x8::simd_from(simd, *x), f32x8::simd_from(simd, *y), f32x8::simd_from(simd, *z)])
+    }
+    #[inline(always)]
+    fn dot(self, o: Self) -> f32x8<S> {
+        self.0[0].mul_add(o.0[0], self.0[1].mul_add(o.0[1], self.0[2] * o.0[2]))
+    }
+    #[inline(always)]
+    fn dot3(self, o: Vec3) -> f32x8<S> {
+        self.0[0] * o.x + self.0[1] * o.y + self.0[2] * o.z
+    }
+    #[inline(always)]
+    fn scale(self, k: f32x8<S>) -> Self {
+        Self([self.0[0] * k, self.0[1] * k, self.0[2] * k])
+    }
+}
+
+/// 2^x; 3e-5 relative error, x kept within ±100.
+#[inline(always)]
+fn exp2<S: Simd>(x: f32x8<S>) -> f32x8<S> {
+    let x = x.max(-100.0).min(100.0);
+    let whole = x.floor();
+    let f = x - whole;
+    // Minimax on [0, 1].
+    let p = (((f * 0.013_676_6 + 0.051_690_4) * f + 0.241_638_4) * f + 0.692_983_6) * f + 1.000_002_6;
+    let power: f32x8<S> = ((whole.to_int::<fearless_simd::i32x8<S>>() + 127) << 23u32).bitcast();
+    p * power
+}
+
+/// e^(−x² / 2b²) / (b √2π): how the fibre spreads light along itself.
+#[inline(always)]
+fn gauss<S: Simd>(x: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+    let u = x / b;
+    exp2(u * u * -0.721_347_5) * 0.398_942_3 / b
+}
+
+/// Schlick's Fresnel at keratin's index of 1.55.
+#[inline(always)]
+fn fresnel<S: Simd>(cos: f32x8<S>) -> f32x8<S> {
+    let m = (-cos + 1.0).max(0.0);
+    let m2 = m * m;
+    m2 * m2 * m * 0.9535 + 0.0465
+}
+
+#[inline(always)]
+fn saturate<S: Simd>(x: f32x8<S>) -> f32x8<S> {
+    x.max(0.0).min(1.0)
+}
+
+#[inline(always)]
+fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
+    let zero = f32x8::splat(simd, 0.0);
+    let t = V::load(simd, &block.t);
+    let p = V::load(simd, &block.p);
+    let pigment = V::load(simd, &block.pigment);
+    let eye = shader.eye.to_array();
+    let to_eye = V([-p.0[0] + eye[0], -p.0[1] + eye[1], -p.0[2] + eye[2]]);
+    let scale = f32x8::splat(simd, 1.0) / to_eye.dot(to_eye).max(1e-12).sqrt();
+    let v = to_eye.scale(scale);
+
+    // Angles from the plane across the fibre, as sines.
+    let sin_v = t.dot(v).max(-1.0).min(1.0);
+    let cos2_v = (-(sin_v * sin_v) + 1.0).max(1e-4);
+    let cos_v = cos2_v.sqrt();
+    // The direction across the fibre that looks at the camera.
+    let inverse = f32x8::splat(simd, 1.0) / cos_v;
+    let [vx, vy, vz] = v.0;
+    let [tx, ty, tz] = t.0;
+    let across = V([vx - tx * sin_v, vy - ty * sin_v, vz - tz * sin_v]).scale(inverse);
+    // What scattering between strands multiplies by: √colour (Karis 2016, slide 33).
+    let [c0, c1, c2] = pigment.0;
+    let soft = [exp2(c0 * 0.5), exp2(c1 * 0.5), exp2(c2 * 0.5)];
+    let mut sum = [zero; 3];
+
+    for k in 0..3 {
+        let (l, lamp) = shader.lamps[k];
+        let depth = f32x8::simd_from(simd, block.light[k]);
+        let body = if k == 0 { f32x8::simd_from(simd, block.body) } else { zero + 1.0 };
+        let beam = exp2(depth * (-BEAM * std::f32::consts::LOG2_E)) * body;
+
+        let sin_l = t.dot3(l).max(-1.0).min(1.0);
+        let cos2_l = (-(sin_l * sin_l) + 1.0).max(1e-4);
+        let cos_l = cos2_l.sqrt();
+        let vl = v.dot3(l);
+        let cos_phi = ((vl - sin_l * sin_v) / (cos_l * cos_v)).max(-1.0).min(1.0);
+        let cos_half = (cos_phi * 0.5 + 0.5).sqrt();
+        let cos_d = ((cos_l * cos_v + sin_l * sin_v) * 0.5 + 0.5).max(1e-3).sqrt();
+        let sines = sin_l + sin_v;
+
+        // R: white, towards the root. The lobes lie at −α, α/2 and 3α/2 (Marschner et al. 2003, table 1); sines add up both angles.
+        let m = gauss(
+            sines + cos_half * cos_v * (2.0 * fibre.tilt),
+            cos_half * (std::f32::consts::SQRT_2 * fibre.spread[0]) + 0.03,
+        );
+        let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (0.25 * fibre.specular);
+
+        // TT: through the fibre, once.
+        let m = gauss(sines - fibre.tilt, zero + fibre.spread[1]);
+        let a = f32x8::splat(simd, 1.0) / (f32x8::splat(simd, 1.19) / cos_d + cos_d * 0.36);
+        let h = saturate(cos_half * (a * (-cos_phi * 0.8 + 0.6) + 1.0));
+        let pass = -fresnel(cos_d * (-(h * h) + 1.0).max(0.0).sqrt()) + 1.0;
+        let n = exp2((cos_phi * -3.65 - 3.98) * std::f32::consts::LOG2_E);
+        let tt = m * n * pass * pass * fibre.backlight;
+        let ha = h * a;
+        let tt_path = (-(ha * ha) + 1.0).max(0.0).sqrt() * 0.5 / cos_d;
+
+        // TRT: coloured, towards the tip.
+        let m = gauss(sines - 3.0 * fibre.tilt, zero + fibre.spread[2]);
+        let f = fresnel(cos_d * 0.5);
+        let pass = -f + 1.0;
+        let n = exp2((cos_phi * 17.0 - 16.78) * std::f32::consts::LOG2_E);
+        let trt = m * n * pass * pass * f * fibre.specular;
+        let trt_path = f32x8::splat(simd, 0.8) / cos_d;
+
+        // Strand to strand: as from a matt surface across the fibre, wrapped all round, its colour deepening with the way through the hair.
+        let facing = ((across.dot3(l) + 1.0) * 0.25).max(0.0) * fibre.scatter;
+        let flat = cos_l * 0.35 * fibre.scatter;
+        let color = lamp.to_array();
+        for i in 0..3 {
+            let c = pigment.0[i];
+            let single =
+                (r + tt * exp2(c * tt_path) + trt * exp2(c * trt_path)) * beam * std::f32::consts::PI;
+            let lost =
+                (c * SCATTERED.1 - SCATTERED.0) * (depth + (-body + 1.0) * 12.0) * std::f32::consts::LOG2_E;
+            let multiple = soft[i] * exp2(c * 0.5 + lost) * (facing * 0.7 + flat);
+            sum[i] += (single * cos_l + multiple) * color[i];
+        }
+    }
+    let open = f32x8::simd_from(simd, block.light[3]);
+    let up = across.0[1] * 0.5 + 0.5;
+    for i in 0..3 {
+        let (sky, ground) = (shader.sky.to_array()[i], shader.ground.to_array()[i]);
+        let ambient = (up * (sky - ground) + ground) * open;
+        let c = pigment.0[i];
+        let tint = exp2(c * (-open * 0.5 + 1.5));
+        sum[i] += ambient * tint * fibre.scatter;
+        // A broken point darkens a strand; it does not spread over the picture.
+        let finite = sum[i].simd_ge(0.0);
+        finite.select(sum[i], zero).store_slice(&mut block.color[i]);
+    }
+}
+
+/// A number from −1 to 1 for strand `s`, spread evenly and unlike its neighbours' (the finaliser of MurmurHash3).
+pub(crate) fn random(s: u32) -> f32 {
+    let mut h = s.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995;
+    h = (h ^ h >> 16).wrapping_mul(0x85eb_ca6b);
+    h = (h ^ h >> 13).wrapping_mul(0xc2b2_ae35);
+    h ^= h >> 16;
+    (h >> 8) as f32 / (1 << 23) as f32 - 1.0
+}
+
+/// Base-2 logarithm of a colour; black keeps a trace of light, white a trace of pigment.
+pub(crate) fn pigment(color: Vec3) -> Vec3 {
+    let c = if color.is_finite() { color } else { Vec3::splat(0.2) };
+    let c = c.clamp(Vec3::splat(0.002), Vec3::splat(0.98));
+    Vec3::new(c.x.log2(), c.y.log2(), c.z.log2())
+}
+
+impl Block {
+    /// Writes one point.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, p: Vec3, t: Vec3, pigment: Vec3, light: Vec4, body: f32) {
+        for i in 0..3 {
+            self.p[i][lane] = p[i];
+            self.t[i][lane] = t[i];
+            self.pigment[i][lane] = pigment[i];
+        }
+        for i in 0..4 {
+            self.light[i][lane] = light[i];
+        }
+        self.body[lane] = body;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fearless_simd::{Level, dispatch};
+
+    #[test]
+    fn powers_of_two_are_close() {
+        let level = Level::new();
+        for i in -800..800 {
+            let x = i as f32 * 0.0371;
+            let mut got = [0.0; LANES];
+            dispatch!(level, simd => exp2(f32x8::splat(simd, x)).store_slice(&mut got));
+            assert!((got[0] / x.exp2() - 1.0).abs() < 2e-4, "{x}: {} {}", got[0], x.exp2());
+        }
+    }
+
+    #[test]
+    fn random_numbers_fill_their_range_evenly() {
+        let n = 100_000;
+        let mean = (0..n).map(random).sum::<f32>() / n as f32;
+        let square = (0..n).map(|s| random(s).powi(2)).sum::<f32>() / n as f32;
+        assert!(mean.abs() < 0.01 && (square - 1.0 / 3.0).abs() < 0.01);
+    }
+}

@@ -1,0 +1,73 @@
+//! The light of a picture: three lamps and a sky.
+
+use glam::{Quat, Vec3};
+use hairspring::scene::Camera;
+
+/// A lamp so far away that its light is parallel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// From the scene towards the lamp; any length above 0.
+    pub direction: Vec3,
+    /// Linear RGB, 0 or more: what a white matt card facing the lamp reflects.
+    pub color: Vec3,
+}
+
+/// Three lamps, a sky and an exposure. The default is portrait light for a face that looks along +Z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lighting {
+    /// The main lamp, the one that casts sharp shadow. Default: front, high, to the camera's left, warm.
+    pub key: Light,
+    /// Opens the shadow side. Default: front right, low, cool, a fifth of the key.
+    pub fill: Light,
+    /// Parts the hair from the backdrop and shines through it. Default: behind, high, right, neutral.
+    pub rim: Light,
+    /// Light from straight above, linear RGB.
+    pub sky: Vec3,
+    /// Light from straight below, linear RGB.
+    pub ground: Vec3,
+    /// Brightness of the picture [stops], 0 by default.
+    pub exposure: f32,
+}
+
+impl Default for Lighting {
+    fn default() -> Self {
+        Self {
+            key: Light { direction: Vec3::new(-0.62, 0.72, 0.72), color: Vec3::new(2.35, 2.2, 2.0) },
+            fill: Light { direction: Vec3::new(0.85, 0.15, 0.6), color: Vec3::new(0.34, 0.38, 0.44) },
+            rim: Light { direction: Vec3::new(0.55, 0.62, -0.8), color: Vec3::new(2.3, 2.35, 2.5) },
+            sky: Vec3::new(0.40, 0.43, 0.48),
+            ground: Vec3::new(0.16, 0.14, 0.13),
+            exposure: 0.0,
+        }
+    }
+}
+
+impl Lighting {
+    /// The default light, turned about the vertical so that it falls on what `camera` sees as it does for a camera on +Z.
+    pub fn facing(camera: &Camera) -> Self {
+        let back = camera.position - camera.target;
+        let turn = Quat::from_rotation_y(back.x.atan2(back.z));
+        let mut lighting = Self::default();
+        if turn.is_finite() {
+            for light in [&mut lighting.key, &mut lighting.fill, &mut lighting.rim] {
+                light.direction = turn * light.direction;
+            }
+        }
+        lighting
+    }
+}
+
+/// What is behind everything: a soft pool of light on a dark wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Background {
+    /// Linear RGB in the middle of the picture, a little above it.
+    pub center: Vec3,
+    /// Linear RGB in the corners.
+    pub edge: Vec3,
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self { center: Vec3::new(0.16, 0.165, 0.18), edge: Vec3::new(0.035, 0.036, 0.042) }
+    }
+}

@@ -1,0 +1,79 @@
+//! Stills and numbered sequences of stills.
+
+use super::{OutputError, beside, keep};
+use crate::image::Image;
+use std::{
+    io::{BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+/// Writes an 8-bit sRGB PNG; the file appears only when it is complete.
+///
+/// # Errors
+/// If the folder is missing or not writable, or the disk is full.
+pub fn write_png(path: &Path, image: &Image) -> Result<(), OutputError> {
+    let mut file = beside(path)?;
+    let write = |file: &mut tempfile::NamedTempFile| -> Result<(), png::EncodingError> {
+        let mut out = BufWriter::new(file.as_file_mut());
+        let mut encoder = png::Encoder::new(&mut out, image.width, image.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        encoder.set_compression(png::Compression::Fast);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&image.rgb)?;
+        writer.finish()?;
+        Ok(out.flush()?)
+    };
+    write(&mut file).map_err(|e| {
+        let source = match e {
+            png::EncodingError::IoError(e) => e,
+            other => std::io::Error::other(other),
+        };
+        OutputError::File { path: path.into(), source }
+    })?;
+    keep(file, path)
+}
+
+/// Reads an 8-bit RGB PNG.
+///
+/// # Errors
+/// If the file cannot be read, or is another kind of picture.
+pub fn read_png(path: &Path) -> Result<Image, OutputError> {
+    let file = std::fs::File::open(path).map_err(|source| OutputError::File { path: path.into(), source })?;
+    let wrong = |why: String| OutputError::Picture { path: path.into(), why };
+    // The decoder's own limit of 64 MiB holds for any picture of ours.
+    let mut reader =
+        png::Decoder::new(std::io::BufReader::new(file)).read_info().map_err(|e| wrong(e.to_string()))?;
+    let size = reader.output_buffer_size().ok_or_else(|| wrong("too large".into()))?;
+    let mut rgb = vec![0; size];
+    let info = reader.next_frame(&mut rgb).map_err(|e| wrong(e.to_string()))?;
+    if (info.color_type, info.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {
+        return Err(wrong(format!("it is {:?} with {:?} bits", info.color_type, info.bit_depth)));
+    }
+    rgb.truncate(info.buffer_size());
+    Ok(Image { width: info.width, height: info.height, rgb })
+}
+
+/// The path of frame `number` of a sequence: the last run of `#` in the file's name becomes the number, with as many digits at least
+/// (`frame.####.png` → `frame.0001.png`). `None` if the name has no `#`: it names a single file.
+pub fn sequence_path(pattern: &Path, number: u32) -> Option<PathBuf> {
+    let name = pattern.file_name()?.to_str()?;
+    let end = name.rfind('#')? + 1;
+    let start = name[..end].trim_end_matches('#').len();
+    let digits = format!("{number:0width$}", width = end - start);
+    Some(pattern.with_file_name(format!("{}{digits}{}", &name[..start], &name[end..])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_fill_the_last_run_of_signs() {
+        let path = |p: &str, n| sequence_path(Path::new(p), n).map(|p| p.to_string_lossy().into_owned());
+        assert_eq!(path("out/frame.####.png", 7).as_deref(), Some("out/frame.0007.png"));
+        assert_eq!(path("a##b#.png", 123).as_deref(), Some("a##b123.png"));
+        assert_eq!(path("##/still.png", 1), None);
+    }
+}

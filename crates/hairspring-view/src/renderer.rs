@@ -1,0 +1,119 @@
+//! One picture, from borrowed arrays to pixels.
+
+use crate::{
+    body::Bodies,
+    camera::View,
+    frame::Frame,
+    hair::{
+        order::Order,
+        ribbon::{CHUNK_BITS, Chunk, Setup},
+        shade::Shader,
+    },
+    image::Image,
+    shadow::{self, Shadow},
+    tile::{Brush, PIXELS, SIDE, Tiles},
+    tonemap::Encoder,
+};
+use fearless_simd::Level;
+use rayon::prelude::*;
+use std::time::{Duration, Instant};
+
+/// Draws frames of one size; keeps its memory between them.
+#[derive(Default)]
+pub struct Renderer {
+    image: Image,
+    tiles: Tiles,
+    order: Order,
+    shadow: Shadow,
+    bodies: Bodies,
+    chunks: Vec<Chunk>,
+    drawn: Vec<[[u8; 3]; PIXELS]>,
+    encoder: Encoder,
+    timings: Timings,
+}
+
+/// Where the last frame's time went.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Timings {
+    /// Density grid, sweeps, depth map.
+    pub shadow: Duration,
+    /// Lighting, projection and cutting of strands, and projection of bodies.
+    pub strands: Duration,
+    /// Sorting, blending, bodies and development of all tiles.
+    pub tiles: Duration,
+}
+
+impl Renderer {
+    /// A renderer of `width` × `height` pixels, each 1 to 16,384 (other sizes are brought into that range).
+    pub fn new(width: u32, height: u32) -> Self {
+        let (width, height) = (width.clamp(1, 16_384), height.clamp(1, 16_384));
+        let tiles = Tiles::new(width as usize, height as usize);
+        Self { image: Image::new(width, height), tiles, ..Self::default() }
+    }
+
+    /// Draws a frame. The same frame gives the same bytes on any number of threads.
+    pub fn draw(&mut self, frame: &Frame) -> &Image {
+        let start = Instant::now();
+        let [width, height] = self.tiles.size();
+        let view = View::new(&frame.camera, width as u32, height as u32);
+        let bounds = shadow::bounds(frame.hair);
+        self.order.fill(frame, bounds.unwrap_or_default(), 1 << CHUNK_BITS);
+        self.shadow.fill(frame, bounds, &self.order);
+        let shaded = Instant::now();
+
+        // The view depths of the hair's box are the range of sort keys.
+        let (low, high) = bounds.unwrap_or_default();
+        let middle = (0.5 * (low + high) - view.eye).dot(view.forward);
+        let reach = 0.5 * (high - low).dot(view.forward.abs()) + 1e-3;
+        let setup = Setup {
+            frame,
+            view,
+            tiles: self.tiles,
+            order: &self.order,
+            shadow: &self.shadow,
+            level: Level::new(),
+            shader: Shader::new(&frame.lighting, view.eye),
+            depths: [(middle - reach).max(0.0), middle.max(0.0) + reach],
+        };
+        let runs = &self.order.runs;
+        self.chunks.resize_with(runs.len(), Chunk::default);
+        let (chunks, bodies, tiles) = (&mut self.chunks, &mut self.bodies, &mut self.drawn);
+        rayon::join(
+            || {
+                chunks
+                    .par_iter_mut()
+                    .zip(runs)
+                    .with_max_len(1)
+                    .for_each(|(chunk, run)| chunk.fill(&setup, run))
+            },
+            || bodies.project(frame, &view, width, height),
+        );
+        let cut = Instant::now();
+
+        tiles.resize(self.tiles.count(), [[0; 3]; PIXELS]);
+        let (chunks, bodies, encoder) = (&*chunks, &*bodies, &self.encoder);
+        tiles.par_iter_mut().enumerate().for_each_init(Brush::default, |brush, (tile, out)| {
+            brush.draw(&setup, bodies, chunks, encoder, tile, out);
+        });
+        let [nx, _] = self.tiles.grid();
+        let tiles = &*tiles;
+        self.image.rgb.par_chunks_mut(width * 3).enumerate().for_each(|(y, row)| {
+            for (x, out) in row.chunks_mut(SIDE * 3).enumerate() {
+                let from = &tiles[y / SIDE * nx + x][y % SIDE * SIDE..][..out.len() / 3];
+                out.copy_from_slice(from.as_flattened());
+            }
+        });
+        self.timings = Timings { shadow: shaded - start, strands: cut - shaded, tiles: cut.elapsed() };
+        &self.image
+    }
+
+    /// The last picture; black before the first.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    /// Where the last frame's time went.
+    pub fn timings(&self) -> Timings {
+        self.timings
+    }
+}
