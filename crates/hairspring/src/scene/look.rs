@@ -34,7 +34,17 @@ pub struct HairLook {
 
 impl Default for HairLook {
     fn default() -> Self {
-        Self { root_color: Vec3::new(0.045, 0.022, 0.011), tip_color: Vec3::new(0.10, 0.05, 0.024) }
+        Self {
+            root_color: Vec3::new(0.045, 0.022, 0.011),
+            tip_color: Vec3::new(0.10, 0.05, 0.024),
+            variation: 0.25,
+            roughness: 0.32,
+            cuticle: 3.0,
+            specular: 1.0,
+            backlight: 1.0,
+            scatter: 1.0,
+            shadow: 1.0,
+        }
     }
 }
 

@@ -43,6 +43,8 @@ impl Simulation {
         for i in 0..self.tiles[tile].points as usize {
             let p: Vec3 = turn * (points[i.min(points.len() - 1)] - points[0]);
             let rows = &mut self.state[(self.tiles[tile].first as usize + i) * state::ROWS..][..state::ROWS];
+            // A finite tension is kept: it is what holds the rest shape.
+            let tension = rows[state::TENSION].0[lane];
             rows.iter_mut().for_each(|r| r.0[lane] = 0.0);
             rows[state::TENSION].0[lane] = if tension.is_finite() { tension } else { 0.0 };
             for (row, x) in rows[state::X..].iter_mut().zip(p.to_array()) {
