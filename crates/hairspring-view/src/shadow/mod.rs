@@ -71,10 +71,11 @@ impl Shadow {
         const CLEAR: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
         let q = (p - self.grid.origin) / self.grid.voxel;
         let [nx, ny, nz] = self.grid.size;
-        let (x, y, z) = (q.x as usize, q.y as usize, q.z as usize);
-        if self.light.is_empty() || !(q.min_element() >= 0.0) || x + 1 >= nx || y + 1 >= ny || z + 1 >= nz {
+        let last = Vec3::new(nx as f32 - 1.0, ny as f32 - 1.0, nz as f32 - 1.0);
+        if self.light.is_empty() || !(q.cmpge(Vec3::ZERO).all() && q.cmplt(last).all()) {
             return CLEAR;
         }
+        let (x, y, z) = (q.x as usize, q.y as usize, q.z as usize);
         let at = (z * ny + y) * nx + x;
         let (f, slice) = (q - Vec3::new(x as f32, y as f32, z as f32), nx * ny);
         let line = |i: usize| self.light[i].lerp(self.light[i + 1], f.x);
