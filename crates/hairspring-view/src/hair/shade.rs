@@ -196,7 +196,7 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
             sines + cos_half * cos_v * (2.0 * fibre.tilt),
             cos_half * (std::f32::consts::SQRT_2 * fibre.spread[0]) + 0.03,
         );
-        let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (0.25 * fibre.specular);
+        let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (0.45 * fibre.specular);
 
         // TT: through the fibre, once.
         let m = gauss(sines - fibre.tilt, zero + fibre.spread[1]);
@@ -213,7 +213,7 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let f = fresnel(cos_d * 0.5);
         let pass = -f + 1.0;
         let n = exp2((cos_phi * 17.0 - 16.78) * std::f32::consts::LOG2_E);
-        let trt = m * n * pass * pass * f * fibre.specular;
+        let trt = m * n * pass * pass * f * (1.5 * fibre.specular);
         let trt_path = f32x8::splat(simd, 0.8) / cos_d;
 
         // Strand to strand: as from a matt surface across the fibre, wrapped all round, its colour deepening with the way through the hair.

@@ -104,7 +104,7 @@ fn strand(style: Style, i: u32, n: Vec3) -> Vec<Vec3> {
     points
 }
 
-/// The ball, and a cylinder of neck under it.
+/// The ball, a little narrower than the scalp that hair grows from.
 pub fn ball() -> Mesh {
     let (rows, columns) = (48, 96);
     let mut mesh = Mesh::default();
