@@ -5,6 +5,7 @@
 //! highlight that has been in and out again; and light that went from strand to strand before it reached the eye. Pigment is kept
 //! as the logarithm of colour, so that paths through the fibre, mixtures and shadow are sums and products.
 
+use super::piece;
 use crate::lighting::Lighting;
 use fearless_simd::{f32x8, prelude::*};
 use glam::{Vec3, Vec4};
@@ -28,8 +29,8 @@ pub(crate) struct Block {
     pub light: [Row; 4],
     /// Share of the key lamp that bodies let through.
     pub body: Row,
-    /// Result: linear RGB.
-    pub color: [Row; 3],
+    /// Result, packed as in [`super::piece`].
+    pub color: [u32; LANES],
 }
 
 /// What all strands of a frame share.
@@ -236,10 +237,17 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let c = pigment.0[i];
         let tint = exp2(c * (-open * 0.5 + 1.5));
         sum[i] += ambient * tint * fibre.scatter;
-        // A broken point darkens a strand; it does not spread over the picture.
-        let finite = sum[i].simd_ge(0.0);
-        finite.select(sum[i], zero).store_slice(&mut block.color[i]);
     }
+    // Packed here, once a point and in lanes. A broken point darkens a strand; it does not spread over the picture.
+    let mut bits = fearless_simd::u32x8::splat(simd, 0);
+    for i in 0..3 {
+        let finite = sum[i].simd_ge(0.0);
+        let light = finite.select(sum[i], zero).min(piece::MAX_LIGHT) * (1.0 / piece::MAX_LIGHT);
+        let (top, shift) = piece::CHANNELS[i];
+        let root = (light.sqrt() * top + 0.5).to_int::<fearless_simd::u32x8<S>>();
+        bits = bits | (root << shift);
+    }
+    bits.store_slice(&mut block.color);
 }
 
 /// A number from −1 to 1 for strand `s`, spread evenly and unlike its neighbours' (the finaliser of MurmurHash3).
