@@ -5,7 +5,7 @@ use crate::{
     hair::{
         blend::{CLOSED, Canvas},
         piece::Piece,
-        ribbon::{Chunk, PIECE_BITS, CHUNK_BITS, Setup},
+        ribbon::{CHUNK_BITS, Chunk, PIECE_BITS, Setup},
     },
     sort,
     tonemap::{Encoder, filmic},
@@ -26,7 +26,9 @@ pub(crate) struct Tiles {
 
 impl Tiles {
     pub fn new(width: usize, height: usize) -> Self {
-        Self { size: [width, height] }
+        Self {
+            size: [width, height],
+        }
     }
 
     /// Width and height of the picture [pixels].
@@ -61,7 +63,11 @@ pub(crate) struct Brush {
 
 impl Default for Brush {
     fn default() -> Self {
-        let none = Surface { color: Vec3::ZERO, cover: 0.0, depth: f32::INFINITY };
+        let none = Surface {
+            color: Vec3::ZERO,
+            cover: 0.0,
+            depth: f32::INFINITY,
+        };
         Self {
             canvas: Box::default(),
             samples: Box::default(),
@@ -98,14 +104,34 @@ const BATCH: usize = 32;
 
 impl Brush {
     /// Draws one tile and writes its pixels, row by row, three bytes each.
-    pub fn draw(&mut self, setup: &Setup, bodies: &Bodies, chunks: &[Chunk], encoder: &Encoder, tile: usize, out: &mut [[u8; 3]; PIXELS]) {
+    pub fn draw(
+        &mut self,
+        setup: &Setup,
+        bodies: &Bodies,
+        chunks: &[Chunk],
+        encoder: &Encoder,
+        tile: usize,
+        out: &mut [[u8; 3]; PIXELS],
+    ) {
         let corner = setup.tiles.corner(tile);
         *self.canvas = Canvas::default();
         let canvas = &mut *self.canvas;
-        let body = bodies.draw(setup.frame, &setup.view, setup.shadow, corner, &mut self.samples, &mut self.surfaces);
+        let body = bodies.draw(
+            setup.frame,
+            &setup.view,
+            setup.shadow,
+            corner,
+            &mut self.samples,
+            &mut self.surfaces,
+        );
         if body {
             let [near, far] = setup.depths;
-            for (i, s) in self.surfaces.iter().enumerate().filter(|(_, s)| s.cover > 0.0) {
+            for (i, s) in self
+                .surfaces
+                .iter()
+                .enumerate()
+                .filter(|(_, s)| s.cover > 0.0)
+            {
                 canvas.body[i] = (s.color * s.cover).extend(-s.cover);
                 canvas.body_depth[i] = (s.depth - near) / (far - near);
             }
@@ -113,23 +139,36 @@ impl Brush {
         self.entries.clear();
         for (c, chunk) in chunks.iter().enumerate() {
             // Room for the chunk's number lies between the depth key and the piece's number.
-            self.entries.extend(chunk.tile(tile).iter().map(|e| e | (c as u64) << PIECE_BITS));
+            self.entries.extend(
+                chunk
+                    .tile(tile)
+                    .iter()
+                    .map(|e| e | (c as u64) << PIECE_BITS),
+            );
         }
         sort::sort(&mut self.entries, &mut self.scratch);
         let origin = Vec2::new(corner[0] as f32, corner[1] as f32);
         dispatch!(setup.level, _simd => lay_hair(canvas, &self.entries, chunks, origin));
         if body {
-            (0..PIXELS).filter(|i| self.surfaces[*i].cover > 0.0).for_each(|i| {
-                if canvas.body_depth[i].is_finite() {
-                    canvas.lay_body(i);
-                }
-            });
+            (0..PIXELS)
+                .filter(|i| self.surfaces[*i].cover > 0.0)
+                .for_each(|i| {
+                    if canvas.body_depth[i].is_finite() {
+                        canvas.lay_body(i);
+                    }
+                });
         }
         self.develop(setup, encoder, corner, out);
     }
 
     /// Backdrop, exposure, tone curve, 8 bits.
-    fn develop(&self, setup: &Setup, encoder: &Encoder, corner: [usize; 2], out: &mut [[u8; 3]; PIXELS]) {
+    fn develop(
+        &self,
+        setup: &Setup,
+        encoder: &Encoder,
+        corner: [usize; 2],
+        out: &mut [[u8; 3]; PIXELS],
+    ) {
         let [w, h] = setup.tiles.size().map(|n| n as f32);
         let backdrop = &setup.frame.background;
         let gain = setup.frame.lighting.exposure.exp2();

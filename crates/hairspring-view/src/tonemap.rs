@@ -5,11 +5,15 @@ use glam::{Mat3, Vec3};
 /// The filmic curve of the Academy Color Encoding System (reference rendering and sRGB output transforms), as fitted by Stephen Hill in
 /// "BakingLab" (2016): highlights lose their colour on the way to white, as on film.
 pub(crate) fn filmic(light: Vec3) -> Vec3 {
-    const IN: Mat3 = Mat3::from_cols_array(&[0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777]);
-    const OUT: Mat3 = Mat3::from_cols_array(&[1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602]);
+    const IN: Mat3 = Mat3::from_cols_array(&[
+        0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777,
+    ]);
+    const OUT: Mat3 = Mat3::from_cols_array(&[
+        1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602,
+    ]);
     let v = IN * light;
     let curve = (v * (v + Vec3::splat(0.0245786)) - Vec3::splat(0.000090537))
-        / (v * (v * 0.983729 + Vec3::splat(0.4329510)) + Vec3::splat(0.238081));
+        / (v * (v * 0.983729 + Vec3::splat(0.432_951)) + Vec3::splat(0.238081));
     (OUT * curve).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
@@ -23,8 +27,17 @@ const STEPS: usize = 1024;
 
 impl Default for Encoder {
     fn default() -> Self {
-        let encode = |c: f32| if c <= 0.0031308 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-        let table = (0..=STEPS + 1).map(|i| (i as f32 / STEPS as f32).powi(2)).map(|c| 255.0 * encode(c.min(1.0))).collect();
+        let encode = |c: f32| {
+            if c <= 0.0031308 {
+                12.92 * c
+            } else {
+                1.055 * c.powf(1.0 / 2.4) - 0.055
+            }
+        };
+        let table = (0..=STEPS + 1)
+            .map(|i| (i as f32 / STEPS as f32).powi(2))
+            .map(|c| 255.0 * encode(c.min(1.0)))
+            .collect();
         Self { table }
     }
 }
@@ -34,7 +47,8 @@ impl Encoder {
     #[inline]
     pub fn encode(&self, color: Vec3, x: usize, y: usize) -> [u8; 3] {
         // Interleaved gradient noise (Jimenez 2014), fixed to the picture: nothing moves in still parts of a clip.
-        let noise = (52.982_92 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract();
+        let noise =
+            (52.982_92 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract();
         color.to_array().map(|c| {
             let at = c.sqrt() * STEPS as f32;
             let (i, f) = (at as usize, at.fract());
@@ -62,7 +76,14 @@ mod tests {
     #[test]
     fn encoding_is_srgb_within_one_code() {
         let encoder = Encoder::default();
-        for (linear, code) in [(0.0, 0), (0.002, 7), (0.0144, 32), (0.2159, 128), (0.5271, 192), (1.0, 255)] {
+        for (linear, code) in [
+            (0.0, 0),
+            (0.002, 7),
+            (0.0144, 32),
+            (0.2159, 128),
+            (0.5271, 192),
+            (1.0, 255),
+        ] {
             for pixel in 0..50 {
                 let got = encoder.encode(Vec3::splat(linear), pixel, 3 * pixel)[0] as i32;
                 assert!((got - code).abs() <= 1, "{linear} {got} {code}");

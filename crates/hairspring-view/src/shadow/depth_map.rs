@@ -1,6 +1,9 @@
 //! The bodies as the key lamp sees them: sharp shadow of a nose on a cheek, softened at the edge.
 
-use crate::{body::raster::{Bins, BANDS, ScreenTriangle}, frame::Frame};
+use crate::{
+    body::raster::{BANDS, Bins, ScreenTriangle},
+    frame::Frame,
+};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -23,13 +26,27 @@ pub(crate) struct DepthMap {
 impl DepthMap {
     /// Draws the frame's bodies from the key lamp.
     pub fn fill(&mut self, frame: &Frame) {
-        self.toward = frame.lighting.key.direction.try_normalize().unwrap_or(Vec3::Y);
+        self.toward = frame
+            .lighting
+            .key
+            .direction
+            .try_normalize()
+            .unwrap_or(Vec3::Y);
         self.right = self.toward.any_orthonormal_vector();
         self.up = self.toward.cross(self.right);
         self.triangles.clear();
         let flat = |p: Vec3| Vec2::new(p.dot(self.right), p.dot(self.up));
-        let points = || frame.bodies.iter().flat_map(|b| b.positions).filter(|p| p.is_finite()).map(|p| flat(*p));
-        let (low, high) = points().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |b, p| (b.0.min(p), b.1.max(p)));
+        let points = || {
+            frame
+                .bodies
+                .iter()
+                .flat_map(|b| b.positions)
+                .filter(|p| p.is_finite())
+                .map(|p| flat(*p))
+        };
+        let (low, high) = points().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |b, p| {
+            (b.0.min(p), b.1.max(p))
+        });
         let extent = (high - low).max_element();
         self.side = 0;
         if !(extent > 0.0 && extent.is_finite()) {
@@ -42,7 +59,8 @@ impl DepthMap {
             for t in body.triangles {
                 let p = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
                 let screen = p.map(|p| self.texel(p));
-                self.triangles.extend(ScreenTriangle::new(screen, 0, self.side, self.side));
+                self.triangles
+                    .extend(ScreenTriangle::new(screen, 0, self.side, self.side));
             }
         }
         self.bins.fill(&self.triangles, self.side);
@@ -50,15 +68,23 @@ impl DepthMap {
         self.heights.clear();
         self.heights.resize(side * side, f32::NEG_INFINITY);
         let (triangles, bins) = (&self.triangles, &self.bins);
-        self.heights.par_chunks_mut(side * BANDS).enumerate().for_each(|(band, rows)| {
-            for t in bins.band(band) {
-                let height = rows.len() / side;
-                triangles[*t as usize].cover([0, band * BANDS], [side, height], Vec2::splat(0.5), |x, y, h| {
-                    let at = &mut rows[y * side + x];
-                    *at = at.max(h);
-                });
-            }
-        });
+        self.heights
+            .par_chunks_mut(side * BANDS)
+            .enumerate()
+            .for_each(|(band, rows)| {
+                for t in bins.band(band) {
+                    let height = rows.len() / side;
+                    triangles[*t as usize].cover(
+                        [0, band * BANDS],
+                        [side, height],
+                        Vec2::splat(0.5),
+                        |x, y, h| {
+                            let at = &mut rows[y * side + x];
+                            *at = at.max(h);
+                        },
+                    );
+                }
+            });
     }
 
     /// Texel coordinates and height of a place.
@@ -84,7 +110,8 @@ impl DepthMap {
         let mut lit = 0.0;
         for j in 1 - radius..=radius {
             let wy = 1.0 - (j as f32 - fy).abs() * inverse;
-            let row = &self.heights[(iy + j) as usize * self.side + (ix + 1 - radius) as usize..][..2 * radius as usize];
+            let row = &self.heights[(iy + j) as usize * self.side + (ix + 1 - radius) as usize..]
+                [..2 * radius as usize];
             for (i, height) in (1 - radius..).zip(row) {
                 // A tent over the sample's place: its weights change smoothly as `p` moves, and add up to the radius squared.
                 let wx = 1.0 - (i as f32 - fx).abs() * inverse;

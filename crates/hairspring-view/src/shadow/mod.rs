@@ -5,8 +5,8 @@ mod depth_map;
 mod sweep;
 
 use crate::{frame::Frame, hair::order::Order};
-use density::{Density, Grid};
 pub(crate) use density::bounds;
+use density::{Density, Grid};
 use depth_map::DepthMap;
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -45,24 +45,39 @@ impl Shadow {
         self.grid = grid;
         let lamps = &frame.lighting;
         self.lamps = [lamps.key, lamps.rim, lamps.fill].map(|l| l.direction.normalize_or(Vec3::Y));
-        let sweeps = [(&density.hair, lamps.key.direction), (&density.all, lamps.rim.direction), (&density.all, lamps.fill.direction)];
+        let sweeps = [
+            (&density.hair, lamps.key.direction),
+            (&density.all, lamps.rim.direction),
+            (&density.all, lamps.fill.direction),
+        ];
         let sky = SKY.map(|d| (&density.all, d));
         let jobs: Vec<_> = sweeps.into_iter().chain(sky).collect();
         self.depths.resize_with(jobs.len(), Vec::new);
-        self.depths.par_iter_mut().zip(jobs).for_each(|(depth, (from, direction))| {
-            sweep::sweep(&grid, from, direction, depth);
-        });
+        self.depths
+            .par_iter_mut()
+            .zip(jobs)
+            .for_each(|(depth, (from, direction))| {
+                sweep::sweep(&grid, from, direction, depth);
+            });
         let depths = &self.depths;
         self.light.resize(grid.len(), Vec4::ZERO);
         let slice = grid.size[0] * grid.size[1];
-        self.light.par_chunks_mut(slice).enumerate().for_each(|(z, light)| {
-            for (i, light) in light.iter_mut().enumerate() {
-                let at = z * slice + i;
-                // Ambient light comes around strands: a gentler law than the straight beam's.
-                let open: f32 = depths[3..].iter().map(|d| 1.0 / (1.0 + 0.8 * d[at])).sum();
-                *light = Vec4::new(depths[0][at], depths[1][at], depths[2][at], open / SKY.len() as f32);
-            }
-        });
+        self.light
+            .par_chunks_mut(slice)
+            .enumerate()
+            .for_each(|(z, light)| {
+                for (i, light) in light.iter_mut().enumerate() {
+                    let at = z * slice + i;
+                    // Ambient light comes around strands: a gentler law than the straight beam's.
+                    let open: f32 = depths[3..].iter().map(|d| 1.0 / (1.0 + 0.8 * d[at])).sum();
+                    *light = Vec4::new(
+                        depths[0][at],
+                        depths[1][at],
+                        depths[2][at],
+                        open / SKY.len() as f32,
+                    );
+                }
+            });
     }
 
     /// Optical depth of hair and far bodies towards key, rim and fill, and the share of sky seen; trilinear.
@@ -115,6 +130,10 @@ impl Shadow {
 
     /// Side of a voxel of the hair's grid [m]; 0 without hair.
     pub fn voxel(&self) -> f32 {
-        if self.light.is_empty() { 0.0 } else { self.grid.voxel }
+        if self.light.is_empty() {
+            0.0
+        } else {
+            self.grid.voxel
+        }
     }
 }
