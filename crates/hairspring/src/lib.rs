@@ -4,6 +4,11 @@
 //! SI units throughout: metres, kilograms, seconds, newtons, pascals; right-handed, Y up.
 
 pub mod body;
+pub mod collide;
+pub mod follow;
 pub mod groom;
 pub mod material;
 pub mod scene;
+pub mod simulation;
+pub mod stage;
+pub(crate) mod strand;

@@ -27,11 +27,7 @@ pub(crate) struct Canvas {
 
 impl Default for Canvas {
     fn default() -> Self {
-        Self {
-            pixels: [Vec4::W; PIXELS],
-            body_depth: [f32::INFINITY; PIXELS],
-            body: [Vec4::ZERO; PIXELS],
-        }
+        Self { pixels: [Vec4::W; PIXELS], body_depth: [f32::INFINITY; PIXELS], body: [Vec4::ZERO; PIXELS] }
     }
 }
 

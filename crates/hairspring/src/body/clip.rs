@@ -66,6 +66,13 @@ impl Clip {
         self.frame_count().saturating_sub(1) as f32 / self.rate
     }
 
+    /// The clip from frame `first` on; the last frame alone where there is no such frame.
+    pub fn from_frame(mut self, first: usize) -> Self {
+        let first = first.min(self.frame_count().saturating_sub(1));
+        self.samples.drain(..first * self.joint_count);
+        self
+    }
+
     /// Local transforms at `time` [s], held at the ends; shape `[joints]`.
     pub fn sample(&self, time: f32) -> Vec<Trs> {
         let last = self.frame_count().saturating_sub(1);

@@ -2,8 +2,13 @@
 
 mod clip;
 mod mesh;
+mod nearest;
 mod pose;
+mod retarget;
 
 pub use clip::{Clip, Trs};
 pub use mesh::{Mesh, Part};
+pub(crate) use nearest::at as place_on;
+pub use nearest::{NearestPlace, NearestTree};
 pub use pose::{Body, Joint, Skin};
+pub use retarget::{HeadMotion, Retargeted, Travel, head_motion, retarget};

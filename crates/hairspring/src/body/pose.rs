@@ -1,6 +1,6 @@
 //! A body: mesh, skeleton and skin, and where its vertices are in a pose.
 
-use super::{Mesh, Trs, mesh::vertex_normals};
+use super::{Mesh, Part, Trs, mesh::vertex_normals};
 use glam::{Affine3A, Vec3, Vec3A};
 
 /// One joint of a skeleton.
@@ -58,6 +58,37 @@ impl Body {
             .position(|j| j.name.eq_ignore_ascii_case(name))
     }
 
+    /// Keeps only the triangles of the parts that `keep` names true, and the vertices that they use.
+    pub fn keep_parts(&mut self, keep: impl Fn(&str) -> bool) {
+        let mesh = &mut self.mesh;
+        let parts = std::mem::take(&mut mesh.parts);
+        let old = std::mem::take(&mut mesh.triangles);
+        for part in parts.into_iter().filter(|p| keep(&p.name)) {
+            let first = mesh.triangles.len() as u32;
+            mesh.triangles
+                .extend_from_slice(&old[part.triangles.start as usize..part.triangles.end as usize]);
+            mesh.parts.push(Part { triangles: first..mesh.triangles.len() as u32, ..part });
+        }
+        let mut used = vec![false; mesh.positions.len()];
+        mesh.triangles.iter().flatten().for_each(|i| used[*i as usize] = true);
+        let mut next = 0;
+        let moved: Vec<u32> = used
+            .iter()
+            .map(|u| {
+                next += u32::from(*u);
+                next.wrapping_sub(1)
+            })
+            .collect();
+        mesh.triangles.iter_mut().flatten().for_each(|i| *i = moved[*i as usize]);
+        retain_used(&mut mesh.positions, &used);
+        retain_used(&mut mesh.normals, &used);
+        retain_used(&mut mesh.uvs, &used);
+        if let Some(skin) = &mut self.skin {
+            retain_used(&mut skin.joints, &used);
+            retain_used(&mut skin.weights, &used);
+        }
+    }
+
     /// Model-space matrix of every joint for local transforms `pose` of shape `[joints]`.
     pub fn world(&self, pose: &[Trs]) -> Vec<Affine3A> {
         let mut world: Vec<Affine3A> = Vec::with_capacity(self.joints.len());
@@ -110,5 +141,33 @@ impl Body {
             positions.push(at.into());
         }
         *normals = vertex_normals(positions, &self.mesh.triangles);
+    }
+}
+
+/// Drops the elements that are not used; an empty array stays empty.
+fn retain_used<T>(array: &mut Vec<T>, used: &[bool]) {
+    let mut used = used.iter();
+    array.retain(|_| used.next().copied().unwrap_or(false));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keeping_a_part_keeps_its_triangles_and_vertices_only() {
+        let part =
+            |name: &str, triangles| Part { name: name.into(), triangles, color: Vec3::ONE, roughness: 1.0 };
+        let mut body = Body::rigid(Mesh {
+            positions: (0..6).map(|i| Vec3::splat(i as f32)).collect(),
+            normals: vec![Vec3::Y; 6],
+            uvs: Vec::new(),
+            triangles: vec![[0, 1, 2], [3, 4, 5], [5, 3, 4]],
+            parts: vec![part("helper", 0..1), part("body", 1..3)],
+        });
+        body.keep_parts(|name| name == "body");
+        assert_eq!(body.mesh.triangles, [[0, 1, 2], [2, 0, 1]]);
+        assert_eq!(body.mesh.positions, [Vec3::splat(3.0), Vec3::splat(4.0), Vec3::splat(5.0)]);
+        assert_eq!((body.mesh.normals.len(), body.mesh.parts[0].triangles.clone()), (3, 0..2));
     }
 }

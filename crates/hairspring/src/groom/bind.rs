@@ -1,22 +1,147 @@
 //! Where a strand's root sits on the scalp.
 
-use crate::body::Mesh;
-use glam::Vec3;
-
 use super::Groom;
+use crate::body::{Mesh, NearestTree, place_on};
+use glam::{Mat3, Quat, Vec3};
+use rayon::prelude::*;
 
-/// A root's place on a triangle mesh.
+/// A root's place on a triangle mesh: it goes where the triangle goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootBinding {
     /// Index of the triangle.
     pub triangle: u32,
-    /// Barycentric coordinates on it; sum 1.
+    /// Barycentric coordinates on it, each 0 to 1; sum 1.
     pub barycentric: Vec3,
-    /// Distance from the surface to the root along the triangle's normal, kept while the skin moves [m].
-    pub offset: f32,
+    /// From that place on the surface to the root, in the triangle's frame ([`RootBinding::frame`]; y along the normal),
+    /// kept while the skin moves [m]. Along the surface it is 0 but for roots that lie past an edge.
+    pub offset: Vec3,
 }
 
-/// Binds every strand that has no binding yet to the nearest place of `mesh`.
+impl RootBinding {
+    /// The binding of root `p` [m] to the place `barycentric` of the triangle of `corners`, which `triangle` numbers.
+    pub fn new(triangle: u32, barycentric: Vec3, corners: [Vec3; 3], p: Vec3) -> Self {
+        let offset = triangle_frame(corners).inverse() * (p - place_on(barycentric, corners));
+        Self { triangle, barycentric, offset }
+    }
+
+    /// Where the root is when its triangle has these corners [m].
+    pub fn position(&self, corners: [Vec3; 3]) -> Vec3 {
+        place_on(self.barycentric, corners) + self.frame(corners) * self.offset
+    }
+
+    /// How a triangle of these corners is turned: x along its first edge, y along its normal. Between two poses the
+    /// root turns by `frame(posed) * frame(rest).inverse()`.
+    pub fn frame(&self, corners: [Vec3; 3]) -> Quat {
+        triangle_frame(corners)
+    }
+}
+
+/// Orientation of a triangle: x along the first edge, y along the normal; any such frame where it is degenerate.
+fn triangle_frame([a, b, c]: [Vec3; 3]) -> Quat {
+    let x = (b - a).try_normalize().or((c - a).try_normalize()).unwrap_or(Vec3::X);
+    let y = (b - a).cross(c - a).try_normalize().unwrap_or_else(|| x.any_orthonormal_vector());
+    Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize()
+}
+
+/// Binds every root to the nearest place of `mesh`, unless the groom has bindings already. A mesh without triangles
+/// binds nothing.
 pub fn bind_roots(groom: &mut Groom, mesh: &Mesh) {
-    let _ = (groom, mesh);
+    bind_roots_where(groom, mesh, |_, _| true);
+}
+
+/// As [`bind_roots`], but strand `s` binds only to triangles `t` with `allowed(s, t)`, as far as there are any.
+pub fn bind_roots_where(groom: &mut Groom, mesh: &Mesh, allowed: impl Fn(usize, usize) -> bool + Sync) {
+    if !groom.roots.is_empty() {
+        return;
+    }
+    let tree = NearestTree::new(mesh);
+    let roots: Option<Vec<RootBinding>> = (0..groom.strand_count())
+        .into_par_iter()
+        .map(|s| {
+            let root = groom.strand(s).first().copied().unwrap_or(Vec3::ZERO);
+            let place = tree.nearest(root, |t| allowed(s, t)).or_else(|| tree.nearest(root, |_| true))?;
+            let corners = mesh.corners(place.triangle as usize);
+            Some(RootBinding::new(place.triangle, place.barycentric, corners, root))
+        })
+        .collect();
+    groom.roots = roots.unwrap_or_default();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn square() -> Mesh {
+        Mesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 0.0, -1.0), Vec3::NEG_Z],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        }
+    }
+
+    fn groom_at(roots: &[Vec3]) -> Groom {
+        Groom::from_strands(roots.iter().map(|r| [*r, *r + Vec3::Y * 0.1, *r + Vec3::Y * 0.2]), 4e-5)
+    }
+
+    #[test]
+    fn a_root_above_the_surface_keeps_its_height() {
+        let mesh = square();
+        let mut groom = groom_at(&[Vec3::new(0.75, 0.02, -0.25)]);
+        bind_roots(&mut groom, &mesh);
+        let root = groom.roots[0];
+        assert_eq!(root.triangle, 0);
+        assert!(root.offset.distance(Vec3::Y * 0.02) < 1e-6, "{}", root.offset);
+    }
+
+    #[test]
+    fn a_filter_chooses_the_surface_and_gives_way_where_nothing_passes() {
+        let mesh = square();
+        let mut groom = groom_at(&[Vec3::new(0.75, 0.0, -0.25), Vec3::new(0.75, 0.0, -0.25)]);
+        bind_roots_where(&mut groom, &mesh, |s, t| s == 0 && t == 1);
+        assert_eq!([groom.roots[0].triangle, groom.roots[1].triangle], [1, 0]);
+    }
+
+    #[test]
+    fn bindings_that_are_there_stay_and_an_empty_mesh_binds_nothing() {
+        let mut groom = groom_at(&[Vec3::ZERO]);
+        bind_roots(&mut groom, &Mesh::default());
+        assert!(groom.roots.is_empty());
+        bind_roots(&mut groom, &square());
+        let bound = groom.roots.clone();
+        groom.points[0] = Vec3::new(0.9, 0.0, -0.1);
+        bind_roots(&mut groom, &square());
+        assert_eq!(groom.roots, bound);
+    }
+
+    fn point(size: f32) -> impl Strategy<Value = Vec3> {
+        (-size..size, -size..size, -size..size).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        #[test]
+        fn the_binding_gives_the_root_back_and_moves_rigidly(
+            corners in [point(1.0), point(1.0), point(1.0)],
+            root in point(2.0),
+            axis in point(1.0),
+            angle in -3.0f32..3.0,
+            shift in point(1.0),
+        ) {
+            let mesh = Mesh { positions: corners.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
+            let mut groom = groom_at(&[root]);
+            bind_roots(&mut groom, &mesh);
+            let binding = groom.roots[0];
+            let back = binding.position(corners);
+            prop_assert!(back.distance(root) < 1e-5, "{back} is not {root}");
+            // Slivers have no stable frame to turn by.
+            let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
+            prop_assume!(area > 1e-2);
+            let turn = Quat::from_axis_angle(axis.normalize_or(Vec3::Y), angle);
+            let posed = corners.map(|c| turn * c + shift);
+            let moved = binding.position(posed);
+            prop_assert!(moved.distance(turn * root + shift) < 2e-4, "{moved}");
+            let turned = binding.frame(posed) * binding.frame(corners).inverse();
+            prop_assert!(turned.dot(turn).abs() > 0.9999, "{turned} is not {turn}");
+        }
+    }
 }

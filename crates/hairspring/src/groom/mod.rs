@@ -3,7 +3,7 @@
 mod bind;
 mod sanitize;
 
-pub use bind::{RootBinding, bind_roots};
+pub use bind::{RootBinding, bind_roots, bind_roots_where};
 pub use sanitize::{Repairs, sanitize};
 
 use glam::{Vec2, Vec3};

@@ -1,6 +1,7 @@
 //! Repairs of what real files contain: duplicate points, non-finite values, strands of a single point.
 
-use super::Groom;
+use super::{DEFAULT_RADIUS, Groom};
+use glam::Vec3;
 
 /// What [`sanitize`] found and repaired. Nothing is dropped without being counted here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,8 +23,323 @@ impl Repairs {
     }
 }
 
-/// Repairs `groom` in place and says what was repaired.
+/// Shortest allowed segment as a fraction of the strand's mean segment: 1 %.
+///
+/// A stretch spring's stiffness is EA/L, so a segment of a hundredth of the mean is a hundred times stiffer than its
+/// neighbours and the band solver in f32 still has five digits for them; artists' own uneven spacing (root
+/// segments of a tenth of the mean are usual) is left alone.
+const SHORTEST_SEGMENT: f32 = 0.01;
+
+/// Length that a strand must have for its shape to count [m]; a shorter one is a point, and becomes a stub.
+const SHORTEST_STRAND: f32 = 1e-6;
+
+/// Length of the stub that stands in for a strand without a shape [m].
+const STUB: f32 = 1e-3;
+
+/// Largest coordinate that is believed [m]: beyond it squares overflow and f32 has no sub-millimetre left.
+const FARTHEST: f32 = 1e6;
+
+/// Repairs `groom` in place and says what was repaired: afterwards every strand has three points at least, every
+/// coordinate and radius is finite, and no segment is near zero. No strand is dropped, and a second call finds nothing.
 pub fn sanitize(groom: &mut Groom) -> Repairs {
-    let _ = groom;
-    Repairs::default()
+    let mut repairs = Repairs::default();
+    if groom.offsets.is_empty() {
+        groom.offsets.push(0);
+    }
+    lengthen_short_strands(groom, &mut repairs);
+    groom.radii.resize(groom.points.len(), f32::NAN);
+    for s in 0..groom.strand_count() {
+        let range = groom.range(s);
+        repairs.non_finite_points += fill_non_finite(&mut groom.points[range.clone()]);
+        repairs.zero_segments += spread_zero_segments(&mut groom.points[range.clone()]);
+        repairs.bad_radii += mend_radii(&mut groom.radii[range]);
+    }
+    repairs
+}
+
+/// Gives strands of fewer than three points their missing ones, by resampling every per-point array.
+fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
+    repairs.short_strands = groom.offsets.windows(2).filter(|w| w[1] - w[0] < 3).count();
+    if repairs.short_strands == 0 {
+        return;
+    }
+    let old = std::mem::take(groom);
+    let (has_radii, has_colors) = (old.radii.len() == old.points.len(), !old.colors.is_empty());
+    let mut offsets = vec![0];
+    for s in 0..old.strand_count() {
+        let range = old.range(s);
+        // Which of the old points each new one lies between, and how far: a pair (i, t).
+        let places: Vec<(usize, usize, f32)> = match range.len() {
+            0 => Vec::new(),
+            1 => vec![(range.start, range.start, 0.0); 3],
+            2 => vec![
+                (range.start, range.start, 0.0),
+                (range.start, range.start + 1, 0.5),
+                (range.start + 1, range.start + 1, 0.0),
+            ],
+            _ => range.clone().map(|i| (i, i, 0.0)).collect(),
+        };
+        if places.is_empty() {
+            // A strand without points has no place either: a stub at the origin.
+            groom.points.extend([Vec3::ZERO; 3]);
+            groom.radii.extend([DEFAULT_RADIUS; 3].iter().filter(|_| has_radii));
+            groom.colors.extend([Vec3::ZERO; 3].iter().filter(|_| has_colors));
+        }
+        for (a, b, t) in places {
+            groom.points.push(if a == b { old.points[a] } else { old.points[a].lerp(old.points[b], t) });
+            if has_radii {
+                groom.radii.push(old.radii[a] + (old.radii[b] - old.radii[a]) * t);
+            }
+            if has_colors {
+                groom.colors.push(old.colors[a].lerp(old.colors[b], t));
+            }
+        }
+        offsets.push(groom.points.len() as u32);
+    }
+    *groom = Groom {
+        points: std::mem::take(&mut groom.points),
+        radii: std::mem::take(&mut groom.radii),
+        colors: std::mem::take(&mut groom.colors),
+        offsets,
+        ..old
+    };
+}
+
+/// Moves points that are not finite (or beyond [`FARTHEST`]) onto the line between their finite neighbours; at the ends,
+/// onward by the nearest segment; a strand without a finite point goes to the origin. Returns how many.
+fn fill_non_finite(points: &mut [Vec3]) -> usize {
+    let good = |p: &Vec3| p.is_finite() && p.abs().max_element() <= FARTHEST;
+    let finite: Vec<usize> = (0..points.len()).filter(|i| good(&points[*i])).collect();
+    let bad = points.len() - finite.len();
+    if bad == 0 {
+        return 0;
+    }
+    let (Some(&first), Some(&last)) = (finite.first(), finite.last()) else {
+        points.fill(Vec3::ZERO);
+        return bad;
+    };
+    for w in finite.windows(2) {
+        let (a, b) = (points[w[0]], points[w[1]]);
+        let steps = (w[1] - w[0]) as f32;
+        for (i, p) in points[w[0]..w[1]].iter_mut().enumerate().skip(1) {
+            *p = a.lerp(b, i as f32 / steps);
+        }
+    }
+    // The ends: the finite points' own mean step, carried on.
+    let steps = (last - first).max(1) as f32;
+    let step = (points[last] - points[first]) / steps;
+    for i in (0..first).rev() {
+        points[i] = within_reach(points[i + 1] - step);
+    }
+    for i in last + 1..points.len() {
+        points[i] = within_reach(points[i - 1] + step);
+    }
+    bad
+}
+
+/// Spreads points whose segments are below the shortest allowed, along the strand as it is. Returns how many segments
+/// were too short.
+fn spread_zero_segments(points: &mut [Vec3]) -> usize {
+    let segments = points.len() - 1;
+    let length: f32 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+    // Below the spacing of f32 at these coordinates a length is noise.
+    let reach = points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
+    let noise = noise_of(points.len(), reach);
+    if length < SHORTEST_STRAND.max(noise) {
+        stub(points, noise);
+        return segments;
+    }
+    let shortest = SHORTEST_SEGMENT * length / segments as f32;
+    let short = points.windows(2).filter(|w| w[0].distance(w[1]) < shortest).count();
+    if short == 0 {
+        return 0;
+    }
+    let old = points.to_vec();
+    let mut at = vec![0.0f32];
+    for w in old.windows(2) {
+        at.push(at[at.len() - 1] + w[0].distance(w[1]));
+    }
+    // Where along the strand each point should be: no nearer to the one before than twice the shortest, and the
+    // same from the tip back, so that the tip stays. Chords at a bend are shorter than the way along it.
+    let gap = 2.0 * shortest;
+    let mut to = at.clone();
+    for i in 1..to.len() {
+        to[i] = to[i].max(to[i - 1] + gap);
+    }
+    let last = to.len() - 1;
+    to[last] = length;
+    for i in (0..last).rev() {
+        to[i] = to[i].min(to[i + 1] - gap);
+    }
+    to[0] = 0.0;
+    for i in 1..last {
+        if to[i] != at[i] {
+            points[i] = along(&old, &at, to[i]);
+        }
+    }
+    if points.windows(2).any(|w| w[0].distance(w[1]) < shortest) {
+        // Folded back on itself within the gap: even spacing, and where even that fails the straight line or a stub.
+        spread_evenly(points, &old, &at, shortest);
+    }
+    short
+}
+
+/// Even spacing along the old strand; if a chord still comes out too short (a strand folded onto itself), straight out.
+fn spread_evenly(points: &mut [Vec3], old: &[Vec3], at: &[f32], shortest: f32) {
+    let (last, length) = (points.len() - 1, at[at.len() - 1]);
+    for (i, p) in points.iter_mut().enumerate().take(last).skip(1) {
+        *p = along(old, at, length * i as f32 / last as f32);
+    }
+    if points.windows(2).any(|w| w[0].distance(w[1]) < shortest) {
+        let direction = (old[last] - old[0]).try_normalize().unwrap_or(Vec3::Y);
+        for (i, p) in points.iter_mut().enumerate() {
+            *p = old[0] + direction * (length * i as f32 / last as f32);
+        }
+        if points.iter().any(|p| p.abs().max_element() > FARTHEST) {
+            points[0] = old[0];
+            stub(points, noise_of(points.len(), FARTHEST));
+        }
+    }
+}
+
+/// Replaces a strand without a shape by a straight one along +Y from its root (toward the origin where the root is at the
+/// end of what is believed), long enough to be told from `noise` [m].
+fn stub(points: &mut [Vec3], noise: f32) {
+    let root = points[0];
+    let up = if root.y > FARTHEST * 0.5 { -1.0 } else { 1.0 };
+    let step = up * STUB.max(noise * 4.0) / (points.len() - 1) as f32;
+    for (i, p) in points.iter_mut().enumerate() {
+        *p = root + Vec3::Y * (step * i as f32);
+    }
+}
+
+/// Length that f32 can not tell from zero for a strand of `count` points whose largest coordinate is `reach` [m].
+fn noise_of(count: usize, reach: f32) -> f32 {
+    reach * f32::EPSILON * 16.0 * (count - 1) as f32
+}
+
+/// The point with no coordinate beyond [`FARTHEST`].
+fn within_reach(p: Vec3) -> Vec3 {
+    p.clamp(Vec3::splat(-FARTHEST), Vec3::splat(FARTHEST))
+}
+
+/// The place at distance `d` along a strand whose points are at distances `at`.
+fn along(points: &[Vec3], at: &[f32], d: f32) -> Vec3 {
+    let j = at.partition_point(|a| *a < d).clamp(1, points.len() - 1);
+    let span = at[j] - at[j - 1];
+    let t = if span > 0.0 { ((d - at[j - 1]) / span).clamp(0.0, 1.0) } else { 0.0 };
+    points[j - 1].lerp(points[j], t)
+}
+
+/// Replaces radii that are not positive and finite by the mean of the strand's good ones, or the default. Returns how many.
+fn mend_radii(radii: &mut [f32]) -> usize {
+    let good = |r: f32| r.is_finite() && r > 0.0;
+    let (count, sum) =
+        radii.iter().filter(|r| good(**r)).fold((0, 0.0f64), |(n, sum), r| (n + 1, sum + *r as f64));
+    if count == radii.len() {
+        return 0;
+    }
+    let mean = if count > 0 { (sum / count as f64) as f32 } else { DEFAULT_RADIUS };
+    radii.iter_mut().filter(|r| !good(**r)).for_each(|r| *r = mean);
+    radii.len() - count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_good_groom_is_left_alone() {
+        let mut groom = Groom::from_strands([[Vec3::ZERO, Vec3::Y * 0.01, Vec3::Y * 0.03]], 4e-5);
+        let before = groom.clone();
+        assert_eq!(sanitize(&mut groom), Repairs::default());
+        assert_eq!(groom, before);
+    }
+
+    #[test]
+    fn a_lost_point_goes_between_its_neighbours() {
+        let mut groom = Groom::from_strands([[Vec3::ZERO, Vec3::NAN, Vec3::Y * 0.2, Vec3::INFINITY]], 4e-5);
+        assert_eq!(sanitize(&mut groom).non_finite_points, 2);
+        assert_eq!(groom.points, [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2, Vec3::Y * 0.3]);
+    }
+
+    #[test]
+    fn doubled_points_are_spread_and_root_and_tip_stay() {
+        let strand =
+            [Vec3::ZERO, Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.1 + Vec3::X * 1e-7, Vec3::new(0.1, 0.1, 0.0)];
+        let mut groom = Groom::from_strands([strand], 4e-5);
+        assert_eq!(sanitize(&mut groom).zero_segments, 2);
+        assert_eq!((groom.points[0], groom.points[4]), (strand[0], strand[4]));
+        assert!(groom.points.windows(2).all(|w| w[0].distance(w[1]) > 4e-4), "{:?}", groom.points);
+    }
+
+    #[test]
+    fn short_strands_get_points_and_their_neighbours_keep_theirs() {
+        let strands: [&[Vec3]; 4] =
+            [&[Vec3::X], &[], &[Vec3::ZERO, Vec3::Y], &[Vec3::ZERO, Vec3::Y, Vec3::Y * 2.0]];
+        let mut groom = Groom::from_strands(strands, 4e-5);
+        groom.colors = groom.points.clone();
+        let repairs = sanitize(&mut groom);
+        assert_eq!((repairs.short_strands, repairs.bad_radii), (3, 0));
+        assert_eq!(groom.offsets, [0, 3, 6, 9, 12]);
+        assert_eq!(groom.strand(0)[0], Vec3::X);
+        assert!((groom.strand_length(0) - STUB).abs() < 1e-6);
+        assert_eq!(groom.strand(2), [Vec3::ZERO, Vec3::Y * 0.5, Vec3::Y]);
+        assert_eq!((groom.radii.len(), groom.colors.len()), (12, 12));
+    }
+
+    #[test]
+    fn bad_radii_take_the_strands_mean() {
+        let mut groom = Groom::from_strands([[Vec3::ZERO, Vec3::Y, Vec3::Y * 2.0]], 4e-5);
+        groom.radii = vec![2e-5, 0.0, f32::NAN];
+        assert_eq!(sanitize(&mut groom).bad_radii, 2);
+        assert_eq!(groom.radii, [2e-5; 3]);
+    }
+
+    /// Coordinates as bad files have them.
+    fn coordinate() -> impl Strategy<Value = f32> {
+        prop_oneof![
+            6 => -1.0f32..1.0,
+            1 => Just(0.0),
+            1 => -1e-7f32..1e-7,
+            1 => prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(f32::MAX), Just(-1e5f32), -1.1e6f32..1.1e6],
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn whatever_comes_in_a_second_call_finds_nothing(
+            strands in prop::collection::vec(
+                prop::collection::vec((coordinate(), coordinate(), coordinate(), 0u8..4), 0..12), 0..6),
+            radius in prop_oneof![Just(4e-5f32), Just(0.0), Just(f32::NAN)],
+        ) {
+            let strands: Vec<Vec<Vec3>> = strands
+                .into_iter()
+                .map(|s| {
+                    let mut points: Vec<Vec3> = Vec::new();
+                    for (x, y, z, kind) in s {
+                        // Some repeat the point before, or fold back to the one before that.
+                        let back = points.len().checked_sub(kind as usize);
+                        let folded = back.filter(|_| kind > 0).and_then(|i| points.get(i)).copied();
+                        points.push(folded.filter(|_| kind < 3).unwrap_or(Vec3::new(x, y, z)));
+                    }
+                    points
+                })
+                .collect();
+            let mut groom = Groom::from_strands(&strands, radius);
+            let _ = sanitize(&mut groom);
+            prop_assert_eq!(groom.strand_count(), strands.len());
+            prop_assert!(groom.points.iter().all(|p| p.is_finite()));
+            prop_assert!(groom.radii.iter().all(|r| r.is_finite() && *r > 0.0));
+            prop_assert_eq!(groom.radii.len(), groom.points.len());
+            for s in 0..groom.strand_count() {
+                prop_assert!(groom.strand(s).len() >= 3);
+                prop_assert!(groom.strand(s).windows(2).all(|w| w[0] != w[1]));
+            }
+            let once = groom.clone();
+            prop_assert_eq!(sanitize(&mut groom), Repairs::default());
+            prop_assert_eq!(groom, once);
+        }
+    }
 }

@@ -68,14 +68,8 @@ pub enum HairColor {
 
 impl HairColor {
     /// Every colour, dark to light.
-    pub const ALL: [Self; 6] = [
-        Self::Black,
-        Self::DarkBrown,
-        Self::Brown,
-        Self::Red,
-        Self::Blonde,
-        Self::Grey,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Black, Self::DarkBrown, Self::Brown, Self::Red, Self::Blonde, Self::Grey];
 }
 
 impl From<HairColor> for HairLook {
@@ -88,11 +82,6 @@ impl From<HairColor> for HairLook {
             HairColor::Blonde => ([0.42, 0.27, 0.13], [0.66, 0.49, 0.29], 0.22),
             HairColor::Grey => ([0.36, 0.355, 0.36], [0.46, 0.455, 0.45], 0.6),
         };
-        Self {
-            root_color: Vec3::from(root),
-            tip_color: Vec3::from(tip),
-            variation,
-            ..Self::default()
-        }
+        Self { root_color: Vec3::from(root), tip_color: Vec3::from(tip), variation, ..Self::default() }
     }
 }

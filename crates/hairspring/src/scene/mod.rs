@@ -1,5 +1,7 @@
 //! A scene: everything that a shot needs, in memory, however it was made (by code, or read from a file by `hairspring-io`).
 
+pub mod bench;
+pub mod builtin;
 mod camera;
 mod look;
 mod settings;

@@ -16,7 +16,7 @@ pub enum Guides {
 }
 
 /// What is laid over follow hairs after the guides have placed them (DESIGN §7). All off by default.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Effects {
     /// How far tips are drawn to their first guide, 0 (not) to 1 (wholly); grows from root to tip.
@@ -27,6 +27,12 @@ pub struct Effects {
     pub curl_length: f32,
     /// Amplitude of the flyaway noise at the tip [m], 0 or more.
     pub noise: f32,
+}
+
+impl Default for Effects {
+    fn default() -> Self {
+        Self { clump: 0.0, curl_radius: 0.0, curl_length: 0.03, noise: 0.0 }
+    }
 }
 
 /// Moving air, the same everywhere but for gusts.

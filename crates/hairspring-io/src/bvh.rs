@@ -1,0 +1,250 @@
+//! Biovision `.bvh` motion capture (Meredith & Maddock 2001, "Motion Capture File Formats Explained"): a hierarchy of
+//! joints with offsets and channels in any order, then a line of numbers a frame.
+
+use crate::{
+    Axis, Motion, Place, Problem, ReadOptions,
+    motion::check_samples,
+    text::{Words, as_text, shortened},
+    units::{apply_to_motion, turn_of},
+};
+use glam::{Quat, Vec3};
+use hairspring::body::{Body, Clip, Joint, Trs};
+
+/// One number of a frame's line.
+#[derive(Clone, Copy)]
+enum Channel {
+    Position(usize),
+    Rotation(Vec3),
+}
+
+struct Hierarchy {
+    joints: Vec<Joint>,
+    /// Ends of limbs: the joint that carries them, and where from it.
+    ends: Vec<(u32, Vec3)>,
+    /// Channels of each joint, in the file's order.
+    channels: Vec<Vec<Channel>>,
+}
+
+/// Reads a `.bvh` file, in its own units.
+///
+/// Rotations are applied in the order in which the file lists them: the first listed is the outermost.
+///
+/// # Errors
+/// A hierarchy that is not closed, a line of frames with too few numbers, or a frame time that is not above 0.
+pub fn parse(data: &[u8]) -> Result<Motion, Problem> {
+    read(data).map(|(motion, _)| motion)
+}
+
+/// The motion, and the ends of its limbs: the joint that carries each, and where from it.
+fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
+    let text = as_text(data);
+    let mut words = Words::new(&text);
+    let Hierarchy { joints, ends, channels } = hierarchy(&mut words)?;
+    words.expect("Frames:")?;
+    let frames: usize = words.number("the number of frames")?;
+    let line = words.line();
+    words.expect("Frame")?;
+    words.expect("Time:")?;
+    let frame_time: f32 = words.number("the time of a frame")?;
+    // 1 µs to 100 s a frame: outside it a clip's times are no longer exact.
+    if !(1e-6..=100.0).contains(&frame_time) {
+        return Err(Problem::line(
+            words.line(),
+            format!("a frame time of {frame_time} s is not between 0.000001 and 100"),
+        ));
+    }
+    let width: usize = channels.iter().map(Vec::len).sum();
+    // A number and a space are two bytes at least; a file without channels has one still frame.
+    if frames == 0 || frames.saturating_mul(width.max(1)) > text.len() / 2 + 1 {
+        let text =
+            format!("{frames} frames of {width} numbers do not fit into a file of {} bytes", text.len());
+        return Err(Problem::line(line, text));
+    }
+    check_samples(frames, joints.len(), Place::Line(line))?;
+    let mut samples = Vec::with_capacity(frames * joints.len());
+    for frame in 0..frames {
+        for (joint, channels) in joints.iter().zip(&channels) {
+            samples.push(local(joint, channels, || words.finite(&format!("a number of frame {frame}")))?);
+        }
+    }
+    let clip = Clip { name: String::new(), rate: 1.0 / frame_time, joint_count: joints.len(), samples };
+    Ok((Motion { joints, clip }, ends))
+}
+
+/// Units that captures come in [m]: metres, centimetres, CMU's (1/0.45 inch), inches, decimetres.
+const UNITS: [(f32, &str); 5] = [
+    (1.0, "metres"),
+    (0.01, "centimetres"),
+    (0.0254 / 0.45, "CMU units of 1/0.45 inch"),
+    (0.0254, "inches"),
+    (0.1, "decimetres"),
+];
+
+/// Height of a person's skeleton [m]: it ends some 10 cm below the crown and at the ankle or the toe.
+const PERSON: std::ops::RangeInclusive<f32> = 1.35..=1.95;
+/// Height that is assumed where no known unit gives a person [m].
+const TYPICAL: f32 = 1.6;
+
+/// Reads a `.bvh` file into metres and Y up, with notes on what was guessed: the unit and the axis from the person's
+/// height in the frames.
+pub(crate) fn read_in_metres(
+    data: &[u8],
+    options: &ReadOptions,
+) -> Result<(Motion, f32, Vec<String>), Problem> {
+    let (mut motion, ends) = read(data)?;
+    let mut notes = Vec::new();
+    let size = median_size(&motion, &ends);
+    let up = options.up.unwrap_or(if size.z > size.y { Axis::Z } else { Axis::Y });
+    if options.up.is_none() && up == Axis::Z {
+        notes.push("read as Z up, since the person is tallest along Z; `up` sets another".into());
+    }
+    let height = if up == Axis::Z { size.z } else { size.y };
+    let scale = options.scale.unwrap_or_else(|| {
+        let unit = UNITS.iter().find(|(metres, _)| PERSON.contains(&(height * metres)));
+        let (scale, name) = match unit {
+            Some((metres, name)) => (*metres, (*name).to_owned()),
+            None if height > 0.0 => (TYPICAL / height, format!("units of {:.5} m", TYPICAL / height)),
+            None => (1.0, "metres".into()),
+        };
+        notes.push(format!(
+            "a .bvh names no unit: guessed {name} (the person is then {:.2} m tall); `scale` sets another",
+            height * scale
+        ));
+        scale
+    });
+    let turn = turn_of(up);
+    apply_to_motion(&mut motion.joints, std::slice::from_mut(&mut motion.clip), scale, turn);
+    Ok((motion, scale, notes))
+}
+
+/// Size of the box around the joints and ends, the median over some frames, by axis [file units].
+fn median_size(motion: &Motion, ends: &[(u32, Vec3)]) -> Vec3 {
+    let body = Body { joints: motion.joints.clone(), ..Body::default() };
+    let clip = &motion.clip;
+    let step = clip.frame_count().div_ceil(64).max(1);
+    let sizes: Vec<Vec3> = (0..clip.frame_count())
+        .step_by(step)
+        .map(|f| {
+            let world = body.world(&clip.samples[f * clip.joint_count..][..clip.joint_count]);
+            let joints = world.iter().map(|w| Vec3::from(w.translation));
+            let ends = ends.iter().map(|(j, offset)| world[*j as usize].transform_point3(*offset));
+            let (lo, hi) = joints
+                .chain(ends)
+                .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
+            hi - lo
+        })
+        .collect();
+    let median = |axis: usize| {
+        let mut along: Vec<f32> = sizes.iter().map(|s| s[axis]).filter(|x| x.is_finite()).collect();
+        along.sort_by(f32::total_cmp);
+        along.get(along.len() / 2).copied().unwrap_or(0.0)
+    };
+    Vec3::new(median(0), median(1), median(2))
+}
+
+/// A joint's local transform from its channels. A position channel replaces the offset's coordinate.
+fn local(
+    joint: &Joint,
+    channels: &[Channel],
+    mut number: impl FnMut() -> Result<f32, Problem>,
+) -> Result<Trs, Problem> {
+    let mut trs = joint.rest;
+    for channel in channels {
+        let value = number()?;
+        match channel {
+            Channel::Position(axis) => trs.translation[*axis] = value,
+            Channel::Rotation(axis) => trs.rotation *= Quat::from_axis_angle(*axis, value.to_radians()),
+        }
+    }
+    trs.rotation = if trs.rotation.is_finite() { trs.rotation.normalize() } else { Quat::IDENTITY };
+    Ok(trs)
+}
+
+fn hierarchy(words: &mut Words<'_>) -> Result<Hierarchy, Problem> {
+    let mut read = Hierarchy { joints: Vec::new(), ends: Vec::new(), channels: Vec::new() };
+    // Joints whose braces are open; `None` for an end site.
+    let mut open: Vec<Option<u32>> = Vec::new();
+    words.expect("HIERARCHY")?;
+    loop {
+        let word = words.word();
+        match word.map(str::to_ascii_uppercase).as_deref() {
+            Some(kind @ ("ROOT" | "JOINT")) => {
+                if (kind == "ROOT") != open.is_empty() || open.last().is_some_and(Option::is_none) {
+                    return Err(Problem::line(words.line(), format!("{kind} can not stand here")));
+                }
+                let name = opened(words)?;
+                if read.joints.len() > u16::MAX as usize {
+                    return Err(Problem::limit(Place::Line(words.line()), "more than 65,536 joints"));
+                }
+                let parent = open.last().copied().flatten();
+                open.push(Some(read.joints.len() as u32));
+                read.joints.push(Joint { name, parent, rest: Trs::default() });
+                read.channels.push(Vec::new());
+            }
+            Some("END") => {
+                opened(words)?;
+                open.push(None);
+            }
+            Some("OFFSET") => {
+                let offset = words.vector("an offset")?;
+                match open.last() {
+                    Some(Some(j)) => read.joints[*j as usize].rest.translation = offset,
+                    Some(None) => {
+                        let parent = open.iter().rev().find_map(|j| *j);
+                        read.ends.extend(parent.map(|j| (j, offset)));
+                    }
+                    None => return Err(words.missing("a joint", word)),
+                }
+            }
+            Some("CHANNELS") => {
+                let Some(Some(j)) = open.last() else {
+                    return Err(words.missing("a joint", word));
+                };
+                let count: usize = words.number("the number of channels")?;
+                for _ in 0..count {
+                    let name = words.word();
+                    let channel =
+                        name.and_then(channel).ok_or_else(|| words.missing("a channel's name", name))?;
+                    read.channels[*j as usize].push(channel);
+                }
+            }
+            Some("}") => {
+                open.pop()
+                    .ok_or_else(|| Problem::line(words.line(), "a brace is closed that was not opened"))?;
+            }
+            Some("MOTION") if open.is_empty() && !read.joints.is_empty() => return Ok(read),
+            Some(_) => {
+                let word = shortened(word.unwrap_or_default());
+                let open = open.len();
+                return Err(Problem::line(
+                    words.line(),
+                    format!("`{word}` can not stand here ({open} braces are open)"),
+                ));
+            }
+            None => return Err(words.missing("MOTION", None)),
+        }
+    }
+}
+
+/// The rest of a line up to the brace that opens a joint, which may stand on the next line.
+fn opened(words: &mut Words<'_>) -> Result<String, Problem> {
+    let mut rest = words.rest_of_line();
+    if rest.last() == Some(&"{") {
+        rest.pop();
+    } else {
+        words.expect("{")?;
+    }
+    Ok(rest.join(" "))
+}
+
+fn channel(name: &str) -> Option<Channel> {
+    Some(match name.to_ascii_lowercase().as_str() {
+        "xposition" => Channel::Position(0),
+        "yposition" => Channel::Position(1),
+        "zposition" => Channel::Position(2),
+        "xrotation" => Channel::Rotation(Vec3::X),
+        "yrotation" => Channel::Rotation(Vec3::Y),
+        "zrotation" => Channel::Rotation(Vec3::Z),
+        _ => return None,
+    })
+}

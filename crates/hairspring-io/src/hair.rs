@@ -1,0 +1,145 @@
+//! The `.hair` format of Cem Yuksel (cemyuksel.com, "HAIR Model Files"): a 128-byte header, then the arrays
+//! that its flags name, each for all strands.
+
+use crate::{
+    Place, Problem,
+    bytes::Bytes,
+    strands::{Read, Strands, gather_offsets},
+    units::{Axis, FileUnits},
+};
+use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
+use glam::Vec3;
+use hairspring::groom::{DEFAULT_RADIUS, Groom};
+use std::io::{self, Write};
+
+const HAS_SEGMENTS: u32 = 1;
+const HAS_POINTS: u32 = 2;
+const HAS_THICKNESS: u32 = 4;
+const HAS_TRANSPARENCY: u32 = 8;
+const HAS_COLORS: u32 = 16;
+
+/// What our writer puts into the header's free text; a file that begins so is in metres, Y up, with true radii.
+const MARK: &[u8] = b"Hairspring: metres, Y up";
+
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Header {
+    magic: [u8; 4],
+    strands: u32,
+    points: u32,
+    flags: u32,
+    /// Segments of every strand where there is no array of them.
+    segments: u32,
+    /// Diameter.
+    thickness: f32,
+    transparency: f32,
+    color: [f32; 3],
+    info: [u8; 88],
+}
+
+/// Reads a `.hair` file, in its own units.
+///
+/// # Errors
+/// A wrong magic, counts that disagree, or a file cut short.
+pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
+    read(data).map(Read::in_file_units)
+}
+
+pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
+    let mut bytes = Bytes::new(data);
+    let header: Header = bytes.value("the header")?;
+    if &header.magic != b"HAIR" {
+        return Err(Problem::new(
+            Place::Byte(0),
+            "a .hair file begins with the letters HAIR, this one does not",
+        ));
+    }
+    if header.flags & HAS_POINTS == 0 {
+        return Err(Problem::new(
+            Place::Byte(12),
+            "the header says that there are no points: nothing to read",
+        ));
+    }
+    let (strands, points) = (header.strands as usize, header.points as usize);
+    let offsets = if header.flags & HAS_SEGMENTS != 0 {
+        let at = bytes.at();
+        let segments: Vec<u16> = bytes.array(strands, "the segment counts")?;
+        gather_offsets(segments.iter().map(|s| *s as usize + 1), points, at)?
+    } else {
+        let per_strand = header.segments as usize + 1;
+        // Every strand has at least one point, so `strands` is bounded by `points`, and that by the file.
+        if strands.checked_mul(per_strand) != Some(points) || points > bytes.remaining() / size_of::<Vec3>() {
+            let text = format!(
+                "{strands} strands of {per_strand} points (the header's default) are not the {points} points that it names, or the file is cut short"
+            );
+            return Err(Problem::new(Place::Byte(4), text));
+        }
+        gather_offsets(std::iter::repeat_n(per_strand, strands), points, 4)?
+    };
+    let mut groom = Groom { offsets, ..Groom::default() };
+    groom.points = bytes.array(points, "the points")?;
+    let ours = header.info.starts_with(MARK);
+    let mut notes = Vec::new();
+    let thickness: Option<Vec<f32>> = match header.flags & HAS_THICKNESS {
+        0 => None,
+        _ => Some(bytes.array(points, "the thicknesses")?),
+    };
+    if header.flags & HAS_TRANSPARENCY != 0 {
+        let _: Vec<f32> = bytes.array(points, "the transparencies")?;
+        notes.push("the transparency of each point is not used: it follows from the fibre's width".into());
+    }
+    if header.flags & HAS_COLORS != 0 {
+        groom.colors = bytes.array(points, "the colours")?;
+    }
+    // Thickness is a diameter. Without an array the header's default is a line width for display, not a measure.
+    let radii = match thickness {
+        Some(diameters) => Some(diameters.iter().map(|d| d * 0.5).collect()),
+        None if ours => Some(vec![header.thickness * 0.5; points]),
+        None => None,
+    };
+    let units = if ours {
+        FileUnits { scale: Some(1.0), up: Some(Axis::Y) }
+    } else {
+        notes.push("read as Z up, as .hair models are; `up` sets another".into());
+        FileUnits { scale: None, up: Some(Axis::Z) }
+    };
+    Ok(Read { groom, radii, true_radii: ours, units, notes })
+}
+
+/// Writes strands as a `.hair` file in metres, Y up.
+pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()> {
+    let counts: Vec<u16> = strands.counts().map(|n| (n - 1) as u16).collect();
+    let uniform = counts.windows(2).all(|w| w[0] == w[1]);
+    let radius = strands.radii.first().copied().unwrap_or(DEFAULT_RADIUS);
+    let one_radius = strands.radii.iter().all(|r| *r == radius);
+    let mut flags = HAS_POINTS;
+    for (flag, on) in
+        [(HAS_SEGMENTS, !uniform), (HAS_THICKNESS, !one_radius), (HAS_COLORS, !strands.colors.is_empty())]
+    {
+        if on {
+            flags |= flag;
+        }
+    }
+    let mut header = Header {
+        magic: *b"HAIR",
+        strands: counts.len() as u32,
+        points: strands.points.len() as u32,
+        flags,
+        segments: if uniform { counts.first().copied().unwrap_or(0) as u32 } else { 0 },
+        thickness: radius * 2.0,
+        transparency: 0.0,
+        color: [0.0; 3],
+        info: [0; 88],
+    };
+    header.info[..MARK.len()].copy_from_slice(MARK);
+    out.write_all(bytes_of(&header))?;
+    if !uniform {
+        out.write_all(cast_slice(&counts))?;
+    }
+    out.write_all(cast_slice(strands.points))?;
+    if !one_radius {
+        let diameters: Vec<f32> = strands.radii.iter().map(|r| r * 2.0).collect();
+        out.write_all(cast_slice(&diameters))?;
+    }
+    out.write_all(cast_slice(strands.colors))
+}

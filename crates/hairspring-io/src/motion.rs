@@ -1,0 +1,27 @@
+//! A motion as a file holds it: a skeleton of its own, and what it does.
+
+use crate::{Place, Problem};
+use hairspring::body::{Clip, Joint};
+
+/// A skeleton and a clip for its joints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Joints, parents before children.
+    pub joints: Vec<Joint>,
+    /// Their motion.
+    pub clip: Clip,
+}
+
+/// Most joint samples (frames × joints) that a clip may have: a quarter of an hour of a hundred joints at 120 Hz.
+pub(crate) const MAX_SAMPLES: usize = 12_000_000;
+
+/// Checks `frames` × `joints` against [`MAX_SAMPLES`].
+pub(crate) fn check_samples(frames: usize, joints: usize, place: Place) -> Result<(), Problem> {
+    if frames.saturating_mul(joints) > MAX_SAMPLES {
+        let text = format!(
+            "{frames} frames of {joints} joints are above the limit of {MAX_SAMPLES} samples; cut the motion"
+        );
+        return Err(Problem::limit(place, text));
+    }
+    Ok(())
+}

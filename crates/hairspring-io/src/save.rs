@@ -1,0 +1,90 @@
+//! Writing a groom, whole or not at all.
+
+use crate::{Error, Format, Result, Strands, hair, tfx, usc};
+use hairspring::groom::Groom;
+use std::{
+    io::{self, BufWriter, Write},
+    path::Path,
+};
+
+/// Writes a groom in the format of the path's extension (`.hair`, `.tfx`, `.data`), in metres, Y up, replacing a file
+/// that is there only once the new one is whole. Returns what the format could not hold, a sentence each.
+///
+/// # Errors
+/// Another extension, strands that the format can not hold, or a system that does not take the bytes.
+pub fn write_groom(path: &Path, groom: &Groom) -> Result<Vec<String>> {
+    let format = write_strands(path, groom.into())?;
+    let mut lost = Vec::new();
+    let parts = [
+        (groom.groups.iter().any(|g| *g != 0), "groups"),
+        (!groom.scales.is_empty(), "multipliers of single strands"),
+        (!groom.guides.is_empty(), "guide weights"),
+        (!groom.roots.is_empty(), "root bindings"),
+        (!groom.root_uvs.is_empty() && format != Format::Tfx, "texture coordinates"),
+        (!groom.colors.is_empty() && format == Format::Usc, "colours"),
+        (varies_along(groom) && format == Format::Tfx, "radii that vary along a strand"),
+        (format == Format::Usc, "radii"),
+    ];
+    let names: Vec<&str> = parts.iter().filter(|(there, _)| *there).map(|(_, name)| *name).collect();
+    if !names.is_empty() {
+        lost.push(format!("a .{} file has no place for {}: left out", format.name(), names.join(", ")));
+    }
+    Ok(lost)
+}
+
+/// Writes borrowed strands, such as one baked frame, in the format of the path's extension; as [`write_groom`].
+///
+/// # Errors
+/// As [`write_groom`].
+pub fn write_strands(path: &Path, strands: Strands<'_>) -> Result<Format> {
+    let unwritable = |reason: String| Error::Unwritable { path: path.to_owned(), reason };
+    let format =
+        Format::of(path).filter(|f| Format::GROOMS.contains(f)).ok_or_else(|| Error::Unsupported {
+            path: path.to_owned(),
+            reason: "a hairstyle is written as .hair, .tfx or .data, told by the extension".into(),
+        })?;
+    strands.check().map_err(unwritable)?;
+    let misfit = match format {
+        Format::Tfx => tfx::misfit(&strands),
+        Format::Hair => strands.counts().position(|n| n > 1 << 16).map(|s| {
+            format!(
+                "strand {s} has more than the 65,536 points that a .hair file can hold; write .data instead"
+            )
+        }),
+        _ => None,
+    };
+    if let Some(reason) = misfit {
+        return Err(unwritable(reason));
+    }
+    atomically(path, |out| match format {
+        Format::Hair => hair::write(out, &strands),
+        Format::Tfx => tfx::write(out, &strands),
+        _ => usc::write(out, &strands),
+    })
+    .map_err(|source| Error::Write { path: path.to_owned(), source })?;
+    Ok(format)
+}
+
+/// Whether a strand's radius is not the same at all its points.
+fn varies_along(groom: &Groom) -> bool {
+    (0..groom.strand_count()).any(|s| {
+        let radii = groom.radii.get(groom.range(s)).unwrap_or_default();
+        radii.windows(2).any(|w| w[0] != w[1])
+    })
+}
+
+/// Has `write` fill a temporary file in the folder of `path`, then renames it.
+fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".hairspring-");
+    // Temporary files are private by default; a finished one has the usual rights (cut by the umask).
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.tempfile_in(folder)?;
+    let mut out = BufWriter::with_capacity(1 << 20, file);
+    write(&mut out)?;
+    let file = out.into_inner().map_err(|e| e.into_error())?;
+    file.persist(path).map_err(|e| e.error)?;
+    Ok(())
+}

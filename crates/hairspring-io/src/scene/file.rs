@@ -1,0 +1,210 @@
+//! The fields of a scene file. Every field that is not said to be needed may be left out.
+
+use glam::Vec3;
+use hairspring::{
+    body::Travel,
+    scene::{Camera, Collider, Effects, Guides, HairLook, Solver, Wind},
+};
+use serde::{Deserialize, Deserializer, de};
+use std::{collections::BTreeMap, path::PathBuf};
+use toml::Spanned;
+
+use crate::Axis;
+
+/// A file named in a scene, relative to the scene's folder, with its place for messages.
+pub(super) type FileName = Spanned<PathBuf>;
+
+/// A whole scene file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneFile {
+    /// Shown in reports. Default: the file's name.
+    pub name: Option<String>,
+    /// Gravity [m/s²]. Default (0, −9.81, 0).
+    #[serde(default = "earth")]
+    pub gravity: Vec3,
+    /// What is drawn and what hair grows on.
+    pub body: Option<BodyFile>,
+    /// A closed mesh that hair collides with instead of the body's own.
+    pub collision: Option<BodyFile>,
+    /// Further simple shapes that hair collides with.
+    #[serde(default)]
+    pub collider: Vec<Collider>,
+    /// Motion of the body.
+    pub clip: Option<ClipFile>,
+    /// The hairstyles; one is needed.
+    #[serde(default)]
+    pub groom: Vec<GroomFile>,
+    /// Materials by name: `preset`, then any field of a material over it.
+    #[serde(default)]
+    pub material: BTreeMap<String, Spanned<toml::Table>>,
+    /// Moving air.
+    #[serde(default)]
+    pub wind: Wind,
+    /// Time steps and contact.
+    #[serde(default)]
+    pub solver: Solver,
+    /// Where the scene is seen from. Default: framed automatically.
+    pub camera: Option<Camera>,
+}
+
+/// `[body]` and `[collision]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BodyFile {
+    /// `.glb`, `.gltf`, `.obj` or `.tfxmesh`; needed.
+    pub file: FileName,
+    /// Metres in one unit of the file [m]. Default: by the format, or guessed and said.
+    pub scale: Option<f32>,
+    /// The axis that points up, "y" or "z". Default y.
+    pub up: Option<Axis>,
+    /// Names of the parts to keep. Default: all.
+    pub parts: Option<Vec<String>>,
+    /// MakeHuman rig (JSON) of an `.obj`; needs `weights`.
+    pub rig: Option<FileName>,
+    /// MakeHuman skin weights (JSON) of an `.obj`; needs `rig`.
+    pub weights: Option<FileName>,
+    /// Linear RGB colour of the whole surface, 0 to 1. Default: the file's.
+    pub color: Option<Vec3>,
+    /// 0 (glossy) to 1 (matt), of the whole surface. Default: the file's.
+    pub roughness: Option<f32>,
+    /// `[collision]` only: the body's joint that carries a mesh without joints of its own. Default: the body's first.
+    pub joint: Option<String>,
+}
+
+/// `[clip]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ClipFile {
+    /// `.bvh`, `.glb` or `.gltf`. Default: the body's own motions.
+    pub file: Option<FileName>,
+    /// Name of the motion in a `.glb`. Default: the first.
+    pub name: Option<String>,
+    /// Metres in one unit of the file [m]. Default: by the format, or guessed and said.
+    pub scale: Option<f32>,
+    /// The axis that points up, "y" or "z". Default: by the format, or guessed and said.
+    pub up: Option<Axis>,
+    /// First frame that is used, counted from 0. Default 0.
+    #[serde(default)]
+    pub start: usize,
+    /// A joint of the motion, such as "Head", that drives the whole body as one rigid piece. Default: joints move the
+    /// body's joints of the same names.
+    pub joint: Option<String>,
+    /// With `joint`, needed: the point of the body that it turns about [m].
+    pub pivot: Option<Vec3>,
+    /// With `joint`: the frame in which the joint counts as being at rest, counted from 0. Default: `start`.
+    pub rest_frame: Option<usize>,
+    /// With `joint`: what is kept of the way through the world: "keep", "in-place" (bobbing only) or "none".
+    /// Default "in-place".
+    pub travel: Option<TravelName>,
+    /// With `joint`: direction that the body faces, about +Y from +Z [degrees]. Default 0.
+    pub facing: Option<f32>,
+}
+
+/// [`Travel`] as a scene file names it.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum TravelName {
+    Keep,
+    InPlace,
+    None,
+}
+
+impl From<TravelName> for Travel {
+    fn from(name: TravelName) -> Self {
+        match name {
+            TravelName::Keep => Travel::Keep,
+            TravelName::InPlace => Travel::InPlace,
+            TravelName::None => Travel::None,
+        }
+    }
+}
+
+/// One `[[groom]]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GroomFile {
+    /// `.hair`, `.tfx` or `.data`; needed.
+    pub file: FileName,
+    /// Metres in one unit of the file [m]. Default: by the format, or guessed and said.
+    pub scale: Option<f32>,
+    /// The axis that points up, "y" or "z". Default: z for `.hair`, y otherwise.
+    pub up: Option<Axis>,
+    /// Where the hairstyle stands, after `scale` and `up`.
+    #[serde(default)]
+    pub transform: Placement,
+    /// Name of a `[material.NAME]` or a preset, or a list of them, one a group. Default: a lone fibre of human hair.
+    pub material: Option<OneOrMore>,
+    /// Which strands are simulated: a number, "all", or "file". Default "file".
+    #[serde(default, deserialize_with = "guides")]
+    pub guides: Guides,
+    /// How it is drawn.
+    #[serde(default)]
+    pub look: HairLook,
+    /// What is laid over follow hairs.
+    #[serde(default)]
+    pub effects: Effects,
+    /// `.tfxbone`: each root binds to skin that follows one of its bones; needs a skinned body.
+    pub bones: Option<FileName>,
+}
+
+/// `transform` of a groom: scaled, then turned about X, Y and Z in this order, then moved.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct Placement {
+    /// Where its origin goes [m]. Default 0.
+    pub position: Vec3,
+    /// Turns about X, then Y, then Z [degrees]. Default 0.
+    pub rotation: Vec3,
+    /// Factor, or one each along x, y, z; below 0 mirrors. Default 1.
+    #[serde(deserialize_with = "factors")]
+    pub scale: Vec3,
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self { position: Vec3::ZERO, rotation: Vec3::ZERO, scale: Vec3::ONE }
+    }
+}
+
+/// A name or a list of names.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a material's name or a list of names")]
+pub(super) enum OneOrMore {
+    One(String),
+    More(Vec<String>),
+}
+
+fn earth() -> Vec3 {
+    Vec3::new(0.0, -9.81, 0.0)
+}
+
+/// A number of guides, `"all"` or `"file"`.
+fn guides<'de, D: Deserializer<'de>>(from: D) -> Result<Guides, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a number of guides above 0, \"all\" or \"file\"")]
+    enum Named {
+        Count(u32),
+        Name(String),
+    }
+    match Named::deserialize(from)? {
+        Named::Count(n) if n > 0 => Ok(Guides::Count(n)),
+        Named::Name(name) if name == "all" => Ok(Guides::All),
+        Named::Name(name) if name == "file" => Ok(Guides::FromGroom),
+        _ => Err(de::Error::custom("expected a number of guides above 0, \"all\" or \"file\"")),
+    }
+}
+
+/// One factor, or three.
+fn factors<'de, D: Deserializer<'de>>(from: D) -> Result<Vec3, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a factor or three of them")]
+    enum Factor {
+        One(f32),
+        Three(Vec3),
+    }
+    Ok(match Factor::deserialize(from)? {
+        Factor::One(x) => Vec3::splat(x),
+        Factor::Three(v) => v,
+    })
+}

@@ -1,0 +1,67 @@
+//! What TOML and serde say of a scene file, as a sentence with the line and the nearest right name.
+
+use crate::Problem;
+
+/// Line of a byte offset, counted from 1.
+pub(super) fn line_at(text: &str, byte: usize) -> usize {
+    text.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count() + 1
+}
+
+/// The problem that a TOML error tells of.
+pub(super) fn problem(text: &str, error: &toml::de::Error) -> Problem {
+    let message = reworded(error.message());
+    match error.span() {
+        Some(span) => Problem::line(line_at(text, span.start), message),
+        None => Problem::whole(message),
+    }
+}
+
+/// The problem that an error in a table that begins at byte `start` tells of: the line of the key that it names, if
+/// there is one below `start`.
+pub(super) fn problem_in_table(text: &str, start: usize, error: &toml::de::Error) -> Problem {
+    let key = error.message().strip_prefix("unknown field ").and_then(|m| m.split('`').nth(1));
+    let from = line_at(text, start);
+    let line = key.and_then(|key| line_of_key(text, from, key)).unwrap_or(from);
+    Problem::line(line, reworded(error.message()))
+}
+
+/// The first line from `from` on that sets `key`.
+pub(super) fn line_of_key(text: &str, from: usize, key: &str) -> Option<usize> {
+    let sets = |line: &str| {
+        line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with(['=', '.']))
+    };
+    text.lines().enumerate().skip(from - 1).find(|(_, line)| sets(line)).map(|(i, _)| i + 1)
+}
+
+/// The one of `names` that `wrong` was probably meant to be.
+pub(super) fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let far = |name: &str| strsim::damerau_levenshtein(&wrong.to_lowercase(), &name.to_lowercase());
+    // More than half of the letters wrong is another word.
+    let near =
+        |(distance, name): &(usize, &str)| *distance * 2 <= name.chars().count().max(wrong.chars().count());
+    names.into_iter().map(|n| (far(n), n)).filter(near).min().map(|(_, n)| n)
+}
+
+/// ``unknown field `x`, expected one of `a`, `b` `` with the nearest name put first.
+fn reworded(message: &str) -> String {
+    let Some(rest) = message.strip_prefix("unknown field ").or(message.strip_prefix("unknown variant "))
+    else {
+        return message.to_owned();
+    };
+    let quoted: Vec<&str> = rest.split('`').skip(1).step_by(2).collect();
+    let Some((wrong, known)) = quoted.split_first() else {
+        return message.to_owned();
+    };
+    unknown(wrong, known.iter().copied())
+}
+
+/// The sentence that `wrong` is none of `names`.
+pub(super) fn unknown<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.into_iter().collect();
+    let hint =
+        nearest(wrong, names.iter().copied()).map_or(String::new(), |n| format!("did you mean `{n}`? "));
+    match names.is_empty() {
+        true => format!("`{wrong}` is not known here; there are none"),
+        false => format!("`{wrong}` is not known here; {hint}known are: {}", names.join(", ")),
+    }
+}

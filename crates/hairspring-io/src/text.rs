@@ -1,0 +1,91 @@
+//! Walking through a text file word by word, with the line at hand for the message.
+
+use crate::Problem;
+use glam::Vec3;
+use std::str::FromStr;
+
+/// The words of a text, with their lines.
+pub(crate) struct Words<'a> {
+    lines: std::iter::Enumerate<std::str::Lines<'a>>,
+    words: std::str::SplitWhitespace<'a>,
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    pub(crate) fn new(text: &'a str) -> Self {
+        Self { lines: text.lines().enumerate(), words: "".split_whitespace(), line: 1 }
+    }
+
+    /// Line of the last word, counted from 1.
+    pub(crate) fn line(&self) -> usize {
+        self.line
+    }
+
+    /// The next word; `None` at the end.
+    pub(crate) fn word(&mut self) -> Option<&'a str> {
+        loop {
+            if let Some(word) = self.words.next() {
+                return Some(word);
+            }
+            let (i, line) = self.lines.next()?;
+            self.line = i + 1;
+            self.words = line.split_whitespace();
+        }
+    }
+
+    /// The rest of the line that the last word stands in.
+    pub(crate) fn rest_of_line(&mut self) -> Vec<&'a str> {
+        self.words.by_ref().collect()
+    }
+
+    /// The next word, which must be `wanted` (upper and lower case alike).
+    pub(crate) fn expect(&mut self, wanted: &str) -> Result<(), Problem> {
+        match self.word() {
+            Some(word) if word.eq_ignore_ascii_case(wanted) => Ok(()),
+            found => Err(self.missing(&format!("`{wanted}`"), found)),
+        }
+    }
+
+    /// The next word as a number, which `what` names.
+    pub(crate) fn number<T: FromStr>(&mut self, what: &str) -> Result<T, Problem> {
+        match self.word() {
+            Some(word) => word.parse().map_err(|_| self.missing(what, Some(word))),
+            None => Err(self.missing(what, None)),
+        }
+    }
+
+    /// The next word as a finite number, which `what` names.
+    pub(crate) fn finite(&mut self, what: &str) -> Result<f32, Problem> {
+        let word = self.word();
+        word.and_then(finite).ok_or_else(|| self.missing(what, word))
+    }
+
+    /// The next three words as finite numbers, each of which `what` names.
+    pub(crate) fn vector(&mut self, what: &str) -> Result<Vec3, Problem> {
+        Ok(Vec3::new(self.finite(what)?, self.finite(what)?, self.finite(what)?))
+    }
+
+    /// The problem that `what` should stand here and `found` does.
+    pub(crate) fn missing(&self, what: &str, found: Option<&str>) -> Problem {
+        let found = match found {
+            Some(word) => format!("found `{}`", shortened(word)),
+            None => "the file ends".into(),
+        };
+        Problem::line(self.line, format!("expected {what}, {found}"))
+    }
+}
+
+/// `word` as a finite number.
+pub(crate) fn finite(word: &str) -> Option<f32> {
+    word.parse().ok().filter(|x: &f32| x.is_finite())
+}
+
+/// A word of the file for a message: its first 40 characters.
+pub(crate) fn shortened(word: &str) -> String {
+    if word.chars().count() <= 40 { word.into() } else { word.chars().take(40).chain(['…']).collect() }
+}
+
+/// A file's bytes as text; bytes that are no UTF-8 (names in old encodings) become replacement characters.
+pub(crate) fn as_text(data: &[u8]) -> std::borrow::Cow<'_, str> {
+    String::from_utf8_lossy(data.strip_prefix(b"\xef\xbb\xbf").unwrap_or(data))
+}

@@ -1,0 +1,224 @@
+//! TressFX `.tfx` grooms, versions 3.0 and 4.0 (AMD TressFX, `TressFXFileFormat.h` of branches 3.1.1 and 4.1):
+//! a header of offsets, then strands that all have the same number of points.
+
+use crate::{
+    Place, Problem,
+    bytes::Bytes,
+    strands::{Read, Strands},
+    units::{Axis, FileUnits},
+};
+use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
+use glam::Vec4;
+use hairspring::groom::{DEFAULT_RADIUS, Groom};
+use std::io::{self, Write};
+
+/// First reserved word of our own files: metres, Y up, true radii. ("HSPR")
+const MARK: u32 = u32::from_le_bytes(*b"HSPR");
+
+/// Header of version 4.0, 160 bytes. An offset of 0 means that the array is absent.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Header4 {
+    version: f32,
+    strands: u32,
+    points_per_strand: u32,
+    /// float4 a point: position, inverse mass.
+    positions: u32,
+    /// float2 a strand.
+    strand_uvs: u32,
+    /// float2 a point.
+    point_uvs: u32,
+    /// float a strand: diameter.
+    thickness: u32,
+    /// float4 a point.
+    colors: u32,
+    reserved: [u32; 32],
+}
+
+/// Header of version 3.0, 296 bytes.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Header3 {
+    version: f32,
+    strands: u32,
+    points_per_strand: u32,
+    follow_per_guide: u32,
+    both_ends_fixed: u32,
+    reserved_1: [u32; 31],
+    /// float3 a point.
+    positions: u32,
+    thickness: u32,
+    strand_uvs: u32,
+    colors: u32,
+    guides: u32,
+    point_uvs: u32,
+    reserved_2: [u32; 32],
+}
+
+/// Where the arrays of either version are.
+struct Layout {
+    strands: usize,
+    points_per_strand: usize,
+    positions: usize,
+    /// Floats a position: 3 or 4.
+    width: usize,
+    strand_uvs: u32,
+    thickness: u32,
+    colors: u32,
+    ours: bool,
+    notes: Vec<String>,
+}
+
+/// Reads a `.tfx` file of version 3 or 4, in its own units.
+///
+/// # Errors
+/// Another version, offsets outside the file, or a file cut short.
+pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
+    read(data).map(Read::in_file_units)
+}
+
+pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
+    let mut bytes = Bytes::new(data);
+    let layout = layout(&mut bytes)?;
+    let Layout { strands, points_per_strand, .. } = layout;
+    let points =
+        strands.checked_mul(points_per_strand).filter(|n| u32::try_from(*n).is_ok()).ok_or_else(|| {
+            let text =
+                format!("{strands} strands of {points_per_strand} points are more than 4 billion points");
+            Problem::limit(Place::Byte(4), text)
+        })?;
+    if points_per_strand == 0 && strands > 0 {
+        return Err(Problem::new(
+            Place::Byte(8),
+            format!("the header names {strands} strands without points"),
+        ));
+    }
+    let mut groom = Groom::default();
+    bytes.seek(layout.positions, "the array of positions")?;
+    groom.points = match layout.width {
+        3 => bytes.array(points, "the positions")?,
+        _ => bytes.array::<Vec4>(points, "the positions")?.iter().map(|p| p.truncate()).collect(),
+    };
+    groom.offsets = (0..=strands).map(|s| (s * points_per_strand) as u32).collect();
+    if layout.strand_uvs != 0 {
+        bytes.seek(layout.strand_uvs as usize, "the array of strand texture coordinates")?;
+        groom.root_uvs = bytes.array(strands, "the strand texture coordinates")?;
+    }
+    if layout.colors != 0 {
+        bytes.seek(layout.colors as usize, "the array of colours")?;
+        let colors: Vec<Vec4> = bytes.array(points, "the colours")?;
+        groom.colors = colors.iter().map(|c| c.truncate()).collect();
+    }
+    let radii = if layout.thickness != 0 {
+        bytes.seek(layout.thickness as usize, "the array of thicknesses")?;
+        let diameters: Vec<f32> = bytes.array(strands, "the thicknesses")?;
+        Some(diameters.iter().flat_map(|d| std::iter::repeat_n(d * 0.5, points_per_strand)).collect())
+    } else {
+        None
+    };
+    let units = FileUnits { scale: layout.ours.then_some(1.0), up: Some(Axis::Y) };
+    Ok(Read { groom, radii, true_radii: layout.ours, units, notes: layout.notes })
+}
+
+fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
+    let version: f32 = bytes.value("the version")?;
+    bytes.seek(0, "the header")?;
+    let mut notes = Vec::new();
+    match version as u32 {
+        3 => {
+            let h: Header3 = bytes.value("the header of version 3")?;
+            if h.follow_per_guide > 0 {
+                notes.push(format!(
+                    "its authors drew {} follow hairs round each strand; the file holds the guides only",
+                    h.follow_per_guide
+                ));
+            }
+            if h.guides != 0 {
+                notes.push("its table of guides is not used: guides are chosen anew".into());
+            }
+            if h.both_ends_fixed != 0 {
+                notes.push("its tips are marked as fixed; they are free here".into());
+            }
+            Ok(Layout {
+                strands: h.strands as usize,
+                points_per_strand: h.points_per_strand as usize,
+                positions: h.positions as usize,
+                width: 3,
+                strand_uvs: h.strand_uvs,
+                thickness: h.thickness,
+                colors: h.colors,
+                ours: false,
+                notes,
+            })
+        }
+        4 => {
+            let h: Header4 = bytes.value("the header of version 4")?;
+            Ok(Layout {
+                strands: h.strands as usize,
+                points_per_strand: h.points_per_strand as usize,
+                positions: h.positions as usize,
+                width: 4,
+                strand_uvs: h.strand_uvs,
+                thickness: h.thickness,
+                colors: h.colors,
+                ours: h.reserved[0] == MARK,
+                notes,
+            })
+        }
+        _ => {
+            let text = format!(
+                "version {version} of .tfx is not known: 3 and 4 are; export it again as one of these"
+            );
+            Err(Problem::new(Place::Byte(0), text))
+        }
+    }
+}
+
+/// Writes strands as a `.tfx` file of version 4 in metres, Y up; all strands must have the same number of points.
+pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()> {
+    let count = strands.strand_count();
+    let per_strand = strands.counts().next().unwrap_or(0);
+    let points = strands.points.len();
+    let radius = |s: usize| strands.radii.get(s * per_strand).copied().unwrap_or(DEFAULT_RADIUS);
+    let mut at = size_of::<Header4>();
+    let mut place = |present: bool, bytes: usize| {
+        let here = if present { at as u32 } else { 0 };
+        at += if present { bytes } else { 0 };
+        here
+    };
+    let mut header = Header4 {
+        version: 4.0,
+        strands: count as u32,
+        points_per_strand: per_strand as u32,
+        positions: place(true, points * size_of::<Vec4>()),
+        strand_uvs: place(!strands.root_uvs.is_empty(), count * 8),
+        point_uvs: 0,
+        thickness: place(count > 0, count.next_multiple_of(2) * 4),
+        colors: place(!strands.colors.is_empty(), points * size_of::<Vec4>()),
+        reserved: [0; 32],
+    };
+    header.reserved[0] = MARK;
+    out.write_all(bytes_of(&header))?;
+    for w in strands.offsets.windows(2) {
+        // Inverse mass: the first two points are driven by the scalp.
+        let run = strands.points[w[0] as usize..w[1] as usize].iter().enumerate();
+        let run: Vec<Vec4> = run.map(|(i, p)| p.extend(if i < 2 { 0.0 } else { 1.0 })).collect();
+        out.write_all(cast_slice(&run))?;
+    }
+    out.write_all(cast_slice(strands.root_uvs))?;
+    let mut diameters: Vec<f32> = (0..count).map(|s| radius(s) * 2.0).collect();
+    diameters.resize(count.next_multiple_of(2), 0.0);
+    out.write_all(cast_slice(&diameters))?;
+    let colors: Vec<Vec4> = strands.colors.iter().map(|c| c.extend(1.0)).collect();
+    out.write_all(cast_slice(&colors))
+}
+
+/// Why these strands do not fit into a `.tfx` file, if they do not.
+pub(crate) fn misfit(strands: &Strands<'_>) -> Option<String> {
+    let first = strands.counts().next()?;
+    let other = strands.counts().position(|n| n != first)?;
+    let n = strands.counts().nth(other).unwrap_or_default();
+    Some(format!(
+        "a .tfx file needs the same number of points in every strand, but strand 0 has {first} and strand {other} has {n}; write .hair or .data instead"
+    ))
+}

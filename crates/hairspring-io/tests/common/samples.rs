@@ -1,0 +1,177 @@
+//! Small files of every format, made by code, and the readers that take them.
+
+use glam::{Vec2, Vec3};
+use hairspring::groom::Groom;
+use hairspring_io::{
+    Problem, bvh, gltf, hair, makehuman, obj, scene, tfx, tfxbone, tfxmesh, usc, write_groom,
+};
+
+/// A format's name, a small file of it, and its reader.
+pub type Sample = (&'static str, Vec<u8>, fn(&[u8]) -> Result<(), Problem>);
+
+/// Three strands of `points` points, with colours and texture coordinates.
+pub fn groom(points: usize) -> Groom {
+    let strands =
+        (0..3).map(|s| (0..points).map(|i| Vec3::new(s as f32, 0.1 * i as f32, 0.5)).collect::<Vec<_>>());
+    let mut groom = Groom::from_strands(strands, 4e-5);
+    groom.radii.iter_mut().enumerate().for_each(|(i, r)| *r += 1e-6 * (i / points) as f32);
+    groom.colors = groom.points.iter().map(|p| p.fract()).collect();
+    groom.root_uvs = vec![Vec2::new(0.25, 0.5); 3];
+    groom
+}
+
+/// The bytes that the writer for `extension` makes of `groom`.
+pub fn written(groom: &Groom, extension: &str) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("groom").with_extension(extension);
+    write_groom(&path, groom).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+/// One sample of each format.
+pub fn all() -> Vec<Sample> {
+    let mut uneven = groom(4);
+    uneven.offsets = vec![0, 3, 8, 12];
+    vec![
+        ("hair", written(&uneven, "hair"), |b| hair::parse(b).map(drop)),
+        ("hair-even", written(&groom(4), "hair"), |b| hair::parse(b).map(drop)),
+        ("tfx-4", written(&groom(4), "tfx"), |b| tfx::parse(b).map(drop)),
+        ("tfx-3", tfx_3(), |b| tfx::parse(b).map(drop)),
+        ("data", written(&uneven, "data"), |b| usc::parse(b).map(drop)),
+        ("tfxbone", bones(), |b| tfxbone::parse(b).map(drop)),
+        ("tfxmesh", skinned_mesh().into_bytes(), |b| tfxmesh::parse(b).map(drop)),
+        ("obj", mesh().into_bytes(), |b| obj::parse(b).map(drop)),
+        ("bvh", motion().into_bytes(), |b| bvh::parse(b).map(drop)),
+        ("glb", glb(), |b| gltf::parse(b, &|_| None).map(drop)),
+        ("rig", RIG.into(), |b| makehuman::parse(obj::parse(mesh().as_bytes())?, b, WEIGHTS).map(drop)),
+        ("weights", WEIGHTS.into(), |b| makehuman::parse(obj::parse(mesh().as_bytes())?, RIG, b).map(drop)),
+        ("toml", include_bytes!("../../../../docs/scene.md").to_vec(), |b| {
+            let page = String::from_utf8_lossy(b);
+            let text = page
+                .split_once("```toml\n")
+                .map_or(&*page, |(_, rest)| rest.trim_end().trim_end_matches("```"));
+            scene::check_text(text)
+        }),
+    ]
+}
+
+fn tfx_3() -> Vec<u8> {
+    let mut words = vec![0u32; 74];
+    words[..4].copy_from_slice(&[3f32.to_bits(), 2, 3, 4]);
+    words[36] = 296;
+    words.extend((0..18).map(|i| (i as f32).to_bits()));
+    words.iter().flat_map(|w| w.to_le_bytes()).collect()
+}
+
+fn bones() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut word = |w: u32, name: &[u8]| {
+        bytes.extend(w.to_le_bytes());
+        bytes.extend(name);
+    };
+    word(2, b"");
+    for (i, name) in [b"hip\0", b"arm\0"].iter().enumerate() {
+        word(i as u32, b"");
+        word(4, *name);
+    }
+    word(3, b"");
+    for s in 0..3 {
+        word(s, b"");
+        for (bone, weight) in [(1, 0.75f32), (0, 0.25), (0, 0.0), (0, 0.0)] {
+            word(bone, &weight.to_le_bytes());
+        }
+    }
+    bytes
+}
+
+/// The text of a `.tfxmesh` of one triangle.
+pub fn skinned_mesh() -> String {
+    "# a triangle\nnumOfBones 2\n0 hip\n1 arm\nnumOfVertices 3\n# index, position, normal, joints, weights\n\
+     0 0 0 0 0 1 0 0 1 0 0 1 0 0 0\n1 1 0 0 0 1 0 1 0 0 0 0.5 0.5 0 0\n2 0 0 -1 0 1 0 1 0 0 0 1 0 0 0\n\
+     numOfTriangles 1\n0 0 1 2\n"
+        .into()
+}
+
+/// The text of an `.obj` of two groups.
+pub fn mesh() -> String {
+    "o thing\nv 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\nv 0 1 0\nvt 0 0\nvt 1 1\ng floor\nf 1/1 2/2 3/1 4\n\
+     g joint-a\nf -1//1 1 2\n"
+        .into()
+}
+
+fn motion() -> String {
+    "HIERARCHY\nROOT Hips\n{\n OFFSET 0 1 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n\
+     JOINT Head\n {\n OFFSET 0 0.5 0\n CHANNELS 3 Yrotation Xrotation Zrotation\n End Site\n {\n OFFSET 0 0.2 0\n }\n }\n}\n\
+     MOTION\nFrames: 2\nFrame Time: 0.0333\n0 1 0 10 20 30 1 2 3\n0 1.1 0 10 20 30 1 2 4\n"
+        .into()
+}
+
+/// A rig of two bones over [`mesh`].
+pub const RIG: &[u8] = br#"{"hip": {"head": {"strategy": "CUBE", "cube_name": "joint-a"}, "parent": ""},
+  "arm": {"head": {"strategy": "MEAN", "vertex_indices": [0, 1]}, "parent": "hip"}}"#;
+
+/// Weights for [`RIG`].
+pub const WEIGHTS: &[u8] = br#"{"weights": {"hip": [[0, 1.0], [1, 0.5]], "arm": [[1, 0.5], [2, 1.0]]}}"#;
+
+/// A GLB of one skinned triangle and one that a node carries, with an animation of every interpolation.
+pub fn glb() -> Vec<u8> {
+    let mut bin: Vec<u8> = Vec::new();
+    let mut views = Vec::new();
+    let mut add = |bytes: Vec<u8>| {
+        views.push(format!(r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#, bin.len(), bytes.len()));
+        bin.extend(bytes);
+        bin.resize(bin.len().next_multiple_of(4), 0);
+    };
+    let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    add(floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0])); // 0: positions
+    add(vec![0, 0, 1, 0, 2, 0]); // 1: indices, u16
+    add(vec![0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]); // 2: joints, u8
+    add(vec![255, 0, 0, 0, 128, 127, 0, 0, 255, 0, 0, 0]); // 3: weights, normalised u8
+    let identity = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let mut down = identity;
+    down[13] = -1.0;
+    add(floats(&[identity, down].concat())); // 4: inverse bind matrices
+    add(floats(&[0.0, 0.5])); // 5: times
+    add(floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0])); // 6: rotations
+    add(floats(&[0.0; 18])); // 7: cubic translations
+    add(floats(&[1.0; 6])); // 8: scales
+    let accessor = |view: usize, kind: u32, count: usize, shape: &str, more: &str| {
+        format!(r#"{{"bufferView":{view},"componentType":{kind},"count":{count},"type":"{shape}"{more}}}"#)
+    };
+    let accessors = [
+        accessor(0, 5126, 3, "VEC3", r#","min":[0,0,-1],"max":[1,0,0]"#),
+        accessor(1, 5123, 3, "SCALAR", ""),
+        accessor(2, 5121, 3, "VEC4", ""),
+        accessor(3, 5121, 3, "VEC4", r#","normalized":true"#),
+        accessor(4, 5126, 2, "MAT4", ""),
+        accessor(5, 5126, 2, "SCALAR", r#","min":[0],"max":[0.5]"#),
+        accessor(6, 5126, 2, "VEC4", ""),
+        accessor(7, 5126, 6, "VEC3", ""),
+        accessor(8, 5126, 2, "VEC3", ""),
+    ];
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,2]}}],
+"nodes":[{{"name":"hip","children":[1,3]}},{{"name":"arm","translation":[0,1,0]}},{{"mesh":0,"skin":0}},{{"name":"hat","mesh":1,"translation":[0,2,0]}}],
+"skins":[{{"joints":[0,1],"inverseBindMatrices":4}}],
+"materials":[{{"name":"red","pbrMetallicRoughness":{{"baseColorFactor":[1,0,0,1],"roughnessFactor":0.25}}}}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"JOINTS_0":2,"WEIGHTS_0":3}},"indices":1,"material":0}}]}},{{"name":"cap","primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+"animations":[{{"name":"wave","samplers":[{{"input":5,"output":6}},{{"input":5,"output":7,"interpolation":"CUBICSPLINE"}},{{"input":5,"output":8,"interpolation":"STEP"}}],
+"channels":[{{"sampler":0,"target":{{"node":1,"path":"rotation"}}}},{{"sampler":1,"target":{{"node":0,"path":"translation"}}}},{{"sampler":2,"target":{{"node":3,"path":"scale"}}}}]}}],
+"accessors":[{}],"bufferViews":[{}],"buffers":[{{"byteLength":{}}}]}}"#,
+        accessors.join(","),
+        views.join(","),
+        bin.len()
+    );
+    let mut json = json.into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut file = b"glTF".to_vec();
+    for word in [2, (28 + json.len() + bin.len()) as u32, json.len() as u32] {
+        file.extend(word.to_le_bytes());
+    }
+    file.extend(b"JSON");
+    file.extend(json);
+    file.extend((bin.len() as u32).to_le_bytes());
+    file.extend(b"BIN\0");
+    file.extend(bin);
+    file
+}

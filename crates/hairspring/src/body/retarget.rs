@@ -1,0 +1,322 @@
+//! Motion from one skeleton onto another: a head that drives a bust, or a clip onto a rig whose joints have the same
+//! names.
+
+use super::{Body, Clip, Joint, Trs};
+use glam::{Affine3A, Quat, Vec3};
+
+/// What of the head's travel through the world is kept by [`head_motion`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Travel {
+    /// All of it: a walk leaves the place.
+    Keep,
+    /// Bobbing and swaying only: the path, averaged over a second, is taken out. The default: the bust stays in the picture.
+    #[default]
+    InPlace,
+    /// None: the head turns about the pivot.
+    None,
+}
+
+/// How [`head_motion`] carries a head's motion over to a bust.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadMotion {
+    /// Point of the bust that it turns about: its own head joint, at the top of the neck [m].
+    pub pivot: Vec3,
+    /// Size of the bust over that of the captured person; 1 for life size. Scales translations.
+    pub scale: f32,
+    /// Frame of the clip in which the head counts as being at rest.
+    pub rest_frame: usize,
+    /// What is kept of the translation.
+    pub travel: Travel,
+    /// Direction that the bust faces, about +Y from +Z [radians].
+    pub facing: f32,
+}
+
+impl Default for HeadMotion {
+    fn default() -> Self {
+        Self { pivot: Vec3::ZERO, scale: 1.0, rest_frame: 0, travel: Travel::InPlace, facing: 0.0 }
+    }
+}
+
+/// The motion of joint `name` relative to its rest frame, as a clip of one joint that drives a rigid body
+/// ([`Body::rigid`]); `None` where there is no such joint or no frame.
+///
+/// The person's heading in the rest frame (from the joints named left and right) is turned into the bust's, so that a
+/// nod stays a nod whichever way the capture walks.
+pub fn head_motion(joints: &[Joint], clip: &Clip, name: &str, options: &HeadMotion) -> Option<Clip> {
+    let skeleton = Body { joints: joints.to_vec(), ..Body::default() };
+    let head = skeleton.joint(name)?;
+    let frames = clip.frame_count();
+    let rest_frame = options.rest_frame.min(frames.checked_sub(1)?);
+    let world = |f: usize| skeleton.world(&clip.samples[f * clip.joint_count..][..clip.joint_count]);
+    let rest = world(rest_frame);
+    let turn = Quat::from_rotation_y(options.facing - heading(joints, &rest));
+    let (rest_rotation, rest_place) = split(&rest[head]);
+    let (rotations, mut shifts): (Vec<Quat>, Vec<Vec3>) = (0..frames)
+        .map(|f| {
+            let (rotation, place) = split(&world(f)[head]);
+            let turned = turn * (rotation * rest_rotation.inverse()) * turn.inverse();
+            (turned.normalize(), turn * (place - rest_place) * options.scale)
+        })
+        .unzip();
+    match options.travel {
+        Travel::Keep => {}
+        Travel::InPlace => stay(&mut shifts, clip.rate, rest_frame),
+        Travel::None => shifts.fill(Vec3::ZERO),
+    }
+    let samples = rotations.into_iter().zip(shifts).map(|(rotation, shift)| Trs {
+        translation: options.pivot - rotation * options.pivot + shift,
+        rotation,
+        scale: Vec3::ONE,
+    });
+    Some(Clip { name: clip.name.clone(), rate: clip.rate, joint_count: 1, samples: samples.collect() })
+}
+
+/// Takes the path, averaged over a second, out of `shifts`; the rest frame stays at zero.
+fn stay(shifts: &mut [Vec3], rate: f32, rest_frame: usize) {
+    let half = (rate * 0.5).round() as usize;
+    let mut sums = vec![glam::DVec3::ZERO];
+    for s in shifts.iter() {
+        sums.push(sums[sums.len() - 1] + s.as_dvec3());
+    }
+    let n = shifts.len();
+    for (f, shift) in shifts.iter_mut().enumerate() {
+        // The window is as long to either side, so that at the ends a steady walk still averages to its middle.
+        let reach = half.min(f).min(n - 1 - f);
+        let mean = (sums[f + reach + 1] - sums[f - reach]) / (2 * reach + 1) as f64;
+        *shift -= mean.as_vec3();
+    }
+    let at_rest = shifts[rest_frame];
+    shifts.iter_mut().for_each(|s| *s -= at_rest);
+}
+
+/// Direction that a skeleton faces, about +Y from +Z [radians]: square to the mean of right-to-left pairs; 0 without.
+fn heading(joints: &[Joint], world: &[Affine3A]) -> f32 {
+    let mut left = Vec3::ZERO;
+    for (j, joint) in joints.iter().enumerate() {
+        let name = key(&joint.name);
+        let Some(rest) = name.strip_prefix("left") else {
+            continue;
+        };
+        let other = joints.iter().position(|o| key(&o.name).strip_prefix("right") == Some(rest));
+        if let Some(o) = other {
+            left += Vec3::from(world[j].translation - world[o].translation);
+        }
+    }
+    // Left × up is forward.
+    let forward = left.cross(Vec3::Y);
+    if forward.length_squared() > 1e-12 { forward.x.atan2(forward.z) } else { 0.0 }
+}
+
+/// A clip carried over to another rig.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Retargeted {
+    /// Motion of the body's joints.
+    pub clip: Clip,
+    /// Joints of the body that the motion drives; the others keep their rest pose.
+    pub matched: usize,
+    /// Joints of the motion that the body does not have.
+    pub unmatched: Vec<String>,
+}
+
+/// Carries a clip over to the joints of `body` that have the same names (upper and lower case, punctuation and a prefix
+/// before a colon aside); `None` if no names agree or there is no frame.
+///
+/// Rotations are carried in the world: a bone of the body points where the motion's bone points, whatever the two rest
+/// poses are (arms down or out). The spine up to the head keeps the body's own curve. The root's height is scaled
+/// by the ratio of hip heights, its path starts at the body's own place, and its lowest joint starts on the same floor.
+pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted> {
+    let source = Body { joints: joints.to_vec(), ..Body::default() };
+    let map: Vec<Option<usize>> =
+        body.joints.iter().map(|j| joints.iter().position(|s| key(&s.name) == key(&j.name))).collect();
+    let matched = map.iter().flatten().count();
+    if matched == 0 || clip.frame_count() == 0 {
+        return None;
+    }
+    let target_rest = body.world(&body.rest_pose());
+    let source_rest = source.world(&source.rest_pose());
+    let align = alignments(body, &map, &target_rest, &source_rest);
+    // The first driven joint moves the whole body.
+    let root = map.iter().position(Option::is_some)?;
+    let source_root = map[root]?;
+    let frame = |f: usize| source.world(&clip.samples[f * clip.joint_count..][..clip.joint_count]);
+    let first = frame(0);
+    let height = |world: &[Affine3A], j: usize| world[j].translation.y - lowest(world);
+    let ratio = height(&target_rest, root) / height(&source_rest, source_root);
+    let ratio = if ratio.is_finite() && ratio > 0.0 { ratio } else { 1.0 };
+    let origin = Vec3::from(first[source_root].translation).with_y(lowest(&first));
+    let place = Vec3::from(target_rest[root].translation).with_y(lowest(&target_rest));
+    let rest_pose = body.rest_pose();
+    let mut samples = Vec::with_capacity(clip.frame_count() * body.joints.len());
+    for f in 0..clip.frame_count() {
+        let posed = frame(f);
+        let mut world: Vec<Affine3A> = Vec::with_capacity(body.joints.len());
+        for (j, joint) in body.joints.iter().enumerate() {
+            let parent = joint.parent.map_or(Affine3A::IDENTITY, |p| world[p as usize]);
+            let mut local = rest_pose[j];
+            if let Some(s) = map[j] {
+                let (rest, now) = (split(&source_rest[s]).0, split(&posed[s]).0);
+                let target = now * rest.inverse() * align[j] * split(&target_rest[j]).0;
+                local.rotation = (split(&parent).0.inverse() * target).normalize();
+            }
+            if j == root {
+                let at = place + (Vec3::from(posed[source_root].translation) - origin) * ratio;
+                local.translation = parent.inverse().transform_point3(at);
+            }
+            world.push(parent * local.to_affine());
+            samples.push(local);
+        }
+    }
+    let used = |s: usize| map.contains(&Some(s));
+    let unmatched = (0..joints.len()).filter(|s| !used(*s)).map(|s| joints[s].name.clone()).collect();
+    let clip = Clip { name: clip.name.clone(), rate: clip.rate, joint_count: body.joints.len(), samples };
+    Some(Retargeted { clip, matched, unmatched })
+}
+
+/// The rotation that turns each target bone's rest direction into the source bone's, in the world.
+///
+/// A joint with one driven child points at it; with several or none it goes with its parent, or stays on the spine.
+fn alignments(body: &Body, map: &[Option<usize>], target: &[Affine3A], source: &[Affine3A]) -> Vec<Quat> {
+    let mut spine = vec![false; map.len()];
+    let mut at = body.joint("head").map(|j| j as u32);
+    while let Some(j) = at {
+        spine[j as usize] = true;
+        at = body.joints[j as usize].parent;
+    }
+    let mut align: Vec<Quat> = Vec::with_capacity(map.len());
+    for (j, joint) in body.joints.iter().enumerate() {
+        let inherited = joint.parent.map_or(Quat::IDENTITY, |p| align[p as usize]);
+        let mut children =
+            (0..map.len()).filter(|c| body.joints[*c].parent == Some(j as u32) && map[*c].is_some());
+        let only = children.next().filter(|_| children.next().is_none());
+        let turned = map[j].zip(only).and_then(|(s, c)| {
+            let from = Vec3::from(target[c].translation - target[j].translation).try_normalize()?;
+            let to = Vec3::from(source[map[c]?].translation - source[s].translation).try_normalize()?;
+            Some(Quat::from_rotation_arc(from, to))
+        });
+        align.push(if spine[j] { Quat::IDENTITY } else { turned.unwrap_or(inherited) });
+    }
+    align
+}
+
+/// A joint's name for comparison: lower case letters and digits after the last colon.
+fn key(name: &str) -> String {
+    let own = name.rsplit(':').next().unwrap_or(name);
+    own.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// Rotation and place of a joint; scale is left out.
+fn split(world: &Affine3A) -> (Quat, Vec3) {
+    let (_, rotation, translation) = world.to_scale_rotation_translation();
+    (if rotation.is_finite() { rotation } else { Quat::IDENTITY }, translation)
+}
+
+/// Height of the lowest joint [m].
+fn lowest(world: &[Affine3A]) -> f32 {
+    world.iter().map(|w| w.translation.y).fold(f32::INFINITY, f32::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn joint(name: &str, parent: Option<u32>, translation: Vec3) -> Joint {
+        Joint { name: name.into(), parent, rest: Trs { translation, ..Trs::default() } }
+    }
+
+    /// A person of two bones an arm: arms out (`down` 0) or hanging (`down` 1), all of size `size`.
+    fn person(size: f32, down: f32, turned: Quat) -> Body {
+        let arm = Quat::from_rotation_z(-down * std::f32::consts::FRAC_PI_2) * Vec3::X * 0.3 * size;
+        let mut joints = vec![
+            joint("Hips", None, Vec3::Y * size),
+            joint("Head", Some(0), Vec3::Y * 0.6 * size),
+            joint("LeftArm", Some(0), Vec3::new(0.2, 0.5, 0.0) * size),
+            joint("LeftForeArm", Some(2), arm),
+            joint("LeftHand", Some(3), arm),
+            joint("RightArm", Some(0), Vec3::new(-0.2, 0.5, 0.0) * size),
+            joint("LeftFoot", Some(0), Vec3::new(0.1, -1.0, 0.0) * size),
+        ];
+        // The forearm's own axes are turned: it must not show.
+        joints[3].rest.rotation = turned;
+        joints[4].rest.translation = turned.inverse() * arm;
+        Body { joints, ..Body::default() }
+    }
+
+    fn clip(body: &Body, frames: usize, pose: impl Fn(f32, &mut [Trs])) -> Clip {
+        let samples = (0..frames).flat_map(|f| {
+            let mut locals = body.rest_pose();
+            pose(f as f32 / 60.0, &mut locals);
+            locals
+        });
+        Clip { name: "test".into(), rate: 60.0, joint_count: body.joints.len(), samples: samples.collect() }
+    }
+
+    #[test]
+    fn bones_point_where_the_motions_bones_point_whatever_the_rest_poses_are() {
+        let source = person(10.0, 0.0, Quat::IDENTITY);
+        let target = person(1.0, 1.0, Quat::from_rotation_y(0.7) * Quat::from_rotation_x(1.1));
+        let motion = clip(&source, 30, |t, pose| {
+            pose[0].rotation = Quat::from_rotation_y(t);
+            pose[0].translation += Vec3::new(0.0, 0.0, 3.0 * t);
+            pose[2].rotation = Quat::from_rotation_z(2.0 * t);
+            pose[3].rotation = Quat::from_rotation_y(-1.5 * t);
+        });
+        let carried = retarget(&source.joints, &motion, &target).unwrap();
+        assert_eq!((carried.matched, carried.unmatched.len()), (7, 0));
+        for f in [0, 10, 29] {
+            let time = f as f32 / 60.0;
+            let (s, t) = (source.world(&motion.sample(time)), target.world(&carried.clip.sample(time)));
+            for (a, b) in [(2, 3), (3, 4)] {
+                let direction = |w: &[Affine3A]| (w[b].translation - w[a].translation).normalize();
+                assert!(direction(&s).distance(direction(&t)) < 1e-4, "frame {f}, bone {a}");
+            }
+            // A tenth of the size walks a tenth of the way, on the same floor.
+            assert!(
+                (t[0].translation * 10.0).distance(s[0].translation) < 1e-3,
+                "frame {f}: {}",
+                t[0].translation
+            );
+            assert!(t[1].translation.distance(s[1].translation / 10.0) < 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_rig_without_a_common_name_is_refused() {
+        let source = person(1.0, 0.0, Quat::IDENTITY);
+        let other = Body { joints: vec![joint("Bone", None, Vec3::ZERO)], ..Body::default() };
+        assert!(retarget(&source.joints, &clip(&source, 2, |_, _| {}), &other).is_none());
+    }
+
+    #[test]
+    fn a_nod_stays_a_nod_whichever_way_the_person_faces() {
+        for yaw in [0.0, 1.0, 3.0f32] {
+            let source = person(1.0, 0.0, Quat::IDENTITY);
+            let motion = clip(&source, 60, |t, pose| {
+                pose[0].rotation = Quat::from_rotation_y(yaw);
+                pose[1].rotation = Quat::from_rotation_x(0.5 * t);
+            });
+            let options = HeadMotion { pivot: Vec3::Y * 1.5, travel: Travel::None, ..HeadMotion::default() };
+            let bust = head_motion(&source.joints, &motion, "head", &options).unwrap();
+            assert_eq!((bust.joint_count, bust.frame_count()), (1, 60));
+            let last = bust.samples[59];
+            let want = Quat::from_rotation_x(0.5 * 59.0 / 60.0);
+            assert!(last.rotation.dot(want).abs() > 0.99999, "facing {yaw}: {}", last.rotation);
+            assert!(last.to_affine().transform_point3(options.pivot).distance(options.pivot) < 1e-5);
+        }
+    }
+
+    #[test]
+    fn travel_is_kept_taken_out_or_left_to_the_bobbing() {
+        let source = person(1.0, 0.0, Quat::IDENTITY);
+        let motion = clip(&source, 241, |t, pose| {
+            pose[0].translation += Vec3::new(0.0, 0.05 * (t * 4.0 * std::f32::consts::PI).sin(), 1.2 * t);
+        });
+        let shift = |travel, f: usize| {
+            let options = HeadMotion { travel, scale: 0.5, ..HeadMotion::default() };
+            head_motion(&source.joints, &motion, "Head", &options).unwrap().samples[f].translation
+        };
+        assert!(shift(Travel::Keep, 240).distance(Vec3::Z * 2.4) < 1e-4);
+        assert_eq!(shift(Travel::None, 100), Vec3::ZERO);
+        let swing = (60..180).map(|f| shift(Travel::InPlace, f)).fold(Vec3::ZERO, |m, s| m.max(s.abs()));
+        assert!(swing.z < 1e-3 && (0.02..0.03).contains(&swing.y), "{swing}");
+    }
+}

@@ -1,0 +1,228 @@
+//! Which strands are guides, and which guides a hair follows.
+
+use crate::groom::{Groom, GuideWeights};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// How much the difference of two strands' shapes counts against the distance of their roots [1]. Hairs on either side of a parting
+/// have near roots and should not follow each other.
+const SHAPE: f32 = 0.25;
+
+/// Nearest guides looked at for each hair before shape decides.
+const CANDIDATES: usize = 8;
+
+/// Chooses `count` guides spread over the scalp, in each group as many as its share of the strands (and at least one): the strand
+/// farthest from all that are chosen, again and again (farthest-point sampling; Gonzalez 1985).
+///
+/// Returns strand indices in increasing order; all strands where there are no more than `count`.
+pub fn choose_guides(groom: &Groom, count: usize) -> Vec<u32> {
+    let strands = groom.strand_count();
+    if count >= strands {
+        return (0..strands as u32).collect();
+    }
+    let mut groups: Vec<Vec<u32>> = Vec::new();
+    for s in 0..strands {
+        let g = groom.group(s) as usize;
+        if groups.len() <= g {
+            groups.resize(g + 1, Vec::new());
+        }
+        groups[g].push(s as u32);
+    }
+    let mut chosen: Vec<u32> = groups
+        .into_iter()
+        .filter(|g| !g.is_empty())
+        .flat_map(|group| {
+            let share = (count as f64 * group.len() as f64 / strands as f64).round().max(1.0) as usize;
+            farthest_points(groom, group, share)
+        })
+        .collect();
+    chosen.sort_unstable();
+    chosen
+}
+
+fn farthest_points(groom: &Groom, group: Vec<u32>, count: usize) -> Vec<u32> {
+    /// Roots that one task looks at; fixed, so that ties are broken alike for any number of threads.
+    const CHUNK: usize = 4096;
+    if count >= group.len() {
+        return group;
+    }
+    let roots: Vec<Vec3> = group.iter().map(|s| groom.strand(*s as usize)[0]).collect();
+    let mut distances = vec![f32::MAX; roots.len()];
+    let mut chosen = Vec::with_capacity(count);
+    let mut next = 0;
+    for _ in 0..count {
+        chosen.push(group[next]);
+        let p = roots[next];
+        let farther = |a: (f32, usize), b: (f32, usize)| {
+            if b.0 > a.0 || (b.0 == a.0 && b.1 < a.1) { b } else { a }
+        };
+        next = distances
+            .par_chunks_mut(CHUNK)
+            .zip(roots.par_chunks(CHUNK))
+            .enumerate()
+            .map(|(c, (distances, roots))| {
+                let mut best = (f32::MIN, usize::MAX);
+                for (i, (d, r)) in distances.iter_mut().zip(roots).enumerate() {
+                    *d = d.min(r.distance_squared(p));
+                    best = farther(best, (*d, c * CHUNK + i));
+                }
+                best
+            })
+            .reduce(|| (f32::MIN, usize::MAX), farther)
+            .1;
+    }
+    chosen
+}
+
+/// Up to three guides of each strand, of its own group where that has any, weighted by inverse squared distance of root and shape.
+/// A guide follows itself. `guides` must not be empty.
+pub fn assign_guides(groom: &Groom, guides: &[u32]) -> Vec<GuideWeights> {
+    let grid = RootGrid::new(groom, guides);
+    (0..groom.strand_count())
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|s| {
+            let near = grid.nearest(groom, groom.strand(s)[0], groom.group(s));
+            let mut scored: Vec<(f32, u32)> =
+                near.into_iter().map(|g| (difference(groom, s, g as usize), g)).collect();
+            scored.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            weights(&scored)
+        })
+        .collect()
+}
+
+/// The nearest three of `scored` (difference [m], guide), weighted.
+fn weights(scored: &[(f32, u32)]) -> GuideWeights {
+    let (first, guide) = scored[0];
+    let mut out = GuideWeights { guides: [guide; 3], weights: [1.0, 0.0, 0.0] };
+    if first <= 1e-7 {
+        return out;
+    }
+    for (k, (d, g)) in scored.iter().take(3).enumerate() {
+        out.guides[k] = *g;
+        out.weights[k] = 1.0 / (d * d);
+    }
+    let sum: f32 = out.weights.iter().sum();
+    out.weights = out.weights.map(|w| w / sum);
+    out
+}
+
+/// How unlike two strands are [m]: the distance of their roots, and some of how their middles and tips lie to them.
+fn difference(groom: &Groom, a: usize, b: usize) -> f32 {
+    let (a, b) = (groom.strand(a), groom.strand(b));
+    let shape = |part: usize| {
+        let offset = |s: &[Vec3]| s[(s.len() - 1) * part / 2] - s[0];
+        (offset(a) - offset(b)).length()
+    };
+    a[0].distance(b[0]) + SHAPE * (shape(1) + shape(2)) * 0.5
+}
+
+/// Guides by the cell of their roots.
+struct RootGrid {
+    cell: f32,
+    cells: std::collections::HashMap<[i32; 3], Vec<u32>>,
+    by_group: Vec<Vec<u32>>,
+    all: Vec<u32>,
+}
+
+impl RootGrid {
+    fn new(groom: &Groom, guides: &[u32]) -> Self {
+        let roots: Vec<Vec3> = guides.iter().map(|g| groom.strand(*g as usize)[0]).collect();
+        let lo = roots.iter().copied().fold(Vec3::MAX, Vec3::min);
+        let hi = roots.iter().copied().fold(Vec3::MIN, Vec3::max);
+        // About two guides a cell on a surface of the box's size.
+        let size = (hi - lo).max_element().max(1e-4);
+        let cell = (size * (2.0 / guides.len() as f32).sqrt()).max(1e-5);
+        let mut grid = Self { cell, cells: Default::default(), by_group: Vec::new(), all: guides.to_vec() };
+        for (g, root) in guides.iter().zip(&roots) {
+            grid.cells.entry(grid.key(*root)).or_default().push(*g);
+            let group = groom.group(*g as usize) as usize;
+            if grid.by_group.len() <= group {
+                grid.by_group.resize(group + 1, Vec::new());
+            }
+            grid.by_group[group].push(*g);
+        }
+        grid
+    }
+
+    fn key(&self, p: Vec3) -> [i32; 3] {
+        (p / self.cell).floor().as_ivec3().to_array()
+    }
+
+    /// The nearest [`CANDIDATES`] guides of the group, by their roots; of any group where it has none.
+    fn nearest(&self, groom: &Groom, p: Vec3, group: u16) -> Vec<u32> {
+        let own = self.by_group.get(group as usize).filter(|g| !g.is_empty());
+        let pool = own.unwrap_or(&self.all);
+        let fits = |g: u32| own.is_none() || groom.group(g as usize) == group;
+        let wanted = CANDIDATES.min(pool.len());
+        let mut found: Vec<(f32, u32)> = Vec::new();
+        let k = self.key(p);
+        for ring in 0..6 {
+            found.clear();
+            for x in -ring..=ring {
+                for y in -ring..=ring {
+                    for z in -ring..=ring {
+                        let cell = [k[0].saturating_add(x), k[1].saturating_add(y), k[2].saturating_add(z)];
+                        let guides = self.cells.get(&cell).into_iter().flatten().filter(|g| fits(**g));
+                        found.extend(guides.map(|g| (groom.strand(*g as usize)[0].distance_squared(p), *g)));
+                    }
+                }
+            }
+            if found.len() >= wanted {
+                break;
+            }
+        }
+        if found.len() < wanted {
+            found = pool.iter().map(|g| (groom.strand(*g as usize)[0].distance_squared(p), *g)).collect();
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.into_iter().take(CANDIDATES).map(|f| f.1).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lawn(side: usize) -> Groom {
+        let mut groom = Groom::from_strands(
+            (0..side * side).map(|k| {
+                let root = Vec3::new((k % side) as f32, 0.0, (k / side) as f32) * 0.001;
+                [root, root + Vec3::Y * 0.01, root + Vec3::Y * 0.02]
+            }),
+            35e-6,
+        );
+        groom.groups = (0..side * side).map(|k| (k % side * 2 / side) as u16).collect();
+        groom
+    }
+
+    #[test]
+    fn guides_are_spread_and_every_group_has_its_share() {
+        let groom = lawn(60);
+        let guides = choose_guides(&groom, 100);
+        assert!((98..=102).contains(&guides.len()), "{} guides", guides.len());
+        let left = guides.iter().filter(|g| groom.group(**g as usize) == 0).count();
+        assert!((48..=52).contains(&left), "{left} of the left half");
+        // Of 3,600 mm² each guide has 36: none is nearer to another than 3 mm.
+        for a in &guides {
+            for b in &guides {
+                let d = groom.strand(*a as usize)[0].distance(groom.strand(*b as usize)[0]);
+                assert!(a == b || groom.group(*a as usize) != groom.group(*b as usize) || d > 0.003);
+            }
+        }
+    }
+
+    #[test]
+    fn a_hair_follows_guides_of_its_own_group_and_a_guide_itself() {
+        let groom = lawn(40);
+        let guides = choose_guides(&groom, 60);
+        let weights = assign_guides(&groom, &guides);
+        for (s, w) in weights.iter().enumerate() {
+            assert!((w.weights.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+            assert!(w.guides.iter().all(|g| groom.group(*g as usize) == groom.group(s)));
+            if guides.contains(&(s as u32)) {
+                assert_eq!((w.guides[0], w.weights[0]), (s as u32, 1.0));
+            }
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! What is laid over follow hairs: clumps, curls, flyaways.
+
+use crate::scene::Effects;
+use glam::Vec3;
+
+/// Clump toward the lead guide, then curl, then noise, each growing from nothing at the root.
+pub(super) fn lay_over(
+    effects: &Effects,
+    strand: u32,
+    lead: &[Vec3],
+    ride: &[[u16; 3]],
+    points: &mut [Vec3],
+) {
+    let last = (points.len() - 1) as f32;
+    if effects.clump > 0.0 {
+        for (i, (p, ride)) in points.iter_mut().zip(ride).enumerate().skip(1) {
+            let at = ride[0] as f32 / u16::MAX as f32 * (lead.len() - 1) as f32;
+            let k = (at as usize).min(lead.len() - 2);
+            let target = lead[k].lerp(lead[k + 1], at - k as f32);
+            *p = p.lerp(target, effects.clump * (i as f32 / last).powf(1.5));
+        }
+    }
+    if effects.curl_radius > 0.0 || effects.noise > 0.0 {
+        displace(effects, strand, points);
+    }
+}
+
+/// Adds a helix and a slow wander, both in a frame carried along the strand, so that they swing with it.
+fn displace(effects: &Effects, strand: u32, points: &mut [Vec3]) {
+    let last = (points.len() - 1) as f32;
+    let phase = hash(strand, 0) * std::f32::consts::TAU;
+    let wander = [1, 2, 3, 4].map(|k| hash(strand, k) * std::f32::consts::TAU);
+    let mut tangent = (points[1] - points[0]).normalize_or(Vec3::Y);
+    let mut normal = tangent.any_orthonormal_vector();
+    let mut arc = 0.0;
+    let mut before = points[0];
+    for i in 1..points.len() {
+        let here = points[i];
+        let step = here - before;
+        arc += step.length();
+        let t = step.normalize_or(tangent);
+        normal = (normal - t * normal.dot(t)).normalize_or(t.any_orthonormal_vector());
+        let side = t.cross(normal);
+        let s = i as f32 / last;
+        let turn = phase + arc / effects.curl_length.max(1e-4) * std::f32::consts::TAU;
+        let curl = (normal * (turn.cos() - phase.cos()) + side * (turn.sin() - phase.sin()))
+            * (effects.curl_radius * s.min(0.25) * 4.0);
+        let wave = |a: f32, b: f32| 0.7 * (a + s * 4.0).sin() + 0.3 * (b + s * 11.0).sin();
+        let noise = (normal * wave(wander[0], wander[1]) + side * wave(wander[2], wander[3]))
+            * (effects.noise * s * s);
+        points[i] = here + curl + noise;
+        (before, tangent) = (here, t);
+    }
+}
+
+/// A number from 0 to 1 that only depends on the strand and `k` (an integer mix by Steele et al. 2014, SplitMix).
+fn hash(strand: u32, k: u32) -> f32 {
+    let mut z = (strand as u64) << 32 | k as u64;
+    z = z.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32
+}

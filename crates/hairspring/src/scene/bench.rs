@@ -1,0 +1,107 @@
+//! The standard bench scene, shared by `hairspring bench`, the tests and the profiler: a shaken ball of hair.
+//!
+//! A sphere scalp of radius 0.1 m, strands of 0.25 m evenly over its upper half, 60 Hz frames, the scalp shaken 5 cm at 2 Hz,
+//! contact with the sphere, every strand simulated.
+
+use super::Solver;
+use crate::{
+    collide::{Obstacle, ObstaclePose, Rigid},
+    groom::Groom,
+    material::Material,
+    simulation::{Air, Drive, Measure, MovingObstacle, Simulation, StepReport},
+};
+use glam::{Mat3, Vec3};
+use std::sync::Arc;
+
+/// Radius of the scalp [m].
+pub const RADIUS: f32 = 0.1;
+/// Length of a strand [m].
+pub const LENGTH: f32 = 0.25;
+/// Length of a frame [s].
+pub const FRAME: f32 = 1.0 / 60.0;
+/// Amplitude of the shake [m].
+pub const AMPLITUDE: f32 = 0.05;
+/// Rate of the shake [Hz].
+pub const RATE: f32 = 2.0;
+
+/// The bench scene in motion.
+pub struct Bench {
+    /// The strands.
+    pub simulation: Simulation,
+    roots: Vec<Vec3>,
+    poses: Vec<Rigid>,
+    obstacle: MovingObstacle,
+    frame: u32,
+}
+
+/// Strands of equal length standing out from the upper half of a sphere, evenly spread (a Fibonacci spiral).
+pub fn groom(strands: u32, points: u32) -> Groom {
+    let golden = std::f32::consts::PI * (3.0 - 5f32.sqrt());
+    Groom::from_strands(
+        (0..strands).map(|s| {
+            let y = 1.0 - (s as f32 + 0.5) / strands as f32;
+            let r = (1.0 - y * y).sqrt();
+            // In f64: the angle of the last strands is large.
+            let angle = (s as f64 * golden as f64) % std::f64::consts::TAU;
+            let out = Vec3::new(r * angle.cos() as f32, y, r * angle.sin() as f32);
+            (0..points).map(|i| out * (RADIUS + LENGTH * i as f32 / (points - 1) as f32)).collect::<Vec<_>>()
+        }),
+        crate::groom::DEFAULT_RADIUS,
+    )
+}
+
+impl Bench {
+    /// The scene at rest, hair standing out; `points` 3 or more a strand.
+    pub fn new(strands: u32, points: u32, solver: Solver) -> Self {
+        let groom = Arc::new(groom(strands, points));
+        let shape = Obstacle::Sphere { center: Vec3::ZERO, radius: RADIUS };
+        let rest = (Mat3::IDENTITY, Vec3::ZERO);
+        let pose = ObstaclePose { shape: shape.clone(), start: rest, end: rest, share: 1.0 };
+        let roots: Vec<Vec3> = (0..strands as usize).map(|s| groom.strand(s)[0]).collect();
+        let all: Vec<u32> = (0..strands).collect();
+        // Hair falls from standing out: a start in balance would be one that no fibre holds.
+        let solver = Solver { sag_free: false, ..solver };
+        let simulation = Simulation::new(
+            groom,
+            &all,
+            &[Material::default()],
+            solver,
+            Vec3::new(0.0, -9.81, 0.0),
+            Rigid::default(),
+            &[pose],
+        );
+        Self {
+            simulation,
+            poses: roots.iter().map(|p| Rigid { translation: *p, ..Rigid::default() }).collect(),
+            roots,
+            obstacle: MovingObstacle { shape, start: Rigid::default(), end: Rigid::default() },
+            frame: 0,
+        }
+    }
+
+    /// Advances by one frame of 1/60 s.
+    pub fn step(&mut self) -> StepReport {
+        self.frame += 1;
+        let at = |frame: u32| {
+            let phase = std::f32::consts::TAU * RATE * frame as f32 * FRAME;
+            Rigid { translation: Vec3::X * (AMPLITUDE * phase.sin()), ..Rigid::default() }
+        };
+        let (start, end) = (at(self.frame - 1), at(self.frame));
+        for (pose, root) in self.poses.iter_mut().zip(&self.roots) {
+            pose.translation = end.point(*root);
+        }
+        self.obstacle = MovingObstacle { start, end, ..self.obstacle.clone() };
+        self.simulation.step(&Drive {
+            dt: FRAME,
+            anchor: end,
+            roots: &self.poses,
+            obstacles: std::slice::from_ref(&self.obstacle),
+            air: Air::default(),
+        })
+    }
+
+    /// Figures at the end of the last frame.
+    pub fn measure(&self) -> Measure {
+        self.simulation.measure(std::slice::from_ref(&self.obstacle))
+    }
+}

@@ -1,0 +1,79 @@
+//! What a simulation is judged by: stretch, depth inside colliders, non-finite values.
+
+use super::{MovingObstacle, Simulation};
+use crate::strand::tile::{rest, state};
+use rayon::prelude::*;
+
+/// Figures over all simulated points at the end of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measure {
+    /// Mean of |ℓ/L − 1| over segments [1].
+    pub stretch_mean: f64,
+    /// Largest |ℓ/L − 1| [1].
+    pub stretch_max: f64,
+    /// Points more than a micrometre deeper inside a collider than they were authored.
+    pub inside_points: usize,
+    /// Depth of the deepest of them [m].
+    pub max_depth: f64,
+    /// Numbers of state that are NaN or infinite.
+    pub non_finite: usize,
+    /// Fastest point [m/s].
+    pub speed_max: f64,
+}
+
+impl Simulation {
+    /// Measures the state against the colliders at the end of their frame.
+    pub fn measure(&self, obstacles: &[MovingObstacle]) -> Measure {
+        let poses: Vec<_> = obstacles.iter().map(|o| (o, o.end)).collect();
+        let (sum, segments, figures) =
+            self.places.par_iter().map(|&place| self.measure_strand(place as usize, &poses)).reduce(
+                || (0.0, 0, Measure::default()),
+                |(s1, n1, a), (s2, n2, b)| {
+                    let merged = Measure {
+                        stretch_mean: 0.0,
+                        stretch_max: a.stretch_max.max(b.stretch_max),
+                        inside_points: a.inside_points + b.inside_points,
+                        max_depth: a.max_depth.max(b.max_depth),
+                        non_finite: a.non_finite + b.non_finite,
+                        speed_max: a.speed_max.max(b.speed_max),
+                    };
+                    (s1 + s2, n1 + n2, merged)
+                },
+            );
+        Measure { stretch_mean: sum / segments.max(1) as f64, ..figures }
+    }
+
+    fn measure_strand(
+        &self,
+        place: usize,
+        poses: &[(&MovingObstacle, crate::collide::Rigid)],
+    ) -> (f64, usize, Measure) {
+        let mut out = Measure::default();
+        let (mut sum, mut segments) = (0.0, 0);
+        let root = self.root_position(place);
+        let n = self.groom.range(self.lanes[place] as usize).len();
+        for i in 0..n {
+            let (x, v) = (self.vector(place, i, state::X), self.vector(place, i, state::V));
+            out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
+            out.speed_max = out.speed_max.max(v.length() as f64);
+            if i + 1 < n {
+                let next = self.vector(place, i + 1, state::X);
+                let length = self.rest(place, i, rest::LENGTH) as f64;
+                let strain = ((next.as_dvec3() - x.as_dvec3()).length() / length - 1.0).abs();
+                sum += strain;
+                segments += 1;
+                out.stretch_max = out.stretch_max.max(strain);
+            }
+            if i >= 2 {
+                let clearance = self.rest(place, i, rest::CLEARANCE);
+                let depth = poses
+                    .iter()
+                    .map(|(o, pose)| clearance - o.shape.distance(pose.inverse_point(root + x)))
+                    .fold(0.0, f32::max) as f64;
+                out.max_depth = out.max_depth.max(depth);
+                out.inside_points += (depth > 1e-6) as usize;
+            }
+        }
+        (sum, segments, out)
+    }
+}

@@ -1,0 +1,160 @@
+//! Strands in motion: the state of all simulated strands, and one step of it.
+
+mod build;
+mod measure;
+mod place;
+mod reset;
+mod step;
+
+pub use measure::Measure;
+pub use step::{Air, Drive, MovingObstacle, StepReport};
+
+use crate::{
+    groom::Groom,
+    strand::{
+        interval::Interval,
+        lanes::{LANES, Row},
+        tile::{rest, state, strand},
+    },
+};
+use fearless_simd::Level;
+use glam::Vec3;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Simulated strands: mass-spring chains stepped by backward Euler with a direct banded solver.
+///
+/// Settings come in by [`Simulation::new`] and never change; state is positions, velocities and tensions. A step gives the
+/// same bits for any number of threads. Strands meet only the body and the air.
+///
+/// # Missing
+/// Twist (strands keep curl by a frame without twist), hair against hair, wind sheltered by the body, teleport, cutting and
+/// wetting: each is an issue of its own.
+pub struct Simulation {
+    groom: Arc<Groom>,
+    /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
+    lanes: Vec<u32>,
+    tiles: Vec<TilePlace>,
+    strand: Vec<Row>,
+    rest: Vec<Row>,
+    state: Vec<Row>,
+    settings: build::Settings,
+    /// The last step's interval, kept for its memory.
+    interval: Interval,
+    level: Level,
+    /// Lane of each simulated strand, in the order that the caller named them.
+    places: Vec<u32>,
+    stiffened: usize,
+}
+
+/// Where a tile's points are.
+#[derive(Clone, Copy, Debug)]
+struct TilePlace {
+    /// Index of its first point, counting the points of all tiles before it.
+    first: u32,
+    /// Points of its longest strand.
+    points: u32,
+}
+
+impl Simulation {
+    /// Number of simulated strands.
+    pub fn strand_count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Number of simulated points, padding left out.
+    pub fn point_count(&self) -> usize {
+        self.strands().map(|s| self.groom.range(s as usize).len()).sum()
+    }
+
+    /// Joints whose bending stiffness the sag-free start had to raise to hold the groom's shape.
+    pub fn stiffened_joints(&self) -> usize {
+        self.stiffened
+    }
+
+    /// Bytes of state, rest shape and strand data that the simulation holds, padding included.
+    pub fn bytes(&self) -> usize {
+        (self.strand.len() + self.rest.len() + self.state.len()) * size_of::<Row>()
+            + (self.lanes.len() + self.places.len()) * size_of::<u32>()
+            + self.tiles.len() * size_of::<TilePlace>()
+    }
+
+    /// Name of the instruction set in use.
+    pub fn instruction_set(&self) -> String {
+        let name = format!("{:?}", self.level);
+        name.split('(').next().unwrap_or_default().to_lowercase()
+    }
+
+    /// Uses an older instruction set of this processor than the best one, by the name that
+    /// [`Simulation::instruction_set`] gives it: for comparisons and for tests. False, and nothing changes, where the
+    /// processor has none of that name.
+    pub fn use_instruction_set(&mut self, name: &str) -> bool {
+        let best = Level::new();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let known = [
+            best.as_avx512().map(Level::Avx512),
+            best.as_avx2().map(Level::Avx2),
+            best.as_sse4_2().map(Level::Sse4_2),
+            best.as_sse2().map(Level::Sse2),
+        ];
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let known = [Some(best)];
+        let before = self.level;
+        for level in known.into_iter().flatten() {
+            self.level = level;
+            if self.instruction_set() == name {
+                return true;
+            }
+        }
+        self.level = before;
+        false
+    }
+
+    /// The simulated strands, as indices of the groom, in the order given to [`Simulation::new`].
+    pub fn strands(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        self.places.iter().map(|p| self.lanes[*p as usize])
+    }
+
+    /// Writes the points of every simulated strand, in the order given to [`Simulation::new`], one after the other [m];
+    /// `out` has the shape `[point_count]`.
+    pub fn write_points(&self, out: &mut [Vec3]) {
+        let mut rest = out;
+        let mut pieces = Vec::with_capacity(self.places.len());
+        for &place in &self.places {
+            let (piece, more) =
+                rest.split_at_mut(self.groom.range(self.lanes[place as usize] as usize).len());
+            pieces.push((place as usize, piece));
+            rest = more;
+        }
+        pieces.into_par_iter().with_min_len(256).for_each(|(place, piece)| {
+            let root = self.root_position(place);
+            for (i, p) in piece.iter_mut().enumerate() {
+                *p = root + self.vector(place, i, state::X);
+            }
+        });
+    }
+
+    /// A vector of state of point `i` of the strand in lane `place`.
+    fn vector(&self, place: usize, i: usize, component: usize) -> Vec3 {
+        let (tile, lane) = (place / LANES, place % LANES);
+        let at = (self.tiles[tile].first as usize + i) * state::ROWS + component;
+        Vec3::new(self.state[at].0[lane], self.state[at + 1].0[lane], self.state[at + 2].0[lane])
+    }
+
+    /// A number of the rest shape.
+    fn rest(&self, place: usize, i: usize, component: usize) -> f32 {
+        let (tile, lane) = (place / LANES, place % LANES);
+        self.rest[(self.tiles[tile].first as usize + i) * rest::ROWS + component].0[lane]
+    }
+
+    /// World position of a root at the end of the last step.
+    fn root_position(&self, place: usize) -> Vec3 {
+        let (tile, lane) = (place / LANES, place % LANES);
+        let at = tile * strand::ROWS + strand::ROOT_END;
+        let local =
+            Vec3::new(self.strand[at].0[lane], self.strand[at + 1].0[lane], self.strand[at + 2].0[lane]);
+        let (m, t) = self.settings.anchor.matrix();
+        // The same arithmetic as the kernel's, so that a body at rest has the same bits.
+        m.x_axis * local.x + m.y_axis * local.y + m.z_axis * local.z + t
+    }
+}

@@ -1,0 +1,33 @@
+//! Taking a pose without motion: every strand in its rest shape, carried by its root.
+
+use super::Simulation;
+use crate::{
+    collide::Rigid,
+    strand::{lanes::LANES, tile::strand},
+};
+
+impl Simulation {
+    /// Puts every strand at rest in its authored shape at the given roots (world pose, rotation since rest), in the order
+    /// given to [`Simulation::new`]; `anchor` as in a step.
+    ///
+    /// # Panics
+    /// If `roots` is not as long as [`Simulation::strand_count`].
+    pub fn place(&mut self, anchor: Rigid, roots: &[Rigid]) {
+        assert_eq!(roots.len(), self.places.len(), "one root pose for each simulated strand");
+        self.settings.anchor = anchor;
+        let turn = anchor.rotation.inverse();
+        for (k, root) in roots.iter().enumerate() {
+            let place = self.places[k] as usize;
+            let (tile, lane) = (place / LANES, place % LANES);
+            let rows = &mut self.strand[tile * strand::ROWS..][..strand::ROWS];
+            let p = anchor.inverse_point(root.translation).to_array();
+            let q = (turn * root.rotation).to_array();
+            for at in [strand::ROOT_START, strand::ROOT_END] {
+                for (k, v) in p.into_iter().chain(q).enumerate() {
+                    rows[at + k].0[lane] = v;
+                }
+            }
+            self.reset_strand(place);
+        }
+    }
+}

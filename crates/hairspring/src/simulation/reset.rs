@@ -1,0 +1,55 @@
+//! No NaN leaves a step: a strand that turned non-finite goes back to its rest shape, carried by its root.
+
+use super::Simulation;
+use crate::strand::{
+    lanes::{LANES, Row},
+    tile::{state, strand},
+};
+use glam::{Quat, Vec3};
+
+/// Whether every number of these rows is finite.
+pub(super) fn all_finite(rows: &[Row]) -> bool {
+    // x·0 is 0 for finite x and NaN otherwise; the sum has no branch.
+    rows.iter().map(|row| row.0.iter().map(|x| x * 0.0).sum::<f32>()).sum::<f32>() == 0.0
+}
+
+impl Simulation {
+    /// Puts every strand with a non-finite number back to rest at its root, at rest; returns how many.
+    pub(super) fn reset_non_finite(&mut self) -> usize {
+        let mut count = 0;
+        for place in 0..self.lanes.len() {
+            let (tile, lane) = (place / LANES, place % LANES);
+            let first = self.tiles[tile].first as usize * state::ROWS;
+            let rows = first..first + self.tiles[tile].points as usize * state::ROWS;
+            if self.lanes[place] != u32::MAX
+                && self.state[rows.clone()].iter().any(|r| !r.0[lane].is_finite())
+            {
+                self.reset_strand(place);
+                count += 1;
+            } else if self.lanes[place] == u32::MAX {
+                self.state[rows].iter_mut().for_each(|r| r.0[lane] = 0.0);
+            }
+        }
+        count
+    }
+
+    pub(super) fn reset_strand(&mut self, place: usize) {
+        let (tile, lane) = (place / LANES, place % LANES);
+        let at = tile * strand::ROWS + strand::TURN_END;
+        let local = Quat::from_array([0, 1, 2, 3].map(|k| self.strand[at + k].0[lane]));
+        let turn = self.settings.anchor.rotation * local;
+        let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
+        let points = self.groom.strand(self.lanes[place] as usize);
+        for i in 0..self.tiles[tile].points as usize {
+            let p: Vec3 = turn * (points[i.min(points.len() - 1)] - points[0]);
+            let rows = &mut self.state[(self.tiles[tile].first as usize + i) * state::ROWS..][..state::ROWS];
+            // A finite tension is kept: it is what holds the rest shape.
+            let tension = rows[state::TENSION].0[lane];
+            rows.iter_mut().for_each(|r| r.0[lane] = 0.0);
+            rows[state::TENSION].0[lane] = if tension.is_finite() { tension } else { 0.0 };
+            for (row, x) in rows[state::X..].iter_mut().zip(p.to_array()) {
+                row.0[lane] = x;
+            }
+        }
+    }
+}

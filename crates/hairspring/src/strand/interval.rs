@@ -1,0 +1,32 @@
+//! What every tile is told about an exchange interval: the substeps, and where root anchor, colliders and air are in each.
+
+use crate::collide::ObstaclePose;
+use glam::{Mat3, Vec3};
+
+/// The substeps of one exchange interval (a frame), shared by all tiles.
+#[derive(Default)]
+pub struct Interval {
+    /// Length of a substep [s].
+    pub h: f32,
+    /// Iterations of fast projection a substep.
+    pub projections: u32,
+    /// Gravity [m/s²].
+    pub gravity: Vec3,
+    /// Anchor pose at the start of the interval.
+    pub anchor: (Mat3, Vec3),
+    /// Each substep's end.
+    pub substeps: Vec<Substep>,
+}
+
+/// The world at the end of one substep.
+#[derive(Default)]
+pub struct Substep {
+    /// Fraction of the interval that has passed, above 0, at most 1.
+    pub fraction: f32,
+    /// The frame that roots are given in: rotation, translation [m].
+    pub anchor: (Mat3, Vec3),
+    /// Velocity of the air [m/s].
+    pub wind: Vec3,
+    /// Colliders, each at the start and the end of the substep.
+    pub obstacles: Vec<ObstaclePose>,
+}

@@ -1,0 +1,84 @@
+//! The last word on a substep: no segment longer or shorter than ±1 %, no point inside a collider, and then the velocities.
+//!
+//! One sweep from root to tip. Each segment is clamped to its rest length ± [`LIMIT`] by moving the outer point (follow the
+//! leader, Müller 2012, but only past the limit); a point inside a collider moves to the nearest free position with
+//! the inward motion removed (Liu 2013) and is held back along the surface by Coulomb friction, up to μ times the push.
+
+use super::{
+    interval::Substep,
+    lanes::{F, Row, V3, load},
+    root::Root,
+    tile::{Tile, rest, rows, rows_mut, state},
+};
+use crate::collide::{contact, surface_displacement};
+use fearless_simd::prelude::*;
+
+/// Largest relative change of a segment's length that leaves a substep [1].
+pub const LIMIT: f32 = 0.01;
+
+/// Times that a point in contact goes out of the collider and back to its segment's length: what is left is of this order in the
+/// segment's length over the collider's radius.
+const CORRECTIONS: usize = 2;
+
+/// Applies strain limit and contact to the new positions `x` of shape `[points][3]`, and writes state.
+#[inline(always)]
+pub fn limit<S: Simd>(
+    simd: S,
+    h: f32,
+    substep: &Substep,
+    root: &Root<S>,
+    moved: V3<S>,
+    tile: &mut Tile,
+    x: &mut [Row],
+) {
+    let inv_h = F::<S>::splat(simd, 1.0 / h);
+    let friction = Root::<S>::fibre(simd, tile.strand).2;
+    let zero = V3::zero(simd);
+    let mut before = root.first;
+    // The root itself.
+    zero.store(&mut rows_mut(tile.state, 0, state::ROWS)[state::X..state::X + 3]);
+    (moved * inv_h).store(&mut rows_mut(tile.state, 0, state::ROWS)[state::V..state::V + 3]);
+    {
+        let first = rows_mut(tile.state, 1, state::ROWS);
+        root.first.store(&mut first[state::X..state::X + 3]);
+        (moved * inv_h).store(&mut first[state::V..state::V + 3]);
+    }
+    for i in 2..tile.points {
+        let length = load(simd, &rows(tile.rest, i - 1, rest::ROWS)[rest::LENGTH]);
+        let clearance = load(simd, &rows(tile.rest, i, rest::ROWS)[rest::CLEARANCE]);
+        let old = V3::load(simd, &rows(tile.state, i, state::ROWS)[state::X..]);
+        let mut p = clamp(V3::load(simd, &x[3 * i..]), before, length);
+        for pose in &substep.obstacles {
+            let world = p + root.position;
+            let (distance, normal) = contact(simd, pose, world);
+            let depth = (clearance - distance).max(0.0);
+            if depth.simd_gt(0.0).any_true() {
+                // Out along the normal; then back along the surface, at most μ times as far.
+                let pushed = p + normal * depth;
+                let slide = pushed - old + moved - surface_displacement(simd, pose, world);
+                let tangent = slide - normal * normal.dot(slide);
+                let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
+                let held = pushed - tangent * hold.min(1.0);
+                // The limit again, then out and back: both hold where they can, and where a strand is caught (behind an
+                // ear) its length goes before its depth, so that it slips free in time.
+                let mut q = clamp(held, before, length);
+                for _ in 0..CORRECTIONS {
+                    let (distance, normal) = contact(simd, pose, q + root.position);
+                    q = clamp(q + normal * (clearance - distance).max(0.0), before, length);
+                }
+                p = V3::select(depth.simd_gt(0.0), q, p);
+            }
+        }
+        let at = rows_mut(tile.state, i, state::ROWS);
+        ((p - old + moved) * inv_h).store(&mut at[state::V..state::V + 3]);
+        p.store(&mut at[state::X..state::X + 3]);
+        before = p;
+    }
+}
+
+/// `p` moved along the segment from `before` until its length is `length` ± [`LIMIT`].
+#[inline(always)]
+fn clamp<S: Simd>(p: V3<S>, before: V3<S>, length: F<S>) -> V3<S> {
+    let (l, u) = (p - before).length_and_unit();
+    before + u * l.min(length * (1.0 + LIMIT)).max(length * (1.0 - LIMIT))
+}

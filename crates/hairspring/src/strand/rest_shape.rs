@@ -1,0 +1,137 @@
+//! The rest shape of one strand, in f64: rest lengths, masses, bending stiffness and rest turns, and the sag-free start.
+//!
+//! A groom is authored as it hangs: under gravity, in balance. Taking its shape as the stress-free one would let it
+//! sag in the first second. The sag-free start solves for the rest turns d that make every net force zero, tip to root, exactly:
+//! with B the stiffness of a joint, m = B r its moment vector, W the weight that hangs from a segment,
+//!
+//! ```text
+//! dE/de_i = (m_i − P_{i+1}ᵀ m_{i+1}) / L_i  ,   W_i = T_i û_i + dE/de_i      (segment i in balance; see `bend`)
+//! m_i = (I − ûûᵀ)(L_i W_i + P_{i+1}ᵀ m_{i+1}),   d_i = t_i − t_{i−1} − m_i / B_i
+//! ```
+//!
+//! Rest lengths keep; the tension T along the segment is the part that stretch takes. Where a single fibre could not hold
+//! the shape, bending stiffness is raised by the least that does (Hsu et al. 2023, *Sag-Free Initialization for Strand-Based
+//! Hybrid Hair Simulation*, raise it too; what holds a style in life is wax and neighbours).
+
+use glam::{DVec3, Vec3};
+
+/// Largest |m|/B of a joint at the sag-free start [rad]: beyond it the linear moment is not a fibre's any more.
+const LARGEST_SAG: f64 = 0.5;
+
+/// Bending stiffness kept above the load of what stands above a joint, as Greenhill's bound with a safety of about two:
+/// B·L̄ ≥ (weight moment of the upright part) × (its length) / 2; Greenhill 1881: ρgAL³/EI < 7.84, of which ½ρgAL²·L is half.
+const STANDING_SAFETY: f64 = 0.5;
+
+/// What a fibre is made of along one strand.
+pub struct Fibre<'a> {
+    /// Radius at each point [m].
+    pub radii: &'a [f32],
+    /// Density [kg/m³].
+    pub density: f64,
+    /// Young's modulus times the style's multiplier, at the root [Pa].
+    pub young: f64,
+    /// The same at the tip, as a fraction of the root's.
+    pub tip: f64,
+}
+
+/// One point of a rest shape.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RestPoint {
+    /// Rest length to the next point [m].
+    pub length: f64,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Bending stiffness of the joint here [N m].
+    pub bend: f64,
+    /// Rest turn here, in the frame (normal, binormal, tangent) of the segment before.
+    pub turn: DVec3,
+    /// Tension of the segment from here at the start [N].
+    pub tension: f64,
+    /// The frame's normal on the segment from here.
+    pub normal: DVec3,
+}
+
+/// The rest shape of a strand.
+pub struct RestShape {
+    /// Shape `[points]`.
+    pub points: Vec<RestPoint>,
+    /// Joints whose stiffness was raised for the sag-free start.
+    pub stiffened: usize,
+}
+
+/// The rest shape of the strand through `points` (three or more, no two neighbours alike) [m], in balance under `gravity` [m/s²],
+/// or stress-free where that is zero.
+pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
+    let n = points.len();
+    let x: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+    let e: Vec<DVec3> = x.windows(2).map(|w| w[1] - w[0]).collect();
+    let lengths: Vec<f64> = e.iter().map(|e| e.length().max(1e-9)).collect();
+    let t: Vec<DVec3> = e.iter().zip(&lengths).map(|(e, l)| *e / *l).collect();
+    let total: f64 = lengths.iter().sum();
+
+    let mut rest = vec![RestPoint::default(); n];
+    for i in 0..n {
+        let half = 0.5 * (if i > 0 { lengths[i - 1] } else { 0.0 } + lengths.get(i).copied().unwrap_or(0.0));
+        let r = fibre.radii[i] as f64;
+        rest[i].mass = fibre.density * std::f64::consts::PI * r * r * half;
+        rest[i].length = lengths.get(i).copied().unwrap_or(0.0);
+    }
+    let mut along = 0.0;
+    for j in 1..n - 1 {
+        along += lengths[j - 1];
+        let r = fibre.radii[j] as f64;
+        let young = fibre.young * (1.0 + (fibre.tip - 1.0) * along / total);
+        let ei = young * std::f64::consts::FRAC_PI_4 * r.powi(4);
+        // The driven first segment is rigid: its compliance is given to the first joint, so that the strand bends
+        // like one clamped at its root.
+        let mean = if j == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[j - 1] + lengths[j]) };
+        rest[j].bend = ei / mean;
+    }
+
+    let mut stiffened = 0;
+    if gravity != DVec3::ZERO {
+        let up = -gravity.normalize();
+        let g = gravity.length();
+        // Weight that hangs beyond, its moment about the joint of what stands above, and the arc length beyond.
+        let (mut weight, mut below) = (DVec3::ZERO, DVec3::ZERO);
+        let (mut mass, mut height, mut arc) = (0.0, 0.0, 0.0);
+        for i in (1..n - 1).rev() {
+            weight += gravity * rest[i + 1].mass;
+            mass += rest[i + 1].mass;
+            height += mass * e[i].dot(up);
+            arc += lengths[i];
+            let carried = weight * lengths[i] + below;
+            let axial = carried.dot(t[i]);
+            let moment = carried - t[i] * axial;
+            rest[i].tension = axial / lengths[i];
+            let mean =
+                if i == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[i - 1] + lengths[i]) };
+            let needed =
+                (moment.length() / LARGEST_SAG).max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
+            if needed > rest[i].bend {
+                rest[i].bend = needed;
+                stiffened += 1;
+            }
+            rest[i].turn = t[i] - t[i - 1] - moment / rest[i].bend;
+            // P_iᵀ m_i for the next segment inward, with û = t_{i−1} and d = turn.
+            let d = rest[i].turn;
+            below = moment * (1.0 + t[i - 1].dot(d)) - d * t[i - 1].dot(moment);
+        }
+    } else {
+        for i in 1..n - 1 {
+            rest[i].turn = t[i] - t[i - 1];
+        }
+    }
+
+    // Into the frame carried along the strand (the same transport as `bend::transport`).
+    let mut frame = t[0].any_orthonormal_vector();
+    rest[0].normal = frame;
+    for i in 1..n - 1 {
+        let d = rest[i].turn;
+        rest[i].turn = DVec3::new(d.dot(frame), d.dot(t[i - 1].cross(frame)), d.dot(t[i - 1]));
+        let scale = frame.dot(t[i]) / (1.0 + t[i - 1].dot(t[i])).max(1e-3);
+        frame = (frame - (t[i - 1] + t[i]) * scale).normalize_or(frame);
+        rest[i].normal = frame;
+    }
+    RestShape { points: rest, stiffened }
+}

@@ -1,0 +1,86 @@
+//! How eight strands lie in memory: `[tile][point][component][lane]`, so that one tile's whole life in an exchange
+//! interval happens in the first-level caches.
+//!
+//! Strands of different point counts share a tile when neighbours in the order of counts; the shorter ones are padded
+//! with points of rest length zero, which lie on the tip and carry no force.
+
+use super::lanes::Row;
+
+/// Rows of state a point.
+pub mod state {
+    /// Position relative to the root [m], 3 rows.
+    pub const X: usize = 0;
+    /// Velocity [m/s], 3 rows.
+    pub const V: usize = 3;
+    /// Tension of the segment from this point to the next, found by the last substep [N].
+    pub const TENSION: usize = 6;
+    /// The frame's normal on the segment from this point to the next, 3 rows.
+    pub const NORMAL: usize = 7;
+    /// Rows a point.
+    pub const ROWS: usize = 10;
+}
+
+/// Rows of the rest shape a point.
+pub mod rest {
+    /// Rest length of the segment from this point to the next [m]; 0 from the tip on.
+    pub const LENGTH: usize = 0;
+    /// Mass [kg].
+    pub const MASS: usize = 1;
+    /// Bending stiffness of the joint at this point, EI over the mean length of its two segments [N m];
+    /// 0 at the root and from the tip on.
+    pub const BEND: usize = 2;
+    /// Rest change of tangent at this joint, in the frame carried to the segment before it, 3 rows [1].
+    pub const TURN: usize = 3;
+    /// How deep this point may be inside a collider, 0 or less: the depth it was authored at [m].
+    pub const CLEARANCE: usize = 6;
+    /// Rows a point.
+    pub const ROWS: usize = 7;
+}
+
+/// Rows of a whole strand.
+pub mod strand {
+    /// Root position relative to the anchor at the start of the interval [m], 3 rows.
+    pub const ROOT_START: usize = 0;
+    /// Rotation since rest relative to the anchor at the start, 4 rows.
+    pub const TURN_START: usize = 3;
+    /// Root position relative to the anchor at the end [m], 3 rows.
+    pub const ROOT_END: usize = 7;
+    /// Rotation since rest relative to the anchor at the end, 4 rows.
+    pub const TURN_END: usize = 10;
+    /// The first segment in the rest pose, root to second point [m], 3 rows.
+    pub const FIRST: usize = 14;
+    /// The frame's normal on the first segment in the rest pose, 3 rows.
+    pub const NORMAL: usize = 17;
+    /// Rate at which still air stops the fibre moving across itself [1/s].
+    pub const DRAG: usize = 20;
+    /// Relaxation time of bending [s].
+    pub const DAMPING: usize = 21;
+    /// Coulomb friction against the body.
+    pub const FRICTION: usize = 22;
+    /// Rows a strand.
+    pub const ROWS: usize = 23;
+}
+
+/// Eight strands: borrowed pieces of the simulation's arrays.
+pub struct Tile<'a> {
+    /// Points of the longest strand.
+    pub points: usize,
+    /// Shape `[strand::ROWS]`.
+    pub strand: &'a [Row],
+    /// Shape `[points][rest::ROWS]`.
+    pub rest: &'a [Row],
+    /// Shape `[points][state::ROWS]`.
+    pub state: &'a mut [Row],
+}
+
+/// Rows of one point.
+#[inline(always)]
+pub fn rows(array: &[Row], point: usize, stride: usize) -> &[Row] {
+    &array[point * stride..(point + 1) * stride]
+}
+
+/// Rows of one point, to write.
+#[inline(always)]
+pub fn rows_mut(array: &mut [Row], point: usize, stride: usize) -> &mut [Row] {
+    &mut array[point * stride..(point + 1) * stride]
+}
