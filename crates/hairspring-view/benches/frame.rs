@@ -21,12 +21,7 @@ fn frame(bencher: Bencher, style: support::Style, color: HairColor) {
     let mut renderer = Renderer::new(1280, 720);
     renderer.draw(&frame);
     bencher.bench_local(|| renderer.draw(&frame).rgb[0]);
-    eprintln!(
-        "{} strands, {} points: {:?}",
-        groom.strand_count(),
-        groom.point_count(),
-        renderer.timings()
-    );
+    eprintln!("{} strands, {} points: {:?}", groom.strand_count(), groom.point_count(), renderer.timings());
 }
 
 #[divan::bench(sample_count = 20, sample_size = 1)]

@@ -22,23 +22,11 @@ pub(crate) struct View {
 impl View {
     /// Broken settings (no distance, not finite) give the default camera's direction rather than no picture.
     pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
-        let eye = if camera.position.is_finite() {
-            camera.position
-        } else {
-            Camera::default().position
-        };
+        let eye = if camera.position.is_finite() { camera.position } else { Camera::default().position };
         let forward = (camera.target - eye).try_normalize().unwrap_or(Vec3::NEG_Z);
-        let side = if forward.y.abs() > 0.9999 {
-            Vec3::Z
-        } else {
-            Vec3::Y
-        };
+        let side = if forward.y.abs() > 0.9999 { Vec3::Z } else { Vec3::Y };
         let right = forward.cross(side).normalize();
-        let fov = if camera.fov.is_finite() {
-            camera.fov.clamp(1.0, 170.0)
-        } else {
-            Camera::default().fov
-        };
+        let fov = if camera.fov.is_finite() { camera.fov.clamp(1.0, 170.0) } else { Camera::default().fov };
         Self {
             eye,
             right,
@@ -54,11 +42,7 @@ impl View {
         let d = p - self.eye;
         let depth = d.dot(self.forward);
         let scale = self.focal / depth;
-        Vec3::new(
-            self.center[0] + scale * d.dot(self.right),
-            self.center[1] - scale * d.dot(self.up),
-            depth,
-        )
+        Vec3::new(self.center[0] + scale * d.dot(self.right), self.center[1] - scale * d.dot(self.up), depth)
     }
 
     /// Direction through a pixel position, with length 1 along the axis.
@@ -78,28 +62,15 @@ pub fn frame_camera(bounds: (Vec3, Vec3), aspect: f32) -> Camera {
     if !(low.is_finite() && high.is_finite() && aspect > 0.0) {
         return default;
     }
-    let view = View::new(
-        &Camera {
-            position: target + back,
-            target,
-            fov: default.fov,
-        },
-        1000,
-        1000,
-    );
+    let view = View::new(&Camera { position: target + back, target, fov: default.fov }, 1000, 1000);
     // The distance from which every corner lies inside the picture, with a margin of 8 %.
     let half = (0.5 * default.fov.to_radians()).tan() / 1.08;
     let mut distance = 0.0f32;
     for i in 0..8 {
-        let corner =
-            Vec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), low, high) - target;
+        let corner = Vec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), low, high) - target;
         let toward = corner.dot(back);
         let across = corner.dot(view.right).abs() / aspect.min(1e3);
         distance = distance.max(toward + across.max(corner.dot(view.up).abs()) / half);
     }
-    Camera {
-        position: target + back * distance.max(4.0 * NEAR),
-        target,
-        fov: default.fov,
-    }
+    Camera { position: target + back * distance.max(4.0 * NEAR), target, fov: default.fov }
 }

@@ -50,11 +50,7 @@ pub struct Quality {
 
 impl Default for Quality {
     fn default() -> Self {
-        Self {
-            shadow_voxels: 112,
-            shadow_texels: 1024,
-            smoothness: 0.12,
-        }
+        Self { shadow_voxels: 112, shadow_texels: 1024, smoothness: 0.12 }
     }
 }
 
@@ -83,9 +79,7 @@ impl HairDraw<'_> {
 
     /// Points of strand `s`, cut to what the arrays hold.
     pub(crate) fn range(&self, s: usize) -> std::ops::Range<usize> {
-        let end = (self.offsets[s + 1] as usize)
-            .min(self.points.len())
-            .min(self.radii.len());
+        let end = (self.offsets[s + 1] as usize).min(self.points.len()).min(self.radii.len());
         (self.offsets[s] as usize).min(end)..end
     }
 }

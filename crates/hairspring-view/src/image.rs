@@ -14,11 +14,7 @@ pub struct Image {
 impl Image {
     /// A black picture.
     pub fn new(width: u32, height: u32) -> Self {
-        Self {
-            width,
-            height,
-            rgb: vec![0; width as usize * height as usize * 3],
-        }
+        Self { width, height, rgb: vec![0; width as usize * height as usize * 3] }
     }
 
     /// Red, green, blue of the pixel at column `x`, row `y`; both must lie inside.

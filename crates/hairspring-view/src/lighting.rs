@@ -32,18 +32,9 @@ pub struct Lighting {
 impl Default for Lighting {
     fn default() -> Self {
         Self {
-            key: Light {
-                direction: Vec3::new(-0.62, 0.72, 0.72),
-                color: Vec3::new(2.35, 2.2, 2.0),
-            },
-            fill: Light {
-                direction: Vec3::new(0.85, 0.15, 0.6),
-                color: Vec3::new(0.34, 0.38, 0.44),
-            },
-            rim: Light {
-                direction: Vec3::new(0.55, 0.62, -0.8),
-                color: Vec3::new(2.3, 2.35, 2.5),
-            },
+            key: Light { direction: Vec3::new(-0.62, 0.72, 0.72), color: Vec3::new(2.35, 2.2, 2.0) },
+            fill: Light { direction: Vec3::new(0.85, 0.15, 0.6), color: Vec3::new(0.34, 0.38, 0.44) },
+            rim: Light { direction: Vec3::new(0.55, 0.62, -0.8), color: Vec3::new(2.3, 2.35, 2.5) },
             sky: Vec3::new(0.40, 0.43, 0.48),
             ground: Vec3::new(0.16, 0.14, 0.13),
             exposure: 0.0,
@@ -77,9 +68,6 @@ pub struct Background {
 
 impl Default for Background {
     fn default() -> Self {
-        Self {
-            center: Vec3::new(0.16, 0.165, 0.18),
-            edge: Vec3::new(0.035, 0.036, 0.042),
-        }
+        Self { center: Vec3::new(0.16, 0.165, 0.18), edge: Vec3::new(0.035, 0.036, 0.042) }
     }
 }

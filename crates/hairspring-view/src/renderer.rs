@@ -48,11 +48,7 @@ impl Renderer {
     pub fn new(width: u32, height: u32) -> Self {
         let (width, height) = (width.clamp(1, 16_384), height.clamp(1, 16_384));
         let tiles = Tiles::new(width as usize, height as usize);
-        Self {
-            image: Image::new(width, height),
-            tiles,
-            ..Self::default()
-        }
+        Self { image: Image::new(width, height), tiles, ..Self::default() }
     }
 
     /// Draws a frame. The same frame gives the same bytes on any number of threads.
@@ -61,8 +57,7 @@ impl Renderer {
         let [width, height] = self.tiles.size();
         let view = View::new(&frame.camera, width as u32, height as u32);
         let bounds = shadow::bounds(frame.hair);
-        self.order
-            .fill(frame, bounds.unwrap_or_default(), 1 << CHUNK_BITS);
+        self.order.fill(frame, bounds.unwrap_or_default(), 1 << CHUNK_BITS);
         self.shadow.fill(frame, bounds, &self.order);
         let shaded = Instant::now();
 
@@ -97,29 +92,18 @@ impl Renderer {
 
         tiles.resize(self.tiles.count(), [[0; 3]; PIXELS]);
         let (chunks, bodies, encoder) = (&*chunks, &*bodies, &self.encoder);
-        tiles
-            .par_iter_mut()
-            .enumerate()
-            .for_each_init(Brush::default, |brush, (tile, out)| {
-                brush.draw(&setup, bodies, chunks, encoder, tile, out);
-            });
+        tiles.par_iter_mut().enumerate().for_each_init(Brush::default, |brush, (tile, out)| {
+            brush.draw(&setup, bodies, chunks, encoder, tile, out);
+        });
         let [nx, _] = self.tiles.grid();
         let tiles = &*tiles;
-        self.image
-            .rgb
-            .par_chunks_mut(width * 3)
-            .enumerate()
-            .for_each(|(y, row)| {
-                for (x, out) in row.chunks_mut(SIDE * 3).enumerate() {
-                    let from = &tiles[y / SIDE * nx + x][y % SIDE * SIDE..][..out.len() / 3];
-                    out.copy_from_slice(from.as_flattened());
-                }
-            });
-        self.timings = Timings {
-            shadow: shaded - start,
-            strands: cut - shaded,
-            tiles: cut.elapsed(),
-        };
+        self.image.rgb.par_chunks_mut(width * 3).enumerate().for_each(|(y, row)| {
+            for (x, out) in row.chunks_mut(SIDE * 3).enumerate() {
+                let from = &tiles[y / SIDE * nx + x][y % SIDE * SIDE..][..out.len() / 3];
+                out.copy_from_slice(from.as_flattened());
+            }
+        });
+        self.timings = Timings { shadow: shaded - start, strands: cut - shaded, tiles: cut.elapsed() };
         &self.image
     }
 

@@ -37,9 +37,7 @@ mod tests {
         for n in [0u64, 1, 255, 256, 5000] {
             let mut state = 7u64;
             let mut next = || {
-                state = state
-                    .wrapping_mul(6364136223846793005)
-                    .wrapping_add(1442695040888963407);
+                state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
                 state
             };
             let mut entries: Vec<u64> = (0..n).map(|i| (next() >> 42 << 42) | i).collect();

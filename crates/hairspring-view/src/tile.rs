@@ -26,9 +26,7 @@ pub(crate) struct Tiles {
 
 impl Tiles {
     pub fn new(width: usize, height: usize) -> Self {
-        Self {
-            size: [width, height],
-        }
+        Self { size: [width, height] }
     }
 
     /// Width and height of the picture [pixels].
@@ -63,11 +61,7 @@ pub(crate) struct Brush {
 
 impl Default for Brush {
     fn default() -> Self {
-        let none = Surface {
-            color: Vec3::ZERO,
-            cover: 0.0,
-            depth: f32::INFINITY,
-        };
+        let none = Surface { color: Vec3::ZERO, cover: 0.0, depth: f32::INFINITY };
         Self {
             canvas: Box::default(),
             samples: Box::default(),
@@ -126,12 +120,7 @@ impl Brush {
         );
         if body {
             let [near, far] = setup.depths;
-            for (i, s) in self
-                .surfaces
-                .iter()
-                .enumerate()
-                .filter(|(_, s)| s.cover > 0.0)
-            {
+            for (i, s) in self.surfaces.iter().enumerate().filter(|(_, s)| s.cover > 0.0) {
                 canvas.body[i] = (s.color * s.cover).extend(-s.cover);
                 canvas.body_depth[i] = (s.depth - near) / (far - near);
             }
@@ -139,36 +128,23 @@ impl Brush {
         self.entries.clear();
         for (c, chunk) in chunks.iter().enumerate() {
             // Room for the chunk's number lies between the depth key and the piece's number.
-            self.entries.extend(
-                chunk
-                    .tile(tile)
-                    .iter()
-                    .map(|e| e | (c as u64) << PIECE_BITS),
-            );
+            self.entries.extend(chunk.tile(tile).iter().map(|e| e | (c as u64) << PIECE_BITS));
         }
         sort::sort(&mut self.entries, &mut self.scratch);
         let origin = Vec2::new(corner[0] as f32, corner[1] as f32);
         dispatch!(setup.level, _simd => lay_hair(canvas, &self.entries, chunks, origin));
         if body {
-            (0..PIXELS)
-                .filter(|i| self.surfaces[*i].cover > 0.0)
-                .for_each(|i| {
-                    if canvas.body_depth[i].is_finite() {
-                        canvas.lay_body(i);
-                    }
-                });
+            (0..PIXELS).filter(|i| self.surfaces[*i].cover > 0.0).for_each(|i| {
+                if canvas.body_depth[i].is_finite() {
+                    canvas.lay_body(i);
+                }
+            });
         }
         self.develop(setup, encoder, corner, out);
     }
 
     /// Backdrop, exposure, tone curve, 8 bits.
-    fn develop(
-        &self,
-        setup: &Setup,
-        encoder: &Encoder,
-        corner: [usize; 2],
-        out: &mut [[u8; 3]; PIXELS],
-    ) {
+    fn develop(&self, setup: &Setup, encoder: &Encoder, corner: [usize; 2], out: &mut [[u8; 3]; PIXELS]) {
         let [w, h] = setup.tiles.size().map(|n| n as f32);
         let backdrop = &setup.frame.background;
         let gain = setup.frame.lighting.exposure.exp2();

@@ -28,11 +28,7 @@ const STEPS: usize = 1024;
 impl Default for Encoder {
     fn default() -> Self {
         let encode = |c: f32| {
-            if c <= 0.0031308 {
-                12.92 * c
-            } else {
-                1.055 * c.powf(1.0 / 2.4) - 0.055
-            }
+            if c <= 0.0031308 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
         };
         let table = (0..=STEPS + 1)
             .map(|i| (i as f32 / STEPS as f32).powi(2))
@@ -47,8 +43,7 @@ impl Encoder {
     #[inline]
     pub fn encode(&self, color: Vec3, x: usize, y: usize) -> [u8; 3] {
         // Interleaved gradient noise (Jimenez 2014), fixed to the picture: nothing moves in still parts of a clip.
-        let noise =
-            (52.982_92 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract();
+        let noise = (52.982_92 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract();
         color.to_array().map(|c| {
             let at = c.sqrt() * STEPS as f32;
             let (i, f) = (at as usize, at.fract());
@@ -76,14 +71,7 @@ mod tests {
     #[test]
     fn encoding_is_srgb_within_one_code() {
         let encoder = Encoder::default();
-        for (linear, code) in [
-            (0.0, 0),
-            (0.002, 7),
-            (0.0144, 32),
-            (0.2159, 128),
-            (0.5271, 192),
-            (1.0, 255),
-        ] {
+        for (linear, code) in [(0.0, 0), (0.002, 7), (0.0144, 32), (0.2159, 128), (0.5271, 192), (1.0, 255)] {
             for pixel in 0..50 {
                 let got = encoder.encode(Vec3::splat(linear), pixel, 3 * pixel)[0] as i32;
                 assert!((got - code).abs() <= 1, "{linear} {got} {code}");

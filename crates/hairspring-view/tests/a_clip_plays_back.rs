@@ -16,19 +16,14 @@ fn picture(width: u32, height: u32, frame: u32) -> Image {
     let mut image = Image::new(width, height);
     for (i, p) in image.rgb.chunks_mut(3).enumerate() {
         let (x, y) = (i as f32 % width as f32, (i as u32 / width) as f32);
-        let wave =
-            |k: f32, s: f32| (127.0 + 90.0 * ((x * k + y * s + frame as f32 * 0.2).sin())) as u8;
+        let wave = |k: f32, s: f32| (127.0 + 90.0 * ((x * k + y * s + frame as f32 * 0.2).sin())) as u8;
         p.copy_from_slice(&[wave(0.05, 0.02), wave(0.03, -0.04), wave(-0.02, 0.06)]);
     }
     image
 }
 
 fn psnr(a: &[u8], b: &[u8]) -> f64 {
-    let sum: f64 = a
-        .iter()
-        .zip(b)
-        .map(|(a, b)| (*a as f64 - *b as f64).powi(2))
-        .sum();
+    let sum: f64 = a.iter().zip(b).map(|(a, b)| (*a as f64 - *b as f64).powi(2)).sum();
     10.0 * (255.0f64.powi(2) / (sum / a.len() as f64)).log10()
 }
 
@@ -73,11 +68,7 @@ fn frames_size_rate_and_pictures_come_back() {
     let track = &reader.tracks()[&id];
     assert_eq!((track.width(), track.height()), (240, 162));
     assert_eq!(track.sample_count(), FRAMES);
-    assert!(
-        (track.frame_rate() - FPS).abs() < 0.01,
-        "{} frames a second",
-        track.frame_rate()
-    );
+    assert!((track.frame_rate() - FPS).abs() < 0.01, "{} frames a second", track.frame_rate());
     let seconds = track.duration().as_secs_f64();
     assert!((seconds - FRAMES as f64 / FPS).abs() < 2e-3, "{seconds} s");
 
@@ -99,11 +90,7 @@ fn frames_size_rate_and_pictures_come_back() {
                 luma.push((16.0 + grey * 219.0 / 255.0).round() as u8);
                 got.push(yuv.y()[y * yuv.strides().0 + x]);
             }
-            assert!(
-                psnr(&luma, &got) > 34.0,
-                "frame {f}: {:.1} dB",
-                psnr(&luma, &got)
-            );
+            assert!(psnr(&luma, &got) > 34.0, "frame {f}: {:.1} dB", psnr(&luma, &got));
             shown += 1;
         }
     }
@@ -130,21 +117,11 @@ fn bad_requests_are_answered_in_words() {
     assert!(message(ClipWriter::create(&path, 8000, 64, FPS)).contains("8000×64"));
     assert!(message(ClipWriter::create(&path, 64, 64, f64::NAN)).contains("NaN frames a second"));
     assert!(
-        message(ClipWriter::create(
-            &folder.path().join("no/clip.mp4"),
-            64,
-            64,
-            FPS
-        ))
-        .contains("folder exists")
+        message(ClipWriter::create(&folder.path().join("no/clip.mp4"), 64, 64, FPS))
+            .contains("folder exists")
     );
     let mut clip = ClipWriter::create(&path, 64, 64, FPS).unwrap();
-    assert!(
-        clip.push(&picture(32, 64, 0))
-            .unwrap_err()
-            .to_string()
-            .contains("32×64")
-    );
+    assert!(clip.push(&picture(32, 64, 0)).unwrap_err().to_string().contains("32×64"));
     assert!(clip.finish().unwrap_err().to_string().contains("no frame"));
     assert!(!path.exists());
 }

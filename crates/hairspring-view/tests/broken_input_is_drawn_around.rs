@@ -4,9 +4,7 @@ mod support;
 
 use glam::Vec3;
 use hairspring::scene::{Camera, HairLook};
-use hairspring_view::{
-    Frame, HairDraw, Light, Lighting, MeshDraw, Quality, Renderer, frame_camera,
-};
+use hairspring_view::{Frame, HairDraw, Light, Lighting, MeshDraw, Quality, Renderer, frame_camera};
 
 #[test]
 fn an_empty_scene_is_the_backdrop() {
@@ -14,52 +12,26 @@ fn an_empty_scene_is_the_backdrop() {
     let image = renderer.draw(&support::frame(&[], &[]));
     assert!(image.rgb.iter().all(|c| *c > 5));
     let look = HairLook::default();
-    let nothing = HairDraw {
-        points: &[],
-        offsets: &[],
-        radii: &[],
-        colors: &[],
-        look: &look,
-        width_scale: 1.0,
-    };
-    let zero = HairDraw {
-        offsets: &[0],
-        ..nothing
-    };
-    let body = MeshDraw {
-        positions: &[],
-        normals: &[],
-        triangles: &[],
-        parts: &[],
-    };
+    let nothing =
+        HairDraw { points: &[], offsets: &[], radii: &[], colors: &[], look: &look, width_scale: 1.0 };
+    let zero = HairDraw { offsets: &[0], ..nothing };
+    let body = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
     let before = renderer.image().clone();
-    assert_eq!(
-        *renderer.draw(&support::frame(&[nothing, zero], &[body])),
-        before
-    );
+    assert_eq!(*renderer.draw(&support::frame(&[nothing, zero], &[body])), before);
 }
 
 #[test]
 fn points_that_are_not_numbers_touch_nothing_else() {
-    let style = support::Style {
-        strands: 2000,
-        points: 12,
-        ..support::STRAIGHT
-    };
+    let style = support::Style { strands: 2000, points: 12, ..support::STRAIGHT };
     let groom = support::groom(style);
     let look = HairLook::default();
     let draw = |groom: &hairspring::groom::Groom| {
         let hair = [support::hair(groom, &look)];
-        Renderer::new(160, 90)
-            .draw(&support::frame(&hair, &[]))
-            .clone()
+        Renderer::new(160, 90).draw(&support::frame(&hair, &[])).clone()
     };
     let good = draw(&groom);
     let mut broken = groom.clone();
-    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, 1e8]
-        .into_iter()
-        .enumerate()
-    {
+    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, 1e8].into_iter().enumerate() {
         broken.points[12 * 100 * (i + 1) + i] = Vec3::new(bad, 0.1, bad);
     }
     broken.radii[7] = f32::NAN;
@@ -79,11 +51,7 @@ fn points_that_are_not_numbers_touch_nothing_else() {
 #[test]
 fn arrays_that_disagree_are_cut_short() {
     let points = [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2];
-    let look = HairLook {
-        root_color: Vec3::NAN,
-        roughness: f32::NAN,
-        ..HairLook::default()
-    };
+    let look = HairLook { root_color: Vec3::NAN, roughness: f32::NAN, ..HairLook::default() };
     let hair = [
         HairDraw {
             points: &points,
@@ -108,42 +76,17 @@ fn arrays_that_disagree_are_cut_short() {
         triangles: &[[0, 1, 2], [0, 1, 3], [0, 1, 77], [1, 1, 1]],
         parts: &[],
     }];
-    let dark = Light {
-        direction: Vec3::ZERO,
-        color: Vec3::NAN,
-    };
+    let dark = Light { direction: Vec3::ZERO, color: Vec3::NAN };
     for camera in [
         Camera::default(),
-        Camera {
-            position: Vec3::ZERO,
-            target: Vec3::ZERO,
-            fov: f32::NAN,
-        },
-        Camera {
-            position: Vec3::NAN,
-            target: Vec3::INFINITY,
-            fov: -3.0,
-        },
-        Camera {
-            position: Vec3::Y * 0.1001,
-            target: Vec3::ZERO,
-            fov: 170.0,
-        },
+        Camera { position: Vec3::ZERO, target: Vec3::ZERO, fov: f32::NAN },
+        Camera { position: Vec3::NAN, target: Vec3::INFINITY, fov: -3.0 },
+        Camera { position: Vec3::Y * 0.1001, target: Vec3::ZERO, fov: 170.0 },
     ] {
-        let quality = Quality {
-            shadow_voxels: 0,
-            shadow_texels: 0,
-            smoothness: f32::NAN,
-        };
+        let quality = Quality { shadow_voxels: 0, shadow_texels: 0, smoothness: f32::NAN };
         for lighting in [
             Lighting::default(),
-            Lighting {
-                key: dark,
-                fill: dark,
-                rim: dark,
-                exposure: f32::NAN,
-                ..Lighting::default()
-            },
+            Lighting { key: dark, fill: dark, rim: dark, exposure: f32::NAN, ..Lighting::default() },
         ] {
             Renderer::new(70, 40).draw(&Frame {
                 camera,
@@ -164,21 +107,12 @@ fn the_automatic_camera_sees_the_whole_box() {
         let right = forward.cross(Vec3::Y).normalize();
         let half = (0.5 * camera.fov.to_radians()).tan();
         for i in 0..8 {
-            let corner = Vec3::select(
-                glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0),
-                bounds.0,
-                bounds.1,
-            ) - camera.position;
+            let corner = Vec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), bounds.0, bounds.1)
+                - camera.position;
             let depth = corner.dot(forward);
             assert!(depth > 0.1);
-            assert!(
-                (corner.dot(right) / depth).abs() <= half * aspect,
-                "aspect {aspect}"
-            );
-            assert!(
-                (corner.dot(right.cross(forward)) / depth).abs() <= half,
-                "aspect {aspect}"
-            );
+            assert!((corner.dot(right) / depth).abs() <= half * aspect, "aspect {aspect}");
+            assert!((corner.dot(right.cross(forward)) / depth).abs() <= half, "aspect {aspect}");
         }
     }
     assert_eq!(frame_camera((Vec3::NAN, Vec3::ONE), 1.0), Camera::default());

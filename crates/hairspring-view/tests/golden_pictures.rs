@@ -15,9 +15,7 @@ use std::path::PathBuf;
 const ALIKE: f64 = 0.99;
 
 fn luma(image: &Image) -> image_compare::prelude::GrayImage {
-    let grey = |p: &[u8]| {
-        (0.2126 * p[0] as f32 + 0.7152 * p[1] as f32 + 0.0722 * p[2] as f32).round() as u8
-    };
+    let grey = |p: &[u8]| (0.2126 * p[0] as f32 + 0.7152 * p[1] as f32 + 0.0722 * p[2] as f32).round() as u8;
     image_compare::prelude::GrayImage::from_raw(
         image.width,
         image.height,
@@ -27,39 +25,23 @@ fn luma(image: &Image) -> image_compare::prelude::GrayImage {
 }
 
 fn similarity(a: &Image, b: &Image) -> f64 {
-    gray_similarity_structure(&Algorithm::MSSIMSimple, &luma(a), &luma(b))
-        .unwrap()
-        .score
+    gray_similarity_structure(&Algorithm::MSSIMSimple, &luma(a), &luma(b)).unwrap().score
 }
 
 fn draw(style: support::Style, color: HairColor) -> Image {
     // Fewer, thicker strands: the picture of a full head at a twentieth of the work.
-    let groom = support::groom(support::Style {
-        strands: 8000,
-        points: 20,
-        ..style
-    });
+    let groom = support::groom(support::Style { strands: 8000, points: 20, ..style });
     let ball = support::ball();
     let look = HairLook::from(color);
     let mut hair = support::hair(&groom, &look);
     hair.width_scale = 4.0;
     let (hair, bodies) = ([hair], [support::body(&ball)]);
-    let quality = Quality {
-        shadow_voxels: 64,
-        ..Quality::default()
-    };
-    Renderer::new(200, 150)
-        .draw(&Frame {
-            quality,
-            ..support::frame(&hair, &bodies)
-        })
-        .clone()
+    let quality = Quality { shadow_voxels: 64, ..Quality::default() };
+    Renderer::new(200, 150).draw(&Frame { quality, ..support::frame(&hair, &bodies) }).clone()
 }
 
 fn check(name: &str, image: Image) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/golden")
-        .join(name);
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
     if std::env::var("HAIRSPRING_GOLDEN").is_ok_and(|v| v == "write") {
         write_png(&path, &image).unwrap();
     }
@@ -68,19 +50,13 @@ fn check(name: &str, image: Image) {
     if score < ALIKE {
         let seen = std::env::temp_dir().join(format!("hairspring-{name}"));
         write_png(&seen, &image).unwrap();
-        panic!(
-            "{name} is {score:.4} alike, {ALIKE} is needed; what was drawn: {}",
-            seen.display()
-        );
+        panic!("{name} is {score:.4} alike, {ALIKE} is needed; what was drawn: {}", seen.display());
     }
 }
 
 #[test]
 fn straight_brown() {
-    check(
-        "straight-brown.png",
-        draw(support::STRAIGHT, HairColor::Brown),
-    );
+    check("straight-brown.png", draw(support::STRAIGHT, HairColor::Brown));
 }
 
 #[test]
@@ -104,23 +80,9 @@ fn a_picture_comes_back_from_its_file() {
     assert!(path.ends_with("frame.0012.png"));
     write_png(&path, &image).unwrap();
     assert!(read_png(&path).unwrap() == image);
-    assert_eq!(
-        std::fs::read_dir(folder.path()).unwrap().count(),
-        1,
-        "no temporary file stays"
-    );
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file stays");
     std::fs::write(&path, "no picture").unwrap();
-    assert!(
-        read_png(&path)
-            .unwrap_err()
-            .to_string()
-            .contains("frame.0012.png")
-    );
+    assert!(read_png(&path).unwrap_err().to_string().contains("frame.0012.png"));
     let missing = folder.path().join("missing/frame.png");
-    assert!(
-        write_png(&missing, &image)
-            .unwrap_err()
-            .to_string()
-            .contains("missing")
-    );
+    assert!(write_png(&missing, &image).unwrap_err().to_string().contains("missing"));
 }

@@ -22,21 +22,12 @@ fn camera() -> Camera {
 }
 
 fn draw(points: &[Vec3], width: f32, wall: f32) -> Image {
-    let dark = Light {
-        direction: Vec3::Y,
-        color: Vec3::ZERO,
-    };
+    let dark = Light { direction: Vec3::Y, color: Vec3::ZERO };
     let radii = vec![0.5e-3 * width; points.len()];
     let look = HairLook::default();
     let offsets = [0, points.len() as u32];
-    let hair = [HairDraw {
-        points,
-        offsets: &offsets,
-        radii: &radii,
-        colors: &[],
-        look: &look,
-        width_scale: 1.0,
-    }];
+    let hair =
+        [HairDraw { points, offsets: &offsets, radii: &radii, colors: &[], look: &look, width_scale: 1.0 }];
     let frame = Frame {
         hair: &hair,
         bodies: &[],
@@ -49,10 +40,7 @@ fn draw(points: &[Vec3], width: f32, wall: f32) -> Image {
             ground: Vec3::ZERO,
             exposure: 0.0,
         },
-        background: Background {
-            center: Vec3::splat(wall),
-            edge: Vec3::splat(wall),
-        },
+        background: Background { center: Vec3::splat(wall), edge: Vec3::splat(wall) },
         quality: Quality::default(),
     };
     let mut renderer = Renderer::new(SIDE, SIDE);
@@ -74,44 +62,26 @@ impl Curve {
     }
 
     fn linear(&self, code: f32) -> f32 {
-        let i = self
-            .0
-            .partition_point(|(c, _)| *c < code)
-            .clamp(1, self.0.len() - 1);
+        let i = self.0.partition_point(|(c, _)| *c < code).clamp(1, self.0.len() - 1);
         let ((c0, g0), (c1, g1)) = (self.0[i - 1], self.0[i]);
         g0 + (g1 - g0) * (code - c0) / (c1 - c0)
     }
 
     /// Covered area [pixels].
     fn area(&self, image: &Image) -> f32 {
-        image
-            .rgb
-            .iter()
-            .skip(1)
-            .step_by(3)
-            .map(|c| 1.0 - self.linear(*c as f32) / WALL)
-            .sum()
+        image.rgb.iter().skip(1).step_by(3).map(|c| 1.0 - self.linear(*c as f32) / WALL).sum()
     }
 }
 
 fn mean(image: &Image) -> f32 {
-    image
-        .rgb
-        .iter()
-        .skip(1)
-        .step_by(3)
-        .map(|c| *c as f32)
-        .sum::<f32>()
-        / (SIDE * SIDE) as f32
+    image.rgb.iter().skip(1).step_by(3).map(|c| *c as f32).sum::<f32>() / (SIDE * SIDE) as f32
 }
 
 /// A straight strand of 60 pixels at an angle, `points` long, its middle `shift` pixels up.
 fn strand(degrees: f32, shift: f32, points: usize) -> Vec<Vec3> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let at = |k: usize| 60.0 * (k as f32 / (points - 1) as f32 - 0.5);
-    (0..points)
-        .map(|k| Vec3::new(at(k) * cos + 0.3, at(k) * sin + shift, 0.0) * 1e-3)
-        .collect()
+    (0..points).map(|k| Vec3::new(at(k) * cos + 0.3, at(k) * sin + shift, 0.0) * 1e-3).collect()
 }
 
 #[test]
@@ -139,26 +109,17 @@ fn for_any_width_angle_and_place() {
 fn a_moving_hair_does_not_flicker() {
     let curve = Curve::measure();
     for (width, degrees) in [(0.12, 0.0), (0.12, 33.0), (0.5, 80.0), (1.4, 10.0)] {
-        let frames: Vec<Image> = (0..32)
-            .map(|f| draw(&strand(degrees, f as f32 / 16.0, 9), width, WALL))
-            .collect();
+        let frames: Vec<Image> =
+            (0..32).map(|f| draw(&strand(degrees, f as f32 / 16.0, 9), width, WALL)).collect();
         let areas: Vec<f32> = frames.iter().map(|f| curve.area(f)).collect();
-        let (low, high) = areas
-            .iter()
-            .fold((f32::MAX, 0.0f32), |b, a| (b.0.min(*a), b.1.max(*a)));
-        assert!(
-            high - low < 0.04 * high + 0.2,
-            "width {width}, {degrees}°: between {low} and {high}"
-        );
+        let (low, high) = areas.iter().fold((f32::MAX, 0.0f32), |b, a| (b.0.min(*a), b.1.max(*a)));
+        assert!(high - low < 0.04 * high + 0.2, "width {width}, {degrees}°: between {low} and {high}");
         // No pixel jumps: a sixteenth of a pixel's motion moves at most that share of the strand's light, and a little at its ends.
         let most = curve.linear(mean(&draw(&[], 1.0, WALL))) * width.min(1.0) * 1.5;
         for pair in frames.windows(2) {
             for (a, b) in pair[0].rgb.iter().zip(&pair[1].rgb) {
                 let jump = (curve.linear(*a as f32) - curve.linear(*b as f32)).abs();
-                assert!(
-                    jump < most * 0.16 + 0.006,
-                    "width {width}, {degrees}°: a pixel jumps by {jump}"
-                );
+                assert!(jump < most * 0.16 + 0.006, "width {width}, {degrees}°: a pixel jumps by {jump}");
             }
         }
     }
@@ -185,10 +146,6 @@ fn a_bent_strand_is_drawn_round() {
         / 3.0;
     let area = curve.area(&fine);
     assert!(apart < 0.35 * area, "{apart} of {area} pixels differ");
-    let polygon = draw(
-        &circle(400).chunks(50).map(|c| c[0]).collect::<Vec<_>>(),
-        1.2,
-        WALL,
-    );
+    let polygon = draw(&circle(400).chunks(50).map(|c| c[0]).collect::<Vec<_>>(), 1.2, WALL);
     assert_ne!(polygon.rgb, fine.rgb);
 }

@@ -12,34 +12,21 @@ use hairspring_view::{Frame, HairDraw, Image, MeshDraw, Renderer};
 const SIDE: u32 = 128;
 
 fn camera() -> Camera {
-    Camera {
-        position: Vec3::Z,
-        target: Vec3::ZERO,
-        fov: 12.0,
-    }
+    Camera { position: Vec3::Z, target: Vec3::ZERO, fov: 12.0 }
 }
 
 /// A curtain of upright strands at depth `z`, shifted sideways by `x`, of `n` strands over 10 cm.
 fn curtain(n: usize, x: f32, z: f32) -> Groom {
     let at = |s: usize| x + 0.1 * ((s as f32 + 0.5) / n as f32 - 0.5);
     Groom::from_strands(
-        (0..n).map(|s| {
-            (0..12)
-                .map(|k| Vec3::new(at(s), 0.05 - 0.009 * k as f32, z))
-                .collect::<Vec<_>>()
-        }),
+        (0..n).map(|s| (0..12).map(|k| Vec3::new(at(s), 0.05 - 0.009 * k as f32, z)).collect::<Vec<_>>()),
         60e-6,
     )
 }
 
 fn draw(hair: &[HairDraw], bodies: &[MeshDraw]) -> Image {
     let mut renderer = Renderer::new(SIDE, SIDE);
-    renderer
-        .draw(&Frame {
-            camera: camera(),
-            ..support::frame(hair, bodies)
-        })
-        .clone()
+    renderer.draw(&Frame { camera: camera(), ..support::frame(hair, bodies) }).clone()
 }
 
 fn flat(color: [f32; 3]) -> HairLook {
@@ -70,14 +57,8 @@ fn nearer_hair_hides_farther_hair_in_any_order_of_the_input() {
     let alone = middle(&draw(&[front], &[]));
     for hair in [[front, back], [back, front]] {
         let both = middle(&draw(&hair, &[]));
-        assert!(
-            both[0] > 3.0 * both[2],
-            "the red curtain is in front: {both:?}"
-        );
-        assert!(
-            (both[0] - alone[0]).abs() < 0.25 * alone[0],
-            "{both:?} {alone:?}"
-        );
+        assert!(both[0] > 3.0 * both[2], "the red curtain is in front: {both:?}");
+        assert!((both[0] - alone[0]).abs() < 0.25 * alone[0], "{both:?} {alone:?}");
     }
 }
 
@@ -88,16 +69,10 @@ fn a_body_hides_hair_behind_it_and_not_hair_before_it() {
     let bare = draw(&[], &body);
     let look = flat([0.05, 0.6, 0.05]);
     let behind = curtain(3000, 0.0, -0.2);
-    assert_eq!(
-        middle(&draw(&[support::hair(&behind, &look)], &body)),
-        middle(&bare)
-    );
+    assert_eq!(middle(&draw(&[support::hair(&behind, &look)], &body)), middle(&bare));
     let before = curtain(3000, 0.0, 0.15);
     let seen = middle(&draw(&[support::hair(&before, &look)], &body));
-    assert!(
-        seen[1] > 1.5 * seen[0],
-        "green hair before the ball: {seen:?}"
-    );
+    assert!(seen[1] > 1.5 * seen[0], "green hair before the ball: {seen:?}");
 }
 
 #[test]
@@ -108,11 +83,8 @@ fn roots_on_the_skin_are_seen() {
         Vec3::new(b.sin() * a.cos() * 0.93, a.sin(), a.cos() * b.cos() * 0.98) * support::RADIUS
     };
     let groom = Groom::from_strands(
-        (0..40).map(|s| {
-            (0..24)
-                .map(|k| on(0.04 * k as f32 - 0.5, 0.02 * s as f32 - 0.4))
-                .collect::<Vec<_>>()
-        }),
+        (0..40)
+            .map(|s| (0..24).map(|k| on(0.04 * k as f32 - 0.5, 0.02 * s as f32 - 0.4)).collect::<Vec<_>>()),
         1e-3,
     );
     let look = flat([0.05, 0.6, 0.05]);
@@ -132,64 +104,36 @@ fn the_more_hair_towards_the_lamp_the_darker() {
     let mut first = 0.0;
     for n in [0, 300, 1000, 3000, 9000, 30_000] {
         // Towards the key lamp, and outside the picture.
-        let key = hairspring_view::Lighting::default()
-            .key
-            .direction
-            .normalize();
+        let key = hairspring_view::Lighting::default().key.direction.normalize();
         let mut shade = curtain(n, 0.0, 0.0);
-        shade
-            .points
-            .iter_mut()
-            .for_each(|p| *p = *p * 1.2 + key * 0.17);
+        shade.points.iter_mut().for_each(|p| *p = *p * 1.2 + key * 0.17);
         let hair = [support::hair(&lit, &look), support::hair(&shade, &look)];
-        let light: f32 = middle(&draw(&hair[..if n > 0 { 2 } else { 1 }], &[]))
-            .iter()
-            .sum();
-        assert!(
-            light < last + 1.0,
-            "{n} strands between: {light}, before {last}"
-        );
+        let light: f32 = middle(&draw(&hair[..if n > 0 { 2 } else { 1 }], &[])).iter().sum();
+        assert!(light < last + 1.0, "{n} strands between: {light}, before {last}");
         if n == 0 {
             first = light;
         }
         last = light;
     }
-    assert!(
-        last < 0.8 * first,
-        "a thick curtain leaves {last} of {first}"
-    );
+    assert!(last < 0.8 * first, "a thick curtain leaves {last} of {first}");
 }
 
 #[test]
 fn a_body_shades_hair_and_hair_shades_a_body() {
     let look = flat([0.4, 0.3, 0.2]);
-    let key = hairspring_view::Lighting::default()
-        .key
-        .direction
-        .normalize();
+    let key = hairspring_view::Lighting::default().key.direction.normalize();
     let mut ball = support::ball();
-    ball.positions
-        .iter_mut()
-        .for_each(|p| *p = *p * 0.7 + key * 0.4);
+    ball.positions.iter_mut().for_each(|p| *p = *p * 0.7 + key * 0.4);
     let hair = curtain(4000, 0.0, 0.0);
     let sum = |image: &Image| middle(image).iter().sum::<f32>();
     let open = sum(&draw(&[support::hair(&hair, &look)], &[]));
-    let shaded = sum(&draw(
-        &[support::hair(&hair, &look)],
-        &[support::body(&ball)],
-    ));
+    let shaded = sum(&draw(&[support::hair(&hair, &look)], &[support::body(&ball)]));
     assert!(shaded < 0.8 * open, "{shaded} of {open}");
 
     let skin = support::ball();
     let mut shade = curtain(20_000, 0.0, 0.0);
-    shade
-        .points
-        .iter_mut()
-        .for_each(|p| *p = *p * 1.4 + Vec3::Z * support::RADIUS + key * 0.2);
+    shade.points.iter_mut().for_each(|p| *p = *p * 1.4 + Vec3::Z * support::RADIUS + key * 0.2);
     let open = sum(&draw(&[], &[support::body(&skin)]));
-    let shaded = sum(&draw(
-        &[support::hair(&shade, &look)],
-        &[support::body(&skin)],
-    ));
+    let shaded = sum(&draw(&[support::hair(&shade, &look)], &[support::body(&skin)]));
     assert!(shaded < 0.8 * open, "{shaded} of {open}");
 }

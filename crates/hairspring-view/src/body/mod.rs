@@ -55,10 +55,7 @@ const NONE: u32 = u32::MAX;
 
 impl Default for Samples {
     fn default() -> Self {
-        Self {
-            nearness: [[0.0; 8]; PIXELS],
-            triangle: [[NONE; 8]; PIXELS],
-        }
+        Self { nearness: [[0.0; 8]; PIXELS], triangle: [[NONE; 8]; PIXELS] }
     }
 }
 
@@ -82,8 +79,7 @@ impl Bodies {
                 let (polygon, n) = clip(corner, |p| (p - view.eye).dot(view.forward) - NEAR);
                 for k in 2..n {
                     let fan = [polygon[0], polygon[k - 1], polygon[k]].map(screen);
-                    self.screen
-                        .extend(ScreenTriangle::new(fan, count + i as u32, width, height));
+                    self.screen.extend(ScreenTriangle::new(fan, count + i as u32, width, height));
                 }
             }
             count = count.saturating_add(body.triangles.len() as u32);
@@ -103,11 +99,7 @@ impl Bodies {
     ) -> bool {
         let columns = [corner[0] as u32, (corner[0] + SIDE) as u32];
         let here = |t: &&ScreenTriangle| t.columns[0] < columns[1] && t.columns[1] > columns[0];
-        let triangles = self
-            .bins
-            .band(corner[1] / SIDE)
-            .iter()
-            .map(|t| &self.screen[*t as usize]);
+        let triangles = self.bins.band(corner[1] / SIDE).iter().map(|t| &self.screen[*t as usize]);
         let mut any = false;
         for t in triangles.filter(here) {
             if !any {
@@ -128,18 +120,8 @@ impl Bodies {
             return false;
         }
         for (i, out) in out.iter_mut().enumerate() {
-            let at = Vec2::new(
-                (corner[0] + i % SIDE) as f32 + 0.5,
-                (corner[1] + i / SIDE) as f32 + 0.5,
-            );
-            *out = self.resolve(
-                frame,
-                view,
-                shadow,
-                at,
-                &samples.nearness[i],
-                &samples.triangle[i],
-            );
+            let at = Vec2::new((corner[0] + i % SIDE) as f32 + 0.5, (corner[1] + i / SIDE) as f32 + 0.5);
+            *out = self.resolve(frame, view, shadow, at, &samples.nearness[i], &samples.triangle[i]);
         }
         true
     }
@@ -166,40 +148,20 @@ impl Bodies {
             }
             let weight = seen[s..].iter().filter(|other| *other == t).count() as f32;
             let b = self.first.partition_point(|first| first <= t) - 1;
-            color += weight
-                * skin::light(
-                    frame,
-                    &frame.bodies[b],
-                    (t - self.first[b]) as usize,
-                    view,
-                    shadow,
-                    at,
-                );
+            color +=
+                weight * skin::light(frame, &frame.bodies[b], (t - self.first[b]) as usize, view, shadow, at);
         }
         let n = covered as f32;
         match covered {
-            0 => Surface {
-                color,
-                cover: 0.0,
-                depth: f32::INFINITY,
-            },
-            _ => Surface {
-                color: color / n,
-                cover: n / SAMPLES.len() as f32,
-                depth: n / near,
-            },
+            0 => Surface { color, cover: 0.0, depth: f32::INFINITY },
+            _ => Surface { color: color / n, cover: n / SAMPLES.len() as f32, depth: n / near },
         }
     }
 }
 
 /// Corners of a triangle; `None` if an index is past the end or a corner is not finite.
 fn corners(body: &MeshDraw, t: &[u32; 3]) -> Option<[Vec3; 3]> {
-    let at = |i: u32| {
-        body.positions
-            .get(i as usize)
-            .copied()
-            .filter(|p| p.is_finite())
-    };
+    let at = |i: u32| body.positions.get(i as usize).copied().filter(|p| p.is_finite());
     Some([at(t[0])?, at(t[1])?, at(t[2])?])
 }
 

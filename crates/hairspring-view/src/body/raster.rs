@@ -39,13 +39,7 @@ impl ScreenTriangle {
         let edge = |p: Vec3, q: Vec3| Vec3::new(p.y - q.y, q.x - p.x, p.x * q.y - p.y * q.x) / area;
         let weights = [edge(b, c), edge(c, a), edge(a, b)];
         let nearness = weights[0] * a.z + weights[1] * b.z + weights[2] * c.z;
-        Some(Self {
-            columns,
-            rows,
-            weights,
-            nearness,
-            source,
-        })
+        Some(Self { columns, rows, weights, nearness, source })
     }
 
     /// Calls `hit(column, row, nearness)` for each pixel of the window (`corner`, `size`) whose sample at `offset` in it lies inside;
@@ -66,11 +60,8 @@ impl ScreenTriangle {
         for y in clip(self.rows, corner[1], size[1]) {
             for x in columns.clone() {
                 let p = Vec3::new(x as f32 + offset.x, y as f32 + offset.y, 1.0);
-                let inside = self.weights[0]
-                    .dot(p)
-                    .min(self.weights[1].dot(p))
-                    .min(self.weights[2].dot(p))
-                    >= 0.0;
+                let inside =
+                    self.weights[0].dot(p).min(self.weights[1].dot(p)).min(self.weights[2].dot(p)) >= 0.0;
                 if inside {
                     hit(x - corner[0], y - corner[1], self.nearness.dot(p));
                 }
@@ -89,14 +80,10 @@ pub(crate) struct Bins {
 impl Bins {
     pub fn fill(&mut self, triangles: &[ScreenTriangle], height: usize) {
         let bands = height.div_ceil(BANDS);
-        let touched =
-            |t: &ScreenTriangle| t.rows[0] as usize / BANDS..(t.rows[1] as usize).div_ceil(BANDS);
+        let touched = |t: &ScreenTriangle| t.rows[0] as usize / BANDS..(t.rows[1] as usize).div_ceil(BANDS);
         self.starts.clear();
         self.starts.resize(bands + 1, 0);
-        triangles
-            .iter()
-            .flat_map(touched)
-            .for_each(|band| self.starts[band + 1] += 1);
+        triangles.iter().flat_map(touched).for_each(|band| self.starts[band + 1] += 1);
         (0..bands).for_each(|band| self.starts[band + 1] += self.starts[band]);
         self.triangles.clear();
         self.triangles.resize(self.starts[bands] as usize, 0);

@@ -31,46 +31,29 @@ pub(super) fn light(
     let (p, weight) = meet(view.eye, ray, a, b, c);
     let flat = (b - a).cross(c - a).normalize_or(Vec3::Y);
     let smooth = match body.normals.len() == body.positions.len() {
-        true => {
-            body.normals[ia] * weight.x + body.normals[ib] * weight.y + body.normals[ic] * weight.z
-        }
+        true => body.normals[ia] * weight.x + body.normals[ib] * weight.y + body.normals[ic] * weight.z,
         false => flat,
     };
     let eye = -ray.normalize();
     // Open meshes are seen from both sides.
-    let facing = if flat.dot(eye) < 0.0 && smooth.dot(eye) < 0.0 {
-        -1.0
-    } else {
-        1.0
-    };
+    let facing = if flat.dot(eye) < 0.0 && smooth.dot(eye) < 0.0 { -1.0 } else { 1.0 };
     let n = smooth.try_normalize().unwrap_or(flat) * facing;
-    let part = body
-        .parts
-        .iter()
-        .find(|p| p.triangles.contains(&(t as u32)));
+    let part = body.parts.iter().find(|p| p.triangles.contains(&(t as u32)));
     let (base, roughness) = part.map_or(SKIN, |p| (p.color, p.roughness.clamp(0.15, 1.0)));
     let lamps = &frame.lighting;
 
     // Shadow is looked up a little off the surface, where the surface's own voxels do not count.
     let depth = shadow.around(p + n * (2.5 * shadow.voxel()));
     let key_open = shadow.body(p + n * 5e-4, 8e-4, 4) * (-HAIR_SHADE * depth.x).exp();
-    let open = [
-        key_open,
-        (-HAIR_SHADE * depth.y).exp(),
-        (-HAIR_SHADE * depth.z).exp(),
-    ];
+    let open = [key_open, (-HAIR_SHADE * depth.y).exp(), (-HAIR_SHADE * depth.z).exp()];
     let nv = n.dot(eye).max(1e-3);
     let mut diffuse = Vec3::ZERO;
     let mut gloss = Vec3::ZERO;
-    for (light, open) in [&lamps.key, &lamps.fill, &lamps.rim]
-        .into_iter()
-        .zip([open[0], open[2], open[1]])
-    {
+    for (light, open) in [&lamps.key, &lamps.fill, &lamps.rim].into_iter().zip([open[0], open[2], open[1]]) {
         let l = light.direction.normalize_or(Vec3::Y);
         let nl = n.dot(l);
         // Wrapped Lambert, normalised so that the total stays the same.
-        let wrapped =
-            ((Vec3::splat(nl) + WRAP) / (Vec3::ONE + WRAP)).max(Vec3::ZERO) / (Vec3::ONE + WRAP);
+        let wrapped = ((Vec3::splat(nl) + WRAP) / (Vec3::ONE + WRAP)).max(Vec3::ZERO) / (Vec3::ONE + WRAP);
         // Red light leaks round the edge of a shadow as it does round the terminator.
         let tinted = Vec3::new(open.powf(0.75), open, open.powf(1.1));
         diffuse += light.color * wrapped * tinted;
@@ -108,11 +91,8 @@ fn meet(eye: Vec3, ray: Vec3, a: Vec3, b: Vec3, c: Vec3) -> (Vec3, Vec3) {
     let u = s.dot(q) / det;
     let v = ray.dot(s.cross(e1)) / det;
     let weight = Vec3::new(1.0 - u - v, u, v);
-    let weight = if weight.is_finite() {
-        weight.clamp(Vec3::ZERO, Vec3::ONE)
-    } else {
-        Vec3::splat(1.0 / 3.0)
-    };
+    let weight =
+        if weight.is_finite() { weight.clamp(Vec3::ZERO, Vec3::ONE) } else { Vec3::splat(1.0 / 3.0) };
     let weight = weight / weight.element_sum();
     (a * weight.x + b * weight.y + c * weight.z, weight)
 }

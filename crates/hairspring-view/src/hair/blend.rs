@@ -58,11 +58,7 @@ impl Canvas {
         if d.x.abs() >= d.y.abs() {
             self.walk::<1, SIDE>(piece, piece.a, piece.b);
         } else {
-            self.walk::<SIDE, 1>(
-                piece,
-                Vec2::new(piece.a.y, piece.a.x),
-                Vec2::new(piece.b.y, piece.b.x),
-            );
+            self.walk::<SIDE, 1>(piece, Vec2::new(piece.a.y, piece.a.x), Vec2::new(piece.b.y, piece.b.x));
         }
     }
 
@@ -70,11 +66,7 @@ impl Canvas {
     #[inline(always)]
     fn walk<const ALONG: usize, const ACROSS: usize>(&mut self, piece: &Open, a: Vec2, b: Vec2) {
         // From left to right.
-        let (a, b, from, to) = if a.x <= b.x {
-            (a, b, 0, 1)
-        } else {
-            (b, a, 1, 0)
-        };
+        let (a, b, from, to) = if a.x <= b.x { (a, b, 0, 1) } else { (b, a, 1, 0) };
         let d = b - a;
         if d.x <= 1e-6 {
             return;
@@ -85,16 +77,8 @@ impl Canvas {
         let (half0, half1) = (piece.width[from] * lean, piece.width[to] * lean);
         // A joint belongs to the piece in whose span the column's middle lies, so joints neither gape nor double. At
         // the strand's own ends the last column counts by the share of it that is reached.
-        let first = if piece.cap[from] {
-            a.x.floor()
-        } else {
-            (a.x - 0.5).ceil()
-        };
-        let last = if piece.cap[to] {
-            b.x.ceil()
-        } else {
-            (b.x - 0.5).ceil()
-        };
+        let first = if piece.cap[from] { a.x.floor() } else { (a.x - 0.5).ceil() };
+        let last = if piece.cap[to] { b.x.ceil() } else { (b.x - 0.5).ceil() };
         let (first, last) = (first.max(0.0) as i32, (last.min(SIDE as f32)) as i32);
         let thin = half0.max(half1) <= 0.5;
         for column in first..last {
@@ -119,20 +103,10 @@ impl Canvas {
                 let share = y - 0.5 - top;
                 let row = top as i32;
                 if (0..SIDE as i32).contains(&row) {
-                    self.add(
-                        base + row as usize * ACROSS,
-                        cover * (1.0 - share),
-                        color,
-                        depth,
-                    );
+                    self.add(base + row as usize * ACROSS, cover * (1.0 - share), color, depth);
                 }
                 if (-1..SIDE as i32 - 1).contains(&row) {
-                    self.add(
-                        base + (row + 1) as usize * ACROSS,
-                        cover * share,
-                        color,
-                        depth,
-                    );
+                    self.add(base + (row + 1) as usize * ACROSS, cover * share, color, depth);
                 }
             } else {
                 let reach = half.max(0.5);

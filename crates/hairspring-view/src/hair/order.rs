@@ -39,25 +39,17 @@ impl Order {
         for (hair, h) in frame.hair.iter().enumerate() {
             let first = self.strands.len();
             // Strands are told apart by their middles: roots alone lie close together.
-            self.strands
-                .par_extend((0..h.strand_count()).into_par_iter().map(|s| {
-                    let range = h.range(s);
-                    let middle = h
-                        .points
-                        .get(range.start + range.len() / 2)
-                        .copied()
-                        .unwrap_or_default();
-                    (curve((middle - bounds.0) * scale), s as u32)
-                }));
+            self.strands.par_extend((0..h.strand_count()).into_par_iter().map(|s| {
+                let range = h.range(s);
+                let middle = h.points.get(range.start + range.len() / 2).copied().unwrap_or_default();
+                (curve((middle - bounds.0) * scale), s as u32)
+            }));
             self.strands[first..].par_sort_unstable();
             let (mut start, mut count) = (first, 0);
             for i in first..self.strands.len() {
                 count += h.range(self.strands[i].1 as usize).len();
                 if count >= size || i + 1 == self.strands.len() {
-                    self.runs.push(Run {
-                        hair,
-                        range: start..i + 1,
-                    });
+                    self.runs.push(Run { hair, range: start..i + 1 });
                     (start, count) = (i + 1, 0);
                 }
             }

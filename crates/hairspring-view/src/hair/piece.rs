@@ -52,13 +52,7 @@ impl Piece {
 
     #[inline(always)]
     pub fn new([a, b]: [Vec2; 2], depths: [u16; 2], widths: [u16; 2], colors: [u32; 2]) -> Self {
-        Self {
-            a,
-            b,
-            depths,
-            widths,
-            colors,
-        }
+        Self { a, b, depths, widths, colors }
     }
 
     #[inline(always)]
@@ -93,18 +87,13 @@ pub(crate) fn pack_width(width: f32) -> u16 {
 /// The square root of a colour: 11 bits of red, 11 of green, 10 of blue.
 #[inline(always)]
 pub(crate) fn pack_color(c: Vec3) -> u32 {
-    let root =
-        |c: f32, top: f32| ((c * (1.0 / MAX_LIGHT)).clamp(0.0, 1.0).sqrt() * top + 0.5) as u32;
+    let root = |c: f32, top: f32| ((c * (1.0 / MAX_LIGHT)).clamp(0.0, 1.0).sqrt() * top + 0.5) as u32;
     root(c.x, 2047.0) | root(c.y, 2047.0) << 11 | root(c.z, 1023.0) << 22
 }
 
 #[inline(always)]
 pub(crate) fn open_color(bits: u32) -> Vec3 {
-    let root = Vec3::new(
-        (bits & 2047) as f32,
-        (bits >> 11 & 2047) as f32,
-        (bits >> 22) as f32,
-    );
+    let root = Vec3::new((bits & 2047) as f32, (bits >> 11 & 2047) as f32, (bits >> 22) as f32);
     let scaled = root * Vec3::new(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0);
     scaled * scaled * MAX_LIGHT
 }
@@ -122,10 +111,7 @@ mod tests {
                 b: Vec2::new(-3.0, 700.5),
                 depth: [t, 1.0 - t],
                 width: [0.02 + t * t, 3.0 * t],
-                color: [
-                    Vec4::new(t, 2.0 * t, 0.1 * t, -1.0),
-                    Vec4::new(0.01, 0.01, 0.01, -1.0),
-                ],
+                color: [Vec4::new(t, 2.0 * t, 0.1 * t, -1.0), Vec4::new(0.01, 0.01, 0.01, -1.0)],
                 cap: [k % 2 == 0, k % 3 == 0],
             };
             let back = Piece::pack(&open).open();
@@ -140,10 +126,7 @@ mod tests {
                 );
                 let error = (back.color[i] - open.color[i]).abs();
                 // A step of the finest sRGB code near black is 3e-4, near white 9e-3.
-                assert!(
-                    error.max_element() < 6e-4 + 0.01 * open.color[i].abs().max_element(),
-                    "{error}"
-                );
+                assert!(error.max_element() < 6e-4 + 0.01 * open.color[i].abs().max_element(), "{error}");
             }
         }
     }

@@ -54,12 +54,7 @@ struct Dot {
 impl Dot {
     #[inline(always)]
     fn new(at: Vec2, depth: f32, width: f32) -> Self {
-        Self {
-            at,
-            depth,
-            width,
-            bits: (piece::pack_depth(depth), piece::pack_width(width)),
-        }
+        Self { at, depth, width, bits: (piece::pack_depth(depth), piece::pack_width(width)) }
     }
 }
 
@@ -123,22 +118,14 @@ impl Chunk {
         for i in range {
             let q = setup.view.project(hair.points[i]);
             let width = hair.radii[i] * scale / q.z;
-            let good = q.z > NEAR
-                && q.is_finite()
-                && q.truncate().abs().max_element() < 1e6
-                && width >= 0.0;
+            let good = q.z > NEAR && q.is_finite() && q.truncate().abs().max_element() < 1e6 && width >= 0.0;
             if good {
                 let reach = Vec2::splat(0.5 * width + 1.0);
                 low = low.min(q.truncate() - reach);
                 high = high.max(q.truncate() + reach);
             }
-            let depth = if good {
-                ((q.z - ROOT_BIAS - near) * per_depth).clamp(0.0, 1.0)
-            } else {
-                f32::NAN
-            };
-            self.dots
-                .push(Dot::new(q.truncate(), depth, width.min(MAX_WIDTH)));
+            let depth = if good { ((q.z - ROOT_BIAS - near) * per_depth).clamp(0.0, 1.0) } else { f32::NAN };
+            self.dots.push(Dot::new(q.truncate(), depth, width.min(MAX_WIDTH)));
         }
         let [w, h] = setup.tiles.size();
         high.x > 0.0 && high.y > 0.0 && low.x < w as f32 && low.y < h as f32
@@ -146,14 +133,7 @@ impl Chunk {
 
     /// Gathers what the shader needs at every point.
     #[inline(always)]
-    fn light(
-        &mut self,
-        setup: &Setup,
-        hair: &HairDraw,
-        range: Range<usize>,
-        ends: [Vec3; 2],
-        amount: f32,
-    ) {
+    fn light(&mut self, setup: &Setup, hair: &HairDraw, range: Range<usize>, ends: [Vec3; 2], amount: f32) {
         let points = &hair.points[range.clone()];
         let n = points.len();
         // Lanes past the last point keep old numbers, which nobody reads.
@@ -197,19 +177,12 @@ impl Chunk {
                 // Tangents at the joints halve the angle there: a Catmull-Rom curve by chord length, which has no
                 // loops or overshoot where points are spaced unevenly.
                 let turn = |other: Vec2| {
-                    if other == Vec2::ZERO {
-                        0.0
-                    } else {
-                        (other - here).length()
-                    }
+                    if other == Vec2::ZERO { 0.0 } else { (other - here).length() }
                 };
                 let bend = length * 0.0625 * (turn(before) + turn(next));
                 let count = (bend / tolerance).sqrt().ceil().clamp(1.0, MAX_PIECES);
                 let (ta, tb) = match count > 1.0 {
-                    true => (
-                        (before + here).normalize_or(here),
-                        (here + next).normalize_or(here),
-                    ),
+                    true => ((before + here).normalize_or(here), (here + next).normalize_or(here)),
                     false => (here, here),
                 };
                 let starts = i == 0 || before == Vec2::ZERO;
@@ -227,17 +200,11 @@ impl Chunk {
                             false => {
                                 let at = hermite(a.at, b.at, ta * length, tb * length, u);
                                 let mix = |a: f32, b: f32| a + (b - a) * u;
-                                let dot =
-                                    Dot::new(at, mix(a.depth, b.depth), mix(a.width, b.width));
+                                let dot = Dot::new(at, mix(a.depth, b.depth), mix(a.width, b.width));
                                 (dot, piece::pack_color(first.lerp(last, u)))
                             }
                         };
-                        self.push(
-                            setup,
-                            [p, q],
-                            [start, end],
-                            [starts && k == 1, ends && closes],
-                        );
+                        self.push(setup, [p, q], [start, end], [starts && k == 1, ends && closes]);
                         (p, start) = (q, end);
                     }
                 }
@@ -265,19 +232,11 @@ impl Chunk {
         let key = (0.5 * (a.depth + b.depth) * ((1u32 << KEY_BITS) - 1) as f32) as u64;
         let entry = key << (64 - KEY_BITS) | self.pieces.len() as u64;
         let widths = [a.bits.1 | cap[0] as u16, b.bits.1 | cap[1] as u16];
-        self.pieces.push(Piece::new(
-            [a.at, b.at],
-            [a.bits.0, b.bits.0],
-            widths,
-            colors,
-        ));
+        self.pieces.push(Piece::new([a.at, b.at], [a.bits.0, b.bits.0], widths, colors));
         let side = SIDE as f32;
         let tile = |x: f32, n: usize| (x.max(0.0) / side).min((n - 1) as f32) as usize;
         let [nx, ny] = setup.tiles.grid();
-        let (rows, columns) = (
-            tile(low.y, ny)..=tile(high.y, ny),
-            tile(low.x, nx)..=tile(high.x, nx),
-        );
+        let (rows, columns) = (tile(low.y, ny)..=tile(high.y, ny), tile(low.x, nx)..=tile(high.x, nx));
         let d = b.at - a.at;
         let single = rows.start() == rows.end() || columns.start() == columns.end();
         for y in rows {
@@ -285,18 +244,9 @@ impl Chunk {
             if !single {
                 // Only where the line crosses this row of tiles: a long piece must not claim a whole rectangle.
                 let at = |y: f32| {
-                    a.at.x
-                        + d.x
-                            * if d.y == 0.0 {
-                                0.0
-                            } else {
-                                ((y - a.at.y) / d.y).clamp(0.0, 1.0)
-                            }
+                    a.at.x + d.x * if d.y == 0.0 { 0.0 } else { ((y - a.at.y) / d.y).clamp(0.0, 1.0) }
                 };
-                let (x0, x1) = (
-                    at(y as f32 * side - reach),
-                    at((y + 1) as f32 * side + reach),
-                );
+                let (x0, x1) = (at(y as f32 * side - reach), at((y + 1) as f32 * side + reach));
                 if d.y.abs() > 1e-3 {
                     first = first.max(tile(x0.min(x1) - reach, nx));
                     last = last.min(tile(x0.max(x1) + reach, nx));
@@ -313,9 +263,7 @@ impl Chunk {
     fn file(&mut self, tiles: usize) {
         self.starts.clear();
         self.starts.resize(tiles + 1, 0);
-        self.unsorted
-            .iter()
-            .for_each(|(tile, _)| self.starts[*tile as usize + 1] += 1);
+        self.unsorted.iter().for_each(|(tile, _)| self.starts[*tile as usize + 1] += 1);
         (0..tiles).for_each(|t| self.starts[t + 1] += self.starts[t]);
         self.entries.clear();
         self.entries.resize(self.unsorted.len(), 0);
@@ -334,8 +282,5 @@ impl Chunk {
 #[inline(always)]
 fn hermite(a: Vec2, b: Vec2, ta: Vec2, tb: Vec2, u: f32) -> Vec2 {
     let (u2, u3) = (u * u, u * u * u);
-    a * (2.0 * u3 - 3.0 * u2 + 1.0)
-        + b * (3.0 * u2 - 2.0 * u3)
-        + ta * (u3 - 2.0 * u2 + u)
-        + tb * (u3 - u2)
+    a * (2.0 * u3 - 3.0 * u2 + 1.0) + b * (3.0 * u2 - 2.0 * u3) + ta * (u3 - 2.0 * u2 + u) + tb * (u3 - u2)
 }

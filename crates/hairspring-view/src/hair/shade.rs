@@ -81,11 +81,7 @@ impl Shader {
         let lamp = |l: &crate::lighting::Light| (l.direction.normalize_or(Vec3::Y), l.color);
         Self {
             eye,
-            lamps: [
-                lamp(&lighting.key),
-                lamp(&lighting.rim),
-                lamp(&lighting.fill),
-            ],
+            lamps: [lamp(&lighting.key), lamp(&lighting.rim), lamp(&lighting.fill)],
             sky: lighting.sky,
             ground: lighting.ground,
         }
@@ -108,11 +104,7 @@ struct V<S: Simd>([f32x8<S>; 3]);
 impl<S: Simd> V<S> {
     #[inline(always)]
     fn load(simd: S, [x, y, z]: &[Row; 3]) -> Self {
-        Self([
-            f32x8::simd_from(simd, *x),
-            f32x8::simd_from(simd, *y),
-            f32x8::simd_from(simd, *z),
-        ])
+        Self([f32x8::simd_from(simd, *x), f32x8::simd_from(simd, *y), f32x8::simd_from(simd, *z)])
     }
     #[inline(always)]
     fn dot(self, o: Self) -> f32x8<S> {
@@ -135,8 +127,7 @@ fn exp2<S: Simd>(x: f32x8<S>) -> f32x8<S> {
     let whole = x.floor();
     let f = x - whole;
     // Minimax on [0, 1].
-    let p =
-        (((f * 0.013_676_6 + 0.051_690_4) * f + 0.241_638_4) * f + 0.692_983_6) * f + 1.000_002_6;
+    let p = (((f * 0.013_676_6 + 0.051_690_4) * f + 0.241_638_4) * f + 0.692_983_6) * f + 1.000_002_6;
     let power: f32x8<S> = ((whole.to_int::<fearless_simd::i32x8<S>>() + 127) << 23u32).bitcast();
     p * power
 }
@@ -189,11 +180,7 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
     for k in 0..3 {
         let (l, lamp) = shader.lamps[k];
         let depth = f32x8::simd_from(simd, block.light[k]);
-        let body = if k == 0 {
-            f32x8::simd_from(simd, block.body)
-        } else {
-            zero + 1.0
-        };
+        let body = if k == 0 { f32x8::simd_from(simd, block.body) } else { zero + 1.0 };
         let beam = exp2(depth * (-BEAM * std::f32::consts::LOG2_E)) * body;
 
         let sin_l = t.dot3(l).max(-1.0).min(1.0);
@@ -202,9 +189,7 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let vl = v.dot3(l);
         let cos_phi = ((vl - sin_l * sin_v) / (cos_l * cos_v)).max(-1.0).min(1.0);
         let cos_half = (cos_phi * 0.5 + 0.5).sqrt();
-        let cos_d = ((cos_l * cos_v + sin_l * sin_v) * 0.5 + 0.5)
-            .max(1e-3)
-            .sqrt();
+        let cos_d = ((cos_l * cos_v + sin_l * sin_v) * 0.5 + 0.5).max(1e-3).sqrt();
         let sines = sin_l + sin_v;
 
         // R: white, towards the root. The lobes lie at −α, α/2 and 3α/2 (Marschner et al. 2003, table 1); sines add up both angles.
@@ -238,12 +223,10 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let color = lamp.to_array();
         for i in 0..3 {
             let c = pigment.0[i];
-            let single = (r + tt * exp2(c * tt_path) + trt * exp2(c * trt_path))
-                * beam
-                * std::f32::consts::PI;
-            let lost = (c * SCATTERED.1 - SCATTERED.0)
-                * (depth + (-body + 1.0) * 12.0)
-                * std::f32::consts::LOG2_E;
+            let single =
+                (r + tt * exp2(c * tt_path) + trt * exp2(c * trt_path)) * beam * std::f32::consts::PI;
+            let lost =
+                (c * SCATTERED.1 - SCATTERED.0) * (depth + (-body + 1.0) * 12.0) * std::f32::consts::LOG2_E;
             let multiple = soft[i] * exp2(c * 0.5 + lost) * (facing * 0.7 + flat);
             sum[i] += (single * cos_l + multiple) * color[i];
         }
@@ -279,11 +262,7 @@ pub(crate) fn random(s: u32) -> f32 {
 
 /// Base-2 logarithm of a colour; black keeps a trace of light, white a trace of pigment.
 pub(crate) fn pigment(color: Vec3) -> Vec3 {
-    let c = if color.is_finite() {
-        color
-    } else {
-        Vec3::splat(0.2)
-    };
+    let c = if color.is_finite() { color } else { Vec3::splat(0.2) };
     let c = c.clamp(Vec3::splat(0.002), Vec3::splat(0.98));
     Vec3::new(c.x.log2(), c.y.log2(), c.z.log2())
 }
@@ -316,12 +295,7 @@ mod tests {
             let x = i as f32 * 0.0371;
             let mut got = [0.0; LANES];
             dispatch!(level, simd => exp2(f32x8::splat(simd, x)).store_slice(&mut got));
-            assert!(
-                (got[0] / x.exp2() - 1.0).abs() < 2e-4,
-                "{x}: {} {}",
-                got[0],
-                x.exp2()
-            );
+            assert!((got[0] / x.exp2() - 1.0).abs() < 2e-4, "{x}: {} {}", got[0], x.exp2());
         }
     }
 

@@ -6,8 +6,8 @@ use muxide::api::{Muxer, MuxerBuilder, VideoCodec};
 use openh264::{
     OpenH264API,
     encoder::{
-        BitRate, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, QpRange,
-        RateControlMode, VuiConfig,
+        BitRate, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, QpRange, RateControlMode,
+        VuiConfig,
     },
 };
 use std::{
@@ -42,10 +42,7 @@ impl ClipWriter {
     /// # Errors
     /// If size or rate are out of range, or the file cannot be made.
     pub fn create(path: &Path, width: u32, height: u32, fps: f64) -> Result<Self, OutputError> {
-        let wrong = |why: String| OutputError::Clip {
-            path: path.into(),
-            why,
-        };
+        let wrong = |why: String| OutputError::Clip { path: path.into(), why };
         let (long, short) = (width.max(height), width.min(height));
         if short < 16 || long > 3840 || short > 2160 {
             return Err(wrong(format!(
@@ -53,9 +50,7 @@ impl ClipWriter {
             )));
         }
         if !(fps > 0.0 && fps <= 240.0) {
-            return Err(wrong(format!(
-                "{fps} frames a second; choose a rate above 0 and up to 240"
-            )));
+            return Err(wrong(format!("{fps} frames a second; choose a rate above 0 and up to 240")));
         }
         let bits = (width as f64 * height as f64 * fps * BITS_PER_PIXEL).clamp(2e5, 1e8) as u32;
         let config = EncoderConfig::new()
@@ -65,18 +60,13 @@ impl ClipWriter {
             .bitrate(BitRate::from_bps(bits))
             // Every frame is there, and players can jump to any second.
             .skip_frames(false)
-            .intra_frame_period(IntraFramePeriod::from_num_frames(
-                (fps.round() as u32).max(1),
-            ))
+            .intra_frame_period(IntraFramePeriod::from_num_frames((fps.round() as u32).max(1)))
             .background_detection(false)
             .vui(VuiConfig::bt709());
-        let encoder = Encoder::with_api_config(OpenH264API::from_source(), config)
-            .map_err(|e| wrong(e.to_string()))?;
+        let encoder =
+            Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| wrong(e.to_string()))?;
         let temporary = beside(path)?;
-        let file = temporary.reopen().map_err(|source| OutputError::File {
-            path: path.into(),
-            source,
-        })?;
+        let file = temporary.reopen().map_err(|source| OutputError::File { path: path.into(), source })?;
         let (even_width, even_height) = (width.next_multiple_of(2), height.next_multiple_of(2));
         let muxer = MuxerBuilder::new(BufWriter::new(file))
             .video(VideoCodec::H264, even_width, even_height, fps)
@@ -101,10 +91,7 @@ impl ClipWriter {
     /// # Errors
     /// If the picture has another size than the clip, or the disk is full.
     pub fn push(&mut self, image: &Image) -> Result<(), OutputError> {
-        let wrong = |why: String| OutputError::Clip {
-            path: self.path.clone(),
-            why,
-        };
+        let wrong = |why: String| OutputError::Clip { path: self.path.clone(), why };
         if (image.width, image.height) != self.size {
             let (w, h) = self.size;
             return Err(wrong(format!(
@@ -113,17 +100,12 @@ impl ClipWriter {
             )));
         }
         self.planes.fill(image);
-        let stream = self
-            .encoder
-            .encode(&self.planes.slices())
-            .map_err(|e| wrong(e.to_string()))?;
+        let stream = self.encoder.encode(&self.planes.slices()).map_err(|e| wrong(e.to_string()))?;
         let whole = matches!(stream.frame_type(), FrameType::IDR | FrameType::I);
         self.bits.clear();
         stream.write_vec(&mut self.bits);
         let time = self.frames as f64 / self.fps;
-        self.muxer
-            .write_video(time, &self.bits, whole)
-            .map_err(|e| wrong(e.to_string()))?;
+        self.muxer.write_video(time, &self.bits, whole).map_err(|e| wrong(e.to_string()))?;
         self.frames += 1;
         Ok(())
     }
@@ -133,28 +115,17 @@ impl ClipWriter {
     /// # Errors
     /// If there is no frame, or the disk is full.
     pub fn finish(mut self) -> Result<(), OutputError> {
-        let wrong = |why: String| OutputError::Clip {
-            path: self.path.clone(),
-            why,
-        };
+        let wrong = |why: String| OutputError::Clip { path: self.path.clone(), why };
         if self.frames == 0 {
             return Err(wrong("no frame was drawn; choose at least one".into()));
         }
-        self.muxer
-            .finish_in_place()
-            .map_err(|e| wrong(e.to_string()))?;
+        self.muxer.finish_in_place().map_err(|e| wrong(e.to_string()))?;
         let file = self
             .muxer
             .into_writer()
             .into_inner()
-            .map_err(|e| OutputError::File {
-                path: self.path.clone(),
-                source: e.into_error(),
-            })?;
-        file.sync_all().map_err(|source| OutputError::File {
-            path: self.path.clone(),
-            source,
-        })?;
+            .map_err(|e| OutputError::File { path: self.path.clone(), source: e.into_error() })?;
+        file.sync_all().map_err(|source| OutputError::File { path: self.path.clone(), source })?;
         drop(file);
         keep(self.temporary, &self.path)
     }

@@ -40,10 +40,7 @@ pub enum OutputError {
 
 /// A temporary file in the folder of `path`.
 fn beside(path: &Path) -> Result<tempfile::NamedTempFile, OutputError> {
-    let folder = path
-        .parent()
-        .filter(|f| !f.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     // What a program creates is readable as the user's mask says, not private as temporary files are.
     #[cfg(unix)]
@@ -51,16 +48,10 @@ fn beside(path: &Path) -> Result<tempfile::NamedTempFile, OutputError> {
     builder
         .prefix(".hairspring-")
         .tempfile_in(folder)
-        .map_err(|source| OutputError::File {
-            path: path.into(),
-            source,
-        })
+        .map_err(|source| OutputError::File { path: path.into(), source })
 }
 
 /// Gives a finished temporary file its name.
 fn keep(file: tempfile::NamedTempFile, path: &Path) -> Result<(), OutputError> {
-    file.persist(path).map(drop).map_err(|e| OutputError::File {
-        path: path.into(),
-        source: e.error,
-    })
+    file.persist(path).map(drop).map_err(|e| OutputError::File { path: path.into(), source: e.error })
 }

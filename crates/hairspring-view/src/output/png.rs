@@ -30,10 +30,7 @@ pub fn write_png(path: &Path, image: &Image) -> Result<(), OutputError> {
             png::EncodingError::IoError(e) => e,
             other => std::io::Error::other(other),
         };
-        OutputError::File {
-            path: path.into(),
-            source,
-        }
+        OutputError::File { path: path.into(), source }
     })?;
     keep(file, path)
 }
@@ -43,37 +40,19 @@ pub fn write_png(path: &Path, image: &Image) -> Result<(), OutputError> {
 /// # Errors
 /// If the file cannot be read, or is another kind of picture.
 pub fn read_png(path: &Path) -> Result<Image, OutputError> {
-    let file = std::fs::File::open(path).map_err(|source| OutputError::File {
-        path: path.into(),
-        source,
-    })?;
-    let wrong = |why: String| OutputError::Picture {
-        path: path.into(),
-        why,
-    };
+    let file = std::fs::File::open(path).map_err(|source| OutputError::File { path: path.into(), source })?;
+    let wrong = |why: String| OutputError::Picture { path: path.into(), why };
     // The decoder's own limit of 64 MiB holds for any picture of ours.
-    let mut reader = png::Decoder::new(std::io::BufReader::new(file))
-        .read_info()
-        .map_err(|e| wrong(e.to_string()))?;
-    let size = reader
-        .output_buffer_size()
-        .ok_or_else(|| wrong("too large".into()))?;
+    let mut reader =
+        png::Decoder::new(std::io::BufReader::new(file)).read_info().map_err(|e| wrong(e.to_string()))?;
+    let size = reader.output_buffer_size().ok_or_else(|| wrong("too large".into()))?;
     let mut rgb = vec![0; size];
-    let info = reader
-        .next_frame(&mut rgb)
-        .map_err(|e| wrong(e.to_string()))?;
+    let info = reader.next_frame(&mut rgb).map_err(|e| wrong(e.to_string()))?;
     if (info.color_type, info.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {
-        return Err(wrong(format!(
-            "it is {:?} with {:?} bits",
-            info.color_type, info.bit_depth
-        )));
+        return Err(wrong(format!("it is {:?} with {:?} bits", info.color_type, info.bit_depth)));
     }
     rgb.truncate(info.buffer_size());
-    Ok(Image {
-        width: info.width,
-        height: info.height,
-        rgb,
-    })
+    Ok(Image { width: info.width, height: info.height, rgb })
 }
 
 /// The path of frame `number` of a sequence: the last run of `#` in the file's name becomes the number, with as many digits at least
@@ -92,12 +71,8 @@ mod tests {
 
     #[test]
     fn numbers_fill_the_last_run_of_signs() {
-        let path =
-            |p: &str, n| sequence_path(Path::new(p), n).map(|p| p.to_string_lossy().into_owned());
-        assert_eq!(
-            path("out/frame.####.png", 7).as_deref(),
-            Some("out/frame.0007.png")
-        );
+        let path = |p: &str, n| sequence_path(Path::new(p), n).map(|p| p.to_string_lossy().into_owned());
+        assert_eq!(path("out/frame.####.png", 7).as_deref(), Some("out/frame.0007.png"));
         assert_eq!(path("a##b#.png", 123).as_deref(), Some("a##b123.png"));
         assert_eq!(path("##/still.png", 1), None);
     }

@@ -24,11 +24,7 @@ impl Planes {
         self.v.resize(ew * eh / 4, 0);
         let pixel = |x: usize, y: usize| {
             let i = (y.min(h - 1) * w + x.min(w - 1)) * 3;
-            [
-                image.rgb[i] as i32,
-                image.rgb[i + 1] as i32,
-                image.rgb[i + 2] as i32,
-            ]
+            [image.rgb[i] as i32, image.rgb[i + 1] as i32, image.rgb[i + 2] as i32]
         };
         let rows = self
             .y
@@ -75,10 +71,7 @@ mod tests {
         ];
         for (rgb, yuv) in cases {
             let mut image = Image::new(3, 3);
-            image
-                .rgb
-                .chunks_mut(3)
-                .for_each(|p| p.copy_from_slice(&rgb));
+            image.rgb.chunks_mut(3).for_each(|p| p.copy_from_slice(&rgb));
             let mut planes = Planes::default();
             planes.fill(&image);
             assert_eq!(planes.size, (4, 4));

@@ -36,26 +36,18 @@ impl Grid {
         let extent = (bounds.1 - bounds.0).max_element().max(1e-4);
         let inner = voxels.clamp(16, 256) as f32;
         // Sizes in steps of 2^(1/4): a style that swings keeps its voxel size for whole shots.
-        let voxel = ((extent / inner).log2() * 4.0)
-            .ceil()
-            .mul_add(0.25, 0.0)
-            .exp2();
+        let voxel = ((extent / inner).log2() * 4.0).ceil().mul_add(0.25, 0.0).exp2();
         let first = (bounds.0 / voxel).floor() - Vec3::splat(PAD as f32);
         let last = (bounds.1 / voxel).ceil() + Vec3::splat(PAD as f32);
         let size = (last - first).to_array().map(|n| n as usize + 1);
-        Self {
-            origin: first * voxel,
-            voxel,
-            size,
-        }
+        Self { origin: first * voxel, voxel, size }
     }
 
     /// Nearest voxel, or `None` outside.
     fn nearest(&self, p: Vec3) -> Option<usize> {
         let q = (p - self.origin) / self.voxel + Vec3::splat(0.5);
         let [x, y, z] = [q.x as usize, q.y as usize, q.z as usize];
-        let inside =
-            q.cmpge(Vec3::ZERO).all() && x < self.size[0] && y < self.size[1] && z < self.size[2];
+        let inside = q.cmpge(Vec3::ZERO).all() && x < self.size[0] && y < self.size[1] && z < self.size[2];
         inside.then(|| (z * self.size[1] + y) * self.size[0] + x)
     }
 }
@@ -65,44 +57,27 @@ impl Grid {
 /// Points farther from the middle than 12 times the mean distance (per axis) are left out: one stray strand would
 /// otherwise take all the voxels.
 pub(crate) fn bounds(hair: &[HairDraw]) -> Option<(Vec3, Vec3)> {
-    let sample = || {
-        hair.iter()
-            .flat_map(|h| h.points.iter().step_by(7))
-            .filter(|p| p.is_finite())
-    };
+    let sample = || hair.iter().flat_map(|h| h.points.iter().step_by(7)).filter(|p| p.is_finite());
     let count = sample().count();
     if count == 0 {
         return None;
     }
     let mean = sample().fold(glam::DVec3::ZERO, |sum, p| sum + p.as_dvec3()) / count as f64;
-    let spread = sample().fold(glam::DVec3::ZERO, |sum, p| {
-        sum + (p.as_dvec3() - mean).abs()
-    }) / count as f64;
-    let (mean, reach) = (
-        mean.as_vec3(),
-        (spread * 12.0).as_vec3() + Vec3::splat(1e-3),
-    );
+    let spread = sample().fold(glam::DVec3::ZERO, |sum, p| sum + (p.as_dvec3() - mean).abs()) / count as f64;
+    let (mean, reach) = (mean.as_vec3(), (spread * 12.0).as_vec3() + Vec3::splat(1e-3));
     let (low, high) = (mean - reach, mean + reach);
     let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let join = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
     let found = hair.iter().fold(none, |found, h| {
         let of = |points: &[Vec3]| {
             points.iter().fold(none, |b, p| {
-                if p.cmpge(low).all() && p.cmple(high).all() {
-                    join(b, (*p, *p))
-                } else {
-                    b
-                }
+                if p.cmpge(low).all() && p.cmple(high).all() { join(b, (*p, *p)) } else { b }
             })
         };
-        join(
-            found,
-            h.points.par_chunks(1 << 16).map(of).reduce(|| none, join),
-        )
+        join(found, h.points.par_chunks(1 << 16).map(of).reduce(|| none, join))
     });
     // The shadow reaches no farther than a building, whatever the input.
-    (found.0.is_finite() && found.1.is_finite() && (found.1 - found.0).max_element() < 1e4)
-        .then_some(found)
+    (found.0.is_finite() && found.1.is_finite() && (found.1 - found.0).max_element() < 1e4).then_some(found)
 }
 
 /// Working memory of the grid.
@@ -125,37 +100,28 @@ impl Density {
         // One grid a thread; more than eight would cost more to add up than they save.
         let parts = rayon::current_num_threads().clamp(1, 8);
         self.partial.resize_with(parts, Vec::new);
-        self.partial
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(part, sum)| {
-                sum.clear();
-                sum.resize(len, 0);
-                let n = order.runs.len();
-                for run in &order.runs[part * n / parts..(part + 1) * n / parts] {
-                    splat(&grid, &frame.hair[run.hair], order.strands(run), sum);
-                }
-            });
+        self.partial.par_iter_mut().enumerate().for_each(|(part, sum)| {
+            sum.clear();
+            sum.resize(len, 0);
+            let n = order.runs.len();
+            for run in &order.runs[part * n / parts..(part + 1) * n / parts] {
+                splat(&grid, &frame.hair[run.hair], order.strands(run), sum);
+            }
+        });
         let [nx, ny, _] = grid.size;
         let partial = &self.partial;
         self.hair.resize(len, 0.0);
-        self.hair
-            .par_chunks_mut(nx * ny)
-            .enumerate()
-            .for_each(|(z, slice)| {
-                for (i, value) in slice.iter_mut().enumerate() {
-                    let sum = partial
-                        .iter()
-                        .fold(0u32, |s, p| s.saturating_add(p[z * nx * ny + i]));
-                    *value = sum as f32 / UNIT;
-                }
-            });
+        self.hair.par_chunks_mut(nx * ny).enumerate().for_each(|(z, slice)| {
+            for (i, value) in slice.iter_mut().enumerate() {
+                let sum = partial.iter().fold(0u32, |s, p| s.saturating_add(p[z * nx * ny + i]));
+                *value = sum as f32 / UNIT;
+            }
+        });
         blur(&grid, &mut self.hair, &mut self.scratch);
         self.all.clone_from(&self.hair);
         for body in frame.bodies {
             for t in body.triangles {
-                let corner =
-                    t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
+                let corner = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
                 wall(&grid, corner, &mut self.all);
             }
         }
@@ -190,12 +156,8 @@ fn splat(grid: &Grid, hair: &HairDraw, strands: impl Iterator<Item = usize>, sum
 /// Marks the voxels that a triangle passes through as opaque.
 fn wall(grid: &Grid, [a, b, c]: [Vec3; 3], all: &mut [f32]) {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    let end = grid.origin
-        + Vec3::new(
-            grid.size[0] as f32,
-            grid.size[1] as f32,
-            grid.size[2] as f32,
-        ) * grid.voxel;
+    let end =
+        grid.origin + Vec3::new(grid.size[0] as f32, grid.size[1] as f32, grid.size[2] as f32) * grid.voxel;
     let apart = !(low.cmple(end).all() && high.cmpge(grid.origin).all());
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     if apart || !longest.is_finite() {
@@ -221,22 +183,15 @@ fn blur(grid: &Grid, values: &mut Vec<f32>, scratch: &mut Vec<f32>) {
         scratch.resize(values.len(), 0.0);
         let from = &values[..];
         // The padding is empty, so wrapping at the faces mixes only zeros.
-        scratch
-            .par_chunks_mut(slice)
-            .enumerate()
-            .for_each(|(z, out)| {
-                let base = z * slice;
-                for (i, value) in out.iter_mut().enumerate() {
-                    let at = base + i;
-                    let before = if at >= stride { from[at - stride] } else { 0.0 };
-                    let after = if at + stride < from.len() {
-                        from[at + stride]
-                    } else {
-                        0.0
-                    };
-                    *value = 0.25 * (before + after) + 0.5 * from[at];
-                }
-            });
+        scratch.par_chunks_mut(slice).enumerate().for_each(|(z, out)| {
+            let base = z * slice;
+            for (i, value) in out.iter_mut().enumerate() {
+                let at = base + i;
+                let before = if at >= stride { from[at - stride] } else { 0.0 };
+                let after = if at + stride < from.len() { from[at + stride] } else { 0.0 };
+                *value = 0.25 * (before + after) + 0.5 * from[at];
+            }
+        });
         std::mem::swap(values, scratch);
     }
 }

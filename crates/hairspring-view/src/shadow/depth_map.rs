@@ -26,27 +26,15 @@ pub(crate) struct DepthMap {
 impl DepthMap {
     /// Draws the frame's bodies from the key lamp.
     pub fn fill(&mut self, frame: &Frame) {
-        self.toward = frame
-            .lighting
-            .key
-            .direction
-            .try_normalize()
-            .unwrap_or(Vec3::Y);
+        self.toward = frame.lighting.key.direction.try_normalize().unwrap_or(Vec3::Y);
         self.right = self.toward.any_orthonormal_vector();
         self.up = self.toward.cross(self.right);
         self.triangles.clear();
         let flat = |p: Vec3| Vec2::new(p.dot(self.right), p.dot(self.up));
-        let points = || {
-            frame
-                .bodies
-                .iter()
-                .flat_map(|b| b.positions)
-                .filter(|p| p.is_finite())
-                .map(|p| flat(*p))
-        };
-        let (low, high) = points().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |b, p| {
-            (b.0.min(p), b.1.max(p))
-        });
+        let points =
+            || frame.bodies.iter().flat_map(|b| b.positions).filter(|p| p.is_finite()).map(|p| flat(*p));
+        let (low, high) =
+            points().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |b, p| (b.0.min(p), b.1.max(p)));
         let extent = (high - low).max_element();
         self.side = 0;
         if !(extent > 0.0 && extent.is_finite()) {
@@ -59,8 +47,7 @@ impl DepthMap {
             for t in body.triangles {
                 let p = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
                 let screen = p.map(|p| self.texel(p));
-                self.triangles
-                    .extend(ScreenTriangle::new(screen, 0, self.side, self.side));
+                self.triangles.extend(ScreenTriangle::new(screen, 0, self.side, self.side));
             }
         }
         self.bins.fill(&self.triangles, self.side);
@@ -68,23 +55,20 @@ impl DepthMap {
         self.heights.clear();
         self.heights.resize(side * side, f32::NEG_INFINITY);
         let (triangles, bins) = (&self.triangles, &self.bins);
-        self.heights
-            .par_chunks_mut(side * BANDS)
-            .enumerate()
-            .for_each(|(band, rows)| {
-                for t in bins.band(band) {
-                    let height = rows.len() / side;
-                    triangles[*t as usize].cover(
-                        [0, band * BANDS],
-                        [side, height],
-                        Vec2::splat(0.5),
-                        |x, y, h| {
-                            let at = &mut rows[y * side + x];
-                            *at = at.max(h);
-                        },
-                    );
-                }
-            });
+        self.heights.par_chunks_mut(side * BANDS).enumerate().for_each(|(band, rows)| {
+            for t in bins.band(band) {
+                let height = rows.len() / side;
+                triangles[*t as usize].cover(
+                    [0, band * BANDS],
+                    [side, height],
+                    Vec2::splat(0.5),
+                    |x, y, h| {
+                        let at = &mut rows[y * side + x];
+                        *at = at.max(h);
+                    },
+                );
+            }
+        });
     }
 
     /// Texel coordinates and height of a place.

@@ -53,31 +53,20 @@ impl Shadow {
         let sky = SKY.map(|d| (&density.all, d));
         let jobs: Vec<_> = sweeps.into_iter().chain(sky).collect();
         self.depths.resize_with(jobs.len(), Vec::new);
-        self.depths
-            .par_iter_mut()
-            .zip(jobs)
-            .for_each(|(depth, (from, direction))| {
-                sweep::sweep(&grid, from, direction, depth);
-            });
+        self.depths.par_iter_mut().zip(jobs).for_each(|(depth, (from, direction))| {
+            sweep::sweep(&grid, from, direction, depth);
+        });
         let depths = &self.depths;
         self.light.resize(grid.len(), Vec4::ZERO);
         let slice = grid.size[0] * grid.size[1];
-        self.light
-            .par_chunks_mut(slice)
-            .enumerate()
-            .for_each(|(z, light)| {
-                for (i, light) in light.iter_mut().enumerate() {
-                    let at = z * slice + i;
-                    // Ambient light comes around strands: a gentler law than the straight beam's.
-                    let open: f32 = depths[3..].iter().map(|d| 1.0 / (1.0 + 0.8 * d[at])).sum();
-                    *light = Vec4::new(
-                        depths[0][at],
-                        depths[1][at],
-                        depths[2][at],
-                        open / SKY.len() as f32,
-                    );
-                }
-            });
+        self.light.par_chunks_mut(slice).enumerate().for_each(|(z, light)| {
+            for (i, light) in light.iter_mut().enumerate() {
+                let at = z * slice + i;
+                // Ambient light comes around strands: a gentler law than the straight beam's.
+                let open: f32 = depths[3..].iter().map(|d| 1.0 / (1.0 + 0.8 * d[at])).sum();
+                *light = Vec4::new(depths[0][at], depths[1][at], depths[2][at], open / SKY.len() as f32);
+            }
+        });
     }
 
     /// Optical depth of hair and far bodies towards key, rim and fill, and the share of sky seen; trilinear.
@@ -130,10 +119,6 @@ impl Shadow {
 
     /// Side of a voxel of the hair's grid [m]; 0 without hair.
     pub fn voxel(&self) -> f32 {
-        if self.light.is_empty() {
-            0.0
-        } else {
-            self.grid.voxel
-        }
+        if self.light.is_empty() { 0.0 } else { self.grid.voxel }
     }
 }

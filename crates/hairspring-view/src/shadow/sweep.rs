@@ -17,9 +17,7 @@ pub(crate) fn sweep(grid: &Grid, density: &[f32], direction: Vec3, depth: &mut V
     };
     let strides = [1, grid.size[0], grid.size[0] * grid.size[1]];
     let d = unit.to_array();
-    let axis = (0..3)
-        .max_by(|a, b| d[*a].abs().total_cmp(&d[*b].abs()))
-        .unwrap_or(0);
+    let axis = (0..3).max_by(|a, b| d[*a].abs().total_cmp(&d[*b].abs())).unwrap_or(0);
     let (u, v) = if axis == 0 {
         (1, 2)
     } else if axis == 1 {
@@ -32,26 +30,14 @@ pub(crate) fn sweep(grid: &Grid, density: &[f32], direction: Vec3, depth: &mut V
     let (du, dv) = (d[u] * length, d[v] * length);
     let (iu, iv) = (du.floor(), dv.floor());
     let (fu, fv) = (du - iu, dv - iv);
-    let weights = [
-        (1.0 - fu) * (1.0 - fv),
-        fu * (1.0 - fv),
-        (1.0 - fu) * fv,
-        fu * fv,
-    ];
+    let weights = [(1.0 - fu) * (1.0 - fv), fu * (1.0 - fv), (1.0 - fu) * fv, fu * fv];
     let [nu, nv, n] = [grid.size[u], grid.size[v], grid.size[axis]];
     let (su, sv) = (strides[u] as isize, strides[v] as isize);
-    let toward = if d[axis] > 0.0 {
-        strides[axis] as isize
-    } else {
-        -(strides[axis] as isize)
-    };
+    let toward = if d[axis] > 0.0 { strides[axis] as isize } else { -(strides[axis] as isize) };
     let offset = toward + iu as isize * su + iv as isize * sv;
     // Voxels whose four neighbours lie in the grid; the rest is padding and stays clear.
     let inside = |n: usize, i: f32| {
-        (
-            (-i).max(0.0) as usize,
-            (n as isize - 1 - i.max(0.0) as isize - 1).max(0) as usize,
-        )
+        ((-i).max(0.0) as usize, (n as isize - 1 - i.max(0.0) as isize - 1).max(0) as usize)
     };
     let ((u0, u1), (v0, v1)) = (inside(nu, iu), inside(nv, iv));
     for k in 1..n {
@@ -61,12 +47,7 @@ pub(crate) fn sweep(grid: &Grid, density: &[f32], direction: Vec3, depth: &mut V
             for i in u0..u1 {
                 let at = row + i * strides[u];
                 let from = (at as isize + offset) as usize;
-                let four = [
-                    from,
-                    from + strides[u],
-                    from + strides[v],
-                    from + strides[u] + strides[v],
-                ];
+                let four = [from, from + strides[u], from + strides[v], from + strides[u] + strides[v]];
                 let (mut before, mut there) = (0.0, 0.0);
                 for (w, f) in weights.iter().zip(four) {
                     before += w * depth[f];

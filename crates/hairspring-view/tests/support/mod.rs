@@ -25,28 +25,13 @@ pub struct Style {
     pub lock: f32,
 }
 
-pub const STRAIGHT: Style = Style {
-    strands: 100_000,
-    points: 32,
-    length: 0.28,
-    wave: 0.0,
-    lock: 0.010,
-};
-pub const WAVY: Style = Style {
-    strands: 100_000,
-    points: 32,
-    length: 0.30,
-    wave: 0.006,
-    lock: 0.014,
-};
+pub const STRAIGHT: Style = Style { strands: 100_000, points: 32, length: 0.28, wave: 0.0, lock: 0.010 };
+pub const WAVY: Style = Style { strands: 100_000, points: 32, length: 0.30, wave: 0.006, lock: 0.014 };
 
 /// Evenly spread numbers in 0..1 (Roberts 2018, the R2 sequence).
 fn spread(i: usize) -> Vec2 {
     let i = i as f64;
-    Vec2::new(
-        (0.5 + i * 0.7548776662466927).fract() as f32,
-        (0.5 + i * 0.5698402909980532).fract() as f32,
-    )
+    Vec2::new((0.5 + i * 0.7548776662466927).fract() as f32, (0.5 + i * 0.5698402909980532).fract() as f32)
 }
 
 fn hash(i: u32, j: u32) -> f32 {
@@ -122,11 +107,7 @@ fn strand(style: Style, i: u32, n: Vec3) -> Vec<Vec3> {
         p += direction * step;
         // Lies on the ball, its layers above each other; below it, hangs as from its rim.
         let clear = RADIUS + lift * (s * 6.0).min(1.0);
-        let from = if p.y > 0.0 {
-            p
-        } else {
-            Vec3::new(p.x, 0.0, p.z)
-        };
+        let from = if p.y > 0.0 { p } else { Vec3::new(p.x, 0.0, p.z) };
         let far = from.length();
         if far < clear {
             p += from / far.max(1e-6) * (clear - far);
@@ -184,11 +165,7 @@ pub fn body(mesh: &Mesh) -> MeshDraw<'_> {
 
 /// A portrait of the ball.
 pub fn camera() -> Camera {
-    Camera {
-        position: Vec3::new(0.38, 0.02, 0.95),
-        target: Vec3::new(0.0, -0.06, 0.0),
-        fov: 26.0,
-    }
+    Camera { position: Vec3::new(0.38, 0.02, 0.95), target: Vec3::new(0.0, -0.06, 0.0), fov: 26.0 }
 }
 
 /// A frame with everything at its default.
