@@ -10,7 +10,7 @@ use crate::{
         interval::Interval,
         lanes::{LANES, Row},
         rest_shape::{Fibre, RestShape, rest_shape},
-        tile::{rest, state, strand},
+        tile::{RestRows, StateRows, StrandRows, rest, state, strand},
     },
 };
 use fearless_simd::Level;
@@ -69,9 +69,9 @@ impl Simulation {
             .collect();
 
         let mut simulation = Simulation {
-            strand: vec![Row::default(); tiles.len() * strand::ROWS],
-            rest: vec![Row::default(); first as usize * rest::ROWS],
-            state: vec![Row::default(); first as usize * state::ROWS],
+            strand: vec![[Row::default(); strand::ROWS]; tiles.len()],
+            rest: vec![[Row::default(); rest::ROWS]; first as usize],
+            state: vec![[Row::default(); state::ROWS]; first as usize],
             groom,
             lanes,
             tiles,
@@ -96,22 +96,19 @@ impl Simulation {
         let mut rest_of = self.rest.as_mut_slice();
         let mut state_of = self.state.as_mut_slice();
         let mut work = Vec::with_capacity(self.tiles.len());
-        for ((tile, lanes), strand) in
-            self.tiles.iter().zip(self.lanes.chunks(LANES)).zip(self.strand.chunks_mut(strand::ROWS))
-        {
-            let (rest, more_rest) = rest_of.split_at_mut(tile.points as usize * rest::ROWS);
-            let (state, more_state) = state_of.split_at_mut(tile.points as usize * state::ROWS);
+        for ((tile, lanes), strand) in self.tiles.iter().zip(self.lanes.chunks(LANES)).zip(&mut self.strand) {
+            let (rest, more_rest) = rest_of.split_at_mut(tile.points as usize);
+            let (state, more_state) = state_of.split_at_mut(tile.points as usize);
             (rest_of, state_of) = (more_rest, more_state);
-            work.push((lanes, tile.points as usize, strand, rest, state));
+            work.push((lanes, strand, rest, state));
         }
         self.stiffened = work
             .into_par_iter()
             .with_min_len(16)
-            .map(|(lanes, count, strand, rest, state)| {
+            .map(|(lanes, strand, rest, state)| {
                 let mut stiffened = 0;
                 for (lane, s) in lanes.iter().enumerate() {
-                    let mut into =
-                        Lane { lane, count, strand: &mut *strand, rest: &mut *rest, state: &mut *state };
+                    let mut into = Lane { lane, strand: &mut *strand, rest: &mut *rest, state: &mut *state };
                     if *s == u32::MAX {
                         into.write_idle();
                         continue;
@@ -158,10 +155,9 @@ fn drag_rate(radius: f32, density: f32) -> f32 {
 /// One lane of a tile, to write.
 struct Lane<'a> {
     lane: usize,
-    count: usize,
-    strand: &'a mut [Row],
-    rest: &'a mut [Row],
-    state: &'a mut [Row],
+    strand: &'a mut StrandRows,
+    rest: &'a mut [RestRows],
+    state: &'a mut [StateRows],
 }
 
 impl Lane<'_> {
@@ -172,9 +168,9 @@ impl Lane<'_> {
     /// A lane without a strand: three points of mass 1 that nothing moves, and no rotation.
     fn write_idle(&mut self) {
         let lane = self.lane;
-        for i in 0..self.count {
-            self.rest[i * rest::ROWS + rest::MASS].0[lane] = 1.0;
-            self.rest[i * rest::ROWS + rest::CLEARANCE].0[lane] = f32::MIN;
+        for rows in self.rest.iter_mut() {
+            rows[rest::MASS].0[lane] = 1.0;
+            rows[rest::CLEARANCE].0[lane] = f32::MIN;
         }
         self.strand[strand::TURN_START + 3].0[lane] = 1.0;
         self.strand[strand::TURN_END + 3].0[lane] = 1.0;
@@ -191,25 +187,21 @@ impl Lane<'_> {
     ) {
         let lane = self.lane;
         let last = points.len() - 1;
-        for i in 0..self.count {
+        for i in 0..self.rest.len() {
             let p = shape.points[i.min(last)];
-            let rows = &mut self.rest[i * rest::ROWS..(i + 1) * rest::ROWS];
+            let rows = &mut self.rest[i];
             rows[rest::MASS].0[lane] = p.mass as f32;
             if i < last {
                 rows[rest::LENGTH].0[lane] = p.length as f32;
                 rows[rest::BEND].0[lane] = p.bend as f32;
                 Self::write_vector(&mut rows[rest::TURN..], lane, p.turn.as_vec3());
-                self.state[i * state::ROWS + state::TENSION].0[lane] = p.tension as f32;
-                Self::write_vector(
-                    &mut self.state[i * state::ROWS + state::NORMAL..],
-                    lane,
-                    p.normal.as_vec3(),
-                );
+                self.state[i][state::TENSION].0[lane] = p.tension as f32;
+                Self::write_vector(&mut self.state[i][state::NORMAL..], lane, p.normal.as_vec3());
             }
             let at = points[i.min(last)];
             let depth = obstacles.iter().map(|o| o.distance(at)).fold(0.0_f32, f32::min);
             rows[rest::CLEARANCE].0[lane] = depth;
-            Self::write_vector(&mut self.state[i * state::ROWS + state::X..], lane, at - points[0]);
+            Self::write_vector(&mut self.state[i][state::X..], lane, at - points[0]);
         }
         let root = anchor.inverse_point(points[0]);
         let turn = anchor.rotation.inverse();

@@ -8,7 +8,7 @@ use super::{
     interval::Substep,
     lanes::{F, Row, V3, load},
     root::Root,
-    tile::{Tile, rest, rows, rows_mut, state},
+    tile::{Tile, rest, state},
 };
 use crate::collide::{contact, surface_displacement};
 use fearless_simd::prelude::*;
@@ -20,7 +20,7 @@ pub const LIMIT: f32 = 0.01;
 /// segment's length over the collider's radius.
 const CORRECTIONS: usize = 2;
 
-/// Applies strain limit and contact to the new positions `x` of shape `[points][3]`, and writes state.
+/// Applies strain limit and contact to the new positions `x` of shape `[points]`, and writes state.
 #[inline(always)]
 pub fn limit<S: Simd>(
     simd: S,
@@ -29,25 +29,25 @@ pub fn limit<S: Simd>(
     root: &Root<S>,
     moved: V3<S>,
     tile: &mut Tile,
-    x: &mut [Row],
+    x: &mut [[Row; 3]],
 ) {
     let inv_h = F::<S>::splat(simd, 1.0 / h);
     let friction = Root::<S>::fibre(simd, tile.strand).2;
     let zero = V3::zero(simd);
     let mut before = root.first;
     // The root itself.
-    zero.store(&mut rows_mut(tile.state, 0, state::ROWS)[state::X..state::X + 3]);
-    (moved * inv_h).store(&mut rows_mut(tile.state, 0, state::ROWS)[state::V..state::V + 3]);
+    zero.store(&mut tile.state[0][state::X..state::X + 3]);
+    (moved * inv_h).store(&mut tile.state[0][state::V..state::V + 3]);
     {
-        let first = rows_mut(tile.state, 1, state::ROWS);
+        let first = &mut tile.state[1];
         root.first.store(&mut first[state::X..state::X + 3]);
         (moved * inv_h).store(&mut first[state::V..state::V + 3]);
     }
-    for i in 2..tile.points {
-        let length = load(simd, &rows(tile.rest, i - 1, rest::ROWS)[rest::LENGTH]);
-        let clearance = load(simd, &rows(tile.rest, i, rest::ROWS)[rest::CLEARANCE]);
-        let old = V3::load(simd, &rows(tile.state, i, state::ROWS)[state::X..]);
-        let mut p = clamp(V3::load(simd, &x[3 * i..]), before, length);
+    for i in 2..tile.rest.len() {
+        let length = load(simd, &tile.rest[i - 1][rest::LENGTH]);
+        let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
+        let old = V3::load(simd, &tile.state[i][state::X..]);
+        let mut p = clamp(V3::load(simd, &x[i]), before, length);
         for pose in &substep.obstacles {
             let world = p + root.position;
             let (distance, normal) = contact(simd, pose, world);
@@ -69,7 +69,7 @@ pub fn limit<S: Simd>(
                 p = V3::select(depth.simd_gt(0.0), q, p);
             }
         }
-        let at = rows_mut(tile.state, i, state::ROWS);
+        let at = &mut tile.state[i];
         ((p - old + moved) * inv_h).store(&mut at[state::V..state::V + 3]);
         p.store(&mut at[state::X..state::X + 3]);
         before = p;

@@ -2,8 +2,8 @@
 
 use super::{
     interval::Substep,
-    lanes::{F, Q4, Row, V3, load},
-    tile::strand,
+    lanes::{F, Q4, V3, load},
+    tile::{StrandRows, strand},
 };
 use fearless_simd::{mask32x8, prelude::*};
 use glam::{Mat3, Vec3};
@@ -22,13 +22,13 @@ pub struct Root<S: Simd> {
 impl<S: Simd> Root<S> {
     /// The root at the end of `substep`.
     #[inline(always)]
-    pub fn at(simd: S, rows: &[Row], substep: &Substep) -> Self {
+    pub fn at(simd: S, rows: &StrandRows, substep: &Substep) -> Self {
         Self::between(simd, rows, substep.fraction, &substep.anchor)
     }
 
     /// The root at `fraction` of the interval, where the anchor is at `anchor`.
     #[inline(always)]
-    pub fn between(simd: S, rows: &[Row], fraction: f32, anchor: &(Mat3, Vec3)) -> Self {
+    pub fn between(simd: S, rows: &StrandRows, fraction: f32, anchor: &(Mat3, Vec3)) -> Self {
         let t = F::<S>::splat(simd, fraction);
         let start = V3::load(simd, &rows[strand::ROOT_START..]);
         let end = V3::load(simd, &rows[strand::ROOT_END..]);
@@ -44,7 +44,7 @@ impl<S: Simd> Root<S> {
 
     /// Damping, drag and friction of the strands.
     #[inline(always)]
-    pub fn fibre(simd: S, rows: &[Row]) -> (F<S>, F<S>, F<S>) {
+    pub fn fibre(simd: S, rows: &StrandRows) -> (F<S>, F<S>, F<S>) {
         (
             load(simd, &rows[strand::DRAG]),
             load(simd, &rows[strand::DAMPING]),

@@ -41,7 +41,7 @@ fn lane<S: Simd>(v: V3<S>) -> DVec3 {
 
 fn band_solve<S: Simd>(simd: S, a: &[Vec<DMat3>], b: &[DVec3]) -> Vec<DVec3> {
     let n = b.len();
-    let mut factors = vec![Row::default(); n * FACTOR_ROWS];
+    let mut factors = vec![[Row::default(); FACTOR_ROWS]; n];
     let mut band = Band::new(simd);
     let block = |i: usize, j: usize| if i < n && j < n { a[i][j] } else { DMat3::ZERO };
     let right = |i: usize| b.get(i).copied().unwrap_or(DVec3::ZERO);
@@ -55,13 +55,13 @@ fn band_solve<S: Simd>(simd: S, a: &[Vec<DMat3>], b: &[DVec3]) -> Vec<DVec3> {
         band.rhs[2] = splat(simd, right(i + 2));
         band.upper[1] = full(simd, block(i + 1, i + 2));
         band.far = full(simd, block(i, i + 2));
-        band.eliminate(&mut factors[i * FACTOR_ROWS..(i + 1) * FACTOR_ROWS]);
+        band.eliminate(&mut factors[i]);
         band.shift(simd);
     }
     let (mut next, mut after) = (V3::zero(simd), V3::zero(simd));
     let mut out = vec![DVec3::ZERO; n];
     for i in (0..n).rev() {
-        let x = back_substitute(simd, &factors[i * FACTOR_ROWS..(i + 1) * FACTOR_ROWS], next, after);
+        let x = back_substitute(simd, &factors[i], next, after);
         out[i] = lane(x);
         (next, after) = (x, next);
     }
@@ -185,9 +185,9 @@ proptest! {
 /// One substep of the kernel without projection, on a tile whose lanes all hold this strand; the limit is wide of it.
 fn kernel(s: &reference::Strand) -> Vec<DVec3> {
     let n = s.x.len();
-    let mut strand_rows = vec![Row::default(); strand::ROWS];
-    let mut rest_rows = vec![Row::default(); n * rest::ROWS];
-    let mut state_rows = vec![Row::default(); n * state::ROWS];
+    let mut strand_rows = [Row::default(); strand::ROWS];
+    let mut rest_rows = vec![[Row::default(); rest::ROWS]; n];
+    let mut state_rows = vec![[Row::default(); state::ROWS]; n];
     let set = |rows: &mut [Row], at: usize, v: &[f32]| {
         for (row, v) in rows[at..].iter_mut().zip(v) {
             *row = Row([*v; LANES]);
@@ -206,21 +206,19 @@ fn kernel(s: &reference::Strand) -> Vec<DVec3> {
     set(&mut strand_rows, strand::DAMPING, &[s.damping as f32]);
     let tangent: Vec<DVec3> = s.x.windows(2).map(|w| (w[1] - w[0]).normalize()).collect();
     for i in 0..n {
-        let at = i * rest::ROWS;
-        set(&mut rest_rows, at + rest::LENGTH, &[s.length[i] as f32]);
-        set(&mut rest_rows, at + rest::MASS, &[s.mass[i] as f32]);
-        set(&mut rest_rows, at + rest::BEND, &[s.bend[i] as f32]);
+        set(&mut rest_rows[i], rest::LENGTH, &[s.length[i] as f32]);
+        set(&mut rest_rows[i], rest::MASS, &[s.mass[i] as f32]);
+        set(&mut rest_rows[i], rest::BEND, &[s.bend[i] as f32]);
         if (1..n - 1).contains(&i) {
             let (t0, t1) = (tangent[i - 1], tangent[i]);
             let d = s.turn[i];
             let local = Vec3::new(d.dot(normal) as f32, d.dot(t0.cross(normal)) as f32, d.dot(t0) as f32);
-            set(&mut rest_rows, at + rest::TURN, &local.to_array());
+            set(&mut rest_rows[i], rest::TURN, &local.to_array());
             normal -= (t0 + t1) * (normal.dot(t1) / (1.0 + t0.dot(t1)));
         }
-        let at = i * state::ROWS;
-        set(&mut state_rows, at + state::X, &s.x[i].as_vec3().to_array());
-        set(&mut state_rows, at + state::V, &s.v[i].as_vec3().to_array());
-        set(&mut state_rows, at + state::TENSION, &[s.tension[i] as f32]);
+        set(&mut state_rows[i], state::X, &s.x[i].as_vec3().to_array());
+        set(&mut state_rows[i], state::V, &s.v[i].as_vec3().to_array());
+        set(&mut state_rows[i], state::TENSION, &[s.tension[i] as f32]);
     }
     let interval = Interval {
         h: s.h as f32,
@@ -235,7 +233,7 @@ fn kernel(s: &reference::Strand) -> Vec<DVec3> {
         }],
     };
     let mut scratch = Scratch::default();
-    let mut tile = Tile { points: n, strand: &strand_rows, rest: &rest_rows, state: &mut state_rows };
+    let mut tile = Tile { strand: &strand_rows, rest: &rest_rows, state: &mut state_rows };
     dispatch!(Level::new(), simd => run_tile(simd, &interval, &mut tile, &mut scratch));
     (0..n).map(|i| scratch.solved(i).as_dvec3()).collect()
 }

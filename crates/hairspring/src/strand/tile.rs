@@ -61,26 +61,17 @@ pub mod strand {
     pub const ROWS: usize = 23;
 }
 
+/// What is known of eight whole strands.
+pub type StrandRows = [Row; strand::ROWS];
+/// The rest shape at one point of eight strands.
+pub type RestRows = [Row; rest::ROWS];
+/// The state of one point of eight strands.
+pub type StateRows = [Row; state::ROWS];
+
 /// Eight strands: borrowed pieces of the simulation's arrays.
 pub struct Tile<'a> {
-    /// Points of the longest strand.
-    pub points: usize,
-    /// Shape `[strand::ROWS]`.
-    pub strand: &'a [Row],
-    /// Shape `[points][rest::ROWS]`.
-    pub rest: &'a [Row],
-    /// Shape `[points][state::ROWS]`.
-    pub state: &'a mut [Row],
-}
-
-/// Rows of one point.
-#[inline(always)]
-pub fn rows(array: &[Row], point: usize, stride: usize) -> &[Row] {
-    &array[point * stride..(point + 1) * stride]
-}
-
-/// Rows of one point, to write.
-#[inline(always)]
-pub fn rows_mut(array: &mut [Row], point: usize, stride: usize) -> &mut [Row] {
-    &mut array[point * stride..(point + 1) * stride]
+    pub strand: &'a StrandRows,
+    /// Shape `[points]`, the points of the longest strand; as long as `state`.
+    pub rest: &'a [RestRows],
+    pub state: &'a mut [StateRows],
 }
