@@ -1,7 +1,10 @@
 //! Pictures and clips as files. Every file is written beside its place under a temporary name and renamed when complete.
 
+mod clip;
 mod png;
+mod yuv;
 
+pub use clip::ClipWriter;
 pub use png::{read_png, sequence_path, write_png};
 
 use std::path::{Path, PathBuf};
@@ -16,6 +19,14 @@ pub enum OutputError {
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
+    },
+    /// A clip cannot be made as asked.
+    #[error("{path}: {why}", path = path.display())]
+    Clip {
+        /// The file that was meant.
+        path: PathBuf,
+        /// What is wrong, what was expected, what to do.
+        why: String,
     },
     /// A file that is read is not what it should be.
     #[error("{path}: not a picture that can be read ({why}); an 8-bit RGB PNG was expected", path = path.display())]

@@ -1,0 +1,117 @@
+//! A clip that browsers play: H.264 in MP4, its index in front so that playing starts while it loads.
+
+use super::{OutputError, beside, keep, yuv::Planes};
+use crate::image::Image;
+use muxide::api::{Muxer, MuxerBuilder, VideoCodec};
+use openh264::{
+    OpenH264API,
+    encoder::{BitRate, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, QpRange, RateControlMode, VuiConfig},
+};
+use std::{
+    fs::File,
+    io::BufWriter,
+    path::{Path, PathBuf},
+};
+
+/// Bits a second for one pixel a second: about 6 Mbit/s at 1280 × 720 and 30 frames/s. Hair is all edges; less shows blocks.
+const BITS_PER_PIXEL: f64 = 0.22;
+
+/// Writes a clip frame by frame. The file appears under its name when [`ClipWriter::finish`] returns; a writer
+/// that is dropped before leaves nothing behind. Compressed frames are held in memory until then.
+pub struct ClipWriter {
+    path: PathBuf,
+    temporary: tempfile::NamedTempFile,
+    size: (u32, u32),
+    fps: f64,
+    encoder: Encoder,
+    muxer: Muxer<BufWriter<File>>,
+    planes: Planes,
+    bits: Vec<u8>,
+    frames: u64,
+}
+
+impl ClipWriter {
+    /// Starts a clip of `width` × `height` pixels (up to 3840 × 2160 or 2160 × 3840; an odd size gets one more
+    /// column or row) at `fps` frames a second (above 0, up to 240).
+    ///
+    /// # Errors
+    /// If size or rate are out of range, or the file cannot be made.
+    pub fn create(path: &Path, width: u32, height: u32, fps: f64) -> Result<Self, OutputError> {
+        let wrong = |why: String| OutputError::Clip { path: path.into(), why };
+        let (long, short) = (width.max(height), width.min(height));
+        if short < 16 || long > 3840 || short > 2160 {
+            return Err(wrong(format!("{width}×{height} pixels; H.264 here takes 16×16 to 3840×2160, choose such a size")));
+        }
+        if !(fps > 0.0 && fps <= 240.0) {
+            return Err(wrong(format!("{fps} frames a second; choose a rate above 0 and up to 240")));
+        }
+        let bits = (width as f64 * height as f64 * fps * BITS_PER_PIXEL).clamp(2e5, 1e8) as u32;
+        let config = EncoderConfig::new()
+            .bitrate(BitRate::from_bps(bits))
+            .max_frame_rate(FrameRate::from_hz(fps as f32))
+            .rate_control_mode(RateControlMode::Quality)
+            .qp(QpRange::new(12, 34))
+            // Every frame is there, and players can jump to any second.
+            .skip_frames(false)
+            .intra_frame_period(IntraFramePeriod::from_num_frames((fps.round() as u32).max(1)))
+            .background_detection(false)
+            .vui(VuiConfig::bt709());
+        let encoder = Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| wrong(e.to_string()))?;
+        let temporary = beside(path)?;
+        let file = temporary.reopen().map_err(|source| OutputError::File { path: path.into(), source })?;
+        let (even_width, even_height) = (width.next_multiple_of(2), height.next_multiple_of(2));
+        let muxer = MuxerBuilder::new(BufWriter::new(file))
+            .video(VideoCodec::H264, even_width, even_height, fps)
+            .with_fast_start(true)
+            .build()
+            .map_err(|e| wrong(e.to_string()))?;
+        Ok(Self {
+            path: path.into(),
+            temporary,
+            size: (width, height),
+            fps,
+            encoder,
+            muxer,
+            planes: Planes::default(),
+            bits: Vec::new(),
+            frames: 0,
+        })
+    }
+
+    /// Adds the next frame.
+    ///
+    /// # Errors
+    /// If the picture has another size than the clip, or the disk is full.
+    pub fn push(&mut self, image: &Image) -> Result<(), OutputError> {
+        let wrong = |why: String| OutputError::Clip { path: self.path.clone(), why };
+        if (image.width, image.height) != self.size {
+            let (w, h) = self.size;
+            return Err(wrong(format!("frame {} is {}×{} pixels in a clip of {w}×{h}; draw all frames at one size", self.frames, image.width, image.height)));
+        }
+        self.planes.fill(image);
+        let stream = self.encoder.encode(&self.planes.slices()).map_err(|e| wrong(e.to_string()))?;
+        let whole = matches!(stream.frame_type(), FrameType::IDR | FrameType::I);
+        self.bits.clear();
+        stream.write_vec(&mut self.bits);
+        let time = self.frames as f64 / self.fps;
+        self.muxer.write_video(time, &self.bits, whole).map_err(|e| wrong(e.to_string()))?;
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Completes the file and gives it its name.
+    ///
+    /// # Errors
+    /// If there is no frame, or the disk is full.
+    pub fn finish(mut self) -> Result<(), OutputError> {
+        let wrong = |why: String| OutputError::Clip { path: self.path.clone(), why };
+        if self.frames == 0 {
+            return Err(wrong("no frame was drawn; choose at least one".into()));
+        }
+        self.muxer.finish_in_place().map_err(|e| wrong(e.to_string()))?;
+        let file = self.muxer.into_writer().into_inner().map_err(|e| OutputError::File { path: self.path.clone(), source: e.into_error() })?;
+        file.sync_all().map_err(|source| OutputError::File { path: self.path.clone(), source })?;
+        drop(file);
+        keep(self.temporary, &self.path)
+    }
+}
