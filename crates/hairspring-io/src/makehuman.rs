@@ -104,6 +104,10 @@ fn group_centers(mesh: &Mesh) -> HashMap<&str, Vec3> {
 fn parents_first(bones: &BTreeMap<String, Bone>) -> Result<Vec<&str>, Problem> {
     let mut children: HashMap<&str, Vec<&str>> = HashMap::new();
     for (name, bone) in bones {
+        // The empty name stands for "no parent".
+        if name.is_empty() {
+            return Err(Problem::whole("a bone of the rig has no name"));
+        }
         if !bone.parent.is_empty() && !bones.contains_key(&bone.parent) {
             return Err(Problem::whole(format!(
                 "bone {name:?} has parent {:?}, which the rig does not have",

@@ -73,7 +73,9 @@ fn every_byte_and_word_may_lie() {
 #[test]
 fn numbers_in_text_may_lie() {
     for (name, file, read) in samples::all() {
-        let Ok(text) = std::str::from_utf8(&file) else { continue };
+        let Ok(text) = std::str::from_utf8(&file) else {
+            continue;
+        };
         let numbers: Vec<(usize, usize)> = text
             .split_inclusive(|c: char| !c.is_ascii_digit())
             .scan(0, |at, piece| {
@@ -150,10 +152,30 @@ fn a_gltf_that_runs_in_circles_or_abroad_is_refused() {
     assert!(problem.place == Place::Whole && !problem.text.contains('\n'), "{problem}");
 }
 
+#[test]
+fn a_rig_that_runs_in_circles_is_refused() {
+    let mesh = || hairspring_io::obj::parse(samples::mesh().as_bytes()).unwrap();
+    let end = r#""head": {"strategy": "VERTEX", "vertex_index": 0}"#;
+    for (rig, why) in [
+        (format!(r#"{{"": {{{end}, "parent": ""}}}}"#), "no name"),
+        (
+            format!(r#"{{"a": {{{end}, "parent": "b"}}, "b": {{{end}, "parent": "a"}}}}"#),
+            "each other's parents",
+        ),
+        (format!(r#"{{"a": {{{end}, "parent": "c"}}}}"#), "does not have"),
+    ] {
+        let problem = hairspring_io::makehuman::parse(mesh(), rig.as_bytes(), samples::WEIGHTS).unwrap_err();
+        assert!(problem.text.contains(why), "{problem}");
+    }
+}
+
+/// Made once: the noise comes many times.
+static SAMPLES: std::sync::LazyLock<Vec<samples::Sample>> = std::sync::LazyLock::new(samples::all);
+
 proptest! {
     #[test]
     fn noise_is_refused(noise in prop::collection::vec(any::<u8>(), 0..400)) {
-        for (_, file, read) in samples::all() {
+        for (_, file, read) in SAMPLES.iter() {
             let _ = read(&noise);
             // Noise after a sound beginning.
             let mut half = file[..file.len() / 2].to_vec();

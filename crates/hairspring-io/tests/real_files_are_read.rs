@@ -47,7 +47,9 @@ fn grooms_have_their_strands_and_points() {
 
 #[test]
 fn boxes_and_lengths_are_those_of_the_files() {
-    let Some(path) = data("grooms/straight/straight.hair") else { return };
+    let Some(path) = data("grooms/straight/straight.hair") else {
+        return;
+    };
     let straight = read_groom(&path, &RAW).unwrap().value;
     let (lo, hi) = straight.bounds().unwrap();
     assert!(lo.distance(Vec3::new(-32.5, -33.9, -22.7)) < 0.1, "{lo}");
@@ -77,7 +79,9 @@ fn boxes_and_lengths_are_those_of_the_files() {
 
 #[test]
 fn the_mohawk_has_its_uvs_bones_and_near_zero_segments() {
-    let Some(path) = data("grooms/tressfx_mohawk/Ratboy_mohawk.tfx") else { return };
+    let Some(path) = data("grooms/tressfx_mohawk/Ratboy_mohawk.tfx") else {
+        return;
+    };
     let mohawk = read_groom(&path, &ReadOptions::default()).unwrap();
     assert_eq!(mohawk.scale, 1.0);
     assert_eq!(mohawk.value.root_uvs.len(), 2_228);
@@ -116,7 +120,9 @@ fn bodies_have_their_vertices_and_faces() {
 
 #[test]
 fn the_robot_stands_4_5_m_tall_in_its_bind_pose_and_in_every_clip() {
-    let Some(path) = data("characters/robot/robot.glb") else { return };
+    let Some(path) = data("characters/robot/robot.glb") else {
+        return;
+    };
     let robot = read_body(&path, &ReadOptions::default()).unwrap();
     let body = &robot.value.body;
     let (lo, hi) = body.mesh.bounds().unwrap();

@@ -206,8 +206,78 @@ fn the_page_that_documents_scenes_is_right() {
 }
 
 #[test]
+fn the_page_leaves_no_setting_out() {
+    let page = include_str!("../../../docs/scene.md");
+    let material = hairspring::material::Material { radius: Some(1.0), ..Default::default() };
+    for (name, fields) in [
+        ("look", toml::Table::try_from(hairspring::scene::HairLook::default())),
+        ("effects", toml::Table::try_from(hairspring::scene::Effects::default())),
+        ("wind", toml::Table::try_from(hairspring::scene::Wind::default())),
+        ("solver", toml::Table::try_from(hairspring::scene::Solver::default())),
+        ("camera", toml::Table::try_from(hairspring::scene::Camera::default())),
+        ("material", toml::Table::try_from(material)),
+    ] {
+        for key in fields.unwrap().keys() {
+            assert!(page.contains(&format!("\n{key} = ")), "docs/scene.md does not show `{key}` of {name}");
+        }
+    }
+}
+
+#[test]
+fn the_mohawk_binds_to_skin_that_follows_its_bones() {
+    let Some(groom) = data("grooms/tressfx_mohawk/Ratboy_mohawk.tfx") else { return };
+    let folder = folder();
+    let text = format!(
+        "[body]\nfile = {body:?}\n[[groom]]\nfile = {groom:?}\nbones = {bones:?}\n",
+        body = groom.with_file_name("Ratboy_body.tfxmesh"),
+        bones = groom.with_file_name("Ratboy_mohawk.tfxbone"),
+    );
+    let Loaded { value: scene, repairs, .. } = read(folder.path(), &text).unwrap();
+    assert!(repairs.zero_segments > 0, "{repairs:?}");
+    let (groom, body) = (&scene.grooms[0].groom, scene.body.as_ref().unwrap());
+    assert_eq!(groom.roots.len(), 2_228);
+    let mut off: Vec<f32> = groom.roots.iter().map(|r| r.offset.length()).collect();
+    off.sort_by(f32::total_cmp);
+    println!("roots off the skin: median {} m, worst {} m", off[1_114], off[2_227]);
+    assert!(off[1_114] < 1e-3 && off[2_227] < 5e-3, "median {} m, worst {} m", off[1_114], off[2_227]);
+    for (s, root) in groom.roots.iter().enumerate() {
+        let back = root.position(body.mesh.corners(root.triangle as usize));
+        assert!(back.distance(groom.strand(s)[0]) < 1e-6);
+    }
+}
+
+#[test]
+fn sintels_head_follows_a_walk_and_a_dab() {
+    let Some(groom) = data("grooms/sintel/SintelHairOriginal-sintel_hair.16points.tfx") else { return };
+    for motion in ["motion/cmu/02_01.bvh", "motion/animated_drawings/dab.bvh"] {
+        let folder = folder();
+        let text = format!(
+            "[body]\nfile = {body:?}\n[collision]\nfile = {collision:?}\n[[groom]]\nfile = {groom:?}\n\
+             [clip]\nfile = {motion:?}\njoint = \"Head\"\npivot = [0, 1.45, 0]\nstart = 1\n",
+            body = groom.with_file_name("sintel.obj"),
+            collision = groom.with_file_name("sintel-collider.obj"),
+            motion = data(motion).unwrap(),
+        );
+        let Loaded { value: scene, notes, .. } = read(folder.path(), &text).unwrap();
+        println!("{notes:?}");
+        let (body, clip) = (scene.body.unwrap(), scene.clip.unwrap());
+        assert_eq!((body.joints.len(), clip.joint_count), (1, 1));
+        assert_eq!(scene.collision.unwrap().joints, body.joints);
+        let (mut tilt, mut away) = (0.0f32, 0.0f32);
+        for sample in &clip.samples {
+            tilt = tilt.max(sample.rotation.angle_between(glam::Quat::IDENTITY).to_degrees());
+            away = away.max(sample.to_affine().transform_point3(Vec3::Y * 1.45).distance(Vec3::Y * 1.45));
+        }
+        println!("{motion}: turns up to {tilt:.0} degrees, moves up to {away:.2} m");
+        assert!((5.0..175.0).contains(&tilt) && (0.005..0.6).contains(&away), "{tilt} degrees, {away} m");
+    }
+}
+
+#[test]
 fn the_cmu_rig_walks() {
-    let Some(base) = data("characters/makehuman/base.obj") else { return };
+    let Some(base) = data("characters/makehuman/base.obj") else {
+        return;
+    };
     let walk = data("motion/cmu/02_01.bvh").unwrap();
     let folder = folder();
     let text = format!(

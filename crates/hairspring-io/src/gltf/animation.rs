@@ -30,7 +30,7 @@ pub(super) fn clips(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Clip>, Problem> {
     let mut clips = Vec::new();
-    let mut samples_so_far = 0;
+    let mut samples_so_far = 0usize;
     for animation in document.animations() {
         let name = animation.name().map_or_else(|| format!("animation{}", animation.index()), str::to_owned);
         let mut tracks = Vec::new();
@@ -52,9 +52,10 @@ pub(super) fn clips(
             continue;
         }
         // A quarter of a frame of slack: keys at frame 12.999 belong to frame 13.
-        let frames = ((end - start) * RATE + 0.25).floor() as usize + 1;
+        let frames = ((end - start) * RATE + 0.25).floor() as usize;
+        let frames = frames.saturating_add(1);
         let joint_count = skeleton.joints.len();
-        samples_so_far += frames.saturating_mul(joint_count);
+        samples_so_far = frames.saturating_mul(joint_count).saturating_add(samples_so_far);
         check_samples(samples_so_far, 1, Place::Whole)?;
         let mut samples = Vec::with_capacity(frames * joint_count);
         for frame in 0..frames {

@@ -3,7 +3,11 @@
 use super::accessor::Buffers;
 use crate::{Place, Problem, bytes::Bytes};
 use base64::{Engine, engine::general_purpose::STANDARD};
-use gltf::{Document, buffer::Source};
+use gltf::{
+    Document,
+    buffer::Source,
+    json::{Path, validation::Validate},
+};
 
 /// Opens a `.glb` or `.gltf` and gathers its buffers. `sibling` gives the bytes of a file beside it.
 pub(super) fn open(
@@ -11,18 +15,12 @@ pub(super) fn open(
     sibling: &dyn Fn(&str) -> Option<Vec<u8>>,
 ) -> Result<(Document, Buffers), Problem> {
     let (json, mut blob) = if data.starts_with(b"glTF") { chunks(data)? } else { (data, None) };
-    if json.starts_with(b"glTF") {
-        return Err(Problem::new(Place::Byte(20), "expected JSON, found another glTF container"));
-    }
-    let document = gltf::Gltf::from_slice(json)
-        .map_err(|e| Problem::whole(format!("this is no valid glTF: {}", first_line(&e.to_string()))))?
-        .document;
-    // The crate's iterators trust these indices.
-    for animation in &document.as_json().animations {
-        if animation.channels.iter().any(|c| c.sampler.value() >= animation.samplers.len()) {
-            return Err(Problem::whole("an animation names a sampler that it does not have"));
-        }
-    }
+    let invalid = |e: &dyn std::fmt::Display| {
+        Problem::whole(format!("this is no valid glTF: {}", first_line(&e.to_string())))
+    };
+    let root = gltf::json::Root::from_slice(json).map_err(|e| invalid(&e))?;
+    trusted_indices(&root)?;
+    let document = Document::from_json(root).map_err(|e| invalid(&e))?;
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
         let bytes = match buffer.source() {
@@ -41,6 +39,28 @@ pub(super) fn open(
         buffers.push(bytes);
     }
     Ok((document, Buffers(buffers)))
+}
+
+/// Checks the indices that the crate's own validation and iterators follow without a look.
+fn trusted_indices(root: &gltf::json::Root) -> Result<(), Problem> {
+    for animation in &root.animations {
+        // Samplers are validated by the crate, channels are not.
+        let mut lost = animation.channels.iter().any(|c| c.sampler.value() >= animation.samplers.len());
+        for channel in &animation.channels {
+            channel.target.validate(root, Path::new, &mut |_, _| lost = true);
+        }
+        if lost {
+            return Err(Problem::whole(
+                "a channel of an animation names what the file does not have, or no known property",
+            ));
+        }
+    }
+    for primitive in root.meshes.iter().flat_map(|m| &m.primitives) {
+        if primitive.attributes.values().any(|a| a.value() >= root.accessors.len()) {
+            return Err(Problem::whole("a mesh names an accessor that the file does not have"));
+        }
+    }
+    Ok(())
 }
 
 /// JSON and binary chunk of a GLB.

@@ -10,7 +10,7 @@ mod skeleton;
 
 use crate::{Place, Problem, obj::DEFAULT_COLOR, skin::four_heaviest};
 use accessor::{Buffers, components};
-use glam::{Affine3A, Mat3A, Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use gltf::mesh::{Mode, Semantic};
 use hairspring::body::{Body, Clip, Mesh, Part, Skin};
 use skeleton::Skeleton;
@@ -57,8 +57,11 @@ pub fn parse(
         notes.push(format!("{} primitives of lines, points, strips or fans are not read", build.skipped));
     }
     let Build { mut mesh, joints, weights, .. } = build;
-    if mesh.normals.iter().any(|n| *n == Vec3::ZERO) {
+    if mesh.normals.contains(&Vec3::ZERO) {
+        let given = std::mem::take(&mut mesh.normals);
         mesh.compute_normals();
+        let given = given.into_iter().zip(&mut mesh.normals);
+        given.filter(|(n, _)| *n != Vec3::ZERO).for_each(|(n, slot)| *slot = n);
     }
     let clips = animation::clips(&document, &buffers, &skeleton, &mut notes)?;
     let skin = Skin { joints, weights, inverse_bind: skeleton.inverse_bind };
@@ -114,7 +117,7 @@ impl Build<'_> {
             Some(skin) => (self.skeleton.skins[skin.index()].placed, 0),
             None => self.skeleton.rigid(node.index()),
         };
-        let turned = Mat3A::from(placed.matrix3.inverse().transpose());
+        let turned = placed.matrix3.inverse().transpose();
         match primitive.get(&Semantic::Normals) {
             Some(normals) => {
                 let normals = components::<3>(&normals, buffers, "normals")?;

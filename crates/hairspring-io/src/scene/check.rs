@@ -74,12 +74,21 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     }
     for groom in &scene.groom {
         let t = &groom.transform;
-        let effects = &groom.effects;
+        let (effects, look) = (&groom.effects, &groom.look);
         let checks = [
             (above_0(groom.scale), "scale", "above 0 [m a unit]"),
             (finite(t.position), "position", "three finite numbers [m]"),
             (finite(t.rotation), "rotation", "three finite numbers [degrees]"),
             (finite(t.scale) && t.scale.abs().min_element() > 0.0, "scale", "finite and not 0"),
+            (color(look.root_color), "root_color", "three numbers from 0 to 1"),
+            (color(look.tip_color), "tip_color", "three numbers from 0 to 1"),
+            ((0.0..=1.0).contains(&look.variation), "variation", "0 to 1"),
+            ((0.1..=1.0).contains(&look.roughness), "roughness", "0.1 to 1"),
+            ((0.0..=10.0).contains(&look.cuticle), "cuticle", "0 to 10 [degrees]"),
+            ((0.0..=4.0).contains(&look.specular), "specular", "0 to 4"),
+            ((0.0..=4.0).contains(&look.backlight), "backlight", "0 to 4"),
+            ((0.0..=4.0).contains(&look.scatter), "scatter", "0 to 4"),
+            ((0.0..=4.0).contains(&look.shadow), "shadow", "0 to 4"),
             ((0.0..=1.0).contains(&effects.clump), "clump", "0 to 1"),
             (from_0(effects.curl_radius), "curl_radius", "0 or more [m]"),
             (above_0(Some(effects.curl_length)), "curl_length", "above 0 [m]"),

@@ -1,6 +1,6 @@
 //! `[clip]`: which motion, and how it moves the body.
 
-use super::{Reader, file::ClipFile, rigid, sentence::unknown};
+use super::{Reader, body::rigid, file::ClipFile, sentence::unknown};
 use crate::{Character, ReadOptions, Result, load::pick_clip, read_motion};
 use hairspring::body::{Body, Clip, HeadMotion, head_motion, retarget};
 
@@ -11,7 +11,9 @@ impl Reader<'_> {
         named: Option<&ClipFile>,
         character: Option<Character>,
     ) -> Result<(Option<Body>, Option<Clip>)> {
-        let Some(named) = named else { return Ok((character.map(|c| c.body), None)) };
+        let Some(named) = named else {
+            return Ok((character.map(|c| c.body), None));
+        };
         let near =
             named.file.as_ref().map_or_else(|| self.text.find("[clip]").unwrap_or(0), |f| f.span().start);
         let Some(character) = character else {

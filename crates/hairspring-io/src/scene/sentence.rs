@@ -49,7 +49,9 @@ fn reworded(message: &str) -> String {
         return message.to_owned();
     };
     let quoted: Vec<&str> = rest.split('`').skip(1).step_by(2).collect();
-    let Some((wrong, known)) = quoted.split_first() else { return message.to_owned() };
+    let Some((wrong, known)) = quoted.split_first() else {
+        return message.to_owned();
+    };
     unknown(wrong, known.iter().copied())
 }
 

@@ -94,7 +94,9 @@ fn heading(joints: &[Joint], world: &[Affine3A]) -> f32 {
     let mut left = Vec3::ZERO;
     for (j, joint) in joints.iter().enumerate() {
         let name = key(&joint.name);
-        let Some(rest) = name.strip_prefix("left") else { continue };
+        let Some(rest) = name.strip_prefix("left") else {
+            continue;
+        };
         let other = joints.iter().position(|o| key(&o.name).strip_prefix("right") == Some(rest));
         if let Some(o) = other {
             left += Vec3::from(world[j].translation - world[o].translation);

@@ -1,9 +1,6 @@
 //! How a guide carries the hairs around it.
 
-use crate::{
-    collide::ObstaclePose,
-    groom::{Groom, GuideWeights},
-};
+use crate::groom::{Groom, GuideWeights};
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
 use rayon::prelude::*;
 
@@ -88,11 +85,4 @@ pub(super) fn carry(
         }
         *p = sum.into();
     }
-}
-
-/// `p` [m], moved to the surface where it is deeper inside the collider than `clearance`.
-pub(super) fn push_out(obstacle: &ObstaclePose, p: Vec3, clearance: f32) -> Vec3 {
-    let (rotation, translation) = obstacle.end;
-    let (distance, normal) = obstacle.shape.distance_and_normal(rotation.transpose() * (p - translation));
-    if distance < clearance { p + rotation * normal * (clearance - distance) } else { p }
 }

@@ -12,6 +12,7 @@
 
 mod carry;
 mod choose;
+mod keep_out;
 mod style;
 
 pub use choose::{assign_guides, choose_guides};
@@ -21,6 +22,7 @@ use crate::{
     groom::{Groom, GuideWeights},
     scene::Effects,
 };
+use fearless_simd::{Level, dispatch};
 use glam::{Affine3A, Quat, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -113,6 +115,7 @@ impl Follow {
         );
         let groom = &*self.groom;
         let this = &*self;
+        let level = Level::new();
         split_by(out, &groom.offsets).into_par_iter().enumerate().with_min_len(64).for_each(|(s, strand)| {
             let guide = this.guide_of[s];
             if guide != u32::MAX {
@@ -132,12 +135,8 @@ impl Follow {
                 let lead = &guide_points[this.guide_offsets[g] as usize..this.guide_offsets[g + 1] as usize];
                 style::lay_over(&this.effects, s as u32, lead, &this.ride[range.clone()], strand);
             }
-            // The root stays on the skin.
-            for (p, clearance) in strand.iter_mut().zip(&this.clearance[range]).skip(1) {
-                for o in obstacles {
-                    *p = carry::push_out(o, *p, *clearance);
-                }
-            }
+            let clearance = &this.clearance[range];
+            dispatch!(level, simd => keep_out::keep_out(simd, obstacles, strand, clearance));
         });
     }
 

@@ -120,18 +120,19 @@ fn fill_non_finite(points: &mut [Vec3]) -> usize {
     };
     for w in finite.windows(2) {
         let (a, b) = (points[w[0]], points[w[1]]);
-        for i in w[0] + 1..w[1] {
-            points[i] = a.lerp(b, (i - w[0]) as f32 / (w[1] - w[0]) as f32);
+        let steps = (w[1] - w[0]) as f32;
+        for (i, p) in points[w[0]..w[1]].iter_mut().enumerate().skip(1) {
+            *p = a.lerp(b, i as f32 / steps);
         }
     }
     // The ends: the finite points' own mean step, carried on.
     let steps = (last - first).max(1) as f32;
     let step = (points[last] - points[first]) / steps;
     for i in (0..first).rev() {
-        points[i] = points[i + 1] - step;
+        points[i] = within_reach(points[i + 1] - step);
     }
     for i in last + 1..points.len() {
-        points[i] = points[i - 1] + step;
+        points[i] = within_reach(points[i - 1] + step);
     }
     bad
 }
@@ -143,12 +144,9 @@ fn spread_zero_segments(points: &mut [Vec3]) -> usize {
     let length: f32 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
     // Below the spacing of f32 at these coordinates a length is noise.
     let reach = points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
-    let noise = reach * f32::EPSILON * 16.0 * segments as f32;
+    let noise = noise_of(points.len(), reach);
     if length < SHORTEST_STRAND.max(noise) {
-        // No shape to keep: a stub along +Y, long enough to be told from noise.
-        let step = STUB.max(noise * 4.0) / segments as f32;
-        let root = points[0];
-        points.iter_mut().enumerate().for_each(|(i, p)| *p = root + Vec3::Y * (step * i as f32));
+        stub(points, noise);
         return segments;
     }
     let shortest = SHORTEST_SEGMENT * length / segments as f32;
@@ -189,17 +187,40 @@ fn spread_zero_segments(points: &mut [Vec3]) -> usize {
 /// Even spacing along the old strand; if a chord still comes out too short (a strand folded onto itself), straight out.
 fn spread_evenly(points: &mut [Vec3], old: &[Vec3], at: &[f32], shortest: f32) {
     let (last, length) = (points.len() - 1, at[at.len() - 1]);
-    for i in 1..last {
-        points[i] = along(old, at, length * i as f32 / last as f32);
+    for (i, p) in points.iter_mut().enumerate().take(last).skip(1) {
+        *p = along(old, at, length * i as f32 / last as f32);
     }
     if points.windows(2).any(|w| w[0].distance(w[1]) < shortest) {
         let direction = (old[last] - old[0]).try_normalize().unwrap_or(Vec3::Y);
-        let root = old[0];
-        points
-            .iter_mut()
-            .enumerate()
-            .for_each(|(i, p)| *p = root + direction * (length * i as f32 / last as f32));
+        for (i, p) in points.iter_mut().enumerate() {
+            *p = old[0] + direction * (length * i as f32 / last as f32);
+        }
+        if points.iter().any(|p| p.abs().max_element() > FARTHEST) {
+            points[0] = old[0];
+            stub(points, noise_of(points.len(), FARTHEST));
+        }
     }
+}
+
+/// Replaces a strand without a shape by a straight one along +Y from its root (toward the origin where the root is at the
+/// end of what is believed), long enough to be told from `noise` [m].
+fn stub(points: &mut [Vec3], noise: f32) {
+    let root = points[0];
+    let up = if root.y > FARTHEST * 0.5 { -1.0 } else { 1.0 };
+    let step = up * STUB.max(noise * 4.0) / (points.len() - 1) as f32;
+    for (i, p) in points.iter_mut().enumerate() {
+        *p = root + Vec3::Y * (step * i as f32);
+    }
+}
+
+/// Length that f32 can not tell from zero for a strand of `count` points whose largest coordinate is `reach` [m].
+fn noise_of(count: usize, reach: f32) -> f32 {
+    reach * f32::EPSILON * 16.0 * (count - 1) as f32
+}
+
+/// The point with no coordinate beyond [`FARTHEST`].
+fn within_reach(p: Vec3) -> Vec3 {
+    p.clamp(Vec3::splat(-FARTHEST), Vec3::splat(FARTHEST))
 }
 
 /// The place at distance `d` along a strand whose points are at distances `at`.
@@ -282,7 +303,7 @@ mod tests {
             6 => -1.0f32..1.0,
             1 => Just(0.0),
             1 => -1e-7f32..1e-7,
-            1 => prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(f32::MAX), Just(-1e5f32)],
+            1 => prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(f32::MAX), Just(-1e5f32), -1.1e6f32..1.1e6],
         ]
     }
 

@@ -7,6 +7,7 @@ use crate::{
     material::Material,
     scene::Solver,
     strand::{
+        interval::Interval,
         lanes::{LANES, Row},
         rest_shape::{Fibre, RestShape, rest_shape},
         tile::{rest, state, strand},
@@ -75,6 +76,7 @@ impl Simulation {
             lanes,
             tiles,
             settings: Settings { solver, gravity, anchor },
+            interval: Interval::default(),
             level: Level::new(),
             places,
             stiffened: 0,

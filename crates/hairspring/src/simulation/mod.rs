@@ -12,6 +12,7 @@ pub use step::{Air, Drive, MovingObstacle, StepReport};
 use crate::{
     groom::Groom,
     strand::{
+        interval::Interval,
         lanes::{LANES, Row},
         tile::{rest, state, strand},
     },
@@ -38,6 +39,8 @@ pub struct Simulation {
     rest: Vec<Row>,
     state: Vec<Row>,
     settings: build::Settings,
+    /// The last step's interval, kept for its memory.
+    interval: Interval,
     level: Level,
     /// Lane of each simulated strand, in the order that the caller named them.
     places: Vec<u32>,

@@ -95,7 +95,8 @@ impl Simulation {
         let solver = self.settings.solver;
         let h = FRAME / solver.substeps.max(1) as f32;
         let substeps = ((drive.dt / h - 1e-3).ceil() as u32).clamp(1, MAX_SUBSTEPS);
-        let interval = self.interval(drive, substeps);
+        let mut interval = std::mem::take(&mut self.interval);
+        self.fill_interval(drive, substeps, &mut interval);
         self.move_roots(drive);
         let reset = run(
             self.level,
@@ -106,41 +107,35 @@ impl Simulation {
             &mut self.state,
             self.tiles.first().map_or(0, |t| t.first),
         );
+        // The colliders' shapes are the caller's again.
+        interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
+        self.interval = interval;
         self.settings.anchor = drive.anchor;
         let reset_strands = if reset { self.reset_non_finite() } else { 0 };
         StepReport { substeps, reset_strands }
     }
 
-    fn interval(&self, drive: &Drive, count: u32) -> Interval {
+    /// Fills `interval` for a frame; its memory is used again.
+    fn fill_interval(&self, drive: &Drive, count: u32, interval: &mut Interval) {
         let from = self.settings.anchor;
-        let h = drive.dt / count as f32;
-        let substeps = (1..=count)
-            .map(|k| {
-                let fraction = k as f32 / count as f32;
-                let before = (k - 1) as f32 / count as f32;
-                Substep {
-                    fraction,
-                    anchor: from.lerp(&drive.anchor, fraction).matrix(),
-                    wind: drive.air.velocity(fraction * drive.dt),
-                    obstacles: drive
-                        .obstacles
-                        .iter()
-                        .map(|o| ObstaclePose {
-                            shape: o.shape.clone(),
-                            start: o.start.lerp(&o.end, before).matrix(),
-                            end: o.start.lerp(&o.end, fraction).matrix(),
-                            share: 1.0 / count as f32,
-                        })
-                        .collect(),
-                }
-            })
-            .collect();
-        Interval {
-            h,
-            projections: self.settings.solver.projections,
-            gravity: self.settings.gravity,
-            anchor: from.matrix(),
-            substeps,
+        interval.h = drive.dt / count as f32;
+        interval.projections = self.settings.solver.projections;
+        interval.gravity = self.settings.gravity;
+        interval.anchor = from.matrix();
+        interval.substeps.resize_with(count as usize, Substep::default);
+        for (k, substep) in interval.substeps.iter_mut().enumerate() {
+            let fraction = (k + 1) as f32 / count as f32;
+            let before = k as f32 / count as f32;
+            substep.fraction = fraction;
+            substep.anchor = from.lerp(&drive.anchor, fraction).matrix();
+            substep.wind = drive.air.velocity(fraction * drive.dt);
+            substep.obstacles.clear();
+            substep.obstacles.extend(drive.obstacles.iter().map(|o| ObstaclePose {
+                shape: o.shape.clone(),
+                start: o.start.lerp(&o.end, before).matrix(),
+                end: o.start.lerp(&o.end, fraction).matrix(),
+                share: 1.0 / count as f32,
+            }));
         }
     }
 

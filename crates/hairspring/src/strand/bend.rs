@@ -14,6 +14,7 @@
 //! ```text
 //! δr = δe_j / L_j − P δe_{j−1} / L_{j−1}
 //!
+//! (with ℓ = L in the swing δû: exact for inextensible segments, which the projection makes of them)
 //! and the Gauss–Newton matrix B JᵀJ is positive semi-definite whatever the strain (cf. Choi & Ko 2002).
 
 use super::lanes::{F, M3, Sym3, V3};

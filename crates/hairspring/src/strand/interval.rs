@@ -4,6 +4,7 @@ use crate::collide::ObstaclePose;
 use glam::{Mat3, Vec3};
 
 /// The substeps of one exchange interval (a frame), shared by all tiles.
+#[derive(Default)]
 pub struct Interval {
     /// Length of a substep [s].
     pub h: f32,
@@ -18,6 +19,7 @@ pub struct Interval {
 }
 
 /// The world at the end of one substep.
+#[derive(Default)]
 pub struct Substep {
     /// Fraction of the interval that has passed, above 0, at most 1.
     pub fraction: f32,

@@ -11,3 +11,8 @@ pub(crate) mod root;
 pub(crate) mod stretch;
 pub(crate) mod substep;
 pub(crate) mod tile;
+
+#[cfg(test)]
+mod reference;
+#[cfg(test)]
+mod tests;

@@ -34,6 +34,12 @@ pub struct Scratch {
 }
 
 impl Scratch {
+    /// What the last solve and projections made of point `i`, before the limit; first lane.
+    #[cfg(test)]
+    pub fn solved(&self, i: usize) -> glam::Vec3 {
+        glam::Vec3::new(self.x[3 * i].0[0], self.x[3 * i + 1].0[0], self.x[3 * i + 2].0[0])
+    }
+
     fn reserve(&mut self, points: usize) {
         if self.inverse_mass.len() < points {
             self.factors.resize(points * FACTOR_ROWS, Row::default());

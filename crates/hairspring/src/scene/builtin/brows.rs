@@ -70,9 +70,9 @@ fn brow_hair(side: f32, mut random: Random) -> [Vec3; POINTS] {
 fn lash(side: f32, i: u32, mut random: Random) -> [Vec3; POINTS] {
     let u = (i as f32 + random.unit()) / LASHES as f32 * 1.86 - 0.93;
     let root = surface(shape::upper_lid(u) + Vec2::Y * random.within(0.0006, 0.0012));
-    let heading = vec3(0.35 * u + 0.1 + 0.06 * random.normal(), -0.15, 1.0).normalize();
+    let heading = vec3(0.35 * u + 0.1 + 0.06 * random.normal(), -0.35, 1.0).normalize();
     let length = random.within(0.0055, 0.0075) * (0.75 + 0.25 * smoothstep(-1.0, 0.3, u));
-    strand(root, heading, vec3(0.15 * u + 0.1, 1.1, -0.1), length, side)
+    strand(root, heading, vec3(0.15 * u + 0.1, 0.85, 0.1), length, side)
 }
 
 /// A hair of the left side, or its mirror image, that leaves `root` along `heading` and bends by `bend` over its length.

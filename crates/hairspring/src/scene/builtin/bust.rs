@@ -50,8 +50,8 @@ const INSET: f32 = 5e-4;
 /// A coarser closed mesh, [`INSET`] inside the drawn one, for hair to collide with.
 pub fn collision() -> Body {
     let axes = [
-        nets::planes(-0.27, 0.27, |x| 0.009 + 0.12 * (x.abs() - 0.09).clamp(0.0, 0.08)),
-        nets::planes(-0.32, 0.14, |y| 0.0105 + 0.12 * (-0.13 - y).clamp(0.0, 0.08)),
+        nets::planes(-0.27, 0.27, |x| 0.0105 + 0.12 * (x.abs() - 0.09).clamp(0.0, 0.08)),
+        nets::planes(-0.32, 0.14, |y| 0.012 + 0.12 * (-0.13 - y).clamp(0.0, 0.08)),
         nets::planes(-0.16, 0.14, |_| 0.0115),
     ];
     let distance = |p: Vec3| shape::plain_distance(p) + INSET;
@@ -145,11 +145,7 @@ fn add_eye(mesh: &mut Mesh, side: f32) {
     let vertex = |ring: usize, i: usize| first + 1 + (ring * ROUND + i % ROUND) as u32;
     let last = first + 1 + (RINGS.len() * ROUND) as u32;
     let name = if side > 0.0 { "left" } else { "right" };
-    let mut part = |mesh: &mut Mesh,
-                    what: &str,
-                    rings: std::ops::Range<usize>,
-                    color: Vec3,
-                    roughness: f32| {
+    let part = |mesh: &mut Mesh, what: &str, rings: std::ops::Range<usize>, color: Vec3, roughness: f32| {
         let from = mesh.triangles.len() as u32;
         for ring in rings {
             for i in 0..ROUND {

@@ -197,9 +197,22 @@ fn waved(field: &Field, cut: &Cut, hair: &Strand, mut random: Random) -> Vec<Vec
             let turn = TAU * s / (cut.wave_length * hair.pitch) + hair.phase;
             let size = cut.wave * hair.amplitude * grown;
             let wave = across * turn.cos() + deep * (turn.sin() * cut.roundness);
-            course[k] + wave * size + drift * smoothstep(0.0, cut.length, s)
+            clear(field, course[k] + wave * size + drift * smoothstep(0.0, cut.length, s), grown)
         })
         .collect()
+}
+
+/// `p`, moved out of the bust as the comb sees it: where gathering or a wave has led it too far in. `share` of the way.
+fn clear(field: &Field, p: Vec3, share: f32) -> Vec3 {
+    let mut out = p;
+    for _ in 0..6 {
+        let (d, n) = field.at(out);
+        if d >= 2.0 * CLEARANCE {
+            break;
+        }
+        out += n * (2.0 * CLEARANCE - d);
+    }
+    p.lerp(out, share)
 }
 
 /// Writes points evenly spaced along the first `steps` segments of `curve`.
@@ -222,19 +235,36 @@ fn resample(curve: &[Vec3], steps: f32, out: &mut [Vec3]) {
     }
 }
 
-/// Moves every point but the root to at least [`CLEARANCE`] from the skin.
+/// Lays every point but the root at least [`CLEARANCE`] from the skin, the segments as even as they were.
 fn settle(field: &Field, points: &mut [Vec3]) {
-    for p in points.iter_mut().skip(1) {
-        // The grid is too coarse to settle by, but tells what is far: it never errs by as much as a cell.
-        if field.at(*p).0 > CELL {
-            continue;
-        }
+    let step = points[0].distance(points[1]);
+    for k in 1..points.len() {
+        // Each point follows the one before at a segment's length, and both conditions are met in turn.
+        let before = points[k - 1];
+        let mut p = outside(field, points[k]);
         for _ in 0..4 {
-            let d = shape::distance(*p);
-            if d >= CLEARANCE {
+            let reached = before + (p - before).normalize_or(Vec3::NEG_Y) * step;
+            p = outside(field, reached);
+            if p == reached {
                 break;
             }
-            *p += shape::normal(*p) * (CLEARANCE * 1.05 - d);
         }
+        points[k] = p;
     }
+}
+
+/// The place nearest to `p`, or nearly so, that is [`CLEARANCE`] from the skin.
+fn outside(field: &Field, mut p: Vec3) -> Vec3 {
+    // The grid is too coarse to settle by, but tells what is far: it never errs by as much as a cell.
+    if field.at(p).0 > CELL {
+        return p;
+    }
+    for _ in 0..12 {
+        let d = shape::distance(p);
+        if d >= CLEARANCE {
+            break;
+        }
+        p += shape::normal(p) * (CLEARANCE * 1.05 - d);
+    }
+    p
 }

@@ -90,7 +90,7 @@ fn combed(field: &Field, cut: &Cut, place: &Place, p: Vec3, floor: f32, sway: Ve
     // Over the shoulder: to the front or to the back, by where the root is, and not off its side.
     let shoulder = smoothstep(-0.05, -0.10, p.y) * smoothstep(0.15, 0.55, n.y) * smoothstep(0.06, 0.02, d);
     let ahead = if place.root.z > 0.012 { 0.45 } else { -0.45 };
-    wish = wish.lerp(vec3(-0.2 * p.x.signum(), -0.8, ahead), shoulder);
+    wish = wish.lerp(vec3(-0.5 * p.x.signum(), -0.8, ahead), shoulder);
     wish += sway;
     // Along the surface while on it; on the head also drawn back to its layer where it stands off.
     let on = smoothstep(floor + 0.012, floor + 0.003, d);

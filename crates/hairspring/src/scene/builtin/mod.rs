@@ -18,7 +18,7 @@ pub use style::Style;
 
 use super::{Camera, Guides, HairLook, Scene, SceneGroom};
 use crate::material::Material;
-use glam::{Vec3, vec3};
+use glam::vec3;
 
 /// What to build.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,12 +78,14 @@ pub fn scene(options: &BuiltinOptions) -> Scene {
         body: Some(body),
         collision: Some(collision),
         gravity: vec3(0.0, -9.81, 0.0),
-        camera: Some(camera()),
+        camera: Some(camera(options.style)),
         ..Scene::default()
     }
 }
 
 /// A portrait: three quarters from her left, a little above the eyes, from where a face is not foreshortened.
-fn camera() -> Camera {
-    Camera { position: vec3(0.62, 0.06, 1.28), target: Vec3::new(0.0, -0.055, -0.005), fov: 20.0 }
+fn camera(style: Style) -> Camera {
+    // A halo stands higher than hair that falls.
+    let (height, fov) = if style == Style::Coily { (-0.01, 21.0) } else { (-0.06, 18.0) };
+    Camera { position: vec3(0.60, 0.05, 1.28), target: vec3(0.0, height, -0.005), fov }
 }

@@ -84,10 +84,10 @@ impl Style {
             rise: 0.09,
             lift: 0.35,
             stand: 0.0,
-            wave: 0.0105,
-            wave_length: 0.085,
+            wave: 0.012,
+            wave_length: 0.075,
             roundness: 0.5,
-            clump: 0.75,
+            clump: 0.82,
             frizz: 0.0012,
             points: 32,
         };

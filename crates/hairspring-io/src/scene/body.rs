@@ -1,0 +1,110 @@
+//! `[body]` and `[collision]`: which meshes, and what moves them.
+
+use super::{
+    Reader,
+    file::{BodyFile, FileName},
+    sentence::unknown,
+};
+use crate::{Character, ReadOptions, Result, load, makehuman, obj, read_body, units};
+use glam::Affine3A;
+use hairspring::body::{Body, Skin};
+
+impl Reader<'_> {
+    /// A `[body]` or `[collision]`, which `what` names.
+    pub(super) fn body(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
+        let path = self.resolve(&named.file);
+        let options = ReadOptions { scale: named.scale, up: named.up };
+        let mut character = match (&named.rig, &named.weights) {
+            (Some(rig), Some(weights)) => self.rigged(named, rig, weights, &options)?,
+            (None, None) => {
+                let loaded = self.named(read_body(&path, &options), &named.file, what)?;
+                self.note(&path, loaded.notes);
+                loaded.value
+            }
+            _ => {
+                let text = "`rig` and `weights` belong together: name both, or neither".into();
+                return Err(self.wrong(named.file.span().start, "rig", text));
+            }
+        };
+        let body = &mut character.body;
+        if let Some(parts) = &named.parts {
+            let known: Vec<String> = body.mesh.parts.iter().map(|p| p.name.clone()).collect();
+            if let Some(wrong) = parts.iter().find(|p| !known.contains(p)) {
+                let text = format!("the part {}", unknown(wrong, known.iter().map(String::as_str)));
+                return Err(self.wrong(named.file.span().start, "parts", text));
+            }
+            body.keep_parts(|name| parts.iter().any(|p| p == name));
+        }
+        if body.mesh.parts.is_empty() && (named.color.is_some() || named.roughness.is_some()) {
+            body.mesh.parts.push(hairspring::body::Part {
+                name: what.into(),
+                triangles: 0..body.mesh.triangles.len() as u32,
+                color: obj::DEFAULT_COLOR,
+                roughness: obj::DEFAULT_ROUGHNESS,
+            });
+        }
+        for part in &mut body.mesh.parts {
+            part.color = named.color.unwrap_or(part.color);
+            part.roughness = named.roughness.unwrap_or(part.roughness);
+        }
+        Ok(character)
+    }
+
+    /// A MakeHuman mesh with its rig.
+    fn rigged(
+        &self,
+        named: &BodyFile,
+        rig: &FileName,
+        weights: &FileName,
+        options: &ReadOptions,
+    ) -> Result<Character> {
+        let bytes = |name: &FileName, what: &str| self.named(load::bytes_of(&self.resolve(name)), name, what);
+        let mesh = bytes(&named.file, "body")?;
+        let (rig_data, weight_data) = (bytes(rig, "rig")?, bytes(weights, "weight file")?);
+        let mesh = obj::parse(&mesh).map_err(|p| p.in_file(&self.resolve(&named.file)))?;
+        let mut character =
+            makehuman::parse(mesh, &rig_data, &weight_data).map_err(|p| p.in_file(&self.resolve(rig)))?;
+        let turn = units::turn_of(options.up.unwrap_or(crate::Axis::Y));
+        units::apply_to_body(&mut character.body, &mut [], options.scale.unwrap_or(makehuman::SCALE), turn);
+        Ok(character)
+    }
+
+    /// The collision mesh with the body's joints, so that one pose moves both.
+    pub(super) fn carried(&self, mut collision: Body, body: &Body, named: &BodyFile) -> Result<Body> {
+        let rest: Vec<Affine3A> = body.world(&body.rest_pose());
+        let inverse_bind: Vec<Affine3A> = rest.iter().map(|w| w.inverse()).collect();
+        let of = |name: &str| {
+            body.joint(name).map(|j| j as u16).ok_or_else(|| {
+                let text =
+                    format!("the joint {}", unknown(name, body.joints.iter().map(|j| j.name.as_str())));
+                self.wrong(named.file.span().start, "joint", text)
+            })
+        };
+        collision.skin = match (&collision.skin, &named.joint) {
+            // Skinned over joints of its own: the body's of the same names.
+            (Some(skin), None) => {
+                let map: Vec<u16> = collision.joints.iter().map(|j| of(&j.name)).collect::<Result<_>>()?;
+                let joints = skin.joints.iter().map(|four| four.map(|j| map[j as usize])).collect();
+                let inverse_bind = body.skin.as_ref().map_or(inverse_bind, |s| s.inverse_bind.clone());
+                Some(Skin { joints, weights: skin.weights.clone(), inverse_bind })
+            }
+            (None, None) if body.joints.len() == 1 => None,
+            (_, name) => {
+                let joint = name.as_deref().map_or(Ok(0), of)?;
+                let count = collision.mesh.positions.len();
+                Some(Skin {
+                    joints: vec![[joint, 0, 0, 0]; count],
+                    weights: vec![[1.0, 0.0, 0.0, 0.0]; count],
+                    inverse_bind,
+                })
+            }
+        };
+        collision.joints = body.joints.clone();
+        Ok(collision)
+    }
+}
+
+/// A body as one rigid piece that a clip of one joint moves.
+pub(super) fn rigid(body: Body) -> Body {
+    if body.skin.is_none() && body.joints.len() == 1 { body } else { Body::rigid(body.mesh) }
+}
