@@ -13,7 +13,7 @@ pub(crate) fn filmic(light: Vec3) -> Vec3 {
     ]);
     let v = IN * light;
     let curve = (v * (v + Vec3::splat(0.0245786)) - Vec3::splat(0.000090537))
-        / (v * (v * 0.983729 + Vec3::splat(0.4329510)) + Vec3::splat(0.238081));
+        / (v * (v * 0.983729 + Vec3::splat(0.432_951)) + Vec3::splat(0.238081));
     (OUT * curve).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
@@ -27,7 +27,9 @@ const STEPS: usize = 1024;
 
 impl Default for Encoder {
     fn default() -> Self {
-        let encode = |c: f32| if c <= 0.0031308 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+        let encode = |c: f32| {
+            if c <= 0.0031308 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+        };
         let table = (0..=STEPS + 1)
             .map(|i| (i as f32 / STEPS as f32).powi(2))
             .map(|c| 255.0 * encode(c.min(1.0)))

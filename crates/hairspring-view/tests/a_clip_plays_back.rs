@@ -116,7 +116,10 @@ fn bad_requests_are_answered_in_words() {
     let message = |r: Result<ClipWriter, OutputError>| r.err().expect("an error").to_string();
     assert!(message(ClipWriter::create(&path, 8000, 64, FPS)).contains("8000×64"));
     assert!(message(ClipWriter::create(&path, 64, 64, f64::NAN)).contains("NaN frames a second"));
-    assert!(message(ClipWriter::create(&folder.path().join("no/clip.mp4"), 64, 64, FPS)).contains("folder exists"));
+    assert!(
+        message(ClipWriter::create(&folder.path().join("no/clip.mp4"), 64, 64, FPS))
+            .contains("folder exists")
+    );
     let mut clip = ClipWriter::create(&path, 64, 64, FPS).unwrap();
     assert!(clip.push(&picture(32, 64, 0)).unwrap_err().to_string().contains("32×64"));
     assert!(clip.finish().unwrap_err().to_string().contains("no frame"));

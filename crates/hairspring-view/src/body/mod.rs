@@ -68,7 +68,9 @@ impl Bodies {
         for body in frame.bodies {
             self.first.push(count);
             for (i, t) in body.triangles.iter().enumerate() {
-                let Some(corner) = corners(body, t) else { continue };
+                let Some(corner) = corners(body, t) else {
+                    continue;
+                };
                 let screen = |p: Vec3| {
                     let p = view.project(p);
                     p.with_z(1.0 / p.z)

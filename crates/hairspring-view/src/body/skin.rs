@@ -43,7 +43,7 @@ pub(super) fn light(
     let lamps = &frame.lighting;
 
     // Shadow is looked up a little off the surface, where the surface's own voxels do not count.
-    let depth = shadow.light(p + n * (2.5 * shadow.voxel()));
+    let depth = shadow.around(p + n * (2.5 * shadow.voxel()));
     let key_open = shadow.body(p + n * 5e-4, 8e-4, 4) * (-HAIR_SHADE * depth.x).exp();
     let open = [key_open, (-HAIR_SHADE * depth.y).exp(), (-HAIR_SHADE * depth.z).exp()];
     let nv = n.dot(eye).max(1e-3);

@@ -68,7 +68,7 @@ impl Canvas {
         // From left to right.
         let (a, b, from, to) = if a.x <= b.x { (a, b, 0, 1) } else { (b, a, 1, 0) };
         let d = b - a;
-        if !(d.x > 1e-6) {
+        if d.x <= 1e-6 {
             return;
         }
         let inverse = 1.0 / d.x;

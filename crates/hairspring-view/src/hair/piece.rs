@@ -5,7 +5,9 @@ use glam::{Vec2, Vec3, Vec4};
 /// Greatest width of a strand on the screen [pixels].
 pub(crate) const MAX_WIDTH: f32 = 512.0;
 /// Greatest light stored, linear; the tone curve has long been white there.
-const MAX_LIGHT: f32 = 8.0;
+pub(crate) const MAX_LIGHT: f32 = 8.0;
+/// Greatest code and lowest bit of red, green and blue.
+pub(crate) const CHANNELS: [(f32, u32); 3] = [(2047.0, 0), (2047.0, 11), (1023.0, 22)];
 
 /// A straight piece of a strand.
 #[derive(Clone, Copy, Debug, Default)]
@@ -38,19 +40,19 @@ pub(crate) struct Open {
 }
 
 impl Piece {
-    #[inline(always)]
+    #[cfg(test)]
     pub fn pack(open: &Open) -> Self {
-        let width = |w: f32, cap: bool| {
-            let root = ((w / MAX_WIDTH).clamp(0.0, 1.0).sqrt() * 32767.0 + 0.5) as u16;
-            root << 1 | cap as u16
-        };
-        Self {
-            a: open.a,
-            b: open.b,
-            depths: open.depth.map(|d| (d.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16),
-            widths: [width(open.width[0], open.cap[0]), width(open.width[1], open.cap[1])],
-            colors: open.color.map(|c| pack_color(c.truncate())),
-        }
+        Self::new(
+            [open.a, open.b],
+            open.depth.map(pack_depth),
+            [0, 1].map(|i| pack_width(open.width[i]) | open.cap[i] as u16),
+            open.color.map(|c| pack_color(c.truncate())),
+        )
+    }
+
+    #[inline(always)]
+    pub fn new([a, b]: [Vec2; 2], depths: [u16; 2], widths: [u16; 2], colors: [u32; 2]) -> Self {
+        Self { a, b, depths, widths, colors }
     }
 
     #[inline(always)]
@@ -70,14 +72,27 @@ impl Piece {
     }
 }
 
+/// A share of the depth range in 16 bits.
 #[inline(always)]
-fn pack_color(c: Vec3) -> u32 {
+pub(crate) fn pack_depth(depth: f32) -> u16 {
+    (depth.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+}
+
+/// The square root of a width [pixels] in the upper 15 of 16 bits.
+#[inline(always)]
+pub(crate) fn pack_width(width: f32) -> u16 {
+    (((width / MAX_WIDTH).clamp(0.0, 1.0).sqrt() * 32767.0 + 0.5) as u16) << 1
+}
+
+/// The square root of a colour: 11 bits of red, 11 of green, 10 of blue.
+#[inline(always)]
+pub(crate) fn pack_color(c: Vec3) -> u32 {
     let root = |c: f32, top: f32| ((c * (1.0 / MAX_LIGHT)).clamp(0.0, 1.0).sqrt() * top + 0.5) as u32;
     root(c.x, 2047.0) | root(c.y, 2047.0) << 11 | root(c.z, 1023.0) << 22
 }
 
 #[inline(always)]
-fn open_color(bits: u32) -> Vec3 {
+pub(crate) fn open_color(bits: u32) -> Vec3 {
     let root = Vec3::new((bits & 2047) as f32, (bits >> 11 & 2047) as f32, (bits >> 22) as f32);
     let scaled = root * Vec3::new(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0);
     scaled * scaled * MAX_LIGHT

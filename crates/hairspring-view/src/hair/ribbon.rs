@@ -2,7 +2,7 @@
 
 use super::{
     order::{Order, Run},
-    piece::{MAX_WIDTH, Open, Piece},
+    piece::{self, MAX_WIDTH, Piece},
     shade::{self, Block, Fibre, LANES, Shader},
 };
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
     tile::{SIDE, Tiles},
 };
 use fearless_simd::{Simd, dispatch};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 use std::ops::Range;
 
 /// Bits of an entry below the depth key: a chunk's number and a piece's number in it.
@@ -44,9 +44,18 @@ pub(crate) struct Setup<'a> {
 #[derive(Clone, Copy, Debug)]
 struct Dot {
     at: Vec2,
-    /// Depth [m]; NaN where the point cannot be drawn.
+    /// Share of the frame's depth range, 0 to 1; NaN where the point cannot be drawn.
     depth: f32,
     width: f32,
+    /// Packed for a [`Piece`].
+    bits: (u16, u16),
+}
+
+impl Dot {
+    #[inline(always)]
+    fn new(at: Vec2, depth: f32, width: f32) -> Self {
+        Self { at, depth, width, bits: (piece::pack_depth(depth), piece::pack_width(width)) }
+    }
 }
 
 /// One chunk's results and memory.
@@ -102,6 +111,8 @@ impl Chunk {
     #[inline(always)]
     fn project(&mut self, setup: &Setup, hair: &HairDraw, range: Range<usize>) -> bool {
         let scale = 2.0 * hair.width_scale * setup.view.focal;
+        let [near, far] = setup.depths;
+        let per_depth = 1.0 / (far - near);
         self.dots.clear();
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         for i in range {
@@ -113,8 +124,8 @@ impl Chunk {
                 low = low.min(q.truncate() - reach);
                 high = high.max(q.truncate() + reach);
             }
-            let depth = if good { q.z } else { f32::NAN };
-            self.dots.push(Dot { at: q.truncate(), depth, width: width.min(MAX_WIDTH) });
+            let depth = if good { ((q.z - ROOT_BIAS - near) * per_depth).clamp(0.0, 1.0) } else { f32::NAN };
+            self.dots.push(Dot::new(q.truncate(), depth, width.min(MAX_WIDTH)));
         }
         let [w, h] = setup.tiles.size();
         high.x > 0.0 && high.y > 0.0 && low.x < w as f32 && low.y < h as f32
@@ -146,10 +157,7 @@ impl Chunk {
     fn cut(&mut self, setup: &Setup) {
         let tolerance = setup.frame.quality.smoothness.clamp(0.02, 4.0);
         let n = self.dots.len();
-        let color = |blocks: &[Block], i: usize| {
-            let (block, lane) = (&blocks[i / LANES], i % LANES);
-            Vec4::new(block.color[0][lane], block.color[1][lane], block.color[2][lane], -1.0)
-        };
+        let color = |blocks: &[Block], i: usize| blocks[i / LANES].color[i % LANES];
         let direction = |dots: &[Dot], i: usize| (dots[i + 1].at - dots[i].at).normalize_or_zero();
         // Directions of the segment before, of this one and of the next; zero where there is none.
         let mut before = Vec2::ZERO;
@@ -157,41 +165,48 @@ impl Chunk {
         let mut from = color(&self.blocks, 0);
         for i in 0..n - 1 {
             let (a, b) = (self.dots[i], self.dots[i + 1]);
-            let next = if i + 2 < n && self.dots[i + 2].depth > 0.0 {
+            let next = if i + 2 < n && self.dots[i + 2].depth >= 0.0 {
                 direction(&self.dots, i + 1)
             } else {
                 Vec2::ZERO
             };
             let to = color(&self.blocks, i + 1);
-            let good = a.depth > 0.0 && b.depth > 0.0;
+            let good = a.depth >= 0.0 && b.depth >= 0.0;
             if good {
                 let length = a.at.distance(b.at);
                 // Tangents at the joints halve the angle there: a Catmull-Rom curve by chord length, which has no
                 // loops or overshoot where points are spaced unevenly.
-                let turn = |other: Vec2| if other == Vec2::ZERO { 0.0 } else { (other - here).length() };
+                let turn = |other: Vec2| {
+                    if other == Vec2::ZERO { 0.0 } else { (other - here).length() }
+                };
                 let bend = length * 0.0625 * (turn(before) + turn(next));
                 let count = (bend / tolerance).sqrt().ceil().clamp(1.0, MAX_PIECES);
                 let (ta, tb) = match count > 1.0 {
                     true => ((before + here).normalize_or(here), (here + next).normalize_or(here)),
                     false => (here, here),
                 };
-                let (mut p, mut start) = (a, from);
-                for k in 1..=count as usize {
-                    let u = k as f32 / count;
-                    let at = match k as f32 == count {
-                        true => b.at,
-                        false => hermite(a.at, b.at, ta * length, tb * length, u),
-                    };
-                    let end = from.lerp(to, u);
-                    let q = Dot {
-                        at,
-                        depth: a.depth + (b.depth - a.depth) * u,
-                        width: a.width + (b.width - a.width) * u,
-                    };
-                    let cap =
-                        [k == 1 && (i == 0 || before == Vec2::ZERO), k as f32 == count && next == Vec2::ZERO];
-                    self.push(setup, p, q, [start, end], cap);
-                    (p, start) = (q, end);
+                let starts = i == 0 || before == Vec2::ZERO;
+                let ends = next == Vec2::ZERO;
+                if count <= 1.0 {
+                    self.push(setup, [a, b], [from, to], [starts, ends]);
+                } else {
+                    let (first, last) = (piece::open_color(from), piece::open_color(to));
+                    let (mut p, mut start) = (a, from);
+                    for k in 1..=count as usize {
+                        let u = k as f32 / count;
+                        let closes = k as f32 == count;
+                        let (q, end) = match closes {
+                            true => (b, to),
+                            false => {
+                                let at = hermite(a.at, b.at, ta * length, tb * length, u);
+                                let mix = |a: f32, b: f32| a + (b - a) * u;
+                                let dot = Dot::new(at, mix(a.depth, b.depth), mix(a.width, b.width));
+                                (dot, piece::pack_color(first.lerp(last, u)))
+                            }
+                        };
+                        self.push(setup, [p, q], [start, end], [starts && k == 1, ends && closes]);
+                        (p, start) = (q, end);
+                    }
                 }
             }
             before = if good { here } else { Vec2::ZERO };
@@ -205,30 +220,19 @@ impl Chunk {
 
     /// Files one piece under every tile that it touches.
     #[inline(always)]
-    fn push(&mut self, setup: &Setup, a: Dot, b: Dot, color: [Vec4; 2], cap: [bool; 2]) {
+    fn push(&mut self, setup: &Setup, [a, b]: [Dot; 2], colors: [u32; 2], cap: [bool; 2]) {
         let [w, h] = setup.tiles.size();
-        let reach = 0.5 * a.width.max(b.width) + 1.0;
+        let widest = a.width.max(b.width);
+        let reach = 0.5 * widest + 1.0;
         let (low, high) = (a.at.min(b.at) - reach, a.at.max(b.at) + reach);
-        let thin = a.width.max(b.width) < 1e-4;
-        if thin || low.x >= w as f32 || low.y >= h as f32 || high.x <= 0.0 || high.y <= 0.0 {
+        let outside = low.x >= w as f32 || low.y >= h as f32 || high.x <= 0.0 || high.y <= 0.0;
+        if widest < 1e-4 || outside || self.pieces.len() >= 1 << PIECE_BITS {
             return;
         }
-        if self.pieces.len() >= 1 << PIECE_BITS {
-            return;
-        }
-        let [near, far] = setup.depths;
-        let share = |d: f32| ((d - ROOT_BIAS - near) / (far - near)).clamp(0.0, 1.0);
-        let depth = [share(a.depth), share(b.depth)];
-        let key = (0.5 * (depth[0] + depth[1]) * ((1u32 << KEY_BITS) - 1) as f32) as u64;
+        let key = (0.5 * (a.depth + b.depth) * ((1u32 << KEY_BITS) - 1) as f32) as u64;
         let entry = key << (64 - KEY_BITS) | self.pieces.len() as u64;
-        self.pieces.push(Piece::pack(&Open {
-            a: a.at,
-            b: b.at,
-            depth,
-            width: [a.width, b.width],
-            color,
-            cap,
-        }));
+        let widths = [a.bits.1 | cap[0] as u16, b.bits.1 | cap[1] as u16];
+        self.pieces.push(Piece::new([a.at, b.at], [a.bits.0, b.bits.0], widths, colors));
         let side = SIDE as f32;
         let tile = |x: f32, n: usize| (x.max(0.0) / side).min((n - 1) as f32) as usize;
         let [nx, ny] = setup.tiles.grid();

@@ -5,6 +5,7 @@
 //! highlight that has been in and out again; and light that went from strand to strand before it reached the eye. Pigment is kept
 //! as the logarithm of colour, so that paths through the fibre, mixtures and shadow are sums and products.
 
+use super::piece;
 use crate::lighting::Lighting;
 use fearless_simd::{f32x8, prelude::*};
 use glam::{Vec3, Vec4};
@@ -28,8 +29,8 @@ pub(crate) struct Block {
     pub light: [Row; 4],
     /// Share of the key lamp that bodies let through.
     pub body: Row,
-    /// Result: linear RGB.
-    pub color: [Row; 3],
+    /// Result, packed as in [`super::piece`].
+    pub color: [u32; LANES],
 }
 
 /// What all strands of a frame share.
@@ -196,7 +197,7 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
             sines + cos_half * cos_v * (2.0 * fibre.tilt),
             cos_half * (std::f32::consts::SQRT_2 * fibre.spread[0]) + 0.03,
         );
-        let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (0.25 * fibre.specular);
+        let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (0.45 * fibre.specular);
 
         // TT: through the fibre, once.
         let m = gauss(sines - fibre.tilt, zero + fibre.spread[1]);
@@ -213,7 +214,7 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let f = fresnel(cos_d * 0.5);
         let pass = -f + 1.0;
         let n = exp2((cos_phi * 17.0 - 16.78) * std::f32::consts::LOG2_E);
-        let trt = m * n * pass * pass * f * fibre.specular;
+        let trt = m * n * pass * pass * f * (1.5 * fibre.specular);
         let trt_path = f32x8::splat(simd, 0.8) / cos_d;
 
         // Strand to strand: as from a matt surface across the fibre, wrapped all round, its colour deepening with the way through the hair.
@@ -232,16 +233,22 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
     }
     let open = f32x8::simd_from(simd, block.light[3]);
     let up = across.0[1] * 0.5 + 0.5;
-    for i in 0..3 {
+    for (i, sum) in sum.iter_mut().enumerate() {
         let (sky, ground) = (shader.sky.to_array()[i], shader.ground.to_array()[i]);
         let ambient = (up * (sky - ground) + ground) * open;
         let c = pigment.0[i];
         let tint = exp2(c * (-open * 0.5 + 1.5));
-        sum[i] += ambient * tint * fibre.scatter;
-        // A broken point darkens a strand; it does not spread over the picture.
-        let finite = sum[i].simd_ge(0.0);
-        finite.select(sum[i], zero).store_slice(&mut block.color[i]);
+        *sum += ambient * tint * fibre.scatter;
     }
+    // Packed here, once a point and in lanes. A broken point darkens a strand; it does not spread over the picture.
+    let mut bits = fearless_simd::u32x8::splat(simd, 0);
+    for (sum, (top, shift)) in sum.into_iter().zip(piece::CHANNELS) {
+        let finite = sum.simd_ge(0.0);
+        let light = finite.select(sum, zero).min(piece::MAX_LIGHT) * (1.0 / piece::MAX_LIGHT);
+        let root = (light.sqrt() * top + 0.5).to_int::<fearless_simd::u32x8<S>>();
+        bits |= root << shift;
+    }
+    bits.store_slice(&mut block.color);
 }
 
 /// A number from −1 to 1 for strand `s`, spread evenly and unlike its neighbours' (the finaliser of MurmurHash3).

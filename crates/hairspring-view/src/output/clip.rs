@@ -5,7 +5,10 @@ use crate::image::Image;
 use muxide::api::{Muxer, MuxerBuilder, VideoCodec};
 use openh264::{
     OpenH264API,
-    encoder::{BitRate, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, QpRange, RateControlMode, VuiConfig},
+    encoder::{
+        BitRate, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, QpRange, RateControlMode,
+        VuiConfig,
+    },
 };
 use std::{
     fs::File,
@@ -13,8 +16,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Bits a second for one pixel a second: about 6 Mbit/s at 1280 × 720 and 30 frames/s. Hair is all edges; less shows blocks.
-const BITS_PER_PIXEL: f64 = 0.22;
+/// H.264's quantiser, 0 to 51, from where hair at 1280 × 720 looks like the still to where blocks begin to show.
+const QUANTISER: (u8, u8) = (16, 24);
+/// Bits a second for one pixel a second, which the encoder aims for between those: 8 Mbit/s at 1280 × 720 and 30 frames/s.
+const BITS_PER_PIXEL: f64 = 0.3;
 
 /// Writes a clip frame by frame. The file appears under its name when [`ClipWriter::finish`] returns; a writer
 /// that is dropped before leaves nothing behind. Compressed frames are held in memory until then.
@@ -40,23 +45,26 @@ impl ClipWriter {
         let wrong = |why: String| OutputError::Clip { path: path.into(), why };
         let (long, short) = (width.max(height), width.min(height));
         if short < 16 || long > 3840 || short > 2160 {
-            return Err(wrong(format!("{width}×{height} pixels; H.264 here takes 16×16 to 3840×2160, choose such a size")));
+            return Err(wrong(format!(
+                "{width}×{height} pixels; H.264 here takes 16×16 to 3840×2160, choose such a size"
+            )));
         }
         if !(fps > 0.0 && fps <= 240.0) {
             return Err(wrong(format!("{fps} frames a second; choose a rate above 0 and up to 240")));
         }
         let bits = (width as f64 * height as f64 * fps * BITS_PER_PIXEL).clamp(2e5, 1e8) as u32;
         let config = EncoderConfig::new()
-            .bitrate(BitRate::from_bps(bits))
             .max_frame_rate(FrameRate::from_hz(fps as f32))
-            .rate_control_mode(RateControlMode::Quality)
-            .qp(QpRange::new(12, 34))
+            .rate_control_mode(RateControlMode::Bufferbased)
+            .qp(QpRange::new(QUANTISER.0, QUANTISER.1))
+            .bitrate(BitRate::from_bps(bits))
             // Every frame is there, and players can jump to any second.
             .skip_frames(false)
             .intra_frame_period(IntraFramePeriod::from_num_frames((fps.round() as u32).max(1)))
             .background_detection(false)
             .vui(VuiConfig::bt709());
-        let encoder = Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| wrong(e.to_string()))?;
+        let encoder =
+            Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| wrong(e.to_string()))?;
         let temporary = beside(path)?;
         let file = temporary.reopen().map_err(|source| OutputError::File { path: path.into(), source })?;
         let (even_width, even_height) = (width.next_multiple_of(2), height.next_multiple_of(2));
@@ -86,7 +94,10 @@ impl ClipWriter {
         let wrong = |why: String| OutputError::Clip { path: self.path.clone(), why };
         if (image.width, image.height) != self.size {
             let (w, h) = self.size;
-            return Err(wrong(format!("frame {} is {}×{} pixels in a clip of {w}×{h}; draw all frames at one size", self.frames, image.width, image.height)));
+            return Err(wrong(format!(
+                "frame {} is {}×{} pixels in a clip of {w}×{h}; draw all frames at one size",
+                self.frames, image.width, image.height
+            )));
         }
         self.planes.fill(image);
         let stream = self.encoder.encode(&self.planes.slices()).map_err(|e| wrong(e.to_string()))?;
@@ -109,7 +120,11 @@ impl ClipWriter {
             return Err(wrong("no frame was drawn; choose at least one".into()));
         }
         self.muxer.finish_in_place().map_err(|e| wrong(e.to_string()))?;
-        let file = self.muxer.into_writer().into_inner().map_err(|e| OutputError::File { path: self.path.clone(), source: e.into_error() })?;
+        let file = self
+            .muxer
+            .into_writer()
+            .into_inner()
+            .map_err(|e| OutputError::File { path: self.path.clone(), source: e.into_error() })?;
         file.sync_all().map_err(|source| OutputError::File { path: self.path.clone(), source })?;
         drop(file);
         keep(self.temporary, &self.path)

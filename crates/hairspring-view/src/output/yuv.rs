@@ -26,14 +26,19 @@ impl Planes {
             let i = (y.min(h - 1) * w + x.min(w - 1)) * 3;
             [image.rgb[i] as i32, image.rgb[i + 1] as i32, image.rgb[i + 2] as i32]
         };
-        let rows = self.y.par_chunks_mut(2 * ew).zip(self.u.par_chunks_mut(ew / 2)).zip(self.v.par_chunks_mut(ew / 2));
+        let rows = self
+            .y
+            .par_chunks_mut(2 * ew)
+            .zip(self.u.par_chunks_mut(ew / 2))
+            .zip(self.v.par_chunks_mut(ew / 2));
         rows.enumerate().for_each(|(pair, ((luma, u), v))| {
             for x in 0..ew / 2 {
                 let mut sum = [0; 3];
                 for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                     let [r, g, b] = pixel(2 * x + dx, 2 * pair + dy);
                     // ITU-R BT.709-6, section 3, in 16-bit fixed point: 219 steps from 16.
-                    luma[dy * ew + 2 * x + dx] = ((11966 * r + 40254 * g + 4064 * b + 32768) >> 16) as u8 + 16;
+                    luma[dy * ew + 2 * x + dx] =
+                        ((11966 * r + 40254 * g + 4064 * b + 32768) >> 16) as u8 + 16;
                     sum = [sum[0] + r, sum[1] + g, sum[2] + b];
                 }
                 // Colour differences of the four pixels' sum, 224 steps around 128.
@@ -57,8 +62,13 @@ mod tests {
     #[test]
     fn known_colours() {
         // BT.709 limited range: black, white, red, green, blue.
-        let cases = [([0, 0, 0], [16, 128, 128]), ([255, 255, 255], [235, 128, 128]), ([255, 0, 0], [63, 102, 240]),
-            ([0, 255, 0], [173, 42, 26]), ([0, 0, 255], [32, 240, 118])];
+        let cases = [
+            ([0, 0, 0], [16, 128, 128]),
+            ([255, 255, 255], [235, 128, 128]),
+            ([255, 0, 0], [63, 102, 240]),
+            ([0, 255, 0], [173, 42, 26]),
+            ([0, 0, 255], [32, 240, 118]),
+        ];
         for (rgb, yuv) in cases {
             let mut image = Image::new(3, 3);
             image.rgb.chunks_mut(3).for_each(|p| p.copy_from_slice(&rgb));
@@ -66,7 +76,11 @@ mod tests {
             planes.fill(&image);
             assert_eq!(planes.size, (4, 4));
             for (plane, want) in [&planes.y, &planes.u, &planes.v].into_iter().zip(yuv) {
-                assert!(plane.iter().all(|c| c.abs_diff(want) <= 1), "{rgb:?}: {} instead of {want}", plane[0]);
+                assert!(
+                    plane.iter().all(|c| c.abs_diff(want) <= 1),
+                    "{rgb:?}: {} instead of {want}",
+                    plane[0]
+                );
             }
         }
     }

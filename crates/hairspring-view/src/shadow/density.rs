@@ -47,7 +47,7 @@ impl Grid {
     fn nearest(&self, p: Vec3) -> Option<usize> {
         let q = (p - self.origin) / self.voxel + Vec3::splat(0.5);
         let [x, y, z] = [q.x as usize, q.y as usize, q.z as usize];
-        let inside = q.min_element() >= 0.0 && x < self.size[0] && y < self.size[1] && z < self.size[2];
+        let inside = q.cmpge(Vec3::ZERO).all() && x < self.size[0] && y < self.size[1] && z < self.size[2];
         inside.then(|| (z * self.size[1] + y) * self.size[0] + x)
     }
 }

@@ -20,6 +20,8 @@ pub(crate) struct Shadow {
     light: Vec<Vec4>,
     grid: Grid,
     map: DepthMap,
+    /// Unit directions towards key, rim and fill.
+    lamps: [Vec3; 3],
 }
 
 /// Directions over which the sky is averaged: up, and four slanting ones.
@@ -42,6 +44,7 @@ impl Shadow {
         let grid = density.grid;
         self.grid = grid;
         let lamps = &frame.lighting;
+        self.lamps = [lamps.key, lamps.rim, lamps.fill].map(|l| l.direction.normalize_or(Vec3::Y));
         let sweeps = [
             (&density.hair, lamps.key.direction),
             (&density.all, lamps.rim.direction),
@@ -72,15 +75,40 @@ impl Shadow {
         const CLEAR: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
         let q = (p - self.grid.origin) / self.grid.voxel;
         let [nx, ny, nz] = self.grid.size;
-        let (x, y, z) = (q.x as usize, q.y as usize, q.z as usize);
-        if self.light.is_empty() || !(q.min_element() >= 0.0) || x + 1 >= nx || y + 1 >= ny || z + 1 >= nz {
+        let last = Vec3::new(nx as f32 - 1.0, ny as f32 - 1.0, nz as f32 - 1.0);
+        if self.light.is_empty() || !(q.cmpge(Vec3::ZERO).all() && q.cmplt(last).all()) {
             return CLEAR;
         }
+        let (x, y, z) = (q.x as usize, q.y as usize, q.z as usize);
         let at = (z * ny + y) * nx + x;
         let (f, slice) = (q - Vec3::new(x as f32, y as f32, z as f32), nx * ny);
         let line = |i: usize| self.light[i].lerp(self.light[i + 1], f.x);
         let face = |i: usize| line(i).lerp(line(i + nx), f.y);
         face(at).lerp(face(at + slice), f.z)
+    }
+
+    /// As [`Shadow::light`], for places that may lie outside the hair's grid: there, hair between a place and a lamp is met where the
+    /// way to the lamp enters the grid.
+    pub fn around(&self, p: Vec3) -> Vec4 {
+        if self.light.is_empty() {
+            return self.light(p);
+        }
+        // The outermost voxels are padding, which the sweeps leave clear.
+        let margin = Vec3::splat(2.0 * self.grid.voxel);
+        let size = Vec3::from_array(self.grid.size.map(|n| (n - 1) as f32)) * self.grid.voxel;
+        let (low, high) = (self.grid.origin + margin, self.grid.origin + size - margin);
+        if p.cmpge(low).all() && p.cmple(high).all() {
+            return self.light(p);
+        }
+        let mut found = Vec4::new(0.0, 0.0, 0.0, 1.0);
+        for (k, toward) in self.lamps.iter().enumerate() {
+            let (a, b) = ((low - p) / *toward, (high - p) / *toward);
+            let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
+            if enter >= 0.0 && enter < leave {
+                found[k] = self.light((p + *toward * enter).clamp(low, high))[k];
+            }
+        }
+        found
     }
 
     /// Share of the key lamp that bodies let through to `p`.

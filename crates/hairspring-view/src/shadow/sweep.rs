@@ -12,7 +12,9 @@ use glam::Vec3;
 pub(crate) fn sweep(grid: &Grid, density: &[f32], direction: Vec3, depth: &mut Vec<f32>) {
     depth.clear();
     depth.resize(density.len(), 0.0);
-    let Some(unit) = direction.try_normalize() else { return };
+    let Some(unit) = direction.try_normalize() else {
+        return;
+    };
     let strides = [1, grid.size[0], grid.size[0] * grid.size[1]];
     let d = unit.to_array();
     let axis = (0..3).max_by(|a, b| d[*a].abs().total_cmp(&d[*b].abs())).unwrap_or(0);

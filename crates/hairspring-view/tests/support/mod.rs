@@ -48,7 +48,13 @@ fn noise(p: Vec3, seed: u32) -> f32 {
     let f = f * f * (Vec3::splat(3.0) - 2.0 * f);
     let at = |dx: i32, dy: i32, dz: i32| {
         let [x, y, z] = [cell.x as i32 + dx, cell.y as i32 + dy, cell.z as i32 + dz];
-        hash((x as u32).wrapping_mul(73856093) ^ (y as u32).wrapping_mul(19349663) ^ (z as u32).wrapping_mul(83492791), seed) * 2.0 - 1.0
+        hash(
+            (x as u32).wrapping_mul(73856093)
+                ^ (y as u32).wrapping_mul(19349663)
+                ^ (z as u32).wrapping_mul(83492791),
+            seed,
+        ) * 2.0
+            - 1.0
     };
     let line = |dy, dz| at(0, dy, dz) + (at(1, dy, dz) - at(0, dy, dz)) * f.x;
     let face = |dz| line(0, dz) + (line(1, dz) - line(0, dz)) * f.y;
@@ -89,8 +95,15 @@ fn strand(style: Style, i: u32, n: Vec3) -> Vec<Vec3> {
         let out = Vec3::new(p.x, 0.0, p.z).normalize_or_zero();
         let across = Vec3::Y.cross(out);
         let clump = (lock - root) * s * 0.5;
-        points.push(p + across * (swing * turn.sin() + flyaway) + out * (swing * 0.7 * turn.cos() + flyaway) + clump * Vec3::new(1.0, 0.3, 1.0));
-        direction = (direction + Vec3::new(0.0, -0.22, 0.0) + 0.02 * Vec3::new(noise(p * 30.0, 8), 0.0, noise(p * 30.0, 9))).normalize();
+        points.push(
+            p + across * (swing * turn.sin() + flyaway)
+                + out * (swing * 0.7 * turn.cos() + flyaway)
+                + clump * Vec3::new(1.0, 0.3, 1.0),
+        );
+        direction = (direction
+            + Vec3::new(0.0, -0.22, 0.0)
+            + 0.02 * Vec3::new(noise(p * 30.0, 8), 0.0, noise(p * 30.0, 9)))
+        .normalize();
         p += direction * step;
         // Lies on the ball, its layers above each other; below it, hangs as from its rim.
         let clear = RADIUS + lift * (s * 6.0).min(1.0);
@@ -104,13 +117,16 @@ fn strand(style: Style, i: u32, n: Vec3) -> Vec<Vec3> {
     points
 }
 
-/// The ball, and a cylinder of neck under it.
+/// The ball, a little narrower than the scalp that hair grows from.
 pub fn ball() -> Mesh {
     let (rows, columns) = (48, 96);
     let mut mesh = Mesh::default();
     for j in 0..=rows {
         for i in 0..=columns {
-            let (a, b) = (j as f32 / rows as f32 * std::f32::consts::PI, i as f32 / columns as f32 * std::f32::consts::TAU);
+            let (a, b) = (
+                j as f32 / rows as f32 * std::f32::consts::PI,
+                i as f32 / columns as f32 * std::f32::consts::TAU,
+            );
             let n = Vec3::new(a.sin() * b.sin(), a.cos(), a.sin() * b.cos());
             mesh.positions.push(n * RADIUS * Vec3::new(0.93, 1.0, 0.98));
             mesh.normals.push(n);
@@ -127,12 +143,24 @@ pub fn ball() -> Mesh {
 
 /// The groom as a draw call.
 pub fn hair<'a>(groom: &'a Groom, look: &'a HairLook) -> HairDraw<'a> {
-    HairDraw { points: &groom.points, offsets: &groom.offsets, radii: &groom.radii, colors: &groom.colors, look, width_scale: 1.0 }
+    HairDraw {
+        points: &groom.points,
+        offsets: &groom.offsets,
+        radii: &groom.radii,
+        colors: &groom.colors,
+        look,
+        width_scale: 1.0,
+    }
 }
 
 /// The mesh as a draw call.
 pub fn body(mesh: &Mesh) -> MeshDraw<'_> {
-    MeshDraw { positions: &mesh.positions, normals: &mesh.normals, triangles: &mesh.triangles, parts: &mesh.parts }
+    MeshDraw {
+        positions: &mesh.positions,
+        normals: &mesh.normals,
+        triangles: &mesh.triangles,
+        parts: &mesh.parts,
+    }
 }
 
 /// A portrait of the ball.
