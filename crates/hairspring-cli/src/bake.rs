@@ -7,7 +7,7 @@ use crate::{
     input::Input,
     interrupt, output,
     play::{Ending, play},
-    totals::Totals,
+    totals::{self, Totals},
 };
 use clap::Parser;
 use glam::{Vec2, Vec3};
@@ -119,7 +119,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         say(totals.json(&stage, summary));
     } else {
         let skipped = if skipped > 0 { format!(", {skipped} were there already") } else { String::new() };
-        say(format_args!("wrote    {} ({} frames{skipped})", pattern.display(), wanted.len()));
+        say(format_args!("wrote    {} ({}{skipped})", pattern.display(), totals::frames(wanted.len())));
         totals.tell(&stage);
     }
     Ok(())

@@ -69,8 +69,8 @@ pub struct Options {
     json: bool,
 }
 
-/// Time of the still [s]: the head sweeps from one side to the other, hair flying after it.
-const STILL: f64 = 2.5;
+/// Time of the still [s]: the head sweeps to one side, its hair flying after it, the face still seen.
+const STILL: f64 = 2.67;
 
 /// Runs the command.
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {

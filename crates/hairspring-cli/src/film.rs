@@ -12,7 +12,7 @@ use std::{
 /// Where drawn frames go.
 pub enum Sink {
     /// All frames in one clip.
-    Clip(ClipWriter),
+    Clip(Box<ClipWriter>),
     /// Each frame in a picture of its own, `#` in the name standing for its number.
     Pictures(PathBuf),
     /// One frame as a picture.

@@ -9,7 +9,7 @@ use crate::{
     interrupt, output,
     picture::{Studio, View},
     play::{Ending, play},
-    totals::Totals,
+    totals::{self, Totals},
 };
 use clap::Parser;
 use hairspring::{scene::Scene, stage::Stage};
@@ -110,7 +110,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             0 => String::new(),
             n => format!(", {n} were there already"),
         };
-        say(format_args!("wrote    {} ({} frames{skipped})", options.output.display(), wanted.len()));
+        say(format_args!(
+            "wrote    {} ({}{skipped})",
+            options.output.display(),
+            totals::frames(wanted.len())
+        ));
         totals.tell(&stage);
     }
     Ok(())
@@ -167,8 +171,8 @@ pub fn shoot(
 }
 
 /// Starts a clip; a size or rate that clips cannot have is an error of the command line.
-pub fn clip(path: &Path, (width, height): (u32, u32), fps: f64) -> Result<ClipWriter, Fault> {
-    ClipWriter::create(path, width, height, fps).map_err(|e| match e {
+pub fn clip(path: &Path, (width, height): (u32, u32), fps: f64) -> Result<Box<ClipWriter>, Fault> {
+    ClipWriter::create(path, width, height, fps).map(Box::new).map_err(|e| match e {
         OutputError::Clip { .. } => Fault::Usage(e.to_string()),
         other => other.into(),
     })

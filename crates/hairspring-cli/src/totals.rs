@@ -145,6 +145,11 @@ impl Totals {
     }
 }
 
+/// `1 frame`, `2 frames`.
+pub fn frames(n: usize) -> String {
+    format!("{} frame{}", grouped(n), if n == 1 { "" } else { "s" })
+}
+
 /// A number with commas between thousands.
 pub fn grouped(n: usize) -> String {
     let digits = n.to_string();
@@ -159,13 +164,14 @@ pub fn grouped(n: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::grouped;
+    use super::{frames, grouped};
 
     #[test]
-    fn thousands_are_parted() {
+    fn numbers_are_written_as_people_do() {
         let cases = [(0, "0"), (999, "999"), (1000, "1,000"), (123_456, "123,456"), (3_200_000, "3,200,000")];
         for (n, text) in cases {
             assert_eq!(grouped(n), text);
         }
+        assert_eq!((frames(1), frames(1500)), ("1 frame".into(), "1,500 frames".into()));
     }
 }
