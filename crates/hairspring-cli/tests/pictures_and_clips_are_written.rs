@@ -17,7 +17,7 @@ const SIZE: [&str; 2] = ["--size", "160x96"];
 fn drawn_pixels(image: &Image) -> usize {
     let rows = image.rgb.chunks(3 * image.width as usize);
     rows.map(|row| {
-        row.chunks(3).filter(|p| p.iter().zip(&row[..3]).any(|(a, b)| a.abs_diff(*b) > 60)).count()
+        row.chunks(3).filter(|p| p.iter().zip(&row[..3]).any(|(a, b)| a.abs_diff(*b) > 24)).count()
     })
     .sum()
 }
