@@ -15,11 +15,7 @@ pub struct Trs {
 
 impl Default for Trs {
     fn default() -> Self {
-        Self {
-            translation: Vec3::ZERO,
-            rotation: Quat::IDENTITY,
-            scale: Vec3::ONE,
-        }
+        Self { translation: Vec3::ZERO, rotation: Quat::IDENTITY, scale: Vec3::ONE }
     }
 }
 
@@ -55,10 +51,7 @@ pub struct Clip {
 impl Clip {
     /// Number of frames.
     pub fn frame_count(&self) -> usize {
-        self.samples
-            .len()
-            .checked_div(self.joint_count)
-            .unwrap_or(0)
+        self.samples.len().checked_div(self.joint_count).unwrap_or(0)
     }
 
     /// From the first frame to the last [s].
@@ -79,10 +72,6 @@ impl Clip {
         let at = (time * self.rate).clamp(0.0, last as f32);
         let (i, t) = (at as usize, at.fract());
         let frame = |f: usize| &self.samples[f.min(last) * self.joint_count..][..self.joint_count];
-        frame(i)
-            .iter()
-            .zip(frame(i + 1))
-            .map(|(a, b)| a.lerp(b, t))
-            .collect()
+        frame(i).iter().zip(frame(i + 1)).map(|(a, b)| a.lerp(b, t)).collect()
     }
 }

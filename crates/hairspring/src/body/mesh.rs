@@ -44,11 +44,7 @@ impl Mesh {
     /// Smallest box around all vertices, `(min, max)` [m]; `None` without vertices.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let first = *self.positions.first()?;
-        Some(
-            self.positions
-                .iter()
-                .fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p))),
-        )
+        Some(self.positions.iter().fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p))))
     }
 }
 
@@ -62,8 +58,6 @@ pub(super) fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<
             normals[*i as usize] += n;
         }
     }
-    normals
-        .iter_mut()
-        .for_each(|n| *n = n.try_normalize().unwrap_or(Vec3::Y));
+    normals.iter_mut().for_each(|n| *n = n.try_normalize().unwrap_or(Vec3::Y));
     normals
 }

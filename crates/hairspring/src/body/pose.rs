@@ -39,23 +39,13 @@ pub struct Body {
 impl Body {
     /// A body that does not deform, with one joint at the origin to move it by.
     pub fn rigid(mesh: Mesh) -> Self {
-        let joints = vec![Joint {
-            name: "root".into(),
-            parent: None,
-            rest: Trs::default(),
-        }];
-        Self {
-            mesh,
-            joints,
-            skin: None,
-        }
+        let joints = vec![Joint { name: "root".into(), parent: None, rest: Trs::default() }];
+        Self { mesh, joints, skin: None }
     }
 
     /// Index of the joint of this name, upper and lower case alike.
     pub fn joint(&self, name: &str) -> Option<usize> {
-        self.joints
-            .iter()
-            .position(|j| j.name.eq_ignore_ascii_case(name))
+        self.joints.iter().position(|j| j.name.eq_ignore_ascii_case(name))
     }
 
     /// Keeps only the triangles of the parts that `keep` names true, and the vertices that they use.
@@ -112,26 +102,11 @@ impl Body {
         let Some(skin) = &self.skin else {
             let m = world.first().copied().unwrap_or(Affine3A::IDENTITY);
             positions.extend(self.mesh.positions.iter().map(|p| m.transform_point3(*p)));
-            normals.extend(
-                self.mesh
-                    .normals
-                    .iter()
-                    .map(|n| m.transform_vector3(*n).normalize_or(Vec3::Y)),
-            );
+            normals.extend(self.mesh.normals.iter().map(|n| m.transform_vector3(*n).normalize_or(Vec3::Y)));
             return;
         };
-        let matrices: Vec<Affine3A> = world
-            .iter()
-            .zip(&skin.inverse_bind)
-            .map(|(w, b)| *w * *b)
-            .collect();
-        for ((p, joints), weights) in self
-            .mesh
-            .positions
-            .iter()
-            .zip(&skin.joints)
-            .zip(&skin.weights)
-        {
+        let matrices: Vec<Affine3A> = world.iter().zip(&skin.inverse_bind).map(|(w, b)| *w * *b).collect();
+        for ((p, joints), weights) in self.mesh.positions.iter().zip(&skin.joints).zip(&skin.weights) {
             let mut at = Vec3A::ZERO;
             for (j, w) in joints.iter().zip(weights) {
                 if *w > 0.0 {

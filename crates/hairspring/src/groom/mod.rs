@@ -56,11 +56,7 @@ pub struct StrandScale {
 
 impl Default for StrandScale {
     fn default() -> Self {
-        Self {
-            bend: 1.0,
-            drag: 1.0,
-            damping: 1.0,
-        }
+        Self { bend: 1.0, drag: 1.0, damping: 1.0 }
     }
 }
 
@@ -77,14 +73,8 @@ pub struct GuideWeights {
 
 impl Groom {
     /// A groom of the given strands (each a root-to-tip list of points [m]), all of one radius [m].
-    pub fn from_strands<S: AsRef<[Vec3]>>(
-        strands: impl IntoIterator<Item = S>,
-        radius: f32,
-    ) -> Self {
-        let mut groom = Groom {
-            offsets: vec![0],
-            ..Groom::default()
-        };
+    pub fn from_strands<S: AsRef<[Vec3]>>(strands: impl IntoIterator<Item = S>, radius: f32) -> Self {
+        let mut groom = Groom { offsets: vec![0], ..Groom::default() };
         for strand in strands {
             groom.points.extend_from_slice(strand.as_ref());
             groom.offsets.push(groom.points.len() as u32);
@@ -131,10 +121,6 @@ impl Groom {
     /// Smallest box around all points, `(min, max)` [m]; `None` without points.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let first = *self.points.first()?;
-        Some(
-            self.points
-                .iter()
-                .fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p))),
-        )
+        Some(self.points.iter().fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p))))
     }
 }

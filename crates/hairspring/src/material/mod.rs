@@ -51,30 +51,10 @@ pub fn preset(name: &str) -> Option<Material> {
     let base = Material::default();
     Some(match name {
         "straight" => Material { bend: 2.0, ..base },
-        "wavy" => Material {
-            bend: 4.0,
-            damping: 0.006,
-            ..base
-        },
-        "curly" => Material {
-            bend: 8.0,
-            damping: 0.008,
-            drag: 0.2,
-            ..base
-        },
-        "coily" => Material {
-            bend: 16.0,
-            damping: 0.01,
-            drag: 0.3,
-            ..base
-        },
-        "short-fur" => Material {
-            radius: Some(25e-6),
-            bend: 1.0,
-            bend_tip: 0.5,
-            drag: 0.3,
-            ..base
-        },
+        "wavy" => Material { bend: 4.0, damping: 0.006, ..base },
+        "curly" => Material { bend: 8.0, damping: 0.008, drag: 0.2, ..base },
+        "coily" => Material { bend: 16.0, damping: 0.01, drag: 0.3, ..base },
+        "short-fur" => Material { radius: Some(25e-6), bend: 1.0, bend_tip: 0.5, drag: 0.3, ..base },
         _ => return None,
     })
 }

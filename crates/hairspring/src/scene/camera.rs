@@ -17,10 +17,6 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Self {
-        Self {
-            position: Vec3::new(0.35, 0.1, 1.1),
-            target: Vec3::ZERO,
-            fov: 30.0,
-        }
+        Self { position: Vec3::new(0.35, 0.1, 1.1), target: Vec3::ZERO, fov: 30.0 }
     }
 }

@@ -63,12 +63,7 @@ pub struct Solver {
 
 impl Default for Solver {
     fn default() -> Self {
-        Self {
-            substeps: 4,
-            sag_free: true,
-            collide_body: true,
-            projections: 3,
-        }
+        Self { substeps: 4, sag_free: true, collide_body: true, projections: 3 }
     }
 }
 

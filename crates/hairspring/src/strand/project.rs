@@ -4,7 +4,7 @@
 //! system for a strand; solved exactly by one sweep down and one up (Thomas). The root and the second point are driven.
 
 use super::{
-    lanes::{F, LANES, Row, V3, load, store},
+    lanes::{F, Row, V3, load, store},
     tile::{Tile, rest, rows, rows_mut, state},
 };
 use fearless_simd::prelude::*;
@@ -39,8 +39,7 @@ pub fn project<S: Simd>(
     let inv_h2 = 1.0 / (h * h);
     let mut here = V3::load(simd, &x[3..6]);
     let mut before = V3::zero(simd);
-    let (mut c_before, mut d_before) = (zero, zero);
-    let mut inv_before = zero;
+    let (mut d_before, mut inv_before) = (zero, zero);
     let mut worst = zero;
     let mut w0 = zero;
     for i in 1..points - 1 {
@@ -54,7 +53,7 @@ pub fn project<S: Simd>(
         let w1 = load(simd, &inverse_mass[i + 1]);
         // Row i: −w0 (û·û₋) λ₋ + (w0 + w1) λ − w1 (û·û₊) λ₊ = ℓ − L
         let coupling = w0 * before.dot(u);
-        c_before = coupling * inv_before;
+        let c_before = coupling * inv_before;
         if i > 1 {
             store(c_before, &mut work[(i - 1) * scratch::ROWS + scratch::C]);
         }
@@ -65,8 +64,9 @@ pub fn project<S: Simd>(
         store(d, &mut out[scratch::D]);
         (before, d_before, inv_before, w0, here) = (u, d, inv, w1, next);
     }
-    let _ = c_before;
-    if worst.simd_le(0.0).to_bitmask() == (1 << LANES) - 1 {
+    // Strands whose lengths are right keep their bits, whatever their neighbours in the tile do.
+    let active = worst.simd_gt(0.0);
+    if !active.any_true() {
         return false;
     }
     // Up: λ_i = d_i + c_i λ_{i+1};  Δx_{i+1} = −w (û_i λ_i − û_{i+1} λ_{i+1})
@@ -76,6 +76,7 @@ pub fn project<S: Simd>(
         let u = V3::load(simd, &at[scratch::U..]);
         let d = load(simd, &at[scratch::D]);
         lambda = if i + 2 < points { load(simd, &at[scratch::C]).mul_add(lambda, d) } else { d };
+        lambda = active.select(lambda, zero);
         let own = u * lambda;
         let w1 = load(simd, &inverse_mass[i + 1]);
         let p = V3::load(simd, &x[3 * (i + 1)..]);

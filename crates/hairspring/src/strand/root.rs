@@ -5,7 +5,7 @@ use super::{
     lanes::{F, Q4, Row, V3, load},
     tile::strand,
 };
-use fearless_simd::prelude::*;
+use fearless_simd::{mask32x8, prelude::*};
 use glam::{Mat3, Vec3};
 
 /// Root of eight strands at one time.
@@ -58,8 +58,10 @@ impl<S: Simd> Root<S> {
 pub struct RootTurn<S: Simd> {
     from: [V3<S>; 3],
     to: [V3<S>; 3],
-    /// False where no root of the tile turned: nothing to do.
-    turned: bool,
+    /// Roots that turned at all; the others' vectors keep their bits.
+    turned: mask32x8<S>,
+    /// Whether any did.
+    any: bool,
 }
 
 impl<S: Simd> RootTurn<S> {
@@ -67,19 +69,19 @@ impl<S: Simd> RootTurn<S> {
     pub fn between(from: &Root<S>, to: &Root<S>) -> Self {
         let change = (to.first - from.first).dot(to.first - from.first)
             + (to.normal - from.normal).dot(to.normal - from.normal);
-        let turned = change.simd_gt(0.0).any_true();
-        Self { from: from.axes(), to: to.axes(), turned }
+        let turned = change.simd_gt(0.0);
+        Self { from: from.axes(), to: to.axes(), turned, any: turned.any_true() }
     }
 
     /// `v` turned with the root.
     #[inline(always)]
     pub fn rotate(&self, v: V3<S>) -> V3<S> {
-        if !self.turned {
+        if !self.any {
             return v;
         }
         let [a, b, c] = self.from;
         let [p, q, r] = self.to;
-        p * v.dot(a) + q * v.dot(b) + r * v.dot(c)
+        V3::select(self.turned, p * v.dot(a) + q * v.dot(b) + r * v.dot(c), v)
     }
 }
 

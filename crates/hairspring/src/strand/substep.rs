@@ -22,6 +22,9 @@ use super::{
 };
 use fearless_simd::prelude::*;
 
+// The projection's rows lie over the factors, which are no longer needed then.
+const _: () = assert!(project::scratch::ROWS <= FACTOR_ROWS);
+
 /// Working memory of one thread, reused by every tile that it runs.
 #[derive(Default)]
 pub struct Scratch {
@@ -71,7 +74,6 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
         solve(simd, interval, substep, (&root, moved, &turn), tile, scratch);
         for _ in 0..interval.projections {
             let Scratch { factors, x, inverse_mass } = &mut *scratch;
-            debug_assert!(project::scratch::ROWS <= FACTOR_ROWS);
             if !project(simd, interval.h, tile, inverse_mass, x, factors) {
                 break;
             }

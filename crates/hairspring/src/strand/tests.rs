@@ -156,7 +156,7 @@ proptest! {
         for (i, s) in steps.iter().enumerate() {
             let e = (DVec3::new(0.3, -1.0, 0.2) + *s).normalize() * 0.008;
             // f32 rows hold the rest length: round alike.
-            let rest = (e.length() * if i == 0 { 1.0 } else { 1.0 + 0.004 * s.x }) as f32 as f64;
+            let rest = (e.length() * if i == 0 { 1.0 } else { 1.0 + 0.0005 * s.x }) as f32 as f64;
             length.push(rest);
             x.push(x[i] + e);
         }

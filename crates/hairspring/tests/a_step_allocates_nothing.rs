@@ -1,0 +1,45 @@
+//! Promise: no allocation in `step` after the first.
+//!
+//! A counting allocator around the system's; one thread, because a thread pool's own queues are not the simulation's.
+
+use hairspring::scene::{Solver, bench::Bench};
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+struct Counting;
+
+static COUNT: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call is passed on to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller's promises are the system allocator's.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(at, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn after_the_first_step_none_allocates() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let counted = pool.install(|| {
+        let mut bench = Bench::new(200, 16, Solver::default());
+        bench.step();
+        let before = COUNT.load(Ordering::Relaxed);
+        for _ in 0..20 {
+            bench.step();
+        }
+        COUNT.load(Ordering::Relaxed) - before
+    });
+    assert_eq!(counted, 0, "{counted} allocations in 20 steps");
+}
