@@ -27,6 +27,9 @@ Exit codes:
   70   an error of the program itself
   130  interrupted (Ctrl-C): the frame in hand was completed, nothing is half-written";
 
+/// Heading of the options that every command has.
+const EVERYWHERE: &str = "With every command";
+
 /// Real-time strand hair: simulate it, draw it, convert it, bake it, measure it.
 ///
 /// Without a command, simulates five seconds of a moving head with 100,000 hairs and writes a clip and a still.
@@ -34,15 +37,15 @@ Exit codes:
 #[command(name = "hairspring", version, after_help = AFTER_HELP, max_term_width = 110)]
 pub struct Cli {
     /// Threads to work on [default: one a processor]
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, global = true, help_heading = EVERYWHERE, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 
     /// Say nothing but results and errors
-    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    #[arg(short, long, global = true, help_heading = EVERYWHERE, conflicts_with = "verbose")]
     pub quiet: bool,
 
-    /// Say what each frame took
-    #[arg(short, long, global = true)]
+    /// Say what each frame of a long run took
+    #[arg(short, long, global = true, help_heading = EVERYWHERE)]
     pub verbose: bool,
 
     /// What to do.
@@ -50,20 +53,14 @@ pub struct Cli {
     pub command: Option<Command>,
 }
 
-/// The commands.
+/// The commands; what each is for stands with its options.
 #[derive(Subcommand)]
 pub enum Command {
-    /// Simulate and draw the built-in head: what runs without a command
     Demo(demo::Options),
-    /// Simulate a scene or a groom and draw it: a still, numbered pictures or a clip
     Render(render::Options),
-    /// Simulate a scene and write its hair, one groom file a frame
     Bake(bake::Options),
-    /// Convert a groom from one format to another
     Convert(convert::Options),
-    /// Say what a file holds
     Info(info::Options),
-    /// Measure the speed and the quality of the simulation on the standard scene
     Bench(bench::Options),
 }
 
