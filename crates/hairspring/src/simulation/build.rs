@@ -120,11 +120,14 @@ impl Simulation {
                         Some(r) => vec![r; groom.range(s).len()],
                         None => groom.radii[groom.range(s)].to_vec(),
                     };
+                    // GJ/EI of a round fibre: G πr⁴/2 over E πr⁴/4. The style's multiplier is over both.
+                    let twist_ratio = 2.0 * material.shear / material.young;
                     let fibre = Fibre {
                         radii: &radii,
                         density: material.density as f64,
                         young: (material.young * material.bend * scale.bend) as f64,
                         tip: material.bend_tip as f64,
+                        twist_ratio: twist_ratio as f64,
                     };
                     let points = groom.strand(s);
                     let shape = rest_shape(points, &fibre, gravity);
@@ -136,6 +139,7 @@ impl Simulation {
                         material.drag * scale.drag * drag_rate(radius, material.density);
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
                     rows[strand::FRICTION].0[lane] = material.friction;
+                    rows[strand::TWIST_RATIO].0[lane] = twist_ratio;
                 }
                 stiffened
             })
@@ -194,6 +198,7 @@ impl Lane<'_> {
             if i < last {
                 rows[rest::LENGTH].0[lane] = p.length as f32;
                 rows[rest::BEND].0[lane] = p.bend as f32;
+                rows[rest::TWIST].0[lane] = p.twist as f32;
                 Self::write_vector(&mut rows[rest::TURN..], lane, p.turn.as_vec3());
                 self.state[i][state::TENSION].0[lane] = p.tension as f32;
                 Self::write_vector(&mut self.state[i][state::NORMAL..], lane, p.normal.as_vec3());

@@ -1,6 +1,6 @@
 //! One tile through one exchange interval: every substep while its points are in the first-level caches.
 //!
-//! A substep is: root driven → implicit banded solve (backward Euler, linearised once; Baraff & Witkin 1998) → fast projection →
+//! A substep is: root driven → frames twisted into balance → implicit banded solve (backward Euler, linearised once; Baraff & Witkin 1998) → fast projection →
 //! strain limit and contact, root to tip → velocities. With positions relative to the root, δ their change, Δr the root's own:
 //!
 //! ```text
@@ -11,14 +11,15 @@
 
 use super::{
     band::{Band, FACTOR_ROWS, Factors, back_substitute},
-    bend::{bend, follow_twist, transport},
+    bend::bend,
     interval::{Interval, Substep},
     lanes::{F, Row, V3, load, store},
     limit::limit,
     project::{self, project},
-    root::{Root, RootTurn},
+    root::Root,
     stretch::{STRETCH, stretch},
     tile::{Tile, rest, state},
+    twist::{self, twist, twist_force},
 };
 use fearless_simd::prelude::*;
 
@@ -69,9 +70,9 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
     for substep in &interval.substeps {
         let next = Root::at(simd, tile.strand, substep);
         let moved = next.position - root.position;
-        let turn = RootTurn::between(&root, &next);
         root = next;
-        solve(simd, interval, substep, (&root, moved, &turn), tile, scratch);
+        twist(simd, &root, tile, &mut scratch.factors);
+        solve(simd, interval, substep, (&root, moved), tile, scratch);
         for _ in 0..interval.projections {
             let Scratch { factors, x, inverse_mass } = &mut *scratch;
             if !project(simd, interval.h, tile, inverse_mass, x, factors) {
@@ -88,7 +89,7 @@ fn solve<S: Simd>(
     simd: S,
     interval: &Interval,
     substep: &Substep,
-    (root, moved, turn): (&Root<S>, V3<S>, &RootTurn<S>),
+    (root, moved): (&Root<S>, V3<S>),
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) {
@@ -111,7 +112,6 @@ fn solve<S: Simd>(
     let mut e0 = x1 - x0;
     let mut u0 = e0.length_and_unit().1;
     let mut normal = root.normal;
-    let mut carried = root.normal;
     let length0 = load(simd, &tile.rest[0][rest::LENGTH]);
     let mut alpha = one / length0.max(1e-12);
 
@@ -155,6 +155,20 @@ fn solve<S: Simd>(
             band.rhs[1] += joint.force[1];
             band.rhs[2] += joint.force[2];
 
+            // Its twist.
+            let torque = load(simd, &scratch.factors[i + 1][twist::scratch::TORQUE]);
+            let stiffness = load(simd, &scratch.factors[i + 1][twist::scratch::K]) * implicit_scale;
+            let t = twist_force((u0, u1), (torque, stiffness), (alpha, beta));
+            band.diag[0] = band.diag[0] + t.block * (t.c[0] * t.c[0]);
+            band.diag[1] = band.diag[1] + t.block * (t.c[1] * t.c[1]);
+            band.diag[2] = band.diag[2] + t.block * (t.c[2] * t.c[2]);
+            band.upper[0] = band.upper[0] - t.block * -(t.c[0] * t.c[1]);
+            band.upper[1] = band.upper[1] - t.block * -(t.c[1] * t.c[2]);
+            band.far = band.far - t.block * -(t.c[0] * t.c[2]);
+            band.rhs[0] += t.force[0];
+            band.rhs[1] += t.force[1];
+            band.rhs[2] += t.force[2];
+
             // Segment i+1.
             let k = real.select(mass * (STRETCH * inv_h * inv_h), nought);
             let tension = load(simd, &tile.state[i + 1][state::TENSION]);
@@ -177,10 +191,7 @@ fn solve<S: Simd>(
             band.diag[1] = band.diag[1] + super::lanes::Sym3::outer(u1, across * -0.5);
             band.diag[1] = band.diag[1].add_identity(m_h * inv_h + across);
 
-            carried = V3::select(real, transport(carried, u0, u1), carried);
-            let own = &mut tile.state[i + 1][state::NORMAL..];
-            normal = follow_twist(turn.rotate(V3::load(simd, own)), u1, carried, h);
-            normal.store(own);
+            normal = V3::load(simd, &tile.state[i + 1][state::NORMAL..]);
             (x0, x1, e0, u0, alpha) = (x1, x2, e1, u1, beta);
         }
         if i >= 2 {

@@ -33,8 +33,10 @@ pub mod rest {
     pub const TURN: usize = 3;
     /// How deep this point may be inside a collider, 0 or less: the depth it was authored at [m].
     pub const CLEARANCE: usize = 6;
+    /// Rest twist of the joint at this point, from the segment before to the one after, as 2 tan(τ/2) [1].
+    pub const TWIST: usize = 7;
     /// Rows a point.
-    pub const ROWS: usize = 7;
+    pub const ROWS: usize = 8;
 }
 
 /// Rows of a whole strand.
@@ -57,8 +59,10 @@ pub mod strand {
     pub const DAMPING: usize = 21;
     /// Coulomb friction against the body.
     pub const FRICTION: usize = 22;
+    /// Twisting over bending stiffness, GJ/EI [1].
+    pub const TWIST_RATIO: usize = 23;
     /// Rows a strand.
-    pub const ROWS: usize = 23;
+    pub const ROWS: usize = 24;
 }
 
 /// What is known of eight whole strands.
