@@ -140,7 +140,8 @@ fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
         (body.color.is_none_or(color), "color", "three numbers from 0 to 1"),
         (body.roughness.is_none_or(|r| (0.0..=1.0).contains(&r)), "roughness", "0 to 1"),
     ];
-    first_failure(text, line_at(text, body.file.span().start), &checks)
+    first_failure(text, line_at(text, body.file.span().start), &checks)?;
+    body.more.iter().try_for_each(|file| body_ranges(text, file))
 }
 
 /// Checks a material whose table begins in line `from`.

@@ -68,8 +68,12 @@ pub(super) struct BodyFile {
     pub color: Option<Vec3>,
     /// 0 (glossy) to 1 (matt), of the whole surface. Default: the file's.
     pub roughness: Option<f32>,
-    /// `[collision]` only: the body's joint that carries a mesh without joints of its own. Default: the body's first.
+    /// `[collision]` and `more` only: the body's joint that carries a mesh without joints of its own. Default: the body's
+    /// first.
     pub joint: Option<String>,
+    /// Further files of the same body: eyes, clothes, hands. They move with it, by the joints of the same names or `joint`.
+    #[serde(default)]
+    pub more: Vec<BodyFile>,
 }
 
 /// `[clip]`.
