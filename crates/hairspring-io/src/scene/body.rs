@@ -15,7 +15,8 @@ impl Reader<'_> {
         let mut character = self.piece(named, what)?;
         for file in &named.more {
             let piece = self.body(file, what)?.body;
-            let carrier = file.joint.as_deref().map(|name| self.joint(&character.body, name, file)).transpose()?;
+            let carrier =
+                file.joint.as_deref().map(|name| self.joint(&character.body, name, file)).transpose()?;
             join(&mut character.body, piece, carrier);
         }
         Ok(character)
@@ -122,7 +123,9 @@ impl Reader<'_> {
 /// a skin, or with a named `carrier`, follows that joint as a whole.
 fn join(body: &mut Body, piece: Body, carrier: Option<u16>) {
     let vertices = piece.mesh.positions.len();
-    let follow = |joint: u16, vertices: usize| (vec![[joint, 0, 0, 0]; vertices], vec![[1.0, 0.0, 0.0, 0.0]; vertices]);
+    let follow = |joint: u16, vertices: usize| {
+        (vec![[joint, 0, 0, 0]; vertices], vec![[1.0, 0.0, 0.0, 0.0]; vertices])
+    };
     let skinned = piece.skin.filter(|_| carrier.is_none());
     if body.skin.is_none() && (skinned.is_some() || body.joints.len() > 1) {
         let (joints, weights) = follow(0, body.mesh.positions.len());

@@ -110,7 +110,11 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
                 (above_0(Some(growth.length)), "length", "above 0 [m]"),
                 ((0.0..=1.0).contains(&growth.spread), "spread", "0 to 1"),
                 ((0.0..=1.0).contains(&growth.fall), "fall", "0 to 1"),
-                (grow.get_ref().inside.as_ref().is_none_or(sound), "inside", "finite, with a radius above 0 [m]"),
+                (
+                    grow.get_ref().inside.as_ref().is_none_or(sound),
+                    "inside",
+                    "finite, with a radius above 0 [m]",
+                ),
             ];
             first_failure(text, line_at(text, grow.span().start), &grown)?;
         }

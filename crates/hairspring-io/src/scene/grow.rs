@@ -30,7 +30,8 @@ impl Reader<'_> {
         }
         if let Some(name) = &file.joint {
             let joint = body.joint(name).ok_or_else(|| {
-                let text = format!("the joint {}", unknown(name, body.joints.iter().map(|j| j.name.as_str())));
+                let text =
+                    format!("the joint {}", unknown(name, body.joints.iter().map(|j| j.name.as_str())));
                 self.wrong(near, "joint", text)
             })?;
             for (t, allowed) in allowed.iter_mut().enumerate() {
@@ -44,7 +45,11 @@ impl Reader<'_> {
         }
         let groom = grow(mesh, &file.growth(), |t| allowed[t]);
         if groom.strand_count() == 0 {
-            return Err(self.wrong(near, "grow", "no skin of the body is where `grow` says: widen it".into()));
+            return Err(self.wrong(
+                near,
+                "grow",
+                "no skin of the body is where `grow` says: widen it".into(),
+            ));
         }
         Ok(groom)
     }

@@ -53,10 +53,8 @@ impl Mesh {
         self.positions.extend(other.positions);
         self.normals.extend(other.normals);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + vertices as u32)));
-        let moved = |p: Part| Part {
-            triangles: p.triangles.start + triangles..p.triangles.end + triangles,
-            ..p
-        };
+        let moved =
+            |p: Part| Part { triangles: p.triangles.start + triangles..p.triangles.end + triangles, ..p };
         self.parts.extend(other.parts.into_iter().map(moved));
     }
 

@@ -340,10 +340,14 @@ mod tests {
         assert!(part.distances.len() * 3 < whole.distances.len());
         for i in 0..2000u32 {
             let hash = |k: u32| ((i * 4 + k).wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32;
-            let p = Vec3::new(-0.05, -0.02, -0.06) + Vec3::new(hash(0), hash(1), hash(2)) * Vec3::new(0.09, 0.13, 0.11);
+            let p = Vec3::new(-0.05, -0.02, -0.06)
+                + Vec3::new(hash(0), hash(1), hash(2)) * Vec3::new(0.09, 0.13, 0.11);
             let (a, b) = (whole.distance_and_normal(p).0, part.distance_and_normal(p).0);
             // Deep inside, the way out within the box may be longer.
-            assert!((a - b).abs() < 0.0015 || (a < -0.009 && b <= a + 0.0015 && b > -0.2), "at {p}: {a} and {b}");
+            assert!(
+                (a - b).abs() < 0.0015 || (a < -0.009 && b <= a + 0.0015 && b > -0.2),
+                "at {p}: {a} and {b}"
+            );
         }
         let away = Some((Vec3::splat(1.0), Vec3::splat(2.0)));
         Voxelizer::default().update(&mut part, &positions, None, &triangles, away, 0.005);

@@ -35,8 +35,11 @@ pub fn grow(mesh: &Mesh, growth: &Growth, allowed: impl Fn(usize) -> bool) -> Gr
         let [a, b, c] = mesh.corners(t);
         0.5 * (b - a).cross(c - a).length() as f64
     };
-    let skin: Vec<(usize, f64)> =
-        (0..mesh.triangles.len()).filter(|t| allowed(*t)).map(|t| (t, area(t))).filter(|t| t.1 > 0.0).collect();
+    let skin: Vec<(usize, f64)> = (0..mesh.triangles.len())
+        .filter(|t| allowed(*t))
+        .map(|t| (t, area(t)))
+        .filter(|t| t.1 > 0.0)
+        .collect();
     let total: f64 = skin.iter().map(|t| t.1).sum();
     let count = growth.strands as usize;
     let mut roots = Vec::with_capacity(count);
@@ -85,7 +88,10 @@ fn arc(root: Vec3, normal: Vec3, k: usize, growth: &Growth) -> Vec<Vec3> {
 /// Place `i` of a sequence that fills the unit square evenly, however many of it are taken (Roberts 2018, R2).
 pub(super) fn evenly(i: usize) -> Vec2 {
     let i = i as f64;
-    Vec2::new((0.5 + i * 0.754_877_666_246_692_7).fract() as f32, (0.5 + i * 0.569_840_290_998_053_2).fract() as f32)
+    Vec2::new(
+        (0.5 + i * 0.754_877_666_246_692_7).fract() as f32,
+        (0.5 + i * 0.569_840_290_998_053_2).fract() as f32,
+    )
 }
 
 #[cfg(test)]
@@ -112,7 +118,11 @@ mod tests {
             let length = groom.strand_length(s);
             assert!((0.149..=0.3001).contains(&length), "strand {s} is {length} m long");
             let root = groom.strand(s)[0];
-            assert!(root.y == 0.0 && groom.roots[s].position(mesh.corners(groom.roots[s].triangle as usize)).distance(root) < 1e-6);
+            assert!(
+                root.y == 0.0
+                    && groom.roots[s].position(mesh.corners(groom.roots[s].triangle as usize)).distance(root)
+                        < 1e-6
+            );
             assert!(groom.strand(s)[1].y > 0.0, "strand {s} leaves into the skin");
         }
         // As many in each of twelve equal fields, within sampling.

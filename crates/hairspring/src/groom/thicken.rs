@@ -94,7 +94,11 @@ mod tests {
         };
         mesh.compute_normals();
         // Lying flat: a disc across the strand would put half of the copies below the skin.
-        let strand = |x: f32| (0..4).map(move |i| Vec3::new(x, 0.01 * (i > 0) as u8 as f32, -0.1 * i as f32 - 0.3)).collect::<Vec<_>>();
+        let strand = |x: f32| {
+            (0..4)
+                .map(move |i| Vec3::new(x, 0.01 * (i > 0) as u8 as f32, -0.1 * i as f32 - 0.3))
+                .collect::<Vec<_>>()
+        };
         let mut groom = Groom::from_strands([strand(0.3), strand(0.7)], 4e-5);
         groom.groups = vec![0, 1];
         let settings = Thicken { copies: 50, radius: 0.02, tip: 3.0 };
