@@ -16,8 +16,8 @@ use fearless_simd::prelude::*;
 /// Largest relative change of a segment's length that leaves a substep [1].
 pub const LIMIT: f32 = 0.01;
 
-/// Times that a point in contact goes out of the collider and back to its segment's length: what is left is of this order in the
-/// segment's length over the collider's radius.
+/// Times that a point in contact swings out of the collider: what is left is of this order in the segment's length over the
+/// collider's radius.
 const CORRECTIONS: usize = 2;
 
 /// Applies strain limit and contact to the new positions `x` of shape `[points]`, and writes state.
@@ -59,12 +59,13 @@ pub fn limit<S: Simd>(
                 let tangent = slide - normal * normal.dot(slide);
                 let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
                 let held = pushed - tangent * hold.min(1.0);
-                // The limit again, then out and back: both hold where they can, and where a strand is caught (behind an
+                // The limit again, then out: both hold where they can, and where a strand is caught (behind an
                 // ear) its length goes before its depth, so that it slips free in time.
                 let mut q = clamp(held, before, length);
                 for _ in 0..CORRECTIONS {
                     let (distance, normal) = contact(simd, pose, q + root.position);
-                    q = clamp(q + normal * (clearance - distance).max(0.0), before, length);
+                    q = swing_out(q, before, normal, (clearance - distance).max(0.0));
+                    q = clamp(q, before, length);
                 }
                 p = V3::select(depth.simd_gt(0.0), q, p);
             }
@@ -74,6 +75,20 @@ pub fn limit<S: Simd>(
         p.store(&mut at[state::X..state::X + 3]);
         before = p;
     }
+}
+
+/// `p` swung about `before` until it is `depth` farther out along `normal`: for a flat surface both its length and the surface hold
+/// at once. (Out and back in turn hardly moves a tip that meets the surface head on.) Where `before` is deeper than the segment is
+/// long, it points straight out.
+#[inline(always)]
+fn swing_out<S: Simd>(p: V3<S>, before: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
+    let e = p - before;
+    let (l, _) = e.length_and_unit();
+    let along = e.dot(normal);
+    let (_, side) = (e - normal * along).length_and_unit();
+    let out = (along + depth).min(l);
+    let aside = (l * l - out * out).max(0.0).sqrt();
+    V3::select(depth.simd_gt(0.0), before + normal * out + side * aside, p)
 }
 
 /// `p` moved along the segment from `before` until its length is `length` ± [`LIMIT`].
