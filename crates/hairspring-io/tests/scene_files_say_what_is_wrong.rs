@@ -222,9 +222,15 @@ fn bodies_of_several_files_and_hair_grown_on_them() {
     assert!(groom.radii.iter().all(|r| *r == 25e-6), "hair is drawn as thick as its material says");
 
     let wrong = |grow: &str| message(&format!("[body]\nfile = \"head.obj\"\nscale = 1\n[[groom]]\n{grow}\n"));
-    assert!(wrong("grow = { parts = [\"sclap\"] }").contains("line 5: the part `sclap` is not known here; did you mean `scalp`?"));
+    assert!(
+        wrong("grow = { parts = [\"sclap\"] }")
+            .contains("line 5: the part `sclap` is not known here; did you mean `scalp`?")
+    );
     assert!(wrong("grow = { points = 2 }").contains("line 5: `points` must be 3 to 256"));
-    assert!(wrong("grow = { inside.sphere = { center = [9, 9, 9], radius = 0.1 } }").contains("no skin of the body"));
+    assert!(
+        wrong("grow = { inside.sphere = { center = [9, 9, 9], radius = 0.1 } }")
+            .contains("no skin of the body")
+    );
     assert!(wrong("file = \"hair.data\"\ngrow = {}").contains("needs `file` or `grow`, and not both"));
     assert!(wrong("guides = 3").contains("needs `file` or `grow`"));
     assert!(message("[[groom]]\ngrow = {}\n").contains("`grow` needs a [body]"));
