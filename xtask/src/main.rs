@@ -1,1 +1,47 @@
-fn main() {}
+//! Every developer command, the same ones that CI runs: `cargo xtask NAME`.
+
+mod fuzz;
+mod run;
+mod test;
+
+const HELP: &str = "cargo xtask NAME
+
+  test           all tests, in release; closes on one line with the sum
+  lint           formatting, clippy with warnings refused, the docs, and licences and advisories of all dependencies
+  fuzz [SECONDS] every fuzz target, so long each (default 60), two at a time
+  golden         writes the golden pictures anew (look at them before you commit)
+  ci             lint, fuzz, test: what CI runs";
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match words[..] {
+        ["test"] => test::all(),
+        ["lint"] => lint(),
+        ["fuzz"] => fuzz::all(60),
+        ["fuzz", seconds] => match seconds.parse() {
+            Ok(seconds) => fuzz::all(seconds),
+            Err(_) => Err(format!("'{seconds}' is not a number of seconds")),
+        },
+        ["golden"] => {
+            run::cargo(&["test", "--release", "-p", "hairspring-view"], &[("HAIRSPRING_GOLDEN", "write")])
+        }
+        ["ci"] => lint().and_then(|()| fuzz::all(60)).and_then(|()| test::all()),
+        ["help" | "--help" | "-h"] => {
+            println!("{HELP}");
+            Ok(())
+        }
+        _ => Err(format!("no such command\n\n{HELP}")),
+    };
+    if let Err(why) = done {
+        eprintln!("xtask: {why}");
+        std::process::exit(1);
+    }
+}
+
+fn lint() -> Result<(), String> {
+    run::cargo(&["fmt", "--all", "--check"], &[])?;
+    run::cargo(&["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"], &[])?;
+    run::cargo(&["doc", "--release", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")])?;
+    run::cargo(&["deny", "--workspace", "check"], &[])
+}

@@ -1,1 +1,58 @@
-fn main() {}
+//! The `hairspring` program.
+
+mod args;
+mod bake;
+mod bench;
+mod console;
+mod convert;
+mod demo;
+mod fault;
+mod film;
+mod frames;
+mod info;
+mod input;
+mod interrupt;
+mod output;
+mod picture;
+mod play;
+mod render;
+mod totals;
+
+use args::{Cli, Command};
+use clap::Parser;
+use console::Console;
+use fault::Fault;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    fault::report_panics();
+    let outcome = std::panic::catch_unwind(|| run(Cli::parse()));
+    match outcome {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(fault)) => {
+            console::complain(&fault);
+            ExitCode::from(fault.code())
+        }
+        // The hook has said it.
+        Err(_) => ExitCode::from(fault::PANICKED),
+    }
+}
+
+fn run(cli: Cli) -> Result<(), Fault> {
+    if let Some(threads) = cli.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads as usize)
+            .build_global()
+            .map_err(|e| Fault::Usage(format!("{threads} threads could not be started: {e}")))?;
+    }
+    let console = Console::new(cli.quiet, cli.verbose);
+    match cli.command {
+        None => demo::run(&demo::Options::parse_from(["demo"]), console),
+        Some(Command::Demo(options)) => demo::run(&options, console),
+        Some(Command::Render(options)) => render::run(&options, console),
+        Some(Command::Bake(options)) => bake::run(&options, console),
+        Some(Command::Convert(options)) => convert::run(&options, console),
+        Some(Command::Info(options)) => info::run(&options, console),
+        Some(Command::Bench(options)) => bench::run(&options, console),
+    }
+}

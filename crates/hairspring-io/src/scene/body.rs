@@ -7,11 +7,23 @@ use super::{
 };
 use crate::{Character, ReadOptions, Result, load, makehuman, obj, read_body, units};
 use glam::Affine3A;
-use hairspring::body::{Body, Skin};
+use hairspring::body::{Body, Joint, Part, Skin};
 
 impl Reader<'_> {
-    /// A `[body]` or `[collision]`, which `what` names.
+    /// A `[body]` or `[collision]`, which `what` names, with its further files.
     pub(super) fn body(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
+        let mut character = self.piece(named, what)?;
+        for file in &named.more {
+            let piece = self.body(file, what)?.body;
+            let carrier =
+                file.joint.as_deref().map(|name| self.joint(&character.body, name, file)).transpose()?;
+            join(&mut character.body, piece, carrier);
+        }
+        Ok(character)
+    }
+
+    /// One file of a body.
+    fn piece(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
         let path = self.resolve(&named.file);
         let options = ReadOptions { scale: named.scale, up: named.up };
         let mut character = match (&named.rig, &named.weights) {
@@ -35,8 +47,9 @@ impl Reader<'_> {
             }
             body.keep_parts(|name| parts.iter().any(|p| p == name));
         }
-        if body.mesh.parts.is_empty() && (named.color.is_some() || named.roughness.is_some()) {
-            body.mesh.parts.push(hairspring::body::Part {
+        // Every file of a body has a part at least, so that each keeps its own colour.
+        if body.mesh.parts.is_empty() {
+            body.mesh.parts.push(Part {
                 name: what.into(),
                 triangles: 0..body.mesh.triangles.len() as u32,
                 color: obj::DEFAULT_COLOR,
@@ -69,17 +82,19 @@ impl Reader<'_> {
         Ok(character)
     }
 
+    /// The joint of `body` that `named` names.
+    fn joint(&self, body: &Body, name: &str, named: &BodyFile) -> Result<u16> {
+        body.joint(name).map(|j| j as u16).ok_or_else(|| {
+            let text = format!("the joint {}", unknown(name, body.joints.iter().map(|j| j.name.as_str())));
+            self.wrong(named.file.span().start, "joint", text)
+        })
+    }
+
     /// The collision mesh with the body's joints, so that one pose moves both.
     pub(super) fn carried(&self, mut collision: Body, body: &Body, named: &BodyFile) -> Result<Body> {
         let rest: Vec<Affine3A> = body.world(&body.rest_pose());
         let inverse_bind: Vec<Affine3A> = rest.iter().map(|w| w.inverse()).collect();
-        let of = |name: &str| {
-            body.joint(name).map(|j| j as u16).ok_or_else(|| {
-                let text =
-                    format!("the joint {}", unknown(name, body.joints.iter().map(|j| j.name.as_str())));
-                self.wrong(named.file.span().start, "joint", text)
-            })
-        };
+        let of = |name: &str| self.joint(body, name, named);
         collision.skin = match (&collision.skin, &named.joint) {
             // Skinned over joints of its own: the body's of the same names.
             (Some(skin), None) => {
@@ -102,6 +117,42 @@ impl Reader<'_> {
         collision.joints = body.joints.clone();
         Ok(collision)
     }
+}
+
+/// Adds a piece to a body: its joints are the body's of the same names, and new ones where there is none; a piece without
+/// a skin, or with a named `carrier`, follows that joint as a whole.
+fn join(body: &mut Body, piece: Body, carrier: Option<u16>) {
+    let vertices = piece.mesh.positions.len();
+    let follow = |joint: u16, vertices: usize| {
+        (vec![[joint, 0, 0, 0]; vertices], vec![[1.0, 0.0, 0.0, 0.0]; vertices])
+    };
+    let skinned = piece.skin.filter(|_| carrier.is_none());
+    if body.skin.is_none() && (skinned.is_some() || body.joints.len() > 1) {
+        let (joints, weights) = follow(0, body.mesh.positions.len());
+        let inverse_bind = body.world(&body.rest_pose()).iter().map(|w| w.inverse()).collect();
+        body.skin = Some(Skin { joints, weights, inverse_bind });
+    }
+    if let Some(skin) = &mut body.skin {
+        let (joints, weights) = match skinned {
+            None => follow(carrier.unwrap_or(0), vertices),
+            Some(more) => {
+                let mut map: Vec<u16> = Vec::with_capacity(piece.joints.len());
+                for (joint, bind) in piece.joints.iter().zip(&more.inverse_bind) {
+                    let known = body.joints.iter().position(|j| j.name.eq_ignore_ascii_case(&joint.name));
+                    map.push(known.unwrap_or(body.joints.len()) as u16);
+                    if known.is_none() {
+                        let parent = joint.parent.map(|p| map[p as usize] as u32);
+                        body.joints.push(Joint { parent, ..joint.clone() });
+                        skin.inverse_bind.push(*bind);
+                    }
+                }
+                (more.joints.iter().map(|four| four.map(|j| map[j as usize])).collect(), more.weights)
+            }
+        };
+        skin.joints.extend::<Vec<_>>(joints);
+        skin.weights.extend(weights);
+    }
+    body.mesh.append(piece.mesh);
 }
 
 /// A body as one rigid piece that a clip of one joint moves.

@@ -94,17 +94,40 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             (above_0(Some(effects.curl_length)), "curl_length", "above 0 [m]"),
             (from_0(effects.noise), "noise", "0 or more [m]"),
         ];
-        first_failure(text, line_at(text, groom.file.span().start), &checks)?;
+        first_failure(text, line_at(text, groom.start()), &checks)?;
+        let thicken = &groom.thicken;
+        let thickened = [
+            (thicken.copies <= 1_000, "copies", "0 to 1000"),
+            (from_0(thicken.radius), "radius", "0 or more [m]"),
+            (from_0(thicken.tip), "tip", "0 or more"),
+        ];
+        first_failure(text, line_at(text, groom.start()), &thickened)?;
+        if let Some(grow) = &groom.grow {
+            let growth = grow.get_ref().growth();
+            let grown = [
+                ((1..=10_000_000).contains(&growth.strands), "strands", "1 to 10000000"),
+                ((3..=256).contains(&growth.points), "points", "3 to 256"),
+                (above_0(Some(growth.length)), "length", "above 0 [m]"),
+                ((0.0..=1.0).contains(&growth.spread), "spread", "0 to 1"),
+                ((0.0..=1.0).contains(&growth.fall), "fall", "0 to 1"),
+                (
+                    grow.get_ref().inside.as_ref().is_none_or(sound),
+                    "inside",
+                    "finite, with a radius above 0 [m]",
+                ),
+            ];
+            first_failure(text, line_at(text, grow.span().start), &grown)?;
+        }
+        if groom.file.is_some() == groom.grow.is_some() {
+            let line = text.find("[[groom]]").map_or(1, |at| line_at(text, at));
+            return Err(Problem::line(line, "a [[groom]] needs `file` or `grow`, and not both"));
+        }
     }
     for collider in &scene.collider {
-        let sound = match collider.shape {
-            Shape::Sphere { center, radius } => finite(center) && above_0(Some(radius)),
-            Shape::Capsule { a, b, radius } => finite(a) && finite(b) && above_0(Some(radius)),
-        };
         first_failure(
             text,
             section("[[collider]]"),
-            &[(sound, "shape", "finite, with a radius above 0 [m]")],
+            &[(sound(&collider.shape), "shape", "finite, with a radius above 0 [m]")],
         )?;
     }
     let (wind, solver) = (&scene.wind, &scene.solver);
@@ -134,13 +157,22 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     Ok(())
 }
 
+/// Whether a shape is finite and has an inside.
+fn sound(shape: &Shape) -> bool {
+    match *shape {
+        Shape::Sphere { center, radius } => finite(center) && above_0(Some(radius)),
+        Shape::Capsule { a, b, radius } => finite(a) && finite(b) && above_0(Some(radius)),
+    }
+}
+
 fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
     let checks = [
         (above_0(body.scale), "scale", "above 0 [m a unit]"),
         (body.color.is_none_or(color), "color", "three numbers from 0 to 1"),
         (body.roughness.is_none_or(|r| (0.0..=1.0).contains(&r)), "roughness", "0 to 1"),
     ];
-    first_failure(text, line_at(text, body.file.span().start), &checks)
+    first_failure(text, line_at(text, body.file.span().start), &checks)?;
+    body.more.iter().try_for_each(|file| body_ranges(text, file))
 }
 
 /// Checks a material whose table begins in line `from`.

@@ -3,7 +3,8 @@
 use glam::Vec3;
 use hairspring::{
     body::Travel,
-    scene::{Camera, Collider, Effects, Guides, HairLook, Solver, Wind},
+    groom::{Growth, Thicken},
+    scene::{Camera, Collider, Effects, Guides, HairLook, Shape, Solver, Wind},
 };
 use serde::{Deserialize, Deserializer, de};
 use std::{collections::BTreeMap, path::PathBuf};
@@ -68,8 +69,12 @@ pub(super) struct BodyFile {
     pub color: Option<Vec3>,
     /// 0 (glossy) to 1 (matt), of the whole surface. Default: the file's.
     pub roughness: Option<f32>,
-    /// `[collision]` only: the body's joint that carries a mesh without joints of its own. Default: the body's first.
+    /// `[collision]` and `more` only: the body's joint that carries a mesh without joints of its own. Default: the body's
+    /// first.
     pub joint: Option<String>,
+    /// Further files of the same body: eyes, clothes, hands. They move with it, by the joints of the same names or `joint`.
+    #[serde(default)]
+    pub more: Vec<BodyFile>,
 }
 
 /// `[clip]`.
@@ -124,8 +129,13 @@ impl From<TravelName> for Travel {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GroomFile {
-    /// `.hair`, `.tfx` or `.data`; needed.
-    pub file: FileName,
+    /// `.hair`, `.tfx` or `.data`; needed, or `grow`.
+    pub file: Option<FileName>,
+    /// Hair grown from the body, in place of a file.
+    pub grow: Option<Spanned<GrowFile>>,
+    /// Follow hairs added around each strand.
+    #[serde(default)]
+    pub thicken: Thicken,
     /// Metres in one unit of the file [m]. Default: by the format, or guessed and said.
     pub scale: Option<f32>,
     /// The axis that points up, "y" or "z". Default: z for `.hair`, y otherwise.
@@ -146,6 +156,50 @@ pub(super) struct GroomFile {
     pub effects: Effects,
     /// `.tfxbone`: each root binds to skin that follows one of its bones; needs a skinned body.
     pub bones: Option<FileName>,
+}
+
+impl GroomFile {
+    /// The byte where the groom says what it is, for messages.
+    pub(super) fn start(&self) -> usize {
+        let grow = self.grow.as_ref().map(|g| g.span().start);
+        self.file.as_ref().map(|f| f.span().start).or(grow).unwrap_or(0)
+    }
+}
+
+/// `grow` of a groom: where hair grows, and how.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GrowFile {
+    /// Names of the parts of the body that it grows on. Default: all.
+    pub parts: Option<Vec<String>>,
+    /// The joint that the skin must follow more than any other. Default: any.
+    pub joint: Option<String>,
+    /// A shape in the space of the body's rest pose: hair grows on skin inside it. Default: everywhere.
+    pub inside: Option<Shape>,
+    /// Strands. Default 1,000.
+    pub strands: Option<u32>,
+    /// Points of a strand. Default 16.
+    pub points: Option<u32>,
+    /// Longest strand [m]. Default 0.1.
+    pub length: Option<f32>,
+    /// How much shorter the shortest strand is, 0 to 1. Default 0.2.
+    pub spread: Option<f32>,
+    /// How far strands bend over, 0 (not) to 1 (tips point down). Default 0.5.
+    pub fall: Option<f32>,
+}
+
+impl GrowFile {
+    /// Its settings with the defaults for what is left out.
+    pub(super) fn growth(&self) -> Growth {
+        let base = Growth::default();
+        Growth {
+            strands: self.strands.unwrap_or(base.strands),
+            points: self.points.unwrap_or(base.points),
+            length: self.length.unwrap_or(base.length),
+            spread: self.spread.unwrap_or(base.spread),
+            fall: self.fall.unwrap_or(base.fall),
+        }
+    }
 }
 
 /// `transform` of a groom: scaled, then turned about X, Y and Z in this order, then moved.

@@ -3,6 +3,7 @@
 mod body;
 mod check;
 mod file;
+mod grow;
 mod motion;
 mod sentence;
 
@@ -14,7 +15,7 @@ use file::{FileName, GroomFile, OneOrMore, SceneFile};
 use glam::{Affine3A, EulerRot, Quat};
 use hairspring::{
     body::Body,
-    groom::{Groom, Repairs, bind_roots_where},
+    groom::{Groom, Repairs, bind_roots_where, thicken},
     material::{self, Material},
     scene::{Scene, SceneGroom},
 };
@@ -72,7 +73,7 @@ fn materials(
             (Some(table), _) => overlaid(text, table),
             (None, Some(preset)) => Ok(preset),
             (None, None) => {
-                let line = line_of_key(text, line_at(text, groom.file.span().start), "material").unwrap_or(1);
+                let line = line_of_key(text, line_at(text, groom.start()), "material").unwrap_or(1);
                 Err(Problem::line(line, format!("the material {}", unknown(name, known()))))
             }
         })
@@ -174,16 +175,12 @@ impl Reader<'_> {
         materials: Vec<Material>,
         body: Option<&Body>,
     ) -> Result<SceneGroom> {
-        let path = self.resolve(&named.file);
-        let options = ReadOptions { scale: named.scale, up: named.up };
-        let loaded = self.named(read_groom(&path, &options), &named.file, "groom")?;
-        self.note(&path, loaded.notes);
-        let r = loaded.repairs;
-        self.repairs.non_finite_points += r.non_finite_points;
-        self.repairs.zero_segments += r.zero_segments;
-        self.repairs.short_strands += r.short_strands;
-        self.repairs.bad_radii += r.bad_radii;
-        let mut groom = loaded.value;
+        let mut groom = match (&named.file, &named.grow) {
+            (Some(file), _) => self.read_strands(named, file)?,
+            (None, Some(grow)) => self.grown(grow, body)?,
+            // Refused when the text was checked.
+            (None, None) => Groom::default(),
+        };
         let t = named.transform;
         let [x, y, z] = t.rotation.to_array().map(f32::to_radians);
         let place = Affine3A::from_scale_rotation_translation(
@@ -194,9 +191,16 @@ impl Reader<'_> {
         if place != Affine3A::IDENTITY {
             groom.points.iter_mut().for_each(|p| *p = place.transform_point3(*p));
         }
+        if !groom.roots.is_empty() && place != Affine3A::IDENTITY {
+            groom.roots.clear();
+        }
+        if named.thicken.copies > 0 {
+            groom.roots.clear();
+            thicken(&mut groom, &named.thicken, body.map(|b| &b.mesh));
+        }
         if let Some(bones) = &named.bones {
             let read = self.named(read_bones(&self.resolve(bones)), bones, "bone file")?;
-            self.bind_by_bones(&mut groom, &read, body)
+            self.bind_by_bones(&mut groom, &read, body, named.thicken.copies)
                 .map_err(|text| self.wrong(bones.span().start, "bones", text))?;
         }
         Ok(SceneGroom {
@@ -208,24 +212,41 @@ impl Reader<'_> {
         })
     }
 
-    /// Binds each root to skin that follows one of its bones.
+    /// The strands of a groom's file.
+    fn read_strands(&mut self, named: &GroomFile, file: &FileName) -> Result<Groom> {
+        let path = self.resolve(file);
+        let options = ReadOptions { scale: named.scale, up: named.up };
+        let loaded = self.named(read_groom(&path, &options), file, "groom")?;
+        self.note(&path, loaded.notes);
+        let r = loaded.repairs;
+        self.repairs.non_finite_points += r.non_finite_points;
+        self.repairs.zero_segments += r.zero_segments;
+        self.repairs.short_strands += r.short_strands;
+        self.repairs.bad_radii += r.bad_radii;
+        Ok(loaded.value)
+    }
+
+    /// Binds each root to skin that follows one of its bones. Copies of strands have the bones of the strand that they follow.
     fn bind_by_bones(
         &self,
         groom: &mut Groom,
         bones: &RootBones,
         body: Option<&Body>,
+        copies: u32,
     ) -> std::result::Result<(), String> {
         let Some((body, skin)) = body.and_then(|b| b.skin.as_ref().map(|s| (b, s))) else {
             return Err("bones of roots need a [body] that is skinned".into());
         };
-        if bones.bones.len() != groom.strand_count() {
-            let (n, strands) = (bones.bones.len(), groom.strand_count());
+        let copies = 1 + copies as usize;
+        if bones.bones.len() * copies != groom.strand_count() {
+            let (n, strands) = (bones.bones.len(), groom.strand_count() / copies);
             return Err(format!(
                 "the file holds the bones of {n} roots, but the groom has {strands} strands"
             ));
         }
         let joint: Vec<Option<u16>> = bones.names.iter().map(|n| body.joint(n).map(|j| j as u16)).collect();
         let of_root = |s: usize| {
+            let s = s % bones.bones.len();
             let pairs = bones.bones[s].iter().zip(bones.weights[s]);
             pairs.filter(|(_, w)| *w > 0.0).filter_map(|(b, _)| joint[*b as usize])
         };

@@ -41,6 +41,23 @@ impl Mesh {
         self.normals = vertex_normals(&self.positions, &self.triangles);
     }
 
+    /// Adds the vertices, triangles and parts of `other` after its own. A mesh without parts among ones with parts is drawn as
+    /// triangles of no part; missing texture coordinates are 0 where the other mesh has some.
+    pub fn append(&mut self, other: Mesh) {
+        let (vertices, triangles) = (self.positions.len(), self.triangles.len() as u32);
+        if !(self.uvs.is_empty() && other.uvs.is_empty()) {
+            self.uvs.resize(vertices, Vec2::ZERO);
+            self.uvs.extend(other.uvs);
+            self.uvs.resize(vertices + other.positions.len(), Vec2::ZERO);
+        }
+        self.positions.extend(other.positions);
+        self.normals.extend(other.normals);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + vertices as u32)));
+        let moved =
+            |p: Part| Part { triangles: p.triangles.start + triangles..p.triangles.end + triangles, ..p };
+        self.parts.extend(other.parts.into_iter().map(moved));
+    }
+
     /// Smallest box around all vertices, `(min, max)` [m]; `None` without vertices.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let first = *self.positions.first()?;

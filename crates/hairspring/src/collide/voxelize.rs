@@ -18,7 +18,7 @@ const MAX_NODES: f32 = 4.0 * 1024.0 * 1024.0;
 /// Builds the field of a closed mesh with cells of about `cell` [m].
 pub fn voxelize(positions: &[Vec3], triangles: &[[u32; 3]], cell: f32) -> Grid {
     let mut grid = Grid::default();
-    Voxelizer::default().update(&mut grid, positions, None, triangles, cell);
+    Voxelizer::default().update(&mut grid, positions, None, triangles, None, cell);
     grid
 }
 
@@ -35,19 +35,22 @@ impl Voxelizer {
     /// Makes `grid` the field of the mesh. `before`, where given, holds the vertices one interval ago in the same
     /// space: the grid then also carries how far the surface moved.
     ///
-    /// The grid covers the mesh with a margin of the band, in cells of `cell` [m] or larger where that would be
-    /// too many. A mesh without triangles gives a field that is far from everything.
+    /// The grid covers the mesh with a margin of the band, but no more than the box `within` (min, max) [m] where that is
+    /// given, in cells of `cell` [m] or larger where that would be too many. A mesh without triangles gives a field that
+    /// is far from everything.
     pub fn update(
         &mut self,
         grid: &mut Grid,
         positions: &[Vec3],
         before: Option<&[Vec3]>,
         triangles: &[[u32; 3]],
+        within: Option<(Vec3, Vec3)>,
         cell: f32,
     ) {
         let used = || triangles.iter().flatten().map(|i| positions[*i as usize]).filter(|p| p.is_finite());
         let lo = used().fold(Vec3::splat(f32::MAX), Vec3::min);
         let hi = used().fold(Vec3::splat(f32::MIN), Vec3::max);
+        let (lo, hi) = within.map_or((lo, hi), |(a, b)| (lo.max(a), hi.min(b)));
         let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (Vec3::ZERO, Vec3::ZERO) };
         let mut cell = cell.max(1e-6);
         loop {
@@ -81,8 +84,10 @@ impl Voxelizer {
                 continue;
             }
             let z0 = (c[0].z.min(c[1].z).min(c[2].z) - BAND).max(0.0) as usize;
-            let z1 = (c[0].z.max(c[1].z).max(c[2].z) + BAND).max(0.0) as usize;
-            self.layers[z0..=z1.min(nz - 1)].iter_mut().for_each(|l| l.push(t));
+            let z1 = c[0].z.max(c[1].z).max(c[2].z) + BAND;
+            if z1 >= 0.0 && z0 < nz {
+                self.layers[z0..=(z1 as usize).min(nz - 1)].iter_mut().for_each(|l| l.push(t));
+            }
         }
 
         // Distances and crossings, a layer at a time.
@@ -163,8 +168,13 @@ fn sweep_inside(grid: &mut Grid) {
     let (sy, sz) = (nx, nx * ny);
     let mut update = |i: usize| {
         let d = &grid.distances;
-        // The nearer of both neighbours on each axis, as positive depths.
-        let mut a = [(i - 1, i + 1), (i - sy, i + sy), (i - sz, i + sz)].map(|(p, n)| -d[p].max(d[n]));
+        // The nearer of both neighbours on each axis, as positive depths; a grid that cuts through the mesh has inside
+        // nodes on its border, which have one.
+        let axis = |at: usize, n: usize, stride: usize| {
+            let before = if at > 0 { d[i - stride] } else { far };
+            before.max(if at + 1 < n { d[i + stride] } else { far })
+        };
+        let mut a = [axis(i % nx, nx, 1), axis(i / nx % ny, ny, sy), axis(i / sz, nz, sz)].map(|d| -d);
         a.sort_by(f32::total_cmp);
         let h = grid.cell;
         let mut u = a[0] + h;
@@ -180,14 +190,8 @@ fn sweep_inside(grid: &mut Grid) {
             grid.distances[i] = -u;
         }
     };
-    // Inside nodes never touch the border: the margin lies outside the mesh.
-    let border = |i: usize| {
-        let (x, y, z) = (i % nx, i / nx % ny, i / sz);
-        x == 0 || y == 0 || z == 0 || x + 1 == nx || y + 1 == ny || z + 1 == nz
-    };
-    let order: Vec<usize> = inside.into_iter().filter(|i| !border(*i)).collect();
-    order.iter().for_each(|i| update(*i));
-    order.iter().rev().for_each(|i| update(*i));
+    inside.iter().for_each(|i| update(*i));
+    inside.iter().rev().for_each(|i| update(*i));
 }
 
 /// Adds the oriented crossings of one triangle with the lines y = const of layer `z`.
@@ -323,6 +327,31 @@ mod tests {
         let grid = voxelize(&positions, &triangles, 0.005);
         assert!(grid.distance_and_normal(Vec3::new(0.05, 0.0, 0.0)).0 < 0.0);
         assert!(grid.distance_and_normal(Vec3::new(0.05, 0.12, 0.0)).0 > 0.0);
+    }
+
+    #[test]
+    fn a_box_that_cuts_through_a_ball_has_the_same_distances_within() {
+        let (positions, triangles) = ball(Vec3::ZERO, 0.1, 4);
+        let whole = voxelize(&positions, &triangles, 0.005);
+        // Cut on every side: no surface left or right of the box tells where the inside begins.
+        let within = (Vec3::new(-0.05, -0.02, -0.06), Vec3::new(0.04, 0.3, 0.05));
+        let mut part = Grid::default();
+        Voxelizer::default().update(&mut part, &positions, None, &triangles, Some(within), 0.005);
+        assert!(part.distances.len() * 3 < whole.distances.len());
+        for i in 0..2000u32 {
+            let hash = |k: u32| ((i * 4 + k).wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32;
+            let p = Vec3::new(-0.05, -0.02, -0.06)
+                + Vec3::new(hash(0), hash(1), hash(2)) * Vec3::new(0.09, 0.13, 0.11);
+            let (a, b) = (whole.distance_and_normal(p).0, part.distance_and_normal(p).0);
+            // Deep inside, the way out within the box may be longer.
+            assert!(
+                (a - b).abs() < 0.0015 || (a < -0.009 && b <= a + 0.0015 && b > -0.2),
+                "at {p}: {a} and {b}"
+            );
+        }
+        let away = Some((Vec3::splat(1.0), Vec3::splat(2.0)));
+        Voxelizer::default().update(&mut part, &positions, None, &triangles, away, 0.005);
+        assert!(part.distance_and_normal(Vec3::splat(1.5)).0 > 0.0);
     }
 
     #[test]

@@ -34,8 +34,8 @@ fn displace(effects: &Effects, strand: u32, points: &mut [Vec3]) {
     let mut normal = tangent.any_orthonormal_vector();
     let mut arc = 0.0;
     let mut before = points[0];
-    for i in 1..points.len() {
-        let here = points[i];
+    for (i, p) in points.iter_mut().enumerate().skip(1) {
+        let here = *p;
         let step = here - before;
         arc += step.length();
         let t = step.normalize_or(tangent);
@@ -48,7 +48,7 @@ fn displace(effects: &Effects, strand: u32, points: &mut [Vec3]) {
         let wave = |a: f32, b: f32| 0.7 * (a + s * 4.0).sin() + 0.3 * (b + s * 11.0).sin();
         let noise = (normal * wave(wander[0], wander[1]) + side * wave(wander[2], wander[3]))
             * (effects.noise * s * s);
-        points[i] = here + curl + noise;
+        *p = here + curl + noise;
         (before, tangent) = (here, t);
     }
 }

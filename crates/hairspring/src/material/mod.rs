@@ -14,7 +14,10 @@ pub struct Material {
     pub density: f32,
     /// Young's modulus along the fibre [Pa]. Default 3.9e9.
     pub young: f32,
-    /// Multiplier over the bending stiffness EI, 0 or more. Default 1: a single hair. A styled head is held
+    /// Shear modulus of the fibre [Pa], above 0. Default 0.89e9: hair is anisotropic, so that it is set by itself and not from
+    /// Young's modulus; GJ/EI is then 0.46.
+    pub shear: f32,
+    /// Multiplier over the bending and twisting stiffness EI and GJ, 0 or more. Default 1: a single hair. A styled head is held
     /// by wax and neighbours, so presets use more.
     pub bend: f32,
     /// Bending stiffness at the tip as a fraction of that at the root, 0 to 1 or more. Default 1.
@@ -34,6 +37,7 @@ impl Default for Material {
             radius: None,
             density: 1310.0,
             young: 3.9e9,
+            shear: 0.89e9,
             bend: 1.0,
             bend_tip: 1.0,
             damping: 0.004,

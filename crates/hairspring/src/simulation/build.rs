@@ -10,7 +10,7 @@ use crate::{
         interval::Interval,
         lanes::{LANES, Row},
         rest_shape::{Fibre, RestShape, rest_shape},
-        tile::{rest, state, strand},
+        tile::{RestRows, StateRows, StrandRows, rest, state, strand},
     },
 };
 use fearless_simd::Level;
@@ -69,9 +69,9 @@ impl Simulation {
             .collect();
 
         let mut simulation = Simulation {
-            strand: vec![Row::default(); tiles.len() * strand::ROWS],
-            rest: vec![Row::default(); first as usize * rest::ROWS],
-            state: vec![Row::default(); first as usize * state::ROWS],
+            strand: vec![[Row::default(); strand::ROWS]; tiles.len()],
+            rest: vec![[Row::default(); rest::ROWS]; first as usize],
+            state: vec![[Row::default(); state::ROWS]; first as usize],
             groom,
             lanes,
             tiles,
@@ -96,22 +96,19 @@ impl Simulation {
         let mut rest_of = self.rest.as_mut_slice();
         let mut state_of = self.state.as_mut_slice();
         let mut work = Vec::with_capacity(self.tiles.len());
-        for ((tile, lanes), strand) in
-            self.tiles.iter().zip(self.lanes.chunks(LANES)).zip(self.strand.chunks_mut(strand::ROWS))
-        {
-            let (rest, more_rest) = rest_of.split_at_mut(tile.points as usize * rest::ROWS);
-            let (state, more_state) = state_of.split_at_mut(tile.points as usize * state::ROWS);
+        for ((tile, lanes), strand) in self.tiles.iter().zip(self.lanes.chunks(LANES)).zip(&mut self.strand) {
+            let (rest, more_rest) = rest_of.split_at_mut(tile.points as usize);
+            let (state, more_state) = state_of.split_at_mut(tile.points as usize);
             (rest_of, state_of) = (more_rest, more_state);
-            work.push((lanes, tile.points as usize, strand, rest, state));
+            work.push((lanes, strand, rest, state));
         }
         self.stiffened = work
             .into_par_iter()
             .with_min_len(16)
-            .map(|(lanes, count, strand, rest, state)| {
+            .map(|(lanes, strand, rest, state)| {
                 let mut stiffened = 0;
                 for (lane, s) in lanes.iter().enumerate() {
-                    let mut into =
-                        Lane { lane, count, strand: &mut *strand, rest: &mut *rest, state: &mut *state };
+                    let mut into = Lane { lane, strand: &mut *strand, rest: &mut *rest, state: &mut *state };
                     if *s == u32::MAX {
                         into.write_idle();
                         continue;
@@ -123,11 +120,14 @@ impl Simulation {
                         Some(r) => vec![r; groom.range(s).len()],
                         None => groom.radii[groom.range(s)].to_vec(),
                     };
+                    // GJ/EI of a round fibre: G πr⁴/2 over E πr⁴/4. The style's multiplier is over both.
+                    let twist_ratio = 2.0 * material.shear / material.young;
                     let fibre = Fibre {
                         radii: &radii,
                         density: material.density as f64,
                         young: (material.young * material.bend * scale.bend) as f64,
                         tip: material.bend_tip as f64,
+                        twist_ratio: twist_ratio as f64,
                     };
                     let points = groom.strand(s);
                     let shape = rest_shape(points, &fibre, gravity);
@@ -139,6 +139,7 @@ impl Simulation {
                         material.drag * scale.drag * drag_rate(radius, material.density);
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
                     rows[strand::FRICTION].0[lane] = material.friction;
+                    rows[strand::TWIST_RATIO].0[lane] = twist_ratio;
                 }
                 stiffened
             })
@@ -158,10 +159,9 @@ fn drag_rate(radius: f32, density: f32) -> f32 {
 /// One lane of a tile, to write.
 struct Lane<'a> {
     lane: usize,
-    count: usize,
-    strand: &'a mut [Row],
-    rest: &'a mut [Row],
-    state: &'a mut [Row],
+    strand: &'a mut StrandRows,
+    rest: &'a mut [RestRows],
+    state: &'a mut [StateRows],
 }
 
 impl Lane<'_> {
@@ -172,9 +172,9 @@ impl Lane<'_> {
     /// A lane without a strand: three points of mass 1 that nothing moves, and no rotation.
     fn write_idle(&mut self) {
         let lane = self.lane;
-        for i in 0..self.count {
-            self.rest[i * rest::ROWS + rest::MASS].0[lane] = 1.0;
-            self.rest[i * rest::ROWS + rest::CLEARANCE].0[lane] = f32::MIN;
+        for rows in self.rest.iter_mut() {
+            rows[rest::MASS].0[lane] = 1.0;
+            rows[rest::CLEARANCE].0[lane] = f32::MIN;
         }
         self.strand[strand::TURN_START + 3].0[lane] = 1.0;
         self.strand[strand::TURN_END + 3].0[lane] = 1.0;
@@ -191,25 +191,22 @@ impl Lane<'_> {
     ) {
         let lane = self.lane;
         let last = points.len() - 1;
-        for i in 0..self.count {
+        for i in 0..self.rest.len() {
             let p = shape.points[i.min(last)];
-            let rows = &mut self.rest[i * rest::ROWS..(i + 1) * rest::ROWS];
+            let rows = &mut self.rest[i];
             rows[rest::MASS].0[lane] = p.mass as f32;
             if i < last {
                 rows[rest::LENGTH].0[lane] = p.length as f32;
                 rows[rest::BEND].0[lane] = p.bend as f32;
+                rows[rest::TWIST].0[lane] = p.twist as f32;
                 Self::write_vector(&mut rows[rest::TURN..], lane, p.turn.as_vec3());
-                self.state[i * state::ROWS + state::TENSION].0[lane] = p.tension as f32;
-                Self::write_vector(
-                    &mut self.state[i * state::ROWS + state::NORMAL..],
-                    lane,
-                    p.normal.as_vec3(),
-                );
+                self.state[i][state::TENSION].0[lane] = p.tension as f32;
+                Self::write_vector(&mut self.state[i][state::NORMAL..], lane, p.normal.as_vec3());
             }
             let at = points[i.min(last)];
             let depth = obstacles.iter().map(|o| o.distance(at)).fold(0.0_f32, f32::min);
             rows[rest::CLEARANCE].0[lane] = depth;
-            Self::write_vector(&mut self.state[i * state::ROWS + state::X..], lane, at - points[0]);
+            Self::write_vector(&mut self.state[i][state::X..], lane, at - points[0]);
         }
         let root = anchor.inverse_point(points[0]);
         let turn = anchor.rotation.inverse();

@@ -13,8 +13,8 @@ use crate::{
     groom::Groom,
     strand::{
         interval::Interval,
-        lanes::{LANES, Row},
-        tile::{rest, state, strand},
+        lanes::LANES,
+        tile::{RestRows, StateRows, StrandRows, state, strand},
     },
 };
 use fearless_simd::Level;
@@ -35,9 +35,9 @@ pub struct Simulation {
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
     lanes: Vec<u32>,
     tiles: Vec<TilePlace>,
-    strand: Vec<Row>,
-    rest: Vec<Row>,
-    state: Vec<Row>,
+    strand: Vec<StrandRows>,
+    rest: Vec<RestRows>,
+    state: Vec<StateRows>,
     settings: build::Settings,
     /// The last step's interval, kept for its memory.
     interval: Interval,
@@ -74,7 +74,9 @@ impl Simulation {
 
     /// Bytes of state, rest shape and strand data that the simulation holds, padding included.
     pub fn bytes(&self) -> usize {
-        (self.strand.len() + self.rest.len() + self.state.len()) * size_of::<Row>()
+        size_of_val(&self.strand[..])
+            + size_of_val(&self.rest[..])
+            + size_of_val(&self.state[..])
             + (self.lanes.len() + self.places.len()) * size_of::<u32>()
             + self.tiles.len() * size_of::<TilePlace>()
     }
@@ -137,22 +139,21 @@ impl Simulation {
     /// A vector of state of point `i` of the strand in lane `place`.
     fn vector(&self, place: usize, i: usize, component: usize) -> Vec3 {
         let (tile, lane) = (place / LANES, place % LANES);
-        let at = (self.tiles[tile].first as usize + i) * state::ROWS + component;
-        Vec3::new(self.state[at].0[lane], self.state[at + 1].0[lane], self.state[at + 2].0[lane])
+        let rows = &self.state[self.tiles[tile].first as usize + i][component..];
+        Vec3::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane])
     }
 
     /// A number of the rest shape.
     fn rest(&self, place: usize, i: usize, component: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
-        self.rest[(self.tiles[tile].first as usize + i) * rest::ROWS + component].0[lane]
+        self.rest[self.tiles[tile].first as usize + i][component].0[lane]
     }
 
     /// World position of a root at the end of the last step.
     fn root_position(&self, place: usize) -> Vec3 {
         let (tile, lane) = (place / LANES, place % LANES);
-        let at = tile * strand::ROWS + strand::ROOT_END;
-        let local =
-            Vec3::new(self.strand[at].0[lane], self.strand[at + 1].0[lane], self.strand[at + 2].0[lane]);
+        let rows = &self.strand[tile][strand::ROOT_END..];
+        let local = Vec3::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane]);
         let (m, t) = self.settings.anchor.matrix();
         // The same arithmetic as the kernel's, so that a body at rest has the same bits.
         m.x_axis * local.x + m.y_axis * local.y + m.z_axis * local.z + t

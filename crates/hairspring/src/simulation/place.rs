@@ -19,7 +19,7 @@ impl Simulation {
         for (k, root) in roots.iter().enumerate() {
             let place = self.places[k] as usize;
             let (tile, lane) = (place / LANES, place % LANES);
-            let rows = &mut self.strand[tile * strand::ROWS..][..strand::ROWS];
+            let rows = &mut self.strand[tile];
             let p = anchor.inverse_point(root.translation).to_array();
             let q = (turn * root.rotation).to_array();
             for at in [strand::ROOT_START, strand::ROOT_END] {

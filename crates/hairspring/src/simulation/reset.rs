@@ -2,15 +2,15 @@
 
 use super::Simulation;
 use crate::strand::{
-    lanes::{LANES, Row},
-    tile::{state, strand},
+    lanes::LANES,
+    tile::{StateRows, state, strand},
 };
 use glam::{Quat, Vec3};
 
 /// Whether every number of these rows is finite.
-pub(super) fn all_finite(rows: &[Row]) -> bool {
+pub(super) fn all_finite(state: &[StateRows]) -> bool {
     // x·0 is 0 for finite x and NaN otherwise; the sum has no branch.
-    rows.iter().map(|row| row.0.iter().map(|x| x * 0.0).sum::<f32>()).sum::<f32>() == 0.0
+    state.iter().flatten().map(|row| row.0.iter().map(|x| x * 0.0).sum::<f32>()).sum::<f32>() == 0.0
 }
 
 impl Simulation {
@@ -19,15 +19,15 @@ impl Simulation {
         let mut count = 0;
         for place in 0..self.lanes.len() {
             let (tile, lane) = (place / LANES, place % LANES);
-            let first = self.tiles[tile].first as usize * state::ROWS;
-            let rows = first..first + self.tiles[tile].points as usize * state::ROWS;
+            let first = self.tiles[tile].first as usize;
+            let rows = first..first + self.tiles[tile].points as usize;
             if self.lanes[place] != u32::MAX
-                && self.state[rows.clone()].iter().any(|r| !r.0[lane].is_finite())
+                && self.state[rows.clone()].iter().flatten().any(|r| !r.0[lane].is_finite())
             {
                 self.reset_strand(place);
                 count += 1;
             } else if self.lanes[place] == u32::MAX {
-                self.state[rows].iter_mut().for_each(|r| r.0[lane] = 0.0);
+                self.state[rows].iter_mut().flatten().for_each(|r| r.0[lane] = 0.0);
             }
         }
         count
@@ -35,14 +35,14 @@ impl Simulation {
 
     pub(super) fn reset_strand(&mut self, place: usize) {
         let (tile, lane) = (place / LANES, place % LANES);
-        let at = tile * strand::ROWS + strand::TURN_END;
-        let local = Quat::from_array([0, 1, 2, 3].map(|k| self.strand[at + k].0[lane]));
+        let rows = &self.strand[tile];
+        let local = Quat::from_array([0, 1, 2, 3].map(|k| rows[strand::TURN_END + k].0[lane]));
         let turn = self.settings.anchor.rotation * local;
         let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
         let points = self.groom.strand(self.lanes[place] as usize);
         for i in 0..self.tiles[tile].points as usize {
             let p: Vec3 = turn * (points[i.min(points.len() - 1)] - points[0]);
-            let rows = &mut self.state[(self.tiles[tile].first as usize + i) * state::ROWS..][..state::ROWS];
+            let rows = &mut self.state[self.tiles[tile].first as usize + i];
             // A finite tension is kept: it is what holds the rest shape.
             let tension = rows[state::TENSION].0[lane];
             rows.iter_mut().for_each(|r| r.0[lane] = 0.0);

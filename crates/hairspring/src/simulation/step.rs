@@ -6,9 +6,9 @@ use crate::{
     scene::Wind,
     strand::{
         interval::{Interval, Substep},
-        lanes::{LANES, Row},
+        lanes::LANES,
         substep::{Scratch, run_tile},
-        tile::{Tile, rest, state, strand},
+        tile::{RestRows, StateRows, StrandRows, Tile, strand},
     },
 };
 use fearless_simd::{Level, dispatch};
@@ -102,7 +102,7 @@ impl Simulation {
             self.level,
             &interval,
             &self.tiles,
-            &mut self.strand,
+            &self.strand,
             &self.rest,
             &mut self.state,
             self.tiles.first().map_or(0, |t| t.first),
@@ -144,7 +144,7 @@ impl Simulation {
         let turn = drive.anchor.rotation.inverse();
         for (&place, root) in self.places.iter().zip(drive.roots) {
             let (tile, lane) = (place as usize / LANES, place as usize % LANES);
-            let rows = &mut self.strand[tile * strand::ROWS..][..strand::ROWS];
+            let rows = &mut self.strand[tile];
             for k in 0..strand::ROOT_END {
                 rows[strand::ROOT_START + k].0[lane] = rows[strand::ROOT_END + k].0[lane];
             }
@@ -166,17 +166,17 @@ fn run(
     level: Level,
     interval: &Interval,
     tiles: &[TilePlace],
-    strand: &mut [Row],
-    rest: &[Row],
-    state: &mut [Row],
+    strand: &[StrandRows],
+    rest: &[RestRows],
+    state: &mut [StateRows],
     first: u32,
 ) -> bool {
     if tiles.len() > TILES_PER_TASK {
         let half = (tiles.len() / 2).next_multiple_of(TILES_PER_TASK).min(tiles.len() - 1);
         let points = (tiles[half].first - first) as usize;
-        let (strand_a, strand_b) = strand.split_at_mut(half * strand::ROWS);
-        let (state_a, state_b) = state.split_at_mut(points * state::ROWS);
-        let (rest_a, rest_b) = rest.split_at(points * rest::ROWS);
+        let (strand_a, strand_b) = strand.split_at(half);
+        let (state_a, state_b) = state.split_at_mut(points);
+        let (rest_a, rest_b) = rest.split_at(points);
         let (a, b) = rayon::join(
             || run(level, interval, &tiles[..half], strand_a, rest_a, state_a, first),
             || run(level, interval, &tiles[half..], strand_b, rest_b, state_b, tiles[half].first),
@@ -187,12 +187,8 @@ fn run(
         let mut broken = false;
         for (k, place) in tiles.iter().enumerate() {
             let (at, points) = ((place.first - first) as usize, place.points as usize);
-            let mut tile = Tile {
-                points,
-                strand: &strand[k * strand::ROWS..][..strand::ROWS],
-                rest: &rest[at * rest::ROWS..][..points * rest::ROWS],
-                state: &mut state[at * state::ROWS..][..points * state::ROWS],
-            };
+            let mut tile =
+                Tile { strand: &strand[k], rest: &rest[at..at + points], state: &mut state[at..at + points] };
             dispatch!(level, simd => run_tile(simd, interval, &mut tile, scratch));
             broken |= !reset::all_finite(tile.state);
         }

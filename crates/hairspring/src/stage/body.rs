@@ -3,14 +3,14 @@
 use super::{PosedBody, StageError};
 use crate::{
     body::{Body, Trs},
-    collide::{Grid, Obstacle, ObstaclePose, Rigid, Voxelizer, voxelize},
+    collide::{Grid, Obstacle, ObstaclePose, Rigid, Voxelizer},
     scene::{Scene, Shape},
     simulation::MovingObstacle,
 };
 use glam::{Affine3A, Vec3};
 use std::sync::Arc;
 
-/// Cells along the longest side of the body's distance field: 4 mm for a bust of half a metre.
+/// Cells along the longest side of the body's distance field, which is as much of the body as hair can reach: 4 mm for half a metre.
 const CELLS: f32 = 128.0;
 
 /// A skinned surface that moved less than this in its anchor's space is rigid for this frame [m].
@@ -29,6 +29,43 @@ pub(super) struct StagedBody {
     /// Joint of each obstacle; `None`: fixed.
     joints: Vec<Option<usize>>,
     surface: Option<Surface>,
+    reach: Reach,
+}
+
+/// Where hair can be: no farther from a root than the longest strand is long.
+struct Reach {
+    /// The skin's vertices around the roots.
+    vertices: Vec<u32>,
+    /// From those to the farthest tip, with room for the strain limit [m].
+    length: f32,
+}
+
+impl Reach {
+    fn new(scene: &Scene) -> Self {
+        let mut reach = Self { vertices: Vec::new(), length: 0.0 };
+        let Some(mesh) = scene.body.as_ref().map(|b| &b.mesh) else { return reach };
+        for groom in scene.grooms.iter().map(|g| &g.groom) {
+            for (s, root) in groom.roots.iter().enumerate() {
+                reach.vertices.extend(mesh.triangles[root.triangle as usize]);
+                reach.length = reach.length.max(1.02 * groom.strand_length(s) + root.offset.length());
+            }
+            if groom.roots.is_empty() && groom.strand_count() > 0 {
+                // Roots that no skin carries may be anywhere.
+                return Self { vertices: Vec::new(), length: 0.0 };
+            }
+        }
+        reach.vertices.sort_unstable();
+        reach.vertices.dedup();
+        reach
+    }
+
+    /// The box (min, max) that hair stays in, in the space that `to` takes the skin's `positions` to; `None`: no bound is known.
+    fn bounds(&self, positions: &[Vec3], to: impl Fn(Vec3) -> Vec3) -> Option<(Vec3, Vec3)> {
+        let mut roots = self.vertices.iter().map(|v| to(positions[*v as usize]));
+        let first = roots.next()?;
+        let (lo, hi) = roots.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)));
+        Some((lo - self.length, hi + self.length))
+    }
 }
 
 /// A skinned collision surface, voxelised anew whenever it deforms; the first obstacle.
@@ -55,7 +92,11 @@ impl StagedBody {
             obstacles: Vec::new(),
             joints: Vec::new(),
             surface: None,
+            reach: Reach::new(scene),
         };
+        if let Some(body) = &scene.body {
+            body.skinned(&staged.world, &mut staged.positions, &mut staged.normals);
+        }
         staged.add_surface(scene);
         for collider in &scene.colliders {
             let joint = match (&collider.joint, &scene.body) {
@@ -71,7 +112,7 @@ impl StagedBody {
             };
             staged.add(shape, joint);
         }
-        staged.repose(scene);
+        staged.repose();
         Ok(staged)
     }
 
@@ -87,10 +128,15 @@ impl StagedBody {
             return;
         };
         let Some((lo, hi)) = body.mesh.bounds() else { return };
-        let cell = (hi - lo).max_element() / CELLS;
+        let within = scene.body.as_ref().and_then(|b| self.reach.bounds(&b.mesh.positions, |p| p));
+        let (lo, hi) = within.map_or((lo, hi), |(a, b)| (lo.max(a), hi.min(b)));
+        // Hair that cannot reach the body meets a field of one cell.
+        let cell = (hi - lo).max_element().max(1e-3) / CELLS;
         if body.skin.is_none() {
             // Rigid: voxelised once, in the space of the rest pose.
-            let grid = voxelize(&body.mesh.positions, &body.mesh.triangles, cell);
+            let mut grid = Grid::default();
+            let (positions, triangles) = (&body.mesh.positions, &body.mesh.triangles);
+            Voxelizer::default().update(&mut grid, positions, None, triangles, within, cell);
             self.add(Obstacle::Field(Arc::new(grid)), (!self.rest.is_empty()).then_some(0));
             return;
         }
@@ -125,7 +171,8 @@ impl StagedBody {
         }
         let before = (!fresh).then_some(surface.before.as_slice());
         let triangles = &body.mesh.triangles;
-        surface.voxelizer.update(Arc::make_mut(grid), &surface.now, before, triangles, surface.cell);
+        let within = self.reach.bounds(&self.positions, |p| anchor.inverse_point(p));
+        surface.voxelizer.update(Arc::make_mut(grid), &surface.now, before, triangles, within, surface.cell);
     }
 
     /// Poses the body for time `time` [s]; motion since the last pose is what colliders do in this frame.
@@ -137,7 +184,7 @@ impl StagedBody {
         if let Some(body) = scene.collision.as_ref().or(scene.body.as_ref()) {
             self.rebuild_surface(body, false);
         }
-        self.repose(scene);
+        self.repose();
     }
 
     /// Poses the body for time `time` [s] without motion.
@@ -146,7 +193,7 @@ impl StagedBody {
         if let Some(body) = scene.collision.as_ref().or(scene.body.as_ref()) {
             self.rebuild_surface(body, true);
         }
-        self.repose(scene);
+        self.repose();
         for obstacle in &mut self.obstacles {
             obstacle.start = obstacle.end;
         }
@@ -157,13 +204,13 @@ impl StagedBody {
             let pose: Vec<Trs> = clip.sample(time);
             self.world = body.world(&pose);
         }
-    }
-
-    /// Where vertices and obstacles are in the current pose.
-    fn repose(&mut self, scene: &Scene) {
         if let Some(body) = &scene.body {
             body.skinned(&self.world, &mut self.positions, &mut self.normals);
         }
+    }
+
+    /// Where obstacles are in the current pose.
+    fn repose(&mut self) {
         let field_anchor = self.surface.is_some().then(|| self.anchor());
         for (k, (obstacle, joint)) in self.obstacles.iter_mut().zip(&self.joints).enumerate() {
             obstacle.end = match (joint, field_anchor) {

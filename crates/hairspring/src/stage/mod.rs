@@ -170,6 +170,11 @@ impl Stage {
         self.hair.iter().map(|h| h.simulation().stiffened_joints()).sum()
     }
 
+    /// Name of the instruction set that strands are simulated with.
+    pub fn instruction_set(&self) -> String {
+        self.hair.first().map_or(String::new(), |h| h.simulation().instruction_set())
+    }
+
     /// Figures over all simulated strands at the end of the last step.
     pub fn measure(&self) -> Measure {
         let parts: Vec<(Measure, f64)> = self

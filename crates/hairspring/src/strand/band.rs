@@ -17,6 +17,9 @@ use fearless_simd::prelude::*;
 /// Rows of factors that [`Band::eliminate`] writes for a point: W1, W2, y.
 pub const FACTOR_ROWS: usize = 21;
 
+/// Factors of one point.
+pub type Factors = [Row; FACTOR_ROWS];
+
 /// The part of the matrix that is being worked on: points i, i+1 and i+2, of eight strands.
 pub struct Band<S: Simd> {
     /// Diagonal blocks of i, i+1, i+2.
@@ -38,7 +41,7 @@ impl<S: Simd> Band<S> {
 
     /// Eliminates point i and writes its factors.
     #[inline(always)]
-    pub fn eliminate(&mut self, factors: &mut [Row]) {
+    pub fn eliminate(&mut self, factors: &mut Factors) {
         let inverse = self.diag[0].inverse();
         let w1 = inverse.mul_mat(&self.upper[0]);
         let w2 = inverse.mul_mat(&self.far);
@@ -66,7 +69,7 @@ impl<S: Simd> Band<S> {
 
 /// The sweep up: Δx of a point from its factors and the two points below it.
 #[inline(always)]
-pub fn back_substitute<S: Simd>(simd: S, factors: &[Row], next: V3<S>, after: V3<S>) -> V3<S> {
+pub fn back_substitute<S: Simd>(simd: S, factors: &Factors, next: V3<S>, after: V3<S>) -> V3<S> {
     let w1 = M3::load(simd, &factors[0..9]);
     let w2 = M3::load(simd, &factors[9..18]);
     V3::load(simd, &factors[18..21]) - w1.mul_vec(next) - w2.mul_vec(after)

@@ -8,8 +8,7 @@
 //!
 //! B = EI / L̄ with L̄ the mean of the two rest lengths, so that the sum over joints is ½∫EI|κ − κ₀|² of an inextensible
 //! elastica (the curvature vector is dt/ds). The rest turn d turns with the segment before it by the least rotation,
-//! δd = (û × δû) × d, so the energy is invariant under rotation and the force keeps angular momentum up to the twist
-//! that a frame without twist forgets. With a = û·d the gradient of r is P = (1 + a) I − û dᵀ on segment j−1:
+//! δd = (û × δû) × d, so the force keeps angular momentum but for the part about û, which is the frame's (see `twist`). With a = û·d the gradient of r is P = (1 + a) I − û dᵀ on segment j−1:
 //!
 //! ```text
 //! δr = δe_j / L_j − P δe_{j−1} / L_{j−1}
@@ -80,24 +79,4 @@ pub fn transport<S: Simd>(normal: V3<S>, u0: V3<S>, u1: V3<S>) -> V3<S> {
     let scale = normal.dot(u1) / (u0.dot(u1) + 1.0).max(1e-3);
     let n = normal - (u0 + u1) * scale;
     n * (n.dot(n).mul_add(-0.5, F::splat(scale.simd, 1.5)).max(0.5))
-}
-
-/// Time in which a segment's own twist follows the one carried along the strand [s].
-///
-/// The band holds how a rest turn swings with its segment, not how it twists with all the segments before it. Following that
-/// twist at once is an explicit step of a stiff coupling: it throws tight coils off their shape, and at 20 ms still does, at
-/// 0.2 s none in the tests. Twist of the root itself is applied at once, so what lags is only the twist that a swing makes.
-const TWIST_TIME: f32 = 0.2;
-
-/// A segment's normal in a substep of `h` seconds: `own`, kept from the last one, swung with the segment `u`, and some of the
-/// way to `carried`.
-#[inline(always)]
-pub fn follow_twist<S: Simd>(own: V3<S>, u: V3<S>, carried: V3<S>, h: f32) -> V3<S> {
-    let swung = own - u * own.dot(u);
-    // More than a quarter turn apart: the nearer to opposite, the faster.
-    let apart = (-swung.dot(carried)).max(0.0).min(1.0);
-    let slow = (h / TWIST_TIME).min(1.0);
-    let rate = apart.mul_add(1.0 - slow, F::splat(u.x.simd, slow));
-    let (_, n) = (carried - swung).mul_add(rate, swung).length_and_unit();
-    n
 }

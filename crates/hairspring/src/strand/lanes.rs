@@ -269,6 +269,21 @@ impl<S: Simd> Sym3<S> {
     }
 }
 
+impl<S: Simd> Mul<F<S>> for Sym3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, s: F<S>) -> Self {
+        Self {
+            xx: self.xx * s,
+            xy: self.xy * s,
+            xz: self.xz * s,
+            yy: self.yy * s,
+            yz: self.yz * s,
+            zz: self.zz * s,
+        }
+    }
+}
+
 impl<S: Simd> Add for Sym3<S> {
     type Output = Self;
     #[inline(always)]

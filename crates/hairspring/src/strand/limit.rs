@@ -8,7 +8,7 @@ use super::{
     interval::Substep,
     lanes::{F, Row, V3, load},
     root::Root,
-    tile::{Tile, rest, rows, rows_mut, state},
+    tile::{Tile, rest, state},
 };
 use crate::collide::{contact, surface_displacement};
 use fearless_simd::prelude::*;
@@ -16,11 +16,11 @@ use fearless_simd::prelude::*;
 /// Largest relative change of a segment's length that leaves a substep [1].
 pub const LIMIT: f32 = 0.01;
 
-/// Times that a point in contact goes out of the collider and back to its segment's length: what is left is of this order in the
-/// segment's length over the collider's radius.
+/// Times that a point in contact swings out of the collider: what is left is of this order in the segment's length over the
+/// collider's radius.
 const CORRECTIONS: usize = 2;
 
-/// Applies strain limit and contact to the new positions `x` of shape `[points][3]`, and writes state.
+/// Applies strain limit and contact to the new positions `x` of shape `[points]`, and writes state.
 #[inline(always)]
 pub fn limit<S: Simd>(
     simd: S,
@@ -29,25 +29,25 @@ pub fn limit<S: Simd>(
     root: &Root<S>,
     moved: V3<S>,
     tile: &mut Tile,
-    x: &mut [Row],
+    x: &mut [[Row; 3]],
 ) {
     let inv_h = F::<S>::splat(simd, 1.0 / h);
     let friction = Root::<S>::fibre(simd, tile.strand).2;
     let zero = V3::zero(simd);
     let mut before = root.first;
     // The root itself.
-    zero.store(&mut rows_mut(tile.state, 0, state::ROWS)[state::X..state::X + 3]);
-    (moved * inv_h).store(&mut rows_mut(tile.state, 0, state::ROWS)[state::V..state::V + 3]);
+    zero.store(&mut tile.state[0][state::X..state::X + 3]);
+    (moved * inv_h).store(&mut tile.state[0][state::V..state::V + 3]);
     {
-        let first = rows_mut(tile.state, 1, state::ROWS);
+        let first = &mut tile.state[1];
         root.first.store(&mut first[state::X..state::X + 3]);
         (moved * inv_h).store(&mut first[state::V..state::V + 3]);
     }
-    for i in 2..tile.points {
-        let length = load(simd, &rows(tile.rest, i - 1, rest::ROWS)[rest::LENGTH]);
-        let clearance = load(simd, &rows(tile.rest, i, rest::ROWS)[rest::CLEARANCE]);
-        let old = V3::load(simd, &rows(tile.state, i, state::ROWS)[state::X..]);
-        let mut p = clamp(V3::load(simd, &x[3 * i..]), before, length);
+    for i in 2..tile.rest.len() {
+        let length = load(simd, &tile.rest[i - 1][rest::LENGTH]);
+        let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
+        let old = V3::load(simd, &tile.state[i][state::X..]);
+        let mut p = clamp(V3::load(simd, &x[i]), before, length);
         for pose in &substep.obstacles {
             let world = p + root.position;
             let (distance, normal) = contact(simd, pose, world);
@@ -59,21 +59,36 @@ pub fn limit<S: Simd>(
                 let tangent = slide - normal * normal.dot(slide);
                 let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
                 let held = pushed - tangent * hold.min(1.0);
-                // The limit again, then out and back: both hold where they can, and where a strand is caught (behind an
+                // The limit again, then out: both hold where they can, and where a strand is caught (behind an
                 // ear) its length goes before its depth, so that it slips free in time.
                 let mut q = clamp(held, before, length);
                 for _ in 0..CORRECTIONS {
                     let (distance, normal) = contact(simd, pose, q + root.position);
-                    q = clamp(q + normal * (clearance - distance).max(0.0), before, length);
+                    q = swing_out(q, before, normal, (clearance - distance).max(0.0));
+                    q = clamp(q, before, length);
                 }
                 p = V3::select(depth.simd_gt(0.0), q, p);
             }
         }
-        let at = rows_mut(tile.state, i, state::ROWS);
+        let at = &mut tile.state[i];
         ((p - old + moved) * inv_h).store(&mut at[state::V..state::V + 3]);
         p.store(&mut at[state::X..state::X + 3]);
         before = p;
     }
+}
+
+/// `p` swung about `before` until it is `depth` farther out along `normal`: for a flat surface both its length and the surface hold
+/// at once. (Out and back in turn hardly moves a tip that meets the surface head on.) Where `before` is deeper than the segment is
+/// long, it points straight out.
+#[inline(always)]
+fn swing_out<S: Simd>(p: V3<S>, before: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
+    let e = p - before;
+    let (l, _) = e.length_and_unit();
+    let along = e.dot(normal);
+    let (_, side) = (e - normal * along).length_and_unit();
+    let out = (along + depth).min(l);
+    let aside = (l * l - out * out).max(0.0).sqrt();
+    V3::select(depth.simd_gt(0.0), before + normal * out + side * aside, p)
 }
 
 /// `p` moved along the segment from `before` until its length is `length` ± [`LIMIT`].

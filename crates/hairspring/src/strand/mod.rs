@@ -11,6 +11,7 @@ pub(crate) mod root;
 pub(crate) mod stretch;
 pub(crate) mod substep;
 pub(crate) mod tile;
+pub(crate) mod twist;
 
 #[cfg(test)]
 mod reference;

@@ -13,7 +13,7 @@ pub struct Strand {
     pub length: Vec<f64>,
     pub mass: Vec<f64>,
     pub bend: Vec<f64>,
-    /// Rest turn of each joint in world axes.
+    /// Rest turn of each joint in the frame (normal, binormal, tangent) of the segment before it.
     pub turn: Vec<DVec3>,
     pub tension: Vec<f64>,
     pub drag: f64,
@@ -53,13 +53,39 @@ fn jacobian(x: [DVec3; 3], lengths: [f64; 2], was: DVec3, turn: DVec3) -> [DMat3
     })
 }
 
+/// GJ/EI of the strands in the tests.
+pub const TWIST_RATIO: f64 = 0.46;
+
+/// The angle from the normal `m0`, carried by the least rotation, to `m1`, and its gradient by central differences; the normals
+/// swing with their segments.
+fn twist(x: [DVec3; 3], was: DVec3, m0: DVec3, m1: DVec3) -> (f64, [DVec3; 3]) {
+    let was1 = (x[2] - x[1]).normalize();
+    let angle = |x: [DVec3; 3]| {
+        let (u0, u1) = ((x[1] - x[0]).normalize(), (x[2] - x[1]).normalize());
+        let carried = DQuat::from_rotation_arc(u0, u1) * (DQuat::from_rotation_arc(was, u0) * m0);
+        let m1 = DQuat::from_rotation_arc(was1, u1) * m1;
+        carried.cross(m1).dot(u1).atan2(carried.dot(m1))
+    };
+    let gradient = [0, 1, 2].map(|k| {
+        DVec3::from([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
+            let at = |s: f64| {
+                let mut y = x;
+                y[k] += axis * s;
+                angle(y)
+            };
+            (at(1e-8) - at(-1e-8)) / 2e-8
+        }))
+    });
+    (angle(x), gradient)
+}
+
 fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
 impl Strand {
-    /// Positions relative to the root after the linearised backward Euler solve.
-    pub fn solve(&self) -> Vec<DVec3> {
+    /// Positions relative to the root after the linearised backward Euler solve, with these normals on the segments.
+    pub fn solve(&self, normals: &[DVec3]) -> Vec<DVec3> {
         let n = self.x.len();
         let mut a = vec![vec![DMat3::ZERO; n]; n];
         let mut b = vec![DVec3::ZERO; n];
@@ -91,13 +117,18 @@ impl Strand {
             let x = [self.x[j - 1], self.x[j], self.x[j + 1]];
             let lengths = [self.length[j - 1], self.length[j]];
             let was = (x[1] - x[0]).normalize();
-            let r = residual(x, lengths, was, self.turn[j]);
-            let jacobian = jacobian(x, lengths, was, self.turn[j]);
+            let (m, local) = (normals[j - 1], self.turn[j]);
+            let turn = m * local.x + was.cross(m) * local.y + was * local.z;
+            let r = residual(x, lengths, was, turn);
+            let jacobian = jacobian(x, lengths, was, turn);
+            let (angle, swing) = twist(x, was, normals[j - 1], normals[j]);
+            let stiffness = TWIST_RATIO * self.bend[j];
             for p in 0..3 {
-                b[j - 1 + p] -= jacobian[p].transpose() * r * self.bend[j];
+                b[j - 1 + p] -= jacobian[p].transpose() * r * self.bend[j] + swing[p] * (stiffness * angle);
                 for q in 0..3 {
                     let implicit = self.bend[j] * (1.0 + self.damping / self.h);
-                    a[j - 1 + p][j - 1 + q] += jacobian[p].transpose() * jacobian[q] * implicit;
+                    a[j - 1 + p][j - 1 + q] += jacobian[p].transpose() * jacobian[q] * implicit
+                        + outer(swing[p], swing[q]) * (stiffness * (1.0 + self.damping / self.h));
                 }
             }
         }

@@ -9,13 +9,19 @@
 //! m_i = (I − ûûᵀ)(L_i W_i + P_{i+1}ᵀ m_{i+1}),   d_i = t_i − t_{i−1} − m_i / B_i
 //! ```
 //!
+//! The moment of a bend also turns the frame of the segment before it; rest twists take that torque (see `twist`), tip to root:
+//!
+//! ```text
+//! T_{i−1} = T_i + m_i · (û_{i−1} × d_i),      τ⁰_i = −T_i / (GJ/L̄)_i
+//! ```
+//!
 //! Rest lengths keep; the tension T along the segment is the part that stretch takes. Where a single fibre could not hold
 //! the shape, bending stiffness is raised by the least that does (Hsu et al. 2023, *Sag-Free Initialization for Strand-Based
 //! Hybrid Hair Simulation*, raise it too; what holds a style in life is wax and neighbours).
 
 use glam::{DVec3, Vec3};
 
-/// Largest |m|/B of a joint at the sag-free start [rad]: beyond it the linear moment is not a fibre's any more.
+/// Largest |m|/B and rest twist of a joint at the sag-free start [rad]: beyond it the linear moment is not a fibre's any more.
 const LARGEST_SAG: f64 = 0.5;
 
 /// Bending stiffness kept above the load of what stands above a joint, as Greenhill's bound with a safety of about two:
@@ -32,6 +38,8 @@ pub struct Fibre<'a> {
     pub young: f64,
     /// The same at the tip, as a fraction of the root's.
     pub tip: f64,
+    /// Twisting over bending stiffness, GJ/EI.
+    pub twist_ratio: f64,
 }
 
 /// One point of a rest shape.
@@ -45,6 +53,8 @@ pub struct RestPoint {
     pub bend: f64,
     /// Rest turn here, in the frame (normal, binormal, tangent) of the segment before.
     pub turn: DVec3,
+    /// Rest twist of the joint here.
+    pub twist: f64,
     /// Tension of the segment from here at the start [N].
     pub tension: f64,
     /// The frame's normal on the segment from here.
@@ -95,24 +105,30 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         // Weight that hangs beyond, its moment about the joint of what stands above, and the arc length beyond.
         let (mut weight, mut below) = (DVec3::ZERO, DVec3::ZERO);
         let (mut mass, mut height, mut arc) = (0.0, 0.0, 0.0);
+        let (mut torque, mut torque_after) = (0.0f64, DVec3::ZERO);
         for i in (1..n - 1).rev() {
             weight += gravity * rest[i + 1].mass;
             mass += rest[i + 1].mass;
             height += mass * e[i].dot(up);
             arc += lengths[i];
-            let carried = weight * lengths[i] + below;
+            // The twist torques of the joints at both ends of this segment push it too (see `twist::twist_force`).
+            let binormal = |j: usize| t[j - 1].cross(t[j]) / (1.0 + t[j - 1].dot(t[j])).max(0.1);
+            let carried = weight * lengths[i] + below - binormal(i) * torque - torque_after;
             let axial = carried.dot(t[i]);
             let moment = carried - t[i] * axial;
             rest[i].tension = axial / lengths[i];
             let mean =
                 if i == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[i - 1] + lengths[i]) };
-            let needed =
-                (moment.length() / LARGEST_SAG).max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
+            let sag = moment.length().max(torque.abs() / fibre.twist_ratio) / LARGEST_SAG;
+            let needed = sag.max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
             if needed > rest[i].bend {
                 rest[i].bend = needed;
                 stiffened += 1;
             }
             rest[i].turn = t[i] - t[i - 1] - moment / rest[i].bend;
+            rest[i].twist = -torque / (fibre.twist_ratio * rest[i].bend);
+            torque_after = binormal(i) * torque;
+            torque += moment.dot(t[i - 1].cross(rest[i].turn));
             // P_iᵀ m_i for the next segment inward, with û = t_{i−1} and d = turn.
             let d = rest[i].turn;
             below = moment * (1.0 + t[i - 1].dot(d)) - d * t[i - 1].dot(moment);

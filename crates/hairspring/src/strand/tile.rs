@@ -33,8 +33,10 @@ pub mod rest {
     pub const TURN: usize = 3;
     /// How deep this point may be inside a collider, 0 or less: the depth it was authored at [m].
     pub const CLEARANCE: usize = 6;
+    /// Rest twist of the joint at this point, from the segment before to the one after, as 2 tan(τ/2) [1].
+    pub const TWIST: usize = 7;
     /// Rows a point.
-    pub const ROWS: usize = 7;
+    pub const ROWS: usize = 8;
 }
 
 /// Rows of a whole strand.
@@ -57,30 +59,23 @@ pub mod strand {
     pub const DAMPING: usize = 21;
     /// Coulomb friction against the body.
     pub const FRICTION: usize = 22;
+    /// Twisting over bending stiffness, GJ/EI [1].
+    pub const TWIST_RATIO: usize = 23;
     /// Rows a strand.
-    pub const ROWS: usize = 23;
+    pub const ROWS: usize = 24;
 }
+
+/// What is known of eight whole strands.
+pub type StrandRows = [Row; strand::ROWS];
+/// The rest shape at one point of eight strands.
+pub type RestRows = [Row; rest::ROWS];
+/// The state of one point of eight strands.
+pub type StateRows = [Row; state::ROWS];
 
 /// Eight strands: borrowed pieces of the simulation's arrays.
 pub struct Tile<'a> {
-    /// Points of the longest strand.
-    pub points: usize,
-    /// Shape `[strand::ROWS]`.
-    pub strand: &'a [Row],
-    /// Shape `[points][rest::ROWS]`.
-    pub rest: &'a [Row],
-    /// Shape `[points][state::ROWS]`.
-    pub state: &'a mut [Row],
-}
-
-/// Rows of one point.
-#[inline(always)]
-pub fn rows(array: &[Row], point: usize, stride: usize) -> &[Row] {
-    &array[point * stride..(point + 1) * stride]
-}
-
-/// Rows of one point, to write.
-#[inline(always)]
-pub fn rows_mut(array: &mut [Row], point: usize, stride: usize) -> &mut [Row] {
-    &mut array[point * stride..(point + 1) * stride]
+    pub strand: &'a StrandRows,
+    /// Shape `[points]`, the points of the longest strand; as long as `state`.
+    pub rest: &'a [RestRows],
+    pub state: &'a mut [StateRows],
 }

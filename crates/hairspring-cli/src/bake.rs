@@ -1,0 +1,186 @@
+//! `hairspring bake`: a scene's hair, one groom file a frame.
+
+use crate::{
+    console::{Console, say},
+    fault::Fault,
+    frames::{self, FrameRange},
+    input::Input,
+    interrupt, output,
+    play::{Ending, play},
+    totals::{self, Totals},
+};
+use clap::Parser;
+use glam::{Vec2, Vec3};
+use hairspring::stage::Stage;
+use hairspring_io::{Format, ReadOptions, Strands, read_groom, write_strands};
+use serde_json::json;
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+/// Simulates a scene and writes its hair, one groom file a frame (.hair, .tfx or .data), in metres, Y up.
+///
+/// Frame 1 is the rest pose at time 0. The hairs of all grooms of the scene come one groom after the other, and every
+/// frame has the same strands in the same order. Files appear only when they are complete, and are the same bits for any
+/// number of threads.
+#[derive(Parser)]
+#[command(after_help = "\
+Examples:
+  hairspring bake shot.toml -o bake/hair.####.hair
+  hairspring bake shot.toml -o bake/hair.####.hair --frames 1-240 --fps 24 --substeps 8
+  hairspring bake shot.toml -o bake/hair.####.hair --resume        after Ctrl-C or a crash")]
+pub struct Options {
+    #[command(flatten)]
+    input: Input,
+
+    /// Files to write, `#` standing for the digits of the frame number: NAME.####.hair, .tfx or .data
+    #[arg(short, long, value_name = "NAME.####.hair")]
+    output: PathBuf,
+
+    /// Frames to write, such as 1-150 or 60 [default: the scene's motion, 5 seconds without one]
+    #[arg(long, value_name = "A-B")]
+    frames: Option<FrameRange>,
+
+    /// Frames a second
+    #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
+    fps: f64,
+
+    /// Skip frames whose file is there and complete; they are simulated through, so that the result is the same bits
+    /// as without an interruption. Give the same scene and options as before
+    #[arg(long)]
+    resume: bool,
+
+    /// Print what ran as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
+    let pattern = &options.output;
+    if !Format::of(pattern).is_some_and(|f| Format::GROOMS.contains(&f)) {
+        let text =
+            format!("{}: hair is baked to .hair, .tfx or .data, told by the extension", pattern.display());
+        return Err(Fault::Usage(text));
+    }
+    let one = options.frames.is_some_and(|f| f.count() == 1);
+    if !output::is_sequence(pattern) && !one {
+        let text = format!(
+            "{} is one file for many frames: put # signs where the frame number goes (NAME.####.hair)",
+            pattern.display()
+        );
+        return Err(Fault::Usage(text));
+    }
+    output::try_folder(&output::frame_path(pattern, 1))?;
+    let scene = options.input.scene(console)?;
+    let range = options.frames.unwrap_or(FrameRange::whole(scene.clip.as_ref(), options.fps));
+    interrupt::listen();
+    let mut stage = Stage::new(scene)?;
+    let mut sheaf = Sheaf::new(&stage, console);
+    let mut wanted: Vec<u32> = range.numbers().collect();
+    if options.resume {
+        wanted.retain(|n| !sheaf.is_baked(&output::frame_path(pattern, *n)));
+    }
+    let mut totals = Totals::new();
+    let last = wanted.last().copied().unwrap_or(0);
+    let mut progress = console.progress("simulating", last);
+    let ending = play(&mut stage, last, options.fps, |frame, stage, report| {
+        totals.stepped(frame, report);
+        if wanted.binary_search(&frame).is_ok() {
+            let began = Instant::now();
+            sheaf.write(&output::frame_path(pattern, frame), stage)?;
+            totals.written(1, began.elapsed());
+        }
+        progress.step(|| {
+            format!(
+                "frame {frame}: body {:.1?}, simulate {:.1?}, follow {:.1?}",
+                report.body, report.simulate, report.follow
+            )
+        });
+        Ok(())
+    })?;
+    drop(progress);
+    if let Ending::Stopped(after) = ending {
+        let text = format!(
+            "stopped after frame {after} of {}: run the same command with --resume to go on",
+            range.last
+        );
+        return Err(Fault::Interrupted(text));
+    }
+    let skipped = range.count() as usize - wanted.len();
+    if options.json {
+        let summary = json!({
+            "output": pattern,
+            "frames": wanted.len(),
+            "skipped": skipped,
+            "fps": options.fps,
+        });
+        say(totals.json(&stage, summary));
+    } else {
+        let skipped = if skipped > 0 { format!(", {skipped} were there already") } else { String::new() };
+        say(format_args!("wrote    {} ({}{skipped})", pattern.display(), totals::frames(wanted.len())));
+        totals.tell(&stage);
+    }
+    Ok(())
+}
+
+/// All grooms of a stage as the strands of one file; what does not move is kept from frame to frame.
+struct Sheaf {
+    points: Vec<Vec3>,
+    offsets: Vec<u32>,
+    radii: Vec<f32>,
+    colors: Vec<Vec3>,
+    root_uvs: Vec<Vec2>,
+}
+
+impl Sheaf {
+    fn new(stage: &Stage, console: Console) -> Self {
+        let grooms: Vec<_> = stage.strands().map(|s| s.groom).collect();
+        let mut offsets = vec![0];
+        for groom in &grooms {
+            let before = offsets.last().copied().unwrap_or(0);
+            offsets.extend(groom.offsets.iter().skip(1).map(|o| o + before));
+        }
+        // A file has a colour at every point or at none, and the same for texture coordinates.
+        let colored = grooms.iter().filter(|g| !g.colors.is_empty()).count();
+        let mapped = grooms.iter().filter(|g| !g.root_uvs.is_empty()).count();
+        for (some, what) in [(colored, "colours"), (mapped, "texture coordinates")] {
+            if some > 0 && some < grooms.len() {
+                console.note(format_args!("{some} of {} grooms have {what}: left out", grooms.len()));
+            }
+        }
+        Self {
+            points: Vec::new(),
+            offsets,
+            radii: grooms.iter().flat_map(|g| g.radii.iter().copied()).collect(),
+            colors: match colored == grooms.len() {
+                true => grooms.iter().flat_map(|g| g.colors.iter().copied()).collect(),
+                false => Vec::new(),
+            },
+            root_uvs: match mapped == grooms.len() {
+                true => grooms.iter().flat_map(|g| g.root_uvs.iter().copied()).collect(),
+                false => Vec::new(),
+            },
+        }
+    }
+
+    fn write(&mut self, path: &Path, stage: &Stage) -> Result<(), Fault> {
+        self.points.clear();
+        stage.strands().for_each(|s| self.points.extend_from_slice(s.points));
+        let strands = Strands {
+            points: &self.points,
+            offsets: &self.offsets,
+            radii: &self.radii,
+            colors: &self.colors,
+            root_uvs: &self.root_uvs,
+        };
+        write_strands(path, strands).map(drop).map_err(Fault::writing)
+    }
+
+    /// Whether a complete file of as many strands and points is there.
+    fn is_baked(&self, path: &Path) -> bool {
+        let options = ReadOptions { scale: Some(1.0), up: None };
+        read_groom(path, &options).is_ok_and(|l| l.value.offsets == self.offsets)
+    }
+}

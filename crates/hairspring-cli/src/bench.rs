@@ -1,0 +1,189 @@
+//! `hairspring bench`: the speed and the quality of the simulation on the standard scene.
+
+use crate::{
+    console::{Console, say},
+    fault::Fault,
+    interrupt,
+    totals::grouped,
+};
+use clap::Parser;
+use hairspring::scene::{Solver, bench::Bench};
+use serde_json::json;
+use std::time::Instant;
+
+/// Measures the simulation on the standard bench scene.
+///
+/// A sphere scalp of radius 0.1 m, strands of 0.25 m evenly over its upper half, frames of 1/60 s, the scalp shaken
+/// 5 cm at 2 Hz, contact with the sphere, every strand simulated.
+///
+/// `ns_per_point_substep` is per core: wall time x threads / (strands x points x substeps). Stretch and depth are
+/// measured between the frames, outside the timed part: as they are after the last frame, and (`_ever`) the worst after
+/// any frame.
+#[derive(Parser)]
+#[command(after_help = "\
+Examples:
+  hairspring bench
+  hairspring bench --strands 100000 --frames 60
+  hairspring --threads 1 bench --simd sse2 --json")]
+pub struct Options {
+    /// Strands
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    strands: u32,
+
+    /// Points of each strand
+    #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(3..=1024))]
+    points: u32,
+
+    /// Frames of 1/60 s; 300 are 5 seconds
+    #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    frames: u32,
+
+    /// Substeps a frame
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64))]
+    substeps: u32,
+
+    /// How time is stepped: backward-euler
+    #[arg(long, value_name = "NAME", default_value = INTEGRATORS[0])]
+    integrator: String,
+
+    /// Where it runs: cpu
+    #[arg(long, value_name = "NAME", default_value = DEVICES[0])]
+    device: String,
+
+    /// Instruction set, an older one of this processor (avx512, avx2, sse4_2, sse2) [default: its best]
+    #[arg(long, value_name = "NAME")]
+    simd: Option<String>,
+
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+const INTEGRATORS: [&str; 1] = ["backward-euler"];
+const DEVICES: [&str; 1] = ["cpu"];
+
+/// Names that an instruction set may have; which of them a processor has is asked at run time.
+const INSTRUCTION_SETS: [&str; 6] = ["avx512", "avx2", "sse4_2", "sse2", "neon", "fallback"];
+
+/// Most points of a bench: their state is some 100 bytes a point.
+const MOST_POINTS: u64 = 200_000_000;
+
+/// Runs the command.
+pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
+    let Options { strands, points, frames, substeps, .. } = *options;
+    known("integrator", &options.integrator, &INTEGRATORS)?;
+    known("device", &options.device, &DEVICES)?;
+    if u64::from(strands) * u64::from(points) > MOST_POINTS {
+        let text =
+            format!("{strands} strands of {points} points are more than {MOST_POINTS} points; choose fewer");
+        return Err(Fault::Usage(text));
+    }
+    interrupt::listen();
+    let mut bench = Bench::new(strands, points, Solver { substeps, ..Solver::default() });
+    if let Some(name) = &options.simd
+        && !bench.simulation.use_instruction_set(name)
+    {
+        let simulation = &mut bench.simulation;
+        let there: Vec<&str> =
+            INSTRUCTION_SETS.into_iter().filter(|n| simulation.use_instruction_set(n)).collect();
+        known("instruction set", name, &there)?;
+    }
+    let mut times = Vec::with_capacity(frames as usize);
+    let (mut stretch_ever, mut depth_ever, mut reset) = (0f64, 0f64, 0);
+    let mut measure = bench.measure();
+    let mut progress = console.progress("simulating", frames);
+    for frame in 1..=frames {
+        let began = Instant::now();
+        let report = bench.step();
+        let time = began.elapsed().as_secs_f64();
+        times.push(time);
+        reset += report.reset_strands;
+        measure = bench.measure();
+        stretch_ever = stretch_ever.max(measure.stretch_max);
+        depth_ever = depth_ever.max(measure.max_depth);
+        progress.step(|| {
+            format!(
+                "frame {frame}: {:.2} ms, stretch {:.4} % mean, {:.3} % worst, {} points inside",
+                time * 1e3,
+                measure.stretch_mean * 1e2,
+                measure.stretch_max * 1e2,
+                measure.inside_points
+            )
+        });
+        if interrupt::asked() {
+            let text = format!("stopped after frame {frame} of {frames}: no figures were taken");
+            return Err(Fault::Interrupted(text));
+        }
+    }
+    drop(progress);
+    times.sort_by(f64::total_cmp);
+    // The nearest rank: a frame that there was.
+    let rank = |share: f64| times[((share * times.len() as f64).ceil() as usize).clamp(1, times.len()) - 1];
+    let (median, p95) = (rank(0.5) * 1e3, rank(0.95) * 1e3);
+    let threads = rayon::current_num_threads();
+    let work = f64::from(strands) * f64::from(points) * f64::from(substeps);
+    let ns = median * 1e6 * threads as f64 / work;
+    let simulation = &bench.simulation;
+    let bytes = simulation.bytes() as f64 / simulation.point_count() as f64;
+    let simd = simulation.instruction_set();
+    if options.json {
+        say(json!({
+            "device": options.device,
+            "threads": threads,
+            "strands": strands,
+            "points": points,
+            "substeps": substeps,
+            "frames": frames,
+            "integrator": options.integrator,
+            "hair_hair": false,
+            "ms_per_frame_median": median,
+            "ms_per_frame_p95": p95,
+            "ns_per_point_substep": ns,
+            "stretch_mean": measure.stretch_mean,
+            "stretch_max": measure.stretch_max,
+            "inside_points": measure.inside_points,
+            "max_depth_m": measure.max_depth,
+            "non_finite": measure.non_finite,
+            "bytes_per_point": bytes,
+            "stages": { "simulate": median },
+            "simd": simd,
+            "stretch_max_ever": stretch_ever,
+            "max_depth_m_ever": depth_ever,
+            "reset_strands": reset,
+        }));
+        return Ok(());
+    }
+    let all = grouped(strands as usize * points as usize);
+    say(format_args!("scene    {} strands x {points} points = {all} points", grouped(strands as usize)));
+    say(format_args!(
+        "on       {}, {threads} threads, {simd}, {}, {substeps} substeps, {frames} frames of 1/60 s",
+        options.device, options.integrator
+    ));
+    say(format_args!("time     {median:.2} ms a frame (median), {p95:.2} ms (95 %)"));
+    say(format_args!("         {ns:.2} ns a point and substep per core (wall time x threads)"));
+    say(format_args!(
+        "stretch  {:.4} % mean, {:.3} % worst at the end; {:.3} % worst ever",
+        measure.stretch_mean * 1e2,
+        measure.stretch_max * 1e2,
+        stretch_ever * 1e2
+    ));
+    say(format_args!(
+        "contact  {} points inside at the end, {:.4} mm the deepest; {:.4} mm ever",
+        measure.inside_points,
+        measure.max_depth * 1e3,
+        depth_ever * 1e3
+    ));
+    say(format_args!("memory   {bytes:.1} bytes a point"));
+    say(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
+    Ok(())
+}
+
+/// Refuses a name that is not among those that there are.
+fn known(what: &str, name: &str, there: &[&str]) -> Result<(), Fault> {
+    match there.contains(&name) {
+        true => Ok(()),
+        false => {
+            Err(Fault::Usage(format!("there is no {what} '{name}' here; there is: {}", there.join(", "))))
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Why the program ends without having done its work: one sentence and an exit code.
+
+use hairspring::stage::StageError;
+use hairspring_io::Error as FileError;
+use hairspring_view::OutputError;
+use std::{fmt, path::Path};
+
+/// Exit code of an error of the program itself (EX_SOFTWARE of sysexits.h).
+pub const PANICKED: u8 = 70;
+
+/// What went wrong, as one sentence.
+#[derive(Debug)]
+pub enum Fault {
+    /// The command line asks for something that there is not.
+    Usage(String),
+    /// A file is missing or the system does not give it.
+    Unreadable(String),
+    /// A file's content is wrong.
+    Content(String),
+    /// A file could not be written.
+    Unwritable(String),
+    /// The scene cannot be simulated.
+    Scene(String),
+    /// The user stopped it.
+    Interrupted(String),
+}
+
+impl Fault {
+    /// The exit code, as `--help` documents it.
+    pub fn code(&self) -> u8 {
+        match self {
+            Self::Usage(_) => 2,
+            Self::Unreadable(_) => 3,
+            Self::Content(_) => 4,
+            Self::Unwritable(_) => 5,
+            Self::Scene(_) => 6,
+            Self::Interrupted(_) => 130,
+        }
+    }
+
+    /// What reading `asked`, a file named on the command line, ended with: an unknown kind of file is an error of the
+    /// command line there, and one of the content where a scene names it.
+    pub fn reading(error: FileError, asked: &Path) -> Self {
+        let sentence = error.to_string();
+        match &error {
+            FileError::NotFound { .. } | FileError::Unreadable { .. } => Self::Unreadable(sentence),
+            FileError::Unsupported { path, .. } if path == asked => Self::Usage(sentence),
+            _ => Self::Content(sentence),
+        }
+    }
+
+    /// What writing ended with.
+    pub fn writing(error: FileError) -> Self {
+        match error {
+            FileError::Unsupported { .. } => Self::Usage(error.to_string()),
+            _ => Self::Unwritable(error.to_string()),
+        }
+    }
+}
+
+impl From<OutputError> for Fault {
+    fn from(error: OutputError) -> Self {
+        Self::Unwritable(error.to_string())
+    }
+}
+
+impl From<StageError> for Fault {
+    fn from(error: StageError) -> Self {
+        Self::Scene(error.to_string())
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Usage(s)
+        | Self::Unreadable(s)
+        | Self::Content(s)
+        | Self::Unwritable(s)
+        | Self::Scene(s)
+        | Self::Interrupted(s)) = self;
+        f.write_str(s)
+    }
+}
+
+/// A panic is an error of the program: it says so in one line, and how to report it.
+pub fn report_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        let what = panic.payload_as_str().unwrap_or("no reason given").replace('\n', " ");
+        let place = panic.location().map_or(String::new(), |l| format!(" at {}:{}", l.file(), l.line()));
+        let sentence = format!(
+            "hairspring {} met an error of its own{place} ({what}); please report this line with the command and the file \
+             that led to it",
+            env!("CARGO_PKG_VERSION")
+        );
+        crate::console::complain(&sentence);
+    }));
+}

@@ -1,0 +1,121 @@
+//! Pictures and clips being written while the next frame is simulated and drawn.
+
+use crate::fault::Fault;
+use hairspring_view::{ClipWriter, Image, OutputError, write_png};
+use std::{
+    path::PathBuf,
+    sync::mpsc::{Receiver, SyncSender, channel, sync_channel},
+    thread::JoinHandle,
+    time::{Duration, Instant},
+};
+
+/// Where drawn frames go.
+pub enum Sink {
+    /// All frames in one clip.
+    Clip(Box<ClipWriter>),
+    /// Each frame in a picture of its own, `#` in the name standing for its number.
+    Pictures(PathBuf),
+    /// One frame as a picture.
+    Still(PathBuf, u32),
+}
+
+enum Job {
+    Frame(u32, Image),
+    Finish,
+}
+
+/// Writes frames on a thread of its own. Dropped before [`Film::finish`] it leaves no clip and no half a picture.
+pub struct Film {
+    jobs: Option<SyncSender<Job>>,
+    /// Pictures whose memory is free again.
+    spare: Receiver<Image>,
+    thread: Option<JoinHandle<Result<Duration, OutputError>>>,
+}
+
+impl Film {
+    /// Starts writing to `sinks`.
+    pub fn new(mut sinks: Vec<Sink>) -> Self {
+        // One frame waits while one is written: memory stays small, and a slow disk slows the run instead of filling it.
+        let (jobs, todo) = sync_channel(1);
+        let (done, spare) = channel();
+        let thread = std::thread::spawn(move || {
+            let mut busy = Duration::ZERO;
+            for job in todo {
+                let began = Instant::now();
+                match job {
+                    Job::Frame(number, image) => {
+                        for sink in &mut sinks {
+                            sink.write(number, &image)?;
+                        }
+                        // Nobody wants it back after the last frame.
+                        let _ = done.send(image);
+                    }
+                    Job::Finish => {
+                        for sink in sinks.drain(..) {
+                            sink.finish()?;
+                        }
+                    }
+                }
+                busy += began.elapsed();
+            }
+            Ok(busy)
+        });
+        Self { jobs: Some(jobs), spare, thread: Some(thread) }
+    }
+
+    /// Hands a frame over.
+    pub fn show(&mut self, number: u32, image: &Image) -> Result<(), Fault> {
+        let mut copy = self.spare.try_recv().unwrap_or_default();
+        copy.clone_from(image);
+        self.send(Job::Frame(number, copy))
+    }
+
+    /// Completes all files; returns how long the writing took.
+    pub fn finish(mut self) -> Result<Duration, Fault> {
+        self.send(Job::Finish)?;
+        self.join()
+    }
+
+    fn send(&mut self, job: Job) -> Result<(), Fault> {
+        let sent = self.jobs.as_ref().is_some_and(|jobs| jobs.send(job).is_ok());
+        if sent { Ok(()) } else { self.join().map(drop) }
+    }
+
+    /// Waits for the thread.
+    fn join(&mut self) -> Result<Duration, Fault> {
+        self.jobs = None;
+        match self.thread.take().map(JoinHandle::join) {
+            Some(Ok(outcome)) => Ok(outcome?),
+            Some(Err(panic)) => std::panic::resume_unwind(panic),
+            None => Ok(Duration::ZERO),
+        }
+    }
+}
+
+impl Drop for Film {
+    fn drop(&mut self) {
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            // What it ended with no longer matters: the run has failed already.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Sink {
+    fn write(&mut self, number: u32, image: &Image) -> Result<(), OutputError> {
+        match self {
+            Self::Clip(clip) => clip.push(image),
+            Self::Pictures(pattern) => write_png(&crate::output::frame_path(pattern, number), image),
+            Self::Still(path, frame) if *frame == number => write_png(path, image),
+            Self::Still(..) => Ok(()),
+        }
+    }
+
+    fn finish(self) -> Result<(), OutputError> {
+        match self {
+            Self::Clip(clip) => clip.finish(),
+            Self::Pictures(_) | Self::Still(..) => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Frame numbers, sizes and guides as the command line writes them.
+
+use hairspring::{body::Clip, scene::Guides};
+use std::str::FromStr;
+
+/// Frames from `first` to `last`, both included, counted from 1; frame 1 is the rest pose at time 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameRange {
+    /// First frame, 1 or more.
+    pub first: u32,
+    /// Last frame, `first` or more.
+    pub last: u32,
+}
+
+/// Most frames of a run: nine hours at 30 frames a second.
+const MOST: u32 = 1_000_000;
+
+impl FrameRange {
+    /// The frames of a motion at `fps` frames a second, its last moment included; five seconds without one.
+    pub fn whole(clip: Option<&Clip>, fps: f64) -> Self {
+        let frames = match clip.filter(|c| c.frame_count() > 1) {
+            // Half a thousandth of a frame for a duration that is not a round number in binary.
+            Some(clip) => (f64::from(clip.duration()) * fps + 5e-4).floor() + 1.0,
+            None => (5.0 * fps).round(),
+        };
+        Self { first: 1, last: (frames as u32).clamp(1, MOST) }
+    }
+
+    /// Number of frames.
+    pub fn count(self) -> u32 {
+        self.last - self.first + 1
+    }
+
+    /// The frame numbers.
+    pub fn numbers(self) -> std::ops::RangeInclusive<u32> {
+        self.first..=self.last
+    }
+}
+
+impl FromStr for FrameRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (first, last) = text.split_once('-').unwrap_or((text, text));
+        let number = |n: &str| n.trim().parse::<u32>().ok().filter(|n| (1..=MOST).contains(n));
+        match (number(first), number(last)) {
+            (Some(first), Some(last)) if first <= last => Ok(Self { first, last }),
+            _ => Err(format!("frames are a number or a range from 1 to {MOST}, such as 60 or 1-150")),
+        }
+    }
+}
+
+/// Width and height of a picture [pixels], each 1 to 16,384, from `1280x720`.
+pub fn size(text: &str) -> Result<(u32, u32), String> {
+    let side = |n: &str| n.trim().parse::<u32>().ok().filter(|n| (1..=16_384).contains(n));
+    text.split_once(['x', 'X'])
+        .and_then(|(w, h)| Some((side(w)?, side(h)?)))
+        .ok_or_else(|| "a size is width x height in pixels, each 1 to 16384, such as 1280x720".into())
+}
+
+/// Frames a second, above 0 and up to 240.
+pub fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse::<f64>().ok().filter(|r| *r >= 1.0 && *r <= 240.0);
+    rate.ok_or_else(|| "frames a second are a number from 1 to 240, such as 30 or 23.976".into())
+}
+
+/// Which strands are simulated: `all`, `file` or a number.
+pub fn guides(text: &str) -> Result<Guides, String> {
+    match text {
+        "all" => Ok(Guides::All),
+        "file" => Ok(Guides::FromGroom),
+        _ => text.parse().ok().filter(|n| *n > 0).map(Guides::Count).ok_or_else(|| {
+            "guides are a number above 0, `all`, or `file` for those that the groom names".into()
+        }),
+    }
+}
+
+/// A point, `x,y,z` [m].
+pub fn point(text: &str) -> Result<glam::Vec3, String> {
+    let numbers: Option<Vec<f32>> =
+        text.split(',').map(|n| n.trim().parse().ok().filter(|n: &f32| n.is_finite())).collect();
+    numbers
+        .and_then(|n| <[f32; 3]>::try_from(n).ok())
+        .map(Into::into)
+        .ok_or_else(|| "a point is three numbers in metres, such as 0,1.6,0.5".into())
+}
+
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|n| n.is_finite() && *n > 0.0);
+    number.ok_or_else(|| "a number above 0 is expected".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_read_or_refused() {
+        let range = |t: &str| t.parse::<FrameRange>().ok().map(|r| (r.first, r.last));
+        assert_eq!(range("1-150"), Some((1, 150)));
+        assert_eq!(range("60"), Some((60, 60)));
+        for wrong in ["", "0", "0-3", "5-4", "-3", "1-", "a-b", "1-2-3", "99999999999"] {
+            assert_eq!(range(wrong), None, "{wrong:?}");
+        }
+        assert_eq!(size("1280x720"), Ok((1280, 720)));
+        assert!(["", "12", "0x5", "5x0", "1x99999", "axb"].iter().all(|t| size(t).is_err()));
+        assert!(["0", "nan", "inf", "-1", "241"].iter().all(|t| rate(t).is_err()));
+    }
+
+    #[test]
+    fn a_motion_is_played_to_its_last_moment() {
+        let clip = |frames: usize, rate: f32| Clip {
+            name: String::new(),
+            rate,
+            joint_count: 1,
+            samples: vec![Default::default(); frames],
+        };
+        assert_eq!(FrameRange::whole(Some(&clip(301, 60.0)), 30.0).last, 151);
+        assert_eq!(FrameRange::whole(Some(&clip(343, 120.0)), 30.0).last, 86);
+        assert_eq!(FrameRange::whole(Some(&clip(1, 120.0)), 30.0).last, 150);
+        assert_eq!(FrameRange::whole(None, 24.0).last, 120);
+    }
+}

@@ -1,0 +1,127 @@
+//! What is simulated: a scene file, or a groom file alone.
+
+use crate::{console::Console, fault::Fault, frames};
+use clap::{Args, ValueEnum};
+use glam::Vec3;
+use hairspring::{
+    groom::Repairs,
+    scene::{Guides, Scene, SceneGroom},
+};
+use hairspring_io::{Axis, Format, ReadOptions, read_groom, read_scene};
+use std::path::{Path, PathBuf};
+
+/// The units of a file that does not say them.
+#[derive(Args, Clone, Copy)]
+pub struct Units {
+    /// Metres in one unit of the file, for a file that does not say [default: guessed, and the guess is printed]
+    #[arg(long, value_name = "METRES", value_parser = frames::positive)]
+    pub scale: Option<f32>,
+
+    /// The axis that points up in the file [default: by its format]
+    #[arg(long, value_name = "AXIS")]
+    pub up: Option<Up>,
+}
+
+/// The axis that points up.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Up {
+    /// Y points up.
+    Y,
+    /// Z points up.
+    Z,
+}
+
+impl From<Units> for ReadOptions {
+    fn from(units: Units) -> Self {
+        let up = units.up.map(|up| match up {
+            Up::Y => Axis::Y,
+            Up::Z => Axis::Z,
+        });
+        Self { scale: units.scale, up }
+    }
+}
+
+/// The input of a simulation and what is changed in it.
+#[derive(Args)]
+pub struct Input {
+    /// A scene (.toml), or a groom (.hair, .tfx, .data) that hangs still under gravity
+    #[arg(value_name = "SCENE|GROOM")]
+    pub path: PathBuf,
+
+    #[command(flatten)]
+    pub units: Units,
+
+    /// Strands to simulate in each groom, the others follow: a number, `all`, or `file` for those that it names
+    /// [default: as the scene says; 2000 where nothing does]
+    #[arg(long, value_name = "N|all|file", value_parser = frames::guides)]
+    pub guides: Option<Guides>,
+
+    /// Substeps in 1/60 s, whatever the frame rate [default: as the scene says, 4 where it does not]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub substeps: Option<u32>,
+}
+
+impl Input {
+    /// Reads the scene.
+    pub fn scene(&self, console: Console) -> Result<Scene, Fault> {
+        let path = &self.path;
+        let mut scene = if Format::of(path) == Some(Format::Scene) {
+            if self.units.scale.is_some() || self.units.up.is_some() {
+                let text =
+                    "--scale and --up are for a groom alone; a scene sets them for each file that it names";
+                return Err(Fault::Usage(text.into()));
+            }
+            let loaded = read_scene(path).map_err(|e| Fault::reading(e, path))?;
+            tell(&loaded.notes, &loaded.repairs, console);
+            loaded.value
+        } else {
+            let loaded = read_groom(path, &self.units.into()).map_err(|e| match e {
+                hairspring_io::Error::Unsupported { .. } if Format::of(path).is_none() => Fault::Usage(format!(
+                    "{}: a scene is read from .toml, a groom from .hair, .tfx or .data, told by the extension",
+                    path.display()
+                )),
+                other => Fault::reading(other, path),
+            })?;
+            tell(&loaded.notes, &loaded.repairs, console);
+            alone(path, loaded.value)
+        };
+        if let Some(guides) = self.guides {
+            scene.grooms.iter_mut().for_each(|g| g.guides = guides);
+        }
+        if let Some(substeps) = self.substeps {
+            scene.solver.substeps = substeps;
+        }
+        Ok(scene)
+    }
+}
+
+/// A groom in the air: roots fixed, gravity, nothing else.
+fn alone(path: &Path, groom: hairspring::groom::Groom) -> Scene {
+    Scene {
+        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        grooms: vec![SceneGroom { groom, ..SceneGroom::default() }],
+        gravity: Vec3::new(0.0, -9.81, 0.0),
+        ..Scene::default()
+    }
+}
+
+/// Shows what a reader guessed, left out and repaired.
+pub fn tell(notes: &[String], repairs: &Repairs, console: Console) {
+    notes.iter().for_each(|n| console.note(n));
+    if repairs.total() > 0 {
+        console.note(format_args!("repaired {}", repaired(repairs)));
+    }
+}
+
+/// What was repaired, in words; empty where nothing was.
+pub fn repaired(repairs: &Repairs) -> String {
+    let parts = [
+        (repairs.non_finite_points, "points that were not finite"),
+        (repairs.zero_segments, "segments of no length"),
+        (repairs.short_strands, "strands of fewer than 3 points"),
+        (repairs.bad_radii, "radii that were not above 0"),
+    ];
+    let words: Vec<String> =
+        parts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    words.join(", ")
+}

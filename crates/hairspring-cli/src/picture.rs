@@ -1,0 +1,111 @@
+//! A stage as a picture: camera, light, and what is drawn of it.
+
+use crate::{fault::Fault, frames};
+use clap::Args;
+use glam::Vec3;
+use hairspring::{scene::Camera, stage::Stage};
+use hairspring_view::{
+    Background, Frame, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, Timings, frame_camera,
+};
+
+/// How pictures are taken.
+#[derive(Args)]
+pub struct View {
+    /// Width and height of the picture [pixels]
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = frames::size)]
+    pub size: (u32, u32),
+
+    /// Where the camera stands [m] [default: as the scene says, else where all hair is seen]
+    #[arg(long, value_name = "X,Y,Z", value_parser = frames::point, allow_hyphen_values = true)]
+    pub camera: Option<Vec3>,
+
+    /// What the camera looks at [m]
+    #[arg(long, value_name = "X,Y,Z", value_parser = frames::point, allow_hyphen_values = true)]
+    pub target: Option<Vec3>,
+
+    /// Vertical field of view [degrees], 1 to 170
+    #[arg(long, value_name = "DEGREES", value_parser = clap::value_parser!(u8).range(1..=170))]
+    pub fov: Option<u8>,
+
+    /// Multiplies the width of drawn hairs [default: 1 for 100,000 hairs and more; up to 10 where fewer stand for a head]
+    #[arg(long, value_name = "FACTOR", value_parser = frames::positive)]
+    pub hair_width: Option<f32>,
+}
+
+/// Hairs on a human head.
+const HEAD: f32 = 100_000.0;
+
+/// Widest that a hair is drawn by default, times its own width: 0.7 mm, a thin lock.
+const WIDEST: f32 = 10.0;
+
+/// A camera, its lamps and a renderer.
+pub struct Studio {
+    renderer: Renderer,
+    camera: Camera,
+    width_scale: f32,
+}
+
+impl Studio {
+    /// Sets up for the stage as it is now.
+    pub fn new(view: &View, stage: &Stage) -> Result<Self, Fault> {
+        let (width, height) = view.size;
+        let mut camera =
+            stage.scene().camera.unwrap_or_else(|| overview(stage, width as f32 / height as f32));
+        camera.position = view.camera.unwrap_or(camera.position);
+        camera.target = view.target.unwrap_or(camera.target);
+        camera.fov = view.fov.map_or(camera.fov, f32::from);
+        if camera.position.distance(camera.target) < 1e-3 {
+            let text = "the camera stands on what it looks at; move --camera or --target".into();
+            return Err(Fault::Usage(text));
+        }
+        let strands = stage.simulated_strands().1 as f32;
+        let width_scale = view.hair_width.unwrap_or((HEAD / strands).clamp(1.0, WIDEST));
+        Ok(Self { renderer: Renderer::new(width, height), camera, width_scale })
+    }
+
+    /// How much wider than they are hairs are drawn.
+    pub fn width_scale(&self) -> f32 {
+        self.width_scale
+    }
+
+    /// Draws the stage as it is now.
+    pub fn draw(&mut self, stage: &Stage) -> (&Image, Timings) {
+        let hair: Vec<HairDraw> = stage
+            .strands()
+            .map(|s| HairDraw {
+                points: s.points,
+                offsets: &s.groom.offsets,
+                radii: &s.groom.radii,
+                colors: &s.groom.colors,
+                look: s.look,
+                width_scale: self.width_scale,
+            })
+            .collect();
+        let body = stage.body().map(|b| MeshDraw {
+            positions: b.positions,
+            normals: b.normals,
+            triangles: &b.mesh.triangles,
+            parts: &b.mesh.parts,
+        });
+        self.renderer.draw(&Frame {
+            hair: &hair,
+            bodies: body.as_slice(),
+            camera: self.camera,
+            lighting: Lighting::facing(&self.camera),
+            background: Background::default(),
+            quality: Quality::default(),
+        });
+        (self.renderer.image(), self.renderer.timings())
+    }
+}
+
+/// A camera that sees all hair, with room for it to move.
+fn overview(stage: &Stage, aspect: f32) -> Camera {
+    let bounds = stage.strands().flat_map(|s| s.points.iter().copied()).fold(None, |b, p| {
+        let (low, high): (Vec3, Vec3) = b.unwrap_or((p, p));
+        Some((low.min(p), high.max(p)))
+    });
+    let (low, high) = bounds.unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+    let room = Vec3::splat(0.06 * (high - low).length());
+    frame_camera((low - room, high + room), aspect)
+}

@@ -1,0 +1,206 @@
+//! `hairspring render`: a scene or a groom as pictures.
+
+use crate::{
+    console::{Console, say},
+    fault::Fault,
+    film::{Film, Sink},
+    frames::{self, FrameRange},
+    input::Input,
+    interrupt, output,
+    picture::{Studio, View},
+    play::{Ending, play},
+    totals::{self, Totals},
+};
+use clap::Parser;
+use hairspring::{scene::Scene, stage::Stage};
+use hairspring_view::{ClipWriter, OutputError, read_png};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Simulates a scene or a groom and draws it.
+///
+/// Frame 1 is the rest pose at time 0. Frames before the first that is drawn are simulated all the same. Files appear
+/// only when they are complete.
+#[derive(Parser)]
+#[command(after_help = "\
+Examples:
+  hairspring render head.hair -o head.png
+  hairspring render shot.toml -o shot.mp4 --size 1920x1080 --fps 24
+  hairspring render shot.toml -o frame.####.png --frames 20-80 --resume
+  hairspring render shot.toml -o side.png --frames 60 --camera 1.2,1.6,0 --target 0,1.5,0")]
+pub struct Options {
+    #[command(flatten)]
+    input: Input,
+
+    /// What to write: still.png, numbered pictures such as frame.####.png, or clip.mp4
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    /// Frames to draw, such as 1-150 or 60 [default: the scene's motion, 5 seconds without one; frame 1 for a still]
+    #[arg(long, value_name = "A-B")]
+    frames: Option<FrameRange>,
+
+    /// Frames a second
+    #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
+    fps: f64,
+
+    #[command(flatten)]
+    view: View,
+
+    /// Skip pictures that are there, complete and of this size; they are simulated through
+    #[arg(long)]
+    resume: bool,
+
+    /// Print what ran as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
+    let kind = Kind::of(&options.output)?;
+    output::try_folder(&output::frame_path(&options.output, 1))?;
+    if options.resume && kind != Kind::Pictures {
+        let text =
+            "--resume needs numbered pictures, such as frame.####.png: a clip or a still is drawn as a whole";
+        return Err(Fault::Usage(text.into()));
+    }
+    let scene = options.input.scene(console)?;
+    let range = match (kind, options.frames) {
+        (Kind::Still, None) => FrameRange { first: 1, last: 1 },
+        (Kind::Still, Some(range)) if range.count() > 1 => {
+            let text = format!(
+                "{} takes one frame: name it (--frames {}), or number the pictures (frame.####.png)",
+                options.output.display(),
+                range.first
+            );
+            return Err(Fault::Usage(text));
+        }
+        (_, Some(range)) => range,
+        (_, None) => FrameRange::whole(scene.clip.as_ref(), options.fps),
+    };
+    let mut wanted: Vec<u32> = range.numbers().collect();
+    if options.resume {
+        wanted.retain(|n| !is_drawn(&output::frame_path(&options.output, *n), options.view.size));
+    }
+    let sink = match kind {
+        Kind::Clip => Sink::Clip(clip(&options.output, options.view.size, options.fps)?),
+        Kind::Pictures => Sink::Pictures(options.output.clone()),
+        Kind::Still => Sink::Still(options.output.clone(), range.first),
+    };
+    let (stage, totals, ending) = shoot(scene, &wanted, options.fps, &options.view, vec![sink], console)?;
+    if let Ending::Stopped(after) = ending {
+        let how = match kind {
+            Kind::Pictures => "run the same command with --resume to go on",
+            Kind::Clip | Kind::Still => "the file was not written; numbered pictures can be resumed",
+        };
+        return Err(Fault::Interrupted(format!("stopped after frame {after} of {}: {how}", range.last)));
+    }
+    if options.json {
+        let summary = json!({
+            "output": options.output,
+            "frames": wanted.len(),
+            "skipped": range.count() as usize - wanted.len(),
+            "fps": options.fps,
+            "size": [options.view.size.0, options.view.size.1],
+        });
+        say(totals.json(&stage, summary));
+    } else {
+        let skipped = match range.count() as usize - wanted.len() {
+            0 => String::new(),
+            n => format!(", {n} were there already"),
+        };
+        say(format_args!(
+            "wrote    {} ({}{skipped})",
+            options.output.display(),
+            totals::frames(wanted.len())
+        ));
+        totals.tell(&stage);
+    }
+    Ok(())
+}
+
+/// Plays a scene and films the frames in `wanted`, which are in order.
+pub fn shoot(
+    scene: Scene,
+    wanted: &[u32],
+    fps: f64,
+    view: &View,
+    sinks: Vec<Sink>,
+    console: Console,
+) -> Result<(Stage, Totals, Ending), Fault> {
+    interrupt::listen();
+    let mut stage = Stage::new(scene)?;
+    let mut studio = Studio::new(view, &stage)?;
+    if studio.width_scale() != 1.0 {
+        console.note(format_args!(
+            "{} hairs are drawn {:.2} times as wide as they are; --hair-width sets another factor",
+            stage.simulated_strands().1,
+            studio.width_scale()
+        ));
+    }
+    let mut film = Film::new(sinks);
+    let mut totals = Totals::new();
+    let last = wanted.last().copied().unwrap_or(0);
+    let mut progress = console.progress("simulating and drawing", last);
+    let ending = play(&mut stage, last, fps, |frame, stage, report| {
+        totals.stepped(frame, report);
+        let mut timings = None;
+        if wanted.binary_search(&frame).is_ok() {
+            let (image, times) = studio.draw(stage);
+            totals.drawn(times);
+            timings = Some(times);
+            film.show(frame, image)?;
+        }
+        progress.step(|| {
+            let drawn = timings.map_or(String::new(), |t| {
+                format!(", shadow {:.1?}, draw {:.1?}", t.shadow, t.strands + t.tiles)
+            });
+            format!(
+                "frame {frame}: body {:.1?}, simulate {:.1?}, follow {:.1?}{drawn}",
+                report.body, report.simulate, report.follow
+            )
+        });
+        Ok(())
+    })?;
+    drop(progress);
+    if ending == Ending::Played {
+        totals.written(wanted.len() as u32, film.finish()?);
+    }
+    Ok((stage, totals, ending))
+}
+
+/// Starts a clip; a size or rate that clips cannot have is an error of the command line.
+pub fn clip(path: &Path, (width, height): (u32, u32), fps: f64) -> Result<Box<ClipWriter>, Fault> {
+    ClipWriter::create(path, width, height, fps).map(Box::new).map_err(|e| match e {
+        OutputError::Clip { .. } => Fault::Usage(e.to_string()),
+        other => other.into(),
+    })
+}
+
+/// What an output's name asks for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Clip,
+    Pictures,
+    Still,
+}
+
+impl Kind {
+    fn of(path: &Path) -> Result<Self, Fault> {
+        match (output::extension(path).as_str(), output::is_sequence(path)) {
+            ("png", true) => Ok(Self::Pictures),
+            ("png", false) => Ok(Self::Still),
+            ("mp4", false) => Ok(Self::Clip),
+            _ => Err(Fault::Usage(format!(
+                "{}: pictures are written as still.png or frame.####.png, clips as clip.mp4",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// Whether a complete picture of this size is there.
+fn is_drawn(path: &Path, (width, height): (u32, u32)) -> bool {
+    read_png(path).is_ok_and(|p| (p.width, p.height) == (width, height))
+}

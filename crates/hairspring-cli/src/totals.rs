@@ -1,0 +1,177 @@
+//! What ran and how fast, for people and for machines.
+
+use crate::console::say;
+use hairspring::stage::{FrameReport, Stage};
+use hairspring_view::Timings;
+use serde_json::{Map, Value, json};
+use std::time::{Duration, Instant};
+
+/// Sums over a run.
+pub struct Totals {
+    began: Instant,
+    steps: u32,
+    drawn: u32,
+    substeps: u32,
+    reset_strands: usize,
+    body: Duration,
+    simulate: Duration,
+    follow: Duration,
+    shadow: Duration,
+    draw: Duration,
+    written: u32,
+    write: Duration,
+}
+
+impl Totals {
+    /// A run begins.
+    pub fn new() -> Self {
+        Self {
+            began: Instant::now(),
+            steps: 0,
+            drawn: 0,
+            substeps: 0,
+            reset_strands: 0,
+            body: Duration::ZERO,
+            simulate: Duration::ZERO,
+            follow: Duration::ZERO,
+            shadow: Duration::ZERO,
+            draw: Duration::ZERO,
+            written: 0,
+            write: Duration::ZERO,
+        }
+    }
+
+    /// A frame was stepped to; frame 1 takes no step.
+    pub fn stepped(&mut self, frame: u32, report: &FrameReport) {
+        if frame > 1 {
+            self.steps += 1;
+            self.substeps = report.step.substeps;
+            self.reset_strands += report.step.reset_strands;
+            self.body += report.body;
+            self.simulate += report.simulate;
+            self.follow += report.follow;
+        }
+    }
+
+    /// A frame was drawn.
+    pub fn drawn(&mut self, timings: Timings) {
+        self.drawn += 1;
+        self.shadow += timings.shadow;
+        self.draw += timings.strands + timings.tiles;
+    }
+
+    /// `frames` frames were written in `time`.
+    pub fn written(&mut self, frames: u32, time: Duration) {
+        self.written += frames;
+        self.write += time;
+    }
+
+    /// Mean milliseconds a frame of each stage that ran.
+    fn stages(&self) -> Vec<(&'static str, f64)> {
+        let mean = |time: Duration, n: u32| time.as_secs_f64() * 1e3 / f64::from(n);
+        [
+            ("body", self.body, self.steps),
+            ("simulate", self.simulate, self.steps),
+            ("follow", self.follow, self.steps),
+            ("shadow", self.shadow, self.drawn),
+            ("draw", self.draw, self.drawn),
+            ("write", self.write, self.written),
+        ]
+        .into_iter()
+        .filter(|(_, _, n)| *n > 0)
+        .map(|(name, time, n)| (name, mean(time, n)))
+        .collect()
+    }
+
+    /// What ran and how fast, in lines on standard output.
+    pub fn tell(&self, stage: &Stage) {
+        let (guides, strands) = stage.simulated_strands();
+        let (guide_points, points) = stage.simulated_points();
+        let ran = match guides == strands {
+            true => format!("{} hairs of {} points, all simulated", grouped(strands), grouped(points)),
+            false => format!(
+                "{} hairs of {} points follow {} simulated guides of {} points",
+                grouped(strands),
+                grouped(points),
+                grouped(guides),
+                grouped(guide_points)
+            ),
+        };
+        say(format_args!("ran      {ran}"));
+        let substeps = match self.substeps {
+            0 => "no substep".into(),
+            n => format!("{n} substeps a frame"),
+        };
+        say(format_args!(
+            "on       {} threads, {}, {substeps}",
+            rayon::current_num_threads(),
+            stage.instruction_set()
+        ));
+        let stages: Vec<String> = self.stages().iter().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
+        say(format_args!("ms/frame {}", stages.join(", ")));
+        if self.reset_strands > 0 {
+            say(format_args!(
+                "reset    {} strands turned non-finite and were put back to rest",
+                self.reset_strands
+            ));
+        }
+        say(format_args!("took     {:.1} s", self.began.elapsed().as_secs_f64()));
+    }
+
+    /// The same for machines; `extra` keys come first.
+    pub fn json(&self, stage: &Stage, extra: Value) -> Value {
+        let (guides, strands) = stage.simulated_strands();
+        let (guide_points, points) = stage.simulated_points();
+        let stages: Map<String, Value> =
+            self.stages().into_iter().map(|(name, ms)| (name.into(), json!(ms))).collect();
+        let Value::Object(mut all) = extra else { return extra };
+        let Value::Object(rest) = json!({
+            "scene": stage.scene().name,
+            "strands": strands,
+            "points": points,
+            "simulated_strands": guides,
+            "simulated_points": guide_points,
+            "substeps": self.substeps,
+            "threads": rayon::current_num_threads(),
+            "simd": stage.instruction_set(),
+            "reset_strands": self.reset_strands,
+            "ms_per_frame": stages,
+            "seconds": self.began.elapsed().as_secs_f64(),
+        }) else {
+            return Value::Object(all);
+        };
+        all.extend(rest);
+        Value::Object(all)
+    }
+}
+
+/// `1 frame`, `2 frames`.
+pub fn frames(n: usize) -> String {
+    format!("{} frame{}", grouped(n), if n == 1 { "" } else { "s" })
+}
+
+/// A number with commas between thousands.
+pub fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let first = (digits.len() - 1) % 3 + 1;
+    let mut out = digits[..first].to_owned();
+    for three in digits.as_bytes()[first..].chunks(3) {
+        out.push(',');
+        out.extend(three.iter().map(|d| char::from(*d)));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{frames, grouped};
+
+    #[test]
+    fn numbers_are_written_as_people_do() {
+        let cases = [(0, "0"), (999, "999"), (1000, "1,000"), (123_456, "123,456"), (3_200_000, "3,200,000")];
+        for (n, text) in cases {
+            assert_eq!(grouped(n), text);
+        }
+        assert_eq!((frames(1), frames(1500)), ("1 frame".into(), "1,500 frames".into()));
+    }
+}

@@ -1,0 +1,75 @@
+//! `grow` of a `[[groom]]`: on which skin of the body hair grows.
+
+use super::{Reader, file::GrowFile, sentence::unknown};
+use crate::Result;
+use glam::Vec3;
+use hairspring::{
+    body::Body,
+    groom::{Groom, grow},
+    scene::Shape,
+};
+use toml::Spanned;
+
+impl Reader<'_> {
+    /// The hair that `named` describes.
+    pub(super) fn grown(&self, named: &Spanned<GrowFile>, body: Option<&Body>) -> Result<Groom> {
+        let near = named.span().start;
+        let file = named.get_ref();
+        let Some(body) = body else {
+            return Err(self.wrong(near, "grow", "`grow` needs a [body] that hair grows on".into()));
+        };
+        let mesh = &body.mesh;
+        let mut allowed = vec![file.parts.is_none(); mesh.triangles.len()];
+        for name in file.parts.iter().flatten() {
+            let mut parts = mesh.parts.iter().filter(|p| p.name == *name).peekable();
+            if parts.peek().is_none() {
+                let text = format!("the part {}", unknown(name, mesh.parts.iter().map(|p| p.name.as_str())));
+                return Err(self.wrong(near, "parts", text));
+            }
+            parts.for_each(|p| allowed[p.triangles.start as usize..p.triangles.end as usize].fill(true));
+        }
+        if let Some(name) = &file.joint {
+            let joint = body.joint(name).ok_or_else(|| {
+                let text =
+                    format!("the joint {}", unknown(name, body.joints.iter().map(|j| j.name.as_str())));
+                self.wrong(near, "joint", text)
+            })?;
+            for (t, allowed) in allowed.iter_mut().enumerate() {
+                *allowed &= mesh.triangles[t].iter().all(|v| strongest(body, *v as usize) == joint);
+            }
+        }
+        if let Some(shape) = &file.inside {
+            for (t, allowed) in allowed.iter_mut().enumerate() {
+                *allowed &= is_inside(shape, mesh.corners(t).iter().sum::<Vec3>() / 3.0);
+            }
+        }
+        let groom = grow(mesh, &file.growth(), |t| allowed[t]);
+        if groom.strand_count() == 0 {
+            return Err(self.wrong(
+                near,
+                "grow",
+                "no skin of the body is where `grow` says: widen it".into(),
+            ));
+        }
+        Ok(groom)
+    }
+}
+
+/// The joint that a vertex follows more than any other; the first for a rigid body.
+fn strongest(body: &Body, vertex: usize) -> usize {
+    body.skin.as_ref().map_or(0, |skin| {
+        let pairs = skin.joints[vertex].into_iter().zip(skin.weights[vertex]);
+        pairs.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(j, _)| j as usize)
+    })
+}
+
+fn is_inside(shape: &Shape, p: Vec3) -> bool {
+    match *shape {
+        Shape::Sphere { center, radius } => p.distance(center) < radius,
+        Shape::Capsule { a, b, radius } => {
+            let axis = b - a;
+            let t = ((p - a).dot(axis) / axis.length_squared().max(1e-12)).clamp(0.0, 1.0);
+            p.distance(a + axis * t) < radius
+        }
+    }
+}

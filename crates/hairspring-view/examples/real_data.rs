@@ -1,0 +1,199 @@
+//! Plays scene files and prints what came of it, as the table of `docs/real-data.md`; on request, draws them.
+//!
+//! ```sh
+//! cargo run --release -p hairspring-view --example real_data -- examples/scenes/*.toml
+//! cargo run --release -p hairspring-view --example real_data -- --pictures DIR --size 640x480 SCENE.toml …
+//! ```
+//!
+//! A scene plays to the end of its motion, but at most 10 s (2 s without one). Pictures are taken at the start, halfway and at
+//! the moment when hair is fastest.
+
+use glam::Vec3;
+use hairspring::{
+    scene::Scene,
+    simulation::Measure,
+    stage::{Stage, StageError},
+};
+use hairspring_io::read_scene;
+use hairspring_view::{
+    Background, Frame, HairDraw, Lighting, MeshDraw, Quality, Renderer, frame_camera, write_png,
+};
+use std::{
+    error::Error,
+    path::{Path, PathBuf},
+};
+
+/// Length of a frame [s].
+const FRAME: f32 = 1.0 / 60.0;
+
+/// What the command line asks for.
+struct Arguments {
+    scenes: Vec<PathBuf>,
+    pictures: Option<PathBuf>,
+    size: [u32; 2],
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = arguments()?;
+    println!(
+        "{} threads; a frame is 1/60 s; depth is below where a point was authored.\n",
+        rayon::current_num_threads()
+    );
+    println!(
+        "| scene | strands | points | simulated strands | time played [s] | ms a frame | of it body, strands, follow hairs | worst stretch [%] | points inside | worst depth [mm] | moved in 1 s at rest, mean [mm] |"
+    );
+    println!("| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |");
+    for path in &arguments.scenes {
+        let scene = read_scene(path)?.value;
+        let name = scene.name.clone();
+        let (played, mut stage) = play(scene.clone())?;
+        println!("| {name} | {} | {:.4} |", played.row(&stage), at_rest(scene)? * 1e3);
+        if let Some(folder) = &arguments.pictures {
+            let times = [("start", 0.0), ("middle", 0.5 * played.duration), ("fastest", played.fastest)];
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            for (moment, time) in times {
+                draw(&mut stage, time, arguments.size, &folder.join(format!("{stem}-{moment}.png")))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn arguments() -> Result<Arguments, String> {
+    let mut out = Arguments { scenes: Vec::new(), pictures: None, size: [960, 720] };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "--pictures" => out.pictures = Some(words.next().ok_or("--pictures needs a folder")?.into()),
+            "--size" => {
+                let size = words.next().unwrap_or_default();
+                let sides = size.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+                out.size = sides.ok_or(format!("--size is {size:?}; a size such as 640x480 was expected"))?;
+            }
+            scene => out.scenes.push(scene.into()),
+        }
+    }
+    if out.scenes.is_empty() { Err("name one scene file or more".into()) } else { Ok(out) }
+}
+
+/// What was seen while a scene played.
+#[derive(Default)]
+struct Played {
+    /// Body, simulated strands, follow hairs: time of each frame [ms].
+    frames: Vec<[f64; 3]>,
+    duration: f32,
+    /// The worst of all frames.
+    worst: Measure,
+    /// When hair was fastest [s].
+    fastest: f32,
+}
+
+impl Played {
+    /// Cells of the table, from the strands to the depth.
+    fn row(&self, stage: &Stage) -> String {
+        let ((simulated, strands), (_, points)) = (stage.simulated_strands(), stage.simulated_points());
+        let median = |of: &dyn Fn(&[f64; 3]) -> f64| {
+            let mut all: Vec<f64> = self.frames.iter().map(of).collect();
+            all.sort_by(f64::total_cmp);
+            all[all.len() / 2]
+        };
+        let parts = [0, 1, 2].map(|k| format!("{:.1}", median(&|f| f[k])));
+        format!(
+            "{strands} | {points} | {simulated} | {:.1} | {:.1} | {} | {:.2} | {} | {:.3}",
+            self.duration,
+            median(&|f| f.iter().sum()),
+            parts.join(", "),
+            self.worst.stretch_max * 100.0,
+            self.worst.inside_points,
+            self.worst.max_depth * 1e3,
+        )
+    }
+}
+
+fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
+    let duration = scene.clip.as_ref().map_or(2.0, |c| c.duration().clamp(1.0, 10.0));
+    let mut stage = Stage::new(scene)?;
+    let mut played = Played { duration, ..Played::default() };
+    while stage.time() < duration {
+        let report = stage.step(FRAME);
+        let measure = stage.measure();
+        if measure.speed_max > played.worst.speed_max {
+            played.fastest = stage.time();
+        }
+        let worst = &mut played.worst;
+        *worst = Measure {
+            stretch_mean: worst.stretch_mean.max(measure.stretch_mean),
+            stretch_max: worst.stretch_max.max(measure.stretch_max),
+            inside_points: worst.inside_points.max(measure.inside_points),
+            max_depth: worst.max_depth.max(measure.max_depth),
+            non_finite: worst.non_finite + measure.non_finite + report.step.reset_strands,
+            speed_max: worst.speed_max.max(measure.speed_max),
+        };
+        let times = [report.body, report.simulate, report.follow];
+        played.frames.push(times.map(|t| t.as_secs_f64() * 1e3));
+    }
+    assert_eq!(played.worst.non_finite, 0, "hair exploded");
+    Ok((played, stage))
+}
+
+/// How far the mean point moves from where it was authored in a second in which nothing moves [m].
+fn at_rest(scene: Scene) -> Result<f64, StageError> {
+    let still = Scene { clip: None, wind: Default::default(), ..scene };
+    let mut stage = Stage::new(still)?;
+    for _ in 0..60 {
+        stage.step(FRAME);
+    }
+    let (mut sum, mut count) = (0.0, 0);
+    for strands in stage.strands() {
+        let moved = strands.points.iter().zip(&strands.groom.points);
+        sum += moved.map(|(a, b)| a.distance(*b) as f64).sum::<f64>();
+        count += strands.points.len();
+    }
+    Ok(sum / count as f64)
+}
+
+/// Plays up to `time` [s] and draws.
+fn draw(stage: &mut Stage, time: f32, size: [u32; 2], path: &Path) -> Result<(), Box<dyn Error>> {
+    if time < stage.time() {
+        stage.reset();
+    }
+    while stage.time() + 0.5 * FRAME < time {
+        stage.step(FRAME);
+    }
+    let hair: Vec<HairDraw> = stage
+        .strands()
+        .map(|s| HairDraw {
+            points: s.points,
+            offsets: &s.groom.offsets,
+            radii: &s.groom.radii,
+            colors: &s.groom.colors,
+            look: s.look,
+            width_scale: 1.0,
+        })
+        .collect();
+    let body = stage.body();
+    let bodies: Vec<MeshDraw> = body
+        .iter()
+        .map(|b| MeshDraw {
+            positions: b.positions,
+            normals: b.normals,
+            triangles: &b.mesh.triangles,
+            parts: &b.mesh.parts,
+        })
+        .collect();
+    let all = hair.iter().flat_map(|h| h.points).chain(bodies.iter().flat_map(|b| b.positions));
+    let bounds = all.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+    let aspect = size[0] as f32 / size[1] as f32;
+    let camera = stage.scene().camera.unwrap_or_else(|| frame_camera(bounds, aspect));
+    let frame = Frame {
+        hair: &hair,
+        bodies: &bodies,
+        camera,
+        lighting: Lighting::facing(&camera),
+        background: Background::default(),
+        quality: Quality::default(),
+    };
+    let image = Renderer::new(size[0], size[1]).draw(&frame).clone();
+    write_png(path, &image)?;
+    Ok(())
+}

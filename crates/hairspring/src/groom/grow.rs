@@ -1,0 +1,143 @@
+//! Hair grown from a surface, for a character that comes without a groom: fur, a fringe, a test.
+
+use super::{DEFAULT_RADIUS, Groom, RootBinding};
+use crate::body::{Mesh, place_on};
+use glam::{Quat, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// How [`grow`] lays hair on a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Growth {
+    /// Strands, 1 to 10,000,000. Default 1,000.
+    pub strands: u32,
+    /// Points of a strand, 3 to 256. Default 16.
+    pub points: u32,
+    /// Longest strand [m], above 0. Default 0.1.
+    pub length: f32,
+    /// How much shorter the shortest strand is, 0 (all alike) to 1. Default 0.2.
+    pub spread: f32,
+    /// How far a strand bends over on its way to the tip: 0 stands along the surface's normal, 1 ends pointing down.
+    /// Default 0.5.
+    pub fall: f32,
+}
+
+impl Default for Growth {
+    fn default() -> Self {
+        Self { strands: 1_000, points: 16, length: 0.1, spread: 0.2, fall: 0.5 }
+    }
+}
+
+/// Strands evenly spread by area over the triangles `t` of `mesh` with `allowed(t)`, each a smooth arc from the normal
+/// towards −Y, bound to the place that it grows from. No strands where no area is allowed.
+pub fn grow(mesh: &Mesh, growth: &Growth, allowed: impl Fn(usize) -> bool) -> Groom {
+    let area = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        0.5 * (b - a).cross(c - a).length() as f64
+    };
+    let skin: Vec<(usize, f64)> = (0..mesh.triangles.len())
+        .filter(|t| allowed(*t))
+        .map(|t| (t, area(t)))
+        .filter(|t| t.1 > 0.0)
+        .collect();
+    let total: f64 = skin.iter().map(|t| t.1).sum();
+    let count = growth.strands as usize;
+    let mut roots = Vec::with_capacity(count);
+    let mut strands = Vec::with_capacity(count);
+    let mut covered = 0.0;
+    for (t, area) in skin {
+        covered += area;
+        // Systematic sampling: root k lies where the running area passes (k + ½)/count of the whole.
+        while strands.len() < count && (strands.len() as f64 + 0.5) * total <= covered * count as f64 {
+            let k = strands.len();
+            let uv = evenly(k);
+            let uv = if uv.x + uv.y > 1.0 { Vec2::ONE - uv } else { uv };
+            let weights = Vec3::new(1.0 - uv.x - uv.y, uv.x, uv.y);
+            let corners = mesh.corners(t);
+            let root = place_on(weights, corners);
+            let normal = mesh.triangles[t].iter().zip(weights.to_array());
+            let normal: Vec3 = normal.map(|(v, w)| mesh.normals[*v as usize] * w).sum();
+            roots.push(RootBinding::new(t as u32, weights, corners, root));
+            strands.push(arc(root, normal.normalize_or(Vec3::Y), k, growth));
+        }
+    }
+    Groom { roots, ..Groom::from_strands(strands, DEFAULT_RADIUS) }
+}
+
+/// Strand `k`: an arc that leaves `root` along `normal`.
+fn arc(root: Vec3, normal: Vec3, k: usize, growth: &Growth) -> Vec<Vec3> {
+    // A third low-discrepancy coordinate, apart from the two of the place.
+    let shorter = (k as f64 * 0.618_033_988_749_895).fract() as f32;
+    let n = growth.points as usize;
+    let step = growth.length * (1.0 - growth.spread * shorter) / (n - 1) as f32;
+    let side = normal.cross(Vec3::NEG_Y).try_normalize().unwrap_or_else(|| {
+        // Straight up or down: every way is as good, so each strand takes its own.
+        Quat::from_axis_angle(normal, std::f32::consts::TAU * shorter) * normal.any_orthonormal_vector()
+    });
+    let over = normal.angle_between(Vec3::NEG_Y) * growth.fall;
+    let mut p = root;
+    let mut points = vec![root];
+    for i in 1..n {
+        let s = (i as f32 - 0.5) / (n - 1) as f32;
+        p += Quat::from_axis_angle(side, over * s) * normal * step;
+        points.push(p);
+    }
+    points
+}
+
+/// Place `i` of a sequence that fills the unit square evenly, however many of it are taken (Roberts 2018, R2).
+pub(super) fn evenly(i: usize) -> Vec2 {
+    let i = i as f64;
+    Vec2::new(
+        (0.5 + i * 0.754_877_666_246_692_7).fract() as f32,
+        (0.5 + i * 0.569_840_290_998_053_2).fract() as f32,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_squares() -> Mesh {
+        let mut mesh = Mesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 0.0, -3.0), Vec3::new(0.0, 0.0, -3.0)],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        };
+        mesh.compute_normals();
+        mesh
+    }
+
+    #[test]
+    fn strands_have_their_length_stand_on_the_skin_and_are_spread_by_area() {
+        let growth = Growth { strands: 500, length: 0.3, spread: 0.5, fall: 0.7, ..Growth::default() };
+        let mesh = two_squares();
+        let groom = grow(&mesh, &growth, |_| true);
+        assert_eq!((groom.strand_count(), groom.point_count()), (500, 500 * 16));
+        for s in 0..500 {
+            let length = groom.strand_length(s);
+            assert!((0.149..=0.3001).contains(&length), "strand {s} is {length} m long");
+            let root = groom.strand(s)[0];
+            assert!(
+                root.y == 0.0
+                    && groom.roots[s].position(mesh.corners(groom.roots[s].triangle as usize)).distance(root)
+                        < 1e-6
+            );
+            assert!(groom.strand(s)[1].y > 0.0, "strand {s} leaves into the skin");
+        }
+        // As many in each of twelve equal fields, within sampling.
+        let mut fields = [0; 12];
+        for s in 0..500 {
+            let p = groom.strand(s)[0];
+            fields[(p.x * 2.0) as usize * 6 + (-p.z * 2.0) as usize] += 1;
+        }
+        assert!(fields.iter().all(|n| (30..55).contains(n)), "{fields:?}");
+    }
+
+    #[test]
+    fn nothing_grows_where_nothing_is_allowed() {
+        assert_eq!(grow(&two_squares(), &Growth::default(), |_| false).strand_count(), 0);
+        let half = grow(&two_squares(), &Growth::default(), |t| t == 1);
+        assert!(half.strand_count() == 1000 && half.roots.iter().all(|r| r.triangle == 1));
+    }
+}

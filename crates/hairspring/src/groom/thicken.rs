@@ -1,0 +1,116 @@
+//! Follow hairs around the strands of a sparse groom, as its makers drew it (TressFX: "follow hairs per guide").
+
+use super::{Groom, GuideWeights, grow::evenly};
+use crate::body::{Mesh, NearestTree};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// How [`thicken`] surrounds each strand.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Thicken {
+    /// Follow hairs of each strand, 0 to 1,000. Default 0.
+    pub copies: u32,
+    /// Radius of the disc on the skin in which they grow [m], 0 or more. Default 0.001.
+    pub radius: f32,
+    /// How far from their strand they are at the tip, over how far at the root; 0 or more. Default 1.
+    pub tip: f32,
+}
+
+impl Default for Thicken {
+    fn default() -> Self {
+        Self { copies: 0, radius: 0.001, tip: 1.0 }
+    }
+}
+
+/// Adds `copies` strands around each strand of a groom that is not yet bound, which they name as their only guide
+/// (or they share its guides, where it has some). Strand `s` of `n` has the copies `s + n`, `s + 2n`, ….
+///
+/// They grow in a disc on the skin that is nearest to the root; without a mesh, in one across the root's direction.
+pub fn thicken(groom: &mut Groom, thicken: &Thicken, mesh: Option<&Mesh>) {
+    let n = groom.strand_count();
+    if thicken.copies == 0 || n == 0 {
+        return;
+    }
+    debug_assert!(groom.roots.is_empty(), "bindings are made for all strands at once");
+    let tree = mesh.filter(|m| !m.triangles.is_empty()).map(|m| (m, NearestTree::new(m)));
+    let normals: Vec<Vec3> = (0..n)
+        .map(|s| {
+            let points = groom.strand(s);
+            let skin = tree.as_ref().and_then(|(mesh, tree)| {
+                let [a, b, c] = mesh.corners(tree.nearest(points[0], |_| true)?.triangle as usize);
+                (b - a).cross(c - a).try_normalize()
+            });
+            skin.unwrap_or_else(|| (points[1.min(points.len() - 1)] - points[0]).normalize_or(Vec3::Y))
+        })
+        .collect();
+    if groom.guides.is_empty() {
+        groom.guides =
+            (0..n as u32).map(|s| GuideWeights { guides: [s; 3], weights: [1.0, 0.0, 0.0] }).collect();
+    }
+    for copy in 1..=thicken.copies as usize {
+        for (s, normal) in normals.iter().enumerate() {
+            let uv = evenly(copy * n + s);
+            let (sin, cos) = (std::f32::consts::TAU * uv.y).sin_cos();
+            let (x, z) = normal.any_orthonormal_pair();
+            let aside = (x * cos + z * sin) * (thicken.radius * uv.x.sqrt());
+            let range = groom.range(s);
+            let last = (range.len() - 1).max(1) as f32;
+            for (i, k) in range.enumerate() {
+                let p = groom.points[k] + aside * (1.0 + (thicken.tip - 1.0) * i as f32 / last);
+                groom.points.push(p);
+            }
+            groom.offsets.push(groom.points.len() as u32);
+        }
+    }
+    let times = 1 + thicken.copies as usize;
+    repeat(&mut groom.radii, times);
+    repeat(&mut groom.colors, times);
+    repeat(&mut groom.groups, times);
+    repeat(&mut groom.root_uvs, times);
+    repeat(&mut groom.scales, times);
+    repeat(&mut groom.guides, times);
+}
+
+/// `array`, `times` over; an empty one stays empty.
+fn repeat<T: Clone>(array: &mut Vec<T>, times: usize) {
+    let n = array.len();
+    array.reserve(n * (times - 1));
+    for _ in 1..times {
+        array.extend_from_within(..n);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn copies_stand_on_the_skin_around_their_strand_and_follow_it() {
+        let mut mesh = Mesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 0.0, -1.0), Vec3::NEG_Z],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        };
+        mesh.compute_normals();
+        // Lying flat: a disc across the strand would put half of the copies below the skin.
+        let strand = |x: f32| {
+            (0..4)
+                .map(move |i| Vec3::new(x, 0.01 * (i > 0) as u8 as f32, -0.1 * i as f32 - 0.3))
+                .collect::<Vec<_>>()
+        };
+        let mut groom = Groom::from_strands([strand(0.3), strand(0.7)], 4e-5);
+        groom.groups = vec![0, 1];
+        let settings = Thicken { copies: 50, radius: 0.02, tip: 3.0 };
+        thicken(&mut groom, &settings, Some(&mesh));
+        assert_eq!((groom.strand_count(), groom.radii.len(), groom.groups.len()), (102, 408, 102));
+        for s in 2..102 {
+            let (copy, parent) = (groom.strand(s), groom.strand(s % 2));
+            let (root, tip) = (copy[0].distance(parent[0]), copy[3].distance(parent[3]));
+            assert!(copy[0].y.abs() < 1e-6 && root <= 0.02, "the root of copy {s} is at {}", copy[0]);
+            assert!((tip - 3.0 * root).abs() < 1e-5);
+            assert_eq!(groom.guides[s].guides[0] as usize, s % 2);
+            assert_eq!(groom.group(s), (s % 2) as u16);
+        }
+    }
+}

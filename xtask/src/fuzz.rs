@@ -1,0 +1,67 @@
+//! Every fuzz target for a while, on stable Rust: libFuzzer needs no sanitizer to find a panic or a hang.
+
+use crate::run;
+use std::{path::Path, process::Child};
+
+/// Targets that run at the same time.
+const AT_ONCE: usize = 2;
+
+/// Builds all targets, fills their corpora with the seeds that are made by code, and runs each for `seconds`.
+pub fn all(seconds: u32) -> Result<(), String> {
+    let seeds = ["run", "--release", "-p", "hairspring-io", "--example", "fuzz_seeds", "fuzz/corpus"];
+    run::cargo(&seeds, &[])?;
+    let unstable = [("RUSTC_BOOTSTRAP", "1")];
+    run::cargo(&["fuzz", "build", "-s", "none"], &unstable)?;
+    let mut running: Vec<(String, Child)> = Vec::new();
+    let mut failed = Vec::new();
+    for target in targets()? {
+        if running.len() == AT_ONCE {
+            finish(running.remove(0), &mut failed)?;
+        }
+        println!("fuzzing {target} for {seconds} s");
+        let time = format!("-max_total_time={seconds}");
+        // A gibibyte and ten seconds for one input are what no reader may take.
+        let arguments = [
+            "fuzz",
+            "run",
+            "-s",
+            "none",
+            &target,
+            "--",
+            &time,
+            "-timeout=10",
+            "-rss_limit_mb=1024",
+            "-verbosity=0",
+        ];
+        let child = run::command(&arguments, &unstable).spawn().map_err(|e| e.to_string())?;
+        running.push((target, child));
+    }
+    for last in running {
+        finish(last, &mut failed)?;
+    }
+    if failed.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("inputs that break a reader were found for: {}", failed.join(", ")))
+    }
+}
+
+fn finish((target, mut child): (String, Child), failed: &mut Vec<String>) -> Result<(), String> {
+    let status = child.wait().map_err(|e| e.to_string())?;
+    if !status.success() {
+        failed.push(target);
+    }
+    Ok(())
+}
+
+fn targets() -> Result<Vec<String>, String> {
+    let folder = Path::new("fuzz/fuzz_targets");
+    let files = std::fs::read_dir(folder)
+        .map_err(|e| format!("{}: {e}; run this in the root of the checkout", folder.display()))?;
+    let mut names: Vec<String> = files
+        .flatten()
+        .filter_map(|f| f.path().file_stem().map(|s| s.to_string_lossy().into_owned()))
+        .collect();
+    names.sort();
+    Ok(names)
+}

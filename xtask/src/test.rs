@@ -1,0 +1,66 @@
+//! All tests, and one line with their sum at the end.
+
+use crate::run;
+use std::{
+    io::{BufRead, BufReader},
+    process::Stdio,
+};
+
+/// Runs every test of the workspace in release, the profile of the program, so that both share one build.
+pub fn all() -> Result<(), String> {
+    let arguments = ["test", "--release", "--workspace", "--no-fail-fast"];
+    println!("$ cargo {}", arguments.join(" "));
+    let mut child =
+        run::command(&arguments, &[]).stdout(Stdio::piped()).spawn().map_err(|e| e.to_string())?;
+    let output = child.stdout.take().ok_or("cargo test has no output")?;
+    let mut sum = [0u64; 3];
+    for line in BufReader::new(output).lines() {
+        let line = line.map_err(|e| e.to_string())?;
+        println!("{line}");
+        add(&mut sum, &line);
+    }
+    let status = child.wait().map_err(|e| e.to_string())?;
+    let [passed, failed, skipped] = sum;
+    println!("{passed} passed, {failed} failed, {skipped} skipped");
+    match (status.success(), passed) {
+        (true, 1..) => Ok(()),
+        (true, 0) => Err("no test ran".into()),
+        (false, _) => Err(format!("cargo test ended with {status}")),
+    }
+}
+
+/// Adds a `test result: ok. 3 passed; 0 failed; 1 ignored; …` to passed, failed and skipped.
+fn add(sum: &mut [u64; 3], line: &str) {
+    let Some(counts) = line.strip_prefix("test result: ") else { return };
+    for part in counts.split([';', '.']) {
+        let mut words = part.split_whitespace();
+        let (Some(count), Some(what)) = (words.next().and_then(|w| w.parse::<u64>().ok()), words.next())
+        else {
+            continue;
+        };
+        match what {
+            "passed" => sum[0] += count,
+            "failed" => sum[1] += count,
+            "ignored" => sum[2] += count,
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn summary_lines_add_up() {
+        let mut sum = [0; 3];
+        super::add(
+            &mut sum,
+            "test result: ok. 12 passed; 0 failed; 1 ignored; 0 measured; 3 filtered out; finished in 0.5s",
+        );
+        super::add(
+            &mut sum,
+            "test result: FAILED. 2 passed; 3 failed; 0 ignored; 0 measured; 0 filtered out",
+        );
+        super::add(&mut sum, "test something ... ok");
+        assert_eq!(sum, [14, 3, 1]);
+    }
+}
