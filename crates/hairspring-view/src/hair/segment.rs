@@ -111,8 +111,9 @@ impl Segment {
         let (before, here, next) = (self.before, self.here, self.next);
         let turn = |other: Vec2| if other == Vec2::ZERO { 0.0 } else { (other - here).length() };
         let bend = self.length * 0.0625 * (turn(before) + turn(next));
-        // In this order a tolerance that is no number gives one piece.
-        let count = (bend / tolerance).sqrt().ceil().max(1.0).min(MAX_PIECES);
+        let count = (bend / tolerance).sqrt().ceil().clamp(1.0, MAX_PIECES);
+        // A tolerance that is no number gives one piece.
+        let count = if count.is_nan() { 1.0 } else { count };
         let tangents = match count > 1.0 {
             true => [
                 (before + here).normalize_or(here) * self.length,
