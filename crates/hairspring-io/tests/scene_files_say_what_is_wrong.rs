@@ -206,6 +206,37 @@ fn the_page_that_documents_scenes_is_right() {
 }
 
 #[test]
+fn bodies_of_several_files_and_hair_grown_on_them() {
+    let folder = folder();
+    let text = "[body]\nfile = \"head.obj\"\nscale = 1\nparts = [\"scalp\"]\n[[body.more]]\nfile = \"head.obj\"\nscale = 2\n\
+                color = [0.1, 0.2, 0.3]\n[[groom]]\ngrow = { parts = [\"scalp\"], strands = 40, length = 0.2 }\n\
+                thicken = { copies = 2, radius = 0.01 }\nmaterial = \"short-fur\"\n";
+    let scene = read(folder.path(), text).unwrap().value;
+    let mesh = &scene.body.as_ref().unwrap().mesh;
+    assert_eq!((mesh.positions.len(), mesh.triangles.len(), mesh.parts.len()), (3 + 4, 1 + 2, 1 + 2));
+    assert_eq!(mesh.parts[2].triangles, 2..3);
+    assert!(mesh.parts[0].color != mesh.parts[1].color);
+    let groom = &scene.grooms[0].groom;
+    assert_eq!((groom.strand_count(), groom.point_count()), (120, 120 * 16));
+    assert_eq!(groom.guides[85].guides[0], 5);
+    assert!(groom.radii.iter().all(|r| *r == 25e-6), "hair is drawn as thick as its material says");
+
+    let wrong = |grow: &str| message(&format!("[body]\nfile = \"head.obj\"\nscale = 1\n[[groom]]\n{grow}\n"));
+    assert!(
+        wrong("grow = { parts = [\"sclap\"] }")
+            .contains("line 5: the part `sclap` is not known here; did you mean `scalp`?")
+    );
+    assert!(wrong("grow = { points = 2 }").contains("line 5: `points` must be 3 to 256"));
+    assert!(
+        wrong("grow = { inside.sphere = { center = [9, 9, 9], radius = 0.1 } }")
+            .contains("no skin of the body")
+    );
+    assert!(wrong("file = \"hair.data\"\ngrow = {}").contains("needs `file` or `grow`, and not both"));
+    assert!(wrong("guides = 3").contains("needs `file` or `grow`"));
+    assert!(message("[[groom]]\ngrow = {}\n").contains("`grow` needs a [body]"));
+}
+
+#[test]
 fn the_page_leaves_no_setting_out() {
     let page = include_str!("../../../docs/scene.md");
     let material = hairspring::material::Material { radius: Some(1.0), ..Default::default() };

@@ -40,9 +40,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         rayon::current_num_threads()
     );
     println!(
-        "| scene | strands | points | simulated strands | time played [s] | ms a frame | of it body, strands, follow hairs | worst stretch [%] | points inside | worst depth [mm] | moved in 1 s at rest, mean [mm] |"
+        "| scene | strands | points | simulated strands | time played [s] | ms a frame | of it body, strands, follow hairs | worst stretch [%] | points inside | worst depth [mm] | non-finite | moved in 1 s at rest, mean [mm] |"
     );
-    println!("| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |");
+    println!("| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |");
     for path in &arguments.scenes {
         let scene = read_scene(path)?.value;
         let name = scene.name.clone();
@@ -99,13 +99,14 @@ impl Played {
         };
         let parts = [0, 1, 2].map(|k| format!("{:.1}", median(&|f| f[k])));
         format!(
-            "{strands} | {points} | {simulated} | {:.1} | {:.1} | {} | {:.2} | {} | {:.3}",
+            "{strands} | {points} | {simulated} | {:.1} | {:.1} | {} | {:.2} | {} | {:.3} | {}",
             self.duration,
             median(&|f| f.iter().sum()),
             parts.join(", "),
             self.worst.stretch_max * 100.0,
             self.worst.inside_points,
             self.worst.max_depth * 1e3,
+            self.worst.non_finite,
         )
     }
 }
@@ -132,7 +133,6 @@ fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
         let times = [report.body, report.simulate, report.follow];
         played.frames.push(times.map(|t| t.as_secs_f64() * 1e3));
     }
-    assert_eq!(played.worst.non_finite, 0, "hair exploded");
     Ok((played, stage))
 }
 

@@ -181,6 +181,7 @@ pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Prob
         (above_0(m.radius), "radius", "above 0 [m]"),
         (above_0(Some(m.density)), "density", "above 0 [kg/m³]"),
         (above_0(Some(m.young)), "young", "above 0 [Pa]"),
+        (above_0(Some(m.shear)), "shear", "above 0 [Pa]"),
         (from_0(m.bend), "bend", "0 or more"),
         (from_0(m.bend_tip), "bend_tip", "0 or more"),
         (from_0(m.damping), "damping", "0 or more [s]"),

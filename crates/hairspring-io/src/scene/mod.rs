@@ -203,6 +203,14 @@ impl Reader<'_> {
             self.bind_by_bones(&mut groom, &read, body, named.thicken.copies)
                 .map_err(|text| self.wrong(bones.span().start, "bones", text))?;
         }
+        // A material's radius is the groom's from here on: hair is drawn as thick as it is simulated.
+        for s in 0..groom.strand_count() {
+            let material = materials.get(groom.group(s) as usize).or(materials.last());
+            if let Some(radius) = material.and_then(|m| m.radius) {
+                let points = groom.range(s);
+                groom.radii[points].fill(radius);
+            }
+        }
         Ok(SceneGroom {
             groom,
             materials,
