@@ -5,13 +5,15 @@ use crate::{
     camera::View,
     frame::Frame,
     hair::{
+        color::Colors,
         order::Order,
-        ribbon::{CHUNK_BITS, Chunk, Setup},
-        shade::Shader,
+        ribbon::{Chunk, Setup},
+        segment::Dot,
+        shade::{self, Shader},
     },
     image::Image,
     shadow::{self, Shadow},
-    tile::{Brush, PIXELS, SIDE, Tiles},
+    tile::{Brush, PIXELS, SIDE, Strands, Tiles},
     tonemap::Encoder,
 };
 use fearless_simd::Level;
@@ -27,6 +29,8 @@ pub struct Renderer {
     shadow: Shadow,
     bodies: Bodies,
     chunks: Vec<Chunk>,
+    dots: Vec<Dot>,
+    colors: Colors,
     drawn: Vec<[[u8; 3]; PIXELS]>,
     encoder: Encoder,
     timings: Timings,
@@ -37,9 +41,9 @@ pub struct Renderer {
 pub struct Timings {
     /// Density grid, sweeps, depth map.
     pub shadow: Duration,
-    /// Lighting, projection and cutting of strands, and projection of bodies.
+    /// Projection and filing of strands, and projection of bodies.
     pub strands: Duration,
-    /// Sorting, blending, bodies and development of all tiles.
+    /// Sorting, lighting, blending, bodies and development of all tiles.
     pub tiles: Duration,
 }
 
@@ -57,7 +61,7 @@ impl Renderer {
         let [width, height] = self.tiles.size();
         let view = View::new(&frame.camera, width as u32, height as u32);
         let bounds = shadow::bounds(frame.hair);
-        self.order.fill(frame, bounds.unwrap_or_default(), 1 << CHUNK_BITS);
+        self.order.fill(frame, bounds.unwrap_or_default());
         self.shadow.fill(frame, bounds, &self.order);
         let shaded = Instant::now();
 
@@ -73,27 +77,42 @@ impl Renderer {
             shadow: &self.shadow,
             level: Level::new(),
             shader: Shader::new(&frame.lighting, view.eye),
+            pigments: frame
+                .hair
+                .iter()
+                .map(|h| [h.look.root_color, h.look.tip_color].map(shade::pigment))
+                .collect(),
             depths: [(middle - reach).max(0.0), middle.max(0.0) + reach],
         };
         let runs = &self.order.runs;
         self.chunks.resize_with(runs.len(), Chunk::default);
+        self.dots.resize(self.order.slots(), Dot::END);
+        self.colors.clear(self.order.slots());
+        let dots = self.order.split(&mut self.dots);
         let (chunks, bodies, tiles) = (&mut self.chunks, &mut self.bodies, &mut self.drawn);
         rayon::join(
             || {
                 chunks
                     .par_iter_mut()
                     .zip(runs)
+                    .zip(dots)
                     .with_max_len(1)
-                    .for_each(|(chunk, run)| chunk.fill(&setup, run))
+                    .for_each(|((chunk, run), dots)| chunk.fill(&setup, run, dots))
             },
             || bodies.project(frame, &view, width, height),
         );
         let cut = Instant::now();
 
         tiles.resize(self.tiles.count(), [[0; 3]; PIXELS]);
-        let (chunks, bodies, encoder) = (&*chunks, &*bodies, &self.encoder);
+        let strands = Strands {
+            chunks,
+            dots: &self.dots,
+            colors: &self.colors,
+            reach: chunks.iter().fold(0.0, |far, chunk| chunk.reach.max(far)),
+        };
+        let (bodies, encoder) = (&*bodies, &self.encoder);
         tiles.par_iter_mut().enumerate().for_each_init(Brush::default, |brush, (tile, out)| {
-            brush.draw(&setup, bodies, chunks, encoder, tile, out);
+            brush.draw(&setup, bodies, &strands, encoder, tile, out);
         });
         let [nx, _] = self.tiles.grid();
         let tiles = &*tiles;

@@ -1,50 +1,89 @@
-//! Depth order: a stable radix sort of packed keys.
+//! Depth order, as far as it is needed: entries are thrown into buckets by depth, and a bucket is sorted when its turn comes. Of a full head,
+//! most buckets of a tile lie behind closed hair, and their turn never comes.
 
-const BITS: u32 = 11;
-const BUCKETS: usize = 1 << BITS;
-/// Bits of the key that are sorted by, from the top of the word: two rounds.
-pub(crate) const KEY_BITS: u32 = 2 * BITS;
+use crate::hair::ribbon::Entry;
 
-/// Sorts by the highest [`KEY_BITS`] bits; equal keys keep their order. `scratch` is memory to reuse.
-pub(crate) fn sort(entries: &mut Vec<u64>, scratch: &mut Vec<u64>) {
-    if entries.len() < 256 {
-        // The low bits grow with the order of arrival, so a full sort is stable too.
-        entries.sort_unstable();
-        return;
-    }
-    scratch.resize(entries.len(), 0);
-    for shift in [64 - KEY_BITS, 64 - BITS] {
-        let mut next = [0u32; BUCKETS];
-        let bucket = |e: u64| (e >> shift) as usize & (BUCKETS - 1);
-        entries.iter().for_each(|e| next[bucket(*e)] += 1);
-        let mut sum = 0;
-        for n in &mut next {
-            sum += std::mem::replace(n, sum);
+/// Buckets of a tile, at most: a few dozen entries in each.
+const BUCKETS: usize = 512;
+
+/// One tile's entries.
+#[derive(Default)]
+pub(crate) struct Buckets {
+    entries: Vec<Entry>,
+    /// First entry of each bucket, and the end of the last.
+    starts: Vec<u32>,
+    /// Buckets handed out.
+    taken: usize,
+    bucket: Vec<Entry>,
+}
+
+impl Buckets {
+    /// Takes a tile's entries.
+    pub fn fill<'a>(&mut self, parts: impl Iterator<Item = &'a [Entry]> + Clone) {
+        self.starts.clear();
+        self.entries.clear();
+        self.taken = 0;
+        let (mut low, mut high, mut count) = (u32::MAX, 0, 0);
+        for part in parts.clone() {
+            part.iter().for_each(|e| (low, high) = (low.min(e.depth()), high.max(e.depth())));
+            count += part.len();
         }
-        for e in entries.iter() {
-            let place = &mut next[bucket(*e)];
-            scratch[*place as usize] = *e;
+        if count == 0 {
+            return;
+        }
+        // The tile's own range of depth is cut evenly, by a shift.
+        let shift = ((high - low) / BUCKETS as u32 + 1).next_power_of_two().ilog2();
+        let bucket = |e: &Entry| ((e.depth() - low) >> shift) as usize;
+        // Room for one more in front: filling walks each start to the end of its bucket, where the next one starts.
+        self.starts.resize(((high - low) >> shift) as usize + 3, 0);
+        parts.clone().flatten().for_each(|e| self.starts[bucket(e) + 2] += 1);
+        (2..self.starts.len()).for_each(|i| self.starts[i] += self.starts[i - 1]);
+        self.entries.resize(count, Entry::default());
+        for e in parts.flatten() {
+            let place = &mut self.starts[bucket(e) + 1];
+            self.entries[*place as usize] = *e;
             *place += 1;
         }
-        std::mem::swap(entries, scratch);
+        self.starts.pop();
+    }
+
+    /// The next bucket, farther than those before; its entries are in no order. `None` after the last.
+    #[inline(always)]
+    pub fn next(&mut self) -> Option<&mut Vec<Entry>> {
+        let ends = self.starts.get(self.taken..self.taken + 2)?;
+        self.taken += 1;
+        self.bucket.clear();
+        self.bucket.extend_from_slice(&self.entries[ends[0] as usize..ends[1] as usize]);
+        Some(&mut self.bucket)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
-    fn radix_order_is_full_order() {
-        for n in [0u64, 1, 255, 256, 5000] {
+    fn buckets_follow_one_another_in_depth() {
+        for (n, range) in [(0u64, 1), (1, 1), (255, 65536), (5000, 65536), (5000, 700), (300, 1)] {
             let mut state = 7u64;
             let mut next = || {
                 state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-                state
+                state >> 33
             };
-            let mut entries: Vec<u64> = (0..n).map(|i| (next() >> 42 << 42) | i).collect();
+            let entries: Vec<Entry> = (0..n).map(|i| Entry((next() % range) << 48 | i)).collect();
+            let mut buckets = Buckets::default();
+            let mut out = Vec::new();
+            for _ in 0..2 {
+                buckets.fill(entries.chunks(100));
+                out.clear();
+                while let Some(bucket) = buckets.next() {
+                    bucket.sort_unstable();
+                    out.extend_from_slice(bucket);
+                }
+            }
             let mut sorted = entries.clone();
             sorted.sort();
-            super::sort(&mut entries, &mut Vec::new());
-            assert_eq!(entries, sorted);
+            assert_eq!(out, sorted);
         }
     }
 }

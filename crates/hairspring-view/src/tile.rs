@@ -4,19 +4,25 @@ use crate::{
     body::{Bodies, Samples, Surface},
     hair::{
         blend::{CLOSED, Canvas},
-        piece::Piece,
-        ribbon::{CHUNK_BITS, Chunk, PIECE_BITS, Setup},
+        color::Colors,
+        ribbon::{Chunk, DEPTHS, Setup},
+        segment::{Dot, Segment},
     },
-    sort,
+    sort::Buckets,
     tonemap::{Encoder, filmic},
 };
 use fearless_simd::dispatch;
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec4};
 
 /// Side of a tile [pixels].
 pub(crate) const SIDE: usize = 32;
 /// Pixels in a tile.
 pub(crate) const PIXELS: usize = SIDE * SIDE;
+
+/// Side of a patch, the part of a tile that is closed as one [pixels].
+pub(crate) const PATCH: usize = 8;
+/// Patches in a row of a tile, and rows.
+pub(crate) const PATCHES: usize = SIDE / PATCH;
 
 /// How the picture is cut into tiles, row by row.
 #[derive(Clone, Copy, Debug, Default)]
@@ -50,51 +56,111 @@ impl Tiles {
     }
 }
 
+/// The strands of a frame, ready to be drawn by tiles.
+pub(crate) struct Strands<'a> {
+    pub chunks: &'a [Chunk],
+    /// Projected points; shape `[slots]`.
+    pub dots: &'a [Dot],
+    pub colors: &'a Colors,
+    /// Greatest difference in depth between a segment's middle and its ends, as a share of the range.
+    pub reach: f32,
+}
+
 /// A thread's working memory.
 pub(crate) struct Brush {
     canvas: Box<Canvas>,
     samples: Box<Samples>,
     surfaces: Box<[Surface; PIXELS]>,
-    entries: Vec<u64>,
-    scratch: Vec<u64>,
+    buckets: Buckets,
 }
 
 impl Default for Brush {
     fn default() -> Self {
-        let none = Surface { color: Vec3::ZERO, cover: 0.0, depth: f32::INFINITY };
+        let none = Surface { cover: 0.0, depth: f32::INFINITY };
         Self {
             canvas: Box::default(),
             samples: Box::default(),
             surfaces: Box::new([none; PIXELS]),
-            entries: Vec::new(),
-            scratch: Vec::new(),
+            buckets: Buckets::default(),
         }
     }
 }
 
-/// Draws a tile's pieces, nearest first, until nothing shows through any more.
-#[inline(always)]
-fn lay_hair(canvas: &mut Canvas, entries: &[u64], chunks: &[Chunk], origin: Vec2) {
-    let mut fetched = [Piece::default(); BATCH];
-    for (round, few) in entries.chunks(BATCH).enumerate() {
-        for (piece, e) in fetched.iter_mut().zip(few) {
-            let chunk = *e >> PIECE_BITS & ((1 << CHUNK_BITS) - 1);
-            *piece = chunks[chunk as usize].pieces[(*e & ((1 << PIECE_BITS) - 1)) as usize];
-        }
-        for piece in &fetched[..few.len()] {
-            let mut open = piece.open();
-            open.a -= origin;
-            open.b -= origin;
-            canvas.draw(&open);
-        }
-        if round % 16 == 15 && canvas.pixels.iter().all(|p| p.w <= CLOSED) {
-            break;
-        }
-    }
-}
-
-/// Pieces fetched from memory together, so that their cache misses overlap.
+/// Segments fetched from memory together, so that their cache misses overlap.
 const BATCH: usize = 32;
+
+/// Draws a tile's segments, nearest first, until nothing shows through any more. Patches that are closed cost nothing: their segments are
+/// neither sorted nor fetched nor lit.
+#[inline(always)]
+fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut Buckets, origin: Vec2) {
+    let tolerance = setup.frame.quality.smoothness.clamp(0.02, 4.0);
+    let walls = walls(canvas);
+    let mut fetched = [[Dot::END; 4]; BATCH];
+    while canvas.open != 0
+        && let Some(bucket) = buckets.next()
+    {
+        if let Some(nearest) = bucket.iter().map(|e| e.depth()).min() {
+            lay_walls(canvas, &walls, nearest as f32 / DEPTHS - strands.reach);
+        }
+        bucket.retain(|e| e.patches() & canvas.open != 0);
+        bucket.sort_unstable();
+        for few in bucket.chunks(BATCH) {
+            for (dots, e) in fetched.iter_mut().zip(few) {
+                *dots = fetch(strands.dots, e.slot());
+            }
+            for (dots, e) in fetched.iter().zip(few) {
+                if e.patches() & canvas.open == 0 {
+                    continue;
+                }
+                let slot = e.slot();
+                let color = [strands.colors.get(setup, slot), strands.colors.get(setup, slot + 1)];
+                for piece in Segment::new(dots, origin).pieces(tolerance, color) {
+                    canvas.draw(&piece);
+                }
+            }
+        }
+    }
+}
+
+/// The point in a slot, the one before and the two after.
+#[inline(always)]
+fn fetch(dots: &[Dot], slot: usize) -> [Dot; 4] {
+    let mut four = [Dot::END; 4];
+    if slot > 0 {
+        four[0] = dots[slot - 1];
+    }
+    four[1] = dots[slot];
+    four[2] = dots[slot + 1];
+    if slot + 2 < dots.len() {
+        four[3] = dots[slot + 2];
+    }
+    four
+}
+
+/// For each patch that the body fills, the share of the depth range behind which all of it lies before; infinite elsewhere.
+fn walls(canvas: &Canvas) -> [f32; PATCHES * PATCHES] {
+    let mut walls = [f32::NEG_INFINITY; PATCHES * PATCHES];
+    for pixel in 0..PIXELS {
+        let wall = &mut walls[pixel / SIDE / PATCH * PATCHES + pixel % SIDE / PATCH];
+        let filled = canvas.body_cover[pixel] >= 1.0;
+        *wall = if filled { wall.max(canvas.body_depth[pixel]) } else { f32::INFINITY };
+    }
+    walls
+}
+
+/// Closes the patches whose walls are nearer than `depth`.
+fn lay_walls(canvas: &mut Canvas, walls: &[f32; PATCHES * PATCHES], depth: f32) {
+    for (patch, wall) in walls.iter().enumerate() {
+        if *wall < depth && canvas.open >> patch & 1 != 0 {
+            let corner = patch / PATCHES * PATCH * SIDE + patch % PATCHES * PATCH;
+            for pixel in (0..PATCH * PATCH).map(|i| corner + i / PATCH * SIDE + i % PATCH) {
+                if canvas.body_depth[pixel].is_finite() {
+                    canvas.lay_body(pixel);
+                }
+            }
+        }
+    }
+}
 
 impl Brush {
     /// Draws one tile and writes its pixels, row by row, three bytes each.
@@ -102,7 +168,7 @@ impl Brush {
         &mut self,
         setup: &Setup,
         bodies: &Bodies,
-        chunks: &[Chunk],
+        strands: &Strands,
         encoder: &Encoder,
         tile: usize,
         out: &mut [[u8; 3]; PIXELS],
@@ -110,35 +176,38 @@ impl Brush {
         let corner = setup.tiles.corner(tile);
         *self.canvas = Canvas::default();
         let canvas = &mut *self.canvas;
-        let body = bodies.draw(
-            setup.frame,
-            &setup.view,
-            setup.shadow,
-            corner,
-            &mut self.samples,
-            &mut self.surfaces,
-        );
+        let body = bodies.draw(corner, &mut self.samples, &mut self.surfaces);
         if body {
             let [near, far] = setup.depths;
             for (i, s) in self.surfaces.iter().enumerate().filter(|(_, s)| s.cover > 0.0) {
-                canvas.body[i] = (s.color * s.cover).extend(-s.cover);
+                canvas.body_cover[i] = s.cover;
                 canvas.body_depth[i] = (s.depth - near) / (far - near);
             }
         }
-        self.entries.clear();
-        for (c, chunk) in chunks.iter().enumerate() {
-            // Room for the chunk's number lies between the depth key and the piece's number.
-            self.entries.extend(chunk.tile(tile).iter().map(|e| e | (c as u64) << PIECE_BITS));
+        // Patches outside the picture are not drawn.
+        let [w, h] = setup.tiles.size();
+        for patch in 0..PATCHES * PATCHES {
+            let (x, y) = (corner[0] + patch % PATCHES * PATCH, corner[1] + patch / PATCHES * PATCH);
+            if x >= w || y >= h {
+                canvas.open &= !(1 << patch);
+            }
         }
-        sort::sort(&mut self.entries, &mut self.scratch);
+        self.buckets.fill(strands.chunks.iter().map(|c| c.tile(tile)));
         let origin = Vec2::new(corner[0] as f32, corner[1] as f32);
-        dispatch!(setup.level, _simd => lay_hair(canvas, &self.entries, chunks, origin));
+        dispatch!(setup.level, _simd => lay_hair(setup, strands, canvas, &mut self.buckets, origin));
         if body {
-            (0..PIXELS).filter(|i| self.surfaces[*i].cover > 0.0).for_each(|i| {
+            for i in (0..PIXELS).filter(|i| self.surfaces[*i].cover > 0.0) {
                 if canvas.body_depth[i].is_finite() {
                     canvas.lay_body(i);
                 }
-            });
+                let seen = canvas.body_seen[i];
+                // What hair hides needs no light.
+                if seen > CLOSED {
+                    let color =
+                        bodies.light(setup.frame, &setup.view, setup.shadow, corner, &self.samples, i);
+                    canvas.pixels[i] += (color * (self.surfaces[i].cover * seen)).extend(0.0);
+                }
+            }
         }
         self.develop(setup, encoder, corner, out);
     }

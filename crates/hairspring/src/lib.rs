@@ -12,3 +12,8 @@ pub mod scene;
 pub mod simulation;
 pub mod stage;
 pub(crate) mod strand;
+
+// The README's example is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

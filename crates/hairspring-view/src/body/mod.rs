@@ -27,8 +27,6 @@ const SAMPLES: [Vec2; 8] = [
 /// What a pixel sees of the bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
-    /// Linear RGB.
-    pub color: Vec3,
     /// Share of the pixel that bodies fill, 0 to 1.
     pub cover: f32,
     /// Distance along the camera's axis [m].
@@ -88,15 +86,7 @@ impl Bodies {
     }
 
     /// Draws the tile whose corner is at `corner` into `out`; false where no body is.
-    pub fn draw(
-        &self,
-        frame: &Frame,
-        view: &View,
-        shadow: &Shadow,
-        corner: [usize; 2],
-        samples: &mut Samples,
-        out: &mut [Surface; PIXELS],
-    ) -> bool {
+    pub fn draw(&self, corner: [usize; 2], samples: &mut Samples, out: &mut [Surface; PIXELS]) -> bool {
         let columns = [corner[0] as u32, (corner[0] + SIDE) as u32];
         let here = |t: &&ScreenTriangle| t.columns[0] < columns[1] && t.columns[1] > columns[0];
         let triangles = self.bins.band(corner[1] / SIDE).iter().map(|t| &self.screen[*t as usize]);
@@ -119,30 +109,33 @@ impl Bodies {
         if !any {
             return false;
         }
-        for (i, out) in out.iter_mut().enumerate() {
-            let at = Vec2::new((corner[0] + i % SIDE) as f32 + 0.5, (corner[1] + i / SIDE) as f32 + 0.5);
-            *out = self.resolve(frame, view, shadow, at, &samples.nearness[i], &samples.triangle[i]);
+        for (out, nearness) in out.iter_mut().zip(&samples.nearness) {
+            // A sample without a body has nearness 0.
+            let n = nearness.iter().filter(|near| **near > 0.0).count() as f32;
+            let depth = if n > 0.0 { n / nearness.iter().sum::<f32>() } else { f32::INFINITY };
+            *out = Surface { cover: n / SAMPLES.len() as f32, depth };
         }
         true
     }
 
-    /// One pixel: each triangle seen in it is lit once and weighed by its samples.
-    fn resolve(
+    /// Linear RGB of the bodies in a pixel of the tile drawn last: each triangle seen in it is lit once and weighed by its samples.
+    pub fn light(
         &self,
         frame: &Frame,
         view: &View,
         shadow: &Shadow,
-        at: Vec2,
-        nearness: &[f32; 8],
-        seen: &[u32; 8],
-    ) -> Surface {
-        let (mut color, mut near, mut covered) = (Vec3::ZERO, 0.0, 0);
+        corner: [usize; 2],
+        samples: &Samples,
+        pixel: usize,
+    ) -> Vec3 {
+        let at = Vec2::new((corner[0] + pixel % SIDE) as f32 + 0.5, (corner[1] + pixel / SIDE) as f32 + 0.5);
+        let seen = &samples.triangle[pixel];
+        let (mut color, mut covered) = (Vec3::ZERO, 0.0);
         for (s, t) in seen.iter().enumerate() {
             if *t == NONE {
                 continue;
             }
-            covered += 1;
-            near += nearness[s];
+            covered += 1.0;
             if seen[..s].contains(t) {
                 continue;
             }
@@ -151,11 +144,7 @@ impl Bodies {
             color +=
                 weight * skin::light(frame, &frame.bodies[b], (t - self.first[b]) as usize, view, shadow, at);
         }
-        let n = covered as f32;
-        match covered {
-            0 => Surface { color, cover: 0.0, depth: f32::INFINITY },
-            _ => Surface { color: color / n, cover: n / SAMPLES.len() as f32, depth: n / near },
-        }
+        color / f32::max(covered, 1.0)
     }
 }
 

@@ -5,16 +5,22 @@ use glam::{Vec2, Vec3};
 /// Rows in a band: the side of a picture tile.
 pub(crate) const BANDS: usize = crate::tile::SIDE;
 
+/// How far outside a triangle a sample still counts, as a share of it: neighbours round differently, and must not leave a gap.
+const EDGE: f32 = 1e-5;
+
 /// A triangle on the screen, set up for testing sample positions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScreenTriangle {
     /// First and past-last column and row of pixels that it may touch.
     pub columns: [u32; 2],
     pub rows: [u32; 2],
-    /// Weight of each corner: `weights[i].dot((x, y, 1))`; all are 0 or more inside.
-    weights: [Vec3; 3],
-    /// The nearness that is interpolated: linear on the screen, greater is nearer.
-    nearness: Vec3,
+    /// The first corner. Samples are measured from it: edge functions in picture coordinates are small differences of products
+    /// near a million, and for triangles smaller than a pixel nothing of them would be left.
+    first: Vec2,
+    /// Weight of the second and of the third corner: their dot products with the way from the first. The first has the rest.
+    weights: [Vec2; 2],
+    /// The nearness that is interpolated, at the first corner, and how it grows along the way; greater is nearer.
+    nearness: (f32, Vec2),
     /// Index of the triangle it came from.
     pub source: u32,
 }
@@ -36,10 +42,10 @@ impl ScreenTriangle {
         if columns[0] >= columns[1] || rows[0] >= rows[1] {
             return None;
         }
-        let edge = |p: Vec3, q: Vec3| Vec3::new(p.y - q.y, q.x - p.x, p.x * q.y - p.y * q.x) / area;
-        let weights = [edge(b, c), edge(c, a), edge(a, b)];
-        let nearness = weights[0] * a.z + weights[1] * b.z + weights[2] * c.z;
-        Some(Self { columns, rows, weights, nearness, source })
+        let (to_b, to_c) = ((b - a).truncate(), (c - a).truncate());
+        let weights = [-to_c.perp() / area, to_b.perp() / area];
+        let slope = weights[0] * (b.z - a.z) + weights[1] * (c.z - a.z);
+        Some(Self { columns, rows, first: a.truncate(), weights, nearness: (a.z, slope), source })
     }
 
     /// Calls `hit(column, row, nearness)` for each pixel of the window (`corner`, `size`) whose sample at `offset` in it lies inside;
@@ -59,11 +65,10 @@ impl ScreenTriangle {
         let columns = clip(self.columns, corner[0], size[0]);
         for y in clip(self.rows, corner[1], size[1]) {
             for x in columns.clone() {
-                let p = Vec3::new(x as f32 + offset.x, y as f32 + offset.y, 1.0);
-                let inside =
-                    self.weights[0].dot(p).min(self.weights[1].dot(p)).min(self.weights[2].dot(p)) >= 0.0;
-                if inside {
-                    hit(x - corner[0], y - corner[1], self.nearness.dot(p));
+                let way = Vec2::new(x as f32 + offset.x, y as f32 + offset.y) - self.first;
+                let (v, w) = (self.weights[0].dot(way), self.weights[1].dot(way));
+                if v.min(w).min(1.0 - v - w) >= -EDGE {
+                    hit(x - corner[0], y - corner[1], self.nearness.0 + self.nearness.1.dot(way));
                 }
             }
         }
@@ -102,5 +107,39 @@ impl Bins {
             return &[];
         }
         &self.triangles[self.starts[band] as usize..self.starts[band + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A slanted surface cut into triangles far smaller than a pixel, far from the picture's corner: every sample lies on it, at its own height.
+    #[test]
+    fn tiny_triangles_neither_gape_nor_jump() {
+        let side = 4000;
+        let (origin, step, n) = (Vec2::new(3001.3, 3977.7), 0.037, 300);
+        let corner = |i: usize, j: usize| {
+            let at = origin + Vec2::new(i as f32 + 0.31 * j as f32, j as f32) * step;
+            at.extend(0.7 + 0.01 * (at.x - origin.x))
+        };
+        let from = [3007, 3981];
+        let mut seen = [[0.0f32; 4]; 4];
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let quad = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+            for t in [[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]] {
+                if let Some(t) = ScreenTriangle::new(t, 0, side, side) {
+                    t.cover(from, [4, 4], Vec2::new(0.5625, 0.3125), |x, y, z| {
+                        seen[y][x] = seen[y][x].max(z);
+                    });
+                }
+            }
+        }
+        for row in seen {
+            for (x, z) in row.into_iter().enumerate() {
+                let expected = 0.7 + 0.01 * ((from[0] + x) as f32 + 0.5625 - origin.x);
+                assert!((z - expected).abs() < 1e-4, "{z} in place of {expected}");
+            }
+        }
     }
 }

@@ -8,8 +8,8 @@
 //! is drawn a pixel long and fainter by the same factor, so it always lies on two pixels in proportion to its place: as the hair
 //! moves, light moves from pixel to pixel without a jump, and its sum stays.
 
-use super::piece::Open;
-use crate::tile::{PIXELS, SIDE};
+use super::segment::Piece;
+use crate::tile::{PATCH, PATCHES, PIXELS, SIDE};
 use glam::{Vec2, Vec4};
 
 /// Light that still passes where a pixel counts as closed: under half a step of 8 bits.
@@ -21,23 +21,50 @@ pub(crate) struct Canvas {
     pub pixels: [Vec4; PIXELS],
     /// Share of the frame's depth range at which the body lies; infinite: none, or already laid in.
     pub body_depth: [f32; PIXELS],
-    /// Colour × covering of the body, and −covering.
-    pub body: [Vec4; PIXELS],
+    /// Share of the pixel that the body covers.
+    pub body_cover: [f32; PIXELS],
+    /// What showed through before the body, once that is laid in.
+    pub body_seen: [f32; PIXELS],
+    /// Which patches have a pixel that is not closed.
+    pub open: u16,
+    /// How many such pixels each patch has.
+    left: [u8; PATCHES * PATCHES],
 }
 
 impl Default for Canvas {
     fn default() -> Self {
-        Self { pixels: [Vec4::W; PIXELS], body_depth: [f32::INFINITY; PIXELS], body: [Vec4::ZERO; PIXELS] }
+        Self {
+            pixels: [Vec4::W; PIXELS],
+            body_depth: [f32::INFINITY; PIXELS],
+            body_cover: [0.0; PIXELS],
+            body_seen: [0.0; PIXELS],
+            open: u16::MAX,
+            left: [(PATCH * PATCH) as u8; PATCHES * PATCHES],
+        }
     }
 }
 
 impl Canvas {
-    /// Lays the body into a pixel.
+    /// Lays the body into a pixel: it hides what comes after. Its light is added later.
     #[inline]
     pub fn lay_body(&mut self, pixel: usize) {
-        let through = self.pixels[pixel].w;
-        self.pixels[pixel] += self.body[pixel] * through;
+        let before = self.pixels[pixel].w;
+        self.body_seen[pixel] = before;
         self.body_depth[pixel] = f32::INFINITY;
+        self.pixels[pixel].w = before * (1.0 - self.body_cover[pixel]);
+        if before > CLOSED && self.pixels[pixel].w <= CLOSED {
+            self.close(pixel);
+        }
+    }
+
+    /// Counts a pixel that has just closed.
+    #[inline(always)]
+    fn close(&mut self, pixel: usize) {
+        let patch = pixel / SIDE / PATCH * PATCHES + pixel % SIDE / PATCH;
+        self.left[patch] -= 1;
+        if self.left[patch] == 0 {
+            self.open &= !(1 << patch);
+        }
     }
 
     #[inline(always)]
@@ -48,12 +75,15 @@ impl Canvas {
         let at = &mut self.pixels[pixel];
         if at.w > CLOSED {
             *at += color * (at.w * cover);
+            if at.w <= CLOSED {
+                self.close(pixel);
+            }
         }
     }
 
     /// Draws a piece whose coordinates count from the tile's corner. Call it inside a `dispatch!`.
     #[inline(always)]
-    pub fn draw(&mut self, piece: &Open) {
+    pub fn draw(&mut self, piece: &Piece) {
         let d = piece.b - piece.a;
         if d.x.abs() >= d.y.abs() {
             self.walk::<1, SIDE>(piece, piece.a, piece.b);
@@ -64,7 +94,7 @@ impl Canvas {
 
     /// Walks along x; a step along x moves `ALONG` pixels in memory, along y `ACROSS`.
     #[inline(always)]
-    fn walk<const ALONG: usize, const ACROSS: usize>(&mut self, piece: &Open, a: Vec2, b: Vec2) {
+    fn walk<const ALONG: usize, const ACROSS: usize>(&mut self, piece: &Piece, a: Vec2, b: Vec2) {
         // From left to right.
         let (a, b, from, to) = if a.x <= b.x { (a, b, 0, 1) } else { (b, a, 1, 0) };
         let d = b - a;
@@ -94,7 +124,6 @@ impl Canvas {
                 strength *= (b.x - x).min(1.0);
             }
             let color = piece.color[from] + (piece.color[to] - piece.color[from]) * t;
-            let color = color.with_w(-1.0);
             let depth = piece.depth[from] + (piece.depth[to] - piece.depth[from]) * t;
             let base = column as usize * ALONG;
             if thin {

@@ -1,7 +1,8 @@
 //! Strands: from points in space to shaded pieces on the screen.
 
 pub(crate) mod blend;
+pub(crate) mod color;
 pub(crate) mod order;
-pub(crate) mod piece;
 pub(crate) mod ribbon;
+pub(crate) mod segment;
 pub(crate) mod shade;

@@ -2,7 +2,10 @@
 //!
 //! Files keep strands in any order. Strands that lie side by side read the same voxels and fall on the same tiles, so taking them along a space-filling
 //! curve turns most reads from memory into reads from cache. It changes no result but which of two pieces at exactly the same depth comes first.
+//!
+//! Each strand gets slots in what is worked out for its points, in that order: a whole number of blocks of [`LANES`], so that lanes never mix strands.
 
+use super::shade::LANES;
 use crate::frame::Frame;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -18,6 +21,19 @@ pub(crate) struct Run {
     pub hair: usize,
     /// Which of the ordered strands.
     range: Range<usize>,
+    /// The slots of their points.
+    pub slots: Range<usize>,
+}
+
+/// Whose points a block of slots holds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Owner {
+    /// Index of the style.
+    pub hair: u32,
+    /// Number of the strand in it.
+    pub strand: u32,
+    /// First of the points, counted from the strand's root.
+    pub first: u32,
 }
 
 /// All strands of a frame, cut into runs.
@@ -26,15 +42,16 @@ pub(crate) struct Order {
     /// Place on the curve and strand number, style after style.
     strands: Vec<(u32, u32)>,
     pub runs: Vec<Run>,
+    /// Shape `[slots / LANES]`.
+    pub owners: Vec<Owner>,
 }
 
 impl Order {
-    /// Orders the frame's strands, whose hair lies in `bounds`, into at most `limit` runs. The result depends on the strands alone.
-    pub fn fill(&mut self, frame: &Frame, bounds: (Vec3, Vec3), limit: usize) {
+    /// Orders the frame's strands, whose hair lies in `bounds`. The result depends on the strands alone.
+    pub fn fill(&mut self, frame: &Frame, bounds: (Vec3, Vec3)) {
         self.strands.clear();
         self.runs.clear();
-        let points: usize = frame.hair.iter().map(|h| h.points.len()).sum();
-        let size = RUN_POINTS.max(2 * points / limit);
+        self.owners.clear();
         let scale = 1023.0 / (bounds.1 - bounds.0).max_element().max(1e-9);
         for (hair, h) in frame.hair.iter().enumerate() {
             let first = self.strands.len();
@@ -45,15 +62,29 @@ impl Order {
                 (curve((middle - bounds.0) * scale), s as u32)
             }));
             self.strands[first..].par_sort_unstable();
-            let (mut start, mut count) = (first, 0);
+            let (mut start, mut slot) = (first, self.owners.len() * LANES);
             for i in first..self.strands.len() {
-                count += h.range(self.strands[i].1 as usize).len();
-                if count >= size || i + 1 == self.strands.len() {
-                    self.runs.push(Run { hair, range: start..i + 1 });
-                    (start, count) = (i + 1, 0);
+                let strand = self.strands[i].1;
+                let points = (0..h.range(strand as usize).len() as u32).step_by(LANES);
+                self.owners.extend(points.map(|first| Owner { hair: hair as u32, strand, first }));
+                let end = self.owners.len() * LANES;
+                if end - slot >= RUN_POINTS || i + 1 == self.strands.len() {
+                    self.runs.push(Run { hair, range: start..i + 1, slots: slot..end });
+                    (start, slot) = (i + 1, end);
                 }
             }
         }
+    }
+
+    /// Number of slots.
+    pub fn slots(&self) -> usize {
+        self.owners.len() * LANES
+    }
+
+    /// What is worked out for all slots, cut into the parts of the runs.
+    pub fn split<'a, T>(&self, mut slots: &'a mut [T]) -> Vec<&'a mut [T]> {
+        let part = |run: &Run| slots.split_off_mut(..run.slots.len()).unwrap_or_default();
+        self.runs.iter().map(part).collect()
     }
 
     /// Strand numbers of a run.

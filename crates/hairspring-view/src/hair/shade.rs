@@ -5,7 +5,7 @@
 //! highlight that has been in and out again; and light that went from strand to strand before it reached the eye. Pigment is kept
 //! as the logarithm of colour, so that paths through the fibre, mixtures and shadow are sums and products.
 
-use super::piece;
+use super::color;
 use crate::lighting::Lighting;
 use fearless_simd::{f32x8, prelude::*};
 use glam::{Vec3, Vec4};
@@ -29,7 +29,7 @@ pub(crate) struct Block {
     pub light: [Row; 4],
     /// Share of the key lamp that bodies let through.
     pub body: Row,
-    /// Result, packed as in [`super::piece`].
+    /// Result, packed as in [`super::color`].
     pub color: [u32; LANES],
 }
 
@@ -87,13 +87,11 @@ impl Shader {
         }
     }
 
-    /// Fills `color` of every block. Call it inside a `dispatch!`.
+    /// Fills the block's `color`. Call it inside a `dispatch!`.
     // Loops are written out and helpers are inlined always: only then does all of it compile for the chosen instruction set.
     #[inline(always)]
-    pub fn shade<S: Simd>(&self, simd: S, fibre: &Fibre, blocks: &mut [Block]) {
-        for block in blocks {
-            shade(simd, self, fibre, block);
-        }
+    pub fn shade<S: Simd>(&self, simd: S, fibre: &Fibre, block: &mut Block) {
+        shade(simd, self, fibre, block);
     }
 }
 
@@ -242,9 +240,9 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
     }
     // Packed here, once a point and in lanes. A broken point darkens a strand; it does not spread over the picture.
     let mut bits = fearless_simd::u32x8::splat(simd, 0);
-    for (sum, (top, shift)) in sum.into_iter().zip(piece::CHANNELS) {
+    for (sum, (top, shift)) in sum.into_iter().zip(color::CHANNELS) {
         let finite = sum.simd_ge(0.0);
-        let light = finite.select(sum, zero).min(piece::MAX_LIGHT) * (1.0 / piece::MAX_LIGHT);
+        let light = finite.select(sum, zero).min(color::MAX_LIGHT) * (1.0 / color::MAX_LIGHT);
         let root = (light.sqrt() * top + 0.5).to_int::<fearless_simd::u32x8<S>>();
         bits |= root << shift;
     }

@@ -19,6 +19,17 @@ pub(crate) struct Grid {
     pub size: [usize; 3],
 }
 
+/// A place between eight voxels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cell {
+    /// Number of the voxel of lowest coordinates.
+    pub first: usize,
+    /// Steps to the next voxel along y and along z.
+    pub strides: [usize; 2],
+    /// Place between them, 0 to 1 along each axis.
+    pub share: Vec3,
+}
+
 /// Voxels around the hair that blur and lookups may touch.
 const PAD: usize = 4;
 /// Fixed-point units of one optical depth.
@@ -41,6 +52,20 @@ impl Grid {
         let last = (bounds.1 / voxel).ceil() + Vec3::splat(PAD as f32);
         let size = (last - first).to_array().map(|n| n as usize + 1);
         Self { origin: first * voxel, voxel, size }
+    }
+
+    /// The cell between eight voxels' middles that holds `p`; `None` outside.
+    #[inline(always)]
+    pub fn cell(&self, p: Vec3) -> Option<Cell> {
+        let q = (p - self.origin) / self.voxel;
+        let [nx, ny, nz] = self.size;
+        let last = Vec3::new(nx as f32 - 1.0, ny as f32 - 1.0, nz as f32 - 1.0);
+        if !(q.cmpge(Vec3::ZERO).all() && q.cmplt(last).all()) {
+            return None;
+        }
+        let (x, y, z) = (q.x as usize, q.y as usize, q.z as usize);
+        let share = q - Vec3::new(x as f32, y as f32, z as f32);
+        Some(Cell { first: (z * ny + y) * nx + x, strides: [nx, nx * ny], share })
     }
 
     /// Nearest voxel, or `None` outside.

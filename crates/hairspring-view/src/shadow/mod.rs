@@ -6,10 +6,11 @@ mod sweep;
 
 use crate::{frame::Frame, hair::order::Order};
 pub(crate) use density::bounds;
-use density::{Density, Grid};
+use density::{Cell, Density, Grid};
 use depth_map::DepthMap;
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
+use std::ops::{Add, Mul};
 
 /// Everything between the lamps and the hair, worked out once a frame.
 #[derive(Debug, Default)]
@@ -32,6 +33,26 @@ const SKY: [Vec3; 5] = [
     Vec3::new(-0.3, 0.45, 0.8),
     Vec3::new(0.3, 0.45, -0.8),
 ];
+
+/// How many of the swept depths belong to lamps; those of [`SKY`] follow.
+const LAMPS: usize = 3;
+
+/// Share of light from one part of the sky that passes an optical depth. It comes around strands: a gentler law than the straight beam's.
+fn sky_open(depth: f32) -> f32 {
+    1.0 / (1.0 + 0.8 * depth)
+}
+
+/// Mixes the values of a cell's eight corners.
+#[inline(always)]
+fn trilinear<T>(cell: Cell, value: impl Fn(usize) -> T) -> T
+where
+    T: Copy + Add<Output = T> + Mul<f32, Output = T>,
+{
+    let mix = |a: T, b: T, f: f32| a * (1.0 - f) + b * f;
+    let line = |at: usize| mix(value(at), value(at + 1), cell.share.x);
+    let face = |at: usize| mix(line(at), line(at + cell.strides[0]), cell.share.y);
+    mix(face(cell.first), face(cell.first + cell.strides[1]), cell.share.z)
+}
 
 impl Shadow {
     /// Works out the shadow of a frame whose hair lies in `bounds`; `None`: no hair.
@@ -62,8 +83,7 @@ impl Shadow {
         self.light.par_chunks_mut(slice).enumerate().for_each(|(z, light)| {
             for (i, light) in light.iter_mut().enumerate() {
                 let at = z * slice + i;
-                // Ambient light comes around strands: a gentler law than the straight beam's.
-                let open: f32 = depths[3..].iter().map(|d| 1.0 / (1.0 + 0.8 * d[at])).sum();
+                let open: f32 = depths[LAMPS..].iter().map(|d| sky_open(d[at])).sum();
                 *light = Vec4::new(depths[0][at], depths[1][at], depths[2][at], open / SKY.len() as f32);
             }
         });
@@ -73,22 +93,14 @@ impl Shadow {
     #[inline(always)]
     pub fn light(&self, p: Vec3) -> Vec4 {
         const CLEAR: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
-        let q = (p - self.grid.origin) / self.grid.voxel;
-        let [nx, ny, nz] = self.grid.size;
-        let last = Vec3::new(nx as f32 - 1.0, ny as f32 - 1.0, nz as f32 - 1.0);
-        if self.light.is_empty() || !(q.cmpge(Vec3::ZERO).all() && q.cmplt(last).all()) {
-            return CLEAR;
+        match self.grid.cell(p) {
+            Some(cell) if !self.light.is_empty() => trilinear(cell, |at| self.light[at]),
+            _ => CLEAR,
         }
-        let (x, y, z) = (q.x as usize, q.y as usize, q.z as usize);
-        let at = (z * ny + y) * nx + x;
-        let (f, slice) = (q - Vec3::new(x as f32, y as f32, z as f32), nx * ny);
-        let line = |i: usize| self.light[i].lerp(self.light[i + 1], f.x);
-        let face = |i: usize| line(i).lerp(line(i + nx), f.y);
-        face(at).lerp(face(at + slice), f.z)
     }
 
-    /// As [`Shadow::light`], for places that may lie outside the hair's grid: there, hair between a place and a lamp is met where the
-    /// way to the lamp enters the grid.
+    /// As [`Shadow::light`], for places that may lie outside the hair's grid: there, what stands between a place and a lamp, or a part of
+    /// the sky, is met where the way to it enters the grid. So nothing changes at once where a surface leaves the grid.
     pub fn around(&self, p: Vec3) -> Vec4 {
         if self.light.is_empty() {
             return self.light(p);
@@ -100,13 +112,20 @@ impl Shadow {
         if p.cmpge(low).all() && p.cmple(high).all() {
             return self.light(p);
         }
-        let mut found = Vec4::new(0.0, 0.0, 0.0, 1.0);
-        for (k, toward) in self.lamps.iter().enumerate() {
-            let (a, b) = ((low - p) / *toward, (high - p) / *toward);
+        let entry = |toward: Vec3| {
+            let (a, b) = ((low - p) / toward, (high - p) / toward);
             let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
-            if enter >= 0.0 && enter < leave {
-                found[k] = self.light((p + *toward * enter).clamp(low, high))[k];
-            }
+            (enter >= 0.0 && enter < leave).then(|| (p + toward * enter).clamp(low, high))
+        };
+        let mut found = Vec4::ZERO;
+        for (k, toward) in self.lamps.iter().enumerate() {
+            found[k] = entry(*toward).map_or(0.0, |q| self.light(q)[k]);
+        }
+        for (toward, depth) in SKY.into_iter().zip(&self.depths[LAMPS..]) {
+            let open = entry(toward)
+                .and_then(|q| self.grid.cell(q))
+                .map_or(1.0, |cell| trilinear(cell, |at| sky_open(depth[at])));
+            found.w += open / SKY.len() as f32;
         }
         found
     }

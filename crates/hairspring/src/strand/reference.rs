@@ -56,7 +56,7 @@ fn jacobian(x: [DVec3; 3], lengths: [f64; 2], was: DVec3, turn: DVec3) -> [DMat3
 /// GJ/EI of the strands in the tests.
 pub const TWIST_RATIO: f64 = 0.46;
 
-/// The angle from the normal `m0`, carried by the least rotation, to `m1`, and its gradient by central differences; the normals
+/// The twist from the normal `m0`, carried by the least rotation, to `m1`, as 2 tan(τ/2), and its gradient by central differences; the normals
 /// swing with their segments.
 fn twist(x: [DVec3; 3], was: DVec3, m0: DVec3, m1: DVec3) -> (f64, [DVec3; 3]) {
     let was1 = (x[2] - x[1]).normalize();
@@ -64,7 +64,7 @@ fn twist(x: [DVec3; 3], was: DVec3, m0: DVec3, m1: DVec3) -> (f64, [DVec3; 3]) {
         let (u0, u1) = ((x[1] - x[0]).normalize(), (x[2] - x[1]).normalize());
         let carried = DQuat::from_rotation_arc(u0, u1) * (DQuat::from_rotation_arc(was, u0) * m0);
         let m1 = DQuat::from_rotation_arc(was1, u1) * m1;
-        carried.cross(m1).dot(u1).atan2(carried.dot(m1))
+        2.0 * (0.5 * carried.cross(m1).dot(u1).atan2(carried.dot(m1))).tan()
     };
     let gradient = [0, 1, 2].map(|k| {
         DVec3::from([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {

@@ -160,12 +160,22 @@ proptest! {
             length.push(rest);
             x.push(x[i] + e);
         }
+        // Rest turns near the turns that there are: far from them, frames have far to twist, which takes many steps.
+        let tangent: Vec<DVec3> = x.windows(2).map(|w| (w[1] - w[0]).normalize()).collect();
+        let mut normal = tangent[0].any_orthonormal_vector();
+        let mut turn = vec![DVec3::ZERO; n];
+        for i in 1..n - 1 {
+            let (t0, t1) = (tangent[i - 1], tangent[i]);
+            let d = t1 - t0;
+            turn[i] = DVec3::new(d.dot(normal), d.dot(t0.cross(normal)), d.dot(t0)) + turns[i];
+            normal -= (t0 + t1) * (normal.dot(t1) / (1.0 + t0.dot(t1)));
+        }
         let mass = 4e-8f32 as f64;
         let reference = reference::Strand {
             v: velocities[..n].to_vec(),
             mass: vec![mass; n],
             bend: (0..n).map(|i| if i == 0 || i + 1 == n { 0.0 } else { 4e-6f32 as f64 }).collect(),
-            turn: turns[..n].to_vec(),
+            turn,
             tension: vec![tension; n],
             drag, damping, wind, moved, h,
             gravity: DVec3::new(0.0, -9.81, 0.0),

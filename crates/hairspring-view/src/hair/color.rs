@@ -1,0 +1,115 @@
+//! The colour of every point that is seen, worked out when the first tile asks.
+//!
+//! Most hair lies under other hair: of a full head, a quarter is seen. A point's colour depends on nothing that happens while the picture is drawn,
+//! so it does not matter which thread works it out, or whether two do at once.
+
+use super::{
+    ribbon::Setup,
+    shade::{self, Block, Fibre, LANES},
+};
+use fearless_simd::dispatch;
+use glam::{Vec3, Vec4};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Greatest light stored, linear; the tone curve has long been white there.
+pub(crate) const MAX_LIGHT: f32 = 8.0;
+/// Greatest code and lowest bit of red, green and blue: 11, 11 and 10 bits of the colour's square root.
+pub(crate) const CHANNELS: [(f32, u32); 3] = [(2047.0, 0), (2047.0, 11), (1023.0, 22)];
+/// Deepest shadow that a root takes from the voxels of its own scalp.
+const KEY_BIAS: f32 = 3e-3;
+
+/// Packed colours of all slots; 0: not worked out yet.
+#[derive(Debug, Default)]
+pub(crate) struct Colors {
+    slots: Vec<AtomicU32>,
+}
+
+impl Colors {
+    /// Forgets all colours; `slots` is their number from now on.
+    pub fn clear(&mut self, slots: usize) {
+        self.slots.clear();
+        self.slots.resize_with(slots, AtomicU32::default);
+    }
+
+    /// Linear RGB of a slot and −1: what a covering adds to (red, green, blue, what still shows through).
+    #[inline(always)]
+    pub fn get(&self, setup: &Setup, slot: usize) -> Vec4 {
+        let mut bits = self.slots[slot].load(Ordering::Relaxed);
+        if bits == 0 {
+            bits = self.shade(setup, slot);
+        }
+        open(bits).extend(-1.0)
+    }
+
+    /// Lights the block around a slot.
+    #[cold]
+    #[inline(never)]
+    fn shade(&self, setup: &Setup, slot: usize) -> u32 {
+        let block = slot / LANES;
+        let colors = dispatch!(setup.level, simd => {
+            let (fibre, mut block) = gather(setup, block);
+            setup.shader.shade(simd, &fibre, &mut block);
+            block.color
+        });
+        // Black is stored as the darkest red there is.
+        let colors = colors.map(|c| c.max(1));
+        for (to, from) in self.slots[block * LANES..].iter().zip(colors) {
+            to.store(from, Ordering::Relaxed);
+        }
+        colors[slot % LANES]
+    }
+}
+
+/// What the shader needs to know of a block's points. Lanes past the strand's last point stay empty.
+#[inline(always)]
+fn gather(setup: &Setup, block: usize) -> (Fibre, Block) {
+    let owner = setup.order.owners[block];
+    let hair = &setup.frame.hair[owner.hair as usize];
+    let look = hair.look;
+    let range = hair.range(owner.strand as usize);
+    let points = &hair.points[range.clone()];
+    let n = points.len();
+    // More or less of the same pigment: lighter strands are also less saturated.
+    let amount = 1.0 + look.variation.clamp(0.0, 1.0) * shade::random(owner.strand) * 0.6;
+    let [root, tip] = setup.pigments[owner.hair as usize];
+    let per_point = 1.0 / (n.max(2) - 1) as f32;
+    let mut block = Block::default();
+    for (lane, i) in (owner.first as usize..n).take(LANES).enumerate() {
+        let p = points[i];
+        let along = points[(i + 1).min(n - 1)] - points[i.saturating_sub(1)];
+        let t = along.try_normalize().unwrap_or(Vec3::Y);
+        let pigment = match hair.colors.get(range.start + i) {
+            Some(color) => shade::pigment(*color),
+            None => root.lerp(tip, i as f32 * per_point),
+        };
+        let light = setup.shadow.light(p);
+        let body = setup.shadow.body(p, KEY_BIAS, 1);
+        block.set(lane, p, t, pigment * amount, light, body);
+    }
+    (Fibre::new(look, shade::random(!owner.strand)), block)
+}
+
+#[inline(always)]
+fn open(bits: u32) -> Vec3 {
+    let root = Vec3::new((bits & 2047) as f32, (bits >> 11 & 2047) as f32, (bits >> 22) as f32);
+    let scaled = root * Vec3::new(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0);
+    scaled * scaled * MAX_LIGHT
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packing_keeps_what_the_eye_sees() {
+        for k in 0..800 {
+            let light = Vec3::new(1.0, 0.5, 0.1) * (k as f32 / 100.0);
+            let codes = light.to_array().map(|c| (c / MAX_LIGHT).sqrt());
+            let bits =
+                (0..3).fold(0, |bits, i| bits | ((codes[i] * CHANNELS[i].0 + 0.5) as u32) << CHANNELS[i].1);
+            let error = (open(bits) - light).abs().max_element();
+            // A step of the finest sRGB code near black is 3e-4, near white 9e-3.
+            assert!(error < 6e-4 + 0.01 * light.max_element(), "{error} at {light}");
+        }
+    }
+}
