@@ -54,7 +54,7 @@ pub struct Options {
     seconds: f32,
 
     /// Frames a second
-    #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
+    #[arg(long, value_name = "RATE", default_value = "24", value_parser = frames::rate)]
     fps: f64,
 
     #[command(flatten)]

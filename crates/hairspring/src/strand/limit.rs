@@ -29,7 +29,7 @@ pub fn limit<S: Simd>(
     root: &Root<S>,
     moved: V3<S>,
     tile: &mut Tile,
-    x: &mut [[Row; 3]],
+    x: &[[Row; 3]],
 ) {
     let inv_h = F::<S>::splat(simd, 1.0 / h);
     let friction = Root::<S>::fibre(simd, tile.strand).2;
@@ -43,11 +43,11 @@ pub fn limit<S: Simd>(
         root.first.store(&mut first[state::X..state::X + 3]);
         (moved * inv_h).store(&mut first[state::V..state::V + 3]);
     }
-    for i in 2..tile.rest.len() {
+    for (i, target) in x.iter().enumerate().take(tile.rest.len()).skip(2) {
         let length = load(simd, &tile.rest[i - 1][rest::LENGTH]);
         let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
         let old = V3::load(simd, &tile.state[i][state::X..]);
-        let mut p = clamp(V3::load(simd, &x[i]), before, length);
+        let mut p = clamp(V3::load(simd, target), before, length);
         for pose in &substep.obstacles {
             let world = p + root.position;
             let (distance, normal) = contact(simd, pose, world);

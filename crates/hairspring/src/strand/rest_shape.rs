@@ -21,8 +21,12 @@
 
 use glam::{DVec3, Vec3};
 
-/// Largest |m|/B and rest twist of a joint at the sag-free start [rad]: beyond it the linear moment is not a fibre's any more.
+/// Largest |m|/B of a joint at the sag-free start [rad]: beyond it the linear moment is not a fibre's any more.
 const LARGEST_SAG: f64 = 0.5;
+
+/// Largest rest twist of a joint at the sag-free start [rad]: a strand that holds its shape by more twist than this gives way sideways
+/// (the bend-twist instability of a heavy curl), long straight hair with bends in it first.
+const LARGEST_TWIST: f64 = 0.05;
 
 /// Bending stiffness kept above the load of what stands above a joint, as Greenhill's bound with a safety of about two:
 /// B·L̄ ≥ (weight moment of the upright part) × (its length) / 2; Greenhill 1881: ρgAL³/EI < 7.84, of which ½ρgAL²·L is half.
@@ -119,7 +123,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             rest[i].tension = axial / lengths[i];
             let mean =
                 if i == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[i - 1] + lengths[i]) };
-            let sag = moment.length().max(torque.abs() / fibre.twist_ratio) / LARGEST_SAG;
+            let sag = (moment.length() / LARGEST_SAG).max(torque.abs() / (fibre.twist_ratio * LARGEST_TWIST));
             let needed = sag.max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
             if needed > rest[i].bend {
                 rest[i].bend = needed;

@@ -79,7 +79,7 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
                 break;
             }
         }
-        limit(simd, interval.h, substep, &root, moved, tile, &mut scratch.x);
+        limit(simd, interval.h, substep, &root, moved, tile, &scratch.x);
     }
 }
 

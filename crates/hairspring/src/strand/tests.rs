@@ -50,12 +50,12 @@ fn band_solve<S: Simd>(simd: S, a: &[Vec<DMat3>], b: &[DVec3]) -> Vec<DVec3> {
         band.rhs[k] = splat(simd, right(k));
     }
     band.upper[0] = full(simd, block(0, 1));
-    for i in 0..n {
+    for (i, factors) in factors.iter_mut().enumerate() {
         band.diag[2] = symmetric(simd, block(i + 2, i + 2));
         band.rhs[2] = splat(simd, right(i + 2));
         band.upper[1] = full(simd, block(i + 1, i + 2));
         band.far = full(simd, block(i, i + 2));
-        band.eliminate(&mut factors[i]);
+        band.eliminate(factors);
         band.shift(simd);
     }
     let (mut next, mut after) = (V3::zero(simd), V3::zero(simd));

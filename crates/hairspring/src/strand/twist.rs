@@ -70,7 +70,8 @@ pub fn twist<S: Simd>(simd: S, root: &Root<S>, tile: &mut Tile, work: &mut [Fact
 
         // Torque of the twist at the joint before this segment.
         let sine = carried.cross(m).dot(u);
-        let tau = (sine + sine) / (carried.dot(m) + 1.0).max(1e-3);
+        // Bounded near the half turn, where the measure would grow without end.
+        let tau = (sine + sine) / (carried.dot(m) + 1.0).max(0.5);
         let slope = (tau * tau).mul_add(0.25, one);
         let stiffness = load(simd, &at[rest::BEND]) * ratio * slope;
         let torque = stiffness * (tau - load(simd, &at[rest::TWIST]));
