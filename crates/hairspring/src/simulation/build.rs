@@ -139,13 +139,17 @@ impl Simulation {
                         material.drag * scale.drag * drag_rate(radius, material.density);
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
                     rows[strand::FRICTION].0[lane] = material.friction;
-                    rows[strand::TWIST_RATIO].0[lane] = twist_ratio;
+                    let bent = shape.points.iter().any(|p| p.turn.length() > STRAIGHT);
+                    rows[strand::TWIST_RATIO].0[lane] = if bent { twist_ratio } else { 0.0 };
                 }
                 stiffened
             })
             .sum();
     }
 }
+
+/// Largest rest turn of a strand that has nothing for twist to act on [rad]: its frames turn nothing that could be seen.
+const STRAIGHT: f64 = 1e-3;
 
 /// Rate at which still air stops a lone fibre moving across itself [1/s].
 ///

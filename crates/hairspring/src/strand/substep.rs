@@ -66,13 +66,16 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
         }
         store(w, &mut scratch.inverse_mass[i]);
     }
+    let twisted = Root::twist_ratio(simd, tile.strand).simd_gt(0.0).any_true();
     let mut root = Root::between(simd, tile.strand, 0.0, &interval.anchor);
     for substep in &interval.substeps {
         let next = Root::at(simd, tile.strand, substep);
         let moved = next.position - root.position;
         root = next;
-        twist(simd, &root, tile, &mut scratch.factors);
-        solve(simd, interval, substep, (&root, moved), tile, scratch);
+        if twisted {
+            twist(simd, &root, tile, &mut scratch.factors);
+        }
+        solve(simd, interval, substep, (&root, moved, twisted), tile, scratch);
         for _ in 0..interval.projections {
             let Scratch { factors, x, inverse_mass } = &mut *scratch;
             if !project(simd, interval.h, tile, inverse_mass, x, factors) {
@@ -89,7 +92,7 @@ fn solve<S: Simd>(
     simd: S,
     interval: &Interval,
     substep: &Substep,
-    (root, moved): (&Root<S>, V3<S>),
+    (root, moved, twisted): (&Root<S>, V3<S>, bool),
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) {
@@ -156,18 +159,20 @@ fn solve<S: Simd>(
             band.rhs[2] += joint.force[2];
 
             // Its twist.
-            let torque = load(simd, &scratch.factors[i + 1][twist::scratch::TORQUE]);
-            let stiffness = load(simd, &scratch.factors[i + 1][twist::scratch::K]) * implicit_scale;
-            let t = twist_force((u0, u1), (torque, stiffness), (alpha, beta));
-            band.diag[0] = band.diag[0] + t.block * (t.c[0] * t.c[0]);
-            band.diag[1] = band.diag[1] + t.block * (t.c[1] * t.c[1]);
-            band.diag[2] = band.diag[2] + t.block * (t.c[2] * t.c[2]);
-            band.upper[0] = band.upper[0] - t.block * -(t.c[0] * t.c[1]);
-            band.upper[1] = band.upper[1] - t.block * -(t.c[1] * t.c[2]);
-            band.far = band.far - t.block * -(t.c[0] * t.c[2]);
-            band.rhs[0] += t.force[0];
-            band.rhs[1] += t.force[1];
-            band.rhs[2] += t.force[2];
+            if twisted {
+                let torque = load(simd, &scratch.factors[i + 1][twist::scratch::TORQUE]);
+                let stiffness = load(simd, &scratch.factors[i + 1][twist::scratch::K]) * implicit_scale;
+                let t = twist_force((u0, u1), (torque, stiffness), (alpha, beta));
+                band.diag[0] = band.diag[0] + t.block * (t.c[0] * t.c[0]);
+                band.diag[1] = band.diag[1] + t.block * (t.c[1] * t.c[1]);
+                band.diag[2] = band.diag[2] + t.block * (t.c[2] * t.c[2]);
+                band.upper[0] = band.upper[0] - t.block * -(t.c[0] * t.c[1]);
+                band.upper[1] = band.upper[1] - t.block * -(t.c[1] * t.c[2]);
+                band.far = band.far - t.block * -(t.c[0] * t.c[2]);
+                band.rhs[0] += t.force[0];
+                band.rhs[1] += t.force[1];
+                band.rhs[2] += t.force[2];
+            }
 
             // Segment i+1.
             let k = real.select(mass * (STRETCH * inv_h * inv_h), nought);

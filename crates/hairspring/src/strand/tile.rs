@@ -59,7 +59,7 @@ pub mod strand {
     pub const DAMPING: usize = 21;
     /// Coulomb friction against the body.
     pub const FRICTION: usize = 22;
-    /// Twisting over bending stiffness, GJ/EI [1].
+    /// Twisting over bending stiffness, GJ/EI; 0 for a strand that is straight at rest, which twist cannot be seen on [1].
     pub const TWIST_RATIO: usize = 23;
     /// Rows a strand.
     pub const ROWS: usize = 24;
