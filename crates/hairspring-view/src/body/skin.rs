@@ -8,6 +8,11 @@ use crate::{
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
+/// Sky light that reaches skin under hair on its way between hair, neck and shoulders [1]: without it the throat is a hole.
+const BOUNCE: f32 = 0.3;
+/// The same of the key lamp's light, from the lit skin and cloth around [1].
+const KEY_BOUNCE: f32 = 0.03;
+
 /// Base colour and roughness of triangles that belong to no part: light skin.
 const SKIN: (Vec3, f32) = (Vec3::new(0.62, 0.38, 0.28), 0.5);
 /// Light bleeds into the shadow side of skin, red farthest: how far the lit half is wrapped past the terminator
@@ -59,7 +64,8 @@ pub(super) fn light(
         diffuse += light.color * wrapped * tinted;
         gloss += light.color * (specular(n, eye, l, roughness, nv) * nl.max(0.0) * open);
     }
-    let sky = lamps.ground.lerp(lamps.sky, 0.5 + 0.5 * n.y) * depth.w;
+    let open_sky = BOUNCE + (1.0 - BOUNCE) * depth.w;
+    let sky = lamps.ground.lerp(lamps.sky, 0.5 + 0.5 * n.y) * open_sky + lamps.key.color * KEY_BOUNCE;
     // A grazing sheen, from peach fuzz and the oil on skin.
     let sheen = 0.25 * (1.0 - nv).powi(4) * depth.w;
     let lit = base * (diffuse + sky) + gloss + lamps.sky * sheen;

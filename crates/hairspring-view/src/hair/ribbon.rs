@@ -17,7 +17,7 @@ use glam::{Vec2, Vec3};
 /// Greatest width of a strand on the screen [pixels].
 const MAX_WIDTH: f32 = 512.0;
 /// Distance that hair is moved towards the camera against bodies [m]: roots lie on the skin, and must not flicker in it.
-const ROOT_BIAS: f32 = 4e-4;
+const ROOT_BIAS: f32 = 1e-3;
 
 /// What every run and every tile of a frame needs.
 pub(crate) struct Setup<'a> {
