@@ -28,7 +28,7 @@ use std::sync::Arc;
 /// same bits for any number of threads. Strands meet only the body and the air.
 ///
 /// # Missing
-/// Twist (strands keep curl by a frame without twist), hair against hair, wind sheltered by the body, teleport, cutting and
+/// Twist that moves by itself (it is always in balance here), anisotropic fibres, hair against hair, wind sheltered by the body, teleport, cutting and
 /// wetting: each is an issue of its own.
 pub struct Simulation {
     groom: Arc<Groom>,
