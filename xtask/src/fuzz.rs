@@ -32,6 +32,7 @@ pub fn all(seconds: u32) -> Result<(), String> {
             "-timeout=10",
             "-rss_limit_mb=1024",
             "-verbosity=0",
+            "-print_funcs=0",
         ];
         let child = run::command(&arguments, &unstable).spawn().map_err(|e| e.to_string())?;
         running.push((target, child));

@@ -8,7 +8,7 @@ mod retarget;
 
 pub use clip::{Clip, Trs};
 pub use mesh::{Mesh, Part};
-pub(crate) use nearest::at as place_on;
 pub use nearest::{NearestPlace, NearestTree};
+pub(crate) use nearest::{at as place_on, nearest_on_triangle};
 pub use pose::{Body, Joint, Skin};
 pub use retarget::{HeadMotion, Retargeted, Travel, head_motion, retarget};

@@ -118,7 +118,8 @@ fn box_distance_squared(node: &Node, p: Vec3) -> f32 {
 
 /// Barycentric coordinates of the place on a triangle nearest to `p` (Ericson 2005, *Real-Time Collision Detection*,
 /// §5.1.5).
-fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
+#[inline]
+pub(crate) fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {

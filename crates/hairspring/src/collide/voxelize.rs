@@ -6,6 +6,7 @@
 //! The layout follows Bridson's SDFGen (*Fluid Simulation for Computer Graphics*, 2nd ed., §4).
 
 use super::Grid;
+use crate::body::nearest_on_triangle;
 use glam::{DVec2, UVec3, Vec3};
 use rayon::prelude::*;
 
@@ -51,7 +52,9 @@ impl Voxelizer {
         let lo = used().fold(Vec3::splat(f32::MAX), Vec3::min);
         let hi = used().fold(Vec3::splat(f32::MIN), Vec3::max);
         let (lo, hi) = within.map_or((lo, hi), |(a, b)| (lo.max(a), hi.min(b)));
-        let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (Vec3::ZERO, Vec3::ZERO) };
+        // Nothing of the mesh within: a grid of a few nodes, at a corner of the box, which then lies outside.
+        let nowhere = within.map_or(Vec3::ZERO, |(a, _)| a);
+        let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (nowhere, nowhere) };
         let mut cell = cell.max(1e-6);
         loop {
             let nodes = (hi - lo) / cell + Vec3::splat(2.0 * BAND + 2.0);
@@ -127,7 +130,7 @@ impl Voxelizer {
                             if normal.dot(p - c[0]).abs() > BAND {
                                 continue;
                             }
-                            let weights = nearest_on_triangle(p, &c);
+                            let weights = nearest_on_triangle(p, c);
                             let d =
                                 (c[0] * weights.x + c[1] * weights.y + c[2] * weights.z).distance(p) * cell;
                             let at = y * nx + x;
@@ -231,43 +234,6 @@ fn side(a: DVec2, b: DVec2, q: DVec2) -> (bool, f64) {
     let area = (t - s).perp_dot(q - s);
     let area = if swap { -area } else { area };
     (if area == 0.0 { !swap } else { area > 0.0 }, area)
-}
-
-/// Barycentric weights of the place of triangle `c` nearest to `p` (Ericson 2005, *Real-Time Collision Detection*, §5.1.5).
-fn nearest_on_triangle(p: Vec3, c: &[Vec3; 3]) -> Vec3 {
-    let (ab, ac, ap) = (c[1] - c[0], c[2] - c[0], p - c[0]);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return Vec3::X;
-    }
-    let bp = p - c[1];
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return Vec3::Y;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let v = d1 / (d1 - d3);
-        return Vec3::new(1.0 - v, v, 0.0);
-    }
-    let cp = p - c[2];
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return Vec3::Z;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let w = d2 / (d2 - d6);
-        return Vec3::new(1.0 - w, 0.0, w);
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return Vec3::new(0.0, 1.0 - w, w);
-    }
-    let inv = 1.0 / (va + vb + vc);
-    let (v, w) = (vb * inv, vc * inv);
-    Vec3::new(1.0 - v - w, v, w)
 }
 
 #[cfg(test)]
