@@ -149,7 +149,7 @@ impl Simulation {
 }
 
 /// Largest rest turn of a strand that has nothing for twist to act on [rad]: its frames turn nothing that could be seen.
-const STRAIGHT: f64 = 1e-3;
+const STRAIGHT: f64 = 1e-6;
 
 /// Rate at which still air stops a lone fibre moving across itself [1/s].
 ///

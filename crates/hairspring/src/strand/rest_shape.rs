@@ -28,6 +28,11 @@ const LARGEST_SAG: f64 = 0.5;
 /// (the bend-twist instability of a heavy curl), long straight hair with bends in it first.
 const LARGEST_TWIST: f64 = 0.05;
 
+/// Largest natural curvature that the sag-free start bends into a joint, times the fibre's bending length (EI/ρgA)^⅓ [1]. A heavy strand
+/// that is held out by more curvature than this turns over sideways: the bend-twist threshold Γ* = 0.41 (κL)³ at GJ/EI = 0.46, from which the
+/// length drops out.
+const LARGEST_CURVATURE: f64 = 1.35;
+
 /// Bending stiffness kept above the load of what stands above a joint, as Greenhill's bound with a safety of about two:
 /// B·L̄ ≥ (weight moment of the upright part) × (its length) / 2; Greenhill 1881: ρgAL³/EI < 7.84, of which ½ρgAL²·L is half.
 const STANDING_SAFETY: f64 = 0.5;
@@ -123,8 +128,10 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             rest[i].tension = axial / lengths[i];
             let mean =
                 if i == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[i - 1] + lengths[i]) };
+            let weight_per_length = g * rest[i].mass / mean;
+            let held = (moment.length() / LARGEST_CURVATURE).powf(1.5) / weight_per_length.sqrt() / mean;
             let sag = (moment.length() / LARGEST_SAG).max(torque.abs() / (fibre.twist_ratio * LARGEST_TWIST));
-            let needed = sag.max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
+            let needed = sag.max(held).max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
             if needed > rest[i].bend {
                 rest[i].bend = needed;
                 stiffened += 1;
