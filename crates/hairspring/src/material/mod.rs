@@ -49,6 +49,20 @@ pub enum Model {
     Rod,
 }
 
+impl Model {
+    /// All of them.
+    pub const ALL: [Model; 3] = [Self::Auto, Self::Curvature, Self::Rod];
+
+    /// Its name in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Curvature => "curvature",
+            Self::Rod => "rod",
+        }
+    }
+}
+
 impl Default for Material {
     fn default() -> Self {
         Self {

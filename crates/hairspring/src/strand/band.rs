@@ -22,7 +22,7 @@ macro_rules! each {
     };
     (@ $i:ident, $body:block, $($k:literal)*) => {
         $({
-            const $i: usize = $k;
+            let $i: usize = $k;
             $body
         })*
     };
@@ -155,39 +155,39 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         let one = F::<S>::splat(simd, 1.0);
         let factors = &mut factors[..factor_rows(B, N)];
         let mut l = [[one; N]; B];
-        each!(R, {
-            if R < B {
-                each!(K, {
-                    if K < R {
-                        each!(C, {
-                            if C >= R && C < N {
-                                self.a[R][C] = (-l[K][R]).mul_add(self.a[K][C], self.a[R][C]);
+        each!(r, {
+            if r < B {
+                each!(k, {
+                    if k < r {
+                        each!(c, {
+                            if c >= r && c < N {
+                                self.a[r][c] = (-l[k][r]).mul_add(self.a[k][c], self.a[r][c]);
                             }
                         });
-                        self.b[R] = (-l[K][R]).mul_add(self.b[K], self.b[R]);
+                        self.b[r] = (-l[k][r]).mul_add(self.b[k], self.b[r]);
                     }
                 });
-                let at = R * N - R * R.saturating_sub(1) / 2;
-                let inverse = one / self.a[R][R];
-                each!(C, {
-                    if C > R && C < N {
-                        l[R][C] = self.a[R][C] * inverse;
-                        store(l[R][C], &mut factors[at + C - R - 1]);
+                let at = r * N - r * r.saturating_sub(1) / 2;
+                let inverse = one / self.a[r][r];
+                each!(c, {
+                    if c > r && c < N {
+                        l[r][c] = self.a[r][c] * inverse;
+                        store(l[r][c], &mut factors[at + c - r - 1]);
                     }
                 });
-                store(self.b[R] * inverse, &mut factors[at + N - R - 1]);
+                store(self.b[r] * inverse, &mut factors[at + N - r - 1]);
             }
         });
-        each!(R, {
-            if R >= B && R < N {
-                each!(K, {
-                    if K < B {
-                        each!(C, {
-                            if C >= R && C < N {
-                                self.a[R][C] = (-l[K][R]).mul_add(self.a[K][C], self.a[R][C]);
+        each!(r, {
+            if r >= B && r < N {
+                each!(k, {
+                    if k < B {
+                        each!(c, {
+                            if c >= r && c < N {
+                                self.a[r][c] = (-l[k][r]).mul_add(self.a[k][c], self.a[r][c]);
                             }
                         });
-                        self.b[R] = (-l[K][R]).mul_add(self.b[K], self.b[R]);
+                        self.b[r] = (-l[k][r]).mul_add(self.b[k], self.b[r]);
                     }
                 });
             }
@@ -199,24 +199,24 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     #[inline(always)]
     pub fn shift(&mut self, simd: S) {
         let zero = F::<S>::splat(simd, 0.0);
-        each!(R, {
-            if R + B < N {
-                each!(C, {
-                    if C >= R && C + B < N {
-                        self.a[R][C] = self.a[R + B][C + B];
+        each!(r, {
+            if r + B < N {
+                each!(c, {
+                    if c >= r && c + B < N {
+                        self.a[r][c] = self.a[r + B][c + B];
                     }
                 });
-                self.b[R] = self.b[R + B];
+                self.b[r] = self.b[r + B];
             }
         });
-        each!(C, {
-            if C + B >= N && C < N {
-                each!(R, {
-                    if R <= C {
-                        self.a[R][C] = zero;
+        each!(c, {
+            if c + B >= N && c < N {
+                each!(r, {
+                    if r <= c {
+                        self.a[r][c] = zero;
                     }
                 });
-                self.b[C] = zero;
+                self.b[c] = zero;
             }
         });
     }
@@ -227,19 +227,19 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 pub fn back_substitute<S: Simd, const B: usize, const N: usize>(simd: S, factors: &[Row], x: &mut [F<S>; N]) {
     let factors = &factors[..factor_rows(B, N)];
     let after = *x;
-    each!(K, {
-        if K >= B && K < N {
-            x[K] = after[K - B];
+    each!(k, {
+        if k >= B && k < N {
+            x[k] = after[k - B];
         }
     });
-    each!(BACK, {
-        if BACK < B {
-            let r = B - 1 - BACK;
+    each!(back, {
+        if back < B {
+            let r = B - 1 - back;
             let at = r * N - r * r.saturating_sub(1) / 2;
             let mut sum = load(simd, &factors[at + N - 1 - r]);
-            each!(C, {
-                if C > r && C < N {
-                    sum = (-load(simd, &factors[at + C - r - 1])).mul_add(x[C], sum);
+            each!(c, {
+                if c > r && c < N {
+                    sum = (-load(simd, &factors[at + c - r - 1])).mul_add(x[c], sum);
                 }
             });
             x[r] = sum;

@@ -49,8 +49,8 @@ impl<S: Simd> Bend<S> {
         band.add_block(0, 1, &-(*q + g.full()));
         band.add_block(0, 2, q);
         band.add_block(1, 2, &-(*q + Sym3::scaled_identity(*b).full()));
-        for p in 0..3 {
-            band.add_force(p, force[p]);
+        for (p, force) in force.iter().enumerate() {
+            band.add_force(p, *force);
         }
     }
 }
