@@ -109,6 +109,7 @@ impl Renderer {
             dots: &self.dots,
             colors: &self.colors,
             reach: chunks.iter().fold(0.0, |far, chunk| chunk.reach.max(far)),
+            widest: chunks.iter().fold(0.0, |most, chunk| chunk.widest.max(most)),
         };
         let (bodies, encoder) = (&*bodies, &self.encoder);
         tiles.par_iter_mut().enumerate().for_each_init(Brush::default, |brush, (tile, out)| {

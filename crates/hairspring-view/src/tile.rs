@@ -5,8 +5,9 @@ use crate::{
     hair::{
         blend::{CLOSED, Canvas},
         color::Colors,
-        ribbon::{Chunk, DEPTHS, Setup},
+        ribbon::{Chunk, DEPTHS, Entry, Setup},
         segment::{Dot, Segment},
+        shade::LANES,
     },
     sort::Buckets,
     tonemap::{Encoder, filmic},
@@ -64,6 +65,8 @@ pub(crate) struct Strands<'a> {
     pub colors: &'a Colors,
     /// Greatest difference in depth between a segment's middle and its ends, as a share of the range.
     pub reach: f32,
+    /// Greatest width [pixels].
+    pub widest: f32,
 }
 
 /// A thread's working memory.
@@ -89,32 +92,60 @@ impl Default for Brush {
 /// Segments fetched from memory together, so that their cache misses overlap.
 const BATCH: usize = 32;
 
+/// Segments drawn before the canvas is surveyed again: what a survey costs is then spread over them.
+const SURVEY: usize = 64;
+
+/// How much shows through where hair begins to be thinned out (see [`thinned`]).
+const THIN_FROM: f32 = 0.3;
+
+/// The share of strands that is drawn where at most `through` shows through in any pixel around: each stands for those left out, and is
+/// drawn wider by as much (stochastic simplification, Cook, Halstead, Planck & Ryu 2007). What a strand can add there to a pixel
+/// stays below what the strands before it add; the covering is right on average, and whether a strand is drawn depends on its number, so the
+/// same strands are drawn from frame to frame. None becomes wider than a pixel: `widest` is the greatest width there is [pixels].
+#[inline(always)]
+fn thinned(through: f32, widest: f32) -> f32 {
+    (through * (1.0 / THIN_FROM)).max(widest).min(1.0)
+}
+
+/// Place of a block of points, 0 to 1, in the order in which blocks are left out. Multiples of the golden ratio leave out neighbours evenly.
+#[inline(always)]
+fn rank(slot: usize) -> f32 {
+    const GOLDEN: u32 = 0x9e37_79b9;
+    (((slot / LANES) as u32).wrapping_mul(GOLDEN) >> 8) as f32 * (1.0 / (1 << 24) as f32)
+}
+
 /// Draws a tile's segments, nearest first, until nothing shows through any more. Patches that are closed cost nothing: their segments are
 /// neither sorted nor fetched nor lit.
 #[inline(always)]
 fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut Buckets, origin: Vec2) {
     let tolerance = setup.frame.quality.smoothness.clamp(0.02, 4.0);
     let walls = walls(canvas);
-    let mut fetched = [[Dot::END; 4]; BATCH];
-    while canvas.open != 0
-        && let Some(bucket) = buckets.next()
-    {
+    let mut fetched = [Fetched::default(); BATCH];
+    let mut drawn = 0;
+    while let Some(bucket) = buckets.next() {
         if let Some(nearest) = bucket.iter().map(|e| e.depth()).min() {
             lay_walls(canvas, &walls, nearest as f32 / DEPTHS - strands.reach);
         }
-        bucket.retain(|e| e.patches() & canvas.open != 0);
+        if drawn >= SURVEY {
+            canvas.survey();
+            drawn = 0;
+        }
+        if canvas.open == 0 {
+            break;
+        }
+        let share = |e: &Entry| thinned(canvas.through_any(e.patches()), strands.widest);
+        bucket.retain(|e| e.patches() & canvas.open != 0 && rank(e.slot()) < share(e));
         bucket.sort_unstable();
+        drawn += bucket.len();
         for few in bucket.chunks(BATCH) {
-            for (dots, e) in fetched.iter_mut().zip(few) {
-                *dots = fetch(strands.dots, e.slot());
+            for (to, e) in fetched.iter_mut().zip(few) {
+                *to = Fetched::new(strands, e.slot());
             }
-            for (dots, e) in fetched.iter().zip(few) {
-                if e.patches() & canvas.open == 0 {
-                    continue;
-                }
-                let slot = e.slot();
-                let color = [strands.colors.get(setup, slot), strands.colors.get(setup, slot + 1)];
-                for piece in Segment::new(dots, origin).pieces(tolerance, color) {
+            for (from, e) in fetched.iter().zip(few) {
+                let wider = 1.0 / thinned(canvas.through_any(e.patches()), strands.widest);
+                let color = strands.colors.open(setup, e.slot(), from.colors);
+                for mut piece in Segment::new(&from.dots, origin).pieces(tolerance, color) {
+                    piece.width = piece.width.map(|w| w * wider);
                     canvas.draw(&piece);
                 }
             }
@@ -122,19 +153,37 @@ fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut
     }
 }
 
-/// The point in a slot, the one before and the two after.
-#[inline(always)]
-fn fetch(dots: &[Dot], slot: usize) -> [Dot; 4] {
-    let mut four = [Dot::END; 4];
-    if slot > 0 {
-        four[0] = dots[slot - 1];
+/// What a segment's drawing reads from memory.
+#[derive(Clone, Copy)]
+struct Fetched {
+    /// The point before the segment, its own two, and the one after.
+    dots: [Dot; 4],
+    /// Packed colours of its own two.
+    colors: [u32; 2],
+}
+
+impl Default for Fetched {
+    fn default() -> Self {
+        Self { dots: [Dot::END; 4], colors: [0; 2] }
     }
-    four[1] = dots[slot];
-    four[2] = dots[slot + 1];
-    if slot + 2 < dots.len() {
-        four[3] = dots[slot + 2];
+}
+
+impl Fetched {
+    /// The segment whose first point is in `slot`.
+    #[inline(always)]
+    fn new(strands: &Strands, slot: usize) -> Self {
+        let (dots, mut out) = (strands.dots, Self::default());
+        if slot > 0 {
+            out.dots[0] = dots[slot - 1];
+        }
+        out.dots[1] = dots[slot];
+        out.dots[2] = dots[slot + 1];
+        if slot + 2 < dots.len() {
+            out.dots[3] = dots[slot + 2];
+        }
+        out.colors = [strands.colors.peek(slot), strands.colors.peek(slot + 1)];
+        out
     }
-    four
 }
 
 /// For each patch that the body fills, the share of the depth range behind which all of it lies before; infinite elsewhere.

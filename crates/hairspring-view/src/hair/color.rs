@@ -31,18 +31,30 @@ impl Colors {
         self.slots.resize_with(slots, AtomicU32::default);
     }
 
-    /// Linear RGB of a slot and −1: what a covering adds to (red, green, blue, what still shows through).
+    /// What is known of a slot, packed.
     #[inline(always)]
-    pub fn get(&self, setup: &Setup, slot: usize) -> Vec4 {
-        let mut bits = self.slots[slot].load(Ordering::Relaxed);
-        if bits == 0 {
-            bits = self.shade(setup, slot);
+    pub fn peek(&self, slot: usize) -> u32 {
+        self.slots[slot].load(Ordering::Relaxed)
+    }
+
+    /// Linear RGB and −1 (what a covering adds to (red, green, blue, what still shows through)) of a slot and the next, of which `known` was
+    /// known a moment ago.
+    #[inline(always)]
+    pub fn open(&self, setup: &Setup, slot: usize, known: [u32; 2]) -> [Vec4; 2] {
+        let bits = |slot: usize, bits: u32| if bits == 0 { self.light(setup, slot) } else { bits };
+        [open(bits(slot, known[0])).extend(-1.0), open(bits(slot + 1, known[1])).extend(-1.0)]
+    }
+
+    /// The packed colour of a slot that was not known a moment ago.
+    #[cold]
+    fn light(&self, setup: &Setup, slot: usize) -> u32 {
+        match self.peek(slot) {
+            0 => self.shade(setup, slot),
+            bits => bits,
         }
-        open(bits).extend(-1.0)
     }
 
     /// Lights the block around a slot.
-    #[cold]
     #[inline(never)]
     fn shade(&self, setup: &Setup, slot: usize) -> u32 {
         let block = slot / LANES;

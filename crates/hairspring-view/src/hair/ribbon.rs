@@ -71,6 +71,8 @@ pub(crate) struct Chunk {
     unsorted: Vec<(u32, Entry)>,
     /// Greatest difference in depth between a segment's middle and its ends, as a share of the range.
     pub reach: f32,
+    /// Greatest width [pixels].
+    pub widest: f32,
 }
 
 impl Chunk {
@@ -88,6 +90,7 @@ impl Chunk {
     fn fill_in_lanes(&mut self, setup: &Setup, run: &Run, dots: &mut [Dot]) {
         self.unsorted.clear();
         self.reach = 0.0;
+        self.widest = 0.0;
         let hair = &setup.frame.hair[run.hair];
         let scale = 2.0 * hair.width_scale * setup.view.focal;
         let mut first = 0;
@@ -137,6 +140,7 @@ impl Chunk {
         if widest < 1e-4 || outside {
             return;
         }
+        self.widest = self.widest.max(widest);
         self.reach = self.reach.max(0.5 * (a.depth - b.depth).abs());
         let depth = (0.5 * (a.depth + b.depth) * DEPTHS + 0.5) as u64;
         let key = depth << 48 | (slot as u64) << 16;
