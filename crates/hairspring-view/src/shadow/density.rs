@@ -3,10 +3,12 @@
 //! A voxel's density is the share of light that a beam along the grid loses in it for small amounts: the strands' length × diameter in it
 //! over the area of its face. Sums are fixed-point integers, so that any split over threads gives the same bits.
 
+use super::splat::{self, UNIT};
 use crate::{
     frame::{Frame, HairDraw},
     hair::order::Order,
 };
+use fearless_simd::{Level, dispatch};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -32,8 +34,6 @@ pub(crate) struct Cell {
 
 /// Voxels around the hair that blur and lookups may touch.
 const PAD: usize = 4;
-/// Fixed-point units of one optical depth.
-const UNIT: f32 = 65536.0;
 /// Optical depth of a closed body's wall: nothing passes.
 const WALL: f32 = 8.0;
 
@@ -122,6 +122,7 @@ impl Density {
     pub fn fill(&mut self, frame: &Frame, bounds: (Vec3, Vec3), order: &Order) {
         self.grid = Grid::around(bounds, frame.quality.shadow_voxels);
         let (grid, len) = (self.grid, self.grid.len());
+        let level = Level::new();
         // One grid a thread; more than eight would cost more to add up than they save.
         let parts = rayon::current_num_threads().clamp(1, 8);
         self.partial.resize_with(parts, Vec::new);
@@ -130,7 +131,8 @@ impl Density {
             sum.resize(len, 0);
             let n = order.runs.len();
             for run in &order.runs[part * n / parts..(part + 1) * n / parts] {
-                splat(&grid, &frame.hair[run.hair], order.strands(run), sum);
+                let (hair, strands) = (&frame.hair[run.hair], order.strands(run));
+                dispatch!(level, simd => splat::splat(simd, &grid, hair, strands, sum));
             }
         });
         let [nx, ny, _] = grid.size;
@@ -139,7 +141,7 @@ impl Density {
         self.hair.par_chunks_mut(nx * ny).enumerate().for_each(|(z, slice)| {
             for (i, value) in slice.iter_mut().enumerate() {
                 let sum = partial.iter().fold(0u32, |s, p| s.saturating_add(p[z * nx * ny + i]));
-                *value = sum as f32 / UNIT;
+                *value = sum as f32 * (1.0 / UNIT);
             }
         });
         blur(&grid, &mut self.hair, &mut self.scratch);
@@ -148,31 +150,6 @@ impl Density {
             for t in body.triangles {
                 let corner = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
                 wall(&grid, corner, &mut self.all);
-            }
-        }
-    }
-}
-
-/// Adds strands at evenly spaced places, at most one voxel apart.
-fn splat(grid: &Grid, hair: &HairDraw, strands: impl Iterator<Item = usize>, sum: &mut [u32]) {
-    let per_voxel = 1.0 / (grid.voxel * grid.voxel);
-    let scale = 2.0 * hair.width_scale * hair.look.shadow * per_voxel * UNIT;
-    for s in strands {
-        let range = hair.range(s);
-        for i in range.start..range.end.saturating_sub(1) {
-            let (a, b) = (hair.points[i], hair.points[i + 1]);
-            let length = a.distance(b);
-            let amount = length * 0.5 * (hair.radii[i] + hair.radii[i + 1]) * scale;
-            if !(amount > 0.0 && length < 64.0 * grid.voxel) {
-                continue;
-            }
-            let n = (length / grid.voxel).ceil().max(1.0);
-            let each = (amount / n).min(UNIT) as u32;
-            let step = (b - a) / n;
-            for k in 0..n as usize {
-                if let Some(at) = grid.nearest(a + step * (k as f32 + 0.5)) {
-                    sum[at] = sum[at].saturating_add(each);
-                }
             }
         }
     }

@@ -2,6 +2,7 @@
 
 mod density;
 mod depth_map;
+mod splat;
 mod sweep;
 
 use crate::{frame::Frame, hair::order::Order};
