@@ -83,3 +83,10 @@ impl HairDraw<'_> {
         (self.offsets[s] as usize).min(end)..end
     }
 }
+
+impl MeshDraw<'_> {
+    /// Whether there is a normal for every vertex.
+    pub(crate) fn smooth(&self) -> bool {
+        self.normals.len() == self.positions.len()
+    }
+}

@@ -1,7 +1,7 @@
 //! A square of the picture, drawn by one thread from start to end while it sits in the first-level cache.
 
 use crate::{
-    body::{Bodies, Samples, Surface},
+    body::{Bodies, Lit, Samples, Surface},
     hair::{
         blend::{CLOSED, Canvas},
         color::Colors,
@@ -225,7 +225,7 @@ impl Brush {
         let corner = setup.tiles.corner(tile);
         *self.canvas = Canvas::default();
         let canvas = &mut *self.canvas;
-        let body = bodies.draw(corner, &mut self.samples, &mut self.surfaces);
+        let body = bodies.draw(setup.level, tile, corner, &mut self.samples, &mut self.surfaces);
         if body {
             let [near, far] = setup.depths;
             for (i, s) in self.surfaces.iter().enumerate().filter(|(_, s)| s.cover > 0.0) {
@@ -245,6 +245,7 @@ impl Brush {
         let origin = Vec2::new(corner[0] as f32, corner[1] as f32);
         dispatch!(setup.level, _simd => lay_hair(setup, strands, canvas, &mut self.buckets, origin));
         if body {
+            let lit = Lit { frame: setup.frame, view: &setup.view, shadow: setup.shadow, level: setup.level };
             for i in (0..PIXELS).filter(|i| self.surfaces[*i].cover > 0.0) {
                 if canvas.body_depth[i].is_finite() {
                     canvas.lay_body(i);
@@ -252,16 +253,16 @@ impl Brush {
                 let seen = canvas.body_seen[i];
                 // What hair hides needs no light.
                 if seen > CLOSED {
-                    let color =
-                        bodies.light(setup.frame, &setup.view, setup.shadow, corner, &self.samples, i);
+                    let color = bodies.light(&lit, corner, &self.samples, i);
                     canvas.pixels[i] += (color * (self.surfaces[i].cover * seen)).extend(0.0);
                 }
             }
         }
-        self.develop(setup, encoder, corner, out);
+        dispatch!(setup.level, _simd => self.develop(setup, encoder, corner, out));
     }
 
     /// Backdrop, exposure, tone curve, 8 bits.
+    #[inline(always)]
     fn develop(&self, setup: &Setup, encoder: &Encoder, corner: [usize; 2], out: &mut [[u8; 3]; PIXELS]) {
         let [w, h] = setup.tiles.size().map(|n| n as f32);
         let backdrop = &setup.frame.background;

@@ -15,8 +15,6 @@ use std::sync::atomic::{AtomicU32, Ordering};
 pub(crate) const MAX_LIGHT: f32 = 8.0;
 /// Greatest code and lowest bit of red, green and blue: 11, 11 and 10 bits of the colour's square root.
 pub(crate) const CHANNELS: [(f32, u32); 3] = [(2047.0, 0), (2047.0, 11), (1023.0, 22)];
-/// Deepest shadow that a root takes from the voxels of its own scalp.
-const KEY_BIAS: f32 = 3e-3;
 
 /// Packed colours of all slots; 0: not worked out yet.
 #[derive(Debug, Default)]
@@ -95,7 +93,7 @@ fn gather(setup: &Setup, block: usize) -> (Fibre, Block) {
             None => root.lerp(tip, i as f32 * per_point),
         };
         let light = setup.shadow.light(p);
-        let body = setup.shadow.body(p, KEY_BIAS, 1);
+        let body = setup.shadow.on_hair(p);
         block.set(lane, p, t, pigment * amount, light, body);
     }
     (Fibre::new(look, shade::random(!owner.strand)), block)

@@ -1,11 +1,16 @@
 //! The bodies as the key lamp sees them: sharp shadow of a nose on a cheek, softened at the edge.
 
 use crate::{
-    body::raster::{BANDS, Bins, ScreenTriangle},
+    body::raster::{Bins, ScreenTriangle},
     frame::Frame,
+    tile::SIDE,
 };
+use fearless_simd::{Level, dispatch, f32x8, prelude::*};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+
+/// Rows that are drawn by one thread.
+const BAND: usize = SIDE;
 
 /// Depth along the light's rays, as an orthographic picture. Nearer the lamp is greater.
 #[derive(Debug, Default)]
@@ -50,23 +55,18 @@ impl DepthMap {
                 self.triangles.extend(ScreenTriangle::new(screen, 0, self.side, self.side));
             }
         }
-        self.bins.fill(&self.triangles, self.side);
         let side = self.side;
+        self.bins.fill(&self.triangles, [side; 2], [side, BAND]);
         self.heights.clear();
         self.heights.resize(side * side, f32::NEG_INFINITY);
         let (triangles, bins) = (&self.triangles, &self.bins);
-        self.heights.par_chunks_mut(side * BANDS).enumerate().for_each(|(band, rows)| {
-            for t in bins.band(band) {
+        self.heights.par_chunks_mut(side * BAND).enumerate().for_each(|(band, rows)| {
+            for t in bins.cell(band) {
                 let height = rows.len() / side;
-                triangles[*t as usize].cover(
-                    [0, band * BANDS],
-                    [side, height],
-                    Vec2::splat(0.5),
-                    |x, y, h| {
-                        let at = &mut rows[y * side + x];
-                        *at = at.max(h);
-                    },
-                );
+                triangles[*t as usize].cover([0, band * BAND], [side, height], |x, y, h| {
+                    let at = &mut rows[y * side + x];
+                    *at = at.max(h);
+                });
             }
         });
     }
@@ -77,33 +77,62 @@ impl DepthMap {
         xy.extend(p.dot(self.toward))
     }
 
-    /// Share of the key lamp's light that bodies let through to `p`, 0 to 1: percentage-closer filtering (Reeves et al. 1987) under a
-    /// tent `radius` texels (1 or more) to each side. `bias` [m] keeps a surface from shading itself.
+    /// Share of the key lamp's light that bodies let through to `p`, 0 to 1: percentage-closer filtering (Reeves et al. 1987) of the four texels
+    /// around. `bias` [m] keeps a surface from shading itself.
     #[inline(always)]
-    pub fn light(&self, p: Vec3, bias: f32, radius: i32) -> f32 {
+    pub fn light(&self, p: Vec3, bias: f32) -> f32 {
+        let Some((corner, share, height)) = self.window(p, 1) else { return 1.0 };
+        let row = |y: usize, weight: f32| {
+            let [a, b] = [0, 1].map(|x| open(self.heights[corner + y * self.side + x] - height - bias));
+            (a * (1.0 - share.x) + b * share.x) * weight
+        };
+        row(0, 1.0 - share.y) + row(1, share.y)
+    }
+
+    /// As [`DepthMap::light`], under a tent of four texels to each side.
+    pub fn soft_light(&self, level: Level, p: Vec3, bias: f32) -> f32 {
+        dispatch!(level, simd => self.soft_light_in_lanes(simd, p, bias))
+    }
+
+    #[inline(always)]
+    fn soft_light_in_lanes<S: Simd>(&self, simd: S, p: Vec3, bias: f32) -> f32 {
+        const RADIUS: usize = 4;
+        let Some((corner, share, height)) = self.window(p, RADIUS) else { return 1.0 };
+        // A tent over the sample's place: its weights change smoothly as `p` moves, and add up to the radius squared.
+        let places = f32x8::simd_from(simd, [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
+        let weigh = |share: f32| -((places - share).abs() * (1.0 / RADIUS as f32)) + 1.0;
+        let (across, mut down) = (weigh(share.x), [0.0; 2 * RADIUS]);
+        weigh(share.y).store_slice(&mut down);
+        let mut lit = f32x8::splat(simd, 0.0);
+        for (y, weight) in down.into_iter().enumerate() {
+            let row = &self.heights[corner + y * self.side..][..2 * RADIUS];
+            let over = f32x8::from_slice(simd, row) - (height + bias);
+            lit += (-(over * SLOPE).max(0.0).min(1.0) + 1.0) * weight;
+        }
+        (lit * across).reduce_sum() * (1.0 / (RADIUS * RADIUS) as f32)
+    }
+
+    /// The square of `2 · radius` texels around `p`: the first of them, the place of `p` between the middle ones, and its height; `None` if it
+    /// reaches over the map's edge.
+    #[inline(always)]
+    fn window(&self, p: Vec3, radius: usize) -> Option<(usize, Vec2, f32)> {
         let t = self.texel(p);
-        let edge = self.side as f32 - 1.0 - radius as f32;
-        let margin = radius as f32 + 0.5;
+        let (margin, edge) = (radius as f32 + 0.5, self.side as f32 - 1.0 - radius as f32);
         if !(t.x > margin && t.y > margin && t.x < edge && t.y < edge) {
-            return 1.0;
+            return None;
         }
         let (x, y) = (t.x - 0.5, t.y - 0.5);
-        let (ix, iy) = (x as i32, y as i32);
-        let (fx, fy) = (x - ix as f32, y - iy as f32);
-        let inverse = 1.0 / radius as f32;
-        let mut lit = 0.0;
-        for j in 1 - radius..=radius {
-            let wy = 1.0 - (j as f32 - fy).abs() * inverse;
-            let row = &self.heights[(iy + j) as usize * self.side + (ix + 1 - radius) as usize..]
-                [..2 * radius as usize];
-            for (i, height) in (1 - radius..).zip(row) {
-                // A tent over the sample's place: its weights change smoothly as `p` moves, and add up to the radius squared.
-                let wx = 1.0 - (i as f32 - fx).abs() * inverse;
-                // Over half a millimetre, not at once: no stair steps on slopes.
-                let open = 1.0 - ((height - t.z - bias) * 2e3).clamp(0.0, 1.0);
-                lit += wx * wy * open;
-            }
-        }
-        lit * inverse * inverse
+        let (column, row) = (x as usize, y as usize);
+        let corner = (row + 1 - radius) * self.side + column + 1 - radius;
+        Some((corner, Vec2::new(x - column as f32, y - row as f32), t.z))
     }
+}
+
+/// How fast light is lost under what lies above [1/m]: over half a millimetre, not at once, or slopes would show stair steps.
+const SLOPE: f32 = 2e3;
+
+/// Light that passes what lies `over` [m] above.
+#[inline(always)]
+fn open(over: f32) -> f32 {
+    1.0 - (over * SLOPE).clamp(0.0, 1.0)
 }

@@ -9,6 +9,7 @@ use crate::{frame::Frame, hair::order::Order};
 pub(crate) use density::bounds;
 use density::{Cell, Density, Grid};
 use depth_map::DepthMap;
+use fearless_simd::Level;
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 use std::ops::{Add, Mul};
@@ -37,6 +38,11 @@ const SKY: [Vec3; 5] = [
 
 /// How many of the swept depths belong to lamps; those of [`SKY`] follow.
 const LAMPS: usize = 3;
+
+/// How deep hair may lie under bodies before it is in their shadow [m]: roots stand in the skin.
+const HAIR_BIAS: f32 = 3e-3;
+/// The same of bodies, whose map is not exact.
+const SKIN_BIAS: f32 = 8e-4;
 
 /// Share of light from one part of the sky that passes an optical depth. It comes around strands: a gentler law than the straight beam's.
 fn sky_open(depth: f32) -> f32 {
@@ -131,10 +137,15 @@ impl Shadow {
         found
     }
 
-    /// Share of the key lamp that bodies let through to `p`.
+    /// Share of the key lamp that bodies let through to a point of hair.
     #[inline(always)]
-    pub fn body(&self, p: Vec3, bias: f32, radius: i32) -> f32 {
-        self.map.light(p, bias, radius)
+    pub fn on_hair(&self, p: Vec3) -> f32 {
+        self.map.light(p, HAIR_BIAS)
+    }
+
+    /// Share of the key lamp that bodies let through to a place on their surface.
+    pub fn on_skin(&self, level: Level, p: Vec3) -> f32 {
+        self.map.soft_light(level, p, SKIN_BIAS)
     }
 
     /// Side of a voxel of the hair's grid [m]; 0 without hair.
