@@ -32,6 +32,7 @@ mod shadow;
 mod sort;
 mod tile;
 mod tonemap;
+mod work;
 
 pub use camera::frame_camera;
 pub use frame::{Frame, HairDraw, MeshDraw, Quality};
@@ -39,3 +40,4 @@ pub use image::Image;
 pub use lighting::{Background, Light, Lighting};
 pub use output::{ClipWriter, OutputError, read_png, sequence_path, write_png};
 pub use renderer::{Renderer, Timings};
+pub use work::Work;

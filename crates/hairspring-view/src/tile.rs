@@ -5,12 +5,13 @@ use crate::{
     hair::{
         blend::{CLOSED, Canvas},
         color::Colors,
-        ribbon::{Chunk, DEPTHS, Entry, Setup},
+        ribbon::{Chunk, DEPTHS, Setup},
         segment::{Dot, Segment},
         shade::LANES,
     },
     sort::Buckets,
     tonemap::{Encoder, filmic},
+    work::Work,
 };
 use fearless_simd::dispatch;
 use glam::{Vec2, Vec4};
@@ -133,10 +134,18 @@ fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut
         if canvas.open == 0 {
             break;
         }
-        let share = |e: &Entry| thinned(canvas.through_any(e.patches()), strands.widest);
-        bucket.retain(|e| e.patches() & canvas.open != 0 && rank(e.slot()) < share(e));
+        let mut kept = 0;
+        for i in 0..bucket.len() {
+            let e = bucket[i];
+            // Closed patches let nothing through.
+            let through = canvas.through_any(e.patches());
+            bucket[kept] = e;
+            kept += (through > 0.0 && rank(e.slot()) < thinned(through, strands.widest)) as usize;
+        }
+        bucket.truncate(kept);
         bucket.sort_unstable();
         drawn += bucket.len();
+        canvas.work.drawn += bucket.len() as u64;
         for few in bucket.chunks(BATCH) {
             for (to, e) in fetched.iter_mut().zip(few) {
                 *to = Fetched::new(strands, e.slot());
@@ -221,7 +230,7 @@ impl Brush {
         encoder: &Encoder,
         tile: usize,
         out: &mut [[u8; 3]; PIXELS],
-    ) {
+    ) -> Work {
         let corner = setup.tiles.corner(tile);
         *self.canvas = Canvas::default();
         let canvas = &mut *self.canvas;
@@ -259,6 +268,7 @@ impl Brush {
             }
         }
         dispatch!(setup.level, _simd => self.develop(setup, encoder, corner, out));
+        Work { filed: strands.chunks.iter().map(|c| c.tile(tile).len() as u64).sum(), ..self.canvas.work }
     }
 
     /// Backdrop, exposure, tone curve, 8 bits.

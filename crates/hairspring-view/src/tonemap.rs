@@ -45,11 +45,14 @@ impl Encoder {
     pub fn encode(&self, color: Vec3, x: usize, y: usize) -> [u8; 3] {
         // Interleaved gradient noise (Jimenez 2014), fixed to the picture: nothing moves in still parts of a clip.
         let noise = (52.982_92 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract();
-        color.to_array().map(|c| {
-            let at = c.sqrt() * STEPS as f32;
-            let (i, f) = (at as usize, at.fract());
-            (self.table[i] + (self.table[i + 1] - self.table[i]) * f + noise) as u8
-        })
+        [self.code(color.x, noise), self.code(color.y, noise), self.code(color.z, noise)]
+    }
+
+    #[inline(always)]
+    fn code(&self, c: f32, noise: f32) -> u8 {
+        let at = c.sqrt() * STEPS as f32;
+        let (i, f) = (at as usize, at.fract());
+        (self.table[i] + (self.table[i + 1] - self.table[i]) * f + noise) as u8
     }
 }
 

@@ -115,7 +115,7 @@ impl Bodies {
         samples: &mut Samples,
         out: &mut [Surface; PIXELS],
     ) {
-        let offset = SAMPLES.map(|o| f32x8::simd_from(simd, o));
+        let offset = [f32x8::simd_from(simd, SAMPLES[0]), f32x8::simd_from(simd, SAMPLES[1])];
         for t in here.iter().map(|t| &self.screen[*t as usize]) {
             let source = u32x8::splat(simd, t.source);
             t.cover_samples(offset, corner, [SIDE, SIDE], |x, y, inside, nearness| {

@@ -77,10 +77,11 @@ impl ScreenTriangle {
             let down = offset[1] + (y as f32) - self.first.y;
             for x in columns.clone() {
                 let along = offset[0] + (x as f32) - self.first.x;
-                let dot = |d: Vec2| along * d.x + down * d.y;
-                let (v, w) = (dot(self.weights[0]), dot(self.weights[1]));
+                let [to_v, to_w] = self.weights;
+                let (v, w) = (along * to_v.x + down * to_v.y, along * to_w.x + down * to_w.y);
                 let inside = v.min(w).min(-(v + w) + 1.0).simd_ge(-EDGE);
-                hit(x - corner[0], y - corner[1], inside, dot(self.nearness.1) + self.nearness.0);
+                let (nearness, slope) = self.nearness;
+                hit(x - corner[0], y - corner[1], inside, along * slope.x + down * slope.y + nearness);
             }
         }
     }

@@ -9,7 +9,10 @@
 //! moves, light moves from pixel to pixel without a jump, and its sum stays.
 
 use super::segment::Piece;
-use crate::tile::{PATCH, PATCHES, PIXELS, SIDE};
+use crate::{
+    tile::{PATCH, PATCHES, PIXELS, SIDE},
+    work::Work,
+};
 use glam::{Vec2, Vec4};
 
 /// Light that still passes where a pixel counts as closed: under half a step of 8 bits.
@@ -29,6 +32,8 @@ pub(crate) struct Canvas {
     pub open: u16,
     /// The most that showed through in a pixel of each patch when last surveyed.
     pub through: [f32; PATCHES * PATCHES],
+    /// What was done so far.
+    pub work: Work,
 }
 
 impl Default for Canvas {
@@ -40,6 +45,7 @@ impl Default for Canvas {
             body_seen: [0.0; PIXELS],
             open: u16::MAX,
             through: [1.0; PATCHES * PATCHES],
+            work: Work::default(),
         }
     }
 }
@@ -123,6 +129,7 @@ impl Canvas {
         let first = if piece.cap[from] { a.x.floor() } else { (a.x - 0.5).ceil() };
         let last = if piece.cap[to] { b.x.ceil() } else { (b.x - 0.5).ceil() };
         let (first, last) = (first.max(0.0) as i32, (last.min(SIDE as f32)) as i32);
+        self.work.columns += (last - first).max(0) as u64;
         let thin = half0.max(half1) <= 0.5;
         for column in first..last {
             let x = column as f32;

@@ -9,7 +9,7 @@ use super::{
 };
 use fearless_simd::dispatch;
 use glam::{Vec3, Vec4};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
 /// Greatest light stored, linear; the tone curve has long been white there.
 pub(crate) const MAX_LIGHT: f32 = 8.0;
@@ -20,6 +20,7 @@ pub(crate) const CHANNELS: [(f32, u32); 3] = [(2047.0, 0), (2047.0, 11), (1023.0
 #[derive(Debug, Default)]
 pub(crate) struct Colors {
     slots: Vec<AtomicU32>,
+    lit: AtomicU64,
 }
 
 impl Colors {
@@ -27,6 +28,12 @@ impl Colors {
     pub fn clear(&mut self, slots: usize) {
         self.slots.clear();
         self.slots.resize_with(slots, AtomicU32::default);
+        *self.lit.get_mut() = 0;
+    }
+
+    /// Blocks lit since all were forgotten.
+    pub fn lit(&self) -> u64 {
+        self.lit.load(Ordering::Relaxed)
     }
 
     /// What is known of a slot, packed.
@@ -56,6 +63,7 @@ impl Colors {
     #[inline(never)]
     fn shade(&self, setup: &Setup, slot: usize) -> u32 {
         let block = slot / LANES;
+        self.lit.fetch_add(1, Ordering::Relaxed);
         let colors = dispatch!(setup.level, simd => {
             let (fibre, mut block) = gather(setup, block);
             setup.shader.shade(simd, &fibre, &mut block);

@@ -48,12 +48,16 @@ impl Track {
     /// Projects a strand. Points that are not finite, behind the camera or far out of the picture are not there.
     #[inline(always)]
     pub fn project<S: Simd>(&mut self, simd: S, by: &Projection, points: &[Vec3], radii: &[f32]) {
-        let (n, places) = (points.len(), points.len().next_multiple_of(LANES) + LANES);
-        for row in [&mut self.x, &mut self.y, &mut self.depth, &mut self.width] {
-            row.clear();
-            row.resize(places + 3, 0.0);
+        let n = points.len();
+        // Up to three places after the last whole row are read.
+        let places = n.next_multiple_of(LANES) + LANES + 3;
+        if self.width.len() < places {
+            for row in [&mut self.x, &mut self.y, &mut self.depth, &mut self.width] {
+                row.resize(places, 0.0);
+            }
         }
-        self.width.fill(-1.0);
+        self.width[0] = -1.0;
+        self.width[places - LANES - 2..places].fill(-1.0);
         let View { eye, right, up, forward, focal, center } = by.view;
         let [near, far] = by.depths;
         let per_depth = 1.0 / (far - near);
@@ -61,16 +65,19 @@ impl Track {
             let mut p = [[0.0; LANES]; 3];
             let mut radius = [-1.0; LANES];
             for (lane, i) in (first..n).take(LANES).enumerate() {
-                (0..3).for_each(|axis| p[axis][lane] = points[i][axis]);
+                let [x, y, z] = points[i].to_array();
+                (p[0][lane], p[1][lane], p[2][lane]) = (x, y, z);
                 radius[lane] = radii[i];
             }
-            let [x, y, z] = p.map(|p| f32x8::simd_from(simd, p));
-            let (x, y, z) = (x - eye.x, y - eye.y, z - eye.z);
-            let along = |d: Vec3| x * d.x + y * d.y + z * d.z;
-            let z = along(forward);
+            let from = [
+                f32x8::simd_from(simd, p[0]) - eye.x,
+                f32x8::simd_from(simd, p[1]) - eye.y,
+                f32x8::simd_from(simd, p[2]) - eye.z,
+            ];
+            let z = dot(from, forward);
             let closeness = f32x8::splat(simd, 1.0) / z;
-            let at_x = along(right) * closeness * focal + center[0];
-            let at_y = along(up) * closeness * -focal + center[1];
+            let at_x = dot(from, right) * closeness * focal + center[0];
+            let at_y = dot(from, up) * closeness * -focal + center[1];
             let width = f32x8::simd_from(simd, radius) * closeness * by.scale;
             // Comparisons with what is no number are false.
             let there = z.simd_gt(NEAR)
@@ -79,22 +86,22 @@ impl Track {
                 & width.simd_ge(0.0);
             let depth = ((z - (ROOT_BIAS + near)) * per_depth).max(0.0).min(1.0);
             let width = there.select(width.min(MAX_WIDTH), f32x8::splat(simd, -1.0));
-            let rows = [(&mut self.x, at_x), (&mut self.y, at_y), (&mut self.depth, depth)];
-            for (row, values) in rows.into_iter().chain([(&mut self.width, width)]) {
-                values.store_slice(&mut row[first + 1..][..LANES]);
-            }
+            at_x.store_slice(&mut self.x[first + 1..][..LANES]);
+            at_y.store_slice(&mut self.y[first + 1..][..LANES]);
+            depth.store_slice(&mut self.depth[first + 1..][..LANES]);
+            width.store_slice(&mut self.width[first + 1..][..LANES]);
         }
     }
 
     /// The eight points from number `first` − 1 on.
     #[inline(always)]
     pub fn before<S: Simd>(&self, simd: S, first: usize) -> Points<S> {
-        let load = |row: &[f32]| f32x8::from_slice(simd, &row[first..first + LANES]);
+        let range = first..first + LANES;
         Points {
-            x: load(&self.x),
-            y: load(&self.y),
-            depth: load(&self.depth),
-            width: load(&self.width),
+            x: f32x8::from_slice(simd, &self.x[range.clone()]),
+            y: f32x8::from_slice(simd, &self.y[range.clone()]),
+            depth: f32x8::from_slice(simd, &self.depth[range.clone()]),
+            width: f32x8::from_slice(simd, &self.width[range]),
         }
     }
 
@@ -108,11 +115,17 @@ impl Track {
     #[inline(always)]
     pub fn store(&self, dots: &mut [Dot]) {
         for (i, dot) in dots.iter_mut().enumerate() {
-            let [here, next] = [self.width[i + 1], self.width[i + 2]];
+            let (here, next) = (self.width[i + 1], self.width[i + 2]);
             let linked = here >= 0.0 && next >= 0.0;
             *dot = Dot::new(self.at(i), self.depth[i + 1], here.max(0.0), linked);
         }
     }
+}
+
+// Helpers are functions that are always inlined, not closures: only then are they compiled for the instruction set that was chosen.
+#[inline(always)]
+fn dot<S: Simd>([x, y, z]: [f32x8<S>; 3], d: Vec3) -> f32x8<S> {
+    x * d.x + y * d.y + z * d.z
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::{
     shadow::Shadow,
     tile::{PATCH, PATCHES, SIDE, Tiles},
 };
-use fearless_simd::{dispatch, f32x8, i32x8, prelude::*};
+use fearless_simd::{dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use glam::Vec3;
 
 /// What every run and every tile of a frame needs.
@@ -35,6 +35,9 @@ pub(crate) struct Setup<'a> {
 /// and 16 that say which patches of the tile it may touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Entry(pub u64);
+
+/// What a number of patches is shifted by to give tiles.
+const TILE: u32 = PATCHES.ilog2();
 
 /// Steps of an entry's depth.
 pub(crate) const DEPTHS: f32 = 65535.0;
@@ -109,29 +112,20 @@ impl Chunk {
     /// strand's first point.
     #[inline(always)]
     fn file<S: Simd>(&mut self, simd: S, setup: &Setup, slot: usize, first: usize) {
-        let [z, a, b, c] = [0, 1, 2, 3].map(|k| self.track.before(simd, first + k));
+        let (z, a) = (self.track.before(simd, first), self.track.before(simd, first + 1));
+        let (b, c) = (self.track.before(simd, first + 2), self.track.before(simd, first + 3));
         let zero = f32x8::splat(simd, 0.0);
-        let linked = |a: &Points<S>, b: &Points<S>| a.width.simd_ge(0.0) & b.width.simd_ge(0.0);
-        // Unit direction, zero where the strand has a gap, and length.
-        let way = |a: &Points<S>, b: &Points<S>| {
-            let (x, y) = (b.x - a.x, b.y - a.y);
-            let length = (x * x + y * y).sqrt();
-            let inverse = linked(a, b).select(f32x8::splat(simd, 1.0) / length.max(1e-12), zero);
-            ([x * inverse, y * inverse], length)
-        };
-        let (here, length) = way(&a, &b);
+        let (here, length) = way(simd, &a, &b);
         // How far the curve may leave the chord. A tangent that leaves it by an angle takes the cubic 4/27 of the chord times its sine away; an
         // angle's sine is at most half the difference of the two unit directions that it halves.
-        let turn = |[x, y]: [f32x8<S>; 2]| {
-            let none = x.simd_eq(0.0) & y.simd_eq(0.0);
-            none.select(zero, (x - here[0]).abs() + (y - here[1]).abs())
-        };
-        let bulge = length * (2.0 / 27.0) * (turn(way(&z, &a).0) + turn(way(&b, &c).0));
+        let turns = turn(zero, way(simd, &z, &a).0, here) + turn(zero, way(simd, &b, &c).0, here);
+        let bulge = length * (2.0 / 27.0) * turns;
         let widest = a.width.max(b.width);
         let reach = widest * 0.5 + 1.0 + bulge;
         let (low_x, high_x) = (a.x.min(b.x) - reach, a.x.max(b.x) + reach);
         let (low_y, high_y) = (a.y.min(b.y) - reach, a.y.max(b.y) + reach);
-        let [w, h] = setup.tiles.size().map(|n| n as f32);
+        let [w, h] = setup.tiles.size();
+        let (w, h) = (w as f32, h as f32);
         let seen = linked(&a, &b)
             & widest.simd_ge(1e-4)
             & (low_x.simd_lt(w) & low_y.simd_lt(h))
@@ -143,28 +137,35 @@ impl Chunk {
         let middle = ((a.depth + b.depth) * (0.5 * DEPTHS) + 0.5).to_int::<i32x8<S>>();
         let depths = seen.select(middle, i32x8::splat(simd, -1));
         // In patches: columns and rows, first and last.
-        let size = setup.tiles.grid().map(|n| (n * PATCHES - 1) as f32);
-        let patch = |x: f32x8<S>, last: f32| {
-            let patch = (x.max(0.0) * (1.0 / PATCH as f32)).min(last).to_int::<i32x8<S>>();
-            let mut lanes = [0; LANES];
-            patch.store_slice(&mut lanes);
-            lanes
-        };
-        let columns = [patch(low_x, size[0]), patch(high_x, size[0])];
-        let rows = [patch(low_y, size[1]), patch(high_y, size[1])];
-        let (mut depth, mut reaches) = ([0; LANES], [0.0; LANES]);
-        depths.store_slice(&mut depth);
+        let [nx, ny] = setup.tiles.grid();
+        let (end_x, end_y) = ((nx * PATCHES - 1) as f32, (ny * PATCHES - 1) as f32);
+        let (left, right) = (patch(low_x, end_x), patch(high_x, end_x));
+        let (top, bottom) = (patch(low_y, end_y), patch(high_y, end_y));
+        // Most segments lie in one tile.
+        let same_column = (left >> TILE).simd_eq(right >> TILE);
+        let alone = same_column & (top >> TILE).simd_eq(bottom >> TILE);
+        let alone = alone.select((top >> TILE) * nx as i32 + (left >> TILE), i32x8::splat(simd, -1));
+        let touched = bits(simd, left, right, 1) * 0x1111 & bits(simd, top, bottom, PATCHES as i32);
+        let (depths, alone, touched) = (store(depths), store(alone), store(touched));
+        let (left, right, top, bottom) = (store(left), store(right), store(top), store(bottom));
+        let mut reaches = [0.0; LANES];
         reach.store_slice(&mut reaches);
         for lane in 0..LANES {
-            if depth[lane] >= 0 {
-                let key = (depth[lane] as u64) << 48 | ((slot + first + lane) as u64) << 16;
-                let of = |range: &[[i32; LANES]; 2]| range.map(|patch| patch[lane] as usize);
-                self.push(setup, key, first + lane, reaches[lane], of(&columns), of(&rows));
+            if depths[lane] < 0 {
+                continue;
+            }
+            let key = (depths[lane] as u64) << 48 | ((slot + first + lane) as u64) << 16;
+            if alone[lane] >= 0 {
+                self.unsorted.push((alone[lane] as u32, Entry(key | touched[lane] as u64)));
+            } else {
+                let columns = [left[lane] as usize, right[lane] as usize];
+                let rows = [top[lane] as usize, bottom[lane] as usize];
+                self.push(setup, key, first + lane, reaches[lane], columns, rows);
             }
         }
     }
 
-    /// Files the segment from point `i`, which lies in some patches, both ends included.
+    /// Files the segment from point `i`, which lies in some patches, both ends included, of more than one tile.
     #[inline(always)]
     fn push(
         &mut self,
@@ -176,8 +177,8 @@ impl Chunk {
         rows: [usize; 2],
     ) {
         let across = setup.tiles.grid()[0];
-        let tiles = |range: [usize; 2]| range[0] / PATCHES..=range[1] / PATCHES;
-        let straight = tiles(columns).count() == 1 || tiles(rows).count() == 1;
+        let tiles = |range: [usize; 2]| range[0] / PATCHES..range[1] / PATCHES + 1;
+        let straight = tiles(columns).len() == 1 || tiles(rows).len() == 1;
         for y in tiles(rows) {
             let [mut first, mut last] = columns;
             if !straight {
@@ -233,6 +234,51 @@ impl Chunk {
         self.starts.copy_within(0..tiles, 1);
         self.starts[0] = 0;
     }
+}
+
+// Helpers are functions that are always inlined, not closures: only then are they compiled for the instruction set that was chosen.
+
+/// Whether points are there at both ends.
+#[inline(always)]
+fn linked<S: Simd>(a: &Points<S>, b: &Points<S>) -> mask32x8<S> {
+    a.width.simd_ge(0.0) & b.width.simd_ge(0.0)
+}
+
+/// Unit direction, zero where the strand has a gap, and length [pixels].
+#[inline(always)]
+fn way<S: Simd>(simd: S, a: &Points<S>, b: &Points<S>) -> ([f32x8<S>; 2], f32x8<S>) {
+    let (x, y) = (b.x - a.x, b.y - a.y);
+    let length = (x * x + y * y).sqrt();
+    let inverse = f32x8::splat(simd, 1.0) / length.max(1e-12);
+    let inverse = linked(a, b).select(inverse, f32x8::splat(simd, 0.0));
+    ([x * inverse, y * inverse], length)
+}
+
+/// Difference of two directions; zero where there is no other.
+#[inline(always)]
+fn turn<S: Simd>(zero: f32x8<S>, [x, y]: [f32x8<S>; 2], here: [f32x8<S>; 2]) -> f32x8<S> {
+    let none = x.simd_eq(0.0) & y.simd_eq(0.0);
+    none.select(zero, (x - here[0]).abs() + (y - here[1]).abs())
+}
+
+/// Column or row of patches of a place, `end` being the last.
+#[inline(always)]
+fn patch<S: Simd>(x: f32x8<S>, end: f32) -> i32x8<S> {
+    (x.max(0.0) * (1.0 / PATCH as f32)).min(end).to_int()
+}
+
+/// Within a tile, the bits from patch `first` to `last`, each patch having `step` of them.
+#[inline(always)]
+fn bits<S: Simd>(simd: S, first: i32x8<S>, last: i32x8<S>, step: i32) -> i32x8<S> {
+    let (one, inner) = (i32x8::splat(simd, 1), PATCHES as i32 - 1);
+    (one << (((last & inner) + 1) * step)) - (one << ((first & inner) * step))
+}
+
+#[inline(always)]
+fn store<S: Simd>(lanes: i32x8<S>) -> [i32; LANES] {
+    let mut out = [0; LANES];
+    lanes.store_slice(&mut out);
+    out
 }
 
 /// Which of the tile's patches in a row lie in `range`, both ends included; `tile` is its first.

@@ -100,9 +100,9 @@ impl DepthMap {
         let Some((corner, share, height)) = self.window(p, RADIUS) else { return 1.0 };
         // A tent over the sample's place: its weights change smoothly as `p` moves, and add up to the radius squared.
         let places = f32x8::simd_from(simd, [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
-        let weigh = |share: f32| -((places - share).abs() * (1.0 / RADIUS as f32)) + 1.0;
-        let (across, mut down) = (weigh(share.x), [0.0; 2 * RADIUS]);
-        weigh(share.y).store_slice(&mut down);
+        let across = -((places - share.x).abs() * (1.0 / RADIUS as f32)) + 1.0;
+        let mut down = [0.0; 2 * RADIUS];
+        (-((places - share.y).abs() * (1.0 / RADIUS as f32)) + 1.0).store_slice(&mut down);
         let mut lit = f32x8::splat(simd, 0.0);
         for (y, weight) in down.into_iter().enumerate() {
             let row = &self.heights[corner + y * self.side..][..2 * RADIUS];

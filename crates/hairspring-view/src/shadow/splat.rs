@@ -47,24 +47,22 @@ fn segments<S: Simd>(
     let (mut p, mut radius) = ([[0.0; LANES + 1]; 3], [0.0; LANES + 1]);
     for lane in 0..=LANES {
         let i = lane.min(last);
-        (0..3).for_each(|axis| p[axis][lane] = points[i][axis]);
+        let [x, y, z] = points[i].to_array();
+        (p[0][lane], p[1][lane], p[2][lane]) = (x, y, z);
         radius[lane] = radii[i];
     }
-    let pair = |row: &[f32; LANES + 1]| {
-        [f32x8::from_slice(simd, &row[..LANES]), f32x8::from_slice(simd, &row[1..])]
-    };
     // In voxels from the grid's corner; `from` 0..1 is inside the first voxel.
     let per_voxel = 1.0 / grid.voxel;
     let corner = (grid.origin * per_voxel - Vec3::splat(0.5)).to_array();
     let mut from = [f32x8::splat(simd, 0.0); 3];
     let mut step = from;
     for axis in 0..3 {
-        let [a, b] = pair(&p[axis]);
+        let [a, b] = pair(simd, &p[axis]);
         from[axis] = a * per_voxel - corner[axis];
         step[axis] = (b - a) * per_voxel;
     }
     let length = (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt();
-    let [r0, r1] = pair(&radius);
+    let [r0, r1] = pair(simd, &radius);
     let amount = length * (r0 + r1) * scale;
     let zero = f32x8::splat(simd, 0.0);
     // Comparisons with what is no number are false.
@@ -72,17 +70,18 @@ fn segments<S: Simd>(
     let places = counted.select((length * (1.0 / SPACING)).ceil().max(1.0), zero);
     let share = f32x8::splat(simd, 1.0) / places.max(1.0);
     let each = (amount * share).min(UNIT);
-    let step = step.map(|d| d * share);
+    let step = [step[0] * share, step[1] * share, step[2] * share];
     let [nx, ny, nz] = grid.size;
     let most = places.reduce_max() as usize;
     for k in 0..most {
         let k = k as f32 + 0.5;
-        let [x, y, z] = [0, 1, 2].map(|axis| from[axis] + step[axis] * k);
+        let [x, y, z] = [from[0] + step[0] * k, from[1] + step[1] * k, from[2] + step[2] * k];
         let inside = (x.simd_ge(0.0) & y.simd_ge(0.0) & z.simd_ge(0.0))
             & (x.simd_lt(nx as f32) & y.simd_lt(ny as f32) & z.simd_lt(nz as f32));
         let here = inside & places.simd_gt(k);
-        let whole = |x: f32x8<S>| here.select(x, zero).to_int::<i32x8<S>>();
-        let at = (whole(z) * ny as i32 + whole(y)) * nx as i32 + whole(x);
+        let (x, y, z) = (here.select(x, zero), here.select(y, zero), here.select(z, zero));
+        let row = z.to_int::<i32x8<S>>() * ny as i32 + y.to_int::<i32x8<S>>();
+        let at = row * nx as i32 + x.to_int::<i32x8<S>>();
         let amounts = here.select(each, zero).to_int::<u32x8<S>>();
         let (mut voxel, mut amount) = ([0; LANES], [0; LANES]);
         at.store_slice(&mut voxel);
@@ -92,6 +91,12 @@ fn segments<S: Simd>(
             *to = to.saturating_add(amount);
         }
     }
+}
+
+/// Both ends of eight segments in a row.
+#[inline(always)]
+fn pair<S: Simd>(simd: S, row: &[f32; LANES + 1]) -> [f32x8<S>; 2] {
+    [f32x8::from_slice(simd, &row[..LANES]), f32x8::from_slice(simd, &row[1..])]
 }
 
 #[cfg(test)]
