@@ -122,11 +122,9 @@ fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut
     let tolerance = setup.frame.quality.smoothness.clamp(0.02, 4.0);
     let walls = walls(canvas);
     let mut fetched = [Fetched::default(); BATCH];
-    let mut drawn = 0;
-    while let Some(bucket) = buckets.next() {
-        if let Some(nearest) = bucket.iter().map(|e| e.depth()).min() {
-            lay_walls(canvas, &walls, nearest as f32 / DEPTHS - strands.reach);
-        }
+    let (mut drawn, mut bucket) = (0, Vec::new());
+    while let Some((nearest, entries)) = buckets.next() {
+        lay_walls(canvas, &walls, nearest as f32 / DEPTHS - strands.reach);
         if drawn >= SURVEY {
             canvas.survey();
             drawn = 0;
@@ -134,15 +132,12 @@ fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut
         if canvas.open == 0 {
             break;
         }
-        let mut kept = 0;
-        for i in 0..bucket.len() {
-            let e = bucket[i];
-            // Closed patches let nothing through.
-            let through = canvas.through_any(e.patches());
-            bucket[kept] = e;
-            kept += (through > 0.0 && rank(e.slot()) < thinned(through, strands.widest)) as usize;
+        bucket.clear();
+        for e in entries.iter().filter(|e| e.patches() & canvas.open != 0) {
+            if rank(e.slot()) < thinned(canvas.through_any(e.patches()), strands.widest) {
+                bucket.push(*e);
+            }
         }
-        bucket.truncate(kept);
         bucket.sort_unstable();
         drawn += bucket.len();
         canvas.work.drawn += bucket.len() as u64;
@@ -277,15 +272,17 @@ impl Brush {
         let [w, h] = setup.tiles.size().map(|n| n as f32);
         let backdrop = &setup.frame.background;
         let gain = setup.frame.lighting.exposure.exp2();
-        for (i, out) in out.iter_mut().enumerate() {
-            let (x, y) = (corner[0] + i % SIDE, corner[1] + i / SIDE);
-            let pixel: Vec4 = self.canvas.pixels[i];
-            let from = Vec2::new(x as f32 / w - 0.5, y as f32 / h - 0.42);
-            // A pool of light: falls off smoothly, level in the middle.
-            let pool = (-3.2 * from.length_squared()).exp();
-            let behind = backdrop.edge.lerp(backdrop.center, pool);
-            let light = pixel.truncate() + behind * pixel.w;
-            *out = encoder.encode(filmic(light * gain), x, y);
+        // A pool of light: falls off smoothly, level in the middle. A factor for each column and row.
+        let pool = |from: f32| (-3.2 * from * from).exp();
+        let columns: [f32; SIDE] = std::array::from_fn(|x| pool((corner[0] + x) as f32 / w - 0.5));
+        for (y, row) in out.chunks_mut(SIDE).enumerate() {
+            let down = pool((corner[1] + y) as f32 / h - 0.42);
+            for (x, out) in row.iter_mut().enumerate() {
+                let pixel: Vec4 = self.canvas.pixels[y * SIDE + x];
+                let behind = backdrop.edge.lerp(backdrop.center, columns[x] * down);
+                let light = pixel.truncate() + behind * pixel.w;
+                *out = encoder.encode(filmic(light * gain), corner[0] + x, corner[1] + y);
+            }
         }
     }
 }

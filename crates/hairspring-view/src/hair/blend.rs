@@ -93,6 +93,8 @@ impl Canvas {
 
     #[inline(always)]
     fn add(&mut self, pixel: usize, cover: f32, color: Vec4, depth: f32) {
+        // It is less already; said so that it need not be asked for each array.
+        let pixel = pixel % PIXELS;
         if depth > self.body_depth[pixel] {
             self.lay_body(pixel);
         }

@@ -40,21 +40,25 @@ pub(crate) fn sweep(grid: &Grid, density: &[f32], direction: Vec3, depth: &mut V
         ((-i).max(0.0) as usize, (n as isize - 1 - i.max(0.0) as isize - 1).max(0) as usize)
     };
     let ((u0, u1), (v0, v1)) = (inside(nu, iu), inside(nv, iv));
-    for k in 1..n {
-        let slice = if d[axis] > 0.0 { n - 1 - k } else { k };
-        for j in v0..v1 {
-            let row = slice * strides[axis] + j * strides[v];
-            for i in u0..u1 {
-                let at = row + i * strides[u];
-                let from = (at as isize + offset) as usize;
-                let four = [from, from + strides[u], from + strides[v], from + strides[u] + strides[v]];
-                let (mut before, mut there) = (0.0, 0.0);
-                for (w, f) in weights.iter().zip(four) {
-                    before += w * depth[f];
-                    there += w * density[f];
+    // Along x, where it is not the axis, neighbours lie side by side: a step known to be 1 lets them be worked on together.
+    let rows = |depth: &mut [f32], side: usize| {
+        for k in 1..n {
+            let slice = if d[axis] > 0.0 { n - 1 - k } else { k };
+            for j in v0..v1 {
+                let row = slice * strides[axis] + j * strides[v];
+                for i in u0..u1 {
+                    let at = row + i * side;
+                    let from = (at as isize + offset) as usize;
+                    let four = [from, from + side, from + strides[v], from + side + strides[v]];
+                    let (mut before, mut there) = (0.0, 0.0);
+                    for (w, f) in weights.iter().zip(four) {
+                        before += w * depth[f];
+                        there += w * density[f];
+                    }
+                    depth[at] = before + 0.5 * length * (density[at] + there);
                 }
-                depth[at] = before + 0.5 * length * (density[at] + there);
             }
         }
-    }
+    };
+    if strides[u] == 1 { rows(depth, 1) } else { rows(depth, strides[u]) }
 }
