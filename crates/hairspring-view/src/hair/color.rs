@@ -7,7 +7,7 @@ use super::{
     ribbon::Setup,
     shade::{self, Block, Fibre, LANES},
 };
-use fearless_simd::dispatch;
+use fearless_simd::{dispatch, f32x8, prelude::*};
 use glam::{Vec3, Vec4};
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
@@ -65,7 +65,7 @@ impl Colors {
         let block = slot / LANES;
         self.lit.fetch_add(1, Ordering::Relaxed);
         let colors = dispatch!(setup.level, simd => {
-            let (fibre, mut block) = gather(setup, block);
+            let (fibre, mut block) = gather(simd, setup, block);
             setup.shader.shade(simd, &fibre, &mut block);
             block.color
         });
@@ -78,32 +78,58 @@ impl Colors {
     }
 }
 
-/// What the shader needs to know of a block's points. Lanes past the strand's last point stay empty.
+/// What the shader needs to know of a block's points. Lanes past the strand's last point repeat it.
 #[inline(always)]
-fn gather(setup: &Setup, block: usize) -> (Fibre, Block) {
+fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
     let owner = setup.order.owners[block];
     let hair = &setup.frame.hair[owner.hair as usize];
     let look = hair.look;
     let range = hair.range(owner.strand as usize);
     let points = &hair.points[range.clone()];
-    let n = points.len();
+    let (n, first) = (points.len(), owner.first as usize);
+    // With the point before and the one after.
+    let mut rows = [[0.0; LANES + 2]; 3];
+    for lane in 0..LANES + 2 {
+        let [x, y, z] = points[(first + lane).saturating_sub(1).min(n - 1)].to_array();
+        (rows[0][lane], rows[1][lane], rows[2][lane]) = (x, y, z);
+    }
+    let mut block = Block::default();
+    let zero = f32x8::splat(simd, 0.0);
+    let (mut along, mut length2) = ([zero; 3], zero);
+    for axis in 0..3 {
+        block.p[axis].copy_from_slice(&rows[axis][1..=LANES]);
+        let (before, after) = (&rows[axis][..LANES], &rows[axis][2..]);
+        along[axis] = f32x8::from_slice(simd, after) - f32x8::from_slice(simd, before);
+        length2 += along[axis] * along[axis];
+    }
+    // Points that lie on one another, or are no numbers, get the direction up.
+    let known = length2.simd_gt(1e-30) & length2.simd_lt(1e30);
+    let inverse = f32x8::splat(simd, 1.0) / length2.sqrt();
+    for axis in 0..3 {
+        let up = f32x8::splat(simd, Vec3::Y.to_array()[axis]);
+        known.select(along[axis] * inverse, up).store_slice(&mut block.t[axis]);
+    }
+
     // More or less of the same pigment: lighter strands are also less saturated.
     let amount = 1.0 + look.variation.clamp(0.0, 1.0) * shade::random(owner.strand) * 0.6;
-    let [root, tip] = setup.pigments[owner.hair as usize];
-    let per_point = 1.0 / (n.max(2) - 1) as f32;
-    let mut block = Block::default();
-    for (lane, i) in (owner.first as usize..n).take(LANES).enumerate() {
-        let p = points[i];
-        let along = points[(i + 1).min(n - 1)] - points[i.saturating_sub(1)];
-        let t = along.try_normalize().unwrap_or(Vec3::Y);
-        let pigment = match hair.colors.get(range.start + i) {
-            Some(color) => shade::pigment(*color),
-            None => root.lerp(tip, i as f32 * per_point),
-        };
-        let light = setup.shadow.light(p);
-        let body = setup.shadow.on_hair(p);
-        block.set(lane, p, t, pigment * amount, light, body);
+    if hair.colors.len() < range.end {
+        let [root, tip] = setup.pigments[owner.hair as usize].map(|p| p.to_array());
+        let lane = f32x8::simd_from(simd, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        let share = (lane + first as f32) * (1.0 / (n.max(2) - 1) as f32);
+        for axis in 0..3 {
+            let pigment = (share * (tip[axis] - root[axis]) + root[axis]) * amount;
+            pigment.store_slice(&mut block.pigment[axis]);
+        }
+    } else {
+        for lane in 0..LANES {
+            let color = hair.colors[range.start + (first + lane).min(n - 1)];
+            let pigment = (shade::pigment(color) * amount).to_array();
+            for axis in 0..3 {
+                block.pigment[axis][lane] = pigment[axis];
+            }
+        }
     }
+    setup.shadow.on_hair(simd, &block.p, &mut block.light, &mut block.body);
     (Fibre::new(look, shade::random(!owner.strand)), block)
 }
 
