@@ -94,10 +94,10 @@ impl Default for Brush {
 const BATCH: usize = 32;
 
 /// Segments drawn before the canvas is surveyed again: what a survey costs is then spread over them.
-const SURVEY: usize = 64;
+const SURVEY: usize = 24;
 
 /// How much shows through where hair begins to be thinned out (see [`thinned`]).
-const THIN_FROM: f32 = 0.3;
+const THIN_FROM: f32 = 0.5;
 
 /// The share of strands that is drawn where at most `through` shows through in any pixel around: each stands for those left out, and is
 /// drawn wider by as much (stochastic simplification, Cook, Halstead, Planck & Ryu 2007). What a strand can add there to a pixel
