@@ -167,15 +167,7 @@ impl Chunk {
 
     /// Files the segment from point `i`, which lies in some patches, both ends included, of more than one tile.
     #[inline(always)]
-    fn push(
-        &mut self,
-        setup: &Setup,
-        key: u64,
-        i: usize,
-        reach: f32,
-        columns: [usize; 2],
-        rows: [usize; 2],
-    ) {
+    fn push(&mut self, setup: &Setup, key: u64, i: usize, reach: f32, columns: [usize; 2], rows: [usize; 2]) {
         let across = setup.tiles.grid()[0];
         let tiles = |range: [usize; 2]| range[0] / PATCHES..range[1] / PATCHES + 1;
         let straight = tiles(columns).len() == 1 || tiles(rows).len() == 1;

@@ -82,7 +82,9 @@ impl Grid {
 /// Points farther from the middle than 12 times the mean distance (per axis) are left out: one stray strand would
 /// otherwise take all the voxels.
 pub(crate) fn bounds(hair: &[HairDraw]) -> Option<(Vec3, Vec3)> {
-    let sample = || hair.iter().flat_map(|h| h.points.iter().step_by(7)).filter(|p| p.is_finite());
+    // Some thousand points of every style tell where it is.
+    let some = |h: &HairDraw| h.points.len() / 8192 + 1;
+    let sample = || hair.iter().flat_map(|h| h.points.iter().step_by(some(h))).filter(|p| p.is_finite());
     let count = sample().count();
     if count == 0 {
         return None;
@@ -110,6 +112,8 @@ pub(crate) fn bounds(hair: &[HairDraw]) -> Option<(Vec3, Vec3)> {
 pub(crate) struct Density {
     pub grid: Grid,
     partial: Vec<Vec<u32>>,
+    /// Voxels that a surface of a body passes through.
+    walls: Vec<bool>,
     scratch: Vec<f32>,
     /// Hair alone, in optical depth per voxel.
     pub hair: Vec<f32>,
@@ -126,7 +130,8 @@ impl Density {
         // One grid a thread; more than eight would cost more to add up than they save.
         let parts = rayon::current_num_threads().clamp(1, 8);
         self.partial.resize_with(parts, Vec::new);
-        self.partial.par_iter_mut().enumerate().for_each(|(part, sum)| {
+        let (partial, walls) = (&mut self.partial, &mut self.walls);
+        let splats = |(part, sum): (usize, &mut Vec<u32>)| {
             sum.clear();
             sum.resize(len, 0);
             let n = order.runs.len();
@@ -134,7 +139,20 @@ impl Density {
                 let (hair, strands) = (&frame.hair[run.hair], order.strands(run));
                 dispatch!(level, simd => splat::splat(simd, &grid, hair, strands, sum));
             }
-        });
+        };
+        rayon::join(
+            || partial.par_iter_mut().enumerate().for_each(splats),
+            || {
+                walls.clear();
+                walls.resize(len, false);
+                for body in frame.bodies {
+                    for t in body.triangles {
+                        let corner = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
+                        wall(&grid, corner, walls);
+                    }
+                }
+            },
+        );
         let [nx, ny, _] = grid.size;
         let partial = &self.partial;
         self.hair.resize(len, 0.0);
@@ -145,18 +163,16 @@ impl Density {
             }
         });
         blur(&grid, &mut self.hair, &mut self.scratch);
-        self.all.clone_from(&self.hair);
-        for body in frame.bodies {
-            for t in body.triangles {
-                let corner = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
-                wall(&grid, corner, &mut self.all);
-            }
-        }
+        self.all.resize(len, 0.0);
+        let walls = self.walls.par_iter().zip(&self.hair);
+        self.all.par_iter_mut().with_min_len(1 << 14).zip(walls).for_each(|(all, (wall, hair))| {
+            *all = if *wall { hair.max(WALL) } else { *hair };
+        });
     }
 }
 
-/// Marks the voxels that a triangle passes through as opaque.
-fn wall(grid: &Grid, [a, b, c]: [Vec3; 3], all: &mut [f32]) {
+/// Marks the voxels that a triangle passes through.
+fn wall(grid: &Grid, [a, b, c]: [Vec3; 3], walls: &mut [bool]) {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let end =
         grid.origin + Vec3::new(grid.size[0] as f32, grid.size[1] as f32, grid.size[2] as f32) * grid.voxel;
@@ -171,7 +187,7 @@ fn wall(grid: &Grid, [a, b, c]: [Vec3; 3], all: &mut [f32]) {
         for j in 0..=n - i {
             let (u, v) = (i as f32 / n as f32, j as f32 / n as f32);
             if let Some(at) = grid.nearest(a + (b - a) * u + (c - a) * v) {
-                all[at] = all[at].max(WALL);
+                walls[at] = true;
             }
         }
     }

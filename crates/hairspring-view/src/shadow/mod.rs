@@ -73,10 +73,10 @@ where
 impl Shadow {
     /// Works out the shadow of a frame whose hair lies in `bounds`; `None`: no hair.
     pub fn fill(&mut self, frame: &Frame, bounds: Option<(Vec3, Vec3)>, order: &Order) {
-        self.map.fill(frame);
         self.light.clear();
-        let Some(bounds) = bounds else { return };
-        self.density.fill(frame, bounds, order);
+        let Some(bounds) = bounds else { return self.map.fill(frame) };
+        let (map, density) = (&mut self.map, &mut self.density);
+        rayon::join(|| density.fill(frame, bounds, order), || map.fill(frame));
         let density = &self.density;
         let grid = density.grid;
         self.grid = grid;

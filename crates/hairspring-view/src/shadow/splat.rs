@@ -34,14 +34,7 @@ pub(super) fn splat<S: Simd>(
 
 /// Adds the first eight segments, or as many as there are.
 #[inline(always)]
-fn segments<S: Simd>(
-    simd: S,
-    grid: &Grid,
-    points: &[Vec3],
-    radii: &[f32],
-    scale: f32,
-    sum: &mut [u32],
-) {
+fn segments<S: Simd>(simd: S, grid: &Grid, points: &[Vec3], radii: &[f32], scale: f32, sum: &mut [u32]) {
     // Lanes past the strand's end repeat its last point: they have no length.
     let last = points.len() - 1;
     let (mut p, mut radius) = ([[0.0; LANES + 1]; 3], [0.0; LANES + 1]);
@@ -108,10 +101,8 @@ mod tests {
     /// A strand's length times its width is found again in the voxels that it passes, wherever it ends and whatever part of it is broken.
     #[test]
     fn what_a_strand_covers_is_in_its_voxels() {
-        let (grid, look) = (
-            Grid { origin: Vec3::splat(-0.1), voxel: 0.01, size: [21, 21, 21] },
-            HairLook::default(),
-        );
+        let (grid, look) =
+            (Grid { origin: Vec3::splat(-0.1), voxel: 0.01, size: [21, 21, 21] }, HairLook::default());
         for n in [2, 5, 9, 10, 30] {
             for broken in [false, true] {
                 let at = |i: usize| Vec3::new(0.004 * i as f32 - 0.06, 0.03, 0.001 * i as f32);
