@@ -286,3 +286,26 @@ impl Brush {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever share is drawn and however many blocks a strand has, those that are drawn, made wider, add up to all: over any thousand
+    /// neighbours, whichever block of each is looked at.
+    #[test]
+    fn strands_that_are_drawn_stand_for_all() {
+        for (through, widest) in [(1.0, 0.1), (0.4, 0.1), (0.1, 0.1), (0.01, 0.1), (0.01, 0.6), (0.2, 3.0)] {
+            let share = thinned(through, widest);
+            assert!(widest.min(1.0) / share <= 1.0, "none is wider than a pixel");
+            for blocks in [1, 2, 3, 4, 7, 8, 16] {
+                for first in [0, 5000, 123_456] {
+                    let slot = |strand: usize| (first + strand * blocks) * LANES;
+                    let drawn = (0..1000).filter(|strand| rank(slot(*strand)) < share).count();
+                    let sum = drawn as f32 / share;
+                    assert!((sum - 1000.0).abs() < 100.0, "share {share}, {blocks} blocks: {sum} of 1000");
+                }
+            }
+        }
+    }
+}

@@ -96,11 +96,10 @@ fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
     let mut block = Block::default();
     let zero = f32x8::splat(simd, 0.0);
     let (mut along, mut length2) = ([zero; 3], zero);
-    for axis in 0..3 {
-        block.p[axis].copy_from_slice(&rows[axis][1..=LANES]);
-        let (before, after) = (&rows[axis][..LANES], &rows[axis][2..]);
-        along[axis] = f32x8::from_slice(simd, after) - f32x8::from_slice(simd, before);
-        length2 += along[axis] * along[axis];
+    for ((row, p), along) in rows.iter().zip(&mut block.p).zip(&mut along) {
+        p.copy_from_slice(&row[1..=LANES]);
+        *along = f32x8::from_slice(simd, &row[2..]) - f32x8::from_slice(simd, &row[..LANES]);
+        length2 += *along * *along;
     }
     // Points that lie on one another, or are no numbers, get the direction up.
     let known = length2.simd_gt(1e-30) & length2.simd_lt(1e30);
@@ -124,8 +123,8 @@ fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
         for lane in 0..LANES {
             let color = hair.colors[range.start + (first + lane).min(n - 1)];
             let pigment = (shade::pigment(color) * amount).to_array();
-            for axis in 0..3 {
-                block.pigment[axis][lane] = pigment[axis];
+            for (row, value) in block.pigment.iter_mut().zip(pigment) {
+                row[lane] = value;
             }
         }
     }

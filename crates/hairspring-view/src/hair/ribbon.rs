@@ -145,7 +145,7 @@ impl Chunk {
         let same_column = (left >> TILE).simd_eq(right >> TILE);
         let alone = same_column & (top >> TILE).simd_eq(bottom >> TILE);
         let alone = alone.select((top >> TILE) * nx as i32 + (left >> TILE), i32x8::splat(simd, -1));
-        let touched = bits(simd, left, right, 1) * 0x1111 & bits(simd, top, bottom, PATCHES as i32);
+        let touched = (bits(simd, left, right, 1) * 0x1111) & bits(simd, top, bottom, PATCHES as i32);
         let (depths, alone, touched) = (store(depths), store(alone), store(touched));
         let (left, right, top, bottom) = (store(left), store(right), store(top), store(bottom));
         let mut reaches = [0.0; LANES];
