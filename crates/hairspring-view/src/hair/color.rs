@@ -104,9 +104,8 @@ fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
     // Points that lie on one another, or are no numbers, get the direction up.
     let known = length2.simd_gt(1e-30) & length2.simd_lt(1e30);
     let inverse = f32x8::splat(simd, 1.0) / length2.sqrt();
-    for axis in 0..3 {
-        let up = f32x8::splat(simd, Vec3::Y.to_array()[axis]);
-        known.select(along[axis] * inverse, up).store_slice(&mut block.t[axis]);
+    for ((t, along), up) in block.t.iter_mut().zip(along).zip(Vec3::Y.to_array()) {
+        known.select(along * inverse, f32x8::splat(simd, up)).store_slice(t);
     }
 
     // More or less of the same pigment: lighter strands are also less saturated.
