@@ -49,7 +49,7 @@ pub struct Options {
     #[arg(long, value_name = "NAME", default_value = Integrator::default().name())]
     integrator: String,
 
-    /// What holds a strand's shape: auto, curvature, rod (auto takes curvature here, where strands are straight)
+    /// What holds a strand's shape: auto, springs, curvature, rod (auto takes curvature here, where strands are straight)
     #[arg(long, value_name = "NAME", default_value = Model::default().name())]
     model: String,
 
@@ -154,7 +154,6 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "substeps": substeps,
             "frames": frames,
             "integrator": options.integrator,
-            "model": options.model,
             "hair_hair": false,
             "ms_per_frame_median": median,
             "ms_per_frame_p95": p95,
@@ -167,6 +166,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "bytes_per_point": bytes,
             "stages": { "simulate": median },
             "simd": simd,
+            "model": options.model,
             "stretch_max_ever": stretch_ever,
             "max_depth_m_ever": depth_ever,
             "reset_strands": reset,

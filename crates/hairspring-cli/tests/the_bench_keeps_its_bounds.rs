@@ -10,7 +10,7 @@ mod common;
 use common::{json, run, succeed};
 use std::path::Path;
 
-const KEYS: [&str; 20] = [
+const KEYS: [&str; 21] = [
     "device",
     "threads",
     "strands",
@@ -30,6 +30,7 @@ const KEYS: [&str; 20] = [
     "bytes_per_point",
     "stages",
     "simd",
+    "model",
     "stretch_max_ever",
 ];
 
@@ -74,9 +75,12 @@ fn an_older_instruction_set_is_used_when_asked() {
 
 #[test]
 fn what_there_is_not_is_refused_with_what_there_is() {
-    for (flag, name, there) in
-        [("--integrator", "verlet", "backward-euler"), ("--device", "gpu", "cpu"), ("--simd", "mmx", "'mmx'")]
-    {
+    for (flag, name, there) in [
+        ("--integrator", "leapfrog", "backward-euler"),
+        ("--model", "wire", "curvature"),
+        ("--device", "gpu", "cpu"),
+        ("--simd", "mmx", "'mmx'"),
+    ] {
         let output = run(Path::new("."), &["bench", "--strands", "8", flag, name]);
         let told = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{told}");

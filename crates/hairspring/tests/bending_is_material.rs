@@ -2,13 +2,14 @@
 //!
 //! A straight strand clamped horizontally under its own weight takes one shape, which depends on Γ = ρgAL³/EI alone. The heights and
 //! reaches here are from the closed forms of the elastica (two independent solutions; H = drop of the tip, W = its reach, L = 1).
-//! Whatever the points, the substeps and the frame rate, the strand must come to rest there.
+//! Whatever the points, the substeps and the frame rate, the strand must come to rest there: within 1 or 2 % by the curvature and rod models,
+//! within 7 % by the springs model, whose truss has the fibre's stiffness only in the mean and whose small offsets lose digits.
 
 use glam::{Quat, Vec3};
 use hairspring::{
     collide::Rigid,
     groom::Groom,
-    material::Material,
+    material::{Material, Model},
     scene::Solver,
     simulation::{Air, Drive, Simulation},
 };
@@ -17,7 +18,7 @@ use std::sync::Arc;
 const LENGTH: f32 = 0.25;
 
 /// Drop and reach of the tip over the length, at rest.
-fn cantilever(gamma: f32, points: usize, substeps: u32, rate: f32) -> (f32, f32) {
+fn cantilever(model: Model, gamma: f32, points: usize, substeps: u32, rate: f32) -> (f32, f32) {
     let points: Vec<Vec3> =
         (0..points).map(|i| Vec3::X * (LENGTH * i as f32 / (points - 1) as f32)).collect();
     let root = Rigid { translation: points[0], rotation: Quat::IDENTITY };
@@ -25,7 +26,7 @@ fn cantilever(gamma: f32, points: usize, substeps: u32, rate: f32) -> (f32, f32)
     let base = Material::default();
     // Γ = ρ g π r² L³ / (E π r⁴/4)
     let young = 4.0 * base.density * 9.81 * LENGTH.powi(3) / (gamma * 40e-6f32.powi(2));
-    let material = Material { young, drag: 0.5, ..base };
+    let material = Material { model, young, drag: 0.5, ..base };
     let solver = Solver { sag_free: false, substeps, ..Solver::default() };
     let gravity = Vec3::new(0.0, -9.81, 0.0);
     let mut simulation =
@@ -49,24 +50,29 @@ fn cantilever(gamma: f32, points: usize, substeps: u32, rate: f32) -> (f32, f32)
 fn a_heavy_cantilever_hangs_as_the_elastica_does() {
     for (gamma, drop, reach) in [(1.0, 0.12347, 0.99125), (10.0, 0.70020, 0.65635), (100.0, 0.93752, 0.15922)]
     {
-        let (h, w) = cantilever(gamma, 64, 4, 60.0);
-        println!("gamma {gamma}: drop {h} ({drop}), reach {w} ({reach})");
-        assert!((h - drop).abs() < 0.01 * drop, "drop at Γ = {gamma}: {h} instead of {drop}");
-        assert!((w - reach).abs() < 0.02 * reach, "reach at Γ = {gamma}: {w} instead of {reach}");
+        for model in [Model::Curvature, Model::Rod, Model::Springs] {
+            let (h, w) = cantilever(model, gamma, 64, 4, 60.0);
+            println!("{model:?}, gamma {gamma}: drop {h} ({drop}), reach {w} ({reach})");
+            let (a, b) = if model == Model::Springs { (0.07, 0.07) } else { (0.01, 0.02) };
+            assert!((h - drop).abs() < a * drop, "{model:?}: drop at Γ = {gamma}: {h} instead of {drop}");
+            assert!((w - reach).abs() < b * reach, "{model:?}: reach at Γ = {gamma}: {w} instead of {reach}");
+        }
     }
 }
 
 #[test]
 fn substeps_frame_rate_and_points_do_not_change_the_shape() {
-    let (drop, reach) = cantilever(10.0, 64, 4, 60.0);
-    for (points, substeps, rate) in
-        [(64, 2, 60.0), (64, 16, 60.0), (64, 4, 24.0), (64, 4, 240.0), (32, 4, 60.0)]
-    {
-        let (h, w) = cantilever(10.0, points, substeps, rate);
-        println!("{points} points, {substeps} substeps, {rate} Hz: drop {h}, reach {w}");
-        assert!(
-            (h - drop).abs() < 0.02 * drop && (w - reach).abs() < 0.02 * reach,
-            "{points} points, {substeps} substeps at {rate} Hz: drop {h}, reach {w} instead of {drop}, {reach}"
-        );
+    for model in [Model::Curvature, Model::Rod, Model::Springs] {
+        let (drop, reach) = cantilever(model, 10.0, 64, 4, 60.0);
+        for (points, substeps, rate) in
+            [(64, 2, 60.0), (64, 16, 60.0), (64, 4, 24.0), (64, 4, 240.0), (32, 4, 60.0)]
+        {
+            let (h, w) = cantilever(model, 10.0, points, substeps, rate);
+            println!("{model:?}, {points} points, {substeps} substeps, {rate} Hz: drop {h}, reach {w}");
+            assert!(
+                (h - drop).abs() < 0.02 * drop && (w - reach).abs() < 0.02 * reach,
+                "{model:?}, {points} points, {substeps} substeps at {rate} Hz: drop {h}, reach {w} instead of {drop}, {reach}"
+            );
+        }
     }
 }

@@ -3,12 +3,16 @@
 //! The sag-free start solves rest turns (and, where a fibre is too soft for the style, stiffness) so that every net force is zero
 //! in the authored shape. One second later, with nothing moving, the mean point has moved less than 0.01 mm (the promise to users is 0.1 mm): straight strands,
 //! hanging, standing and lying curls alike.
+//!
+//! That is the rod, the default. The curvature model knows no twist, so curls that leave a plane are in balance but not at rest in it; it keeps
+//! strands that lie in a plane. The truss of the springs model is in balance too: nothing moves at first; heavy strands
+//! that are held out then find another balance, which the solver of its tensions does not look for.
 
 use glam::{Quat, Vec3};
 use hairspring::{
     collide::Rigid,
     groom::Groom,
-    material::{PRESETS, preset},
+    material::{Material, Model, PRESETS, preset},
     scene::Solver,
     simulation::{Air, Drive, Simulation},
 };
@@ -50,11 +54,14 @@ fn a_groom_at_rest_stays_where_it_was_authored() {
         .iter()
         .map(|s| Rigid { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
         .collect();
-    for name in PRESETS {
+    for (name, model) in PRESETS.iter().flat_map(|name| Model::ALL.map(|model| (*name, model))) {
+        // A free fall of one frame would be 1.4 mm.
+        let (frames, bound) = if model == Model::Springs { (1, 1e-4) } else { (60, 1e-5) };
+        let planar = model == Model::Curvature;
         let mut simulation = Simulation::new(
             groom.clone(),
             &all,
-            &[preset(name).unwrap()],
+            &[Material { model, ..preset(name).unwrap() }],
             Solver::default(),
             Vec3::new(0.0, -9.81, 0.0),
             Rigid::default(),
@@ -63,11 +70,16 @@ fn a_groom_at_rest_stays_where_it_was_authored() {
         let mut out = vec![Vec3::ZERO; simulation.point_count()];
         simulation.write_points(&mut out);
         let error = |out: &[Vec3]| {
-            let d: Vec<f32> = out.iter().zip(&groom.points).map(|(a, b)| a.distance(*b)).collect();
+            let d: Vec<f32> = all
+                .iter()
+                .filter(|s| !planar || *s % 4 == 0)
+                .flat_map(|s| groom.range(*s as usize))
+                .map(|i| out[i].distance(groom.points[i]))
+                .collect();
             (d.iter().sum::<f32>() / d.len() as f32, d.into_iter().fold(0.0, f32::max))
         };
-        assert!(error(&out).1 < 1e-6, "{name}: the first frame is the file");
-        for _ in 0..60 {
+        assert!(error(&out).1 < 1e-6, "{name}, {model:?}: the first frame is the file");
+        for _ in 0..frames {
             simulation.step(&Drive {
                 dt: 1.0 / 60.0,
                 anchor: Rigid::default(),
@@ -78,7 +90,10 @@ fn a_groom_at_rest_stays_where_it_was_authored() {
         }
         simulation.write_points(&mut out);
         let (mean, worst) = error(&out);
-        println!("{name}: mean {mean}, worst {worst}, {} joints stiffened", simulation.stiffened_joints());
-        assert!(mean < 1e-5, "{name}: the mean point moved {mean} m in a second");
+        println!(
+            "{name}, {model:?}: mean {mean}, worst {worst}, {} joints stiffened",
+            simulation.stiffened_joints()
+        );
+        assert!(mean < bound, "{name}, {model:?}: the mean point moved {mean} m in {frames} frames");
     }
 }

@@ -43,6 +43,8 @@ pub enum Model {
     /// The rod; for strands that are straight and round, where it comes to the same, the cheaper curvature model.
     #[default]
     Auto,
+    /// Stretch, bend, torsion and altitude springs (Selle 2008), with an extra particle beside each segment.
+    Springs,
     /// Stretch and bending by the curvature vector, in a frame carried from the root that knows no twist.
     Curvature,
     /// A discrete elastic rod: curvature, and a twist angle for each segment.
@@ -51,12 +53,13 @@ pub enum Model {
 
 impl Model {
     /// All of them.
-    pub const ALL: [Model; 3] = [Self::Auto, Self::Curvature, Self::Rod];
+    pub const ALL: [Model; 4] = [Self::Auto, Self::Springs, Self::Curvature, Self::Rod];
 
     /// Its name in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
+            Self::Springs => "springs",
             Self::Curvature => "curvature",
             Self::Rod => "rod",
         }

@@ -11,12 +11,13 @@ use crate::{
         lanes::{LANES, Row},
         rest_shape::{Fibre, RestShape, rest_shape},
         tile::{Elastic, RestRows, StateRows, StrandRows, history, rest, state, strand},
+        truss::{particles, truss},
     },
 };
 use fearless_simd::Level;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::{borrow::Cow, sync::Arc};
 
 /// What a simulation is told once; only the anchor's pose changes.
 pub(super) struct Settings {
@@ -78,7 +79,8 @@ impl Simulation {
             .zip(models)
             .map(|(lane, model)| {
                 let strands = || lane.iter().filter(|s| **s != u32::MAX).map(|s| *s as usize);
-                let points = strands().map(|s| groom.range(s).len()).max().unwrap_or(0).max(3) as u32;
+                let points = strands().map(|s| groom.range(s).len()).max().unwrap_or(0).max(3);
+                let points = ((points - 1) * model.stride() + 1) as u32;
                 let flat = model == Elastic::Rod && strands().any(|s| material(s).flatness != 1.0);
                 // Only a strand that starts out straight and free of load needs no rest turn.
                 let curled = solver.sag_free || strands().any(|s| !is_straight(groom.strand(s)));
@@ -116,6 +118,7 @@ impl Simulation {
             if self.settings.solver.sag_free { self.settings.gravity.as_dvec3() } else { DVec3::ZERO };
         let groom = &*self.groom;
         let anchor = self.settings.anchor;
+        let solver = self.settings.solver;
 
         let mut rest_of = self.rest.as_mut_slice();
         let mut state_of = self.state.as_mut_slice();
@@ -140,10 +143,11 @@ impl Simulation {
                     let s = *s as usize;
                     let material = material(groom.group(s));
                     let scale = groom.scale(s);
-                    let radii: Vec<f32> = match material.radius {
-                        Some(r) => vec![r; groom.range(s).len()],
-                        None => groom.radii[groom.range(s)].to_vec(),
-                    };
+                    let points = simulated_points(model, groom.strand(s));
+                    let own = &groom.radii[groom.range(s)];
+                    let radii: Vec<f32> = (0..points.len())
+                        .map(|i| material.radius.unwrap_or(own[i / model.stride()]))
+                        .collect();
                     let section = Section::new(material);
                     let fibre = Fibre {
                         radii: &radii,
@@ -151,12 +155,15 @@ impl Simulation {
                         young: (material.young * material.bend * scale.bend * section.bend) as f64,
                         tip: material.bend_tip as f64,
                         flat: section.flat as f64,
+                        substep: super::step::substep_length(&solver),
                         twist_ratio: (model == Elastic::Rod).then_some(section.twist_ratio as f64),
                     };
-                    let points = groom.strand(s);
-                    let shape = rest_shape(points, &fibre, gravity);
+                    let shape = match model {
+                        Elastic::Springs => truss(&points, &fibre, gravity),
+                        Elastic::Curvature | Elastic::Rod => rest_shape(&points, &fibre, gravity),
+                    };
                     stiffened += shape.stiffened;
-                    into.write_strand(points, &shape, anchor, obstacles);
+                    into.write_strand(&points, &shape, anchor, obstacles);
                     let radius = radii.iter().sum::<f32>() / radii.len() as f32;
                     let rows = &mut *into.strand;
                     rows[strand::DRAG].0[lane] =
@@ -173,11 +180,40 @@ impl Simulation {
     }
 }
 
+/// Shortest segment that is simulated [m]. Single precision knows a point of a 25 cm strand to 1.5e-8 m; a shorter segment's direction is
+/// noise, and bending by it would be noise over its length.
+const SHORTEST: f32 = 5e-5;
+
+/// The points that a model simulates for a strand: its own, moved apart along the strand where a segment is shorter than [`SHORTEST`], and extra
+/// particles between them where the model has any.
+pub(super) fn simulated_points(model: Elastic, points: &[Vec3]) -> Cow<'_, [Vec3]> {
+    let mut points = Cow::Borrowed(points);
+    let short = |w: &[Vec3]| w[0].distance_squared(w[1]) < SHORTEST * SHORTEST;
+    if points.windows(2).any(short) {
+        let own = points.to_mut();
+        let chord = own[own.len() - 1] - own[0];
+        let mut along = own.windows(2).map(|w| w[1] - w[0]).find(|e| e.length() >= SHORTEST).unwrap_or(chord);
+        for i in 1..own.len() {
+            let e = own[i] - own[i - 1];
+            if e.length() < SHORTEST {
+                own[i] = own[i - 1] + along.normalize_or(Vec3::Y) * (1.01 * SHORTEST);
+            } else {
+                along = e;
+            }
+        }
+    }
+    match model {
+        Elastic::Springs => Cow::Owned(particles(&points)),
+        Elastic::Curvature | Elastic::Rod => points,
+    }
+}
+
 /// The elastic model that simulates a strand.
 fn elastic(material: &Material, points: &[Vec3], solver: &Solver) -> Elastic {
     match material.model {
         // Constant matrix and curvature are all that it knows.
         _ if solver.integrator == Integrator::LocalGlobal => Elastic::Curvature,
+        Model::Springs => Elastic::Springs,
         Model::Curvature => Elastic::Curvature,
         Model::Rod => Elastic::Rod,
         Model::Auto if !solver.sag_free && material.flatness == 1.0 && is_straight(points) => {
@@ -287,6 +323,7 @@ impl Lane<'_> {
             self.strand[rotation + 3].0[lane] = turn.w;
         }
         Self::write_vector(&mut self.strand[strand::FIRST..], lane, points[1] - points[0]);
+        Self::write_vector(&mut self.strand[strand::THIRD..], lane, points[2] - points[0]);
         Self::write_vector(&mut self.strand[strand::NORMAL..], lane, shape.points[0].normal.as_vec3());
     }
 }

@@ -37,9 +37,10 @@ impl Simulation {
                 (2..points).contains(&(held.point as usize)),
                 "a held point is of the strand and is not driven"
             );
+            let point = held.point * self.tiles[place / LANES].model.stride() as u32;
             let (tile, lane) = (&mut self.holds[place / LANES], place % LANES);
-            let at = tile.iter().position(|h| h.point == held.point).unwrap_or_else(|| {
-                tile.push(HoldRows { point: held.point, rows: [Row::default(); hold::ROWS] });
+            let at = tile.iter().position(|h| h.point == point).unwrap_or_else(|| {
+                tile.push(HoldRows { point, rows: [Row::default(); hold::ROWS] });
                 tile.len() - 1
             });
             let rows = &mut tile[at].rows;

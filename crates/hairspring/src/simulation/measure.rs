@@ -51,7 +51,7 @@ impl Simulation {
         let mut out = Measure::default();
         let (mut sum, mut segments) = (0.0, 0);
         let root = self.root_position(place);
-        let n = self.groom.range(self.lanes[place] as usize).len();
+        let n = self.simulated_points(place);
         for i in 0..n {
             let (x, v) = (self.vector(place, i, state::X), self.vector(place, i, state::V));
             out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();

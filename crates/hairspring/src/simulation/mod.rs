@@ -145,10 +145,17 @@ impl Simulation {
         }
         pieces.into_par_iter().with_min_len(256).for_each(|(place, piece)| {
             let root = self.root_position(place);
+            let stride = self.tiles[place / LANES].model.stride();
             for (i, p) in piece.iter_mut().enumerate() {
-                *p = root + self.vector(place, i, state::X);
+                *p = root + self.vector(place, i * stride, state::X);
             }
         });
+    }
+
+    /// Points that are simulated for the strand in lane `place`.
+    fn simulated_points(&self, place: usize) -> usize {
+        (self.groom.range(self.lanes[place] as usize).len() - 1) * self.tiles[place / LANES].model.stride()
+            + 1
     }
 
     /// A vector of state of point `i` of the strand in lane `place`.

@@ -1,6 +1,6 @@
 //! No NaN leaves a step: a strand that turned non-finite goes back to its rest shape, carried by its root.
 
-use super::Simulation;
+use super::{Simulation, build::simulated_points};
 use crate::strand::{
     lanes::LANES,
     tile::{StateRows, state, strand},
@@ -42,7 +42,8 @@ impl Simulation {
         let local = Quat::from_array([0, 1, 2, 3].map(|k| rows[strand::TURN_END + k].0[lane]));
         let turn = self.settings.anchor.rotation * local;
         let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
-        let points = self.groom.strand(self.lanes[place] as usize);
+        let points = simulated_points(self.tiles[tile].model, self.groom.strand(self.lanes[place] as usize))
+            .into_owned();
         for i in 0..self.tiles[tile].points as usize {
             let p: Vec3 = turn * (points[i.min(points.len() - 1)] - points[0]);
             let at = self.tiles[tile].first as usize + i;

@@ -3,7 +3,7 @@
 use super::{Simulation, TilePlace, reset};
 use crate::{
     collide::{Obstacle, ObstaclePose, Rigid},
-    scene::{Integrator, Quality, Wind},
+    scene::{Integrator, Quality, Solver, Wind},
     strand::{
         integrate::run_tile,
         interval::{Interval, Substep},
@@ -87,6 +87,11 @@ thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
+/// The longest substep [s].
+pub(super) fn substep_length(solver: &Solver) -> f64 {
+    f64::from(FRAME) / f64::from(solver.substeps.max(1))
+}
+
 impl Simulation {
     /// Steps all strands to the end of a frame.
     ///
@@ -100,8 +105,8 @@ impl Simulation {
         assert_eq!(drive.roots.len(), self.places.len(), "one root pose for each simulated strand");
         assert!(drive.dt > 0.0, "a step takes time");
         let solver = self.settings.solver;
-        let h = FRAME / solver.substeps.max(1) as f32;
-        let substeps = ((drive.dt / h - 1e-3).ceil() as u32).clamp(1, MAX_SUBSTEPS);
+        let substeps =
+            ((drive.dt / substep_length(&solver) as f32 - 1e-3).ceil() as u32).clamp(1, MAX_SUBSTEPS);
         let mut interval = std::mem::take(&mut self.interval);
         self.fill_interval(drive, substeps, &mut interval);
         self.move_roots(drive);

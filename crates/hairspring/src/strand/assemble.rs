@@ -164,8 +164,8 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
                 held += 1;
             }
         }
-        // The root and the second point are driven; an angle of the first segment too, of the second is not.
-        if i >= 2 {
+        // An angle of the driven first segment is driven too, of the second it is not.
+        if i >= M::DRIVEN {
             elements.band.eliminate(simd, &mut scratch.factors[i * rows..]);
         } else if i == 1 && B > 3 {
             for k in 0..3 {
@@ -196,10 +196,10 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
     for i in (1..n).rev() {
         let x = V3::load(simd, &scratch.x[i]);
         let mut delta = zero;
-        if i >= 2 || B > 3 {
+        if i >= M::DRIVEN || B > 3 {
             back_substitute::<S, B, N>(simd, &scratch.factors[i * factor_rows(B, N)..], &mut unknowns);
         }
-        if i >= 2 {
+        if i >= M::DRIVEN {
             delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
             (x + delta).store(&mut scratch.x[i]);
         }

@@ -12,6 +12,7 @@ pub(crate) mod rest_shape;
 pub(crate) mod root;
 pub(crate) mod scratch;
 pub(crate) mod tile;
+pub(crate) mod truss;
 
 #[cfg(test)]
 mod reference;

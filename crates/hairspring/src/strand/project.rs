@@ -47,10 +47,12 @@ pub fn project<S: Simd>(
         let length = load(simd, &tile.rest[i][rest::LENGTH]);
         let real = length.simd_gt(0.0);
         let (l, u) = (next - here).length_and_unit();
+        let w1 = load(simd, &inverse_mass[i + 1]);
+        // Nothing to do between two points that are held.
+        let real = real & (w0 + w1).simd_gt(0.0);
         let u = V3::select(real, u, V3::zero(simd));
         let error = real.select(l - length, zero);
         worst = worst.max(error.abs() - length * ENOUGH);
-        let w1 = load(simd, &inverse_mass[i + 1]);
         // Row i: −w0 (û·û₋) λ₋ + (w0 + w1) λ − w1 (û·û₊) λ₊ = ℓ − L
         let coupling = w0 * before.dot(u);
         let c_before = coupling * inv_before;

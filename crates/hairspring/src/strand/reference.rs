@@ -108,9 +108,9 @@ impl Strand {
             let (e, rest) = (self.x[i + 1] - self.x[i], self.length[i]);
             let (l, u) = (e.length(), e.normalize());
             let k = STRETCH as f64 * self.mass[i] / (self.h * self.h);
-            let force = u * (k * (l - rest) + self.tension[i]);
-            let taut = self.tension[i] / l - 0.25 * self.mass[i] / (self.h * self.h);
-            let side = (k * (1.0 - rest / l)).max(taut).clamp(0.0, k);
+            let pull = k * (l - rest) + self.tension[i];
+            let force = u * pull;
+            let side = (pull / l - 0.25 * self.mass[i] / (self.h * self.h)).clamp(0.0, k);
             let block = outer(u, u) * (k - side) + DMat3::IDENTITY * side;
             b[i] += force;
             b[i + 1] -= force;

@@ -42,6 +42,15 @@ impl<S: Simd> Root<S> {
         }
     }
 
+    /// From the root to the third point [m], at the end of `substep`.
+    #[inline(always)]
+    pub fn third(simd: S, rows: &StrandRows, substep: &Substep) -> V3<S> {
+        let t = F::<S>::splat(simd, substep.fraction);
+        let turn =
+            Q4::load(simd, &rows[strand::TURN_START..]).nlerp(Q4::load(simd, &rows[strand::TURN_END..]), t);
+        transform(simd, &substep.anchor.0, turn.rotate(V3::load(simd, &rows[strand::THIRD..])))
+    }
+
     /// Damping, drag and friction of the strands.
     #[inline(always)]
     pub fn fibre(simd: S, rows: &StrandRows) -> (F<S>, F<S>, F<S>) {

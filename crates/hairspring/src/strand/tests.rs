@@ -4,7 +4,7 @@ use super::{
     assemble::{Step, Stretching, Sweep, assemble, substitute},
     band::{Band, back_substitute, factor_rows},
     lanes::{F, LANES, Row, V3},
-    model::{Curvature, Rod, bend::bend},
+    model::{Curvature, Rod, Springs, bend::bend, springs::altitude},
     reference::{self, dense_solve},
     root::Root,
     scratch::Scratch,
@@ -132,6 +132,37 @@ proptest! {
         prop_assert!(sum.length() < 1e-5 * size);
         let torque: DVec3 = x.iter().zip(&ours).map(|(x, f)| x.cross(*f)).sum();
         prop_assert!(torque.reject_from_normalized(was).length() < 1e-4 * size, "torque {torque}");
+    }
+
+    /// The altitude spring's gradient is that of the height by which the tetrahedron is larger than at rest, and it keeps momentum and angular
+    /// momentum.
+    #[test]
+    fn the_altitude_spring_is_the_gradient_of_a_height(x in [vector(1.0), vector(1.0), vector(1.0), vector(1.0)]) {
+        let volume = |x: [DVec3; 4]| (x[1] - x[0]).dot((x[2] - x[0]).cross(x[3] - x[0]));
+        let rest = volume(x);
+        prop_assume!(rest.abs() > 0.05);
+        let at = |x: [DVec3; 4]| dispatch!(Level::new(), simd => {
+            let (n, c, strain) = altitude(simd, x.map(|x| splat(simd, x)), F::splat(simd, rest as f32));
+            (lane(n), c.map(|c| c[3] as f64), strain[3] as f64)
+        });
+        let (n, c, strain) = at(x);
+        prop_assert!(strain.abs() < 1e-5, "at rest: {strain}");
+        prop_assert!(c.iter().sum::<f64>().abs() < 1e-4 && (n.length() - 1.0).abs() < 1e-4);
+        let torque: DVec3 = x.iter().zip(c).map(|(x, c)| x.cross(n * c)).sum();
+        prop_assert!(torque.length() < 1e-3, "torque {torque}");
+        // The volume's gradient over the area |n| that the height belongs to: Σ over points along any direction.
+        for k in 0..4 {
+            let gradient = DVec3::from([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
+                let mut y = x;
+                y[k] += axis * 1e-3;
+                (volume(y) - rest) / 1e-3
+            }));
+            // Along n, the height grows by c_k a metre while the area keeps (n is across it), so the volume grows by c_k |area|.
+            let area = (rest / c.iter().zip(x).map(|(c, x)| x.dot(n) * c).sum::<f64>()).abs();
+            let grows = gradient.dot(n) * rest.signum();
+            let height_sign = c.iter().zip(x).map(|(c, x)| x.dot(n) * c).sum::<f64>().signum();
+            prop_assert!((grows - height_sign * c[k] * area).abs() < 2e-2 * area, "point {k}: {grows} and {}", c[k] * area);
+        }
     }
 
     /// A whole substep of eight lanes is the dense f64 solve: gravity, wind, drag, damping, tension and a moving root included.
@@ -273,6 +304,10 @@ fn solve_once<S: Simd>(simd: S, step: &Step<S>, tile: &mut Tile, scratch: &mut S
         Elastic::Rod => {
             assemble::<S, Rod<S>, 4, 12>(simd, Sweep::First, step, tile, scratch);
             substitute::<S, Rod<S>, 4, 12>(simd, step, tile, scratch);
+        }
+        Elastic::Springs => {
+            assemble::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
+            substitute::<S, Springs, 3, 12>(simd, step, tile, scratch);
         }
     }
 }

@@ -65,8 +65,25 @@ pub mod strand {
     pub const FLAT: usize = 24;
     /// Stretching stiffness EA [N].
     pub const AXIAL: usize = 25;
+    /// The third point in the rest pose, from the root [m], 3 rows: driven too in the springs model.
+    pub const THIRD: usize = 26;
     /// Rows a strand.
-    pub const ROWS: usize = 26;
+    pub const ROWS: usize = 29;
+}
+
+/// What rows of the rest shape hold in the springs model.
+pub mod springs {
+    use super::rest;
+    /// Stiffness of the spring to the particle after the next [N/m].
+    pub const K2: usize = rest::BEND;
+    /// Its rest length [m].
+    pub const L2: usize = rest::TURN;
+    /// Rest length of the spring to the third particle after [m].
+    pub const L3: usize = rest::TURN + 1;
+    /// Six times the rest volume of the tetrahedron that begins here [m³].
+    pub const VOLUME: usize = rest::TURN + 2;
+    /// Stiffness of the spring to the third particle after, and of the altitude spring [N/m].
+    pub const K3: usize = rest::TWIST;
 }
 
 /// Rows a point of what the second-order integrator remembers.
@@ -134,4 +151,17 @@ pub struct Tile<'a> {
 pub enum Elastic {
     Curvature,
     Rod,
+    Springs,
+}
+
+impl Elastic {
+    /// Simulated points for each point of the strand but the last.
+    pub fn stride(self) -> usize {
+        if self == Self::Springs { 2 } else { 1 }
+    }
+
+    /// Points at the root that are driven.
+    pub fn driven(self) -> usize {
+        if self == Self::Springs { 3 } else { 2 }
+    }
 }

@@ -12,7 +12,7 @@ use crate::{
     strand::{
         assemble::{Step, forces},
         lanes::{F, V3, load},
-        model::{Curvature, Rod},
+        model::{Curvature, Rod, Springs},
         scratch::Scratch,
         tile::{Elastic, Tile, state},
     },
@@ -31,6 +31,7 @@ pub fn advance<S: Simd>(
     match tile.model {
         Elastic::Curvature => forces::<S, Curvature<S>, 3, 9>(simd, step, tile, scratch),
         Elastic::Rod => forces::<S, Rod<S>, 4, 12>(simd, step, tile, scratch),
+        Elastic::Springs => forces::<S, Springs, 3, 12>(simd, step, tile, scratch),
     }
     let zero = V3::zero(simd);
     let h = F::<S>::splat(simd, step.h);

@@ -5,7 +5,7 @@ use crate::strand::{
     assemble::{Step, Sweep, assemble, substitute},
     interval::Interval,
     lanes::{F, V3, load},
-    model::{Curvature, Model, Rod},
+    model::{Curvature, Model, Rod, Springs},
     project::project,
     scratch::Scratch,
     tile::{Elastic, Tile, rest},
@@ -24,6 +24,7 @@ pub fn advance<S: Simd>(
     match tile.model {
         Elastic::Curvature => solve::<S, Curvature<S>, 3, 9>(simd, interval, step, tile, scratch),
         Elastic::Rod => solve::<S, Rod<S>, 4, 12>(simd, interval, step, tile, scratch),
+        Elastic::Springs => solve::<S, Springs, 3, 12>(simd, interval, step, tile, scratch),
     }
     for _ in 0..interval.projections {
         let Scratch { factors, x, inverse_mass, .. } = &mut *scratch;
@@ -59,7 +60,7 @@ fn solve<S, M, const B: usize, const N: usize>(
         assemble::<S, M, B, N>(simd, Sweep::Again, step, tile, scratch);
         substitute::<S, M, B, N>(simd, step, tile, scratch);
         let (mut size, mut length) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 0.0));
-        for i in 2..tile.rest.len() {
+        for i in M::DRIVEN..tile.rest.len() {
             let change = V3::load(simd, &scratch.x[i]) - V3::load(simd, &scratch.kick[i]);
             size = size.max(change.dot(change));
             length = length.max(load(simd, &tile.rest[i - 1][rest::LENGTH]));
@@ -70,7 +71,7 @@ fn solve<S, M, const B: usize, const N: usize>(
         let enough = length * CONVERGED;
         let going = size.simd_gt(enough * enough);
         let share_now = going.select(share, F::splat(simd, 0.0));
-        for i in 2..tile.rest.len() {
+        for i in M::DRIVEN..tile.rest.len() {
             let from = V3::load(simd, &scratch.kick[i]);
             let change = V3::load(simd, &scratch.x[i]) - from;
             change.mul_add(share_now, from).store(&mut scratch.x[i]);

@@ -14,7 +14,7 @@ use super::{
     limit::{Finish, LIMIT, limit},
     root::Root,
     scratch::Scratch,
-    tile::{Tile, hold, rest, state},
+    tile::{Elastic, Tile, hold, rest, state},
 };
 use crate::scene::Integrator;
 use fearless_simd::prelude::*;
@@ -39,6 +39,9 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
         }
         V3::zero(simd).store(&mut scratch.x[0]);
         root.first.store(&mut scratch.x[1]);
+        if tile.model == Elastic::Springs {
+            Root::third(simd, tile.strand, substep).store(&mut scratch.x[2]);
+        }
 
         let second_order = interval.integrator == Integrator::Bdf2 && continues;
         let mut step = Step {
@@ -82,7 +85,11 @@ fn free_masses<S: Simd>(simd: S, tile: &Tile, scratch: &mut Scratch) {
     let zero = F::<S>::splat(simd, 0.0);
     for (i, at) in tile.rest.iter().enumerate() {
         let mass = load(simd, &at[rest::MASS]);
-        let inverse = if i < 2 { zero } else { mass.simd_gt(0.0).select(F::splat(simd, 1.0) / mass, zero) };
+        let inverse = if i < tile.model.driven() {
+            zero
+        } else {
+            mass.simd_gt(0.0).select(F::splat(simd, 1.0) / mass, zero)
+        };
         store(inverse, &mut scratch.inverse_mass[i]);
     }
     for hold in tile.holds {

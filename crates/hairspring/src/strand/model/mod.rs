@@ -11,10 +11,12 @@
 pub mod bend;
 pub mod curvature;
 mod rod;
+pub mod springs;
 pub mod stretch;
 
 pub use curvature::Curvature;
 pub use rod::Rod;
+pub use springs::Springs;
 
 use super::{
     band::Band,
@@ -43,6 +45,9 @@ pub struct At<S: Simd> {
 
 /// An elastic model: what it adds to the band of `B` unknowns a point in a window of `N`, point after point.
 pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
+    /// Points at the root that are driven.
+    const DRIVEN: usize = 2;
+
     /// Starts at the root of a strand.
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self;
 

@@ -1,7 +1,7 @@
 //! Stretch: a moderate spring along each segment inside the implicit solve; what it leaves, projection removes.
 //!
 //! ```text
-//!   x_i ~~~~/\/\/\~~~~ x_{i+1}     f = k (ℓ − L) û,   K = k [ ûûᵀ + max(0, 1 − L/ℓ)(I − ûûᵀ) ]
+//!   x_i ~~~~/\/\/\~~~~ x_{i+1}     f = [k (ℓ − L) + T] û,   K = k ûûᵀ + max(0, f/ℓ − ¼ m/h²)(I − ûûᵀ)
 //! ```
 //!
 //! Kept positive semi-definite under compression (Choi & Ko 2002). The stiffness is [`STRETCH`] m/h² and not the fibre's
@@ -21,13 +21,12 @@ const EXPLICIT_TENSION: f32 = 0.25;
 /// A segment: force on the nearer point (the farther gets its opposite) [N], and stiffness block [N/m].
 ///
 /// `tension` [N] is what the last substep found to hold the segment at its length; carrying it over (as an augmented
-/// Lagrangian does) makes a strand at rest stay at rest exactly, whatever the stiffness of the spring. Its sideways stiffness
-/// T/ℓ is left out of the matrix while explicit treatment is stable, because there it keeps the swing alive.
+/// Lagrangian does) makes a strand at rest stay at rest exactly, whatever the stiffness of the spring. The sideways stiffness
+/// f/ℓ is left out of the matrix while explicit treatment is stable, because there it keeps the swing alive: with all of
+/// it, a pendulum of 90° loses a quarter of its swing in a period.
 #[inline(always)]
 pub fn stretch<S: Simd>((length, u): (F<S>, V3<S>), rest: F<S>, k: F<S>, tension: F<S>) -> (V3<S>, Sym3<S>) {
-    let force = u * (k.mul_add(length - rest, tension));
-    let slack = k * (F::splat(rest.simd, 1.0) - rest / length);
-    let taut = tension / length - k * (EXPLICIT_TENSION / STRETCH);
-    let across = slack.max(taut).max(0.0).min(k);
-    (force, Sym3::outer(u, k - across).add_identity(across))
+    let pull = k.mul_add(length - rest, tension);
+    let across = (pull / length - k * (EXPLICIT_TENSION / STRETCH)).max(0.0).min(k);
+    (u * pull, Sym3::outer(u, k - across).add_identity(across))
 }
