@@ -1,0 +1,2 @@
+//! The simulation held against closed forms.
+pub mod reference;
