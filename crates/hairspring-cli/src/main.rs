@@ -17,6 +17,7 @@ mod picture;
 mod play;
 mod render;
 mod totals;
+mod validate;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -54,5 +55,6 @@ fn run(cli: Cli) -> Result<(), Fault> {
         Some(Command::Convert(options)) => convert::run(&options, console),
         Some(Command::Info(options)) => info::run(&options, console),
         Some(Command::Bench(options)) => bench::run(&options, console),
+        Some(Command::Validate(options)) => validate::run(&options, console),
     }
 }

@@ -3,7 +3,11 @@ use hairspring::validate::CASES;
 use rayon::prelude::*;
 #[test]
 fn all() {
-    let jobs: Vec<_> = CASES.iter().flat_map(|c| c.defaults.iter().map(move |d| (c, d))).collect();
+    let jobs: Vec<_> = CASES
+        .iter()
+        .filter(|c| std::env::var("ONLY").is_err() || std::env::var("ONLY").unwrap() == c.name)
+        .flat_map(|c| c.defaults.iter().map(move |d| (c, d)))
+        .collect();
     let all: Vec<_> = jobs
         .par_iter()
         .map(|(c, d)| {

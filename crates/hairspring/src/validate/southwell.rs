@@ -13,17 +13,20 @@ pub const SMALL: f64 = 0.1;
 /// How far toward the foreseen threshold each measurement goes.
 const STRIDE: f64 = 0.6;
 
+/// Steps that cross the whole range, each by the same factor: no measurement goes farther than one of them.
+const STEPS: f64 = 12.0;
+
 /// Agreement of two foreseen thresholds that ends the search [1].
-const AGREEMENT: f64 = 1e-3;
+const AGREEMENT: f64 = 4e-3;
 
 /// The last measurement is at least so near the threshold, as a share of it.
-const NEAR: f64 = 0.12;
+const NEAR: f64 = 0.15;
 
 /// Most measurements.
-const MOST: usize = 14;
+const MOST: usize = 30;
 
 /// Load at which `stiffness` of a strand against a small sideways pull falls to 0, searched from the load `start`, where the strand is
-/// stable, to `end` and no farther. `stiffness` is `None` where the strand has already given way.
+/// stable, to `end` and no farther, both above 0. `stiffness` is `None` where the strand has already given way.
 pub fn threshold(
     start: f64,
     end: f64,
@@ -31,41 +34,53 @@ pub fn threshold(
 ) -> Result<f64, Failure> {
     let toward = (end - start).signum();
     let beyond = |a: f64, b: f64| (a - b) * toward > 0.0;
+    let factor = (end / start).powf(1.0 / STEPS);
     let mut found: Vec<(f64, f64)> = Vec::with_capacity(MOST);
-    let mut foreseen = f64::NAN;
+    let (mut foreseen, mut at) = (f64::NAN, start);
     // The nearest load at which it is known to have given way.
-    let mut wall = end;
-    let mut next = start;
+    let mut wall = None;
     for _ in 0..MOST {
-        match stiffness(next)? {
-            Some(k) => found.push((next, k)),
-            None if found.is_empty() => return Err(Failure::NoThreshold),
-            None => {
-                wall = next;
-                next = 0.5 * (found[found.len() - 1].0 + wall);
+        // A strand that came to rest farther off, and no longer does, is on its way out.
+        let now = match stiffness(at) {
+            Err(Failure::NotAtRest) if !found.is_empty() => None,
+            other => other?,
+        };
+        match (now, found.last()) {
+            (Some(k), _) => found.push((at, k)),
+            (None, None) => return Err(Failure::NoThreshold),
+            (None, Some(last)) => {
+                wall = Some(at);
+                at = 0.5 * (last.0 + at);
                 continue;
             }
         }
-        let &(at, k) = &found[found.len() - 1];
         let zero = match found[..] {
             [.., a, b, c] => extrapolate(&[a, b, c]),
             [.., a, b] => extrapolate(&[a, b]),
             _ => f64::NAN,
         };
-        // A line that does not fall says nothing yet: on by a fixed share.
-        let blind = !zero.is_finite() || k <= 0.0 || !beyond(zero, at);
-        if !blind {
+        let mut next = at * factor;
+        // A line that does not fall says nothing yet.
+        if zero.is_finite() && beyond(zero, at) {
             let agree = (zero - foreseen).abs() < AGREEMENT * zero.abs();
             foreseen = zero;
             if agree && (zero - at).abs() < NEAR * zero.abs() {
                 return Ok(zero);
             }
+            let stride = at + STRIDE * (zero - at);
+            next = if beyond(stride, next) { next } else { stride };
         }
-        let target = if blind { at + 0.25 * (end - start) } else { at + STRIDE * (zero - at) };
-        next = if beyond(target, wall) { at + STRIDE * (wall - at) } else { target };
+        if let Some(wall) = wall
+            && beyond(next, 0.5 * (at + wall))
+        {
+            next = 0.5 * (at + wall);
+        }
+        if beyond(next, end) {
+            break;
+        }
+        at = next;
     }
-    // It came as near as it could and the line still moves, or it never fell.
-    if foreseen.is_finite() && !beyond(foreseen, end) { Ok(foreseen) } else { Err(Failure::NoThreshold) }
+    Err(Failure::NoThreshold)
 }
 
 /// Load at stiffness 0 of the polynomial in the stiffness through `(load, stiffness)` (Neville).
@@ -87,7 +102,7 @@ mod tests {
     #[test]
     fn finds_the_pole_of_a_response_with_several_modes() {
         // Modes at 7 and 50, of opposite sign; the far one bends the line.
-        for end in [60.0, 9.0] {
+        for end in [60.0, 20.0] {
             let stiffness = |x: f64| {
                 let response = 1.0 / (7.0 - x) - 0.4 / (50.0 - x);
                 Ok((x < 7.0).then_some(1.0 / response))

@@ -8,7 +8,7 @@ use crate::{
     scene::Solver,
     simulation::{Air, Drive, MovingObstacle, Simulation},
 };
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DQuat, DVec3, Mat3, Vec3};
 use std::sync::Arc;
 
 /// Radius of every specimen [m]: a typical hair.
@@ -30,7 +30,7 @@ const FRAME: f64 = 1.0 / 60.0;
 const PATIENCE: f64 = 60.0;
 
 /// A strand at rest moves by less than this share of its length in [`WATCH`].
-const STILL: f64 = 2e-6;
+const STILL: f64 = 3e-5;
 
 /// How long a strand must keep still [s].
 const WATCH: f64 = 0.5;
@@ -82,15 +82,16 @@ impl Setup {
     }
 }
 
-/// `n` points along the plane curve whose angle from `down` toward `aside` is `angle(s)`, 0 ≤ s ≤ 1: each segment has the angle
-/// of its middle, and the held first one that of the clamp.
-pub fn curve(n: u32, length: f64, (down, aside): (DVec3, DVec3), angle: impl Fn(f64) -> f64) -> Vec<Vec3> {
+/// `n` points along a helix that starts along the unit vector `direction` and turns by `turn` (axis times angle [rad]) from end to
+/// end: an arc where they are at right angles. Each segment has the direction of its middle, and the held first one that of
+/// the clamp.
+pub fn helix(n: u32, length: f64, direction: DVec3, turn: DVec3) -> Vec<Vec3> {
     let segments = (n - 1) as f64;
     let mut at = DVec3::ZERO;
     let mut points = vec![Vec3::ZERO];
     for i in 0..n - 1 {
-        let theta = if i == 0 { angle(0.0) } else { angle((i as f64 + 0.5) / segments) };
-        at += (down * theta.cos() + aside * theta.sin()) * (length / segments);
+        let s = if i == 0 { 0.0 } else { (i as f64 + 0.5) / segments };
+        at += DQuat::from_scaled_axis(turn * s) * direction * (length / segments);
         points.push(at.as_vec3());
     }
     points
@@ -98,7 +99,7 @@ pub fn curve(n: u32, length: f64, (down, aside): (DVec3, DVec3), angle: impl Fn(
 
 /// `n` points along a straight line.
 pub fn straight(n: u32, length: f64, direction: DVec3) -> Vec<Vec3> {
-    curve(n, length, (direction, DVec3::ZERO), |_| 0.0)
+    helix(n, length, direction, DVec3::ZERO)
 }
 
 /// `n` points along a straight line of `length` that hangs on a held segment as short as a follicle: of a chain, only its end
@@ -188,19 +189,26 @@ impl Specimen {
         Ok(())
     }
 
-    /// Goes on until the strand keeps still.
-    pub fn settle(&mut self) -> Result<(), Failure> {
+    /// Goes on until the strand keeps still; where its points then are, relative to the root [m].
+    ///
+    /// The mean over a while is compared with the mean over the while before: positions in f32 jitter by some 10⁻⁵ of the
+    /// length, which is no motion.
+    pub fn settle(&mut self) -> Result<Vec<DVec3>, Failure> {
         let length: f64 = self.at.windows(2).map(|p| p[0].distance(p[1]) as f64).sum();
-        let mut before = self.at.clone();
+        let frames = (WATCH / FRAME).round() as u32;
+        let mut before = vec![DVec3::INFINITY; self.at.len()];
         for _ in 0..(PATIENCE / WATCH) as u32 {
-            for _ in 0..(WATCH / FRAME).round() as u32 {
+            let mut mean = vec![DVec3::ZERO; self.at.len()];
+            for _ in 0..frames {
                 self.frame()?;
+                let root = self.at[0].as_dvec3();
+                mean.iter_mut().zip(&self.at).for_each(|(m, p)| *m += (p.as_dvec3() - root) / frames as f64);
             }
-            let moved = before.iter().zip(&self.at).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-            if (moved as f64) < STILL * length {
-                return Ok(());
+            let moved = before.iter().zip(&mean).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+            if moved < STILL * length {
+                return Ok(mean);
             }
-            before.copy_from_slice(&self.at);
+            before = mean;
         }
         Err(Failure::NotAtRest)
     }

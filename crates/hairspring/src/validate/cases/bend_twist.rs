@@ -6,7 +6,7 @@ use crate::validate::{
     plot::Sweep,
     reference::stability::curl_threshold,
     southwell,
-    specimen::{GRAVITY, LENGTH, Setup, Specimen, curve},
+    specimen::{LENGTH, Setup, Specimen, helix},
 };
 use glam::DVec3;
 
@@ -30,16 +30,20 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 1, from: 0.35, to: 1.2, log: false },
 };
 
-/// Sideways gravity over the vertical one.
-const TILT: f64 = 1e-3;
+/// Natural twist that makes the plane shape imperfect, over the whole strand [rad].
+const TWIST: f64 = 0.005;
 
-/// Sideways gravity over the tip's way out of the plane, both relative.
+/// A strand has left its plane where it is out of it by so much of a curl's radius, in the mean.
+const LEFT: f64 = 0.2;
+
+/// The natural twist over the way that it drives the strand out of its plane (root mean square over the length).
 fn stiffness(curl: f64, ratio: f64, gamma: f64, method: Method) -> Result<Option<f64>, Failure> {
-    let points = curve(method.points, LENGTH, (DVec3::NEG_Y, DVec3::X), |s| curl * s);
-    let mut setup = Setup::heavy(points, gamma, ratio);
-    setup.gravity = DVec3::new(0.0, -1.0, TILT).normalize() * GRAVITY;
-    let mut specimen = Specimen::new(setup, method);
-    specimen.settle()?;
-    let aside = specimen.tip().z / LENGTH;
-    Ok((aside.abs() < southwell::SMALL).then_some(TILT / aside))
+    // In the plane z = 0, but for the twist along the first tangent.
+    let turn = DVec3::Z * curl + DVec3::NEG_Y * TWIST;
+    let points = helix(method.points, LENGTH, DVec3::NEG_Y, turn);
+    let mut specimen = Specimen::new(Setup::heavy(points, gamma, ratio), method);
+    let rest = specimen.settle()?;
+    let squares: f64 = rest.iter().map(|p| p.z * p.z).sum();
+    let aside = (squares / rest.len() as f64).sqrt() / LENGTH;
+    Ok((aside < LEFT / curl).then_some(TWIST / aside))
 }

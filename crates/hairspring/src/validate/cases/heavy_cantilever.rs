@@ -27,8 +27,7 @@ pub const CASE: Case = Case {
     measure: |values, method| {
         let points = straight(method.points, LENGTH, DVec3::X);
         let mut specimen = Specimen::new(Setup::heavy(points, values[0], HAIR), method);
-        specimen.settle()?;
-        let tip = specimen.tip();
+        let tip = specimen.settle()?[method.points as usize - 1];
         Ok(vec![-tip.y / LENGTH, tip.x / LENGTH, -tip.y / tip.x])
     },
     sweep: Sweep::Parameter { index: 0, from: 0.3, to: 300.0, log: true },

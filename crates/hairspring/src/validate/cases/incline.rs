@@ -26,7 +26,7 @@ pub const CASE: Case = Case {
         if !slides(mu, slips, method)? {
             return Err(Failure::NoThreshold);
         }
-        while slips - holds > 2e-3 * mu {
+        while slips - holds > 1e-3 * mu {
             let slope = 0.5 * (holds + slips);
             if slides(mu, slope, method)? { slips = slope } else { holds = slope }
         }
