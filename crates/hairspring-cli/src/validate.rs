@@ -11,6 +11,7 @@ use crate::{
 use clap::Parser;
 use hairspring::validate::{CASES, Case, Method, Outcome, SYMBOLS, case};
 use rayon::prelude::*;
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
@@ -61,6 +62,14 @@ pub struct Options {
     /// Substeps of a frame of 1/60 s, 1 to 64 [default: 4 at rest, 8 in motion]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "How it is simulated")]
     substeps: Option<u32>,
+
+    /// Elastic model of the strand, as in scene files
+    #[arg(long, value_name = "NAME", help_heading = "How it is simulated")]
+    model: Option<String>,
+
+    /// How time is stepped, as in scene files
+    #[arg(long, value_name = "NAME", help_heading = "How it is simulated")]
+    integrator: Option<String>,
 
     /// Write a page with a plot of each case: the reference as a curve, measured points over it
     #[arg(long, value_name = "FILE.html")]
@@ -173,6 +182,8 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
         let method = Method {
             points: options.points.unwrap_or(case.method.points),
             substeps: options.substeps.unwrap_or(case.method.substeps),
+            model: chosen("model", &options.model)?.unwrap_or(case.method.model),
+            integrator: chosen("integrator", &options.integrator)?.unwrap_or(case.method.integrator),
         };
         let mut sets: Vec<Vec<f64>> = Vec::new();
         for default in case.defaults {
@@ -198,6 +209,15 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
     Ok(jobs)
 }
 
+/// The setting of this name, as scene files know it.
+fn chosen<T: DeserializeOwned>(flag: &str, name: &Option<String>) -> Result<Option<T>, Fault> {
+    let Some(name) = name else { return Ok(None) };
+    // serde says which there are.
+    serde_json::from_value(Value::String(name.clone()))
+        .map(Some)
+        .map_err(|e| Fault::Usage(format!("--{flag}: {}", e.to_string().replace('`', "'"))))
+}
+
 /// The parameters on the command line.
 fn given(options: &Options) -> impl Iterator<Item = (&'static str, f64)> {
     let of = |name| match name {
@@ -220,8 +240,14 @@ fn as_json(outcome: &Outcome) -> Value {
     for (name, value) in &outcome.parameters {
         parameters.insert((*name).into(), json!(value));
     }
-    parameters.insert("points".into(), json!(outcome.method.points));
-    parameters.insert("substeps".into(), json!(outcome.method.substeps));
+    let Method { points, substeps, model, integrator } = outcome.method;
+    let how: [(&str, Value); 4] = [
+        ("points", json!(points)),
+        ("substeps", json!(substeps)),
+        ("model", json!(model)),
+        ("integrator", json!(integrator)),
+    ];
+    parameters.extend(how.map(|(key, value)| (key.into(), value)));
     json!({
         "case": outcome.case,
         "parameters": parameters,
@@ -276,8 +302,11 @@ fn row(outcome: &Outcome) -> [String; 7] {
 
 /// How an outcome was simulated.
 fn how(outcome: &Outcome) -> String {
-    let Method { points, substeps } = outcome.method;
-    format!("{points} points, {substeps} substeps a frame")
+    let Method { points, substeps, model, integrator } = outcome.method;
+    // Their names are what serde calls them.
+    let name = |value: Value| value.as_str().unwrap_or_default().to_owned();
+    let (model, integrator) = (name(json!(model)), name(json!(integrator)));
+    format!("{points} points, {substeps} substeps a frame, model {model}, {integrator}")
 }
 
 /// The parameters of an outcome, as on the command line.

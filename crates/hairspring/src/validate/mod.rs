@@ -18,17 +18,23 @@ mod specimen;
 pub use failure::Failure;
 pub use plot::{Axis, Curve, Plot};
 
+use crate::{material::Model, scene::Integrator};
 use std::fmt;
 
 /// All cases, in the order of the closed forms' page.
-pub const CASES: [&Case; 7] = [
+pub const CASES: [&Case; 12] = [
     &cases::heavy_cantilever::CASE,
+    &cases::end_load::CASE,
     &cases::bend_twist::CASE,
     &cases::greenhill::CASE,
+    &cases::michell::CASE,
+    &cases::lateral_buckling::CASE,
     &cases::hanging_chain::CASE,
     &cases::beam_modes::CASE,
     &cases::pendulum::CASE,
+    &cases::catenary::CASE,
     &cases::incline::CASE,
+    &cases::capstan::CASE,
 ];
 
 /// The case of this name, as in [`Case::name`].
@@ -92,6 +98,10 @@ pub struct Method {
     pub points: u32,
     /// Substeps of a frame of 1/60 s, 1 to 64.
     pub substeps: u32,
+    /// Elastic model.
+    pub model: Model,
+    /// Integrator.
+    pub integrator: Integrator,
 }
 
 /// An experiment with a known outcome.

@@ -22,6 +22,9 @@ const AGREEMENT: f64 = 4e-3;
 /// The last measurement is at least so near the threshold, as a share of it.
 const NEAR: f64 = 0.15;
 
+/// Distance of a load that is held and one that is not, at which the search ends [1].
+const ENCLOSED: f64 = 0.015;
+
 /// Most measurements.
 const MOST: usize = 30;
 
@@ -49,6 +52,10 @@ pub fn threshold(
             (Some(k), _) => found.push((at, k)),
             (None, None) => return Err(Failure::NoThreshold),
             (None, Some(last)) => {
+                // Its own crookedness takes a strand out a little early: enclosed as narrowly as this, the threshold is known.
+                if (at - last.0).abs() < ENCLOSED * at {
+                    return Ok(0.5 * (last.0 + at));
+                }
                 wall = Some(at);
                 at = 0.5 * (last.0 + at);
                 continue;

@@ -6,10 +6,13 @@ use crate::{
     groom::Groom,
     material::Material,
     scene::Solver,
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, Drive, Hold, MovingObstacle, Simulation},
 };
 use glam::{DQuat, DVec3, Mat3, Vec3};
-use std::sync::Arc;
+use std::{
+    f64::consts::{FRAC_PI_4, PI},
+    sync::Arc,
+};
 
 /// Radius of every specimen [m]: a typical hair.
 pub const RADIUS: f64 = 35e-6;
@@ -19,6 +22,15 @@ pub const LENGTH: f64 = 0.2;
 
 /// Density of every specimen [kg/m³].
 pub const DENSITY: f64 = 1310.0;
+
+/// Young's modulus of human hair along the fibre [Pa].
+pub const YOUNG: f64 = 3.9e9;
+
+/// Bending stiffness EI of human hair [N m²].
+pub const BENDING: f64 = YOUNG * FRAC_PI_4 * RADIUS * RADIUS * RADIUS * RADIUS;
+
+/// Mass of a specimen over its length, ρA [kg/m].
+pub const LINE_DENSITY: f64 = DENSITY * PI * RADIUS * RADIUS;
 
 /// Gravity [m/s²].
 pub const GRAVITY: f64 = 9.81;
@@ -68,6 +80,15 @@ impl Setup {
         Self { points, material, gravity: DVec3::NEG_Y * GRAVITY, obstacle: None }
     }
 
+    /// A strand of human hair's Young's modulus and `ratio` = GJ/EI, where nothing weighs.
+    pub fn weightless(points: Vec<Vec3>, ratio: f64) -> Self {
+        let mut setup = Self::heavy(points, 1.0, ratio);
+        setup.gravity = DVec3::ZERO;
+        setup.material.young = YOUNG as f32;
+        setup.material.shear = (0.5 * ratio * YOUNG) as f32;
+        setup
+    }
+
     /// A strand without bending stiffness in air that does not move it: a chain.
     pub fn chain(points: Vec<Vec3>) -> Self {
         let material = Material {
@@ -111,7 +132,7 @@ pub fn pinned(n: u32, length: f64, held: DVec3, direction: DVec3) -> Vec<Vec3> {
 }
 
 /// Length of the held segment of a pinned chain over the chain's.
-const FOLLICLE: f64 = 1e-3;
+pub const FOLLICLE: f64 = 1e-3;
 
 /// A strand in simulation.
 pub struct Specimen {
@@ -130,7 +151,13 @@ impl Specimen {
         let groom = Arc::new(Groom::from_strands([setup.points], RADIUS as f32));
         let at = groom.points.clone();
         // Natural shapes are what the closed forms speak of: nothing is put in balance beforehand.
-        let solver = Solver { sag_free: false, substeps: method.substeps, ..Solver::default() };
+        let solver = Solver {
+            sag_free: false,
+            substeps: method.substeps,
+            integrator: method.integrator,
+            ..Solver::default()
+        };
+        let material = Material { model: method.model, ..setup.material };
         let rest = (Mat3::IDENTITY, Vec3::ZERO);
         let obstacles: Vec<MovingObstacle> = setup
             .obstacle
@@ -142,8 +169,7 @@ impl Specimen {
             .map(|o| ObstaclePose { shape: o.shape.clone(), start: rest, end: rest, share: 1.0 })
             .collect();
         let gravity = setup.gravity.as_vec3();
-        let simulation =
-            Simulation::new(groom, &[0], &[setup.material], solver, gravity, Rigid::default(), &poses);
+        let simulation = Simulation::new(groom, &[0], &[material], solver, gravity, Rigid::default(), &poses);
         debug_assert_eq!(simulation.point_count(), count);
         Self { simulation, root, obstacles, substep: FRAME / method.substeps as f64, at }
     }
@@ -161,6 +187,17 @@ impl Specimen {
     /// From the root to the free end [m].
     pub fn tip(&self) -> DVec3 {
         self.at[self.at.len() - 1].as_dvec3() - self.at[0].as_dvec3()
+    }
+
+    /// Holds or pulls these points from now on, and lets go of all others.
+    pub fn hold(&mut self, holds: &[Hold]) {
+        self.simulation.set_holds(holds);
+    }
+
+    /// Turns the root about the axis and by the angle of `turn` [rad], in its next step.
+    pub fn turn_root(&mut self, turn: DVec3) {
+        let turn = DQuat::from_scaled_axis(turn) * self.root.rotation.as_dquat();
+        self.root.rotation = turn.normalize().as_quat();
     }
 
     /// One frame.

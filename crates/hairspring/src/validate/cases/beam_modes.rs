@@ -1,12 +1,12 @@
 //! A clamped strand without gravity vibrates in Euler's modes.
 
-use super::{FREQUENCY, HAIR};
+use super::{FREQUENCY, HAIR, MOVING};
 use crate::validate::{
     Case, Method, Quantity,
     plot::Sweep,
     reference::beam,
     ring_down,
-    specimen::{DENSITY, RADIUS, Setup, straight},
+    specimen::{BENDING, LINE_DENSITY, Setup, straight},
 };
 use glam::DVec3;
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ pub const CASE: Case = Case {
         Quantity { name: "mode 2, ω/√(EI/ρAL⁴)", tolerance: FREQUENCY },
         Quantity { name: "mode 3, ω/√(EI/ρAL⁴)", tolerance: FREQUENCY },
     ],
-    method: Method { points: 64, substeps: 8 },
+    method: MOVING,
     reference: |_| Ok(beam::modes(3).into_iter().map(|beta| beta * beta).collect()),
     measure: |_, method| beam::modes(3).into_par_iter().map(|beta| measure(beta, method)).collect(),
     sweep: Sweep::Modes { label: "ω/√(EI/ρAL⁴)" },
@@ -30,19 +30,12 @@ pub const CASE: Case = Case {
 /// Long hair: the third mode of a shorter one would be too quick for any frame rate.
 const LENGTH: f64 = 0.3;
 
-/// Young's modulus of hair along the fibre [Pa].
-const YOUNG: f64 = 3.9e9;
-
 fn measure(beta: f64, method: Method) -> Result<f64, crate::validate::Failure> {
     let points = straight(method.points, LENGTH, DVec3::X);
     let shape: Vec<f64> = points.iter().map(|p| beam::shape(beta, p.x as f64 / LENGTH)).collect();
-    let mut setup = Setup::heavy(points, 1.0, HAIR);
-    setup.gravity = DVec3::ZERO;
+    let mut setup = Setup::weightless(points, HAIR);
     setup.material.drag = 0.0;
-    setup.material.young = YOUNG as f32;
-    setup.material.shear = (0.5 * HAIR * YOUNG) as f32;
-    // EI/ρA = E r²/4ρ.
-    let unit = (YOUNG * RADIUS * RADIUS / (4.0 * DENSITY)).sqrt() / (LENGTH * LENGTH);
+    let unit = (BENDING / LINE_DENSITY).sqrt() / (LENGTH * LENGTH);
     let omega = ring_down::frequency(setup, method, LENGTH, DVec3::Y, &shape, beta * beta * unit)?;
     Ok(omega / unit)
 }

@@ -1,6 +1,6 @@
 //! A naturally curved strand that hangs: heavy enough it lies in its plane, below a certain weight it winds out of it.
 
-use super::THRESHOLD;
+use super::{STILL, THRESHOLD};
 use crate::validate::{
     Case, Failure, GJ_OVER_EI, KAPPA_L, Method, Parameter, Quantity,
     plot::Sweep,
@@ -19,7 +19,7 @@ pub const CASE: Case = Case {
     ],
     defaults: &[&[8.0, 2.0 / 3.0], &[8.0, 0.458], &[15.0, 2.0 / 3.0], &[15.0, 0.458]],
     quantities: &[Quantity { name: "threshold Γ*", tolerance: THRESHOLD }],
-    method: Method { points: 64, substeps: 4 },
+    method: STILL,
     reference: |values| Ok(vec![curl_threshold(values[0], values[1]).ok_or(Failure::NoThreshold)?]),
     measure: |values, method| {
         let &[curl, ratio] = values else { unreachable!("two parameters") };

@@ -1,6 +1,6 @@
 //! A straight strand that stands upright gives way under its own weight.
 
-use super::{HAIR, THRESHOLD};
+use super::{HAIR, STILL, THRESHOLD};
 use crate::validate::{
     Case, Failure, GAMMA, Method, Quantity,
     plot::{Axis, Curve, Plot, Sweep, evaluate, places},
@@ -16,7 +16,7 @@ pub const CASE: Case = Case {
     parameters: &[],
     defaults: &[&[]],
     quantities: &[Quantity { name: "threshold Γ", tolerance: THRESHOLD }],
-    method: Method { points: 64, substeps: 4 },
+    method: STILL,
     reference: |_| Ok(vec![greenhill()]),
     measure: |_, method| {
         let stiffness = |gamma| {

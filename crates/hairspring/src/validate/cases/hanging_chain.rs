@@ -1,6 +1,6 @@
 //! A chain that hangs swings in Bernoulli's modes.
 
-use super::FREQUENCY;
+use super::{FREQUENCY, MOVING};
 use crate::validate::{
     Case, Method, Quantity,
     plot::Sweep,
@@ -21,7 +21,7 @@ pub const CASE: Case = Case {
         Quantity { name: "mode 2, ω/√(g/L)", tolerance: FREQUENCY },
         Quantity { name: "mode 3, ω/√(g/L)", tolerance: FREQUENCY },
     ],
-    method: Method { points: 64, substeps: 8 },
+    method: MOVING,
     reference: |_| Ok(chain::modes(3).into_iter().map(f64::sqrt).collect()),
     measure: |_, method| {
         let unit = (GRAVITY / LENGTH).sqrt();

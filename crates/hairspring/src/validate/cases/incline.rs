@@ -1,6 +1,6 @@
 //! A strand that lies across a slope slips where the slope is steeper than friction.
 
-use super::FRICTION;
+use super::{FRICTION, STILL};
 use crate::{
     collide::Obstacle,
     validate::{
@@ -17,7 +17,7 @@ pub const CASE: Case = Case {
     parameters: &[Parameter { symbol: &MU, range: (0.01, 1.0) }],
     defaults: &[&[0.1], &[0.3], &[0.6]],
     quantities: &[Quantity { name: "tan θ at which it slips", tolerance: FRICTION }],
-    method: Method { points: 64, substeps: 4 },
+    method: STILL,
     reference: |values| Ok(vec![values[0]]),
     measure: |values, method| {
         let mu = values[0];

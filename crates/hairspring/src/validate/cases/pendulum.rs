@@ -1,6 +1,6 @@
 //! A pendulum of one segment swings, the slower the wider.
 
-use super::FREQUENCY;
+use super::{FREQUENCY, MOVING};
 use crate::validate::{
     AMPLITUDE_DEG, Case, Failure, Method, Parameter, Quantity,
     plot::Sweep,
@@ -20,7 +20,7 @@ pub const CASE: Case = Case {
         Quantity { name: "amplitude kept in a period", tolerance: 0.05 },
     ],
     // More points would be a whip and not a pendulum.
-    method: Method { points: 3, substeps: 8 },
+    method: Method { points: 3, ..MOVING },
     reference: |values| Ok(vec![period_ratio(values[0].to_radians()), 1.0]),
     measure: |values, method| measure(values[0].to_radians(), method),
     sweep: Sweep::Parameter { index: 0, from: 10.0, to: 150.0, log: false },
