@@ -7,7 +7,10 @@ use crate::{
     totals::grouped,
 };
 use clap::Parser;
-use hairspring::scene::{Solver, bench::Bench};
+use hairspring::{
+    material::{Material, Model},
+    scene::{Integrator, Quality, Solver, bench::Bench},
+};
 use serde_json::json;
 use std::time::Instant;
 
@@ -42,9 +45,17 @@ pub struct Options {
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64))]
     substeps: u32,
 
-    /// How time is stepped: backward-euler
-    #[arg(long, value_name = "NAME", default_value = INTEGRATORS[0])]
+    /// How time is stepped: backward-euler, bdf2, explicit-euler, verlet, local-global, ftl, dftl
+    #[arg(long, value_name = "NAME", default_value = Integrator::default().name())]
     integrator: String,
+
+    /// What holds a strand's shape: auto, curvature, rod (auto takes curvature here, where strands are straight)
+    #[arg(long, value_name = "NAME", default_value = Model::default().name())]
+    model: String,
+
+    /// Iterate each substep to the end (Newton)
+    #[arg(long)]
+    high_quality: bool,
 
     /// Where it runs: cpu
     #[arg(long, value_name = "NAME", default_value = DEVICES[0])]
@@ -59,7 +70,6 @@ pub struct Options {
     json: bool,
 }
 
-const INTEGRATORS: [&str; 1] = ["backward-euler"];
 const DEVICES: [&str; 1] = ["cpu"];
 
 /// Names that an instruction set may have; which of them a processor has is asked at run time.
@@ -71,7 +81,11 @@ const MOST_POINTS: u64 = 200_000_000;
 /// Runs the command.
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let Options { strands, points, frames, substeps, .. } = *options;
-    known("integrator", &options.integrator, &INTEGRATORS)?;
+    known("integrator", &options.integrator, &Integrator::ALL.map(Integrator::name))?;
+    known("model", &options.model, &Model::ALL.map(Model::name))?;
+    let integrator = Integrator::ALL.into_iter().find(|i| i.name() == options.integrator).unwrap_or_default();
+    let model = Model::ALL.into_iter().find(|m| m.name() == options.model).unwrap_or_default();
+    let quality = if options.high_quality { Quality::High } else { Quality::Normal };
     known("device", &options.device, &DEVICES)?;
     if u64::from(strands) * u64::from(points) > MOST_POINTS {
         let text =
@@ -79,7 +93,12 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         return Err(Fault::Usage(text));
     }
     interrupt::listen();
-    let mut bench = Bench::new(strands, points, Solver { substeps, ..Solver::default() });
+    let mut bench = Bench::of(
+        strands,
+        points,
+        Material { model, ..Material::default() },
+        Solver { substeps, integrator, quality, ..Solver::default() },
+    );
     if let Some(name) = &options.simd
         && !bench.simulation.use_instruction_set(name)
     {
@@ -135,6 +154,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "substeps": substeps,
             "frames": frames,
             "integrator": options.integrator,
+            "model": options.model,
             "hair_hair": false,
             "ms_per_frame_median": median,
             "ms_per_frame_p95": p95,

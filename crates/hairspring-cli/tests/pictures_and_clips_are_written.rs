@@ -110,7 +110,7 @@ fn a_scene_is_a_clip() {
 #[test]
 fn the_built_in_head_is_a_clip_and_a_still() {
     let folder = tempfile::tempdir().unwrap();
-    let small = ["demo", "--strands", "3000", "--guides", "100", "--seconds", "0.2"];
+    let small = ["demo", "--strands", "3000", "--guides", "100", "--seconds", "0.25"];
     let told = succeed(folder.path(), &[&small[..], &SIZE[..]].concat());
     let out = folder.path().join("out");
     assert_eq!(names(&out), ["hairspring.mp4", "hairspring.png"]);

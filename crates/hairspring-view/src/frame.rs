@@ -77,9 +77,21 @@ impl HairDraw<'_> {
         self.offsets.len().saturating_sub(1)
     }
 
+    /// Number of segments of all strands.
+    pub(crate) fn segment_count(&self) -> u64 {
+        (0..self.strand_count()).map(|s| self.range(s).len().saturating_sub(1) as u64).sum()
+    }
+
     /// Points of strand `s`, cut to what the arrays hold.
     pub(crate) fn range(&self, s: usize) -> std::ops::Range<usize> {
         let end = (self.offsets[s + 1] as usize).min(self.points.len()).min(self.radii.len());
         (self.offsets[s] as usize).min(end)..end
+    }
+}
+
+impl MeshDraw<'_> {
+    /// Whether there is a normal for every vertex.
+    pub(crate) fn smooth(&self) -> bool {
+        self.normals.len() == self.positions.len()
     }
 }

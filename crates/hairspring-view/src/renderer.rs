@@ -3,22 +3,26 @@
 use crate::{
     body::Bodies,
     camera::View,
-    frame::Frame,
+    frame::{Frame, HairDraw},
     hair::{
         color::Colors,
         order::Order,
         ribbon::{Chunk, Setup},
         segment::Dot,
-        shade::{self, Shader},
+        shade::{self, LANES, Shader},
     },
     image::Image,
     shadow::{self, Shadow},
     tile::{Brush, PIXELS, SIDE, Strands, Tiles},
     tonemap::Encoder,
+    work::Work,
 };
 use fearless_simd::Level;
 use rayon::prelude::*;
-use std::time::{Duration, Instant};
+use std::{
+    ops::Add,
+    time::{Duration, Instant},
+};
 
 /// Draws frames of one size; keeps its memory between them.
 #[derive(Default)]
@@ -34,6 +38,7 @@ pub struct Renderer {
     drawn: Vec<[[u8; 3]; PIXELS]>,
     encoder: Encoder,
     timings: Timings,
+    work: Work,
 }
 
 /// Where the last frame's time went.
@@ -109,11 +114,18 @@ impl Renderer {
             dots: &self.dots,
             colors: &self.colors,
             reach: chunks.iter().fold(0.0, |far, chunk| chunk.reach.max(far)),
+            widest: chunks.iter().fold(0.0, |most, chunk| chunk.widest.max(most)),
         };
         let (bodies, encoder) = (&*bodies, &self.encoder);
-        tiles.par_iter_mut().enumerate().for_each_init(Brush::default, |brush, (tile, out)| {
-            brush.draw(&setup, bodies, &strands, encoder, tile, out);
+        let drawn = tiles.par_iter_mut().enumerate().map_init(Brush::default, |brush, (tile, out)| {
+            brush.draw(&setup, bodies, &strands, encoder, tile, out)
         });
+        self.work = Work {
+            segments: frame.hair.iter().map(HairDraw::segment_count).sum(),
+            pixels: (width * height) as u64,
+            ..drawn.reduce(Work::default, Work::add)
+        };
+        self.work.lit = self.colors.lit() * LANES as u64;
         let [nx, _] = self.tiles.grid();
         let tiles = &*tiles;
         self.image.rgb.par_chunks_mut(width * 3).enumerate().for_each(|(y, row)| {
@@ -134,5 +146,10 @@ impl Renderer {
     /// Where the last frame's time went.
     pub fn timings(&self) -> Timings {
         self.timings
+    }
+
+    /// How much the last frame took.
+    pub fn work(&self) -> Work {
+        self.work
     }
 }

@@ -14,7 +14,9 @@ pub(crate) struct Buckets {
     starts: Vec<u32>,
     /// Buckets handed out.
     taken: usize,
-    bucket: Vec<Entry>,
+    /// Depth at which the first begins, and the logarithm to base 2 of how deep each is.
+    low: u32,
+    shift: u32,
 }
 
 impl Buckets {
@@ -33,6 +35,7 @@ impl Buckets {
         }
         // The tile's own range of depth is cut evenly, by a shift.
         let shift = ((high - low) / BUCKETS as u32 + 1).next_power_of_two().ilog2();
+        (self.low, self.shift) = (low, shift);
         let bucket = |e: &Entry| ((e.depth() - low) >> shift) as usize;
         // Room for one more in front: filling walks each start to the end of its bucket, where the next one starts.
         self.starts.resize(((high - low) >> shift) as usize + 3, 0);
@@ -47,14 +50,13 @@ impl Buckets {
         self.starts.pop();
     }
 
-    /// The next bucket, farther than those before; its entries are in no order. `None` after the last.
+    /// The next bucket, farther than those before: the least depth that it can hold, and its entries, in no order. `None` after the last.
     #[inline(always)]
-    pub fn next(&mut self) -> Option<&mut Vec<Entry>> {
+    pub fn next(&mut self) -> Option<(u32, &[Entry])> {
         let ends = self.starts.get(self.taken..self.taken + 2)?;
+        let depth = self.low + ((self.taken as u32) << self.shift);
         self.taken += 1;
-        self.bucket.clear();
-        self.bucket.extend_from_slice(&self.entries[ends[0] as usize..ends[1] as usize]);
-        Some(&mut self.bucket)
+        Some((depth, &self.entries[ends[0] as usize..ends[1] as usize]))
     }
 }
 
@@ -76,9 +78,11 @@ mod tests {
             for _ in 0..2 {
                 buckets.fill(entries.chunks(100));
                 out.clear();
-                while let Some(bucket) = buckets.next() {
-                    bucket.sort_unstable();
+                while let Some((depth, bucket)) = buckets.next() {
+                    assert!(bucket.iter().all(|e| e.depth() >= depth));
                     out.extend_from_slice(bucket);
+                    let first = out.len() - bucket.len();
+                    out[first..].sort_unstable();
                 }
             }
             let mut sorted = entries.clone();

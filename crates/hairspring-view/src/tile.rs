@@ -1,15 +1,17 @@
 //! A square of the picture, drawn by one thread from start to end while it sits in the first-level cache.
 
 use crate::{
-    body::{Bodies, Samples, Surface},
+    body::{Bodies, Lit, Samples, Surface},
     hair::{
         blend::{CLOSED, Canvas},
         color::Colors,
         ribbon::{Chunk, DEPTHS, Setup},
         segment::{Dot, Segment},
+        shade::LANES,
     },
     sort::Buckets,
     tonemap::{Encoder, filmic},
+    work::Work,
 };
 use fearless_simd::dispatch;
 use glam::{Vec2, Vec4};
@@ -64,6 +66,8 @@ pub(crate) struct Strands<'a> {
     pub colors: &'a Colors,
     /// Greatest difference in depth between a segment's middle and its ends, as a share of the range.
     pub reach: f32,
+    /// Greatest width [pixels].
+    pub widest: f32,
 }
 
 /// A thread's working memory.
@@ -89,32 +93,63 @@ impl Default for Brush {
 /// Segments fetched from memory together, so that their cache misses overlap.
 const BATCH: usize = 32;
 
+/// Segments drawn before the canvas is surveyed again: what a survey costs is then spread over them.
+const SURVEY: usize = 24;
+
+/// How much shows through where hair begins to be thinned out (see [`thinned`]).
+const THIN_FROM: f32 = 0.5;
+
+/// The share of strands that is drawn where at most `through` shows through in any pixel around: each stands for those left out, and is
+/// drawn wider by as much (stochastic simplification, Cook, Halstead, Planck & Ryu 2007). What a strand can add there to a pixel
+/// stays below what the strands before it add; the covering is right on average, and whether a strand is drawn depends on its number, so the
+/// same strands are drawn from frame to frame. None becomes wider than a pixel: `widest` is the greatest width there is [pixels].
+#[inline(always)]
+fn thinned(through: f32, widest: f32) -> f32 {
+    (through * (1.0 / THIN_FROM)).max(widest).min(1.0)
+}
+
+/// Place of a block of points, 0 to 1, in the order in which blocks are left out. Multiples of the golden ratio leave out neighbours evenly.
+#[inline(always)]
+fn rank(slot: usize) -> f32 {
+    const GOLDEN: u32 = 0x9e37_79b9;
+    (((slot / LANES) as u32).wrapping_mul(GOLDEN) >> 8) as f32 * (1.0 / (1 << 24) as f32)
+}
+
 /// Draws a tile's segments, nearest first, until nothing shows through any more. Patches that are closed cost nothing: their segments are
 /// neither sorted nor fetched nor lit.
 #[inline(always)]
 fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut Buckets, origin: Vec2) {
     let tolerance = setup.frame.quality.smoothness.clamp(0.02, 4.0);
     let walls = walls(canvas);
-    let mut fetched = [[Dot::END; 4]; BATCH];
-    while canvas.open != 0
-        && let Some(bucket) = buckets.next()
-    {
-        if let Some(nearest) = bucket.iter().map(|e| e.depth()).min() {
-            lay_walls(canvas, &walls, nearest as f32 / DEPTHS - strands.reach);
+    let mut fetched = [Fetched::default(); BATCH];
+    let (mut drawn, mut bucket) = (0, Vec::new());
+    while let Some((nearest, entries)) = buckets.next() {
+        lay_walls(canvas, &walls, nearest as f32 / DEPTHS - strands.reach);
+        if drawn >= SURVEY {
+            canvas.survey();
+            drawn = 0;
         }
-        bucket.retain(|e| e.patches() & canvas.open != 0);
-        bucket.sort_unstable();
-        for few in bucket.chunks(BATCH) {
-            for (dots, e) in fetched.iter_mut().zip(few) {
-                *dots = fetch(strands.dots, e.slot());
+        if canvas.open == 0 {
+            break;
+        }
+        bucket.clear();
+        for e in entries.iter().filter(|e| e.patches() & canvas.open != 0) {
+            if rank(e.slot()) < thinned(canvas.through_any(e.patches()), strands.widest) {
+                bucket.push(*e);
             }
-            for (dots, e) in fetched.iter().zip(few) {
-                if e.patches() & canvas.open == 0 {
-                    continue;
-                }
-                let slot = e.slot();
-                let color = [strands.colors.get(setup, slot), strands.colors.get(setup, slot + 1)];
-                for piece in Segment::new(dots, origin).pieces(tolerance, color) {
+        }
+        bucket.sort_unstable();
+        drawn += bucket.len();
+        canvas.work.drawn += bucket.len() as u64;
+        for few in bucket.chunks(BATCH) {
+            for (to, e) in fetched.iter_mut().zip(few) {
+                *to = Fetched::new(strands, e.slot());
+            }
+            for (from, e) in fetched.iter().zip(few) {
+                let wider = 1.0 / thinned(canvas.through_any(e.patches()), strands.widest);
+                let color = strands.colors.open(setup, e.slot(), from.colors);
+                for mut piece in Segment::new(&from.dots, origin).pieces(tolerance, color) {
+                    piece.width = piece.width.map(|w| w * wider);
                     canvas.draw(&piece);
                 }
             }
@@ -122,19 +157,37 @@ fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut
     }
 }
 
-/// The point in a slot, the one before and the two after.
-#[inline(always)]
-fn fetch(dots: &[Dot], slot: usize) -> [Dot; 4] {
-    let mut four = [Dot::END; 4];
-    if slot > 0 {
-        four[0] = dots[slot - 1];
+/// What a segment's drawing reads from memory.
+#[derive(Clone, Copy)]
+struct Fetched {
+    /// The point before the segment, its own two, and the one after.
+    dots: [Dot; 4],
+    /// Packed colours of its own two.
+    colors: [u32; 2],
+}
+
+impl Default for Fetched {
+    fn default() -> Self {
+        Self { dots: [Dot::END; 4], colors: [0; 2] }
     }
-    four[1] = dots[slot];
-    four[2] = dots[slot + 1];
-    if slot + 2 < dots.len() {
-        four[3] = dots[slot + 2];
+}
+
+impl Fetched {
+    /// The segment whose first point is in `slot`.
+    #[inline(always)]
+    fn new(strands: &Strands, slot: usize) -> Self {
+        let (dots, mut out) = (strands.dots, Self::default());
+        if slot > 0 {
+            out.dots[0] = dots[slot - 1];
+        }
+        out.dots[1] = dots[slot];
+        out.dots[2] = dots[slot + 1];
+        if slot + 2 < dots.len() {
+            out.dots[3] = dots[slot + 2];
+        }
+        out.colors = [strands.colors.peek(slot), strands.colors.peek(slot + 1)];
+        out
     }
-    four
 }
 
 /// For each patch that the body fills, the share of the depth range behind which all of it lies before; infinite elsewhere.
@@ -172,11 +225,11 @@ impl Brush {
         encoder: &Encoder,
         tile: usize,
         out: &mut [[u8; 3]; PIXELS],
-    ) {
+    ) -> Work {
         let corner = setup.tiles.corner(tile);
         *self.canvas = Canvas::default();
         let canvas = &mut *self.canvas;
-        let body = bodies.draw(corner, &mut self.samples, &mut self.surfaces);
+        let body = bodies.draw(setup.level, tile, corner, &mut self.samples, &mut self.surfaces);
         if body {
             let [near, far] = setup.depths;
             for (i, s) in self.surfaces.iter().enumerate().filter(|(_, s)| s.cover > 0.0) {
@@ -196,6 +249,7 @@ impl Brush {
         let origin = Vec2::new(corner[0] as f32, corner[1] as f32);
         dispatch!(setup.level, _simd => lay_hair(setup, strands, canvas, &mut self.buckets, origin));
         if body {
+            let lit = Lit { frame: setup.frame, view: &setup.view, shadow: setup.shadow, level: setup.level };
             for i in (0..PIXELS).filter(|i| self.surfaces[*i].cover > 0.0) {
                 if canvas.body_depth[i].is_finite() {
                     canvas.lay_body(i);
@@ -203,29 +257,55 @@ impl Brush {
                 let seen = canvas.body_seen[i];
                 // What hair hides needs no light.
                 if seen > CLOSED {
-                    let color =
-                        bodies.light(setup.frame, &setup.view, setup.shadow, corner, &self.samples, i);
+                    let color = bodies.light(&lit, corner, &self.samples, i);
                     canvas.pixels[i] += (color * (self.surfaces[i].cover * seen)).extend(0.0);
                 }
             }
         }
-        self.develop(setup, encoder, corner, out);
+        dispatch!(setup.level, _simd => self.develop(setup, encoder, corner, out));
+        Work { filed: strands.chunks.iter().map(|c| c.tile(tile).len() as u64).sum(), ..self.canvas.work }
     }
 
     /// Backdrop, exposure, tone curve, 8 bits.
+    #[inline(always)]
     fn develop(&self, setup: &Setup, encoder: &Encoder, corner: [usize; 2], out: &mut [[u8; 3]; PIXELS]) {
         let [w, h] = setup.tiles.size().map(|n| n as f32);
         let backdrop = &setup.frame.background;
         let gain = setup.frame.lighting.exposure.exp2();
-        for (i, out) in out.iter_mut().enumerate() {
-            let (x, y) = (corner[0] + i % SIDE, corner[1] + i / SIDE);
-            let pixel: Vec4 = self.canvas.pixels[i];
-            let from = Vec2::new(x as f32 / w - 0.5, y as f32 / h - 0.42);
-            // A pool of light: falls off smoothly, level in the middle.
-            let pool = (-3.2 * from.length_squared()).exp();
-            let behind = backdrop.edge.lerp(backdrop.center, pool);
-            let light = pixel.truncate() + behind * pixel.w;
-            *out = encoder.encode(filmic(light * gain), x, y);
+        // A pool of light: falls off smoothly, level in the middle. A factor for each column and row.
+        let pool = |from: f32| (-3.2 * from * from).exp();
+        let columns: [f32; SIDE] = std::array::from_fn(|x| pool((corner[0] + x) as f32 / w - 0.5));
+        for (y, row) in out.chunks_mut(SIDE).enumerate() {
+            let down = pool((corner[1] + y) as f32 / h - 0.42);
+            for (x, out) in row.iter_mut().enumerate() {
+                let pixel: Vec4 = self.canvas.pixels[y * SIDE + x];
+                let behind = backdrop.edge.lerp(backdrop.center, columns[x] * down);
+                let light = pixel.truncate() + behind * pixel.w;
+                *out = encoder.encode(filmic(light * gain), corner[0] + x, corner[1] + y);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever share is drawn and however many blocks a strand has, those that are drawn, made wider, add up to all: over any thousand
+    /// neighbours, whichever block of each is looked at.
+    #[test]
+    fn strands_that_are_drawn_stand_for_all() {
+        for (through, widest) in [(1.0, 0.1), (0.4, 0.1), (0.1, 0.1), (0.01, 0.1), (0.01, 0.6), (0.2, 3.0)] {
+            let share = thinned(through, widest);
+            assert!(widest.min(1.0) / share <= 1.0, "none is wider than a pixel");
+            for blocks in [1, 2, 3, 4, 7, 8, 16] {
+                for first in [0, 5000, 123_456] {
+                    let slot = |strand: usize| (first + strand * blocks) * LANES;
+                    let drawn = (0..1000).filter(|strand| rank(slot(*strand)) < share).count();
+                    let sum = drawn as f32 / share;
+                    assert!((sum - 1000.0).abs() < 100.0, "share {share}, {blocks} blocks: {sum} of 1000");
+                }
+            }
         }
     }
 }

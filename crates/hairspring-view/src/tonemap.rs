@@ -4,6 +4,7 @@ use glam::{Mat3, Vec3};
 
 /// The filmic curve of the Academy Color Encoding System (reference rendering and sRGB output transforms), as fitted by Stephen Hill in
 /// "BakingLab" (2016): highlights lose their colour on the way to white, as on film.
+#[inline(always)]
 pub(crate) fn filmic(light: Vec3) -> Vec3 {
     const IN: Mat3 = Mat3::from_cols_array(&[
         0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777,
@@ -40,15 +41,18 @@ impl Default for Encoder {
 
 impl Encoder {
     /// sRGB codes of a linear colour (0 to 1) at a pixel; an ordered dither of one code keeps slow gradients free of bands.
-    #[inline]
+    #[inline(always)]
     pub fn encode(&self, color: Vec3, x: usize, y: usize) -> [u8; 3] {
         // Interleaved gradient noise (Jimenez 2014), fixed to the picture: nothing moves in still parts of a clip.
         let noise = (52.982_92 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract();
-        color.to_array().map(|c| {
-            let at = c.sqrt() * STEPS as f32;
-            let (i, f) = (at as usize, at.fract());
-            (self.table[i] + (self.table[i + 1] - self.table[i]) * f + noise) as u8
-        })
+        [self.code(color.x, noise), self.code(color.y, noise), self.code(color.z, noise)]
+    }
+
+    #[inline(always)]
+    fn code(&self, c: f32, noise: f32) -> u8 {
+        let at = c.sqrt() * STEPS as f32;
+        let (i, f) = (at as usize, at.fract());
+        (self.table[i] + (self.table[i + 1] - self.table[i]) * f + noise) as u8
     }
 }
 

@@ -7,7 +7,7 @@ use hairspring::{
     groom::Groom,
     scene::{Camera, HairLook},
 };
-use hairspring_view::{Frame, HairDraw, Image, MeshDraw, Renderer};
+use hairspring_view::{Frame, HairDraw, Image, Light, Lighting, MeshDraw, Renderer};
 
 const SIDE: u32 = 128;
 
@@ -136,4 +136,34 @@ fn a_body_shades_hair_and_hair_shades_a_body() {
     let open = sum(&draw(&[], &[support::body(&skin)]));
     let shaded = sum(&draw(&[support::hair(&shade, &look)], &[support::body(&skin)]));
     assert!(shaded < 0.8 * open, "{shaded} of {open}");
+}
+
+#[test]
+fn the_shadow_of_the_sky_on_skin_ends_softly() {
+    // A wall of skin hangs through thick hair and down below it, out of the volume in which the hair's shadow is known. Lit by the sky alone, it
+    // brightens from row to row; where it leaves the volume there must be no line across it.
+    let look = flat([0.1, 0.08, 0.06]);
+    let curtains: Vec<Groom> = (0..9).map(|k| curtain(1500, 0.0, 0.02 - 0.01 * k as f32)).collect();
+    let hair: Vec<HairDraw> = curtains.iter().map(|c| support::hair(c, &look)).collect();
+    let (half, z) = (0.3, -0.02);
+    let positions =
+        [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Vec3::new(x, y, z));
+    let triangles = [[0, 1, 2], [0, 2, 3]];
+    let wall = [MeshDraw { positions: &positions, normals: &[], triangles: &triangles, parts: &[] }];
+    let dark = |light: Light| Light { color: Vec3::ZERO, ..light };
+    let lamps = Lighting::default();
+    let lighting = Lighting { key: dark(lamps.key), fill: dark(lamps.fill), rim: dark(lamps.rim), ..lamps };
+    let mut renderer = Renderer::new(SIDE, SIDE);
+    let image = renderer.draw(&Frame { camera: camera(), lighting, ..support::frame(&hair, &wall) }).clone();
+    let row = |y: u32| {
+        let columns = SIDE / 2 - 16..SIDE / 2 + 16;
+        columns.map(|x| f32::from(image.pixel(x, y)[0])).sum::<f32>() / 32.0
+    };
+    // The hair ends three quarters down, and two rows below it the volume.
+    let rows: Vec<f32> = (SIDE * 3 / 4..SIDE).map(row).collect();
+    let change = rows[rows.len() - 1] - rows[0];
+    assert!(change > 20.0, "the shadow ends with the volume: {rows:?}");
+    for pair in rows.windows(2) {
+        assert!(pair[1] - pair[0] < 0.2 * change, "a line across the skin: {rows:?}");
+    }
 }

@@ -185,6 +185,7 @@ pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Prob
         (above_0(Some(m.shear)), "shear", "above 0 [Pa]"),
         (from_0(m.bend), "bend", "0 or more"),
         (from_0(m.bend_tip), "bend_tip", "0 or more"),
+        ((0.05..=1.0).contains(&m.flatness), "flatness", "0.05 to 1"),
         (from_0(m.damping), "damping", "0 or more [s]"),
         (from_0(m.drag), "drag", "0 or more"),
         ((0.0..=1.0).contains(&m.friction), "friction", "0 to 1"),

@@ -9,19 +9,14 @@ use crate::{
     shadow::Shadow,
     tile::{PIXELS, SIDE},
 };
+use fearless_simd::{Level, dispatch, f32x8, prelude::*, u32x8};
 use glam::{Vec2, Vec3};
 use raster::{Bins, ScreenTriangle};
 
-/// Samples of a pixel for the outlines of bodies: one in each of eight rows and columns.
-const SAMPLES: [Vec2; 8] = [
-    Vec2::new(0.5625, 0.3125),
-    Vec2::new(0.4375, 0.6875),
-    Vec2::new(0.8125, 0.5625),
-    Vec2::new(0.3125, 0.1875),
-    Vec2::new(0.1875, 0.8125),
-    Vec2::new(0.0625, 0.4375),
-    Vec2::new(0.6875, 0.9375),
-    Vec2::new(0.9375, 0.0625),
+/// Samples of a pixel for the outlines of bodies: one in each of eight columns and rows. Shape `[axis][sample]`.
+const SAMPLES: [[f32; 8]; 2] = [
+    [0.5625, 0.4375, 0.8125, 0.3125, 0.1875, 0.0625, 0.6875, 0.9375],
+    [0.3125, 0.6875, 0.5625, 0.1875, 0.8125, 0.4375, 0.9375, 0.0625],
 ];
 
 /// What a pixel sees of the bodies.
@@ -31,6 +26,15 @@ pub(crate) struct Surface {
     pub cover: f32,
     /// Distance along the camera's axis [m].
     pub depth: f32,
+}
+
+/// What the light on bodies depends on.
+#[derive(Clone, Copy)]
+pub(crate) struct Lit<'a> {
+    pub frame: &'a Frame<'a>,
+    pub view: &'a View,
+    pub shadow: &'a Shadow,
+    pub level: Level,
 }
 
 /// The frame's triangles on the screen, kept between frames for their memory.
@@ -44,8 +48,8 @@ pub(crate) struct Bodies {
 
 /// Buffers of one tile.
 pub(crate) struct Samples {
-    nearness: [[f32; SAMPLES.len()]; PIXELS],
-    triangle: [[u32; SAMPLES.len()]; PIXELS],
+    nearness: [[f32; 8]; PIXELS],
+    triangle: [[u32; 8]; PIXELS],
 }
 
 /// No triangle.
@@ -82,70 +86,89 @@ impl Bodies {
             }
             count = count.saturating_add(body.triangles.len() as u32);
         }
-        self.bins.fill(&self.screen, height);
+        self.bins.fill(&self.screen, [width, height], [SIDE; 2]);
     }
 
-    /// Draws the tile whose corner is at `corner` into `out`; false where no body is.
-    pub fn draw(&self, corner: [usize; 2], samples: &mut Samples, out: &mut [Surface; PIXELS]) -> bool {
-        let columns = [corner[0] as u32, (corner[0] + SIDE) as u32];
-        let here = |t: &&ScreenTriangle| t.columns[0] < columns[1] && t.columns[1] > columns[0];
-        let triangles = self.bins.band(corner[1] / SIDE).iter().map(|t| &self.screen[*t as usize]);
-        let mut any = false;
-        for t in triangles.filter(here) {
-            if !any {
-                *samples = Samples::default();
-                any = true;
-            }
-            for (s, offset) in SAMPLES.iter().enumerate() {
-                t.cover(corner, [SIDE, SIDE], *offset, |x, y, nearness| {
-                    let pixel = y * SIDE + x;
-                    if nearness > samples.nearness[pixel][s] {
-                        samples.nearness[pixel][s] = nearness;
-                        samples.triangle[pixel][s] = t.source;
-                    }
-                });
-            }
+    /// Draws a tile, whose corner is at `corner`, into `out`; false where no body is.
+    pub fn draw(
+        &self,
+        level: Level,
+        tile: usize,
+        corner: [usize; 2],
+        samples: &mut Samples,
+        out: &mut [Surface; PIXELS],
+    ) -> bool {
+        let here = self.bins.cell(tile);
+        if !here.is_empty() {
+            *samples = Samples::default();
+            dispatch!(level, simd => self.draw_in_lanes(simd, here, corner, samples, out));
         }
-        if !any {
-            return false;
+        !here.is_empty()
+    }
+
+    #[inline(always)]
+    fn draw_in_lanes<S: Simd>(
+        &self,
+        simd: S,
+        here: &[u32],
+        corner: [usize; 2],
+        samples: &mut Samples,
+        out: &mut [Surface; PIXELS],
+    ) {
+        let offset = [f32x8::simd_from(simd, SAMPLES[0]), f32x8::simd_from(simd, SAMPLES[1])];
+        for t in here.iter().map(|t| &self.screen[*t as usize]) {
+            let source = u32x8::splat(simd, t.source);
+            t.cover_samples(offset, corner, [SIDE, SIDE], |x, y, inside, nearness| {
+                let pixel = y * SIDE + x;
+                let before = f32x8::simd_from(simd, samples.nearness[pixel]);
+                let nearer = inside & nearness.simd_gt(before);
+                nearer.select(nearness, before).store_slice(&mut samples.nearness[pixel]);
+                let before = u32x8::simd_from(simd, samples.triangle[pixel]);
+                nearer.select(source, before).store_slice(&mut samples.triangle[pixel]);
+            });
         }
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         for (out, nearness) in out.iter_mut().zip(&samples.nearness) {
             // A sample without a body has nearness 0.
-            let n = nearness.iter().filter(|near| **near > 0.0).count() as f32;
-            let depth = if n > 0.0 { n / nearness.iter().sum::<f32>() } else { f32::INFINITY };
-            *out = Surface { cover: n / SAMPLES.len() as f32, depth };
+            let nearness = f32x8::simd_from(simd, *nearness);
+            let n = nearness.simd_gt(0.0).select(one, zero).reduce_sum();
+            let depth = if n > 0.0 { n / nearness.reduce_sum() } else { f32::INFINITY };
+            *out = Surface { cover: n * 0.125, depth };
         }
-        true
     }
 
-    /// Linear RGB of the bodies in a pixel of the tile drawn last: each triangle seen in it is lit once and weighed by its samples.
-    pub fn light(
-        &self,
-        frame: &Frame,
-        view: &View,
-        shadow: &Shadow,
-        corner: [usize; 2],
-        samples: &Samples,
-        pixel: usize,
-    ) -> Vec3 {
+    /// Linear RGB of the bodies in a pixel of the tile drawn last: each surface seen in it is lit once and weighed by its samples.
+    pub fn light(&self, lit: &Lit, corner: [usize; 2], samples: &Samples, pixel: usize) -> Vec3 {
         let at = Vec2::new((corner[0] + pixel % SIDE) as f32 + 0.5, (corner[1] + pixel / SIDE) as f32 + 0.5);
-        let seen = &samples.triangle[pixel];
+        let mut left = samples.triangle[pixel];
         let (mut color, mut covered) = (Vec3::ZERO, 0.0);
-        for (s, t) in seen.iter().enumerate() {
-            if *t == NONE {
+        for s in 0..left.len() {
+            let number = left[s];
+            if number == NONE {
                 continue;
             }
-            covered += 1.0;
-            if seen[..s].contains(t) {
-                continue;
+            let b = self.first.partition_point(|first| *first <= number) - 1;
+            let (body, t) = (&lit.frame.bodies[b], (number - self.first[b]) as usize);
+            let mut weight = 0.0;
+            for other in &mut left[s..] {
+                if *other != NONE && (*other == number || neighbours(body, t, *other - self.first[b])) {
+                    *other = NONE;
+                    weight += 1.0;
+                }
             }
-            let weight = seen[s..].iter().filter(|other| *other == t).count() as f32;
-            let b = self.first.partition_point(|first| first <= t) - 1;
-            color +=
-                weight * skin::light(frame, &frame.bodies[b], (t - self.first[b]) as usize, view, shadow, at);
+            covered += weight;
+            color += weight * skin::light(lit, body, t, at);
         }
         color / f32::max(covered, 1.0)
     }
+}
+
+/// Whether triangles `t` and `other` of `body` are so much one surface that light on one is light on the other: they share a
+/// corner, their colour and smooth normals.
+fn neighbours(body: &MeshDraw, t: usize, other: u32) -> bool {
+    let Some(far) = body.triangles.get(other as usize).filter(|_| body.smooth()) else { return false };
+    let near = &body.triangles[t];
+    near.iter().any(|corner| far.contains(corner)) && skin::part(body, t) == skin::part(body, other as usize)
 }
 
 /// Corners of a triangle; `None` if an index is past the end or a corner is not finite.

@@ -1,9 +1,7 @@
 //! Triangles to samples: edge functions (Pineda 1988), for the camera and for the shadow map alike.
 
+use fearless_simd::{f32x8, mask32x8, prelude::*};
 use glam::{Vec2, Vec3};
-
-/// Rows in a band: the side of a picture tile.
-pub(crate) const BANDS: usize = crate::tile::SIDE;
 
 /// How far outside a triangle a sample still counts, as a share of it: neighbours round differently, and must not leave a gap.
 const EDGE: f32 = 1e-5;
@@ -48,24 +46,14 @@ impl ScreenTriangle {
         Some(Self { columns, rows, first: a.truncate(), weights, nearness: (a.z, slope), source })
     }
 
-    /// Calls `hit(column, row, nearness)` for each pixel of the window (`corner`, `size`) whose sample at `offset` in it lies inside;
-    /// columns and rows count from the window's corner.
+    /// Calls `hit(column, row, nearness)` for each pixel of the window (`corner`, `size`) whose middle lies inside; columns and rows count from
+    /// the window's corner.
     #[inline]
-    pub fn cover(
-        &self,
-        corner: [usize; 2],
-        size: [usize; 2],
-        offset: Vec2,
-        mut hit: impl FnMut(usize, usize, f32),
-    ) {
-        let clip = |range: [u32; 2], from: usize, n: usize| {
-            let clip = |i: u32| (i as usize).clamp(from, from + n);
-            clip(range[0])..clip(range[1])
-        };
-        let columns = clip(self.columns, corner[0], size[0]);
-        for y in clip(self.rows, corner[1], size[1]) {
+    pub fn cover(&self, corner: [usize; 2], size: [usize; 2], mut hit: impl FnMut(usize, usize, f32)) {
+        let [columns, rows] = self.within(corner, size);
+        for y in rows {
             for x in columns.clone() {
-                let way = Vec2::new(x as f32 + offset.x, y as f32 + offset.y) - self.first;
+                let way = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - self.first;
                 let (v, w) = (self.weights[0].dot(way), self.weights[1].dot(way));
                 if v.min(w).min(1.0 - v - w) >= -EDGE {
                     hit(x - corner[0], y - corner[1], self.nearness.0 + self.nearness.1.dot(way));
@@ -73,9 +61,42 @@ impl ScreenTriangle {
             }
         }
     }
+
+    /// As [`ScreenTriangle::cover`], for eight samples of each pixel, at `offset` (columns, rows) in it: `hit` is given which of them lie inside,
+    /// and their nearness. Call it inside a `dispatch!`.
+    #[inline(always)]
+    pub fn cover_samples<S: Simd>(
+        &self,
+        offset: [f32x8<S>; 2],
+        corner: [usize; 2],
+        size: [usize; 2],
+        mut hit: impl FnMut(usize, usize, mask32x8<S>, f32x8<S>),
+    ) {
+        let [columns, rows] = self.within(corner, size);
+        for y in rows {
+            let down = offset[1] + (y as f32) - self.first.y;
+            for x in columns.clone() {
+                let along = offset[0] + (x as f32) - self.first.x;
+                let [to_v, to_w] = self.weights;
+                let (v, w) = (along * to_v.x + down * to_v.y, along * to_w.x + down * to_w.y);
+                let inside = v.min(w).min(-(v + w) + 1.0).simd_ge(-EDGE);
+                let (nearness, slope) = self.nearness;
+                hit(x - corner[0], y - corner[1], inside, along * slope.x + down * slope.y + nearness);
+            }
+        }
+    }
+
+    /// Columns and rows that lie in a window.
+    #[inline(always)]
+    fn within(&self, corner: [usize; 2], size: [usize; 2]) -> [std::ops::Range<usize>; 2] {
+        [(self.columns, 0), (self.rows, 1)].map(|(range, axis)| {
+            let clip = |i: u32| (i as usize).clamp(corner[axis], corner[axis] + size[axis]);
+            clip(range[0])..clip(range[1])
+        })
+    }
 }
 
-/// Which triangles touch each band of rows.
+/// Which triangles touch each cell of a picture, row by row.
 #[derive(Debug, Default)]
 pub(crate) struct Bins {
     starts: Vec<u32>,
@@ -83,36 +104,42 @@ pub(crate) struct Bins {
 }
 
 impl Bins {
-    pub fn fill(&mut self, triangles: &[ScreenTriangle], height: usize) {
-        let bands = height.div_ceil(BANDS);
-        let touched = |t: &ScreenTriangle| t.rows[0] as usize / BANDS..(t.rows[1] as usize).div_ceil(BANDS);
+    /// Sorts the triangles of a picture of `size` pixels into cells of `cell` pixels.
+    pub fn fill(&mut self, triangles: &[ScreenTriangle], size: [usize; 2], cell: [usize; 2]) {
+        let [across, down] = [0, 1].map(|axis| size[axis].div_ceil(cell[axis]).max(1));
+        let touched = |t: &ScreenTriangle| {
+            let cells = |range: [u32; 2], n: usize| range[0] as usize / n..(range[1] as usize).div_ceil(n);
+            let columns = cells(t.columns, cell[0]);
+            cells(t.rows, cell[1]).flat_map(move |y| columns.clone().map(move |x| y * across + x))
+        };
         self.starts.clear();
-        self.starts.resize(bands + 1, 0);
-        triangles.iter().flat_map(touched).for_each(|band| self.starts[band + 1] += 1);
-        (0..bands).for_each(|band| self.starts[band + 1] += self.starts[band]);
+        self.starts.resize(across * down + 1, 0);
+        triangles.iter().flat_map(touched).for_each(|cell| self.starts[cell + 1] += 1);
+        (0..across * down).for_each(|cell| self.starts[cell + 1] += self.starts[cell]);
         self.triangles.clear();
-        self.triangles.resize(self.starts[bands] as usize, 0);
+        self.triangles.resize(self.starts[across * down] as usize, 0);
         let mut next = self.starts.clone();
         for (i, t) in triangles.iter().enumerate() {
-            for band in touched(t) {
-                self.triangles[next[band] as usize] = i as u32;
-                next[band] += 1;
+            for cell in touched(t) {
+                self.triangles[next[cell] as usize] = i as u32;
+                next[cell] += 1;
             }
         }
     }
 
-    /// Triangles of one band, in their order.
-    pub fn band(&self, band: usize) -> &[u32] {
-        if band + 1 >= self.starts.len() {
+    /// Triangles of one cell, in their order.
+    pub fn cell(&self, cell: usize) -> &[u32] {
+        if cell + 1 >= self.starts.len() {
             return &[];
         }
-        &self.triangles[self.starts[band] as usize..self.starts[band + 1] as usize]
+        &self.triangles[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fearless_simd::{Level, dispatch};
 
     /// A slanted surface cut into triangles far smaller than a pixel, far from the picture's corner: every sample lies on it, at its own height.
     #[test]
@@ -124,15 +151,22 @@ mod tests {
             at.extend(0.7 + 0.01 * (at.x - origin.x))
         };
         let from = [3007, 3981];
+        let offset = [[0.5625; 8], [0.3125; 8]];
         let mut seen = [[0.0f32; 4]; 4];
+        let mut cover = |t: &ScreenTriangle| {
+            dispatch!(Level::new(), simd => {
+                let lanes = offset.map(|o| f32x8::simd_from(simd, o));
+                t.cover_samples(lanes, from, [4, 4], |x, y, inside, z| {
+                    let mut lanes = [0.0; 8];
+                    inside.select(z, f32x8::splat(simd, 0.0)).store_slice(&mut lanes);
+                    seen[y][x] = seen[y][x].max(lanes[7]);
+                });
+            });
+        };
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
             let quad = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
             for t in [[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]] {
-                if let Some(t) = ScreenTriangle::new(t, 0, side, side) {
-                    t.cover(from, [4, 4], Vec2::new(0.5625, 0.3125), |x, y, z| {
-                        seen[y][x] = seen[y][x].max(z);
-                    });
-                }
+                ScreenTriangle::new(t, 0, side, side).iter().for_each(&mut cover);
             }
         }
         for row in seen {

@@ -1,10 +1,7 @@
 //! The colour of a body's surface under the three lamps and the sky.
 
-use crate::{
-    camera::View,
-    frame::{Frame, MeshDraw},
-    shadow::Shadow,
-};
+use super::Lit;
+use crate::frame::MeshDraw;
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -22,20 +19,14 @@ const WRAP: Vec3 = Vec3::new(0.32, 0.16, 0.10);
 const HAIR_SHADE: f32 = 0.75;
 
 /// Light leaving triangle `t` of `body` towards the camera, at the pixel position `at`.
-pub(super) fn light(
-    frame: &Frame,
-    body: &MeshDraw,
-    t: usize,
-    view: &View,
-    shadow: &Shadow,
-    at: Vec2,
-) -> Vec3 {
+pub(super) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
+    let Lit { frame, view, shadow, level } = *lit;
     let [ia, ib, ic] = body.triangles[t].map(|i| i as usize);
     let [a, b, c] = [ia, ib, ic].map(|i| body.positions[i]);
     let ray = view.ray(at.x, at.y);
     let (p, weight) = meet(view.eye, ray, a, b, c);
     let flat = (b - a).cross(c - a).normalize_or(Vec3::Y);
-    let smooth = match body.normals.len() == body.positions.len() {
+    let smooth = match body.smooth() {
         true => body.normals[ia] * weight.x + body.normals[ib] * weight.y + body.normals[ic] * weight.z,
         false => flat,
     };
@@ -43,13 +34,13 @@ pub(super) fn light(
     // Open meshes are seen from both sides.
     let facing = if flat.dot(eye) < 0.0 && smooth.dot(eye) < 0.0 { -1.0 } else { 1.0 };
     let n = smooth.try_normalize().unwrap_or(flat) * facing;
-    let part = body.parts.iter().find(|p| p.triangles.contains(&(t as u32)));
+    let part = part(body, t).map(|part| &body.parts[part]);
     let (base, roughness) = part.map_or(SKIN, |p| (p.color, p.roughness.clamp(0.15, 1.0)));
     let lamps = &frame.lighting;
 
     // Shadow is looked up a little off the surface, where the surface's own voxels do not count.
     let depth = shadow.around(p + n * (2.5 * shadow.voxel()));
-    let key_open = shadow.body(p + n * 5e-4, 8e-4, 4) * (-HAIR_SHADE * depth.x).exp();
+    let key_open = shadow.on_skin(level, p + n * 5e-4) * (-HAIR_SHADE * depth.x).exp();
     let open = [key_open, (-HAIR_SHADE * depth.y).exp(), (-HAIR_SHADE * depth.z).exp()];
     let nv = n.dot(eye).max(1e-3);
     let mut diffuse = Vec3::ZERO;
@@ -60,7 +51,8 @@ pub(super) fn light(
         // Wrapped Lambert, normalised so that the total stays the same.
         let wrapped = ((Vec3::splat(nl) + WRAP) / (Vec3::ONE + WRAP)).max(Vec3::ZERO) / (Vec3::ONE + WRAP);
         // Red light leaks round the edge of a shadow as it does round the terminator.
-        let tinted = Vec3::new(open.powf(0.75), open, open.powf(1.1));
+        let root = open.sqrt();
+        let tinted = Vec3::new(root * root.sqrt(), open, open.powf(1.1));
         diffuse += light.color * wrapped * tinted;
         gloss += light.color * (specular(n, eye, l, roughness, nv) * nl.max(0.0) * open);
     }
@@ -70,6 +62,11 @@ pub(super) fn light(
     let sheen = 0.25 * (1.0 - nv).powi(4) * depth.w;
     let lit = base * (diffuse + sky) + gloss + lamps.sky * sheen;
     if lit.is_finite() { lit } else { Vec3::ZERO }
+}
+
+/// The part of `body` that triangle `t` belongs to, as an index; `None`: to none.
+pub(super) fn part(body: &MeshDraw, t: usize) -> Option<usize> {
+    body.parts.iter().position(|p| p.triangles.contains(&(t as u32)))
 }
 
 /// Two GGX lobes, as skin has (d'Eon & Luebke 2007), Fresnel by Schlick at the skin's reflectance of 2.8 %.

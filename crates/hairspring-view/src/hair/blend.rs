@@ -9,7 +9,10 @@
 //! moves, light moves from pixel to pixel without a jump, and its sum stays.
 
 use super::segment::Piece;
-use crate::tile::{PATCH, PATCHES, PIXELS, SIDE};
+use crate::{
+    tile::{PATCH, PATCHES, PIXELS, SIDE},
+    work::Work,
+};
 use glam::{Vec2, Vec4};
 
 /// Light that still passes where a pixel counts as closed: under half a step of 8 bits.
@@ -25,10 +28,12 @@ pub(crate) struct Canvas {
     pub body_cover: [f32; PIXELS],
     /// What showed through before the body, once that is laid in.
     pub body_seen: [f32; PIXELS],
-    /// Which patches have a pixel that is not closed.
+    /// Which patches have a pixel that was not closed when last surveyed.
     pub open: u16,
-    /// How many such pixels each patch has.
-    left: [u8; PATCHES * PATCHES],
+    /// The most that showed through in a pixel of each patch when last surveyed.
+    pub through: [f32; PATCHES * PATCHES],
+    /// What was done so far.
+    pub work: Work,
 }
 
 impl Default for Canvas {
@@ -39,7 +44,8 @@ impl Default for Canvas {
             body_cover: [0.0; PIXELS],
             body_seen: [0.0; PIXELS],
             open: u16::MAX,
-            left: [(PATCH * PATCH) as u8; PATCHES * PATCHES],
+            through: [1.0; PATCHES * PATCHES],
+            work: Work::default(),
         }
     }
 }
@@ -52,33 +58,48 @@ impl Canvas {
         self.body_seen[pixel] = before;
         self.body_depth[pixel] = f32::INFINITY;
         self.pixels[pixel].w = before * (1.0 - self.body_cover[pixel]);
-        if before > CLOSED && self.pixels[pixel].w <= CLOSED {
-            self.close(pixel);
+    }
+
+    /// Looks at what shows through the open patches, and closes those where nothing does.
+    #[inline(always)]
+    pub fn survey(&mut self) {
+        for patch in 0..PATCHES * PATCHES {
+            if self.open >> patch & 1 == 0 {
+                continue;
+            }
+            let corner = patch / PATCHES * PATCH * SIDE + patch % PATCHES * PATCH;
+            let mut most = Vec4::ZERO;
+            for row in (0..PATCH).map(|y| corner + y * SIDE) {
+                most = self.pixels[row..row + PATCH].iter().fold(most, |most, pixel| most.max(*pixel));
+            }
+            self.through[patch] = most.w;
+            if most.w <= CLOSED {
+                self.open &= !(1 << patch);
+            }
         }
     }
 
-    /// Counts a pixel that has just closed.
+    /// The most that showed through in a pixel of any of `patches` when last surveyed.
     #[inline(always)]
-    fn close(&mut self, pixel: usize) {
-        let patch = pixel / SIDE / PATCH * PATCHES + pixel % SIDE / PATCH;
-        self.left[patch] -= 1;
-        if self.left[patch] == 0 {
-            self.open &= !(1 << patch);
+    pub fn through_any(&self, patches: u16) -> f32 {
+        let mut left = patches & self.open;
+        let mut most = 0.0f32;
+        while left != 0 {
+            most = most.max(self.through[left.trailing_zeros() as usize]);
+            left &= left - 1;
         }
+        most
     }
 
     #[inline(always)]
     fn add(&mut self, pixel: usize, cover: f32, color: Vec4, depth: f32) {
+        // It is less already; said so that it need not be asked for each array.
+        let pixel = pixel % PIXELS;
         if depth > self.body_depth[pixel] {
             self.lay_body(pixel);
         }
         let at = &mut self.pixels[pixel];
-        if at.w > CLOSED {
-            *at += color * (at.w * cover);
-            if at.w <= CLOSED {
-                self.close(pixel);
-            }
-        }
+        *at += color * (at.w * cover);
     }
 
     /// Draws a piece whose coordinates count from the tile's corner. Call it inside a `dispatch!`.
@@ -110,6 +131,7 @@ impl Canvas {
         let first = if piece.cap[from] { a.x.floor() } else { (a.x - 0.5).ceil() };
         let last = if piece.cap[to] { b.x.ceil() } else { (b.x - 0.5).ceil() };
         let (first, last) = (first.max(0.0) as i32, (last.min(SIDE as f32)) as i32);
+        self.work.columns += (last - first).max(0) as u64;
         let thin = half0.max(half1) <= 0.5;
         for column in first..last {
             let x = column as f32;

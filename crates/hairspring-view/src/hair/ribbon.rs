@@ -2,22 +2,18 @@
 
 use super::{
     order::{Order, Run},
-    segment::{self, Dot},
+    project::{Points, Projection, Track},
+    segment::Dot,
     shade::{LANES, Shader},
 };
 use crate::{
-    camera::{NEAR, View},
+    camera::View,
     frame::Frame,
     shadow::Shadow,
     tile::{PATCH, PATCHES, SIDE, Tiles},
 };
-use fearless_simd::dispatch;
-use glam::{Vec2, Vec3};
-
-/// Greatest width of a strand on the screen [pixels].
-const MAX_WIDTH: f32 = 512.0;
-/// Distance that hair is moved towards the camera against bodies [m]: roots lie on the skin, and must not flicker in it.
-const ROOT_BIAS: f32 = 1e-3;
+use fearless_simd::{dispatch, f32x8, i32x8, mask32x8, prelude::*};
+use glam::Vec3;
 
 /// What every run and every tile of a frame needs.
 pub(crate) struct Setup<'a> {
@@ -39,6 +35,9 @@ pub(crate) struct Setup<'a> {
 /// and 16 that say which patches of the tile it may touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Entry(pub u64);
+
+/// What a number of patches is shifted by to give tiles.
+const TILE: u32 = PATCHES.ilog2();
 
 /// Steps of an entry's depth.
 pub(crate) const DEPTHS: f32 = 65535.0;
@@ -69,8 +68,12 @@ pub(crate) struct Chunk {
     /// First entry of each tile; shape `[tiles + 1]`.
     starts: Vec<u32>,
     unsorted: Vec<(u32, Entry)>,
+    /// The strand in hand.
+    track: Track,
     /// Greatest difference in depth between a segment's middle and its ends, as a share of the range.
     pub reach: f32,
+    /// Greatest width [pixels].
+    pub widest: f32,
 }
 
 impl Chunk {
@@ -81,97 +84,133 @@ impl Chunk {
 
     /// Projects a run of strands into `dots`, its slots, and files them.
     pub fn fill(&mut self, setup: &Setup, run: &Run, dots: &mut [Dot]) {
-        dispatch!(setup.level, _simd => self.fill_in_lanes(setup, run, dots));
+        dispatch!(setup.level, simd => self.fill_in_lanes(simd, setup, run, dots));
     }
 
     #[inline(always)]
-    fn fill_in_lanes(&mut self, setup: &Setup, run: &Run, dots: &mut [Dot]) {
+    fn fill_in_lanes<S: Simd>(&mut self, simd: S, setup: &Setup, run: &Run, dots: &mut [Dot]) {
         self.unsorted.clear();
-        self.reach = 0.0;
+        (self.reach, self.widest) = (0.0, 0.0);
         let hair = &setup.frame.hair[run.hair];
         let scale = 2.0 * hair.width_scale * setup.view.focal;
-        let mut first = 0;
+        let projection = Projection { view: setup.view, depths: setup.depths, scale };
+        let mut slot = 0;
         for s in setup.order.strands(run) {
             let range = hair.range(s);
             let slots = range.len().next_multiple_of(LANES);
-            let dots = &mut dots[first..first + slots];
-            let n = range.len();
-            if project(setup, &hair.points[range.clone()], &hair.radii[range], scale, dots) {
-                self.cut(setup, run.slots.start + first, &dots[..n]);
+            self.track.project(simd, &projection, &hair.points[range.clone()], &hair.radii[range.clone()]);
+            self.track.store(&mut dots[slot..slot + slots]);
+            for first in (0..range.len().saturating_sub(1)).step_by(LANES) {
+                self.file(simd, setup, run.slots.start + slot, first);
             }
-            first += slots;
+            slot += slots;
         }
-        self.file(setup.tiles.count());
+        self.sort(setup.tiles.count());
     }
 
-    /// Files the segments of a strand whose first slot is `slot`.
+    /// Files the eight segments of the strand in `track` that begin at point `first` under every tile that they touch; `slot` is that of the
+    /// strand's first point.
     #[inline(always)]
-    fn cut(&mut self, setup: &Setup, slot: usize, dots: &[Dot]) {
-        let direction = |i: usize| match dots[i].linked() {
-            true => {
-                let d = dots[i + 1].at - dots[i].at;
-                let length = d.length();
-                if length > 0.0 { (d / length, length) } else { (Vec2::ZERO, 0.0) }
-            }
-            false => (Vec2::ZERO, 0.0),
-        };
-        let (mut before, mut here) = ((Vec2::ZERO, 0.0), direction(0));
-        for i in 0..dots.len() - 1 {
-            let next = direction(i + 1);
-            if dots[i].linked() {
-                let bulge = segment::bulge(before.0, here.0, next.0, here.1);
-                self.push(setup, slot + i, [dots[i], dots[i + 1]], bulge);
-            }
-            (before, here) = (here, next);
-        }
-    }
-
-    /// Files one segment under every tile that it touches.
-    #[inline(always)]
-    fn push(&mut self, setup: &Setup, slot: usize, [a, b]: [Dot; 2], bulge: f32) {
+    fn file<S: Simd>(&mut self, simd: S, setup: &Setup, slot: usize, first: usize) {
+        let (z, a) = (self.track.before(simd, first), self.track.before(simd, first + 1));
+        let (b, c) = (self.track.before(simd, first + 2), self.track.before(simd, first + 3));
+        let zero = f32x8::splat(simd, 0.0);
+        let (here, length) = way(simd, &a, &b);
+        // How far the curve may leave the chord. A tangent that leaves it by an angle takes the cubic 4/27 of the chord times its sine away; an
+        // angle's sine is at most half the difference of the two unit directions that it halves.
+        let turns = turn(zero, way(simd, &z, &a).0, here) + turn(zero, way(simd, &b, &c).0, here);
+        let bulge = length * (2.0 / 27.0) * turns;
+        let widest = a.width.max(b.width);
+        let reach = widest * 0.5 + 1.0 + bulge;
+        let (low_x, high_x) = (a.x.min(b.x) - reach, a.x.max(b.x) + reach);
+        let (low_y, high_y) = (a.y.min(b.y) - reach, a.y.max(b.y) + reach);
         let [w, h] = setup.tiles.size();
-        let widest = a.width().max(b.width());
-        let reach = 0.5 * widest + 1.0 + bulge;
-        let (low, high) = (a.at.min(b.at) - reach, a.at.max(b.at) + reach);
-        let outside = low.x >= w as f32 || low.y >= h as f32 || high.x <= 0.0 || high.y <= 0.0;
-        if widest < 1e-4 || outside {
-            return;
-        }
-        self.reach = self.reach.max(0.5 * (a.depth - b.depth).abs());
-        let depth = (0.5 * (a.depth + b.depth) * DEPTHS + 0.5) as u64;
-        let key = depth << 48 | (slot as u64) << 16;
-        // In patches: [columns, rows].
-        let size = setup.tiles.grid().map(|n| n * PATCHES);
-        let patch = |x: f32, n: usize| (x.max(0.0) * (1.0 / PATCH as f32)).min((n - 1) as f32) as usize;
-        let columns = [patch(low.x, size[0]), patch(high.x, size[0])];
-        let rows = [patch(low.y, size[1]), patch(high.y, size[1])];
-        let d = b.at - a.at;
-        let single = rows[0] / PATCHES == rows[1] / PATCHES || columns[0] / PATCHES == columns[1] / PATCHES;
-        for y in rows[0] / PATCHES..=rows[1] / PATCHES {
-            let (mut first, mut last) = (columns[0], columns[1]);
-            if !single && d.y.abs() > 1e-3 {
-                // Only where the line crosses this row of tiles: a long segment must not claim a whole rectangle.
-                let at = |y: f32| a.at.x + d.x * ((y - a.at.y) / d.y).clamp(0.0, 1.0);
-                let top = (y * SIDE) as f32;
-                let (x0, x1) = (at(top - reach), at(top + SIDE as f32 + reach));
-                first = first.max(patch(x0.min(x1) - reach, size[0]));
-                last = last.min(patch(x0.max(x1) + reach, size[0]));
+        let (w, h) = (w as f32, h as f32);
+        let seen = linked(&a, &b)
+            & widest.simd_ge(1e-4)
+            & (low_x.simd_lt(w) & low_y.simd_lt(h))
+            & (high_x.simd_gt(0.0) & high_y.simd_gt(0.0));
+        let apart = seen.select((a.depth - b.depth).abs() * 0.5, zero);
+        self.reach = self.reach.max(apart.reduce_max());
+        self.widest = self.widest.max(seen.select(widest, zero).reduce_max());
+
+        let middle = ((a.depth + b.depth) * (0.5 * DEPTHS) + 0.5).to_int::<i32x8<S>>();
+        let depths = seen.select(middle, i32x8::splat(simd, -1));
+        // In patches: columns and rows, first and last.
+        let [nx, ny] = setup.tiles.grid();
+        let (end_x, end_y) = ((nx * PATCHES - 1) as f32, (ny * PATCHES - 1) as f32);
+        let (left, right) = (patch(low_x, end_x), patch(high_x, end_x));
+        let (top, bottom) = (patch(low_y, end_y), patch(high_y, end_y));
+        // Most segments lie in one tile.
+        let same_column = (left >> TILE).simd_eq(right >> TILE);
+        let alone = same_column & (top >> TILE).simd_eq(bottom >> TILE);
+        let alone = alone.select((top >> TILE) * nx as i32 + (left >> TILE), i32x8::splat(simd, -1));
+        let touched = (bits(simd, left, right, 1) * 0x1111) & bits(simd, top, bottom, PATCHES as i32);
+        let (depths, alone, touched) = (store(depths), store(alone), store(touched));
+        let (left, right, top, bottom) = (store(left), store(right), store(top), store(bottom));
+        let mut reaches = [0.0; LANES];
+        reach.store_slice(&mut reaches);
+        for lane in 0..LANES {
+            if depths[lane] < 0 {
+                continue;
             }
-            let across = patches([rows[0], rows[1]], y * PATCHES);
-            for x in first / PATCHES..=last / PATCHES {
-                let mask = patches([first, last], x * PATCHES);
-                let touched = (0..PATCHES).fold(0, |sum, row| {
-                    sum | if across >> row & 1 != 0 { mask << (row * PATCHES) } else { 0 }
-                });
-                let tile = y * setup.tiles.grid()[0] + x;
-                self.unsorted.push((tile as u32, Entry(key | touched as u64)));
+            let key = (depths[lane] as u64) << 48 | ((slot + first + lane) as u64) << 16;
+            if alone[lane] >= 0 {
+                self.unsorted.push((alone[lane] as u32, Entry(key | touched[lane] as u64)));
+            } else {
+                let columns = [left[lane] as usize, right[lane] as usize];
+                let rows = [top[lane] as usize, bottom[lane] as usize];
+                self.push(setup, key, first + lane, reaches[lane], columns, rows);
             }
         }
+    }
+
+    /// Files the segment from point `i`, which lies in some patches, both ends included, of more than one tile.
+    #[inline(always)]
+    fn push(&mut self, setup: &Setup, key: u64, i: usize, reach: f32, columns: [usize; 2], rows: [usize; 2]) {
+        let across = setup.tiles.grid()[0];
+        let tiles = |range: [usize; 2]| range[0] / PATCHES..range[1] / PATCHES + 1;
+        let straight = tiles(columns).len() == 1 || tiles(rows).len() == 1;
+        for y in tiles(rows) {
+            let [mut first, mut last] = columns;
+            if !straight {
+                [first, last] = self.crossed(setup, i, reach, y, columns);
+            }
+            let rows = patches(rows, y * PATCHES);
+            // Bit 4 n for row n.
+            let rows = rows & 1 | (rows & 2) << 3 | (rows & 4) << 6 | (rows & 8) << 9;
+            for x in tiles([first, last]) {
+                let touched = rows * patches([first, last], x * PATCHES);
+                self.unsorted.push(((y * across + x) as u32, Entry(key | touched as u64)));
+            }
+        }
+    }
+
+    /// Which of some columns of patches the segment from point `i` crosses in a row of tiles: a long segment must not claim a whole rectangle.
+    #[inline(never)]
+    fn crossed(
+        &self,
+        setup: &Setup,
+        i: usize,
+        reach: f32,
+        row: usize,
+        [first, last]: [usize; 2],
+    ) -> [usize; 2] {
+        let (a, d) = (self.track.at(i), self.track.at(i + 1) - self.track.at(i));
+        if d.y.abs() <= 1e-3 {
+            return [first, last];
+        }
+        let at = |y: f32| a.x + d.x * ((y - a.y) / d.y).clamp(0.0, 1.0);
+        let top = (row * SIDE) as f32;
+        let (x0, x1) = (at(top - reach), at(top + SIDE as f32 + reach));
+        let end = (setup.tiles.grid()[0] * PATCHES - 1) as f32;
+        let patch = |x: f32| (x.max(0.0) * (1.0 / PATCH as f32)).min(end) as usize;
+        [first.max(patch(x0.min(x1) - reach)), last.min(patch(x0.max(x1) + reach))]
     }
 
     /// Brings the entries into the order of the tiles.
     #[inline(always)]
-    fn file(&mut self, tiles: usize) {
+    fn sort(&mut self, tiles: usize) {
         self.starts.clear();
         self.starts.resize(tiles + 1, 0);
         self.unsorted.iter().for_each(|(tile, _)| self.starts[*tile as usize + 1] += 1);
@@ -189,36 +228,49 @@ impl Chunk {
     }
 }
 
-/// Projects a strand; false if none of it can be seen in the picture.
+// Helpers are functions that are always inlined, not closures: only then are they compiled for the instruction set that was chosen.
+
+/// Whether points are there at both ends.
 #[inline(always)]
-fn project(setup: &Setup, points: &[Vec3], radii: &[f32], scale: f32, dots: &mut [Dot]) -> bool {
-    let [near, far] = setup.depths;
-    let per_depth = 1.0 / (far - near);
-    let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-    let mut was_good = false;
-    for (i, (p, radius)) in points.iter().zip(radii).enumerate() {
-        let q = setup.view.project(*p);
-        let width = radius * scale / q.z;
-        let good = q.z > NEAR && q.is_finite() && q.truncate().abs().max_element() < 1e6 && width >= 0.0;
-        dots[i] = Dot::END;
-        if good {
-            let reach = Vec2::splat(0.5 * width + 1.0);
-            low = low.min(q.truncate() - reach);
-            high = high.max(q.truncate() + reach);
-            let depth = ((q.z - ROOT_BIAS - near) * per_depth).clamp(0.0, 1.0);
-            dots[i] = Dot::new(q.truncate(), depth, width.min(MAX_WIDTH));
-        }
-        if good && was_good {
-            dots[i - 1].link();
-        } else if i > 0 {
-            dots[i - 1].cut();
-        }
-        was_good = good;
-    }
-    // The last point, and the slots that no point fills.
-    dots[points.len().max(1) - 1..].iter_mut().for_each(Dot::cut);
-    let [w, h] = setup.tiles.size();
-    points.len() >= 2 && high.x > 0.0 && high.y > 0.0 && low.x < w as f32 && low.y < h as f32
+fn linked<S: Simd>(a: &Points<S>, b: &Points<S>) -> mask32x8<S> {
+    a.width.simd_ge(0.0) & b.width.simd_ge(0.0)
+}
+
+/// Unit direction, zero where the strand has a gap, and length [pixels].
+#[inline(always)]
+fn way<S: Simd>(simd: S, a: &Points<S>, b: &Points<S>) -> ([f32x8<S>; 2], f32x8<S>) {
+    let (x, y) = (b.x - a.x, b.y - a.y);
+    let length = (x * x + y * y).sqrt();
+    let inverse = f32x8::splat(simd, 1.0) / length.max(1e-12);
+    let inverse = linked(a, b).select(inverse, f32x8::splat(simd, 0.0));
+    ([x * inverse, y * inverse], length)
+}
+
+/// Difference of two directions; zero where there is no other.
+#[inline(always)]
+fn turn<S: Simd>(zero: f32x8<S>, [x, y]: [f32x8<S>; 2], here: [f32x8<S>; 2]) -> f32x8<S> {
+    let none = x.simd_eq(0.0) & y.simd_eq(0.0);
+    none.select(zero, (x - here[0]).abs() + (y - here[1]).abs())
+}
+
+/// Column or row of patches of a place, `end` being the last.
+#[inline(always)]
+fn patch<S: Simd>(x: f32x8<S>, end: f32) -> i32x8<S> {
+    (x.max(0.0) * (1.0 / PATCH as f32)).min(end).to_int()
+}
+
+/// Within a tile, the bits from patch `first` to `last`, each patch having `step` of them.
+#[inline(always)]
+fn bits<S: Simd>(simd: S, first: i32x8<S>, last: i32x8<S>, step: i32) -> i32x8<S> {
+    let (one, inner) = (i32x8::splat(simd, 1), PATCHES as i32 - 1);
+    (one << (((last & inner) + 1) * step)) - (one << ((first & inner) * step))
+}
+
+#[inline(always)]
+fn store<S: Simd>(lanes: i32x8<S>) -> [i32; LANES] {
+    let mut out = [0; LANES];
+    lanes.store_slice(&mut out);
+    out
 }
 
 /// Which of the tile's patches in a row lie in `range`, both ends included; `tile` is its first.

@@ -20,22 +20,10 @@ impl Dot {
     /// A point that leads nowhere.
     pub const END: Self = Self { at: Vec2::ZERO, depth: 0.0, width: -0.0 };
 
-    /// A point after which the strand ends, until it is linked.
+    /// A point; `linked`: the strand goes on to the next.
     #[inline(always)]
-    pub fn new(at: Vec2, depth: f32, width: f32) -> Self {
-        Self { at, depth, width: -width }
-    }
-
-    /// Lets the strand go on to the next point.
-    #[inline(always)]
-    pub fn link(&mut self) {
-        self.width = self.width.abs();
-    }
-
-    /// Lets the strand end here.
-    #[inline(always)]
-    pub fn cut(&mut self) {
-        self.width = -self.width.abs();
+    pub fn new(at: Vec2, depth: f32, width: f32, linked: bool) -> Self {
+        Self { at, depth, width: if linked { width } else { -width } }
     }
 
     /// Whether the strand goes on to the next point.
@@ -166,16 +154,6 @@ impl Iterator for Pieces<'_> {
             cap: [starts, closes && *next == Vec2::ZERO],
         })
     }
-}
-
-/// How far, at most, the curve of the segment from the second to the third of four points leaves its chord [pixels].
-///
-/// A tangent that leaves the chord by an angle takes the cubic 4/27 of the chord times its sine away; an angle's sine is at most half the
-/// difference of the two unit directions that it halves.
-#[inline(always)]
-pub(crate) fn bulge(before: Vec2, here: Vec2, next: Vec2, length: f32) -> f32 {
-    let turn = |other: Vec2| if other == Vec2::ZERO { 0.0 } else { (other - here).abs().element_sum() };
-    length * (2.0 / 27.0) * (turn(before) + turn(next))
 }
 
 /// Cubic through `a` and `b` with tangents `ta` and `tb`.

@@ -8,12 +8,13 @@
 use super::color;
 use crate::lighting::Lighting;
 use fearless_simd::{f32x8, prelude::*};
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 use hairspring::scene::HairLook;
 
 /// Points shaded at once.
 pub(crate) const LANES: usize = 8;
-type Row = [f32; LANES];
+/// A value of each.
+pub(crate) type Row = [f32; LANES];
 
 /// Eight points of a strand.
 #[derive(Clone, Copy, Debug, Default)]
@@ -263,22 +264,6 @@ pub(crate) fn pigment(color: Vec3) -> Vec3 {
     let c = if color.is_finite() { color } else { Vec3::splat(0.2) };
     let c = c.clamp(Vec3::splat(0.002), Vec3::splat(0.98));
     Vec3::new(c.x.log2(), c.y.log2(), c.z.log2())
-}
-
-impl Block {
-    /// Writes one point.
-    #[inline(always)]
-    pub fn set(&mut self, lane: usize, p: Vec3, t: Vec3, pigment: Vec3, light: Vec4, body: f32) {
-        for i in 0..3 {
-            self.p[i][lane] = p[i];
-            self.t[i][lane] = t[i];
-            self.pigment[i][lane] = pigment[i];
-        }
-        for i in 0..4 {
-            self.light[i][lane] = light[i];
-        }
-        self.body[lane] = body;
-    }
 }
 
 #[cfg(test)]

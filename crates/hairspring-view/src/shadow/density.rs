@@ -3,10 +3,12 @@
 //! A voxel's density is the share of light that a beam along the grid loses in it for small amounts: the strands' length × diameter in it
 //! over the area of its face. Sums are fixed-point integers, so that any split over threads gives the same bits.
 
+use super::splat::{self, UNIT};
 use crate::{
     frame::{Frame, HairDraw},
     hair::order::Order,
 };
+use fearless_simd::{Level, dispatch};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -32,8 +34,6 @@ pub(crate) struct Cell {
 
 /// Voxels around the hair that blur and lookups may touch.
 const PAD: usize = 4;
-/// Fixed-point units of one optical depth.
-const UNIT: f32 = 65536.0;
 /// Optical depth of a closed body's wall: nothing passes.
 const WALL: f32 = 8.0;
 
@@ -82,7 +82,9 @@ impl Grid {
 /// Points farther from the middle than 12 times the mean distance (per axis) are left out: one stray strand would
 /// otherwise take all the voxels.
 pub(crate) fn bounds(hair: &[HairDraw]) -> Option<(Vec3, Vec3)> {
-    let sample = || hair.iter().flat_map(|h| h.points.iter().step_by(7)).filter(|p| p.is_finite());
+    // Some thousand points of every style tell where it is.
+    let some = |h: &HairDraw| h.points.len() / 8192 + 1;
+    let sample = || hair.iter().flat_map(|h| h.points.iter().step_by(some(h))).filter(|p| p.is_finite());
     let count = sample().count();
     if count == 0 {
         return None;
@@ -110,6 +112,8 @@ pub(crate) fn bounds(hair: &[HairDraw]) -> Option<(Vec3, Vec3)> {
 pub(crate) struct Density {
     pub grid: Grid,
     partial: Vec<Vec<u32>>,
+    /// Voxels that a surface of a body passes through.
+    walls: Vec<bool>,
     scratch: Vec<f32>,
     /// Hair alone, in optical depth per voxel.
     pub hair: Vec<f32>,
@@ -122,64 +126,53 @@ impl Density {
     pub fn fill(&mut self, frame: &Frame, bounds: (Vec3, Vec3), order: &Order) {
         self.grid = Grid::around(bounds, frame.quality.shadow_voxels);
         let (grid, len) = (self.grid, self.grid.len());
+        let level = Level::new();
         // One grid a thread; more than eight would cost more to add up than they save.
         let parts = rayon::current_num_threads().clamp(1, 8);
         self.partial.resize_with(parts, Vec::new);
-        self.partial.par_iter_mut().enumerate().for_each(|(part, sum)| {
+        let (partial, walls) = (&mut self.partial, &mut self.walls);
+        let splats = |(part, sum): (usize, &mut Vec<u32>)| {
             sum.clear();
             sum.resize(len, 0);
             let n = order.runs.len();
             for run in &order.runs[part * n / parts..(part + 1) * n / parts] {
-                splat(&grid, &frame.hair[run.hair], order.strands(run), sum);
+                let (hair, strands) = (&frame.hair[run.hair], order.strands(run));
+                dispatch!(level, simd => splat::splat(simd, &grid, hair, strands, sum));
             }
-        });
+        };
+        rayon::join(
+            || partial.par_iter_mut().enumerate().for_each(splats),
+            || {
+                walls.clear();
+                walls.resize(len, false);
+                for body in frame.bodies {
+                    for t in body.triangles {
+                        let corner = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
+                        wall(&grid, corner, walls);
+                    }
+                }
+            },
+        );
         let [nx, ny, _] = grid.size;
         let partial = &self.partial;
         self.hair.resize(len, 0.0);
         self.hair.par_chunks_mut(nx * ny).enumerate().for_each(|(z, slice)| {
             for (i, value) in slice.iter_mut().enumerate() {
                 let sum = partial.iter().fold(0u32, |s, p| s.saturating_add(p[z * nx * ny + i]));
-                *value = sum as f32 / UNIT;
+                *value = sum as f32 * (1.0 / UNIT);
             }
         });
         blur(&grid, &mut self.hair, &mut self.scratch);
-        self.all.clone_from(&self.hair);
-        for body in frame.bodies {
-            for t in body.triangles {
-                let corner = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
-                wall(&grid, corner, &mut self.all);
-            }
-        }
+        self.all.resize(len, 0.0);
+        let walls = self.walls.par_iter().zip(&self.hair);
+        self.all.par_iter_mut().with_min_len(1 << 14).zip(walls).for_each(|(all, (wall, hair))| {
+            *all = if *wall { hair.max(WALL) } else { *hair };
+        });
     }
 }
 
-/// Adds strands at evenly spaced places, at most one voxel apart.
-fn splat(grid: &Grid, hair: &HairDraw, strands: impl Iterator<Item = usize>, sum: &mut [u32]) {
-    let per_voxel = 1.0 / (grid.voxel * grid.voxel);
-    let scale = 2.0 * hair.width_scale * hair.look.shadow * per_voxel * UNIT;
-    for s in strands {
-        let range = hair.range(s);
-        for i in range.start..range.end.saturating_sub(1) {
-            let (a, b) = (hair.points[i], hair.points[i + 1]);
-            let length = a.distance(b);
-            let amount = length * 0.5 * (hair.radii[i] + hair.radii[i + 1]) * scale;
-            if !(amount > 0.0 && length < 64.0 * grid.voxel) {
-                continue;
-            }
-            let n = (length / grid.voxel).ceil().max(1.0);
-            let each = (amount / n).min(UNIT) as u32;
-            let step = (b - a) / n;
-            for k in 0..n as usize {
-                if let Some(at) = grid.nearest(a + step * (k as f32 + 0.5)) {
-                    sum[at] = sum[at].saturating_add(each);
-                }
-            }
-        }
-    }
-}
-
-/// Marks the voxels that a triangle passes through as opaque.
-fn wall(grid: &Grid, [a, b, c]: [Vec3; 3], all: &mut [f32]) {
+/// Marks the voxels that a triangle passes through.
+fn wall(grid: &Grid, [a, b, c]: [Vec3; 3], walls: &mut [bool]) {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let end =
         grid.origin + Vec3::new(grid.size[0] as f32, grid.size[1] as f32, grid.size[2] as f32) * grid.voxel;
@@ -194,7 +187,7 @@ fn wall(grid: &Grid, [a, b, c]: [Vec3; 3], all: &mut [f32]) {
         for j in 0..=n - i {
             let (u, v) = (i as f32 / n as f32, j as f32 / n as f32);
             if let Some(at) = grid.nearest(a + (b - a) * u + (c - a) * v) {
-                all[at] = all[at].max(WALL);
+                walls[at] = true;
             }
         }
     }

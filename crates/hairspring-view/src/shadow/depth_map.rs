@@ -1,11 +1,18 @@
 //! The bodies as the key lamp sees them: sharp shadow of a nose on a cheek, softened at the edge.
 
 use crate::{
-    body::raster::{BANDS, Bins, ScreenTriangle},
+    body::raster::{Bins, ScreenTriangle},
     frame::Frame,
+    tile::SIDE,
 };
+use fearless_simd::{Level, dispatch, f32x8, i32x8, prelude::*};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+
+/// Texels to each side over which shadow on skin is softened.
+const RADIUS: usize = 4;
+/// Rows that are drawn by one thread.
+const BAND: usize = SIDE;
 
 /// Depth along the light's rays, as an orthographic picture. Nearer the lamp is greater.
 #[derive(Debug, Default)]
@@ -50,23 +57,18 @@ impl DepthMap {
                 self.triangles.extend(ScreenTriangle::new(screen, 0, self.side, self.side));
             }
         }
-        self.bins.fill(&self.triangles, self.side);
         let side = self.side;
+        self.bins.fill(&self.triangles, [side; 2], [side, BAND]);
         self.heights.clear();
         self.heights.resize(side * side, f32::NEG_INFINITY);
         let (triangles, bins) = (&self.triangles, &self.bins);
-        self.heights.par_chunks_mut(side * BANDS).enumerate().for_each(|(band, rows)| {
-            for t in bins.band(band) {
+        self.heights.par_chunks_mut(side * BAND).enumerate().for_each(|(band, rows)| {
+            for t in bins.cell(band) {
                 let height = rows.len() / side;
-                triangles[*t as usize].cover(
-                    [0, band * BANDS],
-                    [side, height],
-                    Vec2::splat(0.5),
-                    |x, y, h| {
-                        let at = &mut rows[y * side + x];
-                        *at = at.max(h);
-                    },
-                );
+                triangles[*t as usize].cover([0, band * BAND], [side, height], |x, y, h| {
+                    let at = &mut rows[y * side + x];
+                    *at = at.max(h);
+                });
             }
         });
     }
@@ -77,33 +79,83 @@ impl DepthMap {
         xy.extend(p.dot(self.toward))
     }
 
-    /// Share of the key lamp's light that bodies let through to `p`, 0 to 1: percentage-closer filtering (Reeves et al. 1987) under a
-    /// tent `radius` texels (1 or more) to each side. `bias` [m] keeps a surface from shading itself.
+    /// Share of the key lamp's light that bodies let through to eight places, 0 to 1: percentage-closer filtering (Reeves et al. 1987) of the
+    /// four texels around each. `bias` [m] keeps a surface from shading itself. Call it inside a `dispatch!`.
     #[inline(always)]
-    pub fn light(&self, p: Vec3, bias: f32, radius: i32) -> f32 {
-        let t = self.texel(p);
-        let edge = self.side as f32 - 1.0 - radius as f32;
-        let margin = radius as f32 + 0.5;
-        if !(t.x > margin && t.y > margin && t.x < edge && t.y < edge) {
-            return 1.0;
-        }
-        let (x, y) = (t.x - 0.5, t.y - 0.5);
-        let (ix, iy) = (x as i32, y as i32);
-        let (fx, fy) = (x - ix as f32, y - iy as f32);
-        let inverse = 1.0 / radius as f32;
-        let mut lit = 0.0;
-        for j in 1 - radius..=radius {
-            let wy = 1.0 - (j as f32 - fy).abs() * inverse;
-            let row = &self.heights[(iy + j) as usize * self.side + (ix + 1 - radius) as usize..]
-                [..2 * radius as usize];
-            for (i, height) in (1 - radius..).zip(row) {
-                // A tent over the sample's place: its weights change smoothly as `p` moves, and add up to the radius squared.
-                let wx = 1.0 - (i as f32 - fx).abs() * inverse;
-                // Over half a millimetre, not at once: no stair steps on slopes.
-                let open = 1.0 - ((height - t.z - bias) * 2e3).clamp(0.0, 1.0);
-                lit += wx * wy * open;
+    pub fn light<S: Simd>(&self, simd: S, p: [f32x8<S>; 3], bias: f32) -> f32x8<S> {
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let x = dot(p, self.right) * self.scale + (self.origin.x - 0.5);
+        let y = dot(p, self.up) * self.scale + (self.origin.y - 0.5);
+        let height = dot(p, self.toward) + bias;
+        let edge = self.side as f32 - 2.5;
+        // Comparisons with what is no number are false; so they are for a map of no size.
+        let inside = x.simd_gt(1.0) & y.simd_gt(1.0) & x.simd_lt(edge) & y.simd_lt(edge);
+        let (x, y) = (inside.select(x, zero), inside.select(y, zero));
+        let (column, row) = (x.floor(), y.floor());
+        let (right, down) = (x - column, y - row);
+        let first = row.to_int::<i32x8<S>>() * self.side as i32 + column.to_int::<i32x8<S>>();
+        let first = inside.select(first, i32x8::splat(simd, -1));
+        let mut corner = [0; 8];
+        first.store_slice(&mut corner);
+        let mut heights = [[f32::NEG_INFINITY; 8]; 4];
+        for lane in 0..8 {
+            if let Ok(corner) = usize::try_from(corner[lane]) {
+                let (here, below) = (&self.heights[corner..][..2], &self.heights[corner + self.side..][..2]);
+                (heights[0][lane], heights[1][lane]) = (here[0], here[1]);
+                (heights[2][lane], heights[3][lane]) = (below[0], below[1]);
             }
         }
-        lit * inverse * inverse
+        let mut open = [zero; 4];
+        for (open, over) in open.iter_mut().zip(heights) {
+            let over = f32x8::simd_from(simd, over) - height;
+            *open = one - (over * SLOPE).max(0.0).min(1.0);
+        }
+        let (above, below) = (open[0] + (open[1] - open[0]) * right, open[2] + (open[3] - open[2]) * right);
+        above + (below - above) * down
     }
+
+    /// As [`DepthMap::light`], under a tent of [`RADIUS`] texels to each side, for one place.
+    pub fn soft_light(&self, level: Level, p: Vec3, bias: f32) -> f32 {
+        dispatch!(level, simd => self.soft_light_in_lanes(simd, p, bias))
+    }
+
+    #[inline(always)]
+    fn soft_light_in_lanes<S: Simd>(&self, simd: S, p: Vec3, bias: f32) -> f32 {
+        let Some((corner, share, height)) = self.window(p) else { return 1.0 };
+        // A tent over the sample's place: its weights change smoothly as `p` moves, and add up to the radius squared.
+        let places = f32x8::simd_from(simd, [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
+        let across = -((places - share.x).abs() * (1.0 / RADIUS as f32)) + 1.0;
+        let mut down = [0.0; 2 * RADIUS];
+        (-((places - share.y).abs() * (1.0 / RADIUS as f32)) + 1.0).store_slice(&mut down);
+        let mut lit = f32x8::splat(simd, 0.0);
+        for (y, weight) in down.into_iter().enumerate() {
+            let row = &self.heights[corner + y * self.side..][..2 * RADIUS];
+            let over = f32x8::from_slice(simd, row) - (height + bias);
+            lit += (-(over * SLOPE).max(0.0).min(1.0) + 1.0) * weight;
+        }
+        (lit * across).reduce_sum() * (1.0 / (RADIUS * RADIUS) as f32)
+    }
+
+    /// The square of 2 · [`RADIUS`] texels around `p`: the first of them, the place of `p` between the middle ones, and its height; `None` if it
+    /// reaches over the map's edge.
+    #[inline(always)]
+    fn window(&self, p: Vec3) -> Option<(usize, Vec2, f32)> {
+        let t = self.texel(p);
+        let (margin, edge) = (RADIUS as f32 + 0.5, self.side as f32 - 1.0 - RADIUS as f32);
+        if !(t.x > margin && t.y > margin && t.x < edge && t.y < edge) {
+            return None;
+        }
+        let (x, y) = (t.x - 0.5, t.y - 0.5);
+        let (column, row) = (x as usize, y as usize);
+        let corner = (row + 1 - RADIUS) * self.side + column + 1 - RADIUS;
+        Some((corner, Vec2::new(x - column as f32, y - row as f32), t.z))
+    }
+}
+
+/// How fast light is lost under what lies above [1/m]: over half a millimetre, not at once, or slopes would show stair steps.
+const SLOPE: f32 = 2e3;
+
+#[inline(always)]
+fn dot<S: Simd>([x, y, z]: [f32x8<S>; 3], d: Vec3) -> f32x8<S> {
+    x * d.x + y * d.y + z * d.z
 }

@@ -2,12 +2,20 @@
 
 mod density;
 mod depth_map;
+mod splat;
 mod sweep;
 
-use crate::{frame::Frame, hair::order::Order};
+use crate::{
+    frame::Frame,
+    hair::{
+        order::Order,
+        shade::{LANES, Row},
+    },
+};
 pub(crate) use density::bounds;
 use density::{Cell, Density, Grid};
 use depth_map::DepthMap;
+use fearless_simd::{Level, dispatch, f32x8, i32x8, prelude::*};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 use std::ops::{Add, Mul};
@@ -25,17 +33,25 @@ pub(crate) struct Shadow {
     lamps: [Vec3; 3],
 }
 
-/// Directions over which the sky is averaged: up, and four slanting ones.
+/// Directions over which the sky is averaged: up, and four slanting ones, none of them most along x: those sweeps take longest.
 const SKY: [Vec3; 5] = [
     Vec3::Y,
-    Vec3::new(0.8, 0.45, 0.3),
-    Vec3::new(-0.8, 0.45, -0.3),
-    Vec3::new(-0.3, 0.45, 0.8),
-    Vec3::new(0.3, 0.45, -0.8),
+    Vec3::new(0.55, 0.45, 0.65),
+    Vec3::new(-0.55, 0.45, 0.65),
+    Vec3::new(0.55, 0.45, -0.65),
+    Vec3::new(-0.55, 0.45, -0.65),
 ];
+
+/// What is found where nothing stands in the way.
+const CLEAR: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
 
 /// How many of the swept depths belong to lamps; those of [`SKY`] follow.
 const LAMPS: usize = 3;
+
+/// How deep hair may lie under bodies before it is in their shadow [m]: roots stand in the skin.
+const HAIR_BIAS: f32 = 3e-3;
+/// The same of bodies, whose map is not exact.
+const SKIN_BIAS: f32 = 8e-4;
 
 /// Share of light from one part of the sky that passes an optical depth. It comes around strands: a gentler law than the straight beam's.
 fn sky_open(depth: f32) -> f32 {
@@ -57,10 +73,10 @@ where
 impl Shadow {
     /// Works out the shadow of a frame whose hair lies in `bounds`; `None`: no hair.
     pub fn fill(&mut self, frame: &Frame, bounds: Option<(Vec3, Vec3)>, order: &Order) {
-        self.map.fill(frame);
         self.light.clear();
-        let Some(bounds) = bounds else { return };
-        self.density.fill(frame, bounds, order);
+        let Some(bounds) = bounds else { return self.map.fill(frame) };
+        let (map, density) = (&mut self.map, &mut self.density);
+        rayon::join(|| density.fill(frame, bounds, order), || map.fill(frame));
         let density = &self.density;
         let grid = density.grid;
         self.grid = grid;
@@ -73,9 +89,10 @@ impl Shadow {
         ];
         let sky = SKY.map(|d| (&density.all, d));
         let jobs: Vec<_> = sweeps.into_iter().chain(sky).collect();
+        let level = Level::new();
         self.depths.resize_with(jobs.len(), Vec::new);
         self.depths.par_iter_mut().zip(jobs).for_each(|(depth, (from, direction))| {
-            sweep::sweep(&grid, from, direction, depth);
+            dispatch!(level, simd => sweep::sweep(simd, &grid, from, direction, depth));
         });
         let depths = &self.depths;
         self.light.resize(grid.len(), Vec4::ZERO);
@@ -92,7 +109,6 @@ impl Shadow {
     /// Optical depth of hair and far bodies towards key, rim and fill, and the share of sky seen; trilinear.
     #[inline(always)]
     pub fn light(&self, p: Vec3) -> Vec4 {
-        const CLEAR: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
         match self.grid.cell(p) {
             Some(cell) if !self.light.is_empty() => trilinear(cell, |at| self.light[at]),
             _ => CLEAR,
@@ -130,10 +146,44 @@ impl Shadow {
         found
     }
 
-    /// Share of the key lamp that bodies let through to `p`.
+    /// For eight points of hair: [`Shadow::light`], and the share of the key lamp that bodies let through. Call it inside a `dispatch!`.
     #[inline(always)]
-    pub fn body(&self, p: Vec3, bias: f32, radius: i32) -> f32 {
-        self.map.light(p, bias, radius)
+    pub fn on_hair<S: Simd>(&self, simd: S, p: &[Row; 3], light: &mut [Row; 4], body: &mut Row) {
+        let p = [f32x8::simd_from(simd, p[0]), f32x8::simd_from(simd, p[1]), f32x8::simd_from(simd, p[2])];
+        self.map.light(simd, p, HAIR_BIAS).store_slice(body);
+        // As in `Grid::cell`.
+        let (grid, zero) = (&self.grid, f32x8::splat(simd, 0.0));
+        let per_voxel = 1.0 / grid.voxel;
+        let origin = grid.origin.to_array();
+        let mut inside = zero.simd_ge(0.0);
+        let (mut first, mut shares) = (i32x8::splat(simd, 0), [[0.0; LANES]; 3]);
+        for axis in [2, 1, 0] {
+            let q = (p[axis] - origin[axis]) * per_voxel;
+            inside &= q.simd_ge(0.0) & q.simd_lt(grid.size[axis] as f32 - 1.0);
+            let whole = inside.select(q, zero).floor();
+            (q - whole).store_slice(&mut shares[axis]);
+            first = first * grid.size[axis] as i32 + whole.to_int::<i32x8<S>>();
+        }
+        let first = inside.select(first, i32x8::splat(simd, -1));
+        let (mut at, strides) = ([0; LANES], [grid.size[0], grid.size[0] * grid.size[1]]);
+        first.store_slice(&mut at);
+        for lane in 0..LANES {
+            let share = Vec3::new(shares[0][lane], shares[1][lane], shares[2][lane]);
+            let found = match usize::try_from(at[lane]) {
+                Ok(first) if !self.light.is_empty() => {
+                    trilinear(Cell { first, strides, share }, |at| self.light[at])
+                }
+                _ => CLEAR,
+            };
+            for (row, value) in light.iter_mut().zip(found.to_array()) {
+                row[lane] = value;
+            }
+        }
+    }
+
+    /// Share of the key lamp that bodies let through to a place on their surface.
+    pub fn on_skin(&self, level: Level, p: Vec3) -> f32 {
+        self.map.soft_light(level, p, SKIN_BIAS)
     }
 
     /// Side of a voxel of the hair's grid [m]; 0 without hair.

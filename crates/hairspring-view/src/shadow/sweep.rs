@@ -6,10 +6,12 @@
 //! the shadow from slice to slice is a penumbra.
 
 use super::density::Grid;
+use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
 
-/// Fills `depth` with the optical depth from each voxel's middle towards `direction`.
-pub(crate) fn sweep(grid: &Grid, density: &[f32], direction: Vec3, depth: &mut Vec<f32>) {
+/// Fills `depth` with the optical depth from each voxel's middle towards `direction`. Call it inside a `dispatch!`.
+#[inline(always)]
+pub(crate) fn sweep<S: Simd>(simd: S, grid: &Grid, density: &[f32], direction: Vec3, depth: &mut Vec<f32>) {
     depth.clear();
     depth.resize(density.len(), 0.0);
     let Some(unit) = direction.try_normalize() else {
@@ -40,16 +42,30 @@ pub(crate) fn sweep(grid: &Grid, density: &[f32], direction: Vec3, depth: &mut V
         ((-i).max(0.0) as usize, (n as isize - 1 - i.max(0.0) as isize - 1).max(0) as usize)
     };
     let ((u0, u1), (v0, v1)) = (inside(nu, iu), inside(nv, iv));
+    let (side, across) = (strides[u], strides[v]);
     for k in 1..n {
         let slice = if d[axis] > 0.0 { n - 1 - k } else { k };
         for j in v0..v1 {
-            let row = slice * strides[axis] + j * strides[v];
-            for i in u0..u1 {
-                let at = row + i * strides[u];
+            let row = slice * strides[axis] + j * across;
+            let mut i = u0;
+            // Voxels that lie side by side in memory, unless the light falls along x: eight at a time. The row they read is another.
+            while side == 1 && i + 8 <= u1 {
+                let at = row + i;
                 let from = (at as isize + offset) as usize;
-                let four = [from, from + strides[u], from + strides[v], from + strides[u] + strides[v]];
+                let here = f32x8::from_slice(simd, &density[at..at + 8]);
+                let (mut before, mut there) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 0.0));
+                for (w, f) in weights.into_iter().zip([from, from + 1, from + across, from + 1 + across]) {
+                    before += f32x8::from_slice(simd, &depth[f..f + 8]) * w;
+                    there += f32x8::from_slice(simd, &density[f..f + 8]) * w;
+                }
+                (before + (here + there) * (0.5 * length)).store_slice(&mut depth[at..at + 8]);
+                i += 8;
+            }
+            for i in i..u1 {
+                let at = row + i * side;
+                let from = (at as isize + offset) as usize;
                 let (mut before, mut there) = (0.0, 0.0);
-                for (w, f) in weights.iter().zip(four) {
+                for (w, f) in weights.iter().zip([from, from + side, from + across, from + side + across]) {
                     before += w * depth[f];
                     there += w * density[f];
                 }

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Material {
+    /// What holds a strand's shape. Default `auto`.
+    pub model: Model,
     /// Fibre radius [m], over the groom's own; `None`: the groom's. Human hair: 25e-6 to 50e-6.
     pub radius: Option<f32>,
     /// Density of the fibre [kg/m³]. Default 1310: dry hair, 1300 to 1320.
@@ -22,6 +24,9 @@ pub struct Material {
     pub bend: f32,
     /// Bending stiffness at the tip as a fraction of that at the root, 0 to 1 or more. Default 1.
     pub bend_tip: f32,
+    /// Short over long axis of the fibre's section, above 0, at most 1; its area is kept. Default 1: round. Asian hair is about 0.9, African
+    /// about 0.6. The long axis lies along the normal of the strand's frame at its root. For the rod model.
+    pub flatness: f32,
     /// Relaxation time of the fibre's bending [s], 0 or more: larger stops the hair's own vibrations sooner. Default 0.004.
     pub damping: f32,
     /// Multiplier over the drag of the air on a lone fibre, 0 or more. Default 0.15: inside a head of hair the air
@@ -31,15 +36,44 @@ pub struct Material {
     pub friction: f32,
 }
 
+/// The elastic model of a strand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Model {
+    /// The rod; for strands that are straight and round, where it comes to the same, the cheaper curvature model.
+    #[default]
+    Auto,
+    /// Stretch and bending by the curvature vector, in a frame carried from the root that knows no twist.
+    Curvature,
+    /// A discrete elastic rod: curvature, and a twist angle for each segment.
+    Rod,
+}
+
+impl Model {
+    /// All of them.
+    pub const ALL: [Model; 3] = [Self::Auto, Self::Curvature, Self::Rod];
+
+    /// Its name in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Curvature => "curvature",
+            Self::Rod => "rod",
+        }
+    }
+}
+
 impl Default for Material {
     fn default() -> Self {
         Self {
+            model: Model::Auto,
             radius: None,
             density: 1310.0,
             young: 3.9e9,
             shear: 0.89e9,
             bend: 1.0,
             bend_tip: 1.0,
+            flatness: 1.0,
             damping: 0.004,
             drag: 0.15,
             friction: 0.3,

@@ -53,6 +53,11 @@ pub fn groom(strands: u32, points: u32) -> Groom {
 impl Bench {
     /// The scene at rest, hair standing out; `points` 3 or more a strand.
     pub fn new(strands: u32, points: u32, solver: Solver) -> Self {
+        Self::of(strands, points, Material::default(), solver)
+    }
+
+    /// The scene with hair of this material.
+    pub fn of(strands: u32, points: u32, material: Material, solver: Solver) -> Self {
         let groom = Arc::new(groom(strands, points));
         let shape = Obstacle::Sphere { center: Vec3::ZERO, radius: RADIUS };
         let rest = (Mat3::IDENTITY, Vec3::ZERO);
@@ -64,7 +69,7 @@ impl Bench {
         let simulation = Simulation::new(
             groom,
             &all,
-            &[Material::default()],
+            &[material],
             solver,
             Vec3::new(0.0, -9.81, 0.0),
             Rigid::default(),

@@ -8,7 +8,7 @@ mod settings;
 
 pub use camera::Camera;
 pub use look::{HairColor, HairLook};
-pub use settings::{Collider, Effects, Guides, Shape, Solver, Wind};
+pub use settings::{Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Wind};
 
 use crate::{
     body::{Body, Clip},

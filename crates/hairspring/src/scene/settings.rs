@@ -57,13 +57,82 @@ pub struct Solver {
     pub sag_free: bool,
     /// Whether hair collides with the body's mesh. Default true.
     pub collide_body: bool,
-    /// Iterations of fast projection a substep (Goldenthal 2007), 0 to 20. Default 3.
+    /// Iterations of fast projection a substep (Goldenthal 2007), 0 to 20. Default 3. For the implicit integrators.
     pub projections: u32,
+    /// How a substep is made. Default `backward-euler`.
+    pub integrator: Integrator,
+    /// How exactly its equations are solved. Default `normal`.
+    pub quality: Quality,
+}
+
+/// How positions and velocities come out of a substep (DESIGN §4); all on the same strands, to be compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Integrator {
+    /// x⁺ = x + h v, v⁺ = v + h a with the fibre's own stiffness: the baseline that blows up.
+    ExplicitEuler,
+    /// Position Verlet with the fibre's own stiffness (Müller 2008).
+    Verlet,
+    /// The banded direct solver, linearised once, then fast projection and a strain limit (Baraff & Witkin 1998; Goldenthal 2007).
+    #[default]
+    BackwardEuler,
+    /// The same with the backward differentiation formula of second order: swings keep their amplitude (Choi & Ko 2002).
+    Bdf2,
+    /// A constant matrix and a projection of every spring by itself (Liu 2013); always by the curvature model.
+    LocalGlobal,
+    /// Follow the leader: inextensible, no bending.
+    Ftl,
+    /// Follow the leader with corrected velocities (Müller 2012).
+    Dftl,
+}
+
+impl Integrator {
+    /// All of them, in the order of the page that compares them.
+    pub const ALL: [Integrator; 7] = [
+        Self::ExplicitEuler,
+        Self::Verlet,
+        Self::BackwardEuler,
+        Self::Bdf2,
+        Self::LocalGlobal,
+        Self::Ftl,
+        Self::Dftl,
+    ];
+
+    /// Its name in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ExplicitEuler => "explicit-euler",
+            Self::Verlet => "verlet",
+            Self::BackwardEuler => "backward-euler",
+            Self::Bdf2 => "bdf2",
+            Self::LocalGlobal => "local-global",
+            Self::Ftl => "ftl",
+            Self::Dftl => "dftl",
+        }
+    }
+}
+
+/// How exactly a substep's equations are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quality {
+    /// One linear solve (10 iterations of local–global).
+    #[default]
+    Normal,
+    /// Newton iterations with a line search, to the end (40 iterations of local–global).
+    High,
 }
 
 impl Default for Solver {
     fn default() -> Self {
-        Self { substeps: 4, sag_free: true, collide_body: true, projections: 3 }
+        Self {
+            substeps: 4,
+            sag_free: true,
+            collide_body: true,
+            projections: 3,
+            integrator: Integrator::default(),
+            quality: Quality::default(),
+        }
     }
 }
 

@@ -4,13 +4,13 @@ use super::{Simulation, TilePlace};
 use crate::{
     collide::{ObstaclePose, Rigid},
     groom::Groom,
-    material::Material,
-    scene::Solver,
+    material::{Material, Model},
+    scene::{Integrator, Solver},
     strand::{
         interval::Interval,
         lanes::{LANES, Row},
         rest_shape::{Fibre, RestShape, rest_shape},
-        tile::{RestRows, StateRows, StrandRows, rest, state, strand},
+        tile::{Elastic, RestRows, StateRows, StrandRows, history, rest, state, strand},
     },
 };
 use fearless_simd::Level;
@@ -45,33 +45,57 @@ impl Simulation {
         anchor: Rigid,
         obstacles: &[ObstaclePose],
     ) -> Self {
-        // Strands of like counts share tiles; a stable sort keeps neighbours together.
+        let fallback = Material::default();
+        let material =
+            |s: usize| materials.get(groom.group(s) as usize).or(materials.last()).unwrap_or(&fallback);
+        // Strands of one model and of like counts share tiles; a stable sort keeps neighbours together.
+        let elastic: Vec<Elastic> = strands
+            .par_iter()
+            .map(|s| elastic(material(*s as usize), groom.strand(*s as usize), &solver))
+            .collect();
         let mut order: Vec<u32> = (0..strands.len() as u32).collect();
-        order.sort_by_key(|k| std::cmp::Reverse(groom.range(strands[*k as usize] as usize).len()));
+        order.sort_by_key(|k| {
+            let points = groom.range(strands[*k as usize] as usize).len();
+            (elastic[*k as usize], std::cmp::Reverse(points))
+        });
         let mut places = vec![0; strands.len()];
-        for (place, k) in order.iter().enumerate() {
-            places[*k as usize] = place as u32;
+        let mut lanes: Vec<u32> = Vec::with_capacity(strands.len().next_multiple_of(LANES));
+        let mut models = Vec::new();
+        for k in order.iter().map(|k| *k as usize) {
+            if models.last().is_some_and(|last| *last != elastic[k]) {
+                lanes.resize(lanes.len().next_multiple_of(LANES), u32::MAX);
+            }
+            if lanes.len().is_multiple_of(LANES) {
+                models.push(elastic[k]);
+            }
+            places[k] = lanes.len() as u32;
+            lanes.push(strands[k]);
         }
-        let mut lanes: Vec<u32> = order.iter().map(|k| strands[*k as usize]).collect();
-        lanes.resize(strands.len().next_multiple_of(LANES), u32::MAX);
+        lanes.resize(lanes.len().next_multiple_of(LANES), u32::MAX);
         let mut first = 0;
         let tiles: Vec<TilePlace> = lanes
             .chunks(LANES)
-            .map(|lane| {
-                let count = |s: &u32| {
-                    if *s == u32::MAX { 0 } else { groom.range(*s as usize).len() }
-                };
-                let points = lane.iter().map(count).max().unwrap_or(0).max(3) as u32;
-                let place = TilePlace { first, points };
+            .zip(models)
+            .map(|(lane, model)| {
+                let strands = || lane.iter().filter(|s| **s != u32::MAX).map(|s| *s as usize);
+                let points = strands().map(|s| groom.range(s).len()).max().unwrap_or(0).max(3) as u32;
+                let flat = model == Elastic::Rod && strands().any(|s| material(s).flatness != 1.0);
+                // Only a strand that starts out straight and free of load needs no rest turn.
+                let curled = solver.sag_free || strands().any(|s| !is_straight(groom.strand(s)));
+                let place = TilePlace { first, points, model, curled, flat };
                 first += points;
                 place
             })
             .collect();
+        let second_order = solver.integrator == Integrator::Bdf2;
 
         let mut simulation = Simulation {
             strand: vec![[Row::default(); strand::ROWS]; tiles.len()],
             rest: vec![[Row::default(); rest::ROWS]; first as usize],
             state: vec![[Row::default(); state::ROWS]; first as usize],
+            history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],
+            holds: Vec::new(),
+            last_h: 0.0,
             groom,
             lanes,
             tiles,
@@ -100,12 +124,12 @@ impl Simulation {
             let (rest, more_rest) = rest_of.split_at_mut(tile.points as usize);
             let (state, more_state) = state_of.split_at_mut(tile.points as usize);
             (rest_of, state_of) = (more_rest, more_state);
-            work.push((lanes, strand, rest, state));
+            work.push((tile.model, lanes, strand, rest, state));
         }
         self.stiffened = work
             .into_par_iter()
             .with_min_len(16)
-            .map(|(lanes, strand, rest, state)| {
+            .map(|(model, lanes, strand, rest, state)| {
                 let mut stiffened = 0;
                 for (lane, s) in lanes.iter().enumerate() {
                     let mut into = Lane { lane, strand: &mut *strand, rest: &mut *rest, state: &mut *state };
@@ -120,14 +144,14 @@ impl Simulation {
                         Some(r) => vec![r; groom.range(s).len()],
                         None => groom.radii[groom.range(s)].to_vec(),
                     };
-                    // GJ/EI of a round fibre: G πr⁴/2 over E πr⁴/4. The style's multiplier is over both.
-                    let twist_ratio = 2.0 * material.shear / material.young;
+                    let section = Section::new(material);
                     let fibre = Fibre {
                         radii: &radii,
                         density: material.density as f64,
-                        young: (material.young * material.bend * scale.bend) as f64,
+                        young: (material.young * material.bend * scale.bend * section.bend) as f64,
                         tip: material.bend_tip as f64,
-                        twist_ratio: twist_ratio as f64,
+                        flat: section.flat as f64,
+                        twist_ratio: (model == Elastic::Rod).then_some(section.twist_ratio as f64),
                     };
                     let points = groom.strand(s);
                     let shape = rest_shape(points, &fibre, gravity);
@@ -139,8 +163,9 @@ impl Simulation {
                         material.drag * scale.drag * drag_rate(radius, material.density);
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
                     rows[strand::FRICTION].0[lane] = material.friction;
-                    let bent = shape.points.iter().any(|p| p.turn.length() > STRAIGHT);
-                    rows[strand::TWIST_RATIO].0[lane] = if bent { twist_ratio } else { 0.0 };
+                    rows[strand::TWIST_RATIO].0[lane] = section.twist_ratio;
+                    rows[strand::FLAT].0[lane] = section.flat;
+                    rows[strand::AXIAL].0[lane] = material.young * std::f32::consts::PI * radius * radius;
                 }
                 stiffened
             })
@@ -148,8 +173,49 @@ impl Simulation {
     }
 }
 
-/// Largest rest turn of a strand that has nothing for twist to act on [rad]: its frames turn nothing that could be seen.
-const STRAIGHT: f64 = 1e-3;
+/// The elastic model that simulates a strand.
+fn elastic(material: &Material, points: &[Vec3], solver: &Solver) -> Elastic {
+    match material.model {
+        // Constant matrix and curvature are all that it knows.
+        _ if solver.integrator == Integrator::LocalGlobal => Elastic::Curvature,
+        Model::Curvature => Elastic::Curvature,
+        Model::Rod => Elastic::Rod,
+        Model::Auto if !solver.sag_free && material.flatness == 1.0 && is_straight(points) => {
+            Elastic::Curvature
+        }
+        Model::Auto => Elastic::Rod,
+    }
+}
+
+/// Largest change of tangent at a joint of a strand that counts as straight [rad]: nothing that twist could turn would be seen.
+const STRAIGHT: f32 = 1e-4;
+
+fn is_straight(points: &[Vec3]) -> bool {
+    let tangent = |w: &[Vec3]| (w[1] - w[0]).normalize_or_zero();
+    points.windows(3).all(|w| tangent(&w[0..2]).distance(tangent(&w[1..3])) < STRAIGHT)
+}
+
+/// What the shape of a fibre's section does to its stiffness. An ellipse with semi-axes a ≥ b and b/a = f has, for the same area as the circle of
+/// radius r: I_min = πr⁴f/4, I_max = πr⁴/4f, J = πr⁴ / (f + 1/f).
+struct Section {
+    /// I_min over the circle's.
+    bend: f32,
+    /// I_max/I_min − 1.
+    flat: f32,
+    /// GJ/EI_min. The style's multiplier is over both.
+    twist_ratio: f32,
+}
+
+impl Section {
+    fn new(material: &Material) -> Self {
+        let f = material.flatness;
+        Self {
+            bend: f,
+            flat: 1.0 / (f * f) - 1.0,
+            twist_ratio: 4.0 * material.shear / (material.young * (1.0 + f * f)),
+        }
+    }
+}
 
 /// Rate at which still air stops a lone fibre moving across itself [1/s].
 ///

@@ -1,11 +1,13 @@
 //! Strands in motion: the state of all simulated strands, and one step of it.
 
 mod build;
+mod hold;
 mod measure;
 mod place;
 mod reset;
 mod step;
 
+pub use hold::Hold;
 pub use measure::Measure;
 pub use step::{Air, Drive, MovingObstacle, StepReport};
 
@@ -14,7 +16,7 @@ use crate::{
     strand::{
         interval::Interval,
         lanes::LANES,
-        tile::{RestRows, StateRows, StrandRows, state, strand},
+        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, state, strand},
     },
 };
 use fearless_simd::Level;
@@ -38,6 +40,12 @@ pub struct Simulation {
     strand: Vec<StrandRows>,
     rest: Vec<RestRows>,
     state: Vec<StateRows>,
+    /// As long as `state` for the integrator of second order, else empty.
+    history: Vec<HistoryRows>,
+    /// What holds points from outside, for each tile; empty where nothing does.
+    holds: Vec<Vec<HoldRows>>,
+    /// Length of the last substep [s].
+    last_h: f32,
     settings: build::Settings,
     /// The last step's interval, kept for its memory.
     interval: Interval,
@@ -54,6 +62,12 @@ struct TilePlace {
     first: u32,
     /// Points of its longest strand.
     points: u32,
+    /// The elastic model of all its strands.
+    model: Elastic,
+    /// Whether any strand has rest turns.
+    curled: bool,
+    /// Whether any fibre is flat.
+    flat: bool,
 }
 
 impl Simulation {
@@ -77,6 +91,7 @@ impl Simulation {
         size_of_val(&self.strand[..])
             + size_of_val(&self.rest[..])
             + size_of_val(&self.state[..])
+            + size_of_val(&self.history[..])
             + (self.lanes.len() + self.places.len()) * size_of::<u32>()
             + self.tiles.len() * size_of::<TilePlace>()
     }

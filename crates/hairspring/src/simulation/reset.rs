@@ -27,7 +27,10 @@ impl Simulation {
                 self.reset_strand(place);
                 count += 1;
             } else if self.lanes[place] == u32::MAX {
-                self.state[rows].iter_mut().flatten().for_each(|r| r.0[lane] = 0.0);
+                self.state[rows.clone()].iter_mut().flatten().for_each(|r| r.0[lane] = 0.0);
+                if let Some(history) = self.history.get_mut(rows) {
+                    history.iter_mut().flatten().for_each(|r| r.0[lane] = 0.0);
+                }
             }
         }
         count
@@ -42,7 +45,11 @@ impl Simulation {
         let points = self.groom.strand(self.lanes[place] as usize);
         for i in 0..self.tiles[tile].points as usize {
             let p: Vec3 = turn * (points[i.min(points.len() - 1)] - points[0]);
-            let rows = &mut self.state[self.tiles[tile].first as usize + i];
+            let at = self.tiles[tile].first as usize + i;
+            if let Some(history) = self.history.get_mut(at) {
+                history.iter_mut().for_each(|r| r.0[lane] = 0.0);
+            }
+            let rows = &mut self.state[at];
             // A finite tension is kept: it is what holds the rest shape.
             let tension = rows[state::TENSION].0[lane];
             rows.iter_mut().for_each(|r| r.0[lane] = 0.0);

@@ -3,12 +3,13 @@
 use super::{Simulation, TilePlace, reset};
 use crate::{
     collide::{Obstacle, ObstaclePose, Rigid},
-    scene::Wind,
+    scene::{Integrator, Quality, Wind},
     strand::{
+        integrate::run_tile,
         interval::{Interval, Substep},
         lanes::LANES,
-        substep::{Scratch, run_tile},
-        tile::{RestRows, StateRows, StrandRows, Tile, strand},
+        scratch::Scratch,
+        tile::{HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, strand},
     },
 };
 use fearless_simd::{Level, dispatch};
@@ -73,6 +74,12 @@ const FRAME: f32 = 1.0 / 60.0;
 /// Most substeps of one step, so that a stalled caller's long `dt` cannot stall it for good.
 const MAX_SUBSTEPS: u32 = 4096;
 
+/// Iterations of local–global in a substep at normal quality (Liu 2013, §6: ten).
+const LOCAL_GLOBAL: u32 = 10;
+
+/// Most Newton iterations in a substep at high quality.
+const NEWTON: u32 = 12;
+
 /// Tiles that one task runs.
 const TILES_PER_TASK: usize = 8;
 
@@ -101,12 +108,16 @@ impl Simulation {
         let reset = run(
             self.level,
             &interval,
-            &self.tiles,
-            &self.strand,
-            &self.rest,
-            &mut self.state,
-            self.tiles.first().map_or(0, |t| t.first),
+            Piece {
+                tiles: &self.tiles,
+                strand: &self.strand,
+                rest: &self.rest,
+                state: &mut self.state,
+                history: &mut self.history,
+                holds: &self.holds,
+            },
         );
+        self.last_h = interval.h;
         // The colliders' shapes are the caller's again.
         interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
         self.interval = interval;
@@ -119,7 +130,16 @@ impl Simulation {
     fn fill_interval(&self, drive: &Drive, count: u32, interval: &mut Interval) {
         let from = self.settings.anchor;
         interval.h = drive.dt / count as f32;
-        interval.projections = self.settings.solver.projections;
+        let solver = self.settings.solver;
+        interval.integrator = solver.integrator;
+        interval.iterations = match (solver.integrator, solver.quality) {
+            (Integrator::LocalGlobal, Quality::Normal) => LOCAL_GLOBAL,
+            (Integrator::LocalGlobal, Quality::High) => 4 * LOCAL_GLOBAL,
+            (_, Quality::Normal) => 1,
+            (_, Quality::High) => NEWTON,
+        };
+        interval.continues = (interval.h / self.last_h - 1.0).abs() < 1e-3;
+        interval.projections = solver.projections;
         interval.gravity = self.settings.gravity;
         interval.anchor = from.matrix();
         interval.substeps.resize_with(count as usize, Substep::default);
@@ -161,34 +181,69 @@ impl Simulation {
     }
 }
 
+/// The arrays of some tiles.
+struct Piece<'a> {
+    tiles: &'a [TilePlace],
+    strand: &'a [StrandRows],
+    rest: &'a [RestRows],
+    state: &'a mut [StateRows],
+    history: &'a mut [HistoryRows],
+    holds: &'a [Vec<HoldRows>],
+}
+
+impl<'a> Piece<'a> {
+    /// The first `count` tiles, and the others.
+    fn split(self, count: usize) -> (Self, Self) {
+        let points = (self.tiles[count].first - self.tiles[0].first) as usize;
+        let (tiles, more_tiles) = self.tiles.split_at(count);
+        let (strand, more_strand) = self.strand.split_at(count);
+        let (rest, more_rest) = self.rest.split_at(points);
+        let (state, more_state) = self.state.split_at_mut(points);
+        let (history, more_history) = self.history.split_at_mut(points.min(self.history.len()));
+        let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
+        (
+            Piece { tiles, strand, rest, state, history, holds },
+            Piece {
+                tiles: more_tiles,
+                strand: more_strand,
+                rest: more_rest,
+                state: more_state,
+                history: more_history,
+                holds: more_holds,
+            },
+        )
+    }
+
+    fn tile(&mut self, k: usize) -> Tile<'_> {
+        let place = self.tiles[k];
+        let at = (place.first - self.tiles[0].first) as usize;
+        let points = at..at + place.points as usize;
+        Tile {
+            model: place.model,
+            curled: place.curled,
+            flat: place.flat,
+            strand: &self.strand[k],
+            rest: &self.rest[points.clone()],
+            state: &mut self.state[points.clone()],
+            history: if self.history.is_empty() { &mut [] } else { &mut self.history[points] },
+            holds: self.holds.get(k).map_or(&[], |holds| holds),
+        }
+    }
+}
+
 /// Runs tiles on all threads, halving the arrays until a task is small; true if any point turned non-finite.
-fn run(
-    level: Level,
-    interval: &Interval,
-    tiles: &[TilePlace],
-    strand: &[StrandRows],
-    rest: &[RestRows],
-    state: &mut [StateRows],
-    first: u32,
-) -> bool {
-    if tiles.len() > TILES_PER_TASK {
-        let half = (tiles.len() / 2).next_multiple_of(TILES_PER_TASK).min(tiles.len() - 1);
-        let points = (tiles[half].first - first) as usize;
-        let (strand_a, strand_b) = strand.split_at(half);
-        let (state_a, state_b) = state.split_at_mut(points);
-        let (rest_a, rest_b) = rest.split_at(points);
-        let (a, b) = rayon::join(
-            || run(level, interval, &tiles[..half], strand_a, rest_a, state_a, first),
-            || run(level, interval, &tiles[half..], strand_b, rest_b, state_b, tiles[half].first),
-        );
+fn run(level: Level, interval: &Interval, mut piece: Piece) -> bool {
+    let count = piece.tiles.len();
+    if count > TILES_PER_TASK {
+        let half = (count / 2).next_multiple_of(TILES_PER_TASK).min(count - 1);
+        let (a, b) = piece.split(half);
+        let (a, b) = rayon::join(|| run(level, interval, a), || run(level, interval, b));
         return a | b;
     }
     SCRATCH.with_borrow_mut(|scratch| {
         let mut broken = false;
-        for (k, place) in tiles.iter().enumerate() {
-            let (at, points) = ((place.first - first) as usize, place.points as usize);
-            let mut tile =
-                Tile { strand: &strand[k], rest: &rest[at..at + points], state: &mut state[at..at + points] };
+        for k in 0..count {
+            let mut tile = piece.tile(k);
             dispatch!(level, simd => run_tile(simd, interval, &mut tile, scratch));
             broken |= !reset::all_finite(tile.state);
         }

@@ -1,6 +1,6 @@
 //! What every tile is told about an exchange interval: the substeps, and where root anchor, colliders and air are in each.
 
-use crate::collide::ObstaclePose;
+use crate::{collide::ObstaclePose, scene::Integrator};
 use glam::{Mat3, Vec3};
 
 /// The substeps of one exchange interval (a frame), shared by all tiles.
@@ -8,6 +8,12 @@ use glam::{Mat3, Vec3};
 pub struct Interval {
     /// Length of a substep [s].
     pub h: f32,
+    /// How a substep is made.
+    pub integrator: Integrator,
+    /// Newton iterations a substep, 1 or more.
+    pub iterations: u32,
+    /// Whether the substep before this interval was as long as those in it.
+    pub continues: bool,
     /// Iterations of fast projection a substep.
     pub projections: u32,
     /// Gravity [m/s²].

@@ -212,61 +212,6 @@ impl<S: Simd> Sym3<S> {
             ],
         }
     }
-
-    /// `self` − Aᵀ B, where the product is known to be symmetric.
-    #[inline(always)]
-    pub fn minus_transposed_product(self, a: &M3<S>, b: &M3<S>) -> Self {
-        let [a0, a1, a2] = a.rows;
-        let [b0, b1, b2] = b.rows;
-        Self {
-            xx: minus_products(self.xx, [(a0.x, b0.x), (a1.x, b1.x), (a2.x, b2.x)]),
-            xy: minus_products(self.xy, [(a0.x, b0.y), (a1.x, b1.y), (a2.x, b2.y)]),
-            xz: minus_products(self.xz, [(a0.x, b0.z), (a1.x, b1.z), (a2.x, b2.z)]),
-            yy: minus_products(self.yy, [(a0.y, b0.y), (a1.y, b1.y), (a2.y, b2.y)]),
-            yz: minus_products(self.yz, [(a0.y, b0.z), (a1.y, b1.z), (a2.y, b2.z)]),
-            zz: minus_products(self.zz, [(a0.z, b0.z), (a1.z, b1.z), (a2.z, b2.z)]),
-        }
-    }
-
-    /// The inverse of a positive definite matrix, by cofactors.
-    #[inline(always)]
-    pub fn inverse(self) -> Self {
-        let Self { xx, xy, xz, yy, yz, zz } = self;
-        let cxx = yy.mul_sub(zz, yz * yz);
-        let cxy = xz.mul_sub(yz, xy * zz);
-        let cxz = xy.mul_sub(yz, xz * yy);
-        let det = xx.mul_add(cxx, xy.mul_add(cxy, xz * cxz));
-        let inv = F::splat(xx.simd, 1.0) / det;
-        Self {
-            xx: cxx * inv,
-            xy: cxy * inv,
-            xz: cxz * inv,
-            yy: xx.mul_sub(zz, xz * xz) * inv,
-            yz: xy.mul_sub(xz, xx * yz) * inv,
-            zz: xx.mul_sub(yy, xy * xy) * inv,
-        }
-    }
-
-    #[inline(always)]
-    pub fn mul_vec(self, v: V3<S>) -> V3<S> {
-        V3 {
-            x: self.xx.mul_add(v.x, self.xy.mul_add(v.y, self.xz * v.z)),
-            y: self.xy.mul_add(v.x, self.yy.mul_add(v.y, self.yz * v.z)),
-            z: self.xz.mul_add(v.x, self.yz.mul_add(v.y, self.zz * v.z)),
-        }
-    }
-
-    /// `self` B.
-    #[inline(always)]
-    pub fn mul_mat(self, b: &M3<S>) -> M3<S> {
-        M3 {
-            rows: [
-                combine(b, V3::zero(self.xx.simd), [self.xx, self.xy, self.xz]),
-                combine(b, V3::zero(self.xx.simd), [self.xy, self.yy, self.yz]),
-                combine(b, V3::zero(self.xx.simd), [self.xz, self.yz, self.zz]),
-            ],
-        }
-    }
 }
 
 impl<S: Simd> Mul<F<S>> for Sym3<S> {
@@ -306,80 +251,26 @@ pub struct M3<S: Simd> {
 }
 
 impl<S: Simd> M3<S> {
+    /// `self` + selfᵀ.
     #[inline(always)]
-    pub fn zero(simd: S) -> Self {
-        M3 { rows: [V3::zero(simd); 3] }
-    }
-
-    /// Nine rows that follow each other.
-    #[inline(always)]
-    pub fn load(simd: S, rows: &[Row]) -> Self {
-        M3 { rows: [V3::load(simd, &rows[0..3]), V3::load(simd, &rows[3..6]), V3::load(simd, &rows[6..9])] }
-    }
-
-    #[inline(always)]
-    pub fn store(self, rows: &mut [Row]) {
-        self.rows[0].store(&mut rows[0..3]);
-        self.rows[1].store(&mut rows[3..6]);
-        self.rows[2].store(&mut rows[6..9]);
-    }
-
-    #[inline(always)]
-    pub fn mul_vec(&self, v: V3<S>) -> V3<S> {
-        V3 { x: self.rows[0].dot(v), y: self.rows[1].dot(v), z: self.rows[2].dot(v) }
-    }
-
-    /// `o` − selfᵀ v.
-    #[inline(always)]
-    pub fn transposed_mul_sub_from(&self, v: V3<S>, o: V3<S>) -> V3<S> {
+    pub fn plus_transposed(&self) -> Sym3<S> {
         let [a, b, c] = self.rows;
-        a.mul_add(-v.x, b.mul_add(-v.y, c.mul_add(-v.z, o)))
-    }
-
-    /// `self` − Aᵀ B.
-    #[inline(always)]
-    pub fn minus_transposed_product(self, a: &M3<S>, b: &M3<S>) -> Self {
-        let [a0, a1, a2] = a.rows;
-        M3 {
-            rows: [
-                combine(b, self.rows[0], [-a0.x, -a1.x, -a2.x]),
-                combine(b, self.rows[1], [-a0.y, -a1.y, -a2.y]),
-                combine(b, self.rows[2], [-a0.z, -a1.z, -a2.z]),
-            ],
-        }
+        Sym3 { xx: a.x + a.x, xy: a.y + b.x, xz: a.z + c.x, yy: b.y + b.y, yz: b.z + c.y, zz: c.z + c.z }
     }
 }
 
-impl<S: Simd> Sub<Sym3<S>> for M3<S> {
+impl<S: Simd> Add for M3<S> {
     type Output = Self;
     #[inline(always)]
-    fn sub(self, o: Sym3<S>) -> Self {
-        let o = o.full().rows;
-        M3 { rows: [self.rows[0] - o[0], self.rows[1] - o[1], self.rows[2] - o[2]] }
+    fn add(self, o: Self) -> Self {
+        M3 { rows: [self.rows[0] + o.rows[0], self.rows[1] + o.rows[1], self.rows[2] + o.rows[2]] }
     }
 }
 
-impl<S: Simd> Sub for M3<S> {
+impl<S: Simd> Neg for M3<S> {
     type Output = Self;
     #[inline(always)]
-    fn sub(self, o: Self) -> Self {
-        M3 { rows: [self.rows[0] - o.rows[0], self.rows[1] - o.rows[1], self.rows[2] - o.rows[2]] }
+    fn neg(self) -> Self {
+        M3 { rows: [-self.rows[0], -self.rows[1], -self.rows[2]] }
     }
-}
-
-// Functions, not closures, wherever lanes are computed: a closure is not always inlined into the dispatched kernel, and
-// then every operation is a call.
-
-/// `s` − Σ pairs' products.
-#[inline(always)]
-fn minus_products<S: Simd>(s: F<S>, p: [(F<S>, F<S>); 3]) -> F<S> {
-    let s = (-p[0].0).mul_add(p[0].1, s);
-    let s = (-p[1].0).mul_add(p[1].1, s);
-    (-p[2].0).mul_add(p[2].1, s)
-}
-
-/// `r` + Σ c_k times row k of `b`.
-#[inline(always)]
-fn combine<S: Simd>(b: &M3<S>, r: V3<S>, c: [F<S>; 3]) -> V3<S> {
-    b.rows[0].mul_add(c[0], b.rows[1].mul_add(c[1], b.rows[2].mul_add(c[2], r)))
 }

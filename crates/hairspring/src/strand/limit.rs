@@ -8,10 +8,22 @@ use super::{
     interval::Substep,
     lanes::{F, Row, V3, load},
     root::Root,
-    tile::{Tile, rest, state},
+    tile::{Tile, history, rest, state},
 };
 use crate::collide::{contact, surface_displacement};
 use fearless_simd::prelude::*;
+
+/// What a substep leaves behind besides positions.
+pub struct Finish<'a> {
+    /// Length of the substep [s].
+    pub h: f32,
+    /// Largest relative change of a segment's length: [`LIMIT`], or infinite for integrators that are shown as they are.
+    pub limit: f32,
+    /// Whether velocities are by BDF2 (see `assemble`).
+    pub second_order: bool,
+    /// What is added to the velocities, shape `[points]` [m/s].
+    pub kick: Option<&'a [[Row; 3]]>,
+}
 
 /// Largest relative change of a segment's length that leaves a substep [1].
 pub const LIMIT: f32 = 0.01;
@@ -24,14 +36,15 @@ const CORRECTIONS: usize = 2;
 #[inline(always)]
 pub fn limit<S: Simd>(
     simd: S,
-    h: f32,
+    finish: &Finish,
     substep: &Substep,
     root: &Root<S>,
     moved: V3<S>,
     tile: &mut Tile,
-    x: &[[Row; 3]],
+    (x, inverse_mass): (&[[Row; 3]], &[Row]),
 ) {
-    let inv_h = F::<S>::splat(simd, 1.0 / h);
+    let inv_h = F::<S>::splat(simd, 1.0 / finish.h);
+    let tolerance = finish.limit;
     let friction = Root::<S>::fibre(simd, tile.strand).2;
     let zero = V3::zero(simd);
     let mut before = root.first;
@@ -47,7 +60,9 @@ pub fn limit<S: Simd>(
         let length = load(simd, &tile.rest[i - 1][rest::LENGTH]);
         let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
         let old = V3::load(simd, &tile.state[i][state::X..]);
-        let mut p = clamp(V3::load(simd, target), before, length);
+        let mut p = V3::load(simd, target);
+        let target = p;
+        p = clamp(p, before, length, tolerance);
         for pose in &substep.obstacles {
             let world = p + root.position;
             let (distance, normal) = contact(simd, pose, world);
@@ -61,17 +76,32 @@ pub fn limit<S: Simd>(
                 let held = pushed - tangent * hold.min(1.0);
                 // The limit again, then out: both hold where they can, and where a strand is caught (behind an
                 // ear) its length goes before its depth, so that it slips free in time.
-                let mut q = clamp(held, before, length);
+                let mut q = clamp(held, before, length, tolerance);
                 for _ in 0..CORRECTIONS {
                     let (distance, normal) = contact(simd, pose, q + root.position);
                     q = swing_out(q, before, normal, (clearance - distance).max(0.0));
-                    q = clamp(q, before, length);
+                    q = clamp(q, before, length, tolerance);
                 }
                 p = V3::select(depth.simd_gt(0.0), q, p);
             }
         }
+        let free = load(simd, &inverse_mass[i]).simd_gt(0.0);
+        p = V3::select(free, p, target);
+        let way = p - old + moved;
+        let mut v = way * inv_h;
+        if let Some(kick) = finish.kick {
+            v += V3::load(simd, &kick[i]);
+        }
+        if let Some(history) = tile.history.get_mut(i) {
+            if finish.second_order {
+                let before = V3::load(simd, &history[history::WAY..]);
+                v += (way - before) * (inv_h * 0.5);
+            }
+            V3::load(simd, &tile.state[i][state::V..]).store(&mut history[history::V..]);
+            way.store(&mut history[history::WAY..]);
+        }
         let at = &mut tile.state[i];
-        ((p - old + moved) * inv_h).store(&mut at[state::V..state::V + 3]);
+        v.store(&mut at[state::V..state::V + 3]);
         p.store(&mut at[state::X..state::X + 3]);
         before = p;
     }
@@ -91,9 +121,9 @@ fn swing_out<S: Simd>(p: V3<S>, before: V3<S>, normal: V3<S>, depth: F<S>) -> V3
     V3::select(depth.simd_gt(0.0), before + normal * out + side * aside, p)
 }
 
-/// `p` moved along the segment from `before` until its length is `length` ± [`LIMIT`].
+/// `p` moved along the segment from `before` until its length is `length`, more or less by the fraction `limit`.
 #[inline(always)]
-fn clamp<S: Simd>(p: V3<S>, before: V3<S>, length: F<S>) -> V3<S> {
+fn clamp<S: Simd>(p: V3<S>, before: V3<S>, length: F<S>, limit: f32) -> V3<S> {
     let (l, u) = (p - before).length_and_unit();
-    before + u * l.min(length * (1.0 + LIMIT)).max(length * (1.0 - LIMIT))
+    before + u * l.min(length * (1.0 + limit)).max(length * (1.0 - limit))
 }

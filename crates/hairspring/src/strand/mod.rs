@@ -1,17 +1,17 @@
 //! One strand, one band: forces, the banded solver and the substep, for eight strands at a time.
 
+pub(crate) mod assemble;
 pub(crate) mod band;
-pub(crate) mod bend;
+pub(crate) mod integrate;
 pub(crate) mod interval;
 pub(crate) mod lanes;
 pub(crate) mod limit;
+pub(crate) mod model;
 pub(crate) mod project;
 pub(crate) mod rest_shape;
 pub(crate) mod root;
-pub(crate) mod stretch;
-pub(crate) mod substep;
+pub(crate) mod scratch;
 pub(crate) mod tile;
-pub(crate) mod twist;
 
 #[cfg(test)]
 mod reference;

@@ -4,7 +4,6 @@
 //! system for a strand; solved exactly by one sweep down and one up (Thomas). The root and the second point are driven.
 
 use super::{
-    band::Factors,
     lanes::{F, Row, V3, load, store},
     tile::{Tile, rest, state},
 };
@@ -25,19 +24,19 @@ pub mod scratch {
 /// Relative length error below which no further iteration is made [1].
 const ENOUGH: f32 = 1e-4;
 
-/// One iteration over `x` of shape `[points]`; false once the lengths were already right. λ/h² goes into the tension.
+/// One iteration over `x` of shape `[points]`; false once the lengths were already right. λ times `force`
+/// (a/h² of the integrator) goes into the tension.
 #[inline(always)]
 pub fn project<S: Simd>(
     simd: S,
-    h: f32,
+    force: f32,
     tile: &mut Tile,
     inverse_mass: &[Row],
     x: &mut [[Row; 3]],
-    work: &mut [Factors],
+    work: &mut [Row],
 ) -> bool {
     let zero = F::<S>::splat(simd, 0.0);
     let points = tile.rest.len();
-    let inv_h2 = 1.0 / (h * h);
     let mut here = V3::load(simd, &x[1]);
     let mut before = V3::zero(simd);
     let (mut d_before, mut inv_before) = (zero, zero);
@@ -56,11 +55,11 @@ pub fn project<S: Simd>(
         let coupling = w0 * before.dot(u);
         let c_before = coupling * inv_before;
         if i > 1 {
-            store(c_before, &mut work[i - 1][scratch::C]);
+            store(c_before, &mut work[(i - 1) * scratch::ROWS + scratch::C]);
         }
         let inv = F::splat(simd, 1.0) / (-coupling).mul_add(c_before, w0 + w1).max(1e-30);
         let d = coupling.mul_add(d_before, error) * inv;
-        let out = &mut work[i];
+        let out = &mut work[i * scratch::ROWS..];
         u.store(&mut out[scratch::U..]);
         store(d, &mut out[scratch::D]);
         (before, d_before, inv_before, w0, here) = (u, d, inv, w1, next);
@@ -73,7 +72,7 @@ pub fn project<S: Simd>(
     // Up: λ_i = d_i + c_i λ_{i+1};  Δx_{i+1} = −w (û_i λ_i − û_{i+1} λ_{i+1})
     let (mut lambda, mut pull) = (zero, V3::zero(simd));
     for i in (1..points - 1).rev() {
-        let at = &work[i];
+        let at = &work[i * scratch::ROWS..];
         let u = V3::load(simd, &at[scratch::U..]);
         let d = load(simd, &at[scratch::D]);
         lambda = if i + 2 < points { load(simd, &at[scratch::C]).mul_add(lambda, d) } else { d };
@@ -83,7 +82,7 @@ pub fn project<S: Simd>(
         let p = V3::load(simd, &x[i + 1]);
         (p + (pull - own) * w1).store(&mut x[i + 1]);
         let tension = &mut tile.state[i][state::TENSION];
-        store(lambda.mul_add(inv_h2, load(simd, tension)), tension);
+        store(lambda.mul_add(force, load(simd, tension)), tension);
         pull = own;
     }
     true

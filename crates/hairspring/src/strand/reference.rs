@@ -3,7 +3,7 @@
 //! Written from the energies, not from the kernel: every block comes from finite differences or outer products of plain
 //! gradients, the system is solved by a dense Cholesky.
 
-use super::stretch::STRETCH;
+use super::model::stretch::STRETCH;
 use glam::{DMat3, DQuat, DVec3};
 
 /// One strand in one substep, in f64.
@@ -37,46 +37,51 @@ pub fn bend_energy(x: [DVec3; 3], lengths: [f64; 2], was: DVec3, turn: DVec3, st
     0.5 * stiffness * residual(x, lengths, was, turn).length_squared()
 }
 
-/// ∂r/∂x_k by central differences.
-fn jacobian(x: [DVec3; 3], lengths: [f64; 2], was: DVec3, turn: DVec3) -> [DMat3; 3] {
-    let step = 1e-6 * lengths[0];
-    [0, 1, 2].map(|k| {
-        let column = |axis: DVec3| {
-            let at = |s: f64| {
-                let mut y = x;
-                y[k] += axis * s;
-                residual(y, lengths, was, turn)
-            };
-            (at(step) - at(-step)) / (2.0 * step)
-        };
-        DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
-    })
-}
-
 /// GJ/EI of the strands in the tests.
 pub const TWIST_RATIO: f64 = 0.46;
 
-/// The twist from the normal `m0`, carried by the least rotation, to `m1`, as 2 tan(τ/2), and its gradient by central differences; the normals
-/// swing with their segments.
-fn twist(x: [DVec3; 3], was: DVec3, m0: DVec3, m1: DVec3) -> (f64, [DVec3; 3]) {
-    let was1 = (x[2] - x[1]).normalize();
-    let angle = |x: [DVec3; 3]| {
-        let (u0, u1) = ((x[1] - x[0]).normalize(), (x[2] - x[1]).normalize());
-        let carried = DQuat::from_rotation_arc(u0, u1) * (DQuat::from_rotation_arc(was, u0) * m0);
-        let m1 = DQuat::from_rotation_arc(was1, u1) * m1;
-        2.0 * (0.5 * carried.cross(m1).dot(u1).atan2(carried.dot(m1))).tan()
+/// The strains of a joint between two segments whose frames have the normals `m0`, `m1` at positions `x0`: the three of bending in the first
+/// frame, and twist as 2 tan(τ/2). Frames swing with their segments by the least rotation and turn about them by `angles`.
+fn strains(
+    x0: [DVec3; 3],
+    normals: [DVec3; 2],
+    x: [DVec3; 3],
+    angles: [f64; 2],
+    lengths: [f64; 2],
+    turn: DVec3,
+) -> [f64; 4] {
+    let was = [(x0[1] - x0[0]).normalize(), (x0[2] - x0[1]).normalize()];
+    let (e0, e1) = (x[1] - x[0], x[2] - x[1]);
+    let (u0, u1) = (e0.normalize(), e1.normalize());
+    let frame = |was: DVec3, u: DVec3, m: DVec3, angle: f64| {
+        DQuat::from_axis_angle(u, angle) * (DQuat::from_rotation_arc(was, u) * m)
     };
-    let gradient = [0, 1, 2].map(|k| {
-        DVec3::from([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
-            let at = |s: f64| {
-                let mut y = x;
-                y[k] += axis * s;
-                angle(y)
-            };
-            (at(1e-8) - at(-1e-8)) / 2e-8
-        }))
-    });
-    (angle(x), gradient)
+    let (m0, m1) = (frame(was[0], u0, normals[0], angles[0]), frame(was[1], u1, normals[1], angles[1]));
+    let d = m0 * turn.x + u0.cross(m0) * turn.y + u0 * turn.z;
+    let r = e1 / lengths[1] - e0 / lengths[0] - d;
+    let carried = DQuat::from_rotation_arc(u0, u1) * m0;
+    let tau = 2.0 * (0.5 * carried.cross(m1).dot(u1).atan2(carried.dot(m1))).tan();
+    [r.x, r.y, r.z, tau]
+}
+
+/// The gradients of these strains: three displacements and two angles.
+fn gradients(x: [DVec3; 3], normals: [DVec3; 2], lengths: [f64; 2], turn: DVec3) -> [[f64; 4]; 11] {
+    let mut out = [[0.0; 4]; 11];
+    for (k, out) in out.iter_mut().enumerate() {
+        let step = if k < 9 { 1e-6 * lengths[0] } else { 1e-6 };
+        let at = |s: f64| {
+            let (mut y, mut angles) = (x, [0.0; 2]);
+            if k < 9 {
+                y[k / 3][k % 3] += s
+            } else {
+                angles[k - 9] += s
+            }
+            strains(x, normals, y, angles, lengths, turn)
+        };
+        let (a, b) = (at(step), at(-step));
+        *out = [0, 1, 2, 3].map(|c| (a[c] - b[c]) / (2.0 * step));
+    }
+    out
 }
 
 fn outer(a: DVec3, b: DVec3) -> DMat3 {
@@ -84,8 +89,9 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
 }
 
 impl Strand {
-    /// Positions relative to the root after the linearised backward Euler solve, with these normals on the segments.
-    pub fn solve(&self, normals: &[DVec3]) -> Vec<DVec3> {
+    /// Positions relative to the root after the linearised backward Euler solve, with these normals on the segments at its start; with angles
+    /// among the unknowns where the strand `twists`.
+    pub fn solve(&self, normals: &[DVec3], twists: bool) -> Vec<DVec3> {
         let n = self.x.len();
         let mut a = vec![vec![DMat3::ZERO; n]; n];
         let mut b = vec![DVec3::ZERO; n];
@@ -113,55 +119,74 @@ impl Strand {
             a[i][i + 1] -= block;
             a[i + 1][i] -= block;
         }
+        // Unknowns: three displacements a point, then one angle a segment.
+        let size = 4 * n;
+        let mut full = vec![vec![0.0; size]; size];
+        let mut right = vec![0.0; size];
+        for i in 0..n {
+            for j in 0..n {
+                for (r, c) in (0..9).map(|k| (k / 3, k % 3)) {
+                    full[3 * i + r][3 * j + c] = a[i][j].col(c)[r];
+                }
+            }
+            for k in 0..3 {
+                right[3 * i + k] = b[i][k];
+            }
+        }
         for j in 1..n - 1 {
             let x = [self.x[j - 1], self.x[j], self.x[j + 1]];
             let lengths = [self.length[j - 1], self.length[j]];
-            let was = (x[1] - x[0]).normalize();
-            let (m, local) = (normals[j - 1], self.turn[j]);
-            let turn = m * local.x + was.cross(m) * local.y + was * local.z;
-            let r = residual(x, lengths, was, turn);
-            let jacobian = jacobian(x, lengths, was, turn);
-            let (angle, swing) = twist(x, was, normals[j - 1], normals[j]);
-            let stiffness = TWIST_RATIO * self.bend[j];
-            for p in 0..3 {
-                b[j - 1 + p] -= jacobian[p].transpose() * r * self.bend[j] + swing[p] * (stiffness * angle);
-                for q in 0..3 {
-                    let implicit = self.bend[j] * (1.0 + self.damping / self.h);
-                    a[j - 1 + p][j - 1 + q] += jacobian[p].transpose() * jacobian[q] * implicit
-                        + outer(swing[p], swing[q]) * (stiffness * (1.0 + self.damping / self.h));
+            let frames = [normals[j - 1], normals[j]];
+            let strain = strains(x, frames, x, [0.0; 2], lengths, self.turn[j]);
+            let gradient = gradients(x, frames, lengths, self.turn[j]);
+            let at = |k: usize| if k < 9 { 3 * (j - 1) + k } else { 3 * n + j - 1 + (k - 9) };
+            for c in 0..if twists { 4 } else { 3 } {
+                let stiffness = if c < 3 { self.bend[j] } else { TWIST_RATIO * self.bend[j] };
+                let implicit = stiffness * (1.0 + self.damping / self.h);
+                // The linearised measure of twist: its force has the gradient, its matrix the square.
+                for p in 0..11 {
+                    right[at(p)] -= gradient[p][c] * strain[c] * stiffness;
+                    for q in 0..11 {
+                        full[at(p)][at(q)] += gradient[p][c] * gradient[q][c] * implicit;
+                    }
                 }
             }
         }
-        let delta = dense_solve(&a[2..].iter().map(|row| row[2..].to_vec()).collect::<Vec<_>>(), &b[2..]);
+        // Driven: the first two points and the first angle; the tip has no segment.
+        let free: Vec<usize> = (6..3 * n).chain(if twists { 3 * n + 1..size - 1 } else { 0..0 }).collect();
+        let matrix: Vec<Vec<f64>> =
+            free.iter().map(|i| free.iter().map(|j| full[*i][*j]).collect()).collect();
+        let delta = dense_solve(&matrix, &free.iter().map(|i| right[*i]).collect::<Vec<_>>());
         let mut x = self.x.clone();
-        x[2..].iter_mut().zip(delta).for_each(|(x, d)| *x += d);
+        for (i, d) in free.iter().zip(delta).filter(|(i, _)| **i < 3 * n) {
+            x[i / 3][i % 3] += d;
+        }
         x
     }
 }
 
-/// Solves a symmetric positive definite block system by dense Cholesky.
-pub fn dense_solve(a: &[Vec<DMat3>], b: &[DVec3]) -> Vec<DVec3> {
-    let n = 3 * b.len();
-    let at = |i: usize, j: usize| a[i / 3][j / 3].col(j % 3)[i % 3];
+/// Solves a symmetric positive definite system by dense Cholesky.
+pub fn dense_solve(a: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
+    let n = b.len();
     let mut l = vec![vec![0.0; n]; n];
     for i in 0..n {
         for j in 0..=i {
             let sum: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
             l[i][j] = if i == j {
-                let d = at(i, i) - sum;
+                let d = a[i][i] - sum;
                 assert!(d > 0.0, "the matrix is positive definite");
                 d.sqrt()
             } else {
-                (at(i, j) - sum) / l[j][j]
+                (a[i][j] - sum) / l[j][j]
             };
         }
     }
     let mut y = vec![0.0; n];
     for i in 0..n {
-        y[i] = (b[i / 3][i % 3] - (0..i).map(|k| l[i][k] * y[k]).sum::<f64>()) / l[i][i];
+        y[i] = (b[i] - (0..i).map(|k| l[i][k] * y[k]).sum::<f64>()) / l[i][i];
     }
     for i in (0..n).rev() {
         y[i] = (y[i] - (i + 1..n).map(|k| l[k][i] * y[k]).sum::<f64>()) / l[i][i];
     }
-    y.chunks(3).map(DVec3::from_slice).collect()
+    y
 }

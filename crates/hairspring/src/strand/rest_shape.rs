@@ -9,10 +9,10 @@
 //! m_i = (I − ûûᵀ)(L_i W_i + P_{i+1}ᵀ m_{i+1}),   d_i = t_i − t_{i−1} − m_i / B_i
 //! ```
 //!
-//! The moment of a bend also turns the frame of the segment before it; rest twists take that torque (see `twist`), tip to root:
+//! The moment of a bend also turns the frame of the segment before it; rest twists take that torque (see `rod`), tip to root:
 //!
 //! ```text
-//! T_{i−1} = T_i + m_i · (û_{i−1} × d_i),      τ⁰_i = −T_i / (GJ/L̄)_i
+//! T_{i−1} = T_i + m_i · (û_{i−1} × κ_i),      τ⁰_i = −T_i / (GJ/L̄)_i
 //! ```
 //!
 //! Rest lengths keep; the tension T along the segment is the part that stretch takes. Where a single fibre could not hold
@@ -28,6 +28,11 @@ const LARGEST_SAG: f64 = 0.5;
 /// (the bend-twist instability of a heavy curl), long straight hair with bends in it first.
 const LARGEST_TWIST: f64 = 0.05;
 
+/// Largest natural curvature that the sag-free start bends into a joint, times the fibre's bending length (EI/ρgA)^⅓ [1]. A heavy strand
+/// that is held out by more curvature than this turns over sideways: the bend-twist threshold Γ* = 0.41 (κL)³ at GJ/EI = 0.46, from which the
+/// length drops out.
+const LARGEST_CURVATURE: f64 = 1.35;
+
 /// Bending stiffness kept above the load of what stands above a joint, as Greenhill's bound with a safety of about two:
 /// B·L̄ ≥ (weight moment of the upright part) × (its length) / 2; Greenhill 1881: ρgAL³/EI < 7.84, of which ½ρgAL²·L is half.
 const STANDING_SAFETY: f64 = 0.5;
@@ -42,8 +47,10 @@ pub struct Fibre<'a> {
     pub young: f64,
     /// The same at the tip, as a fraction of the root's.
     pub tip: f64,
-    /// Twisting over bending stiffness, GJ/EI.
-    pub twist_ratio: f64,
+    /// How much stiffer the fibre bends in the plane of its frame's normal, ΔB/B.
+    pub flat: f64,
+    /// Twisting over bending stiffness, GJ/EI; `None` for a model without twist.
+    pub twist_ratio: Option<f64>,
 }
 
 /// One point of a rest shape.
@@ -102,6 +109,14 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         rest[j].bend = ei / mean;
     }
 
+    // The frame carried along the strand (the same transport as `bend::transport`).
+    rest[0].normal = t[0].any_orthonormal_vector();
+    for i in 1..n - 1 {
+        let frame = rest[i - 1].normal;
+        let scale = frame.dot(t[i]) / (1.0 + t[i - 1].dot(t[i])).max(1e-3);
+        rest[i].normal = (frame - (t[i - 1] + t[i]) * scale).normalize_or(frame);
+    }
+
     let mut stiffened = 0;
     if gravity != DVec3::ZERO {
         let up = -gravity.normalize();
@@ -115,7 +130,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             mass += rest[i + 1].mass;
             height += mass * e[i].dot(up);
             arc += lengths[i];
-            // The twist torques of the joints at both ends of this segment push it too (see `twist::twist_force`).
+            // The twist torques of the joints at both ends of this segment push it too (see `rod`).
             let binormal = |j: usize| t[j - 1].cross(t[j]) / (1.0 + t[j - 1].dot(t[j])).max(0.1);
             let carried = weight * lengths[i] + below - binormal(i) * torque - torque_after;
             let axial = carried.dot(t[i]);
@@ -123,19 +138,25 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             rest[i].tension = axial / lengths[i];
             let mean =
                 if i == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[i - 1] + lengths[i]) };
-            let sag = (moment.length() / LARGEST_SAG).max(torque.abs() / (fibre.twist_ratio * LARGEST_TWIST));
-            let needed = sag.max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
+            let weight_per_length = g * rest[i].mass / mean;
+            let held = (moment.length() / LARGEST_CURVATURE).powf(1.5) / weight_per_length.sqrt() / mean;
+            let twisting = fibre.twist_ratio.map_or(0.0, |ratio| torque.abs() / (ratio * LARGEST_TWIST));
+            let sag = (moment.length() / LARGEST_SAG).max(twisting);
+            let needed = sag.max(held).max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
             if needed > rest[i].bend {
                 rest[i].bend = needed;
                 stiffened += 1;
             }
-            rest[i].turn = t[i] - t[i - 1] - moment / rest[i].bend;
-            rest[i].twist = -torque / (fibre.twist_ratio * rest[i].bend);
-            torque_after = binormal(i) * torque;
-            torque += moment.dot(t[i - 1].cross(rest[i].turn));
-            // P_iᵀ m_i for the next segment inward, with û = t_{i−1} and d = turn.
-            let d = rest[i].turn;
-            below = moment * (1.0 + t[i - 1].dot(d)) - d * t[i - 1].dot(moment);
+            let frame = rest[i - 1].normal;
+            let stiff = frame * (frame.dot(moment) * fibre.flat / (1.0 + fibre.flat));
+            let kappa = t[i] - t[i - 1];
+            rest[i].turn = kappa - (moment - stiff) / rest[i].bend;
+            below = moment * (1.0 + t[i - 1].dot(kappa)) - kappa * t[i - 1].dot(moment);
+            if let Some(ratio) = fibre.twist_ratio {
+                rest[i].twist = -torque / (ratio * rest[i].bend);
+                torque_after = binormal(i) * torque;
+                torque += moment.dot(t[i - 1].cross(kappa));
+            }
         }
     } else {
         for i in 1..n - 1 {
@@ -143,15 +164,10 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         }
     }
 
-    // Into the frame carried along the strand (the same transport as `bend::transport`).
-    let mut frame = t[0].any_orthonormal_vector();
-    rest[0].normal = frame;
+    // Into the frames.
     for i in 1..n - 1 {
-        let d = rest[i].turn;
+        let (d, frame) = (rest[i].turn, rest[i - 1].normal);
         rest[i].turn = DVec3::new(d.dot(frame), d.dot(t[i - 1].cross(frame)), d.dot(t[i - 1]));
-        let scale = frame.dot(t[i]) / (1.0 + t[i - 1].dot(t[i])).max(1e-3);
-        frame = (frame - (t[i - 1] + t[i]) * scale).normalize_or(frame);
-        rest[i].normal = frame;
     }
     RestShape { points: rest, stiffened }
 }

@@ -42,12 +42,6 @@ impl<S: Simd> Root<S> {
         }
     }
 
-    /// Twisting over bending stiffness of the strands, GJ/EI.
-    #[inline(always)]
-    pub fn twist_ratio(simd: S, rows: &StrandRows) -> F<S> {
-        load(simd, &rows[strand::TWIST_RATIO])
-    }
-
     /// Damping, drag and friction of the strands.
     #[inline(always)]
     pub fn fibre(simd: S, rows: &StrandRows) -> (F<S>, F<S>, F<S>) {

@@ -59,10 +59,47 @@ pub mod strand {
     pub const DAMPING: usize = 21;
     /// Coulomb friction against the body.
     pub const FRICTION: usize = 22;
-    /// Twisting over bending stiffness, GJ/EI; 0 for a strand that is straight at rest, which twist cannot be seen on [1].
+    /// Twisting over bending stiffness, GJ/EI [1].
     pub const TWIST_RATIO: usize = 23;
+    /// How much stiffer the fibre bends in the plane of its frame's normal, ΔB/B; 0 for a round one [1].
+    pub const FLAT: usize = 24;
+    /// Stretching stiffness EA [N].
+    pub const AXIAL: usize = 25;
     /// Rows a strand.
-    pub const ROWS: usize = 24;
+    pub const ROWS: usize = 26;
+}
+
+/// Rows a point of what the second-order integrator remembers.
+pub mod history {
+    /// Velocity before the last substep [m/s], 3 rows.
+    pub const V: usize = 0;
+    /// Displacement in the last substep, in the world [m], 3 rows.
+    pub const WAY: usize = 3;
+    /// Rows a point.
+    pub const ROWS: usize = 6;
+}
+
+/// Rows of a hold.
+pub mod hold {
+    /// Where the point is held, in the world [m], 3 rows.
+    pub const TARGET: usize = 0;
+    /// Force on it [N], 3 rows.
+    pub const FORCE: usize = 3;
+    /// 1 where the point is held, else 0.
+    pub const PINNED: usize = 6;
+    /// 1 where the frame of the segment from this point is held, else 0.
+    pub const CLAMPED: usize = 7;
+    /// Rows.
+    pub const ROWS: usize = 8;
+}
+
+/// What holds or pulls one point of eight strands from outside.
+#[derive(Clone)]
+pub struct HoldRows {
+    /// The point.
+    pub point: u32,
+    /// See `hold`.
+    pub rows: [Row; hold::ROWS],
 }
 
 /// What is known of eight whole strands.
@@ -72,10 +109,29 @@ pub type RestRows = [Row; rest::ROWS];
 /// The state of one point of eight strands.
 pub type StateRows = [Row; state::ROWS];
 
+/// What the integrator of second order remembers of one point.
+pub type HistoryRows = [Row; history::ROWS];
+
 /// Eight strands: borrowed pieces of the simulation's arrays.
 pub struct Tile<'a> {
+    pub model: Elastic,
+    /// Whether any of the strands is curved at rest.
+    pub curled: bool,
+    /// Whether any of the strands is flat.
+    pub flat: bool,
     pub strand: &'a StrandRows,
     /// Shape `[points]`, the points of the longest strand; as long as `state`.
     pub rest: &'a [RestRows],
     pub state: &'a mut [StateRows],
+    /// Shape `[points]` for the integrator of second order, else empty.
+    pub history: &'a mut [HistoryRows],
+    /// What holds or pulls points, sorted by point.
+    pub holds: &'a [HoldRows],
+}
+
+/// The elastic model of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Elastic {
+    Curvature,
+    Rod,
 }

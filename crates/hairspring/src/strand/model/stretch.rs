@@ -8,7 +8,7 @@
 //! EA/L, which is a hundred times more: one linearised solve is not stable there, and the projection that follows
 //! makes the segment inextensible all the same.
 
-use super::lanes::{F, Sym3, V3};
+use crate::strand::lanes::{F, Sym3, V3};
 use fearless_simd::prelude::*;
 
 /// Stretch stiffness in units of m/h² [1]. Stable in every test from 10² to 10³; above about 10⁴ it blows up.

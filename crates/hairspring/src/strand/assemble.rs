@@ -1,0 +1,295 @@
+//! A strand's system, assembled and eliminated in one sweep down: elasticity from the model, then stretch, mass, air, gravity and
+//! what holds a point from outside. With positions relative to the root, δ their change, Δr the root's own:
+//!
+//! ```text
+//! (a M/h² + D/h + K) δ = M p + D (w − Δr/h) + M g + f(x)
+//!
+//! backward Euler   a = 1     p = (v − Δr/h) / h                                v⁺ = Δ/h,              Δ = δ + Δr
+//! BDF2             a = 9/4   p = (4v − v⁻)/2h + 3Δ⁻/4h² − 9Δr/4h²              v⁺ = (3Δ − Δ⁻) / 2h
+//! ```
+//!
+//! so a teleporting root puts no strain into the linearisation, and far from the world's origin no digit is lost.
+//! Baraff & Witkin 1998, *Large Steps in Cloth Simulation*; BDF2 after Choi & Ko 2002, *Stable but Responsive Cloth*, eq. 17.
+
+use super::{
+    band::{Band, back_substitute, factor_rows},
+    lanes::{F, Row, Sym3, V3, load, store},
+    model::{
+        At, Model,
+        stretch::{STRETCH, stretch},
+    },
+    root::Root,
+    scratch::Scratch,
+    tile::{Tile, history, hold, rest, state, strand},
+};
+use fearless_simd::prelude::*;
+use glam::Vec3;
+
+/// One substep of one tile, as the assembly needs it.
+#[derive(Clone, Copy)]
+pub struct Step<S: Simd> {
+    /// Length [s].
+    pub h: f32,
+    /// Gravity [m/s²].
+    pub gravity: Vec3,
+    /// Velocity of the air [m/s].
+    pub wind: Vec3,
+    /// The root at the end.
+    pub root: Root<S>,
+    /// How far the root moves in it [m].
+    pub moved: V3<S>,
+    /// Whether the tile's history stands for a substep of the same length: then by BDF2, else by backward Euler.
+    pub second_order: bool,
+    /// What holds the segments' lengths.
+    pub stretching: Stretching,
+}
+
+/// Stiffness of the segments' springs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Stretching {
+    /// As stiff as one linearised solve bears; projection does the rest (see `stretch`).
+    Moderate,
+    /// The fibre's own, EA/L.
+    Fibre,
+}
+
+impl<S: Simd> Step<S> {
+    /// a of the system above.
+    #[inline(always)]
+    pub fn inertia(&self) -> f32 {
+        if self.second_order { 2.25 } else { 1.0 }
+    }
+}
+
+/// Stiffness of a hold in the matrix, over the mass in it [1]: a held point gives way by a millionth of what it would move.
+const HOLD: f32 = 1e6;
+
+/// Stiffness of a held frame [N m]: far above any hair's, about 1e-6.
+const HOLD_FRAME: f32 = 1.0;
+
+/// Elastic forces of all points at the positions in `scratch.x`, into `scratch.kick` [N].
+#[inline(always)]
+pub fn forces<S, M, const B: usize, const N: usize>(
+    simd: S,
+    step: &Step<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    let n = tile.rest.len();
+    let mut elements = Elements::<S, M, B, N>::begin(simd, step, tile, &scratch.x);
+    for i in 0..n {
+        if i + 1 < n {
+            elements.add(simd, step, tile, &scratch.x);
+        }
+        elements.band.force().store(&mut scratch.kick[i]);
+        elements.band.shift(simd);
+    }
+}
+
+/// What a sweep down makes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Sweep {
+    /// The factors of the system at the start of the substep.
+    First,
+    /// The factors of the system at positions that have moved since (Newton).
+    Again,
+}
+
+/// Assembles and eliminates down the strand, at the positions in `scratch.x`.
+#[inline(always)]
+pub fn assemble<S, M, const B: usize, const N: usize>(
+    simd: S,
+    sweep: Sweep,
+    step: &Step<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    let n = tile.rest.len();
+    let mut elements = Elements::<S, M, B, N>::begin(simd, step, tile, &scratch.x);
+    let (mut held, rows) = (0, factor_rows(B, N));
+    for i in 0..n {
+        if i + 1 < n {
+            let segment = elements.add(simd, step, tile, &scratch.x);
+            let band = &mut elements.band;
+
+            // Mass, air and gravity of point i+1. Drag along a slender fibre is half of that across it (Batchelor 1970).
+            let inv_h = 1.0 / step.h;
+            let mass = segment.mass;
+            let v = V3::load(simd, &tile.state[i + 1][state::V..]);
+            let root_velocity = step.moved * F::splat(simd, inv_h);
+            let m_h2 = mass * (step.inertia() * inv_h * inv_h);
+            let mut right = (v - root_velocity) * (mass * inv_h);
+            if step.second_order {
+                let before = &tile.history[i + 1];
+                let v_before = V3::load(simd, &before[history::V..]);
+                let way_before = V3::load(simd, &before[history::WAY..]);
+                let p = (v * F::splat(simd, 4.0) - v_before) * F::splat(simd, 0.5 * inv_h)
+                    + (way_before * F::splat(simd, 3.0) - step.moved * F::splat(simd, 9.0))
+                        * F::splat(simd, 0.25 * inv_h * inv_h);
+                right = p * mass;
+            }
+            let air = mass * segment.drag;
+            let across = air * inv_h;
+            let slip = V3::splat(simd, step.wind) - root_velocity;
+            let slip = slip - segment.u * (segment.u.dot(slip) * 0.5);
+            right += slip * air + V3::splat(simd, step.gravity) * mass;
+            if sweep == Sweep::Again {
+                let way = V3::load(simd, &scratch.x[i + 1]) - V3::load(simd, &tile.state[i + 1][state::X..]);
+                right -= way * (m_h2 + across) - segment.u * (segment.u.dot(way) * across * 0.5);
+            }
+            band.add_force(1, right);
+            band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5));
+            band.add_identity(1, m_h2 + across);
+
+            // What holds or pulls it from outside.
+            while held < tile.holds.len() && tile.holds[held].point as usize <= i + 1 {
+                let at = &tile.holds[held];
+                if at.point as usize == i + 1 {
+                    let pinned = load(simd, &at.rows[hold::PINNED]);
+                    let target = V3::load(simd, &at.rows[hold::TARGET..]) - step.root.position;
+                    let k = pinned * m_h2 * HOLD;
+                    band.add_identity(1, k);
+                    band.add_force(1, (target - V3::load(simd, &scratch.x[i + 1])) * k);
+                    band.add_force(1, V3::load(simd, &at.rows[hold::FORCE..]));
+                    if B > 3 {
+                        band.add((1, 3), (1, 3), load(simd, &at.rows[hold::CLAMPED]) * HOLD_FRAME);
+                    }
+                }
+                held += 1;
+            }
+        }
+        // The root and the second point are driven; an angle of the first segment too, of the second is not.
+        if i >= 2 {
+            elements.band.eliminate(simd, &mut scratch.factors[i * rows..]);
+        } else if i == 1 && B > 3 {
+            for k in 0..3 {
+                elements.band.hold(simd, k);
+            }
+            elements.band.eliminate(simd, &mut scratch.factors[i * rows..]);
+        } else {
+            elements.band.shift(simd);
+        }
+    }
+}
+
+/// The sweep up: adds the solution to `scratch.x`, and to the tensions what the springs took.
+#[inline(always)]
+pub fn substitute<S, M, const B: usize, const N: usize>(
+    simd: S,
+    step: &Step<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    let zero = V3::zero(simd);
+    let n = tile.rest.len();
+    let mut unknowns = [F::<S>::splat(simd, 0.0); N];
+    let (mut next, mut outer) = (zero, zero);
+    for i in (1..n).rev() {
+        let x = V3::load(simd, &scratch.x[i]);
+        let mut delta = zero;
+        if i >= 2 || B > 3 {
+            back_substitute::<S, B, N>(simd, &scratch.factors[i * factor_rows(B, N)..], &mut unknowns);
+        }
+        if i >= 2 {
+            delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
+            (x + delta).store(&mut scratch.x[i]);
+        }
+        if i + 1 < n {
+            let (l, u) = (outer - x).length_and_unit();
+            M::take(simd, i, u, &unknowns, tile);
+            // The tension that the spring of this segment took in the solve: k (ℓ − L + û·(δ_{i+1} − δ_i)).
+            let at = &tile.rest[i];
+            let length = load(simd, &at[rest::LENGTH]);
+            let k = load(simd, &at[rest::MASS]) * (STRETCH / (step.h * step.h));
+            let row = &mut tile.state[i][state::TENSION];
+            let tension = load(simd, row) + k * (l - length + u.dot(next - delta));
+            store(length.simd_gt(0.0).select(tension, F::splat(simd, 0.0)), row);
+        }
+        (next, outer) = (delta, x);
+    }
+}
+
+/// What the assembly says of segment i+1 and the point at its start.
+pub struct Segment<S: Simd> {
+    /// Its unit vector.
+    pub u: V3<S>,
+    /// Mass of point i+1 [kg].
+    pub mass: F<S>,
+    /// Rate at which still air stops the fibre [1/s].
+    pub drag: F<S>,
+}
+
+/// The walk down a strand that fills the band: elasticity only.
+pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
+    /// The window, which begins at the point that the walk is at.
+    pub band: Band<S, B, N>,
+    model: M,
+    at: At<S>,
+    x1: V3<S>,
+    drag: F<S>,
+}
+
+impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
+    /// At the root.
+    #[inline(always)]
+    pub fn begin(simd: S, step: &Step<S>, tile: &Tile, x: &[[Row; 3]]) -> Self {
+        let (drag, damping, _) = Root::<S>::fibre(simd, tile.strand);
+        let first = V3::load(simd, &x[1]);
+        let inverse = F::splat(simd, 1.0) / load(simd, &tile.rest[0][rest::LENGTH]).max(1e-12);
+        let at = At {
+            i: usize::MAX,
+            e: [first; 2],
+            u: [first.length_and_unit().1; 2],
+            inverse_length: [inverse; 2],
+            damped: damping * (1.0 / step.h) + 1.0,
+            h: step.h,
+        };
+        Self { band: Band::new(simd), model: M::begin(simd, tile, &step.root), at, x1: first, drag }
+    }
+
+    /// Adds what begins at the next point i: the model's elements and the stretch of segment i+1.
+    #[inline(always)]
+    pub fn add(&mut self, simd: S, step: &Step<S>, tile: &mut Tile, x: &[[Row; 3]]) -> Segment<S> {
+        let nought = F::<S>::splat(simd, 0.0);
+        let at = &mut self.at;
+        at.i = at.i.wrapping_add(1);
+        let i = at.i;
+        let row = &tile.rest[i + 1];
+        let length = load(simd, &row[rest::LENGTH]);
+        let mass = load(simd, &row[rest::MASS]);
+        let real = length.simd_gt(0.0);
+        let x2 = if i + 2 < tile.rest.len() { V3::load(simd, &x[i + 2]) } else { self.x1 };
+        let e = x2 - self.x1;
+        let (l, u) = e.length_and_unit();
+        let u = V3::select(real, u, V3::zero(simd));
+        at.e = [at.e[1], e];
+        at.u = [at.u[1], u];
+        at.inverse_length =
+            [at.inverse_length[1], real.select(F::splat(simd, 1.0) / length.max(1e-12), nought)];
+        self.model.add(simd, at, x, tile, &mut self.band);
+
+        let k = match step.stretching {
+            Stretching::Moderate => mass * (STRETCH / (step.h * step.h)),
+            Stretching::Fibre => load(simd, &tile.strand[strand::AXIAL]) * at.inverse_length[1],
+        };
+        let k = real.select(k, nought);
+        let tension = load(simd, &tile.state[i + 1][state::TENSION]);
+        let (force, block) = stretch((l, u), length, k, tension);
+        self.band.add_diagonal(1, block);
+        self.band.add_diagonal(2, block);
+        self.band.add_block(1, 2, &-block.full());
+        self.band.add_force(1, force);
+        self.band.add_force(2, -force);
+        self.x1 = x2;
+        Segment { u, mass, drag: self.drag }
+    }
+}

@@ -1,0 +1,52 @@
+//! Explicit Euler and position Verlet, with the fibre's own stretching stiffness: the baseline that blows up, there to be compared.
+//!
+//! ```text
+//! explicit Euler   x⁺ = x + h v,   v⁺ = v + h a        Verlet   x⁺ = x + (x − x⁻) + h² a,   v⁺ = (x⁺ − x) / h
+//! ```
+//!
+//! Müller et al. 2008, *Real Time Physics*, §3.3. A segment of hair rings at some 10⁵ rad/s, so both need steps of microseconds.
+
+use super::outside;
+use crate::{
+    scene::Integrator,
+    strand::{
+        assemble::{Step, forces},
+        lanes::{F, V3, load},
+        model::{Curvature, Rod},
+        scratch::Scratch,
+        tile::{Elastic, Tile, state},
+    },
+};
+use fearless_simd::prelude::*;
+
+/// Leaves the new positions in `scratch.x` and what the velocities get besides in `scratch.kick`.
+#[inline(always)]
+pub fn advance<S: Simd>(
+    simd: S,
+    integrator: Integrator,
+    step: &Step<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) {
+    match tile.model {
+        Elastic::Curvature => forces::<S, Curvature<S>, 3, 9>(simd, step, tile, scratch),
+        Elastic::Rod => forces::<S, Rod<S>, 4, 12>(simd, step, tile, scratch),
+    }
+    let zero = V3::zero(simd);
+    let h = F::<S>::splat(simd, step.h);
+    let mut tip = zero;
+    for i in 2..tile.rest.len() {
+        let x = V3::load(simd, &scratch.x[i]);
+        if i + 1 < tile.rest.len() {
+            tip = (V3::load(simd, &scratch.x[i + 1]) - x).length_and_unit().1;
+        }
+        let v = V3::load(simd, &tile.state[i][state::V..]);
+        let inverse = load(simd, &scratch.inverse_mass[i]);
+        let a = outside(simd, step, tile, i, tip) + V3::load(simd, &scratch.kick[i]) * inverse;
+        let free = inverse.simd_gt(0.0);
+        let gain = V3::select(free, a * h, zero);
+        let (now, later) = if integrator == Integrator::Verlet { (gain, zero) } else { (zero, gain) };
+        V3::select(free, x + (v + now) * h - step.moved, x).store(&mut scratch.x[i]);
+        later.store(&mut scratch.kick[i]);
+    }
+}

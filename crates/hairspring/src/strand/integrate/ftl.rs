@@ -1,0 +1,56 @@
+//! Follow the leader, and its dynamic form: inextensible by construction, with no bending.
+//!
+//! ```text
+//! predict p = x + h v + h² a;  from root to tip  x⁺_{i+1} = x⁺_i + L û(x⁺_i → p_{i+1}),  d_{i+1} the correction;
+//! v_i = (x⁺_i − x_i) / h  −  s d_{i+1} / h          s = 0 for follow the leader, 0.9 for its dynamic form
+//! ```
+//!
+//! Müller, Kim, Chentanez 2012, *Fast Simulation of Inextensible Hair and Fur*, §4.2: the velocity correction undoes the weight that the
+//! one-sided projection gives to the points near the tip.
+
+use super::outside;
+use crate::{
+    scene::Integrator,
+    strand::{
+        assemble::Step,
+        lanes::{F, V3, load},
+        scratch::Scratch,
+        tile::{Tile, rest, state},
+    },
+};
+use fearless_simd::prelude::*;
+
+/// s of the dynamic form [1]; 1 keeps all of the energy and is just stable.
+const KEPT: f32 = 0.9;
+
+/// Leaves the new positions in `scratch.x` and the velocity correction in `scratch.kick`.
+#[inline(always)]
+pub fn advance<S: Simd>(
+    simd: S,
+    integrator: Integrator,
+    step: &Step<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) {
+    let zero = V3::zero(simd);
+    let h = F::<S>::splat(simd, step.h);
+    let share = if integrator == Integrator::Dftl { -KEPT / step.h } else { 0.0 };
+    let mut before = step.root.first;
+    for i in 2..tile.rest.len() {
+        let x = V3::load(simd, &scratch.x[i]);
+        let u = (x - before).length_and_unit().1;
+        let v = V3::load(simd, &tile.state[i][state::V..]);
+        let p = x + (v + outside(simd, step, tile, i, u) * h) * h - step.moved;
+        let length = load(simd, &tile.rest[i - 1][rest::LENGTH]);
+        let free = load(simd, &scratch.inverse_mass[i]).simd_gt(0.0);
+        let followed = before + (p - before).length_and_unit().1 * length;
+        let new = V3::select(free, followed, x);
+        new.store(&mut scratch.x[i]);
+        // The correction of this point goes to the velocity of the one before it.
+        if i > 2 {
+            ((new - p) * F::splat(simd, share)).store(&mut scratch.kick[i - 1]);
+        }
+        zero.store(&mut scratch.kick[i]);
+        before = new;
+    }
+}

@@ -1,0 +1,131 @@
+//! Local–global: every spring alone finds where it would be at rest, then one constant linear system reconciles them.
+//!
+//! ```text
+//! local    d = L û for a segment,  d = the rest turn in the carried frame for a joint
+//! global   (M/h² + Σ k AᵀA) x = M/h² x̂ + Σ k Aᵀ d,     x̂ = x + h v + h² a
+//! ```
+//!
+//! Liu et al. 2013, *Fast Simulation of Mass-Spring Systems*. A takes differences of points, so that the matrix is scalar, of
+//! half-bandwidth 2, and the same for a whole interval: it is factored once. Solved for the change of x, which keeps its digits in f32.
+
+use super::outside;
+use crate::strand::{
+    assemble::Step,
+    band::{Band, factor_rows},
+    lanes::{F, V3, load},
+    model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
+    scratch::Scratch,
+    tile::{Tile, rest, state},
+};
+use fearless_simd::prelude::*;
+
+/// Rows of factors a point: l of the next two points and 1/d.
+const ROWS: usize = factor_rows(1, 3);
+
+/// Factors the constant matrix into `scratch.factors`.
+#[inline(always)]
+pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
+    let one = F::<S>::splat(simd, 1.0);
+    let n = tile.rest.len();
+    let mut band = Band::<S, 1, 3>::new(simd);
+    for i in 0..n {
+        if i + 1 < n {
+            let [alpha, beta, stretch, bend] = weights(simd, h, tile, i);
+            let mass = load(simd, &tile.rest[i + 1][rest::MASS]);
+            let c = [alpha, -(alpha + beta), beta];
+            for p in 0..3 {
+                for q in p..3 {
+                    band.add((p, 0), (q, 0), bend * c[p] * c[q]);
+                }
+            }
+            band.add((1, 0), (1, 0), stretch + mass * (1.0 / (h * h)));
+            band.add((1, 0), (2, 0), -stretch);
+            band.add((2, 0), (2, 0), stretch);
+        }
+        // Points that do not move are cut off.
+        let free = load(simd, &scratch.inverse_mass[i]).simd_gt(0.0);
+        band.cut(simd, free);
+        band.set_right(0, one);
+        band.eliminate(simd, &mut scratch.factors[i * ROWS..]);
+    }
+}
+
+/// 1/L of segments i and i+1, stretch stiffness of segment i+1 and bending stiffness of the joint between them.
+#[inline(always)]
+fn weights<S: Simd>(simd: S, h: f32, tile: &Tile, i: usize) -> [F<S>; 4] {
+    let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
+    let inverse = |length: F<S>| length.simd_gt(0.0).select(one / length.max(1e-12), zero);
+    let length = load(simd, &tile.rest[i + 1][rest::LENGTH]);
+    let mass = load(simd, &tile.rest[i + 1][rest::MASS]);
+    [
+        inverse(load(simd, &tile.rest[i][rest::LENGTH])),
+        inverse(length),
+        length.simd_gt(0.0).select(mass * (STRETCH / (h * h)), zero),
+        load(simd, &tile.rest[i + 1][rest::BEND]),
+    ]
+}
+
+/// Leaves the new positions in `scratch.x` after so many iterations.
+#[inline(always)]
+pub fn advance<S: Simd>(simd: S, iterations: u32, step: &Step<S>, tile: &mut Tile, scratch: &mut Scratch) {
+    let zero = V3::zero(simd);
+    let n = tile.rest.len();
+    let h = F::<S>::splat(simd, step.h);
+    let inv_h2 = 1.0 / (step.h * step.h);
+    // x̂
+    for i in 2..n {
+        let x = V3::load(simd, &scratch.x[i]);
+        let u = (x - V3::load(simd, &scratch.x[i - 1])).length_and_unit().1;
+        let v = V3::load(simd, &tile.state[i][state::V..]);
+        (x + (v + outside(simd, step, tile, i, u) * h) * h - step.moved).store(&mut scratch.kick[i]);
+    }
+    for _ in 0..iterations {
+        // Right-hand sides and the sweep down in one: z_i = b_i − l z of the two points before.
+        let mut x = [zero, V3::load(simd, &scratch.x[1])];
+        let mut u0 = x[1].length_and_unit().1;
+        let mut normal = step.root.normal;
+        let mut b = [zero; 3];
+        for i in 0..n {
+            if i + 1 < n {
+                let [alpha, beta, stretch, bend] = weights(simd, step.h, tile, i);
+                let x2 = if i + 2 < n { V3::load(simd, &scratch.x[i + 2]) } else { x[1] };
+                let (e0, e1) = (x[1] - x[0], x2 - x[1]);
+                let u1 = e1.length_and_unit().1;
+                let turn = V3::load(simd, &tile.rest[i + 1][rest::TURN..]);
+                let d = turn_in_frame(turn, normal, u0);
+                let pull = (d + e0 * alpha - e1 * beta) * bend;
+                b[0] += pull * alpha;
+                b[1] -= pull * (alpha + beta);
+                b[2] += pull * beta;
+                let tension = load(simd, &tile.state[i + 1][state::TENSION]);
+                let length = load(simd, &tile.rest[i + 1][rest::LENGTH]);
+                let real = length.simd_gt(0.0);
+                let pull = V3::select(real, (e1 - u1 * length) * stretch + u1 * tension, zero);
+                b[1] += pull;
+                b[2] -= pull;
+                if i >= 1 {
+                    let mass = load(simd, &tile.rest[i + 1][rest::MASS]);
+                    b[1] += (V3::load(simd, &scratch.kick[i + 1]) - x[1]) * (mass * inv_h2);
+                }
+                normal = V3::select(real, transport(normal, u0, u1), normal);
+                (x, u0) = ([x[1], x2], V3::select(real, u1, u0));
+            }
+            let free = load(simd, &scratch.inverse_mass[i]).simd_gt(0.0);
+            let z = V3::select(free, b[0], zero);
+            let row = &scratch.factors[i * ROWS..(i + 1) * ROWS];
+            b = [b[1] - z * load(simd, &row[0]), b[2] - z * load(simd, &row[1]), zero];
+            (z * load(simd, &row[2])).store(&mut scratch.change[i]);
+        }
+        let mut after = [zero; 2];
+        for i in (0..n).rev() {
+            let row = &scratch.factors[i * ROWS..(i + 1) * ROWS];
+            let free = load(simd, &scratch.inverse_mass[i]).simd_gt(0.0);
+            let change = V3::load(simd, &scratch.change[i])
+                - after[0] * load(simd, &row[0])
+                - after[1] * load(simd, &row[1]);
+            let change = V3::select(free, change, zero);
+            (V3::load(simd, &scratch.x[i]) + change).store(&mut scratch.x[i]);
+            after = [change, after[0]];
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The curvature model: stretch, and bending by the curvature vector in a frame carried from the root.
+
+use super::{
+    At, Model,
+    bend::{bend, transport},
+};
+use crate::strand::{
+    band::Band,
+    lanes::{F, Row, V3, load},
+    root::Root,
+    tile::{Tile, rest},
+};
+use fearless_simd::prelude::*;
+
+/// Bending in a frame that is carried along the strand by the least rotation and so knows no twist: right and cheapest for
+/// strands that are straight at rest, where no frame matters. A coil slowly forgets its shape in it, and swung curls gain energy, because
+/// the force does not know of its share in the frames beyond.
+pub struct Curvature<S: Simd> {
+    /// The frame's normal on segment i.
+    normal: V3<S>,
+}
+
+impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
+    #[inline(always)]
+    fn begin(_: S, _: &Tile, root: &Root<S>) -> Self {
+        Self { normal: root.normal }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, simd: S, at: &At<S>, _: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 3, 9>) {
+        let joint = &tile.rest[at.i + 1];
+        let stiffness = load(simd, &joint[rest::BEND]);
+        let mut d = V3::zero(simd);
+        if tile.curled {
+            let turn = V3::load(simd, &joint[rest::TURN..]);
+            d = turn_in_frame(turn, self.normal, at.u[0]);
+            let last = at.u[1].dot(at.u[1]).simd_eq(0.0);
+            self.normal = V3::select(last, self.normal, transport(self.normal, at.u[0], at.u[1]));
+        }
+        bend(at.e, at.u[0], at.inverse_length, d, stiffness, stiffness * at.damped).add_to(band);
+    }
+
+    #[inline(always)]
+    fn take(_: S, _: usize, _: V3<S>, _: &[F<S>; 9], _: &mut Tile) {}
+}
+
+/// A rest turn in world axes: the frame is (normal, binormal, tangent).
+#[inline(always)]
+pub fn turn_in_frame<S: Simd>(turn: V3<S>, normal: V3<S>, tangent: V3<S>) -> V3<S> {
+    normal.mul_add(turn.x, tangent.cross(normal).mul_add(turn.y, tangent * turn.z))
+}
