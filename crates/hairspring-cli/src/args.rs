@@ -1,6 +1,6 @@
 //! The command line as a whole; each command's options are beside the command.
 
-use crate::{bake, bench, convert, demo, info, render, validate};
+use crate::{bake, bench, compare, convert, demo, info, render, validate};
 use clap::{Parser, Subcommand};
 
 const AFTER_HELP: &str = "\
@@ -14,6 +14,7 @@ Examples:
   hairspring render shot.toml -o f.####.png --frames 20-80 --resume
   hairspring bake shot.toml -o hair.####.hair            a scene as one groom file a frame
   hairspring bench --strands 100000 --json               how fast this machine is
+  hairspring compare --report compare.html               what each integrator does to the same hair
   hairspring validate --report validation.html           whether its hair is physics
 
 Results go to standard output, progress and notes to standard error.
@@ -64,6 +65,7 @@ pub enum Command {
     Convert(convert::Options),
     Info(info::Options),
     Bench(bench::Options),
+    Compare(compare::Options),
     Validate(validate::Options),
 }
 

@@ -1,12 +1,12 @@
 //! `hairspring validate`: the simulation held against closed forms.
 
-mod chart;
 mod report;
 
 use crate::{
     console::{Console, say},
     fault::Fault,
     output,
+    report::number,
 };
 use clap::Parser;
 use hairspring::validate::{CASES, Case, Method, Outcome, SYMBOLS, case};
@@ -313,37 +313,4 @@ fn how(outcome: &Outcome) -> String {
 fn parameters(outcome: &Outcome) -> String {
     let one = |(name, value): &(&str, f64)| format!("{name} {}", number(*value));
     outcome.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
-}
-
-/// A number to five significant digits, without trailing zeros.
-fn number(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return x.to_string();
-    }
-    let digits = 4 - x.abs().log10().floor() as i32;
-    if !(0..=9).contains(&digits) {
-        // 123456 keeps its digits; very small numbers get an exponent.
-        return if digits < 0 { format!("{x:.0}") } else { format!("{x:.4e}") };
-    }
-    let text = format!("{x:.*}", digits as usize);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::number;
-
-    #[test]
-    fn numbers_have_five_digits() {
-        for (x, text) in [
-            (0.123456, "0.12346"),
-            (10.0, "10"),
-            (1379.089, "1379.1"),
-            (0.667, "0.667"),
-            (123456.0, "123456"),
-            (0.0, "0"),
-        ] {
-            assert_eq!(number(x), text);
-        }
-    }
 }

@@ -1,6 +1,7 @@
-//! A plot as SVG: curves of reference, measured points over them, two axes and a legend.
+//! A plot as SVG: lines and points, two axes and a legend.
 
-use hairspring::validate::{Axis, Plot};
+use super::{escape, number};
+use hairspring::validate::Axis;
 use std::fmt::Write;
 
 /// Size of the picture and of the frame in it.
@@ -12,7 +13,17 @@ const TOP: f64 = 14.0;
 const BOTTOM: f64 = 46.0;
 
 /// One a quantity; told apart by the colour-blind too (Okabe & Ito 2008).
-const COLORS: [&str; 4] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7"];
+const COLORS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#222222"];
+
+/// One quantity of a plot.
+pub struct Series<'a> {
+    /// Its name in the legend.
+    pub name: &'a str,
+    /// Drawn as a line, from left to right.
+    pub line: &'a [[f64; 2]],
+    /// Drawn as points.
+    pub points: &'a [[f64; 2]],
+}
 
 /// An axis with its range and what stands at it.
 struct Scale {
@@ -74,11 +85,11 @@ fn decades(low: f64, high: f64) -> Vec<f64> {
     all.filter(|t| (low * 0.999..=high * 1.001).contains(t)).collect()
 }
 
-/// The plot as an SVG element.
-pub fn svg(plot: &Plot) -> String {
-    let all = || plot.curves.iter().flat_map(|c| c.reference.iter().chain(&c.measured));
-    let x = Scale::new(&plot.x, all().map(|p| p[0]), false);
-    let y = Scale::new(&plot.y, all().map(|p| p[1]), true);
+/// The plot as an SVG element with its legend, which ends in `note`.
+pub fn svg([x_axis, y_axis]: [&Axis; 2], series: &[Series], note: &str) -> String {
+    let all = || series.iter().flat_map(|s| s.line.iter().chain(s.points));
+    let x = Scale::new(x_axis, all().map(|p| p[0]), false);
+    let y = Scale::new(y_axis, all().map(|p| p[1]), true);
     let across = |v: f64| LEFT + (WIDTH - LEFT - RIGHT) * x.at(v);
     let up = |v: f64| HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * y.at(v);
     let (bottom, right) = (HEIGHT - BOTTOM, WIDTH - RIGHT);
@@ -93,7 +104,7 @@ pub fn svg(plot: &Plot) -> String {
         put(format_args!(
             r#"<path class="grid" d="M{at:.1} {TOP}V{bottom}"/><text x="{at:.1}" y="{:.1}" text-anchor="middle">{}</text>"#,
             bottom + 16.0,
-            super::number(tick)
+            number(tick)
         ));
     }
     for &tick in &y.ticks {
@@ -102,7 +113,7 @@ pub fn svg(plot: &Plot) -> String {
             r#"<path class="grid" d="M{LEFT} {at:.1}H{right}"/><text x="{:.1}" y="{:.1}" text-anchor="end">{}</text>"#,
             LEFT - 7.0,
             at + 4.0,
-            super::number(tick)
+            number(tick)
         ));
     }
     put(format_args!(r#"<path class="axis" d="M{LEFT} {TOP}V{bottom}H{right}"/>"#));
@@ -110,48 +121,46 @@ pub fn svg(plot: &Plot) -> String {
         r#"<text x="{:.1}" y="{:.1}" text-anchor="middle">{}</text>"#,
         0.5 * (LEFT + right),
         HEIGHT - 8.0,
-        escape(&plot.x.label)
+        escape(&x_axis.label)
     ));
     let middle = 0.5 * (TOP + bottom);
     put(format_args!(
         r#"<text transform="translate(14 {middle:.1}) rotate(-90)" text-anchor="middle">{}</text>"#,
-        escape(&plot.y.label)
+        escape(&y_axis.label)
     ));
-    for (k, curve) in plot.curves.iter().enumerate() {
+    for (k, curve) in series.iter().enumerate() {
         let color = COLORS[k % COLORS.len()];
         let line: Vec<String> =
-            curve.reference.iter().map(|p| format!("{:.1},{:.1}", across(p[0]), up(p[1]))).collect();
+            curve.line.iter().map(|p| format!("{:.1},{:.1}", across(p[0]), up(p[1]))).collect();
         put(format_args!(r#"<polyline class="curve" stroke="{color}" points="{}"/>"#, line.join(" ")));
-        for p in &curve.measured {
+        for p in curve.points {
             put(format_args!(
                 r#"<circle cx="{:.1}" cy="{:.1}" r="4" fill="{color}"><title>{}: {} at {}</title></circle>"#,
                 across(p[0]),
                 up(p[1]),
-                escape(&curve.name),
-                super::number(p[1]),
-                super::number(p[0])
+                escape(curve.name),
+                number(p[1]),
+                number(p[0])
             ));
         }
     }
     s.push_str("</svg>");
-    s + &legend(plot)
+    s + &legend(series, note)
 }
 
 /// What line and points of each colour are.
-fn legend(plot: &Plot) -> String {
-    let entry = |(k, name): (usize, &str)| {
+fn legend(series: &[Series], note: &str) -> String {
+    let entry = |(k, series): (usize, &Series)| {
         let color = COLORS[k % COLORS.len()];
+        let point = match series.points {
+            [] => String::new(),
+            _ => format!(r#"<circle cx="14" cy="5" r="4" fill="{color}"/>"#),
+        };
         format!(
-            r#"<span><svg class="key" viewBox="0 0 28 10"><path class="curve" stroke="{color}" d="M0 5H28"/><circle cx="14" cy="5" r="4" fill="{color}"/></svg>{}</span>"#,
-            escape(name)
+            r#"<span><svg class="key" viewBox="0 0 28 10"><path class="curve" stroke="{color}" d="M0 5H28"/>{point}</svg>{}</span>"#,
+            escape(series.name)
         )
     };
-    let names = plot.curves.iter().map(|c| c.name.as_str()).enumerate();
-    let entries: String = names.map(entry).collect();
-    format!(r#"<p class="legend">{entries} <small>line: reference, points: measured</small></p>"#)
-}
-
-/// Text inside an element.
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    let entries: String = series.iter().enumerate().map(entry).collect();
+    format!(r#"<p class="legend">{entries} <small>{}</small></p>"#, escape(note))
 }
