@@ -9,9 +9,12 @@ use crate::{
     report::number,
 };
 use clap::Parser;
-use hairspring::validate::{CASES, Case, Method, Outcome, SYMBOLS, case};
+use hairspring::{
+    material::Model,
+    scene::Integrator,
+    validate::{CASES, Case, Method, Outcome, SYMBOLS, case},
+};
 use rayon::prelude::*;
-use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
@@ -55,7 +58,7 @@ pub struct Options {
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     mu: Option<f64>,
 
-    /// Points of the strand, 3 to 1024 [default: 64]
+    /// Points of the strand, 3 to 1024 [default: 64; pendulum: always 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=1024), help_heading = "How it is simulated")]
     points: Option<u32>,
 
@@ -63,11 +66,11 @@ pub struct Options {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "How it is simulated")]
     substeps: Option<u32>,
 
-    /// Elastic model of the strand, as in scene files
+    /// Elastic model: auto, curvature, rod [default: auto; michell: rod]
     #[arg(long, value_name = "NAME", help_heading = "How it is simulated")]
     model: Option<String>,
 
-    /// How time is stepped, as in scene files
+    /// How time is stepped: explicit-euler, verlet, backward-euler, bdf2, local-global, ftl, dftl [default: backward-euler]
     #[arg(long, value_name = "NAME", help_heading = "How it is simulated")]
     integrator: Option<String>,
 
@@ -179,11 +182,17 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
     }
     let mut jobs = Vec::new();
     for case in cases {
+        let asked = options.points.filter(|_| !case.points_fixed || options.case.is_some());
+        if case.points_fixed && asked.is_some_and(|points| points != case.method.points) {
+            let text = format!("the case {} is about a strand of {} points", case.name, case.method.points);
+            return Err(Fault::Usage(text));
+        }
         let method = Method {
-            points: options.points.unwrap_or(case.method.points),
+            points: asked.unwrap_or(case.method.points),
             substeps: options.substeps.unwrap_or(case.method.substeps),
-            model: chosen("model", &options.model)?.unwrap_or(case.method.model),
-            integrator: chosen("integrator", &options.integrator)?.unwrap_or(case.method.integrator),
+            model: chosen("model", &options.model, &Model::ALL, Model::name)?.unwrap_or(case.method.model),
+            integrator: chosen("integrator", &options.integrator, &Integrator::ALL, Integrator::name)?
+                .unwrap_or(case.method.integrator),
         };
         let mut sets: Vec<Vec<f64>> = Vec::new();
         for default in case.defaults {
@@ -209,13 +218,19 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
     Ok(jobs)
 }
 
-/// The setting of this name, as scene files know it.
-fn chosen<T: DeserializeOwned>(flag: &str, name: &Option<String>) -> Result<Option<T>, Fault> {
-    let Some(name) = name else { return Ok(None) };
-    // serde says which there are.
-    serde_json::from_value(Value::String(name.clone()))
-        .map(Some)
-        .map_err(|e| Fault::Usage(format!("--{flag}: {}", e.to_string().replace('`', "'"))))
+/// The setting among `all` that was asked for by its `name`.
+fn chosen<T: Copy>(
+    what: &str,
+    asked: &Option<String>,
+    all: &[T],
+    name: fn(T) -> &'static str,
+) -> Result<Option<T>, Fault> {
+    let Some(asked) = asked else { return Ok(None) };
+    let found = all.iter().copied().find(|t| name(*t) == asked);
+    let there: Vec<&str> = all.iter().map(|t| name(*t)).collect();
+    found.map(Some).ok_or_else(|| {
+        Fault::Usage(format!("there is no {what} '{asked}' here; there is: {}", there.join(", ")))
+    })
 }
 
 /// The parameters on the command line.
@@ -244,8 +259,8 @@ fn as_json(outcome: &Outcome) -> Value {
     let how: [(&str, Value); 4] = [
         ("points", json!(points)),
         ("substeps", json!(substeps)),
-        ("model", json!(model)),
-        ("integrator", json!(integrator)),
+        ("model", json!(model.name())),
+        ("integrator", json!(integrator.name())),
     ];
     parameters.extend(how.map(|(key, value)| (key.into(), value)));
     json!({
@@ -303,9 +318,7 @@ fn row(outcome: &Outcome) -> [String; 7] {
 /// How an outcome was simulated.
 fn how(outcome: &Outcome) -> String {
     let Method { points, substeps, model, integrator } = outcome.method;
-    // Their names are what serde calls them.
-    let name = |value: Value| value.as_str().unwrap_or_default().to_owned();
-    let (model, integrator) = (name(json!(model)), name(json!(integrator)));
+    let (model, integrator) = (model.name(), integrator.name());
     format!("{points} points, {substeps} substeps a frame, model {model}, {integrator}")
 }
 

@@ -18,7 +18,7 @@ pub fn page(jobs: &[Job], outcomes: &[Outcome]) -> String {
     }
     let plots: Vec<Plot> = cases.par_iter().map(|job| job.case.plot(job.method)).collect();
     let passed = outcomes.iter().filter(|o| o.pass()).count();
-    let links = cases.iter().map(|j| format!("<a href=\"#{0}\">{0}</a>", j.case.name)).collect::<String>();
+    let links = cases.iter().map(|j| format!("<a href=\"#{0}\">{0}</a> ", j.case.name)).collect::<String>();
     let sections = cases.iter().zip(&plots).map(|(job, plot)| section(job.case, plot, outcomes));
     let sections: String = sections.collect();
     let body = format!(

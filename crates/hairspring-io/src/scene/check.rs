@@ -127,7 +127,11 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         first_failure(
             text,
             section("[[collider]]"),
-            &[(sound(&collider.shape), "shape", "finite, with a radius above 0 [m]")],
+            &[(
+                sound(&collider.shape),
+                "shape",
+                "finite, with a radius above 0 [m] or a normal that is not 0",
+            )],
         )?;
     }
     let (wind, solver) = (&scene.wind, &scene.solver);

@@ -12,6 +12,9 @@ pub enum Failure {
     /// No load up to the greatest that is tried makes the strand give way.
     #[error("the strand never gave way")]
     NoThreshold,
+    /// A swing that turned back far too soon.
+    #[error("the strand did not swing")]
+    NoSwing,
     /// The motion died out before enough of it could be timed.
     #[error("the motion died out before it could be timed")]
     DiedOut,

@@ -118,6 +118,8 @@ pub struct Case {
     pub quantities: &'static [Quantity],
     /// How it is simulated unless told otherwise.
     pub method: Method,
+    /// Whether it is about so many points and no others.
+    pub points_fixed: bool,
     reference: fn(&[f64]) -> Result<Vec<f64>, Failure>,
     measure: fn(&[f64], Method) -> Result<Vec<f64>, Failure>,
     sweep: plot::Sweep,

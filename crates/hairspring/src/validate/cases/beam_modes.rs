@@ -22,6 +22,7 @@ pub const CASE: Case = Case {
         Quantity { name: "mode 3, ω/√(EI/ρAL⁴)", tolerance: FREQUENCY },
     ],
     method: MOVING,
+    points_fixed: false,
     reference: |_| Ok(beam::modes(3).into_iter().map(|beta| beta * beta).collect()),
     measure: |_, method| beam::modes(3).into_par_iter().map(|beta| measure(beta, method)).collect(),
     sweep: Sweep::Modes { label: "ω/√(EI/ρAL⁴)" },

@@ -20,6 +20,7 @@ pub const CASE: Case = Case {
     defaults: &[&[8.0, 2.0 / 3.0], &[8.0, 0.458], &[15.0, 2.0 / 3.0], &[15.0, 0.458]],
     quantities: &[Quantity { name: "threshold Γ*", tolerance: THRESHOLD }],
     method: STILL,
+    points_fixed: false,
     reference: |values| Ok(vec![curl_threshold(values[0], values[1]).ok_or(Failure::NoThreshold)?]),
     measure: |values, method| {
         let &[curl, ratio] = values else { unreachable!("two parameters") };

@@ -20,6 +20,7 @@ pub const CASE: Case = Case {
     defaults: &[&[0.1], &[0.3]],
     quantities: &[Quantity { name: "ratio of the loads T₂/T₁", tolerance: FRICTION }],
     method: STILL,
+    points_fixed: false,
     reference: |values| Ok(vec![(values[0] * PI).exp()]),
     measure: |values, method| {
         let mu = values[0];

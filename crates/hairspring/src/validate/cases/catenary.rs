@@ -22,6 +22,7 @@ pub const CASE: Case = Case {
         Quantity { name: "end tension over weight", tolerance: STATIC },
     ],
     method: STILL,
+    points_fixed: false,
     reference: |values| {
         let shape = catenary(values[0]);
         Ok(vec![shape.sag, shape.end_tension])

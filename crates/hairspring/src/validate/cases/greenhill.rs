@@ -17,6 +17,7 @@ pub const CASE: Case = Case {
     defaults: &[&[]],
     quantities: &[Quantity { name: "threshold Γ", tolerance: THRESHOLD }],
     method: STILL,
+    points_fixed: false,
     reference: |_| Ok(vec![greenhill()]),
     measure: |_, method| {
         let stiffness = |gamma| {

@@ -18,6 +18,7 @@ pub const CASE: Case = Case {
     defaults: &[&[0.1], &[0.3], &[0.6]],
     quantities: &[Quantity { name: "tan θ at which it slips", tolerance: FRICTION }],
     method: STILL,
+    points_fixed: false,
     reference: |values| Ok(vec![values[0]]),
     measure: |values, method| {
         let mu = values[0];

@@ -21,6 +21,7 @@ pub const CASE: Case = Case {
     defaults: &[&[0.458], &[1.0]],
     quantities: &[Quantity { name: "total twist Φ [rad]", tolerance: THRESHOLD }],
     method: TWISTED,
+    points_fixed: false,
     reference: |values| Ok(vec![writhing_twist(values[0])]),
     measure: |values, method| {
         let ratio = values[0];
@@ -38,18 +39,26 @@ const BENDING_FRAMES: u32 = 240;
 const TURN: f64 = 0.05;
 
 /// Size of the pull out of the plane: what would bend an untwisted ring out of its plane by this share of its length.
-const PULL: f64 = 2e-4;
+const PULL: f64 = 1e-3;
 
 /// The pull out of the plane over what it does, under a total twist [rad].
 fn stiffness(twist: f64, ratio: f64, method: Method) -> Result<Option<f64>, Failure> {
     let n = method.points;
     let mut specimen = Specimen::new(Setup::weightless(straight(n, LENGTH, DVec3::X), ratio), method);
-    // The pull has two waves around the ring. It is in balance with itself, and does no work where the whole ring turns about its clamped
-    // tangent, which costs a round strand nothing.
+    // The pull has two waves around the ring, as the mode that goes first. It is in balance with itself, and does no work where the whole
+    // ring turns about its clamped tangent, which costs a round strand nothing. Its sign is that of what the first and
+    // last segments, which are clamped whole, do to a ring of few points.
     let radius = LENGTH / TAU;
     let unit = PULL * LENGTH * BENDING / radius.powi(4) * LENGTH / (n - 1) as f64;
-    let wave = |i: u32| (2.0 * TAU * i as f64 / (n - 1) as f64).cos();
-    let pull = |i: u32| Hold { point: i, force: Vec3::Z * (unit * wave(i)) as f32, ..Hold::default() };
+    let wave = |i: u32| -(2.0 * TAU * i as f64 / (n - 1) as f64).sin();
+    // To the last digit: a remainder would turn the ring about its tangent for ever.
+    let hinge = |i: u32| 1.0 - (TAU * i as f64 / (n - 1) as f64).cos();
+    let sum = |f: &dyn Fn(u32) -> f64| (2..n - 2).map(f).sum::<f64>();
+    let remainder = sum(&|i| wave(i) * hinge(i)) / sum(&|i| hinge(i) * hinge(i)).max(f64::MIN_POSITIVE);
+    let pull = |i: u32| {
+        let force = Vec3::Z * (unit * (wave(i) - remainder * hinge(i))) as f32;
+        Hold { point: i, force, ..Hold::default() }
+    };
 
     for frame in 1..=BENDING_FRAMES {
         specimen.hold(&ends(n, TAU * frame as f64 / BENDING_FRAMES as f64));
@@ -64,11 +73,11 @@ fn stiffness(twist: f64, ratio: f64, method: Method) -> Result<Option<f64>, Fail
     holds.extend(ends(n, TAU));
     specimen.hold(&holds);
     let rest = specimen.settle()?;
-    // What is left of the way out after that of a plane, and its part with two waves.
     let projection: f64 = rest.iter().zip(0..n).map(|(p, i)| p.z * wave(i)).sum();
     let aside = 2.0 * projection / (n - 1) as f64 / LENGTH;
-    let highest = rest.iter().map(|p| p.z.abs() / LENGTH).fold(0.0, f64::max);
-    Ok((highest < southwell::SMALL).then_some(PULL / aside))
+    // A ring that writhed passes through itself (nothing here keeps it from that), loses two turns, and lies flat again, twisted
+    // the other way.
+    Ok((aside > 0.0 && aside < southwell::SMALL).then_some(PULL / aside))
 }
 
 /// The last two points of a strand from the origin along X that is bent to an arc of `angle` [rad], clamped.
