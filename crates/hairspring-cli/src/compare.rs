@@ -83,9 +83,10 @@ The figures of each, as JSON keys:
   reset_strands             strands that turned non-finite and were put back to rest, frame after frame
   stretch_mean              mean of |l/L - 1| over segments and frames
   stretch_max               the worst segment of any frame; null where it was beyond numbers
+  swing_stretch_max         the worst segment of the free swing, which meets nothing; null where it blew up
   energy_drift              what the free swing has gained or lost, over all that it can turn into motion by falling;
                             null where it blew up
-  ns_per_point_substep      wall time x threads / (points x substeps), the median frame of the scene
+  ns_per_point_substep      wall time x threads / (points x substeps) of the scene; nine of ten frames took longer
   longest_stable_step_s     {longest} is the longest tried; null: not even {shortest} is stable
   points_in_real_time       that one thread keeps up with at that step; null where there is none
 
@@ -258,6 +259,7 @@ fn as_json(setting: &Setting, trials: &[Trial], options: &Options) -> Value {
             "reset_strands": t.played.reset_strands,
             "stretch_mean": t.played.stretch_mean,
             "stretch_max": t.played.stretch_max,
+            "swing_stretch_max": t.swung.stretch_max,
             "energy_drift": t.swung.drift,
             "ns_per_point_substep": t.played.ns,
             "longest_stable_step_s": t.longest.seconds(),
@@ -347,11 +349,12 @@ fn limits(setting: &Setting) -> String {
     format!(
         "Stable: no strand turned non-finite and no segment was ever twice its length. Energy drift: of a free swing of {} strands in \
          {} s, gravity turned by {TILT}°, over the energy that it can turn into motion by falling. Longest step: at which {} strands, \
-         the shortest segment {} mm, keep within that bound for {} s and {} steps; between {} and {}.",
+         the shortest segment {} mm, which sound crosses in {}, keep within that bound for {} s and {} steps; between {} and {}.",
         setting.swinging.strand_count(),
         number(setting.seconds),
         setting.stepping.strand_count(),
-        number(f64::from(setting.stepping.shortest_segment()) * 1e3),
+        number(two_digits(f64::from(setting.stepping.shortest_segment()) * 1e3)),
+        duration(setting.stepping.sound_time()),
         number(swing::WATCHED),
         swing::STEPS,
         duration(swing::SHORTEST),
@@ -363,7 +366,8 @@ fn limits(setting: &Setting) -> String {
 fn percent(share: f64) -> String {
     match share {
         s if !s.is_finite() => "∞".into(),
-        s if s >= 10.0 => format!("{:.0e} %", s * 100.0),
+        s if s >= 1e6 => format!("{:.0e} %", s * 100.0),
+        s if s >= 10.0 => format!("{} %", crate::totals::grouped((s * 100.0) as usize)),
         s if s >= 0.1 => format!("{:.0} %", s * 100.0),
         s => format!("{:.3} %", s * 100.0),
     }

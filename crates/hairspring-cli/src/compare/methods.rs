@@ -61,8 +61,8 @@ pub fn lesson(integrator: Integrator) -> Lesson {
             source: "Proposal §3.2; Müller et al. 2008, Real Time Physics, §3.3",
             text: "The velocity is not stored but read off the last two positions, so that force acts on position at once. That small change keeps \
                    circles closed: energy wavers about its value and does not grow, as long as h ω &lt; 2. Beyond that it blows up like explicit \
-                   Euler. With ω from the shortest segment the bound is h &lt; L √(ρ/E), the time that sound takes through \
-                   one segment: microseconds, a thousand steps where a picture needs one.",
+                   Euler. With ω from the shortest segment the bound is about h &lt; L √(ρ/E), the time that sound takes \
+                   through it: microseconds, thousands of steps where a picture needs one.",
         },
         Integrator::BackwardEuler => Lesson {
             title: "Backward Euler (the default)",
@@ -94,7 +94,7 @@ pub fn lesson(integrator: Integrator) -> Lesson {
             title: "Follow the leader",
             equations: "p  = x + h v + h² g\nfrom root to tip:  x⁺ᵢ₊₁ = x⁺ᵢ + L û(x⁺ᵢ → pᵢ₊₁)\nv⁺ = (x⁺ − x) / h",
             source: "Proposal §2.1.2; Müller, Kim, Chentanez 2012, Fast Simulation of Inextensible Hair and Fur, §4.1",
-            text: "Every point is pulled to its distance from the one before, root to tip, once: no length is ever wrong and no step is too long. But \
+            text: "Every point is pulled to its distance from the one before, root to tip, once: no length is wrong until contact moves a point, and no step is too long. But \
                    a point never pulls back at its leader. It moves as if the leader were infinitely heavier, which makes a whip of a \
                    chain: the points near the tip get energy from nowhere. Nothing bends it either, so curls hang out straight.",
         },

@@ -21,8 +21,8 @@ const POINTS: usize = 400;
 /// The page.
 pub fn page(setting: &Setting, trials: &[Trial]) -> String {
     let mut body = format!(
-        "<p>Seven ways to step the same springs, from the one that blows up to the one that Hairspring uses, on the same hair with the same \
-         steps. What is hair made of here, how does it move in time, and what does each way cost?</p>\n\
+        "<p>Ways to step the same springs in time, on the same hair with the same steps: which of them hold together, what do they cost, and \
+         what do they make of a swing?</p>\n\
          <p>The scene is <b>{}</b>: {} of its {} strands are simulated, {} points, {} substeps in 1/60 s (h = {}), for {} s. \
          <small>hairspring {}, {} threads, {}.</small></p>\n",
         escape(&setting.name),
@@ -45,19 +45,22 @@ pub fn page(setting: &Setting, trials: &[Trial]) -> String {
     body += methods::QUESTION;
     trials.iter().for_each(|t| body += &section(t));
     body += methods::CONTACT;
-    document("Seven ways to step a strand of hair", &body)
+    document("Ways to step a strand of hair", &body)
 }
 
 fn table(trials: &[Trial]) -> String {
-    let heads: String = HEADS.iter().map(|h| format!("<th>{h}</th>")).collect();
+    // Numbers stand right.
+    let class = |column: usize| if column < 2 { "" } else { " class=\"number\"" };
+    let head = |(k, h): (usize, &&str)| format!("<th{}>{h}</th>", class(k));
+    let heads: String = HEADS.iter().enumerate().map(head).collect();
     let rows: String = trials
         .iter()
         .map(|t| {
             let [name, cells @ ..] = row(t);
-            let cells: String =
-                cells.iter().map(|c| format!("<td class=\"number\">{}</td>", escape(c))).collect();
-            let class = if t.stable() { "" } else { " class=\"fail\"" };
-            format!("<tr{class}><td><a href=\"#{name}\">{name}</a></td>{cells}</tr>\n")
+            let cell = |(k, c): (usize, &String)| format!("<td{}>{}</td>", class(k + 1), escape(c));
+            let cells: String = cells.iter().enumerate().map(cell).collect();
+            let fails = if t.stable() { "" } else { " class=\"fail\"" };
+            format!("<tr{fails}><td><a href=\"#{name}\">{name}</a></td>{cells}</tr>\n")
         })
         .collect();
     format!("<div class=\"wide\"><table><tr>{heads}</tr>\n{rows}</table></div>\n")
@@ -98,6 +101,7 @@ fn pictures(trials: &[Trial]) -> String {
 
 /// Energy of the swing over time.
 fn energy(setting: &Setting, trials: &[Trial]) -> String {
+    let h = 1.0 / (60.0 * f64::from(setting.substeps));
     let curves: Vec<(&str, Vec<[f64; 2]>)> = trials
         .iter()
         .map(|t| {
@@ -106,13 +110,19 @@ fn energy(setting: &Setting, trials: &[Trial]) -> String {
             (t.integrator.name(), thinned(shown))
         })
         .collect();
-    let axes = [("time [s]", false), ("energy left [its start]", false)];
+    let axes = [("time [s]", false), ("energy [what it starts with]", false)];
+    let blown = |t: &Trial| {
+        let end = t.swung.energy.last().filter(|_| t.swung.drift.is_none())?;
+        Some(format!("{} within {}", t.integrator.name(), super::duration(end[0] + h)))
+    };
+    let blown: Vec<String> = trials.iter().filter_map(blown).collect();
+    let blown = if blown.is_empty() { String::new() } else { format!(" Blew up: {}.", blown.join(", ")) };
     format!(
         "<h2>Energy</h2>\n<p>{} strands, let go where nothing drives, touches or damps them: what an exact method would keep is the sum of motion, \
          height, bending, twist and stretch. 1 is its start, 0 all that falling can give. A method that loses it makes hair that moves as in \
-         honey; one that gains it makes hair that never comes to rest. Curves end where a swing blew up or left the plot.</p>\n{}\n",
+         honey; one that gains it makes hair that never comes to rest. Curves end where a swing blew up or left the plot.{blown}</p>\n{}\n",
         setting.swinging.strand_count(),
-        plot(axes, &curves, &format!("h = {}", super::duration(1.0 / (60.0 * f64::from(setting.substeps))))),
+        plot(axes, &curves, &format!("h = {}", super::duration(h))),
     )
 }
 

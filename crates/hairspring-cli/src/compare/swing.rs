@@ -30,6 +30,8 @@ pub struct Swung {
     pub energy: Vec<[f64; 2]>,
     /// Change of the energy from start to end over what the swing could turn into motion by falling [1]; `None`: it blew up.
     pub drift: Option<f64>,
+    /// The worst |ℓ/L − 1| of any step [1]; `None`: it blew up.
+    pub stretch_max: Option<f64>,
 }
 
 /// Lets the sample swing for so many seconds, in steps of 1/60 s over `substeps`.
@@ -38,17 +40,19 @@ pub fn swing(sample: &Sample, integrator: Integrator, substeps: u32, seconds: f6
     let mut swing = Swing::new(sample, integrator, h);
     let (start, scale) = (swing.energy().total(), swing.energy_to_fall());
     let mut energy = vec![[0.0, 1.0]];
+    let mut stretch_max = 0.0f64;
     for step in 1..=(seconds / h).round() as u64 {
         let report = swing.step();
         let share = (swing.energy().total() - start) / scale;
-        if report.reset_strands > 0 || !share.is_finite() || swing.measure().stretch_max > BOUND {
-            return Ok(Swung { energy, drift: None });
+        stretch_max = stretch_max.max(swing.measure().stretch_max);
+        if report.reset_strands > 0 || !share.is_finite() || stretch_max > BOUND {
+            return Ok(Swung { energy, drift: None, stretch_max: None });
         }
         energy.push([step as f64 * h, 1.0 + share]);
         may_go_on()?;
     }
     let drift = energy.last().map(|e| e[1] - 1.0);
-    Ok(Swung { energy, drift })
+    Ok(Swung { energy, drift, stretch_max: Some(stretch_max) })
 }
 
 /// The longest step that is stable.

@@ -12,9 +12,9 @@ svg { width: 100%; height: auto } svg text { font: 12px system-ui, sans-serif; f
 .grid { stroke: #eee } .axis { stroke: #999; fill: none } .curve { fill: none; stroke-width: 1.6 }
 pre { background: #f6f6f6; padding: 0.6rem 0.8rem; overflow-x: auto; font: 14px/1.5 ui-monospace, monospace }
 .wide { width: min(94vw, 84rem); margin-left: 50%; transform: translateX(-50%); overflow-x: auto }
-img { width: 100%; min-width: 8rem; display: block } td.picture, th.picture { padding: 0.15rem } td.number { text-align: right; white-space: nowrap }
+img { width: 100%; min-width: 8rem; display: block } td.picture, th.picture { padding: 0.15rem } td.number, th.number { text-align: right; white-space: nowrap }
 svg circle { stroke: #fff; stroke-width: 1 }
-.legend { font-size: 0.85rem; margin: 0 } .legend span { margin-right: 1.2rem } .key { width: 28px; height: 10px; margin-right: 0.4rem }
+.legend { font-size: 0.85rem; margin: 0 } .legend span { margin-right: 1.2rem; display: inline-block } .key { width: 28px; height: 10px; margin-right: 0.4rem }
 small { color: #666 } nav a { margin-right: 0.8rem; white-space: nowrap }
 ";
 
