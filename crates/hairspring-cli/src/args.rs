@@ -1,6 +1,6 @@
 //! The command line as a whole; each command's options are beside the command.
 
-use crate::{bake, bench, convert, demo, info, render};
+use crate::{bake, bench, compare, convert, demo, info, render, validate};
 use clap::{Parser, Subcommand};
 
 const AFTER_HELP: &str = "\
@@ -14,11 +14,14 @@ Examples:
   hairspring render shot.toml -o f.####.png --frames 20-80 --resume
   hairspring bake shot.toml -o hair.####.hair            a scene as one groom file a frame
   hairspring bench --strands 100000 --json               how fast this machine is
+  hairspring compare --report compare.html               what each integrator does to the same hair
+  hairspring validate --report validation.html           whether its hair is physics
 
 Results go to standard output, progress and notes to standard error.
 
 Exit codes:
   0    done
+  1    a validation is out of its tolerance
   2    the command line asks for something that there is not
   3    a file was not found or could not be read
   4    a file's content is wrong
@@ -62,6 +65,8 @@ pub enum Command {
     Convert(convert::Options),
     Info(info::Options),
     Bench(bench::Options),
+    Compare(compare::Options),
+    Validate(validate::Options),
 }
 
 #[cfg(test)]

@@ -43,20 +43,24 @@ impl Console {
         }
     }
 
-    /// Shows the progress of `total` steps of `what`: a bar on a terminal, a line every tenth elsewhere.
+    /// Shows the progress of `total` frames of `what`: a bar on a terminal, a line every tenth elsewhere.
     pub fn progress(self, what: &'static str, total: u32) -> Progress {
+        self.progress_in(what, total, "frames")
+    }
+
+    /// The same in units other than frames.
+    pub fn progress_in(self, what: &'static str, total: u32, unit: &'static str) -> Progress {
         let bar = (!self.quiet && stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(Some(total.into()), ProgressDrawTarget::stderr());
-            // The template is a constant: it parses, or the plain bar is shown.
-            if let Ok(style) = ProgressStyle::with_template(
-                "{msg} [{bar:32}] {pos}/{len} frames, {elapsed} gone, {eta} to go",
-            ) {
+            // The template has no part of the user's: it parses, or the plain bar is shown.
+            let template = format!("{{msg}} [{{bar:32}}] {{pos}}/{{len}} {unit}, {{elapsed}} gone, {{eta}} to go");
+            if let Ok(style) = ProgressStyle::with_template(&template) {
                 bar.set_style(style.progress_chars("=> "));
             }
             bar.set_message(what);
             bar
         });
-        Progress { bar, console: self, what, total, done: 0 }
+        Progress { bar, console: self, what, unit, total, done: 0 }
     }
 }
 
@@ -65,6 +69,7 @@ pub struct Progress {
     bar: Option<ProgressBar>,
     console: Console,
     what: &'static str,
+    unit: &'static str,
     total: u32,
     done: u32,
 }
@@ -78,7 +83,7 @@ impl Progress {
             None => {
                 let tenth = |n: u32| u64::from(n) * 10 / u64::from(self.total.max(1));
                 if !self.console.verbose && tenth(self.done) > tenth(self.done - 1) {
-                    self.console.doing(format_args!("{} {}/{} frames", self.what, self.done, self.total));
+                    self.console.doing(format_args!("{} {}/{} {}", self.what, self.done, self.total, self.unit));
                 }
             }
         }

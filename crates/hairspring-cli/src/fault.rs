@@ -21,6 +21,8 @@ pub enum Fault {
     Unwritable(String),
     /// The scene cannot be simulated.
     Scene(String),
+    /// The simulation does not agree with a closed form.
+    Invalid(String),
     /// The user stopped it.
     Interrupted(String),
 }
@@ -29,6 +31,7 @@ impl Fault {
     /// The exit code, as `--help` documents it.
     pub fn code(&self) -> u8 {
         match self {
+            Self::Invalid(_) => 1,
             Self::Usage(_) => 2,
             Self::Unreadable(_) => 3,
             Self::Content(_) => 4,
@@ -77,6 +80,7 @@ impl fmt::Display for Fault {
         | Self::Content(s)
         | Self::Unwritable(s)
         | Self::Scene(s)
+        | Self::Invalid(s)
         | Self::Interrupted(s)) = self;
         f.write_str(s)
     }

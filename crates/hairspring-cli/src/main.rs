@@ -3,6 +3,7 @@
 mod args;
 mod bake;
 mod bench;
+mod compare;
 mod console;
 mod convert;
 mod demo;
@@ -16,7 +17,9 @@ mod output;
 mod picture;
 mod play;
 mod render;
+mod report;
 mod totals;
+mod validate;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -54,5 +57,7 @@ fn run(cli: Cli) -> Result<(), Fault> {
         Some(Command::Convert(options)) => convert::run(&options, console),
         Some(Command::Info(options)) => info::run(&options, console),
         Some(Command::Bench(options)) => bench::run(&options, console),
+        Some(Command::Compare(options)) => compare::run(&options, console),
+        Some(Command::Validate(options)) => validate::run(&options, console),
     }
 }

@@ -2,7 +2,10 @@
 
 use crate::fault::Fault;
 use hairspring_view::sequence_path;
-use std::path::{Path, PathBuf};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 /// The path of frame `number`: `#` signs become the number; a name without any is the one file.
 pub fn frame_path(pattern: &Path, number: u32) -> PathBuf {
@@ -34,4 +37,19 @@ pub fn try_folder(path: &Path) -> Result<(), Fault> {
     tempfile::tempfile_in(folder).map(drop).map_err(|e| {
         Fault::Unwritable(format!("the folder {} does not take files: {e}; choose another", folder.display()))
     })
+}
+
+/// Writes a whole file: beside its place first, then moved there, so that nothing half-written is ever left.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let write = || {
+        let mut builder = tempfile::Builder::new();
+        // Readable as the user's mask says, not private as temporary files are.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let mut file = builder.prefix(".hairspring-").tempfile_in(folder)?;
+        file.write_all(bytes)?;
+        file.persist(path).map_err(|e| e.error)
+    };
+    write().map(drop).map_err(|e| Fault::Unwritable(format!("{} could not be written: {e}", path.display())))
 }

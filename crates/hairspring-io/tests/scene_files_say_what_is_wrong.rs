@@ -66,6 +66,8 @@ fn a_scene_is_what_its_file_describes() {
         friction = 0.5
         [[collider]]
         shape.sphere = { center = [0, 0, 0], radius = 0.5 }
+        [[collider]]
+        shape.plane = { point = [0, -1, 0], normal = [0, 2, 0] }
         [wind]
         velocity = [1, 0, 0]
     "#;
@@ -87,6 +89,8 @@ fn a_scene_is_what_its_file_describes() {
     assert_eq!((groom.materials[0].bend, groom.materials[0].friction), (curly.bend, 0.5));
     assert_eq!(groom.materials[1], hairspring::material::preset("coily").unwrap());
     assert!(matches!(scene.colliders[0].shape, Shape::Sphere { radius: 0.5, .. }));
+    let floor = Shape::Plane { point: Vec3::NEG_Y, normal: Vec3::Y * 2.0 };
+    assert_eq!(scene.colliders[1].shape, floor);
     assert_eq!(scene.solver, Default::default());
 }
 
@@ -165,6 +169,10 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
                 "{GROOM}[[collider]]\njoint = \"x\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"
             ),
             &["line 4", "`x`"],
+        ),
+        (
+            format!("{GROOM}[[collider]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 0, 0] }}\n"),
+            &["line 4", "normal"],
         ),
         (format!("{GROOM}bones = \"x.tfxbone\"\n"), &["x.tfxbone was not found"]),
         ("name = \"empty\"\n".into(), &["scene.toml", "[[groom]]"]),

@@ -12,6 +12,7 @@ pub mod scene;
 pub mod simulation;
 pub mod stage;
 pub(crate) mod strand;
+pub mod validate;
 
 // The README's example is a test.
 #[cfg(doctest)]

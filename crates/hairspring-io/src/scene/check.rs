@@ -113,7 +113,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
                 (
                     grow.get_ref().inside.as_ref().is_none_or(sound),
                     "inside",
-                    "finite, with a radius above 0 [m]",
+                    "finite, with a radius above 0 [m] or a normal that is not 0",
                 ),
             ];
             first_failure(text, line_at(text, grow.span().start), &grown)?;
@@ -127,7 +127,11 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         first_failure(
             text,
             section("[[collider]]"),
-            &[(sound(&collider.shape), "shape", "finite, with a radius above 0 [m]")],
+            &[(
+                sound(&collider.shape),
+                "shape",
+                "finite, with a radius above 0 [m] or a normal that is not 0",
+            )],
         )?;
     }
     let (wind, solver) = (&scene.wind, &scene.solver);
@@ -157,11 +161,12 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Whether a shape is finite and has an inside.
+/// Whether a shape is finite (its own extent, not the half of space that a plane bounds) and has an inside.
 fn sound(shape: &Shape) -> bool {
     match *shape {
         Shape::Sphere { center, radius } => finite(center) && above_0(Some(radius)),
         Shape::Capsule { a, b, radius } => finite(a) && finite(b) && above_0(Some(radius)),
+        Shape::Plane { point, normal } => finite(point) && normal.try_normalize().is_some(),
     }
 }
 

@@ -71,5 +71,6 @@ fn is_inside(shape: &Shape, p: Vec3) -> bool {
             let t = ((p - a).dot(axis) / axis.length_squared().max(1e-12)).clamp(0.0, 1.0);
             p.distance(a + axis * t) < radius
         }
+        Shape::Plane { point, normal } => (p - point).dot(normal) < 0.0,
     }
 }

@@ -5,7 +5,7 @@ mod png;
 mod yuv;
 
 pub use clip::ClipWriter;
-pub use png::{read_png, sequence_path, write_png};
+pub use png::{encode_png, read_png, sequence_path, write_png};
 
 use std::path::{Path, PathBuf};
 

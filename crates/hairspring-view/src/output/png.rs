@@ -13,26 +13,32 @@ use std::{
 /// If the folder is missing or not writable, or the disk is full.
 pub fn write_png(path: &Path, image: &Image) -> Result<(), OutputError> {
     let mut file = beside(path)?;
-    let write = |file: &mut tempfile::NamedTempFile| -> Result<(), png::EncodingError> {
-        let mut out = BufWriter::new(file.as_file_mut());
-        let mut encoder = png::Encoder::new(&mut out, image.width, image.height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        encoder.set_compression(png::Compression::Fast);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&image.rgb)?;
-        writer.finish()?;
-        Ok(out.flush()?)
-    };
-    write(&mut file).map_err(|e| {
-        let source = match e {
-            png::EncodingError::IoError(e) => e,
-            other => std::io::Error::other(other),
-        };
-        OutputError::File { path: path.into(), source }
-    })?;
+    let mut out = BufWriter::new(file.as_file_mut());
+    encode_png(&mut out, image)
+        .and_then(|()| out.flush())
+        .map_err(|source| OutputError::File { path: path.into(), source })?;
+    drop(out);
     keep(file, path)
+}
+
+/// Writes an 8-bit sRGB PNG to anything that takes bytes, such as a `Vec`.
+///
+/// # Errors
+/// What `out` ends with; or a picture of no width or height.
+pub fn encode_png(out: impl Write, image: &Image) -> std::io::Result<()> {
+    let mut encoder = png::Encoder::new(out, image.width, image.height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_compression(png::Compression::Fast);
+    let encoded = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(&image.rgb)?;
+        writer.finish()
+    });
+    encoded.map_err(|e| match e {
+        png::EncodingError::IoError(e) => e,
+        other => std::io::Error::other(other),
+    })
 }
 
 /// Reads an 8-bit RGB PNG.

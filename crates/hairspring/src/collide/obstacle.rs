@@ -77,6 +77,13 @@ pub enum Obstacle {
         /// Radius [m].
         radius: f32,
     },
+    /// All of space on the side of a plane that its normal points away from: a floor, a wall, a slope.
+    Plane {
+        /// A point of the plane [m].
+        point: Vec3,
+        /// Unit normal, out of the solid.
+        normal: Vec3,
+    },
     /// The inside of a closed mesh.
     Field(Arc<Grid>),
 }
@@ -118,6 +125,7 @@ impl Obstacle {
                 let t = ((p - *a).dot(axis) / axis.length_squared().max(1e-12)).clamp(0.0, 1.0);
                 ball(p - (*a + axis * t), *radius)
             }
+            Obstacle::Plane { point, normal } => ((p - *point).dot(*normal), *normal),
             Obstacle::Field(grid) => grid.distance_and_normal(p),
         }
     }
@@ -132,6 +140,10 @@ impl Obstacle {
                 let t = from.dot(V3::splat(simd, axis)) * (1.0 / axis.length_squared().max(1e-12));
                 let t = t.max(0.0).min(1.0);
                 ball_lanes(from - V3::splat(simd, axis) * t, *radius)
+            }
+            Obstacle::Plane { point, normal } => {
+                let normal = V3::splat(simd, *normal);
+                ((p - V3::splat(simd, *point)).dot(normal), normal)
             }
             Obstacle::Field(grid) => grid.distance_lanes(simd, p),
         }

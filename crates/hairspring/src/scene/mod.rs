@@ -5,6 +5,7 @@ pub mod builtin;
 mod camera;
 mod look;
 mod settings;
+pub mod swing;
 
 pub use camera::Camera;
 pub use look::{HairColor, HairLook};

@@ -167,4 +167,11 @@ pub enum Shape {
         /// Radius [m], above 0.
         radius: f32,
     },
+    /// All of space on the side of a plane that `normal` points away from: a floor, a wall, a slope.
+    Plane {
+        /// A point of the plane [m].
+        point: Vec3,
+        /// Direction out of the solid, of any length above 0.
+        normal: Vec3,
+    },
 }

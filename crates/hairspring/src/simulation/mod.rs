@@ -1,12 +1,14 @@
 //! Strands in motion: the state of all simulated strands, and one step of it.
 
 mod build;
+mod energy;
 mod hold;
 mod measure;
 mod place;
 mod reset;
 mod step;
 
+pub use energy::Energy;
 pub use hold::Hold;
 pub use measure::Measure;
 pub use step::{Air, Drive, MovingObstacle, StepReport};

@@ -109,6 +109,9 @@ impl StagedBody {
             let shape = match collider.shape {
                 Shape::Sphere { center, radius } => Obstacle::Sphere { center, radius },
                 Shape::Capsule { a, b, radius } => Obstacle::Capsule { a, b, radius },
+                Shape::Plane { point, normal } => {
+                    Obstacle::Plane { point, normal: normal.normalize_or(Vec3::Y) }
+                }
             };
             staged.add(shape, joint);
         }

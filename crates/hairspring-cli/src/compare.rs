@@ -1,0 +1,389 @@
+//! `hairspring compare`: every integrator on the same hair.
+
+mod methods;
+mod play;
+mod report;
+mod swing;
+
+use crate::{
+    console::{Console, say},
+    fault::Fault,
+    frames,
+    input::{Input, Units},
+    interrupt, output,
+    report::number,
+};
+use clap::Parser;
+use hairspring::{
+    scene::{
+        Guides, Integrator, Scene,
+        builtin::{self, BuiltinOptions, Style},
+        swing::{Sample, TILT},
+    },
+    stage::Stage,
+};
+use play::Played;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use swing::{LongestStep, Swung};
+
+/// Compares the integrators: the same hair, the same substeps, one method after the other.
+///
+/// Three experiments. The scene is played by each: does it stay stable, how far do segments stretch, what does a step cost? Strands of it
+/// are let go without air, damping or body: how much of its energy does a free swing keep? And a few of them swing with steps of
+/// any length: which is the longest that is stable? The report explains each method with its equations, and shows the scene
+/// at the same moments side by side.
+///
+/// Without SCENE, a head of straight hair that nods, turns and shakes.
+#[derive(Parser)]
+#[command(after_help = after_help())]
+pub struct Options {
+    /// A scene (.toml), or a groom (.hair, .tfx, .data) that hangs still under gravity [default: the built-in head]
+    #[arg(value_name = "SCENE|GROOM")]
+    scene: Option<PathBuf>,
+
+    #[command(flatten)]
+    units: Units,
+
+    /// Strands to simulate in each groom, the others follow: a number, `all`, or `file` for those that it names
+    /// [default: as the scene says; 300 of the built-in head]
+    #[arg(long, value_name = "N|all|file", value_parser = frames::guides)]
+    guides: Option<Guides>,
+
+    /// Substeps in 1/60 s of every method [default: as the scene says, 4 where it does not]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    substeps: Option<u32>,
+
+    /// How much of the scene is played and how long the free swing lasts [s]
+    #[arg(long, value_name = "SECONDS", default_value = "3", value_parser = frames::positive)]
+    seconds: f32,
+
+    /// Which to compare, such as verlet,backward-euler [default: all]
+    #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
+    integrators: Vec<String>,
+
+    /// Write a page that explains and shows the comparison
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+fn after_help() -> String {
+    let names = Integrator::ALL.map(Integrator::name).join(", ");
+    let (shortest, longest) = (duration(swing::SHORTEST), duration(swing::LONGEST));
+    format!(
+        "\
+Integrators: {names}
+
+The figures of each, as JSON keys:
+  stable                    no strand turned non-finite and no segment was ever twice its length, in the scene
+  reset_strands             strands that turned non-finite and were put back to rest, frame after frame
+  stretch_mean              mean of |l/L - 1| over segments and frames
+  stretch_max               the worst segment of any frame; null where it was beyond numbers
+  swing_stretch_max         the worst segment of the free swing, which meets nothing; null where it blew up
+  energy_drift              what the free swing has gained or lost, over all that it can turn into motion by falling;
+                            null where it blew up
+  ns_per_point_substep      wall time x threads / (points x substeps) of the scene; nine of ten frames took longer
+  longest_stable_step_s     {longest} is the longest tried; null: not even {shortest} is stable
+  points_in_real_time       that one thread keeps up with at that step; null where there is none
+
+Examples:
+  hairspring compare --report compare.html
+  hairspring compare shot.toml --guides 200 --integrators verlet,backward-euler,bdf2
+  hairspring compare --substeps 16 --json"
+    )
+}
+
+/// Largest |ℓ/L − 1| of a method that counts as stable [1]: beyond, a segment is twice as long as it should be, and the method has lost it.
+const BOUND: f64 = 1.0;
+
+/// Strands in the free swing.
+const SWINGING: usize = 64;
+
+/// Strands that look for the longest stable step, which takes a microsecond's method hundreds of thousands of steps: one tile.
+const STEPPING: usize = 8;
+
+/// Strands of the built-in head, and how many of them are simulated.
+const HEAD: (u32, u32) = (4_000, 300);
+
+/// Longest comparison [s].
+const LONGEST: f32 = 600.0;
+
+/// What was found of one integrator.
+struct Trial {
+    integrator: Integrator,
+    played: Played,
+    swung: Swung,
+    longest: LongestStep,
+}
+
+impl Trial {
+    /// Whether it held the scene together.
+    fn stable(&self) -> bool {
+        // A stretch that is no number is not within the bound.
+        self.played.reset_strands == 0 && self.played.stretch_max <= BOUND
+    }
+
+    /// Points that one thread keeps up with at the longest stable step.
+    fn points_in_real_time(&self) -> Option<f64> {
+        self.longest.seconds().map(|h| h / (self.played.ns * 1e-9))
+    }
+}
+
+/// What was compared.
+struct Setting {
+    name: String,
+    simulated_strands: usize,
+    simulated_points: usize,
+    strands: usize,
+    substeps: u32,
+    seconds: f64,
+    simd: String,
+    swinging: Sample,
+    stepping: Sample,
+}
+
+/// Runs the command.
+pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
+    let integrators = integrators(&options.integrators)?;
+    if options.seconds > LONGEST {
+        return Err(Fault::Usage(format!("--seconds is at most {LONGEST}")));
+    }
+    if let Some(path) = &options.report {
+        output::try_folder(path)?;
+    }
+    let scene = scene(options, console)?;
+    if scene.clip.is_none() && scene.wind.velocity.length() == 0.0 {
+        console.note("nothing moves the hair of this scene: only the swing tells the methods apart");
+    }
+    interrupt::listen();
+    let frames = ((options.seconds * 60.0).round() as u32).max(play::MOMENTS);
+    let seconds = f64::from(frames) / 60.0;
+    let swinging = Sample::new(&scene, SWINGING).without_losses();
+    let stepping = Sample::new(&scene, STEPPING);
+
+    let draw = options.report.is_some();
+    let mut setting = None;
+    let mut played = Vec::with_capacity(integrators.len());
+    let mut progress = console.progress("playing the scene by each", frames * integrators.len() as u32);
+    for &integrator in &integrators {
+        let mut scene = scene.clone();
+        scene.solver.integrator = integrator;
+        let stage = Stage::new(scene)?;
+        setting.get_or_insert_with(|| Setting {
+            name: stage.scene().name.clone(),
+            simulated_strands: stage.simulated_strands().0,
+            simulated_points: stage.simulated_points().0,
+            strands: stage.simulated_strands().1,
+            substeps: stage.scene().solver.substeps,
+            seconds,
+            simd: stage.instruction_set(),
+            swinging: swinging.clone(),
+            stepping: stepping.clone(),
+        });
+        played.push(play::play(stage, frames, draw, &mut progress)?);
+    }
+    drop(progress);
+    let Some(setting) = setting else { return Err(Fault::Usage("no integrator is named".into())) };
+
+    let mut trials = Vec::with_capacity(integrators.len());
+    let mut progress =
+        console.progress_in("swinging, and looking for the longest step", integrators.len() as u32, "methods");
+    for (&integrator, played) in integrators.iter().zip(played) {
+        let swung = swing::swing(&swinging, integrator, setting.substeps, seconds)?;
+        let longest = swing::longest_step(&stepping, integrator)?;
+        progress.step(|| format!("{}: longest stable step {}", integrator.name(), longest.told()));
+        trials.push(Trial { integrator, played, swung, longest });
+    }
+    drop(progress);
+
+    if let Some(path) = &options.report {
+        output::write_whole(path, report::page(&setting, &trials).as_bytes())?;
+    }
+    if options.json {
+        say(as_json(&setting, &trials, options));
+    } else {
+        print(&setting, &trials);
+        if let Some(path) = &options.report {
+            say(format_args!("wrote    {}", path.display()));
+        }
+    }
+    Ok(())
+}
+
+/// The integrators of these names, each once; all of them for none.
+fn integrators(names: &[String]) -> Result<Vec<Integrator>, Fault> {
+    if names.is_empty() {
+        return Ok(Integrator::ALL.to_vec());
+    }
+    let mut chosen = Vec::new();
+    for name in names.iter().map(|n| n.trim()) {
+        let found = Integrator::ALL.into_iter().find(|i| i.name() == name).ok_or_else(|| {
+            let there = Integrator::ALL.map(Integrator::name).join(", ");
+            Fault::Usage(format!("there is no integrator '{name}' here; there is: {there}"))
+        })?;
+        if !chosen.contains(&found) {
+            chosen.push(found);
+        }
+    }
+    Ok(chosen)
+}
+
+fn scene(options: &Options, console: Console) -> Result<Scene, Fault> {
+    let Options { units, guides, substeps, .. } = *options;
+    if let Some(path) = &options.scene {
+        return Input { path: path.clone(), units, guides, substeps }.scene(console);
+    }
+    if units.scale.is_some() || units.up.is_some() {
+        return Err(Fault::Usage("--scale and --up are for a groom: name one".into()));
+    }
+    let mut scene = builtin::scene(&BuiltinOptions {
+        strands: HEAD.0,
+        guides: guides.unwrap_or(Guides::Count(HEAD.1)),
+        ..BuiltinOptions::new(Style::Straight)
+    });
+    // Brows and lashes are too short and stiff to tell anything, and the shortest segment decides the longest step.
+    scene.grooms.truncate(1);
+    scene.solver.substeps = substeps.unwrap_or(scene.solver.substeps);
+    Ok(scene)
+}
+
+fn as_json(setting: &Setting, trials: &[Trial], options: &Options) -> Value {
+    let one = |t: &Trial| {
+        json!({
+            "integrator": t.integrator.name(),
+            "stable": t.stable(),
+            "reset_strands": t.played.reset_strands,
+            "stretch_mean": t.played.stretch_mean,
+            "stretch_max": t.played.stretch_max,
+            "swing_stretch_max": t.swung.stretch_max,
+            "energy_drift": t.swung.drift,
+            "ns_per_point_substep": t.played.ns,
+            "longest_stable_step_s": t.longest.seconds(),
+            "points_in_real_time": t.points_in_real_time(),
+        })
+    };
+    json!({
+        "scene": setting.name,
+        "simulated_strands": setting.simulated_strands,
+        "simulated_points": setting.simulated_points,
+        "substeps": setting.substeps,
+        "seconds": setting.seconds,
+        "threads": rayon::current_num_threads(),
+        "simd": setting.simd,
+        "stable_stretch_bound": BOUND,
+        "swinging_strands": setting.swinging.strand_count(),
+        "stepping_strands": setting.stepping.strand_count(),
+        "report": options.report,
+        "integrators": trials.iter().map(one).collect::<Vec<_>>(),
+    })
+}
+
+/// Heads of the table's columns.
+const HEADS: [&str; 8] = [
+    "integrator",
+    "stable",
+    "stretch, mean",
+    "worst",
+    "energy drift",
+    "ns/point/substep",
+    "longest step",
+    "points in real time",
+];
+
+/// A row of the table, in words.
+fn row(t: &Trial) -> [String; 8] {
+    let stable = match (t.stable(), t.played.reset_strands) {
+        (true, _) => "yes".into(),
+        (false, 0) => "no".into(),
+        (false, n) => format!("no, {} resets", crate::totals::grouped(n)),
+    };
+    [
+        t.integrator.name().into(),
+        stable,
+        percent(t.played.stretch_mean),
+        percent(t.played.stretch_max),
+        t.swung.drift.map_or("blew up".into(), |d| format!("{:+.0} %", d * 100.0)),
+        format!("{:.1}", t.played.ns),
+        t.longest.told(),
+        t.points_in_real_time().map_or("none".into(), |n| crate::totals::grouped(two_digits(n) as usize)),
+    ]
+}
+
+fn print(setting: &Setting, trials: &[Trial]) {
+    let grouped = crate::totals::grouped;
+    say(format_args!(
+        "scene    {}: {} of {} strands simulated, {} points",
+        setting.name,
+        grouped(setting.simulated_strands),
+        grouped(setting.strands),
+        grouped(setting.simulated_points)
+    ));
+    say(format_args!(
+        "each     {} s of it, {} substeps in 1/60 s, {} threads, {}",
+        number(setting.seconds),
+        setting.substeps,
+        rayon::current_num_threads(),
+        setting.simd
+    ));
+    let rows: Vec<[String; 8]> =
+        std::iter::once(HEADS.map(String::from)).chain(trials.iter().map(row)).collect();
+    let widths: [usize; 8] =
+        std::array::from_fn(|c| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0));
+    for row in &rows {
+        let cells = row.iter().zip(widths).enumerate().map(|(c, (cell, width))| match c {
+            // Numbers stand right.
+            2.. => format!("{cell:>width$}"),
+            _ => format!("{cell:<width$}"),
+        });
+        say(cells.collect::<Vec<_>>().join("  "));
+    }
+    say(format_args!("{}", limits(setting)));
+}
+
+/// What the table's words mean.
+fn limits(setting: &Setting) -> String {
+    format!(
+        "Stable: no strand turned non-finite and no segment was ever twice its length. Energy drift: of a free swing of {} strands in \
+         {} s, gravity turned by {TILT}°, over the energy that it can turn into motion by falling. Longest step: at which {} strands, \
+         the shortest segment {} mm, which sound crosses in {}, keep within that bound for {} s and {} steps; between {} and {}.",
+        setting.swinging.strand_count(),
+        number(setting.seconds),
+        setting.stepping.strand_count(),
+        number(two_digits(f64::from(setting.stepping.shortest_segment()) * 1e3)),
+        duration(setting.stepping.sound_time()),
+        number(swing::WATCHED),
+        swing::STEPS,
+        duration(swing::SHORTEST),
+        duration(swing::LONGEST),
+    )
+}
+
+/// A share in per cent, or that there is no such number.
+fn percent(share: f64) -> String {
+    match share {
+        s if !s.is_finite() => "∞".into(),
+        s if s >= 1e6 => format!("{:.0e} %", s * 100.0),
+        s if s >= 10.0 => format!("{} %", crate::totals::grouped((s * 100.0) as usize)),
+        s if s >= 0.1 => format!("{:.0} %", s * 100.0),
+        s => format!("{:.3} %", s * 100.0),
+    }
+}
+
+/// A time in the unit that suits it.
+fn duration(seconds: f64) -> String {
+    let (value, unit) = match seconds {
+        s if s < 1e-3 => (s * 1e6, "µs"),
+        s => (s * 1e3, "ms"),
+    };
+    format!("{} {unit}", number(two_digits(value)))
+}
+
+/// Rounded to two significant digits: as exactly as it is known.
+fn two_digits(x: f64) -> f64 {
+    let power = 10f64.powf(x.log10().floor() - 1.0);
+    if x > 0.0 { (x / power).round() * power } else { x }
+}

@@ -1,0 +1,92 @@
+//! The scene by one integrator: figures of every frame, and pictures at the same moments.
+
+use super::BOUND;
+use crate::{
+    console::Progress,
+    fault::Fault,
+    interrupt,
+    picture::{Studio, View},
+};
+use hairspring::stage::Stage;
+use hairspring_view::encode_png;
+
+/// Pictures of each method, at equal distances, the last at the end.
+pub const MOMENTS: u32 = 4;
+
+/// Width and height of a picture [pixels].
+const SIZE: (u32, u32) = (320, 320);
+
+/// What the scene came to.
+pub struct Played {
+    /// Strands that turned non-finite and were put back, counted in every frame.
+    pub reset_strands: usize,
+    /// Mean over segments and frames of |ℓ/L − 1| [1]; infinite where it was in a frame.
+    pub stretch_mean: f64,
+    /// The worst of any frame [1].
+    pub stretch_max: f64,
+    /// Time [s] and worst stretch [1] of each frame.
+    pub stretch: Vec<[f64; 2]>,
+    /// Wall time × threads over points and substeps, of a frame that nothing else held up: nine of ten took longer [ns].
+    pub ns: f64,
+    /// Pictures that were asked for.
+    pub shots: Vec<Shot>,
+}
+
+/// One picture.
+pub struct Shot {
+    /// Time [s].
+    pub time: f64,
+    /// As a PNG file.
+    pub png: Vec<u8>,
+    /// Strands that were put back in its frame.
+    pub reset_strands: usize,
+}
+
+/// Plays so many frames of 1/60 s; with pictures if `draw`.
+pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) -> Result<Played, Fault> {
+    let view = View { size: SIZE, camera: None, target: None, fov: None, hair_width: None };
+    let mut studio = if draw { Some(Studio::new(&view, &stage)?) } else { None };
+    let mut times = Vec::with_capacity(frames as usize);
+    let (mut reset_strands, mut sum, mut worst) = (0, 0.0, 0.0f64);
+    let mut stretch = Vec::with_capacity(frames as usize);
+    let mut shots = Vec::new();
+    let mut substeps = 0;
+    for frame in 1..=frames {
+        let report = stage.step(1.0 / 60.0);
+        let time = f64::from(frame) / 60.0;
+        times.push(report.simulate.as_secs_f64());
+        substeps = report.step.substeps;
+        reset_strands += report.step.reset_strands;
+        let measure = stage.measure();
+        // A strand that was put back was beyond all numbers before.
+        let broken = report.step.reset_strands > 0;
+        let [mean, most] = match broken {
+            true => [f64::INFINITY; 2],
+            false => [measure.stretch_mean, measure.stretch_max],
+        };
+        sum += mean;
+        worst = worst.max(most);
+        stretch.push([time, most]);
+        // Frames n/4, 2n/4, … n.
+        let moments = |f: u32| u64::from(f) * u64::from(MOMENTS) / u64::from(frames);
+        if let Some(studio) = studio.as_mut().filter(|_| moments(frame) > moments(frame - 1)) {
+            let mut png = Vec::new();
+            encode_png(&mut png, studio.draw(&stage).0)
+                .map_err(|e| Fault::Unwritable(format!("a picture could not be encoded: {e}")))?;
+            shots.push(Shot { time, png, reset_strands: report.step.reset_strands });
+        }
+        progress.step(|| {
+            let name = stage.scene().solver.integrator.name();
+            let lost = if broken || most > BOUND { ", lost" } else { "" };
+            format!("{name}, frame {frame}: {:.3} % the worst stretch{lost}", most * 1e2)
+        });
+        if interrupt::asked() {
+            return Err(Fault::Interrupted("stopped: nothing was written".into()));
+        }
+    }
+    times.sort_by(f64::total_cmp);
+    let work = stage.simulated_points().0 as f64 * f64::from(substeps);
+    let ns = times[times.len() / 10] * 1e9 * rayon::current_num_threads() as f64 / work;
+    let stretch_mean = sum / f64::from(frames);
+    Ok(Played { reset_strands, stretch_mean, stretch_max: worst, stretch, ns, shots })
+}

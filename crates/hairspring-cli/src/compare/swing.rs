@@ -1,0 +1,134 @@
+//! A free swing by one integrator: what becomes of its energy, and how long a step may be.
+
+use super::{BOUND, duration};
+use crate::{fault::Fault, interrupt};
+use hairspring::scene::{
+    Integrator,
+    swing::{Sample, Swing},
+};
+
+/// Longest step that is tried [s]: three frames.
+pub const LONGEST: f64 = 0.05;
+
+/// Shortest step that is tried [s].
+pub const SHORTEST: f64 = 1e-6;
+
+/// How long a step must keep the strands together to be stable [s], and for how many steps at least.
+pub const WATCHED: f64 = 0.25;
+/// See [`WATCHED`].
+pub const STEPS: u64 = 200;
+
+/// How exactly the longest step is found [1].
+const EXACT: f64 = 0.05;
+
+/// Steps between looks at the strands and at the user's wish to stop, but for long ones.
+const LOOK: f64 = 2e-4;
+
+/// A free swing.
+pub struct Swung {
+    /// Time [s] and energy: 1 at the start, 0 when all that it could fall is gone. Ends where the swing blew up.
+    pub energy: Vec<[f64; 2]>,
+    /// Change of the energy from start to end over what the swing could turn into motion by falling [1]; `None`: it blew up.
+    pub drift: Option<f64>,
+    /// The worst |ℓ/L − 1| of any step [1]; `None`: it blew up.
+    pub stretch_max: Option<f64>,
+}
+
+/// Lets the sample swing for so many seconds, in steps of 1/60 s over `substeps`.
+pub fn swing(sample: &Sample, integrator: Integrator, substeps: u32, seconds: f64) -> Result<Swung, Fault> {
+    let h = 1.0 / (60.0 * f64::from(substeps));
+    let mut swing = Swing::new(sample, integrator, h);
+    let (start, scale) = (swing.energy().total(), swing.energy_to_fall());
+    let mut energy = vec![[0.0, 1.0]];
+    let mut stretch_max = 0.0f64;
+    for step in 1..=(seconds / h).round() as u64 {
+        let report = swing.step();
+        let share = (swing.energy().total() - start) / scale;
+        stretch_max = stretch_max.max(swing.measure().stretch_max);
+        if report.reset_strands > 0 || !share.is_finite() || stretch_max > BOUND {
+            return Ok(Swung { energy, drift: None, stretch_max: None });
+        }
+        energy.push([step as f64 * h, 1.0 + share]);
+        may_go_on()?;
+    }
+    let drift = energy.last().map(|e| e[1] - 1.0);
+    Ok(Swung { energy, drift, stretch_max: Some(stretch_max) })
+}
+
+/// The longest step that is stable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LongestStep {
+    /// Even the longest that was tried is.
+    All,
+    /// So long [s].
+    Found(f64),
+    /// Not even the shortest that was tried is.
+    None,
+}
+
+impl LongestStep {
+    /// How long [s].
+    pub fn seconds(self) -> Option<f64> {
+        match self {
+            Self::All => Some(LONGEST),
+            Self::Found(h) => Some(h),
+            Self::None => None,
+        }
+    }
+
+    /// In words.
+    pub fn told(self) -> String {
+        match self {
+            Self::All => format!("{} or more", duration(LONGEST)),
+            Self::Found(h) => duration(h),
+            Self::None => format!("under {}", duration(SHORTEST)),
+        }
+    }
+}
+
+/// Finds it by halving the interval of its logarithm.
+pub fn longest_step(sample: &Sample, integrator: Integrator) -> Result<LongestStep, Fault> {
+    if is_stable(sample, integrator, LONGEST)? {
+        return Ok(LongestStep::All);
+    }
+    if !is_stable(sample, integrator, SHORTEST)? {
+        return Ok(LongestStep::None);
+    }
+    let (mut stable, mut unstable) = (SHORTEST, LONGEST);
+    while unstable / stable > 1.0 + EXACT {
+        let middle = (stable * unstable).sqrt();
+        if is_stable(sample, integrator, middle)? {
+            stable = middle;
+        } else {
+            unstable = middle;
+        }
+    }
+    Ok(LongestStep::Found(stable))
+}
+
+/// Whether steps of `h` [s] keep the strands together.
+fn is_stable(sample: &Sample, integrator: Integrator, h: f64) -> Result<bool, Fault> {
+    let mut swing = Swing::new(sample, integrator, h);
+    let steps = ((WATCHED / h).ceil() as u64).max(STEPS);
+    let look = ((LOOK / h) as u64).max(1);
+    for step in 1..=steps {
+        if swing.step().reset_strands > 0 {
+            return Ok(false);
+        }
+        if step % look == 0 || step == steps {
+            // A stretch that is no number is not within the bound.
+            if !swing.measure().stretch_max.le(&BOUND) {
+                return Ok(false);
+            }
+            may_go_on()?;
+        }
+    }
+    Ok(true)
+}
+
+fn may_go_on() -> Result<(), Fault> {
+    match interrupt::asked() {
+        true => Err(Fault::Interrupted("stopped: nothing was written".into())),
+        false => Ok(()),
+    }
+}

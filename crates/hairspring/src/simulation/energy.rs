@@ -1,0 +1,185 @@
+//! How much energy the strands hold, and in what form: what a swing without losses would keep.
+
+use super::Simulation;
+use crate::{
+    scene::Integrator,
+    strand::{
+        lanes::LANES,
+        model::stretch::STRETCH,
+        tile::{Elastic, rest, state, strand},
+    },
+};
+use glam::{DVec3, Quat};
+use rayon::prelude::*;
+use std::ops::Add;
+
+/// Energy of all simulated strands [J]. The first two points of a strand, which its root drives, are left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// ½ m v² of the points.
+    pub kinetic: f64,
+    /// −m g·x of the points, against the origin of the world.
+    pub gravitational: f64,
+    /// ½ B |r|² of the joints, and ½ ΔB (m·r)² of flat fibres (see `strand/model/bend.rs`, `rod.rs`).
+    pub bending: f64,
+    /// ½ GJ/L̄ (τ − τ⁰)² of the joints; of the rod model.
+    pub twisting: f64,
+    /// T (ℓ − L) + ½ k (ℓ − L)² of the segments.
+    pub stretching: f64,
+}
+
+impl Energy {
+    /// All of it [J].
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.gravitational + self.bending + self.twisting + self.stretching
+    }
+}
+
+impl Add for Energy {
+    type Output = Self;
+
+    fn add(self, o: Self) -> Self {
+        Self {
+            kinetic: self.kinetic + o.kinetic,
+            gravitational: self.gravitational + o.gravitational,
+            bending: self.bending + o.bending,
+            twisting: self.twisting + o.twisting,
+            stretching: self.stretching + o.stretching,
+        }
+    }
+}
+
+/// The spring that an integrator puts along a segment.
+#[derive(Clone, Copy)]
+enum Spring {
+    /// None: the segment keeps its length by construction.
+    None,
+    /// The fibre's own, EA/L.
+    Fibre,
+    /// So many times the mass of the point before it [1/s²].
+    PerMass(f64),
+}
+
+impl Simulation {
+    /// The energy now, in the springs that the chosen integrator knows: the explicit ones stretch the fibre itself, the implicit ones a softer
+    /// spring that stands for it (`strand/model/stretch.rs`), follow the leader has neither stretch nor bending. With that, the total
+    /// is what the integrator would keep if it were exact. NaN where a strand is.
+    pub fn energy(&self) -> Energy {
+        // Summed in one order: the same bits for any number of threads.
+        let strands: Vec<Energy> =
+            self.places.par_iter().with_min_len(64).map(|place| self.strand_energy(*place as usize)).collect();
+        strands.into_iter().fold(Energy::default(), Add::add)
+    }
+
+    /// The energy that the free points would gain in falling until every strand hangs straight down from its driven segment [J]: the most
+    /// that a swing under gravity alone can turn into motion.
+    pub fn energy_to_fall(&self) -> f64 {
+        let gravity = self.settings.gravity.as_dvec3();
+        let down = gravity.normalize_or_zero();
+        let fall = |place: usize| {
+            let mut at = self.vector(place, 1, state::X).as_dvec3();
+            let mut energy = 0.0;
+            for i in 2..self.points(place) {
+                at += down * self.rest(place, i - 1, rest::LENGTH) as f64;
+                let way = at - self.vector(place, i, state::X).as_dvec3();
+                energy += self.rest(place, i, rest::MASS) as f64 * gravity.dot(way);
+            }
+            energy
+        };
+        self.places.iter().map(|place| fall(*place as usize)).sum()
+    }
+
+    /// Points of the strand in a lane.
+    fn points(&self, place: usize) -> usize {
+        self.groom.range(self.lanes[place] as usize).len()
+    }
+
+    /// What holds a segment at its length [N].
+    fn tension(&self, place: usize, i: usize) -> f32 {
+        let (tile, lane) = (place / LANES, place % LANES);
+        self.state[self.tiles[tile].first as usize + i][state::TENSION].0[lane]
+    }
+
+    fn strand_energy(&self, place: usize) -> Energy {
+        let gravity = self.settings.gravity.as_dvec3();
+        let root = self.root_position(place).as_dvec3();
+        let n = self.points(place);
+        let mut energy = Energy::default();
+        for i in 2..n {
+            let mass = self.rest(place, i, rest::MASS) as f64;
+            let v = self.vector(place, i, state::V).as_dvec3();
+            energy.kinetic += 0.5 * mass * v.length_squared();
+            energy.gravitational -= mass * gravity.dot(root + self.vector(place, i, state::X).as_dvec3());
+        }
+        let integrator = self.settings.solver.integrator;
+        let per_mass = if self.last_h > 0.0 { STRETCH as f64 / (self.last_h as f64).powi(2) } else { 0.0 };
+        let spring = match integrator {
+            Integrator::ExplicitEuler | Integrator::Verlet => Spring::Fibre,
+            Integrator::Ftl | Integrator::Dftl => Spring::None,
+            Integrator::BackwardEuler | Integrator::Bdf2 | Integrator::LocalGlobal => Spring::PerMass(per_mass),
+        };
+        if matches!(spring, Spring::None) {
+            return energy;
+        }
+        // Tension is a force there; the direct solver's is a multiplier, which does no work on a segment that keeps its length.
+        let pulls = !matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2);
+        let tile = place / LANES;
+        let axial = self.strand[tile][strand::AXIAL].0[place % LANES] as f64;
+        let e = |i: usize| (self.vector(place, i + 1, state::X) - self.vector(place, i, state::X)).as_dvec3();
+        for i in 1..n - 1 {
+            let length = self.rest(place, i, rest::LENGTH) as f64;
+            let k = match spring {
+                Spring::None => 0.0,
+                Spring::Fibre => axial / length,
+                Spring::PerMass(rate) => self.rest(place, i, rest::MASS) as f64 * rate,
+            };
+            let longer = e(i).length() - length;
+            let tension = if pulls { self.tension(place, i) as f64 } else { 0.0 };
+            energy.stretching += longer * (tension + 0.5 * k * longer);
+        }
+        self.add_joints(place, self.tiles[tile].model, &e, &mut energy);
+        energy
+    }
+
+    /// Adds bending and twisting of the joints between segments `e`, whose frames are carried as the kernel carries them.
+    fn add_joints(
+        &self,
+        place: usize,
+        model: Elastic,
+        e: &dyn Fn(usize) -> DVec3,
+        energy: &mut Energy,
+    ) {
+        let (tile, lane) = (place / LANES, place % LANES);
+        let rows = &self.strand[tile];
+        let row = |at: usize| rows[at].0[lane];
+        let turn = Quat::from_array([0, 1, 2, 3].map(|k| row(strand::TURN_END + k)));
+        let normal = glam::Vec3::from_array([0, 1, 2].map(|k| row(strand::NORMAL + k)));
+        let mut m0 = (self.settings.anchor.rotation * turn * normal).as_dvec3();
+        let (ratio, flat) = (row(strand::TWIST_RATIO) as f64, row(strand::FLAT) as f64);
+        let mut u0 = e(0).normalize_or_zero();
+        for j in 1..self.points(place) - 1 {
+            let length = |i: usize| self.rest(place, i, rest::LENGTH) as f64;
+            let u1 = e(j).normalize_or_zero();
+            let stiffness = self.rest(place, j, rest::BEND) as f64;
+            let local = DVec3::from_array([0, 1, 2].map(|k| self.rest(place, j, rest::TURN + k) as f64));
+            let d = m0 * local.x + u0.cross(m0) * local.y + u0 * local.z;
+            let r = e(j) / length(j) - e(j - 1) / length(j - 1) - d;
+            energy.bending += 0.5 * stiffness * r.length_squared();
+            let carried = m0 - (u0 + u1) * (m0.dot(u1) / (1.0 + u0.dot(u1)).max(1e-3));
+            let mut m1 = carried.normalize_or(m0);
+            if model == Elastic::Rod {
+                let own = self.vector(place, j, state::NORMAL).as_dvec3();
+                let across = own - u1 * own.dot(u1);
+                if across.length_squared() > 1e-6 {
+                    m1 = across.normalize();
+                }
+                let tau = 2.0 * carried.cross(m1).dot(u1) / (carried.dot(m1) + 1.0).max(0.5);
+                let twist = tau - self.rest(place, j, rest::TWIST) as f64;
+                energy.twisting += 0.5 * stiffness * ratio * twist * twist;
+                let wider = m0.dot(e(j) / length(j) - u0) - local.x;
+                energy.bending += 0.5 * stiffness * flat * wider * wider;
+            }
+            (m0, u0) = (m1, u1);
+        }
+    }
+}
