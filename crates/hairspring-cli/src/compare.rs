@@ -190,8 +190,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let Some(setting) = setting else { return Err(Fault::Usage("no integrator is named".into())) };
 
     let mut trials = Vec::with_capacity(integrators.len());
-    let mut progress =
-        console.progress_in("swinging, and looking for the longest step", integrators.len() as u32, "methods");
+    let mut progress = console.progress_in(
+        "swinging, and looking for the longest step",
+        integrators.len() as u32,
+        "methods",
+    );
     for (&integrator, played) in integrators.iter().zip(played) {
         let swung = swing::swing(&swinging, integrator, setting.substeps, seconds)?;
         let longest = swing::longest_step(&stepping, integrator)?;

@@ -53,7 +53,8 @@ impl Console {
         let bar = (!self.quiet && stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(Some(total.into()), ProgressDrawTarget::stderr());
             // The template has no part of the user's: it parses, or the plain bar is shown.
-            let template = format!("{{msg}} [{{bar:32}}] {{pos}}/{{len}} {unit}, {{elapsed}} gone, {{eta}} to go");
+            let template =
+                format!("{{msg}} [{{bar:32}}] {{pos}}/{{len}} {unit}, {{elapsed}} gone, {{eta}} to go");
             if let Ok(style) = ProgressStyle::with_template(&template) {
                 bar.set_style(style.progress_chars("=> "));
             }
@@ -83,7 +84,8 @@ impl Progress {
             None => {
                 let tenth = |n: u32| u64::from(n) * 10 / u64::from(self.total.max(1));
                 if !self.console.verbose && tenth(self.done) > tenth(self.done - 1) {
-                    self.console.doing(format_args!("{} {}/{} {}", self.what, self.done, self.total, self.unit));
+                    self.console
+                        .doing(format_args!("{} {}/{} {}", self.what, self.done, self.total, self.unit));
                 }
             }
         }

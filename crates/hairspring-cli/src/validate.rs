@@ -66,7 +66,7 @@ pub struct Options {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "How it is simulated")]
     substeps: Option<u32>,
 
-    /// Elastic model: auto, curvature, rod [default: auto; michell: rod]
+    /// Elastic model: auto, springs, curvature, rod [default: auto; michell: rod]
     #[arg(long, value_name = "NAME", help_heading = "How it is simulated")]
     model: Option<String>,
 

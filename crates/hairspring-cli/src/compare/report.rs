@@ -147,8 +147,7 @@ fn stretch(trials: &[Trial]) -> String {
 
 fn plot(axes: [(&str, bool); 2], curves: &[(&str, Vec<[f64; 2]>)], note: &str) -> String {
     let [x, y] = axes.map(|(label, log)| Axis { label: label.into(), log });
-    let series: Vec<Series> =
-        curves.iter().map(|(name, line)| Series { name, line, points: &[] }).collect();
+    let series: Vec<Series> = curves.iter().map(|(name, line)| Series { name, line, points: &[] }).collect();
     svg([&x, &y], &series, note)
 }
 

@@ -97,7 +97,13 @@ impl Sample {
     /// whose h ω must stay under 2 where the fastest ring of a chain is ω = 2 √(E/ρ) / L.
     pub fn sound_time(&self) -> f64 {
         let of = |s: usize| {
-            let shortest = self.groom.strand(s).windows(2).skip(1).map(|w| w[0].distance(w[1])).fold(f32::INFINITY, f32::min);
+            let shortest = self
+                .groom
+                .strand(s)
+                .windows(2)
+                .skip(1)
+                .map(|w| w[0].distance(w[1]))
+                .fold(f32::INFINITY, f32::min);
             f64::from(shortest) * f64::from(self.materials[s].density / self.materials[s].young).sqrt()
         };
         (0..self.strand_count()).map(of).fold(f64::INFINITY, f64::min)

@@ -66,8 +66,12 @@ impl Simulation {
     /// is what the integrator would keep if it were exact. NaN where a strand is.
     pub fn energy(&self) -> Energy {
         // Summed in one order: the same bits for any number of threads.
-        let strands: Vec<Energy> =
-            self.places.par_iter().with_min_len(64).map(|place| self.strand_energy(*place as usize)).collect();
+        let strands: Vec<Energy> = self
+            .places
+            .par_iter()
+            .with_min_len(64)
+            .map(|place| self.strand_energy(*place as usize))
+            .collect();
         strands.into_iter().fold(Energy::default(), Add::add)
     }
 
@@ -116,7 +120,9 @@ impl Simulation {
         let spring = match integrator {
             Integrator::ExplicitEuler | Integrator::Verlet => Spring::Fibre,
             Integrator::Ftl | Integrator::Dftl => Spring::None,
-            Integrator::BackwardEuler | Integrator::Bdf2 | Integrator::LocalGlobal => Spring::PerMass(per_mass),
+            Integrator::BackwardEuler | Integrator::Bdf2 | Integrator::LocalGlobal => {
+                Spring::PerMass(per_mass)
+            }
         };
         if matches!(spring, Spring::None) {
             return energy;
@@ -142,13 +148,7 @@ impl Simulation {
     }
 
     /// Adds bending and twisting of the joints between segments `e`, whose frames are carried as the kernel carries them.
-    fn add_joints(
-        &self,
-        place: usize,
-        model: Elastic,
-        e: &dyn Fn(usize) -> DVec3,
-        energy: &mut Energy,
-    ) {
+    fn add_joints(&self, place: usize, model: Elastic, e: &dyn Fn(usize) -> DVec3, energy: &mut Energy) {
         let (tile, lane) = (place / LANES, place % LANES);
         let rows = &self.strand[tile];
         let row = |at: usize| rows[at].0[lane];
