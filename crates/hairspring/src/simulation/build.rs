@@ -180,23 +180,24 @@ impl Simulation {
     }
 }
 
-/// Shortest segment that is simulated [m]. Single precision knows a point of a 25 cm strand to 1.5e-8 m; a shorter segment's direction is
-/// noise, and bending by it would be noise over its length.
+/// Shortest segment that is simulated, over the length of its strand [1]. Single precision knows a point far from the root to 6e-8 of its
+/// distance: a segment this short to a thousandth, and the direction of a shorter one is noise.
 const SHORTEST: f32 = 5e-5;
 
-/// The points that a model simulates for a strand: its own, moved apart along the strand where a segment is shorter than [`SHORTEST`], and extra
+/// The points that a model simulates for a strand: its own, moved apart along the strand where a segment is shorter than [`SHORTEST`] allows, and extra
 /// particles between them where the model has any.
 pub(super) fn simulated_points(model: Elastic, points: &[Vec3]) -> Cow<'_, [Vec3]> {
     let mut points = Cow::Borrowed(points);
-    let short = |w: &[Vec3]| w[0].distance_squared(w[1]) < SHORTEST * SHORTEST;
+    let shortest = SHORTEST * points.windows(2).map(|w| w[0].distance(w[1])).sum::<f32>();
+    let short = |w: &[Vec3]| w[0].distance(w[1]) < shortest;
     if points.windows(2).any(short) {
         let own = points.to_mut();
         let chord = own[own.len() - 1] - own[0];
-        let mut along = own.windows(2).map(|w| w[1] - w[0]).find(|e| e.length() >= SHORTEST).unwrap_or(chord);
+        let mut along = own.windows(2).map(|w| w[1] - w[0]).find(|e| e.length() >= shortest).unwrap_or(chord);
         for i in 1..own.len() {
             let e = own[i] - own[i - 1];
-            if e.length() < SHORTEST {
-                own[i] = own[i - 1] + along.normalize_or(Vec3::Y) * (1.01 * SHORTEST);
+            if e.length() < shortest {
+                own[i] = own[i - 1] + along.normalize_or(Vec3::Y) * (1.01 * shortest);
             } else {
                 along = e;
             }
