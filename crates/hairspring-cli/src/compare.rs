@@ -86,7 +86,7 @@ The figures of each, as JSON keys:
   swing_stretch_max         the worst segment of the free swing, which meets nothing; null where it blew up
   energy_drift              what the free swing has gained or lost, over all that it can turn into motion by falling;
                             null where it blew up
-  ns_per_point_substep      wall time x threads / (points x substeps) of the scene; nine of ten frames took longer
+  ns_per_point_substep      wall time x threads / (points x substeps), the median frame of the scene
   longest_stable_step_s     {longest} is the longest tried; null: not even {shortest} is stable
   points_in_real_time       that one thread keeps up with at that step; null where there is none
 

@@ -26,7 +26,7 @@ pub struct Played {
     pub stretch_max: f64,
     /// Time [s] and worst stretch [1] of each frame.
     pub stretch: Vec<[f64; 2]>,
-    /// Wall time × threads over points and substeps, of a frame that nothing else held up: nine of ten took longer [ns].
+    /// Wall time × threads over points and substeps, the median frame [ns].
     pub ns: f64,
     /// Pictures that were asked for.
     pub shots: Vec<Shot>,
@@ -86,7 +86,7 @@ pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) 
     }
     times.sort_by(f64::total_cmp);
     let work = stage.simulated_points().0 as f64 * f64::from(substeps);
-    let ns = times[times.len() / 10] * 1e9 * rayon::current_num_threads() as f64 / work;
+    let ns = times[times.len() / 2] * 1e9 * rayon::current_num_threads() as f64 / work;
     let stretch_mean = sum / f64::from(frames);
     Ok(Played { reset_strands, stretch_mean, stretch_max: worst, stretch, ns, shots })
 }

@@ -27,10 +27,11 @@ pub struct Material {
     /// Short over long axis of the fibre's section, above 0, at most 1; its area is kept. Default 1: round. Asian hair is about 0.9, African
     /// about 0.6. The long axis lies along the normal of the strand's frame at its root. For the rod model.
     pub flatness: f32,
-    /// Relaxation time of the fibre's bending [s], 0 or more: larger stops the hair's own vibrations sooner. Default 0.004.
+    /// Relaxation time of the fibre's bending [s], 0 or more: larger stops the hair's own vibrations sooner. Default 0.01: the
+    /// solver adds next to none, and in a head of hair neighbours take a swing's energy within a second.
     pub damping: f32,
-    /// Multiplier over the drag of the air on a lone fibre, 0 or more. Default 0.15: inside a head of hair the air
-    /// moves along with it.
+    /// Multiplier over the drag of the air on a lone fibre, 0 or more. Default 0.5: inside a head of hair the air
+    /// moves along with it in part.
     pub drag: f32,
     /// Coulomb friction against the body, 0 to 1. Default 0.3: hair on skin, 0.1 to 0.3 along the scales, higher against.
     pub friction: f32,
@@ -77,8 +78,8 @@ impl Default for Material {
             bend: 1.0,
             bend_tip: 1.0,
             flatness: 1.0,
-            damping: 0.004,
-            drag: 0.15,
+            damping: 0.01,
+            drag: 0.5,
             friction: 0.3,
         }
     }
@@ -92,10 +93,10 @@ pub fn preset(name: &str) -> Option<Material> {
     let base = Material::default();
     Some(match name {
         "straight" => Material { bend: 2.0, ..base },
-        "wavy" => Material { bend: 4.0, damping: 0.006, ..base },
-        "curly" => Material { bend: 8.0, damping: 0.008, drag: 0.2, ..base },
-        "coily" => Material { bend: 16.0, damping: 0.01, drag: 0.3, ..base },
-        "short-fur" => Material { radius: Some(25e-6), bend: 1.0, bend_tip: 0.5, drag: 0.3, ..base },
+        "wavy" => Material { bend: 4.0, damping: 0.015, ..base },
+        "curly" => Material { bend: 8.0, damping: 0.02, ..base },
+        "coily" => Material { bend: 16.0, damping: 0.025, drag: 0.6, ..base },
+        "short-fur" => Material { radius: Some(25e-6), bend: 1.0, bend_tip: 0.5, drag: 0.6, ..base },
         _ => return None,
     })
 }
