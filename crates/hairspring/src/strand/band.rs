@@ -117,6 +117,12 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         V3 { x: self.b[0], y: self.b[1], z: self.b[2] }
     }
 
+    /// The right-hand side of unknown `k` of the window's first point.
+    #[cfg(test)]
+    pub fn right(&self, k: usize) -> F<S> {
+        self.b[k]
+    }
+
     /// Holds unknown `k` of the window's first point where it is: its rows are cut off from the rest.
     #[inline(always)]
     pub fn hold(&mut self, simd: S, k: usize) {

@@ -15,6 +15,8 @@ pub(crate) mod tile;
 pub(crate) mod truss;
 
 #[cfg(test)]
+mod momentum;
+#[cfg(test)]
 mod reference;
 #[cfg(test)]
 mod tests;

@@ -8,22 +8,22 @@ use super::{
     reference::{self, dense_solve},
     root::Root,
     scratch::Scratch,
-    tile::{Elastic, Tile, rest, state, strand},
+    tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
 };
 use fearless_simd::{Level, dispatch, prelude::*};
 use glam::{DVec3, Mat3, Vec3};
 use proptest::prelude::*;
 
-fn vector(size: f64) -> impl Strategy<Value = DVec3> {
+pub fn vector(size: f64) -> impl Strategy<Value = DVec3> {
     (-size..size, -size..size, -size..size).prop_map(|(x, y, z)| DVec3::new(x, y, z))
 }
 
 /// All lanes the same vector.
-fn splat<S: Simd>(simd: S, v: DVec3) -> V3<S> {
+pub fn splat<S: Simd>(simd: S, v: DVec3) -> V3<S> {
     V3::splat(simd, v.as_vec3())
 }
 
-fn lane<S: Simd>(v: V3<S>) -> DVec3 {
+pub fn lane<S: Simd>(v: V3<S>) -> DVec3 {
     DVec3::new(v.x[3] as f64, v.y[3] as f64, v.z[3] as f64)
 }
 
@@ -222,9 +222,8 @@ proptest! {
     }
 }
 
-/// The solve of one substep, on a tile whose lanes all hold this strand: the solved positions, and the normals that the segments had
-/// before it, carried from the root.
-fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
+/// A tile's rows whose lanes all hold this strand, and the normals of its segments, carried from the root.
+pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>, Vec<DVec3>) {
     let n = s.x.len();
     let mut strand_rows = [Row::default(); strand::ROWS];
     let mut rest_rows = vec![[Row::default(); rest::ROWS]; n];
@@ -262,6 +261,14 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
         set(&mut state_rows[i], state::NORMAL, &normal.as_vec3().to_array());
         set(&mut state_rows[i], state::TENSION, &[s.tension[i] as f32]);
     }
+    (strand_rows, rest_rows, state_rows, normals)
+}
+
+/// The solve of one substep, on a tile whose lanes all hold this strand: the solved positions, and the normals that the segments had
+/// before it, carried from the root.
+fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
+    let n = s.x.len();
+    let (strand_rows, rest_rows, mut state_rows, normals) = rows(s);
     let mut scratch = Scratch::default();
     let mut tile = Tile {
         model,
