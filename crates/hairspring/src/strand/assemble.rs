@@ -16,7 +16,7 @@ use super::{
     lanes::{F, Row, Sym3, V3, load, store},
     model::{
         At, Model,
-        stretch::{STRETCH, stretch},
+        stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2, STRETCH, stretch},
     },
     root::Root,
     scratch::Scratch,
@@ -58,6 +58,12 @@ impl<S: Simd> Step<S> {
     #[inline(always)]
     pub fn inertia(&self) -> f32 {
         if self.second_order { 2.25 } else { 1.0 }
+    }
+
+    /// How much of a tense segment's sideways stiffness is left out of the matrix (see `stretch`).
+    #[inline(always)]
+    fn explicit_tension(&self) -> f32 {
+        if self.second_order { EXPLICIT_TENSION_BDF2 } else { EXPLICIT_TENSION }
     }
 }
 
@@ -283,7 +289,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         };
         let k = real.select(k, nought);
         let tension = load(simd, &tile.state[i + 1][state::TENSION]);
-        let (force, block) = stretch((l, u), length, k, tension);
+        let (force, block) = stretch((l, u), length, k, tension, step.explicit_tension());
         self.band.add_diagonal(1, block);
         self.band.add_diagonal(2, block);
         self.band.add_block(1, 2, &-block.full());

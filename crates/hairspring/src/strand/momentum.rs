@@ -95,7 +95,7 @@ proptest! {
         let ((ours, block), u) = dispatch!(Level::new(), simd => {
             let f = |v: f64| F::splat(simd, v as f32);
             let (l, u) = splat(simd, e).length_and_unit();
-            let (force, block) = stretch((l, u), f(rest), f(k), f(tension));
+            let (force, block) = stretch((l, u), f(rest), f(k), f(tension), 0.0);
             let m = [block.xx, block.xy, block.xz, block.yy, block.yz, block.zz].map(|v| v[3] as f64);
             ((lane(force), m), lane(u))
         });

@@ -14,19 +14,28 @@ use fearless_simd::prelude::*;
 /// Stretch stiffness in units of m/h² [1]. Stable in every test from 10² to 10³; above about 10⁴ it blows up.
 pub const STRETCH: f32 = 400.0;
 
-/// Tension below which a taut strand's sideways motion needs no stiffness in the matrix, in units of L m/h² [1]: the
-/// explicit limit of a chain under tension is 1, where 4 T h² / (L m) = 4.
-const EXPLICIT_TENSION: f32 = 0.25;
+/// Tension below which a taut strand's sideways motion needs no stiffness in the matrix of backward Euler, over L k [1]: a quarter of
+/// m/h², where the explicit limit of a chain under tension is 4 T h² / (L m) = 4.
+pub const EXPLICIT_TENSION: f32 = 0.25 / STRETCH;
+
+/// The same of BDF2 [1]: more feeds a swing (a tenth of its width a period at 0.25 m/h²), nothing at all damps it (by a quarter).
+pub const EXPLICIT_TENSION_BDF2: f32 = 0.025 / STRETCH;
 
 /// A segment: force on the nearer point (the farther gets its opposite) [N], and stiffness block [N/m].
 ///
 /// `tension` [N] is what the last substep found to hold the segment at its length; carrying it over (as an augmented
 /// Lagrangian does) makes a strand at rest stay at rest exactly, whatever the stiffness of the spring. The sideways stiffness
 /// f/ℓ is left out of the matrix while explicit treatment is stable, because there it keeps the swing alive: with all of
-/// it, a pendulum of 90° loses a quarter of its swing in a period.
+/// it, a pendulum of 90° loses a quarter of its swing in a period. `explicit` is how much of it is left out, over `k` [1].
 #[inline(always)]
-pub fn stretch<S: Simd>((length, u): (F<S>, V3<S>), rest: F<S>, k: F<S>, tension: F<S>) -> (V3<S>, Sym3<S>) {
+pub fn stretch<S: Simd>(
+    (length, u): (F<S>, V3<S>),
+    rest: F<S>,
+    k: F<S>,
+    tension: F<S>,
+    explicit: f32,
+) -> (V3<S>, Sym3<S>) {
     let pull = k.mul_add(length - rest, tension);
-    let across = (pull / length - k * (EXPLICIT_TENSION / STRETCH)).max(0.0).min(k);
+    let across = (pull / length - k * explicit).max(0.0).min(k);
     (u * pull, Sym3::outer(u, k - across).add_identity(across))
 }
