@@ -64,7 +64,7 @@ fn shaken(material: Material, gravity: f32, motion: impl Fn(u32) -> (f32, Rigid)
     let mut simulation = Simulation::new(
         groom,
         &(0..count as u32).collect::<Vec<_>>(),
-        std::slice::from_ref(material),
+        std::slice::from_ref(&material),
         Solver::default(),
         gravity,
         Rigid::default(),

@@ -1,5 +1,5 @@
-//! A strand's system, assembled and eliminated in one sweep down: elasticity from the model, then stretch, mass, air, gravity and
-//! what holds a point from outside. With positions relative to the root, δ their change, Δr the root's own:
+//! A strand's system, assembled and eliminated in one sweep down: elasticity from the model, then stretch, mass, air, gravity,
+//! what holds a point from outside and what it is pressed against. With positions relative to the root, δ their change, Δr the root's own:
 //!
 //! ```text
 //! (a M/h² + D/h + K) δ = M p + D (w − Δr/h) + M g + f(x)

@@ -2,7 +2,8 @@
 //!
 //! One sweep from root to tip. Each segment is clamped to its rest length ± [`LIMIT`] by moving the outer point (follow the
 //! leader, Müller 2012, but only past the limit); a point inside a collider moves to the nearest free position with
-//! the inward motion removed (Liu 2013) and is held back along the surface by Coulomb friction, up to μ times the push.
+//! the inward motion removed (Liu 2013) and is held back along the surface by Coulomb friction, up to μ times the push. In the
+//! implicit integrators that is for what the solve could not know: points that land, and what projection pushed in (see `press`).
 
 use super::{
     interval::Substep,
@@ -64,7 +65,6 @@ pub fn limit<S: Simd>(
         let old = V3::load(simd, &tile.state[i][state::X..]);
         let mut p = V3::load(simd, target);
         let target = p;
-        let mass = load(simd, &tile.rest[i][rest::MASS]);
         let mut press = load(simd, &tile.state[i][state::PRESS]);
         p = clamp(p, before, length, tolerance);
         for pose in &substep.obstacles {
@@ -82,6 +82,7 @@ pub fn limit<S: Simd>(
                 // What of the push did not stop an approach presses on in the next solve (see `press`).
                 let v = V3::load(simd, &tile.state[i][state::V..]);
                 let approach = normal.dot(carried - v * F::splat(simd, finish.h)).max(0.0);
+                let mass = load(simd, &tile.rest[i][rest::MASS]);
                 press += mass * finish.press * (depth - approach).max(0.0);
                 // The limit again, then out: both hold where they can, and where a strand is caught (behind an
                 // ear) its length goes before its depth, so that it slips free in time.

@@ -82,15 +82,15 @@ fn slides(mu: f64, ratio: f64, method: Method) -> Result<bool, Failure> {
     let axis = Vec3::Z * LENGTH as f32;
     setup.obstacle = Some(Obstacle::Capsule { a: -axis, b: axis, radius: radius as f32 });
     let mut specimen = Specimen::new(setup, method);
-    let weight = LOAD * LINE_DENSITY * LENGTH * GRAVITY;
+    let greater = LOAD * LINE_DENSITY * LENGTH * GRAVITY;
     let pull = |point: usize, load: f64| {
         let force = Vec3::NEG_Y * load as f32;
         Hold { point: point as u32, force, ..Hold::default() }
     };
-    let load_by = |specimen: &mut Specimen, smaller: f64| {
-        specimen.hold(&[pull(slack, weight), pull(n - 1, weight * smaller)]);
+    let hang = |specimen: &mut Specimen, smaller: f64| {
+        specimen.hold(&[pull(slack, greater), pull(n - 1, smaller)]);
     };
-    load_by(&mut specimen, 1.0);
+    hang(&mut specimen, greater);
     let height = |specimen: &Specimen| specimen.points()[slack].y as f64;
     for _ in 0..SETTLING {
         specimen.frame()?;
@@ -98,7 +98,7 @@ fn slides(mu: f64, ratio: f64, method: Method) -> Result<bool, Failure> {
     let start = height(&specimen);
     for frame in 1..=EASING + WATCHED {
         let eased = (frame as f64 / EASING as f64).min(1.0);
-        load_by(&mut specimen, 1.0 + (1.0 / ratio - 1.0) * eased);
+        hang(&mut specimen, greater * (1.0 + (1.0 / ratio - 1.0) * eased));
         specimen.frame()?;
         if start - height(&specimen) > SLIPPED * l {
             return Ok(true);
