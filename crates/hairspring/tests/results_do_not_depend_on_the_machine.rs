@@ -1,16 +1,23 @@
-//! Promise: the same bits for any number of threads, and the same hair on any instruction set.
+//! Promise: the same bits for any number of threads and with any neighbours, and the same hair on any instruction set.
 //!
-//! Strands are independent within a step and every sum has one order, so threads cannot show. Instruction sets differ in fused
+//! Strands are independent within a step and every sum has one order, so neither threads nor the strands that are stepped along
+//! with one can show. Instruction sets differ in fused
 //! multiplication only: after a tenth of a second of hair falling from standing on end (later, rounding decides which way each
 //! strand has buckled) they agree to a fraction of a hair's width in the median.
 
 use glam::Vec3;
-use hairspring::scene::{
-    Guides, Solver,
-    bench::Bench,
-    builtin::{BuiltinOptions, Style, scene},
+use hairspring::{
+    collide::{Obstacle, Rigid},
+    material::Material,
+    scene::{
+        Guides, Solver,
+        bench::{self, Bench},
+        builtin::{BuiltinOptions, Style, scene},
+    },
+    simulation::{Air, Drive, MovingObstacle, Simulation},
+    stage::Stage,
 };
-use hairspring::stage::Stage;
+use std::sync::Arc;
 
 fn bench(threads: usize) -> Vec<Vec3> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -48,6 +55,54 @@ fn threads_do_not_show_in_a_whole_scene() {
     let one = play(1);
     assert!(one == play(2), "two threads give other bits than one");
     assert!(one == play(7), "seven threads give other bits than one");
+}
+
+/// A limp strand that falls onto a ball, alone and among seven that touch the ball elsewhere and at other times.
+#[test]
+fn neighbours_do_not_show_in_contact() {
+    let groom = Arc::new(bench::groom(8, 24));
+    let obstacle = MovingObstacle {
+        shape: Obstacle::Sphere { center: Vec3::ZERO, radius: bench::RADIUS },
+        start: Rigid::default(),
+        end: Rigid::default(),
+    };
+    let fall = |strands: &[u32]| {
+        let mut simulation = Simulation::new(
+            groom.clone(),
+            strands,
+            &[Material { bend: 0.01, ..Material::default() }],
+            Solver { sag_free: false, ..Solver::default() },
+            Vec3::new(0.0, -9.81, 0.0),
+            Rigid::default(),
+            &[],
+        );
+        let roots: Vec<Rigid> = strands
+            .iter()
+            .map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() })
+            .collect();
+        for _ in 0..90 {
+            simulation.step(&Drive {
+                dt: bench::FRAME,
+                anchor: Rigid::default(),
+                roots: &roots,
+                obstacles: std::slice::from_ref(&obstacle),
+                air: Air::default(),
+            });
+        }
+        let mut points = vec![Vec3::ZERO; simulation.point_count()];
+        simulation.write_points(&mut points);
+        points
+    };
+    let all = fall(&[0, 1, 2, 3, 4, 5, 6, 7]);
+    let lying = all.iter().filter(|p| p.length() < bench::RADIUS + 1e-5).count();
+    assert!(lying > 3 * 8, "{lying} points lie on the ball, with the roots");
+    for strand in 0..8 {
+        let alone = fall(&[strand]);
+        assert!(
+            alone == all[groom.range(strand as usize)],
+            "strand {strand} is another among its neighbours"
+        );
+    }
 }
 
 #[test]

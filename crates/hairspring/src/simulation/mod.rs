@@ -32,8 +32,7 @@ use std::sync::Arc;
 /// same bits for any number of threads. Strands meet only the body and the air.
 ///
 /// # Missing
-/// Hair against hair, contact inside the solve (a strand laid over a cylinder creeps under equal loads), contact between points rather
-/// than at them, wind sheltered by the body, cutting and wetting: each is an issue of its own.
+/// Hair against hair, contact between points (a segment may cut a corner that its ends stay out of), wind sheltered by the body, cutting and wetting: each is an issue of its own.
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.

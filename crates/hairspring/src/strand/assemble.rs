@@ -1,5 +1,5 @@
-//! A strand's system, assembled and eliminated in one sweep down: elasticity from the model, then stretch, mass, air, gravity and
-//! what holds a point from outside. With positions relative to the root, δ their change, Δr the root's own:
+//! A strand's system, assembled and eliminated in one sweep down: elasticity from the model, then stretch, mass, air, gravity,
+//! what holds a point from outside and what it is pressed against. With positions relative to the root, δ their change, Δr the root's own:
 //!
 //! ```text
 //! (a M/h² + D/h + K) δ = M p + D (w − Δr/h) + M g + f(x)
@@ -18,16 +18,18 @@ use super::{
         At, Model,
         stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2, STRETCH, stretch},
     },
+    press::{press, relieve},
     root::Root,
     scratch::Scratch,
     tile::{Tile, history, hold, rest, state, strand},
 };
+use crate::collide::ObstaclePose;
 use fearless_simd::prelude::*;
 use glam::Vec3;
 
 /// One substep of one tile, as the assembly needs it.
 #[derive(Clone, Copy)]
-pub struct Step<S: Simd> {
+pub struct Step<'a, S: Simd> {
     /// Length [s].
     pub h: f32,
     /// Gravity [m/s²].
@@ -40,6 +42,8 @@ pub struct Step<S: Simd> {
     pub moved: V3<S>,
     /// Whether the tile's history stands for a substep of the same length: then by BDF2, else by backward Euler.
     pub second_order: bool,
+    /// Colliders, each at the start and the end of it.
+    pub obstacles: &'a [ObstaclePose],
     /// What holds the segments' lengths.
     pub stretching: Stretching,
 }
@@ -53,7 +57,7 @@ pub enum Stretching {
     Fibre,
 }
 
-impl<S: Simd> Step<S> {
+impl<S: Simd> Step<'_, S> {
     /// a of the system above.
     #[inline(always)]
     pub fn inertia(&self) -> f32 {
@@ -169,6 +173,8 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
                 }
                 held += 1;
             }
+            let work = &mut scratch.contacts[i + 1];
+            press(simd, step, tile, (i + 1, &scratch.x[i + 1]), band, work);
         }
         // An angle of the driven first segment is driven too, of the second it is not.
         if i >= M::DRIVEN {
@@ -208,6 +214,7 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
         if i >= M::DRIVEN {
             delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
             (x + delta).store(&mut scratch.x[i]);
+            relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
         }
         if i + 1 < n {
             let (l, u) = (outer - x).length_and_unit();

@@ -2,11 +2,12 @@
 //!
 //! One sweep from root to tip. Each segment is clamped to its rest length ± [`LIMIT`] by moving the outer point (follow the
 //! leader, Müller 2012, but only past the limit); a point inside a collider moves to the nearest free position with
-//! the inward motion removed (Liu 2013) and is held back along the surface by Coulomb friction, up to μ times the push.
+//! the inward motion removed (Liu 2013) and is held back along the surface by Coulomb friction, up to μ times the push. In the
+//! implicit integrators that is for what the solve could not know: points that land, and what projection pushed in (see `press`).
 
 use super::{
     interval::Substep,
-    lanes::{F, Row, V3, load},
+    lanes::{F, Row, V3, load, store},
     root::Root,
     tile::{Tile, history, rest, state},
 };
@@ -19,6 +20,8 @@ pub struct Finish<'a> {
     pub h: f32,
     /// Largest relative change of a segment's length: [`LIMIT`], or infinite for integrators that are shown as they are.
     pub limit: f32,
+    /// Force over mass that a push into the next solve is worth, over its length [1/s²]; 0 where contact is not in the solve.
+    pub press: f32,
     /// Whether velocities are by BDF2 (see `assemble`).
     pub second_order: bool,
     /// What is added to the velocities, shape `[points]` [m/s].
@@ -62,6 +65,7 @@ pub fn limit<S: Simd>(
         let old = V3::load(simd, &tile.state[i][state::X..]);
         let mut p = V3::load(simd, target);
         let target = p;
+        let mut press = load(simd, &tile.state[i][state::PRESS]);
         p = clamp(p, before, length, tolerance);
         for pose in &substep.obstacles {
             let world = p + root.position;
@@ -70,10 +74,16 @@ pub fn limit<S: Simd>(
             if depth.simd_gt(0.0).any_true() {
                 // Out along the normal; then back along the surface, at most μ times as far.
                 let pushed = p + normal * depth;
-                let slide = pushed - old + moved - surface_displacement(simd, pose, world);
+                let carried = surface_displacement(simd, pose, world);
+                let slide = pushed - old + moved - carried;
                 let tangent = slide - normal * normal.dot(slide);
                 let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
                 let held = pushed - tangent * hold.min(1.0);
+                // What of the push did not stop an approach presses on in the next solve (see `press`).
+                let v = V3::load(simd, &tile.state[i][state::V..]);
+                let approach = normal.dot(carried - v * F::splat(simd, finish.h)).max(0.0);
+                let mass = load(simd, &tile.rest[i][rest::MASS]);
+                press += mass * finish.press * (depth - approach).max(0.0);
                 // The limit again, then out: both hold where they can, and where a strand is caught (behind an
                 // ear) its length goes before its depth, so that it slips free in time.
                 let mut q = clamp(held, before, length, tolerance);
@@ -87,6 +97,7 @@ pub fn limit<S: Simd>(
         }
         let free = load(simd, &inverse_mass[i]).simd_gt(0.0);
         p = V3::select(free, p, target);
+        store(free.select(press, F::splat(simd, 0.0)), &mut tile.state[i][state::PRESS]);
         let way = p - old + moved;
         let mut v = way * inv_h;
         if let Some(kick) = finish.kick {

@@ -7,6 +7,7 @@ pub(crate) mod interval;
 pub(crate) mod lanes;
 pub(crate) mod limit;
 pub(crate) mod model;
+pub(crate) mod press;
 pub(crate) mod project;
 pub(crate) mod rest_shape;
 pub(crate) mod root;

@@ -69,6 +69,7 @@ where
         moved: root.position,
         root,
         second_order: false,
+        obstacles: &[],
         stretching: Stretching::Moderate,
     };
     let x: Vec<[Row; 3]> = s.x.iter().map(|x| x.as_vec3().to_array().map(|c| Row([c; LANES]))).collect();

@@ -1,6 +1,6 @@
 //! Working memory of one thread, reused by every tile that it runs.
 
-use super::{band::factor_rows, lanes::Row};
+use super::{band::factor_rows, lanes::Row, press};
 
 /// Working memory of one thread.
 #[derive(Default)]
@@ -14,6 +14,8 @@ pub struct Scratch {
     pub kick: Vec<[Row; 3]>,
     /// Changes of the positions in one iteration, shape `[points]` [m].
     pub change: Vec<[Row; 3]>,
+    /// What the solve knows of contact, shape `[points]`; see `press::scratch`.
+    pub contacts: Vec<[Row; press::scratch::ROWS]>,
     /// Inverse masses; 0 for driven points, held points and the padding.
     pub inverse_mass: Vec<Row>,
 }
@@ -26,6 +28,7 @@ impl Scratch {
             self.kick.resize(points, [Row::default(); 3]);
             self.change.resize(points, [Row::default(); 3]);
             self.x.resize(points, [Row::default(); 3]);
+            self.contacts.resize(points, [Row::default(); press::scratch::ROWS]);
             self.inverse_mass.resize(points, Row::default());
         }
     }

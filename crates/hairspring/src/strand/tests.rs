@@ -289,6 +289,7 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
             moved: root.position,
             root,
             second_order: false,
+            obstacles: &[],
             stretching: Stretching::Moderate,
         };
         scratch.reserve(n);

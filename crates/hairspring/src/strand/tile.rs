@@ -16,8 +16,10 @@ pub mod state {
     pub const TENSION: usize = 6;
     /// The frame's normal on the segment from this point to the next, 3 rows.
     pub const NORMAL: usize = 7;
+    /// Force with which a collider holds this point out, found by the last substep; 0 without contact [N].
+    pub const PRESS: usize = 10;
     /// Rows a point.
-    pub const ROWS: usize = 10;
+    pub const ROWS: usize = 11;
 }
 
 /// Rows of the rest shape a point.

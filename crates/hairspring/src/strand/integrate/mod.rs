@@ -51,12 +51,14 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
             root,
             moved,
             second_order,
+            obstacles: &substep.obstacles,
             stretching: Stretching::Moderate,
         };
-        let mut finish = Finish { h: interval.h, limit: LIMIT, second_order, kick: None };
+        let mut finish = Finish { h: interval.h, limit: LIMIT, press: 0.0, second_order, kick: None };
         match interval.integrator {
             Integrator::BackwardEuler | Integrator::Bdf2 => {
                 implicit::advance(simd, interval, &step, tile, scratch);
+                finish.press = step.inertia() / (step.h * step.h);
             }
             Integrator::ExplicitEuler | Integrator::Verlet => {
                 step.stretching = Stretching::Fibre;

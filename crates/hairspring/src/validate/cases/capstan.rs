@@ -38,15 +38,17 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 0, from: 0.05, to: 0.6, log: false },
 };
 
-/// The smaller load, in weights of the strand: what is left of two loads moves the strand at once.
-const LOAD: f64 = 1.0;
+/// The greater load, in weights of the strand: what is left of two loads moves the strand at once.
+const LOAD: f64 = 3.0;
 
-/// Frames in which loads and contacts settle, and frames in which it is then watched.
+/// Frames in which equal loads and contacts settle, in which one load is then eased, and in which the strand has both. Unequal from the
+/// start, they would throw it into a slide that is over before anyone watches.
 const SETTLING: u32 = 30;
-const WATCHED: u32 = 60;
+const EASING: u32 = 60;
+const WATCHED: u32 = 120;
 
-/// A load that sank by so much of a segment has slipped.
-const SLIPPED: f64 = 0.5;
+/// A load that sank by so many segments has slipped. What is held creeps, by less.
+const SLIPPED: f64 = 2.0;
 
 /// Whether the strand slips. It hangs over a level cylinder, and nothing weighs but the loads: the smaller one at its tip, the greater one
 /// at a point before the cylinder. From there to the root it is slack.
@@ -80,18 +82,23 @@ fn slides(mu: f64, ratio: f64, method: Method) -> Result<bool, Failure> {
     let axis = Vec3::Z * LENGTH as f32;
     setup.obstacle = Some(Obstacle::Capsule { a: -axis, b: axis, radius: radius as f32 });
     let mut specimen = Specimen::new(setup, method);
-    let weight = LOAD * LINE_DENSITY * LENGTH * GRAVITY;
+    let greater = LOAD * LINE_DENSITY * LENGTH * GRAVITY;
     let pull = |point: usize, load: f64| {
         let force = Vec3::NEG_Y * load as f32;
         Hold { point: point as u32, force, ..Hold::default() }
     };
-    specimen.hold(&[pull(slack, weight * ratio), pull(n - 1, weight)]);
+    let hang = |specimen: &mut Specimen, smaller: f64| {
+        specimen.hold(&[pull(slack, greater), pull(n - 1, smaller)]);
+    };
+    hang(&mut specimen, greater);
     let height = |specimen: &Specimen| specimen.points()[slack].y as f64;
     for _ in 0..SETTLING {
         specimen.frame()?;
     }
     let start = height(&specimen);
-    for _ in 0..WATCHED {
+    for frame in 1..=EASING + WATCHED {
+        let eased = (frame as f64 / EASING as f64).min(1.0);
+        hang(&mut specimen, greater * (1.0 + (1.0 / ratio - 1.0) * eased));
         specimen.frame()?;
         if start - height(&specimen) > SLIPPED * l {
             return Ok(true);

@@ -1,0 +1,105 @@
+//! Contact inside the solve: a point that a collider holds out is pressed there, and rubs, while the strand moves as a whole.
+//!
+//! ```text
+//!   N ← max(0, N − k (g + n·δ))       g the gap [m], n the normal, δ what the solve moves the point by, k = STRETCH m/h²
+//! ```
+//!
+//! The normal force N is carried from substep to substep like a segment's tension (an augmented Lagrangian, Alart & Curnier 1991, *A
+//! Mixed Formulation for Frictional Contact Problems*), so that tension, weight and N are in balance in one solve. Were contact
+//! only what [`super::limit`] makes of it, a taut strand over a cylinder would sink in and be pushed out again in every
+//! substep, from root to tip: half a millimetre along the surface each time, which ran it off toward its root.
+//!
+//! Friction is −μN s/|s| of the slide s along the surface, with |s| of the substep before (the lagged secant of Li et al. 2020,
+//! *Incremental Potential Contact*, §5, for one step): what slides slower from substep to substep comes to a stop, what is
+//! pulled harder than μN gathers speed. The secant is no stiffer than k: a strand at rest creeps by up to μN/k a substep (μ times
+//! 0.1 mm/s under its own weight, at four substeps), which is as little as positions in f32 can tell.
+//!
+//! Only points with N > 0 take part. It begins in `limit`, with the push that a point needed.
+
+use super::{
+    assemble::Step,
+    band::Band,
+    lanes::{F, Row, Sym3, V3, load, store},
+    model::stretch::STRETCH,
+    root::Root,
+    tile::{Tile, rest, state},
+};
+use crate::collide::{contact, surface_displacement};
+use fearless_simd::prelude::*;
+
+/// Rows of scratch a point, written where any of the eight is in contact.
+pub mod scratch {
+    /// Outward normal, 3 rows.
+    pub const NORMAL: usize = 0;
+    /// Gap before the solve, negative inside [m].
+    pub const GAP: usize = 3;
+    /// Rows a point.
+    pub const ROWS: usize = 4;
+}
+
+/// Adds contact to point `i`, the second of the band's window, which is at `x`.
+#[inline(always)]
+pub fn press<S: Simd, const B: usize, const N: usize>(
+    simd: S,
+    step: &Step<S>,
+    tile: &mut Tile,
+    (i, x): (usize, &[Row; 3]),
+    band: &mut Band<S, B, N>,
+    work: &mut [Row; scratch::ROWS],
+) {
+    let zero = F::<S>::splat(simd, 0.0);
+    let force = load(simd, &tile.state[i][state::PRESS]);
+    if !force.simd_gt(0.0).any_true() {
+        return;
+    }
+    let x = V3::load(simd, x);
+    let world = x + step.root.position;
+    // The surface that is nearest, and how far it moves here.
+    let (mut gap, mut normal, mut carried) = (F::splat(simd, f32::MAX), V3::zero(simd), V3::zero(simd));
+    for pose in step.obstacles {
+        let (distance, n) = contact(simd, pose, world);
+        let nearest = distance.simd_lt(gap);
+        gap = nearest.select(distance, gap);
+        normal = V3::select(nearest, n, normal);
+        carried = V3::select(nearest, surface_displacement(simd, pose, world), carried);
+    }
+    gap -= load(simd, &tile.rest[i][rest::CLEARANCE]);
+
+    // Shut while N could close the gap in a substep; what has gone farther is let go.
+    let m_h2 = load(simd, &tile.rest[i][rest::MASS]) * (1.0 / (step.h * step.h));
+    let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
+    let force = shut.select(force, zero);
+    gap = shut.select(gap, zero);
+    normal = V3::select(shut, normal, V3::zero(simd));
+    store(force, &mut tile.state[i][state::PRESS]);
+    normal.store(&mut work[scratch::NORMAL..]);
+    store(gap, &mut work[scratch::GAP]);
+
+    let along = |v: V3<S>| v - normal * normal.dot(v);
+    let k = shut.select(m_h2 * STRETCH, zero);
+    let before = V3::load(simd, &tile.state[i][state::V..]) * F::splat(simd, step.h);
+    let (slid, _) = along(before - carried).length_and_unit();
+    let rub = (Root::<S>::fibre(simd, tile.strand).2 * force / slid).min(k);
+    let way = x - V3::load(simd, &tile.state[i][state::X..]) + step.moved;
+    band.add_diagonal(1, Sym3::outer(normal, k - rub).add_identity(rub));
+    band.add_force(1, normal * (force - k * gap) - along(way - carried) * rub);
+}
+
+/// The force that presses point `i` once the solve has moved it by `delta`.
+#[inline(always)]
+pub fn relieve<S: Simd>(
+    simd: S,
+    step: &Step<S>,
+    tile: &mut Tile,
+    (i, delta): (usize, V3<S>),
+    work: &[Row; scratch::ROWS],
+) {
+    let force = load(simd, &tile.state[i][state::PRESS]);
+    let shut = force.simd_gt(0.0);
+    if !shut.any_true() {
+        return;
+    }
+    let k = load(simd, &tile.rest[i][rest::MASS]) * (STRETCH / (step.h * step.h));
+    let gap = load(simd, &work[scratch::GAP]) + V3::load(simd, &work[scratch::NORMAL..]).dot(delta);
+    store(shut.select((force - k * gap).max(0.0), force), &mut tile.state[i][state::PRESS]);
+}
