@@ -1,6 +1,6 @@
 //! What a simulation is judged by: stretch, depth inside colliders, non-finite values.
 
-use super::{MovingObstacle, Simulation, build::simulated_points};
+use super::{MovingObstacle, Simulation};
 use crate::strand::{
     lanes::LANES,
     tile::{rest, state},
@@ -55,9 +55,7 @@ impl Simulation {
         let (mut sum, mut segments) = (0.0, 0);
         let root = self.root_position(place);
         let n = self.simulated_points(place);
-        let model = self.tiles[place / LANES].model;
-        let stride = model.stride();
-        let authored = simulated_points(model, self.groom.strand(self.lanes[place] as usize));
+        let stride = self.tiles[place / LANES].model.stride();
         for i in 0..n {
             let (x, v) = (self.vector(place, i, state::X), self.vector(place, i, state::V));
             out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
@@ -65,13 +63,13 @@ impl Simulation {
             // The segments that are drawn, whatever else a model puts between their points.
             if i % stride == 0 && i + stride < n {
                 let next = self.vector(place, i + stride, state::X);
-                let length = authored[i].distance(authored[i + stride]) as f64;
+                let length = self.rest(place, i, rest::LENGTH) as f64;
                 let strain = ((next.as_dvec3() - x.as_dvec3()).length() / length - 1.0).abs();
                 sum += strain;
                 segments += 1;
                 out.stretch_max = out.stretch_max.max(strain);
             }
-            if i >= 2 {
+            if i % stride == 0 && i >= 2 * stride {
                 let clearance = self.rest(place, i, rest::CLEARANCE);
                 let depth = poses
                     .iter()

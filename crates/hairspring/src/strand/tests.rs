@@ -1,10 +1,10 @@
 //! The kernel's pieces, each held against scalar f64.
 
 use super::{
-    assemble::{Step, Stretching, Sweep, assemble, substitute},
+    assemble::{Step, Sweep, assemble, substitute},
     band::{Band, back_substitute, factor_rows},
     lanes::{F, LANES, Row, V3},
-    model::{Curvature, Rod, Springs, bend::bend, springs::altitude},
+    model::{Curvature, Rod, Springs, Stretching, bend::bend, springs::altitude},
     reference::{self, dense_solve},
     root::Root,
     scratch::Scratch,
