@@ -17,17 +17,22 @@
 
 use super::{
     lanes::{F, V3},
+    model::springs::PROGRESSIVE,
     rest_shape::{Fibre, RestPoint, RestShape, rest_shape},
 };
 use fearless_simd::prelude::*;
 use glam::{DMat3, DVec3, Vec3};
 
-/// How far an extra particle is set aside over the length of its segment, ε [1]. The farther, the less the springs' levers change as a joint
-/// bends (at 0.9 a joint gives way at 0.45 rad, at 1.5 at 0.6), and the more digits single precision has for bending.
+/// How far an extra particle is set aside over the length of its segment, ε [1]. The farther, the more digits single precision has for
+/// bending, and the less the springs' levers change as a joint bends (see `springs`, whose law is for this one).
 const ASIDE: f64 = 1.5;
 
+/// On which side of the frame's normal and binormal, by turns, the extra particles are [1]: each side as often as the other, and as many left
+/// turns as right. Always to the right, a loaded curl would wind itself up.
+const SIDES: [f64; 8] = [1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0, -1.0];
+
 /// Share of a segment's mass in its extra particle [1]: it is no mass of the fibre's, and out of line with it.
-const EXTRA: f64 = 1.0 / 128.0;
+const EXTRA: f64 = 1.0 / 1024.0;
 
 /// Least ε²/C − ¼(1/B₀ + 1/B₁) over 1/B [1]: a round fibre that resists twist more (GJ/EI above 4) gets what the truss can.
 const LEAST_TWISTING: f64 = 0.05;
@@ -42,7 +47,7 @@ const LEAST_LEVER: f64 = 0.5;
 /// Largest relative change of a spring's rest length at the sag-free start [1]; beyond it the spring is stiffened.
 const LARGEST_STRAIN: f64 = 0.2;
 
-/// The particles of a strand: its points, and one beside the middle of each segment, a quarter turn after the last. Shape `[2 points − 1]`.
+/// The particles of a strand: its points, and one beside the middle of each segment, a quarter turn from the last. Shape `[2 points − 1]`.
 pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
     let mut out = Vec::with_capacity(2 * points.len() - 1);
     let mut normal = DVec3::ZERO;
@@ -58,7 +63,8 @@ pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
             (normal - (before + t) * scale).normalize_or(normal)
         };
         before = t;
-        let aside = [normal, t.cross(normal), -normal, -t.cross(normal)][k % 4];
+        let binormal = t.cross(normal);
+        let aside = if k % 2 == 0 { normal } else { binormal } * SIDES[k % 8];
         out.push(w[0]);
         out.push((0.5 * (a + b) + aside * (ASIDE * a.distance(b))).as_vec3());
     }
@@ -94,7 +100,8 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     for j in 1..points.len() - 1 {
         let lengths = [strand.points[j - 1].length, strand.points[j].length];
         let shorter = lengths[0].min(lengths[1]);
-        let stiffest = fibre.stiffest(strand.points[j].mass) * shorter * shorter / BRACED;
+        let braced = BRACED * (1.0 + fibre.flat);
+        let stiffest = fibre.stiffest(strand.points[j].mass) * shorter * shorter / braced;
         let bend = strand.points[j].bend.min(stiffest);
         // A flat fibre bends harder toward its frame's normal, where every other extra particle is.
         let harder = [j - 1, j].map(|segment| if segment % 2 == 0 { 1.0 + fibre.flat } else { 1.0 });
@@ -112,7 +119,7 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         rest[e0].bend = bend / twisting.max(LEAST_TWISTING) / straight(e0, e1).powi(2);
         rest[e0].turn.x = x[e0].distance(x[e1]);
         for (point, length) in [p0, p1].into_iter().zip(lengths) {
-            rest[point].bend = rest[point].bend.max(BRACED * bend / (length * length));
+            rest[point].bend = rest[point].bend.max(braced * bend / (length * length));
         }
     }
     rest[0].normal = strand.points[0].normal;
@@ -127,23 +134,36 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
                 pull[k - j - 1] -= towards[j] * tension[j];
             }
             rest[k - 1].normal.x = tension[0];
-            let mut spring = |tension: f64, length: f64, stiffness: &mut f64| {
+            let mut stiff_enough = |tension: f64, length: f64, stiffness: &mut f64| {
                 let needed = tension.abs() / (LARGEST_STRAIN * length);
                 if needed > *stiffness {
                     *stiffness = needed;
                     stiffened += 1;
                 }
-                length - tension / stiffness.max(f64::MIN_POSITIVE)
+                tension / stiffness.max(f64::MIN_POSITIVE)
             };
-            rest[k - 3].turn.y = spring(tension[2], way[2].length(), &mut rest[k - 3].twist);
+            let longer = stiff_enough(tension[2], way[2].length(), &mut rest[k - 3].twist);
+            rest[k - 3].turn.y = way[2].length() - progressive(longer, way[2].length());
             if k % 2 == 0 {
                 rest[k - 2].tension = tension[1];
             } else {
-                rest[k - 2].turn.x = spring(tension[1], way[1].length(), &mut rest[k - 2].bend);
+                rest[k - 2].turn.x =
+                    way[1].length() - stiff_enough(tension[1], way[1].length(), &mut rest[k - 2].bend);
             }
         }
     }
     RestShape { points: rest, stiffened }
+}
+
+/// How much longer than at rest a torsion spring is that is `length` long under a tension that would lengthen a linear one by `linear` [m]; see
+/// `springs`.
+fn progressive(linear: f64, length: f64) -> f64 {
+    let mut longer = linear;
+    for _ in 0..40 {
+        let x = (longer / (length - longer)).clamp(-PROGRESSIVE as f64, PROGRESSIVE as f64);
+        longer += 0.5 * (linear / (1.0 + x * (3.0 + 12.0 * x)) - longer);
+    }
+    longer
 }
 
 /// An extra particle at `p`, put where its triangle over a segment between `ends` of rest length `length` has it.

@@ -54,14 +54,17 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
         let pull = k.mul_add(l - load(simd, &tile.rest[i | 1][springs::SIDES]), tension);
         add_spring(band, 1, u * pull, Sym3::outer(u, k));
 
-        // From a point, the particle after the next is the strand's next point: that spring is the segment's.
-        let joint = [(2, springs::L2, springs::K2), (3, springs::L3, springs::K3)];
-        for (far, length, stiffness) in joint.into_iter().skip(1 - i % 2) {
-            let k = load(simd, &rest[stiffness]);
-            let (l, u) = (p[far] - p[0]).length_and_unit();
-            let force = u * (k * (l - load(simd, &rest[length])));
-            add_spring(band, far, force, Sym3::outer(u, k * at.damped));
+        if i % 2 == 1 {
+            let k = load(simd, &rest[springs::K2]);
+            let (l, u) = (p[2] - p[0]).length_and_unit();
+            let force = u * (k * (l - load(simd, &rest[springs::L2])));
+            add_spring(band, 2, force, Sym3::outer(u, k * at.damped));
         }
+        let (k, length) = (load(simd, &rest[springs::K3]), load(simd, &rest[springs::L3]));
+        let (l, u) = (p[3] - p[0]).length_and_unit();
+        let strain = (l - length) / length.max(1e-12);
+        let [secant, tangent] = progressive(simd, strain);
+        add_spring(band, 3, u * (k * secant * (l - length)), Sym3::outer(u, k * tangent * at.damped));
         add_altitude(simd, at, p, rest, band);
     }
 
@@ -73,6 +76,21 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
         let row = &mut tile.state[i][springs::SIDE];
         store(load(simd, row) + taken, row);
     }
+}
+
+/// Largest strain at which a torsion spring's stiffness still changes [1].
+pub const PROGRESSIVE: f32 = 0.25;
+
+/// Secant and tangent stiffness of a torsion spring under `strain` x, over that at rest [1]: 1 + 3x + 12x², and its force's derivative.
+///
+/// Its two arms on the joint, from a point and from an extra particle beside a middle, are rigid; turned by φ about it, the spring's lever
+/// shortens on one side and grows on the other. With F = k (ℓ − L)(1 + 3x + 12x²) its moment is B φ to third order (for ε = 3/2, where the
+/// series has these numbers): a linear spring would let a joint go at 0.5 rad.
+#[inline(always)]
+fn progressive<S: Simd>(simd: S, strain: F<S>) -> [F<S>; 2] {
+    let one = F::<S>::splat(simd, 1.0);
+    let x = strain.max(-PROGRESSIVE).min(PROGRESSIVE);
+    [x.mul_add(x * 12.0 + 3.0, one), x.mul_add(x * 36.0 + 6.0, one)]
 }
 
 /// Adds a spring between the window's first particle, on which it acts with `force`, and the one `far` after it.
