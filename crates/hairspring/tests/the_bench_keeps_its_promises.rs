@@ -16,20 +16,20 @@ use std::sync::Arc;
 
 #[test]
 fn the_standard_scene_stays_within_its_bounds() {
-    let bench = standard_scene(Material::default(), 600, 300);
+    let bench = standard_scene(Material::default(), 600, 5e-4);
     let bytes = bench.simulation.bytes() as f64 / bench.simulation.point_count() as f64;
     assert!(bytes < 120.0, "{bytes} bytes a point");
 }
 
-/// Other models keep all but the bytes: an extra particle beside each segment has its own.
+/// With springs, all but the bytes (an extra particle beside each segment has its own), and twice the mean.
 #[test]
 fn so_does_the_standard_scene_of_springs() {
-    standard_scene(Material { model: Model::Springs, ..Material::default() }, 200, 300);
+    standard_scene(Material { model: Model::Springs, ..Material::default() }, 200, 1e-3);
 }
 
-fn standard_scene(material: Material, strands: u32, frames: u32) -> Bench {
+fn standard_scene(material: Material, strands: u32, mean: f64) -> Bench {
     let mut bench = Bench::of(strands, 32, material, Solver::default());
-    for frame in 0..frames {
+    for frame in 0..300 {
         let report = bench.step();
         assert_eq!(report.reset_strands, 0, "a strand turned non-finite in frame {frame}");
         let m = bench.measure();
@@ -38,7 +38,7 @@ fn standard_scene(material: Material, strands: u32, frames: u32) -> Bench {
         assert_eq!(m.non_finite, 0);
     }
     let end = bench.measure();
-    assert!(end.stretch_mean < 5e-4, "mean stretch {}", end.stretch_mean);
+    assert!(end.stretch_mean < mean, "mean stretch {}", end.stretch_mean);
     assert!(end.speed_max > 0.5, "the hair moves: {} m/s", end.speed_max);
     bench
 }
@@ -112,7 +112,6 @@ fn shaken(material: Material, gravity: f32, motion: impl Fn(u32) -> (f32, Rigid)
         Rigid::default(),
         &[],
     );
-    let mut bad = Vec::new();
     for frame in 0..360 {
         let (dt, pose) = motion(frame);
         let pose = Rigid { translation: pose.translation + root, rotation: pose.rotation };
@@ -123,17 +122,7 @@ fn shaken(material: Material, gravity: f32, motion: impl Fn(u32) -> (f32, Rigid)
             obstacles: &[],
             air: Air::default(),
         });
-        if report.reset_strands > 0 {
-            bad.push((frame, report.reset_strands));
-        }
-    }
-    if !bad.is_empty() {
-        println!(
-            "BAD {:?} bend {} g {gravity}: {:?}",
-            material.model,
-            material.bend,
-            &bad[..bad.len().min(4)]
-        );
+        assert_eq!(report.reset_strands, 0, "{:?}, bend {}, frame {frame}", material.model, material.bend);
     }
     simulation
 }

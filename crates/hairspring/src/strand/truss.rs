@@ -39,7 +39,7 @@ const LEAST_TWISTING: f64 = 0.05;
 
 /// How much stiffer than the joints the triangles are in the matrix, over B/L² [1]: softer ones bend in the joints' stead, and a
 /// cantilever of Γ = 1 falls apart.
-const BRACED: f64 = 30.0;
+const BRACED: f64 = 8.0;
 
 /// Least lever of a spring on its joint over that in a straight strand [1].
 const LEAST_LEVER: f64 = 0.5;

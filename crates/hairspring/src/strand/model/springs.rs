@@ -19,7 +19,7 @@ use crate::strand::{
     band::Band,
     lanes::{F, Row, Sym3, V3, load, store},
     root::Root,
-    tile::{Tile, springs},
+    tile::{Tile, springs, strand},
 };
 use fearless_simd::{mask32x8, prelude::*};
 
@@ -36,7 +36,8 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
 
     #[inline(always)]
     fn along(simd: S, stretching: Stretching, h: f32, tile: &Tile, point: usize) -> F<S> {
-        stretching.stiffness(simd, h, tile, point) + load(simd, &tile.rest[point][springs::BRACE])
+        let damped = load(simd, &tile.strand[strand::DAMPING]) * (1.0 / h) + 1.0;
+        stretching.stiffness(simd, h, tile, point) + load(simd, &tile.rest[point][springs::BRACE]) * damped
     }
 
     #[inline(always)]
