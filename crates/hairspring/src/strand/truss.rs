@@ -17,7 +17,7 @@
 
 use super::{
     lanes::{F, V3},
-    model::springs::PROGRESSIVE,
+    model::springs::{BEND, Progressive, TORSION},
     rest_shape::{Fibre, RestPoint, RestShape, rest_shape},
 };
 use fearless_simd::prelude::*;
@@ -34,12 +34,13 @@ const SIDES: [f64; 8] = [1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0, -1.0];
 /// Share of a segment's mass in its extra particle [1]: it is no mass of the fibre's, and out of line with it.
 const EXTRA: f64 = 1.0 / 1024.0;
 
-/// Least ε²/C − ¼(1/B₀ + 1/B₁) over 1/B [1]: a round fibre that resists twist more (GJ/EI above 4) gets what the truss can.
-const LEAST_TWISTING: f64 = 0.05;
+/// Bounds of ε²/C − ¼(1/B₀ + 1/B₁) over 1/B [1]: a round fibre with GJ/EI above 4 or below 0.3 gets what the truss can. A joint that twists too
+/// easily turns its springs' levers away from the bend, and folds.
+const TWISTING: (f64, f64) = (0.05, 7.0);
 
 /// How much stiffer than the joints the triangles are in the matrix, over B/L² [1]: softer ones bend in the joints' stead, and a
-/// cantilever of Γ = 1 falls apart.
-const BRACED: f64 = 8.0;
+/// cantilever falls apart. The least, and what is enough for all that single precision has digits for.
+const BRACED: [f64; 2] = [8.0, 30.0];
 
 /// Least lever of a spring on its joint over that in a straight strand [1].
 const LEAST_LEVER: f64 = 0.5;
@@ -100,11 +101,11 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     for j in 1..points.len() - 1 {
         let lengths = [strand.points[j - 1].length, strand.points[j].length];
         let shorter = lengths[0].min(lengths[1]);
-        let braced = BRACED * (1.0 + fibre.flat);
-        let stiffest = fibre.stiffest(strand.points[j].mass) * shorter * shorter / braced;
-        let bend = strand.points[j].bend.min(stiffest);
+        let stiffest = fibre.stiffest(strand.points[j].mass);
+        let hardest = 1.0 + fibre.flat;
+        let bend = strand.points[j].bend.min(stiffest * shorter * shorter / (BRACED[0] * hardest));
         // A flat fibre bends harder toward its frame's normal, where every other extra particle is.
-        let harder = [j - 1, j].map(|segment| if segment % 2 == 0 { 1.0 + fibre.flat } else { 1.0 });
+        let harder = [j - 1, j].map(|segment| if segment % 2 == 0 { hardest } else { 1.0 });
         let easier = 0.25 * (1.0 / harder[0] + 1.0 / harder[1]);
         let twisting = fibre.twist_ratio.map_or(0.0, |ratio| ASIDE * ASIDE / ratio - easier);
         let (p0, e0, p1, e1, p2) = (2 * j - 2, 2 * j - 1, 2 * j, 2 * j + 1, 2 * j + 2);
@@ -116,10 +117,11 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         };
         rest[p0].twist = bend * harder[1] / lever(p0, e1).powi(2);
         rest[e0].twist = bend * harder[0] / lever(e0, p2).powi(2);
-        rest[e0].bend = bend / twisting.max(LEAST_TWISTING) / straight(e0, e1).powi(2);
+        rest[e0].bend = bend / twisting.clamp(TWISTING.0, TWISTING.1) / straight(e0, e1).powi(2);
         rest[e0].turn.x = x[e0].distance(x[e1]);
         for (point, length) in [p0, p1].into_iter().zip(lengths) {
-            rest[point].bend = rest[point].bend.max(braced * bend / (length * length));
+            let brace = (BRACED[1] * hardest * bend / (length * length)).min(stiffest);
+            rest[point].bend = rest[point].bend.max(brace);
         }
     }
     rest[0].normal = strand.points[0].normal;
@@ -134,36 +136,24 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
                 pull[k - j - 1] -= towards[j] * tension[j];
             }
             rest[k - 1].normal.x = tension[0];
-            let mut stiff_enough = |tension: f64, length: f64, stiffness: &mut f64| {
-                let needed = tension.abs() / (LARGEST_STRAIN * length);
+            let mut rest_length = |j: usize, stiffness: &mut f64, law: Progressive| {
+                let length = way[j].length();
+                let needed = tension[j].abs() / (LARGEST_STRAIN * length);
                 if needed > *stiffness {
                     *stiffness = needed;
                     stiffened += 1;
                 }
-                tension / stiffness.max(f64::MIN_POSITIVE)
+                length - law.lengthened(tension[j] / stiffness.max(f64::MIN_POSITIVE), length)
             };
-            let longer = stiff_enough(tension[2], way[2].length(), &mut rest[k - 3].twist);
-            rest[k - 3].turn.y = way[2].length() - progressive(longer, way[2].length());
+            rest[k - 3].turn.y = rest_length(2, &mut rest[k - 3].twist, TORSION);
             if k % 2 == 0 {
                 rest[k - 2].tension = tension[1];
             } else {
-                rest[k - 2].turn.x =
-                    way[1].length() - stiff_enough(tension[1], way[1].length(), &mut rest[k - 2].bend);
+                rest[k - 2].turn.x = rest_length(1, &mut rest[k - 2].bend, BEND);
             }
         }
     }
     RestShape { points: rest, stiffened }
-}
-
-/// How much longer than at rest a torsion spring is that is `length` long under a tension that would lengthen a linear one by `linear` [m]; see
-/// `springs`.
-fn progressive(linear: f64, length: f64) -> f64 {
-    let mut longer = linear;
-    for _ in 0..40 {
-        let x = (longer / (length - longer)).clamp(-PROGRESSIVE as f64, PROGRESSIVE as f64);
-        longer += 0.5 * (linear / (1.0 + x * (3.0 + 12.0 * x)) - longer);
-    }
-    longer
 }
 
 /// An extra particle at `p`, put where its triangle over a segment between `ends` of rest length `length` has it.

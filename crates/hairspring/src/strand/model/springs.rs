@@ -55,17 +55,15 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
         let pull = k.mul_add(l - load(simd, &tile.rest[i | 1][springs::SIDES]), tension);
         add_spring(band, 1, u * pull, Sym3::outer(u, k));
 
-        if i % 2 == 1 {
-            let k = load(simd, &rest[springs::K2]);
-            let (l, u) = (p[2] - p[0]).length_and_unit();
-            let force = u * (k * (l - load(simd, &rest[springs::L2])));
-            add_spring(band, 2, force, Sym3::outer(u, k * at.damped));
+        // From a point, the particle after the next is the strand's next point: that spring is the segment's.
+        let joint = [(2, springs::L2, springs::K2, BEND), (3, springs::L3, springs::K3, TORSION)];
+        for (far, length, stiffness, law) in joint.into_iter().skip(1 - i % 2) {
+            let (k, length) = (load(simd, &rest[stiffness]), load(simd, &rest[length]));
+            let (l, u) = (p[far] - p[0]).length_and_unit();
+            let [secant, tangent] = law.stiffness(simd, (l - length) / length.max(1e-12));
+            let force = u * (k * secant * (l - length));
+            add_spring(band, far, force, Sym3::outer(u, k * tangent * at.damped));
         }
-        let (k, length) = (load(simd, &rest[springs::K3]), load(simd, &rest[springs::L3]));
-        let (l, u) = (p[3] - p[0]).length_and_unit();
-        let strain = (l - length) / length.max(1e-12);
-        let [secant, tangent] = progressive(simd, strain);
-        add_spring(band, 3, u * (k * secant * (l - length)), Sym3::outer(u, k * tangent * at.damped));
         add_altitude(simd, at, p, rest, band);
     }
 
@@ -79,19 +77,43 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
     }
 }
 
-/// Largest strain at which a torsion spring's stiffness still changes [1].
-pub const PROGRESSIVE: f32 = 0.25;
-
-/// Secant and tangent stiffness of a torsion spring under `strain` x, over that at rest [1]: 1 + 3x + 12x², and its force's derivative.
+/// How a spring grows stiffer with its strain x: F = k (ℓ − L)(1 + ax + bx²).
 ///
-/// Its two arms on the joint, from a point and from an extra particle beside a middle, are rigid; turned by φ about it, the spring's lever
-/// shortens on one side and grows on the other. With F = k (ℓ − L)(1 + 3x + 12x²) its moment is B φ to third order (for ε = 3/2, where the
-/// series has these numbers): a linear spring would let a joint go at 0.5 rad.
-#[inline(always)]
-fn progressive<S: Simd>(simd: S, strain: F<S>) -> [F<S>; 2] {
-    let one = F::<S>::splat(simd, 1.0);
-    let x = strain.max(-PROGRESSIVE).min(PROGRESSIVE);
-    [x.mul_add(x * 12.0 + 3.0, one), x.mul_add(x * 36.0 + 6.0, one)]
+/// A spring's two arms on its joint are rigid; turned by φ, its lever shortens on one side and grows on the other. With these numbers, which
+/// are the series for ε = 3/2 (see `truss`), its moment is linear in φ to third order. Linear springs let a joint go at a bend of 0.5 rad.
+pub struct Progressive {
+    a: f32,
+    b: f32,
+}
+
+/// Of the springs between extra particles, for a joint that twists.
+pub const BEND: Progressive = Progressive { a: 1.5, b: 4.5 };
+
+/// Of the springs from points to extra particles, for a joint that bends.
+pub const TORSION: Progressive = Progressive { a: 3.0, b: 12.0 };
+
+impl Progressive {
+    /// Largest strain at which the stiffness still changes [1].
+    const LARGEST: f32 = 0.35;
+
+    /// Secant and tangent stiffness under `strain`, over that at rest [1].
+    #[inline(always)]
+    fn stiffness<S: Simd>(&self, simd: S, strain: F<S>) -> [F<S>; 2] {
+        let one = F::<S>::splat(simd, 1.0);
+        let x = strain.max(-Self::LARGEST).min(Self::LARGEST);
+        let poly = |a: f32, b: f32| x.mul_add(x * b + a, one);
+        [poly(self.a, self.b), poly(2.0 * self.a, 3.0 * self.b)]
+    }
+
+    /// How much longer than at rest a spring is that is `length` long under a tension that would lengthen a linear one by `linear` [m].
+    pub fn lengthened(&self, linear: f64, length: f64) -> f64 {
+        let mut longer = linear;
+        for _ in 0..40 {
+            let x = (longer / (length - longer)).clamp(-Self::LARGEST as f64, Self::LARGEST as f64);
+            longer += 0.5 * (linear / (1.0 + x * (self.a as f64 + x * self.b as f64)) - longer);
+        }
+        longer
+    }
 }
 
 /// Adds a spring between the window's first particle, on which it acts with `force`, and the one `far` after it.
