@@ -45,6 +45,9 @@ const BRACED: [f64; 2] = [8.0, 30.0];
 /// Least lever of a spring on its joint over that in a straight strand [1].
 const LEAST_LEVER: f64 = 0.5;
 
+/// Largest turn of a joint out of its natural one at the sag-free start [rad]: less than a rod may have, because a truss folds sooner.
+const LARGEST_SAG: f64 = 0.15;
+
 /// Largest relative change of a spring's rest length at the sag-free start [1]; beyond it the spring is stiffened.
 const LARGEST_STRAIN: f64 = 0.2;
 
@@ -103,7 +106,12 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let shorter = lengths[0].min(lengths[1]);
         let stiffest = fibre.stiffest(strand.points[j].mass);
         let hardest = 1.0 + fibre.flat;
-        let bend = strand.points[j].bend.min(stiffest * shorter * shorter / (BRACED[0] * hardest));
+        let (before, at) = (&strand.points[j - 1], &strand.points[j]);
+        let t = [2 * j, 2 * j + 2].map(|k| (x[k] - x[k - 2]).normalize_or_zero());
+        let natural = before.normal * at.turn.x + t[0].cross(before.normal) * at.turn.y + t[0] * at.turn.z;
+        let sag = (t[1] - t[0] - natural).length();
+        let bend = at.bend * (sag / LARGEST_SAG).max(1.0);
+        let bend = bend.min(stiffest * shorter * shorter / (BRACED[0] * hardest));
         // A flat fibre bends harder toward its frame's normal, where every other extra particle is.
         let harder = [j - 1, j].map(|segment| if segment % 2 == 0 { hardest } else { 1.0 });
         let easier = 0.25 * (1.0 / harder[0] + 1.0 / harder[1]);
