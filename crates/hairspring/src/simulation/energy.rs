@@ -5,7 +5,10 @@ use crate::{
     scene::Integrator,
     strand::{
         lanes::LANES,
-        model::stretch::STRETCH,
+        model::{
+            springs::{BEND, Progressive, TORSION},
+            stretch::STRETCH,
+        },
         tile::{Elastic, rest, springs, state, strand},
     },
 };
@@ -20,7 +23,7 @@ pub struct Energy {
     pub kinetic: f64,
     /// −m g·x of the points, against the origin of the world.
     pub gravitational: f64,
-    /// ½ k (ℓ − L)² of the springs model's springs; ½ B |r|² of the joints, and ½ ΔB (m·r)² of flat fibres (see `strand/model/bend.rs`, `rod.rs`).
+    /// Of the springs model's springs; ½ B |r|² of the joints, and ½ ΔB (m·r)² of flat fibres (see `strand/model/bend.rs`, `rod.rs`).
     pub bending: f64,
     /// ½ GJ/L̄ (τ − τ⁰)² of the joints; of the rod model.
     pub twisting: f64,
@@ -159,14 +162,15 @@ impl Simulation {
     /// Adds the bend and torsion springs between particles `way` apart. The triangles are rigid, the altitude springs slack.
     fn add_springs(&self, place: usize, way: &dyn Fn(usize, usize) -> DVec3, energy: &mut Energy) {
         let n = self.simulated_points(place);
-        let mut spring = |i: usize, far: usize, stiffness: usize, length: usize| {
-            let longer = way(i, i + far).length() - self.rest(place, i, length) as f64;
-            energy.bending += 0.5 * self.rest(place, i, stiffness) as f64 * longer * longer;
+        let mut spring = |i: usize, far: usize, (stiffness, length): (usize, usize), law: Progressive| {
+            let rest = self.rest(place, i, length) as f64;
+            let stretched = law.pull(way(i, i + far).length() - rest, rest).1;
+            energy.bending += self.rest(place, i, stiffness) as f64 * stretched;
         };
         for i in 0..n - 3 {
-            spring(i, 3, springs::K3, springs::L3);
+            spring(i, 3, (springs::K3, springs::L3), TORSION);
             if i % 2 == 1 {
-                spring(i, 2, springs::K2, springs::L2);
+                spring(i, 2, (springs::K2, springs::L2), BEND);
             }
         }
     }

@@ -204,7 +204,7 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
         if i + 1 < n {
             M::take(simd, &solved, tile);
         }
-        if i % M::STRIDE == 0 && i + M::STRIDE < n {
+        if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
             let length = load(simd, &tile.rest[i][rest::LENGTH]);
             let k = M::along(simd, step.stretching, step.h, tile, i);
             let row = &mut tile.state[i][state::TENSION];
@@ -262,7 +262,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let next = self.at.i + 1;
         let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
-        if next % M::STRIDE != 0 {
+        if !next.is_multiple_of(M::STRIDE) {
             self.model.add(simd, &self.at, x, tile, &mut self.band);
             return Segment { u: self.at.u[1], mass, drag: self.drag };
         }

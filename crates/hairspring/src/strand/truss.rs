@@ -25,7 +25,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 /// How far an extra particle is set aside over the length of its segment, ε [1]. The farther, the more digits single precision has for
 /// bending, and the less the springs' levers change as a joint bends (see `springs`, whose law is for this one).
-const ASIDE: f64 = 1.5;
+pub const ASIDE: f64 = 1.5;
 
 /// On which side of the frame's normal and binormal, by turns, the extra particles are [1]: each side as often as the other, and as many left
 /// turns as right. Always to the right, a loaded curl would wind itself up.

@@ -105,6 +105,13 @@ impl Progressive {
         [poly(self.a, self.b), poly(2.0 * self.a, 3.0 * self.b)]
     }
 
+    /// Force and energy of a spring of linear stiffness 1 and rest length `rest` that is longer by `longer` [m], [m²].
+    pub fn pull(&self, longer: f64, rest: f64) -> (f64, f64) {
+        let (a, b) = (self.a as f64, self.b as f64);
+        let x = longer / rest;
+        (longer * (1.0 + x * (a + x * b)), longer * longer * (0.5 + x * (a / 3.0 + x * b / 4.0)))
+    }
+
     /// How much longer than at rest a spring is that is `length` long under a tension that would lengthen a linear one by `linear` [m].
     pub fn lengthened(&self, linear: f64, length: f64) -> f64 {
         let mut longer = linear;
