@@ -293,6 +293,13 @@ fn print_table(outcomes: &[Outcome]) {
     }
     let passed = outcomes.iter().filter(|o| o.pass()).count();
     say(format_args!("{passed} of {} pass", outcomes.len()));
+    // Why, once a case.
+    let mut reasons: Vec<(&str, &str)> =
+        outcomes.iter().filter_map(|o| Some((o.case, o.reason()?))).collect();
+    reasons.dedup();
+    for (case, reason) in reasons {
+        say(format_args!("{case}: {reason}"));
+    }
 }
 
 /// An outcome in the words of the table.

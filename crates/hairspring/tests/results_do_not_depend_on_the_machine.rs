@@ -8,7 +8,7 @@
 use glam::Vec3;
 use hairspring::{
     collide::{Obstacle, Rigid},
-    material::Material,
+    material::{Material, Model},
     scene::{
         Guides, Solver,
         bench::{self, Bench},
@@ -19,7 +19,7 @@ use hairspring::{
 };
 use std::sync::Arc;
 
-fn bench(threads: usize) -> Vec<Vec3> {
+fn shaken(threads: usize) -> Vec<Vec3> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
         let mut bench = Bench::new(333, 20, Solver::default());
@@ -32,9 +32,9 @@ fn bench(threads: usize) -> Vec<Vec3> {
 
 #[test]
 fn threads_do_not_show_in_the_simulation() {
-    let one = bench(1);
-    assert!(one == bench(2), "two threads give other bits than one");
-    assert!(one == bench(7), "seven threads give other bits than one");
+    let one = shaken(1);
+    assert!(one == shaken(2), "two threads give other bits than one");
+    assert!(one == shaken(7), "seven threads give other bits than one");
 }
 
 #[test]
@@ -105,10 +105,53 @@ fn neighbours_do_not_show_in_contact() {
     }
 }
 
+/// Strands that share a tile do not show in each other, whatever branch one of them takes.
+#[test]
+fn neighbours_do_not_show() {
+    let groom = Arc::new(bench::groom(8, 20));
+    for model in Model::ALL {
+        let run = |strands: &[u32]| {
+            let material = Material { model, ..Material::default() };
+            let solver = Solver { sag_free: false, ..Solver::default() };
+            let gravity = Vec3::NEG_Y * 9.81;
+            let mut simulation =
+                Simulation::new(groom.clone(), strands, &[material], solver, gravity, Rigid::default(), &[]);
+            let root = |s: &u32| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() };
+            let roots: Vec<Rigid> = strands.iter().map(root).collect();
+            for frame in 0..60 {
+                let anchor =
+                    Rigid { translation: Vec3::X * (0.05 * (frame as f32).sin()), ..Rigid::default() };
+                simulation.step(&Drive {
+                    dt: 1.0 / 60.0,
+                    anchor,
+                    roots: &roots,
+                    obstacles: &[],
+                    air: Air::default(),
+                });
+            }
+            let mut points = vec![Vec3::ZERO; simulation.point_count()];
+            simulation.write_points(&mut points);
+            points
+        };
+        let all = run(&[0, 1, 2, 3, 4, 5, 6, 7]);
+        for s in 0..8 {
+            assert!(
+                run(&[s])[..] == all[groom.range(s as usize)],
+                "{model:?}: strand {s} alone has other bits"
+            );
+        }
+    }
+}
+
 #[test]
 fn instruction_sets_agree() {
+    Model::ALL.into_iter().for_each(instruction_sets_agree_for);
+}
+
+fn instruction_sets_agree_for(model: Model) {
+    let material = || Material { model, ..Material::default() };
     let run = |set: &str| {
-        let mut bench = Bench::new(64, 20, Solver::default());
+        let mut bench = Bench::of(64, 20, material(), Solver::default());
         if !bench.simulation.use_instruction_set(set) {
             println!("skipped {set}: this processor has none");
             return None;
@@ -125,8 +168,11 @@ fn instruction_sets_agree() {
             let mut apart: Vec<f32> = points.iter().zip(&reference).map(|(a, b)| a.distance(*b)).collect();
             apart.sort_by(f32::total_cmp);
             let median = apart[apart.len() / 2];
-            println!("{set} and {best}: median distance {median} m, worst {}", apart[apart.len() - 1]);
-            assert!(median < 2e-5, "{set} and {best} differ by {median} m in the median");
+            println!(
+                "{model:?}, {set} and {best}: median distance {median} m, worst {}",
+                apart[apart.len() - 1]
+            );
+            assert!(median < 2e-5, "{model:?}: {set} and {best} differ by {median} m in the median");
         }
     }
 }

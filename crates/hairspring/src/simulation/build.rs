@@ -145,9 +145,7 @@ impl Simulation {
                     let scale = groom.scale(s);
                     let points = simulated_points(model, groom.strand(s));
                     let own = &groom.radii[groom.range(s)];
-                    let radii: Vec<f32> = (0..points.len())
-                        .map(|i| material.radius.unwrap_or(own[i / model.stride()]))
-                        .collect();
+                    let radii: Vec<f32> = own.iter().map(|own| material.radius.unwrap_or(*own)).collect();
                     let section = Section::new(material);
                     let fibre = Fibre {
                         radii: &radii,
@@ -156,7 +154,7 @@ impl Simulation {
                         tip: material.bend_tip as f64,
                         flat: section.flat as f64,
                         substep: super::step::substep_length(&solver),
-                        twist_ratio: (model == Elastic::Rod).then_some(section.twist_ratio as f64),
+                        twist_ratio: (model != Elastic::Curvature).then_some(section.twist_ratio as f64),
                     };
                     let shape = match model {
                         Elastic::Springs => truss(&points, &fibre, gravity),

@@ -5,8 +5,11 @@ use crate::{
     scene::Integrator,
     strand::{
         lanes::LANES,
-        model::stretch::STRETCH,
-        tile::{Elastic, rest, state, strand},
+        model::{
+            springs::{BEND, Progressive, TORSION},
+            stretch::STRETCH,
+        },
+        tile::{Elastic, rest, springs, state, strand},
     },
 };
 use glam::{DVec3, Quat};
@@ -20,7 +23,7 @@ pub struct Energy {
     pub kinetic: f64,
     /// −m g·x of the points, against the origin of the world.
     pub gravitational: f64,
-    /// ½ B |r|² of the joints, and ½ ΔB (m·r)² of flat fibres (see `strand/model/bend.rs`, `rod.rs`).
+    /// Of the springs model's springs; ½ B |r|² of the joints, and ½ ΔB (m·r)² of flat fibres (see `strand/model/bend.rs`, `rod.rs`).
     pub bending: f64,
     /// ½ GJ/L̄ (τ − τ⁰)² of the joints; of the rod model.
     pub twisting: f64,
@@ -81,10 +84,14 @@ impl Simulation {
         let gravity = self.settings.gravity.as_dvec3();
         let down = gravity.normalize_or_zero();
         let fall = |place: usize| {
-            let mut at = self.vector(place, 1, state::X).as_dvec3();
+            let stride = self.tiles[place / LANES].model.stride();
+            let mut at = self.vector(place, stride, state::X).as_dvec3();
             let mut energy = 0.0;
-            for i in 2..self.points(place) {
-                at += down * self.rest(place, i - 1, rest::LENGTH) as f64;
+            for i in stride + 1..self.simulated_points(place) {
+                // An extra particle falls to its segment's middle.
+                let from = (i - 1) / stride * stride;
+                let step = down * (self.rest(place, from, rest::LENGTH) as f64 / stride as f64);
+                at += step;
                 let way = at - self.vector(place, i, state::X).as_dvec3();
                 energy += self.rest(place, i, rest::MASS) as f64 * gravity.dot(way);
             }
@@ -107,9 +114,10 @@ impl Simulation {
     fn strand_energy(&self, place: usize) -> Energy {
         let gravity = self.settings.gravity.as_dvec3();
         let root = self.root_position(place).as_dvec3();
-        let n = self.points(place);
+        let (tile, n) = (place / LANES, self.simulated_points(place));
+        let stride = self.tiles[tile].model.stride();
         let mut energy = Energy::default();
-        for i in 2..n {
+        for i in stride + 1..n {
             let mass = self.rest(place, i, rest::MASS) as f64;
             let v = self.vector(place, i, state::V).as_dvec3();
             energy.kinetic += 0.5 * mass * v.length_squared();
@@ -129,22 +137,42 @@ impl Simulation {
         }
         // Tension is a force there; the direct solver's is a multiplier, which does no work on a segment that keeps its length.
         let pulls = !matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2);
-        let tile = place / LANES;
         let axial = self.strand[tile][strand::AXIAL].0[place % LANES] as f64;
-        let e = |i: usize| (self.vector(place, i + 1, state::X) - self.vector(place, i, state::X)).as_dvec3();
-        for i in 1..n - 1 {
+        let way = |i: usize, j: usize| {
+            (self.vector(place, j, state::X) - self.vector(place, i, state::X)).as_dvec3()
+        };
+        for i in (stride..n - 1).step_by(stride) {
             let length = self.rest(place, i, rest::LENGTH) as f64;
             let k = match spring {
                 Spring::None => 0.0,
                 Spring::Fibre => axial / length,
                 Spring::PerMass(rate) => self.rest(place, i, rest::MASS) as f64 * rate,
             };
-            let longer = e(i).length() - length;
+            let longer = way(i, i + stride).length() - length;
             let tension = if pulls { self.tension(place, i) as f64 } else { 0.0 };
             energy.stretching += longer * (tension + 0.5 * k * longer);
         }
-        self.add_joints(place, self.tiles[tile].model, &e, &mut energy);
+        match self.tiles[tile].model {
+            Elastic::Springs => self.add_springs(place, &way, &mut energy),
+            model => self.add_joints(place, model, &|i| way(i, i + 1), &mut energy),
+        }
         energy
+    }
+
+    /// Adds the bend and torsion springs between particles `way` apart. The triangles are rigid, the altitude springs slack.
+    fn add_springs(&self, place: usize, way: &dyn Fn(usize, usize) -> DVec3, energy: &mut Energy) {
+        let n = self.simulated_points(place);
+        let mut spring = |i: usize, far: usize, (stiffness, length): (usize, usize), law: Progressive| {
+            let rest = self.rest(place, i, length) as f64;
+            let stretched = law.pull(way(i, i + far).length() - rest, rest).1;
+            energy.bending += self.rest(place, i, stiffness) as f64 * stretched;
+        };
+        for i in 0..n - 3 {
+            spring(i, 3, (springs::K3, springs::L3), TORSION);
+            if i % 2 == 1 {
+                spring(i, 2, (springs::K2, springs::L2), BEND);
+            }
+        }
     }
 
     /// Adds bending and twisting of the joints between segments `e`, whose frames are carried as the kernel carries them.

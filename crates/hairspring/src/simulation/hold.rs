@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::strand::{
     lanes::{LANES, Row},
-    tile::{HoldRows, hold},
+    tile::{Elastic, HoldRows, hold, state},
 };
 use glam::Vec3;
 
@@ -18,8 +18,8 @@ pub struct Hold {
     pub target: Option<Vec3>,
     /// Force on it [N].
     pub force: Vec3,
-    /// Whether the frame of the segment from this point keeps its twist (rod model). With the segment's two points held, the strand is
-    /// clamped there.
+    /// Whether the frame of the segment from this point keeps its twist (models that twist). With the segment's two points held, the strand
+    /// is clamped there.
     pub clamped: bool,
 }
 
@@ -51,7 +51,37 @@ impl Simulation {
             }
             rows[hold::PINNED].0[lane] = if held.target.is_some() { 1.0 } else { 0.0 };
             rows[hold::CLAMPED].0[lane] = if held.clamped { 1.0 } else { 0.0 };
+            let next = |h: &&Hold| h.strand == held.strand && h.point == held.point + 1;
+            let end = holds.iter().find(next).and_then(|h| h.target);
+            if let (Elastic::Springs, true, Some(start), Some(end)) =
+                (self.tiles[place / LANES].model, held.clamped, held.target, end)
+            {
+                self.hold_extra(place, point, [start, end]);
+            }
         }
         self.holds.iter_mut().for_each(|tile| tile.sort_by_key(|h| h.point));
+    }
+    /// Holds the extra particle after particle `point` of the springs model, over its segment between `ends`, where it is around it.
+    fn hold_extra(&mut self, place: usize, point: u32, ends: [Vec3; 2]) {
+        let at = |i: u32| self.vector(place, (point + i) as usize, state::X);
+        let (tile, lane) = (place / LANES, place % LANES);
+        let aside = at(1) - 0.5 * (at(0) + at(2));
+        let along = (ends[1] - ends[0]).normalize_or_zero();
+        let across = aside.reject_from(along).normalize_or_zero() * aside.length();
+        let target = 0.5 * (ends[0] + ends[1]) + across;
+        let mut rows = [Row::default(); hold::ROWS];
+        for k in 0..3 {
+            rows[hold::TARGET + k].0[lane] = target[k];
+        }
+        rows[hold::PINNED].0[lane] = 1.0;
+        let extra = point + 1;
+        match self.holds[tile].iter_mut().find(|h| h.point == extra) {
+            None => self.holds[tile].push(HoldRows { point: extra, rows }),
+            Some(held) => {
+                for (row, new) in held.rows.iter_mut().zip(rows) {
+                    row.0[lane] = new.0[lane];
+                }
+            }
+        }
     }
 }

@@ -1,7 +1,10 @@
 //! What a simulation is judged by: stretch, depth inside colliders, non-finite values.
 
 use super::{MovingObstacle, Simulation};
-use crate::strand::tile::{rest, state};
+use crate::strand::{
+    lanes::LANES,
+    tile::{rest, state},
+};
 use rayon::prelude::*;
 
 /// Figures over all simulated points at the end of a step.
@@ -52,19 +55,21 @@ impl Simulation {
         let (mut sum, mut segments) = (0.0, 0);
         let root = self.root_position(place);
         let n = self.simulated_points(place);
+        let stride = self.tiles[place / LANES].model.stride();
         for i in 0..n {
             let (x, v) = (self.vector(place, i, state::X), self.vector(place, i, state::V));
             out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
             out.speed_max = out.speed_max.max(v.length() as f64);
-            if i + 1 < n {
-                let next = self.vector(place, i + 1, state::X);
+            // The segments that are drawn, whatever else a model puts between their points.
+            if i % stride == 0 && i + stride < n {
+                let next = self.vector(place, i + stride, state::X);
                 let length = self.rest(place, i, rest::LENGTH) as f64;
                 let strain = ((next.as_dvec3() - x.as_dvec3()).length() / length - 1.0).abs();
                 sum += strain;
                 segments += 1;
                 out.stretch_max = out.stretch_max.max(strain);
             }
-            if i >= 2 {
+            if i % stride == 0 && i >= 2 * stride {
                 let clearance = self.rest(place, i, rest::CLEARANCE);
                 let depth = poses
                     .iter()

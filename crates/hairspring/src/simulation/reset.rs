@@ -3,7 +3,7 @@
 use super::{Simulation, build::simulated_points};
 use crate::strand::{
     lanes::LANES,
-    tile::{StateRows, state, strand},
+    tile::{Elastic, StateRows, springs, state, strand},
 };
 use glam::{Quat, Vec3};
 
@@ -44,6 +44,7 @@ impl Simulation {
         let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
         let points = simulated_points(self.tiles[tile].model, self.groom.strand(self.lanes[place] as usize))
             .into_owned();
+        let springs = self.tiles[tile].model == Elastic::Springs;
         for i in 0..self.tiles[tile].points as usize {
             let p: Vec3 = turn * (points[i.min(points.len() - 1)] - points[0]);
             let at = self.tiles[tile].first as usize + i;
@@ -52,9 +53,12 @@ impl Simulation {
             }
             let rows = &mut self.state[at];
             // A finite tension is kept: it is what holds the rest shape.
-            let tension = rows[state::TENSION].0[lane];
-            rows.iter_mut().for_each(|r| r.0[lane] = 0.0);
-            rows[state::TENSION].0[lane] = if tension.is_finite() { tension } else { 0.0 };
+            let kept: &[usize] = if springs { &[state::TENSION, springs::SIDE] } else { &[state::TENSION] };
+            for (k, row) in rows.iter_mut().enumerate() {
+                if !kept.contains(&k) || !row.0[lane].is_finite() {
+                    row.0[lane] = 0.0;
+                }
+            }
             for (row, x) in rows[state::X..].iter_mut().zip(p.to_array()) {
                 row.0[lane] = x;
             }

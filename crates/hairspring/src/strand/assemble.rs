@@ -15,13 +15,13 @@ use super::{
     band::{Band, back_substitute, factor_rows},
     lanes::{F, Row, Sym3, V3, load, store},
     model::{
-        At, Model,
-        stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2, STRETCH, stretch},
+        At, Model, Solved, Stretching,
+        stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2, stretch},
     },
     press::{press, relieve},
     root::Root,
     scratch::Scratch,
-    tile::{Tile, history, hold, rest, state, strand},
+    tile::{Tile, history, hold, rest, state},
 };
 use crate::collide::ObstaclePose;
 use fearless_simd::prelude::*;
@@ -46,15 +46,6 @@ pub struct Step<'a, S: Simd> {
     pub obstacles: &'a [ObstaclePose],
     /// What holds the segments' lengths.
     pub stretching: Stretching,
-}
-
-/// Stiffness of the segments' springs.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Stretching {
-    /// As stiff as one linearised solve bears; projection does the rest (see `stretch`).
-    Moderate,
-    /// The fibre's own, EA/L.
-    Fibre,
 }
 
 impl<S: Simd> Step<'_, S> {
@@ -203,39 +194,47 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
 {
     let zero = V3::zero(simd);
     let n = tile.rest.len();
-    let mut unknowns = [F::<S>::splat(simd, 0.0); N];
-    let (mut next, mut outer) = (zero, zero);
+    let mut solved = Solved {
+        i: n,
+        x: [zero; 3],
+        moved: [zero; 3],
+        unknowns: [F::<S>::splat(simd, 0.0); N],
+        h: step.h,
+        stretching: step.stretching,
+    };
     for i in (1..n).rev() {
         let x = V3::load(simd, &scratch.x[i]);
         let mut delta = zero;
         if i >= M::DRIVEN || B > 3 {
-            back_substitute::<S, B, N>(simd, &scratch.factors[i * factor_rows(B, N)..], &mut unknowns);
+            back_substitute::<S, B, N>(simd, &scratch.factors[i * factor_rows(B, N)..], &mut solved.unknowns);
         }
         if i >= M::DRIVEN {
+            let unknowns = &solved.unknowns;
             delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
             (x + delta).store(&mut scratch.x[i]);
             relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
         }
+        solved.i = i;
+        solved.x = [x, solved.x[0], solved.x[1]];
+        solved.moved = [delta, solved.moved[0], solved.moved[1]];
         if i + 1 < n {
-            let (l, u) = (outer - x).length_and_unit();
-            M::take(simd, i, u, &unknowns, tile);
-            // The tension that the spring of this segment took in the solve: k (ℓ − L + û·(δ_{i+1} − δ_i)).
-            let at = &tile.rest[i];
-            let length = load(simd, &at[rest::LENGTH]);
-            let k = load(simd, &at[rest::MASS]) * (STRETCH / (step.h * step.h));
+            M::take(simd, &solved, tile);
+        }
+        if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
+            let length = load(simd, &tile.rest[i][rest::LENGTH]);
+            let k = M::along(simd, step.stretching, step.h, tile, i);
             let row = &mut tile.state[i][state::TENSION];
-            let tension = load(simd, row) + k * (l - length + u.dot(next - delta));
+            let tension = load(simd, row) + solved.taken(M::STRIDE, length, k);
             store(length.simd_gt(0.0).select(tension, F::splat(simd, 0.0)), row);
         }
-        (next, outer) = (delta, x);
     }
 }
 
-/// What the assembly says of segment i+1 and the point at its start.
+/// What the assembly says of the point after the walk's.
 pub struct Segment<S: Simd> {
-    /// Its unit vector.
+    /// Unit vector of the strand's segment from it.
     pub u: V3<S>,
-    /// Mass of point i+1 [kg].
+    /// Its mass [kg].
     pub mass: F<S>,
     /// Rate at which still air stops the fibre [1/s].
     pub drag: F<S>,
@@ -247,6 +246,7 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
     pub band: Band<S, B, N>,
     model: M,
     at: At<S>,
+    /// The strand's next point.
     x1: V3<S>,
     drag: F<S>,
 }
@@ -256,7 +256,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     #[inline(always)]
     pub fn begin(simd: S, step: &Step<S>, tile: &Tile, x: &[[Row; 3]]) -> Self {
         let (drag, damping, _) = Root::<S>::fibre(simd, tile.strand);
-        let first = V3::load(simd, &x[1]);
+        let first = V3::load(simd, &x[M::STRIDE]);
         let inverse = F::splat(simd, 1.0) / load(simd, &tile.rest[0][rest::LENGTH]).max(1e-12);
         let at = At {
             i: usize::MAX,
@@ -265,22 +265,28 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             inverse_length: [inverse; 2],
             damped: damping * (1.0 / step.h) + 1.0,
             h: step.h,
+            stretching: step.stretching,
         };
         Self { band: Band::new(simd), model: M::begin(simd, tile, &step.root), at, x1: first, drag }
     }
 
-    /// Adds what begins at the next point i: the model's elements and the stretch of segment i+1.
+    /// Adds what begins at the next point i: the model's elements, and the stretch of the strand's segment from point i+1.
     #[inline(always)]
     pub fn add(&mut self, simd: S, step: &Step<S>, tile: &mut Tile, x: &[[Row; 3]]) -> Segment<S> {
         let nought = F::<S>::splat(simd, 0.0);
-        let at = &mut self.at;
-        at.i = at.i.wrapping_add(1);
-        let i = at.i;
-        let row = &tile.rest[i + 1];
-        let length = load(simd, &row[rest::LENGTH]);
+        self.at.i = self.at.i.wrapping_add(1);
+        let next = self.at.i + 1;
+        let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
+        if !next.is_multiple_of(M::STRIDE) {
+            self.model.add(simd, &self.at, x, tile, &mut self.band);
+            return Segment { u: self.at.u[1], mass, drag: self.drag };
+        }
+        let at = &mut self.at;
+        let length = load(simd, &row[rest::LENGTH]);
         let real = length.simd_gt(0.0);
-        let x2 = if i + 2 < tile.rest.len() { V3::load(simd, &x[i + 2]) } else { self.x1 };
+        let far = next + M::STRIDE;
+        let x2 = if far < tile.rest.len() { V3::load(simd, &x[far]) } else { self.x1 };
         let e = x2 - self.x1;
         let (l, u) = e.length_and_unit();
         let u = V3::select(real, u, V3::zero(simd));
@@ -290,18 +296,14 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             [at.inverse_length[1], real.select(F::splat(simd, 1.0) / length.max(1e-12), nought)];
         self.model.add(simd, at, x, tile, &mut self.band);
 
-        let k = match step.stretching {
-            Stretching::Moderate => mass * (STRETCH / (step.h * step.h)),
-            Stretching::Fibre => load(simd, &tile.strand[strand::AXIAL]) * at.inverse_length[1],
-        };
-        let k = real.select(k, nought);
-        let tension = load(simd, &tile.state[i + 1][state::TENSION]);
+        let k = M::along(simd, step.stretching, step.h, tile, next);
+        let tension = load(simd, &tile.state[next][state::TENSION]);
         let (force, block) = stretch((l, u), length, k, tension, step.explicit_tension());
         self.band.add_diagonal(1, block);
-        self.band.add_diagonal(2, block);
-        self.band.add_block(1, 2, &-block.full());
+        self.band.add_diagonal(1 + M::STRIDE, block);
+        self.band.add_block(1, 1 + M::STRIDE, &-block.full());
         self.band.add_force(1, force);
-        self.band.add_force(2, -force);
+        self.band.add_force(1 + M::STRIDE, -force);
         self.x1 = x2;
         Segment { u, mass, drag: self.drag }
     }

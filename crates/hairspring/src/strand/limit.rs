@@ -10,6 +10,7 @@ use super::{
     lanes::{F, Row, V3, load, store},
     root::Root,
     tile::{Tile, history, rest, state},
+    truss::beside,
 };
 use crate::collide::{contact, surface_displacement};
 use fearless_simd::prelude::*;
@@ -35,9 +36,10 @@ pub const LIMIT: f32 = 0.01;
 /// collider's radius.
 const CORRECTIONS: usize = 2;
 
-/// Applies strain limit and contact to the new positions `x` of shape `[points]`, and writes state.
+/// Applies strain limit and contact to the new positions `x` of shape `[points]`, of which every `STRIDE`th is the strand's, and
+/// writes state.
 #[inline(always)]
-pub fn limit<S: Simd>(
+pub fn limit<S: Simd, const STRIDE: usize>(
     simd: S,
     finish: &Finish,
     substep: &Substep,
@@ -49,24 +51,19 @@ pub fn limit<S: Simd>(
     let inv_h = F::<S>::splat(simd, 1.0 / finish.h);
     let tolerance = finish.limit;
     let friction = Root::<S>::fibre(simd, tile.strand).2;
-    let zero = V3::zero(simd);
-    let mut before = root.first;
-    // The root itself.
-    zero.store(&mut tile.state[0][state::X..state::X + 3]);
-    (moved * inv_h).store(&mut tile.state[0][state::V..state::V + 3]);
-    {
-        let first = &mut tile.state[1];
-        root.first.store(&mut first[state::X..state::X + 3]);
-        (moved * inv_h).store(&mut first[state::V..state::V + 3]);
+    // The root itself, and what it drives.
+    for (at, driven) in tile.state.iter_mut().zip(x).take(STRIDE + 1) {
+        V3::load(simd, driven).store(&mut at[state::X..state::X + 3]);
+        (moved * inv_h).store(&mut at[state::V..state::V + 3]);
     }
-    for (i, target) in x.iter().enumerate().take(tile.rest.len()).skip(2) {
-        let length = load(simd, &tile.rest[i - 1][rest::LENGTH]);
+    let mut before = V3::load(simd, &x[STRIDE]);
+    for i in (2 * STRIDE..tile.rest.len()).step_by(STRIDE) {
+        let length = load(simd, &tile.rest[i - STRIDE][rest::LENGTH]);
         let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
         let old = V3::load(simd, &tile.state[i][state::X..]);
-        let mut p = V3::load(simd, target);
-        let target = p;
+        let target = V3::load(simd, &x[i]);
         let mut press = load(simd, &tile.state[i][state::PRESS]);
-        p = clamp(p, before, length, tolerance);
+        let mut p = clamp(target, before, length, tolerance);
         for pose in &substep.obstacles {
             let world = p + root.position;
             let (distance, normal) = contact(simd, pose, world);
@@ -98,24 +95,40 @@ pub fn limit<S: Simd>(
         let free = load(simd, &inverse_mass[i]).simd_gt(0.0);
         p = V3::select(free, p, target);
         store(free.select(press, F::splat(simd, 0.0)), &mut tile.state[i][state::PRESS]);
-        let way = p - old + moved;
-        let mut v = way * inv_h;
-        if let Some(kick) = finish.kick {
-            v += V3::load(simd, &kick[i]);
-        }
-        if let Some(history) = tile.history.get_mut(i) {
-            if finish.second_order {
-                let before = V3::load(simd, &history[history::WAY..]);
-                v += (way - before) * (inv_h * 0.5);
+        if STRIDE == 2 {
+            // An extra particle meets nothing and weighs next to nothing: it goes where its triangle puts it.
+            let mut extra = V3::load(simd, &x[i - 1]);
+            if tolerance.is_finite() {
+                let free = load(simd, &inverse_mass[i - 1]).simd_gt(0.0);
+                extra = V3::select(free, beside(simd, extra, [before, p], length), extra);
             }
-            V3::load(simd, &tile.state[i][state::V..]).store(&mut history[history::V..]);
-            way.store(&mut history[history::WAY..]);
+            write(simd, finish, i - 1, extra, moved, tile);
         }
-        let at = &mut tile.state[i];
-        v.store(&mut at[state::V..state::V + 3]);
-        p.store(&mut at[state::X..state::X + 3]);
+        write(simd, finish, i, p, moved, tile);
         before = p;
     }
+}
+
+/// Writes the new position `p` of point `i` and its velocity.
+#[inline(always)]
+fn write<S: Simd>(simd: S, finish: &Finish, i: usize, p: V3<S>, moved: V3<S>, tile: &mut Tile) {
+    let inv_h = F::<S>::splat(simd, 1.0 / finish.h);
+    let way = p - V3::load(simd, &tile.state[i][state::X..]) + moved;
+    let mut v = way * inv_h;
+    if let Some(kick) = finish.kick {
+        v += V3::load(simd, &kick[i]);
+    }
+    if let Some(history) = tile.history.get_mut(i) {
+        if finish.second_order {
+            let before = V3::load(simd, &history[history::WAY..]);
+            v += (way - before) * (inv_h * 0.5);
+        }
+        V3::load(simd, &tile.state[i][state::V..]).store(&mut history[history::V..]);
+        way.store(&mut history[history::WAY..]);
+    }
+    let at = &mut tile.state[i];
+    v.store(&mut at[state::V..state::V + 3]);
+    p.store(&mut at[state::X..state::X + 3]);
 }
 
 /// `p` swung about `before` until it is `depth` farther out along `normal`: for a flat surface both its length and the surface hold

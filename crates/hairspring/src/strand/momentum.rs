@@ -2,9 +2,9 @@
 //! spring, which all models share, is the gradient of its energy.
 
 use super::{
-    assemble::{Elements, Step, Stretching},
+    assemble::{Elements, Step},
     lanes::{F, LANES, Row},
-    model::{Curvature, Model, Rod, Springs, stretch::stretch},
+    model::{Curvature, Model, Rod, Springs, Stretching, stretch::stretch},
     reference,
     root::Root,
     tests::{lane, rows, splat, vector},

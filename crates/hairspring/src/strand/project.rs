@@ -9,7 +9,7 @@ use super::{
 };
 use fearless_simd::prelude::*;
 
-/// Rows of scratch a point.
+/// Rows of scratch a segment.
 pub mod scratch {
     /// Unit vector of the segment, 3 rows.
     pub const U: usize = 0;
@@ -17,17 +17,17 @@ pub mod scratch {
     pub const C: usize = 3;
     /// λ without the next.
     pub const D: usize = 4;
-    /// Rows a point.
+    /// Rows a segment.
     pub const ROWS: usize = 5;
 }
 
 /// Relative length error below which no further iteration is made [1].
 const ENOUGH: f32 = 1e-4;
 
-/// One iteration over `x` of shape `[points]`; false once the lengths were already right. λ times `force`
-/// (a/h² of the integrator) goes into the tension.
+/// One iteration over `x` of shape `[points]`, of which every `STRIDE`th is the strand's; false once the lengths were already right. λ times
+/// `force` (a/h² of the integrator) goes into the tension.
 #[inline(always)]
-pub fn project<S: Simd>(
+pub fn project<S: Simd, const STRIDE: usize>(
     simd: S,
     force: f32,
     tile: &mut Tile,
@@ -36,18 +36,19 @@ pub fn project<S: Simd>(
     work: &mut [Row],
 ) -> bool {
     let zero = F::<S>::splat(simd, 0.0);
-    let points = tile.rest.len();
-    let mut here = V3::load(simd, &x[1]);
+    let segments = (tile.rest.len() - 1) / STRIDE;
+    let mut here = V3::load(simd, &x[STRIDE]);
     let mut before = V3::zero(simd);
     let (mut d_before, mut inv_before) = (zero, zero);
     let mut worst = zero;
     let mut w0 = zero;
-    for i in 1..points - 1 {
-        let next = V3::load(simd, &x[i + 1]);
+    for k in 1..segments {
+        let i = k * STRIDE;
+        let next = V3::load(simd, &x[i + STRIDE]);
         let length = load(simd, &tile.rest[i][rest::LENGTH]);
         let real = length.simd_gt(0.0);
         let (l, u) = (next - here).length_and_unit();
-        let w1 = load(simd, &inverse_mass[i + 1]);
+        let w1 = load(simd, &inverse_mass[i + STRIDE]);
         // Nothing to do between two points that are held.
         let real = real & (w0 + w1).simd_gt(0.0);
         let u = V3::select(real, u, V3::zero(simd));
@@ -56,12 +57,12 @@ pub fn project<S: Simd>(
         // Row i: −w0 (û·û₋) λ₋ + (w0 + w1) λ − w1 (û·û₊) λ₊ = ℓ − L
         let coupling = w0 * before.dot(u);
         let c_before = coupling * inv_before;
-        if i > 1 {
-            store(c_before, &mut work[(i - 1) * scratch::ROWS + scratch::C]);
+        if k > 1 {
+            store(c_before, &mut work[(k - 1) * scratch::ROWS + scratch::C]);
         }
         let inv = F::splat(simd, 1.0) / (-coupling).mul_add(c_before, w0 + w1).max(1e-30);
         let d = coupling.mul_add(d_before, error) * inv;
-        let out = &mut work[i * scratch::ROWS..];
+        let out = &mut work[k * scratch::ROWS..];
         u.store(&mut out[scratch::U..]);
         store(d, &mut out[scratch::D]);
         (before, d_before, inv_before, w0, here) = (u, d, inv, w1, next);
@@ -73,16 +74,17 @@ pub fn project<S: Simd>(
     }
     // Up: λ_i = d_i + c_i λ_{i+1};  Δx_{i+1} = −w (û_i λ_i − û_{i+1} λ_{i+1})
     let (mut lambda, mut pull) = (zero, V3::zero(simd));
-    for i in (1..points - 1).rev() {
-        let at = &work[i * scratch::ROWS..];
+    for k in (1..segments).rev() {
+        let i = k * STRIDE;
+        let at = &work[k * scratch::ROWS..];
         let u = V3::load(simd, &at[scratch::U..]);
         let d = load(simd, &at[scratch::D]);
-        lambda = if i + 2 < points { load(simd, &at[scratch::C]).mul_add(lambda, d) } else { d };
+        lambda = if k + 1 < segments { load(simd, &at[scratch::C]).mul_add(lambda, d) } else { d };
         lambda = active.select(lambda, zero);
         let own = u * lambda;
-        let w1 = load(simd, &inverse_mass[i + 1]);
-        let p = V3::load(simd, &x[i + 1]);
-        (p + (pull - own) * w1).store(&mut x[i + 1]);
+        let w1 = load(simd, &inverse_mass[i + STRIDE]);
+        let p = V3::load(simd, &x[i + STRIDE]);
+        (p + (pull - own) * w1).store(&mut x[i + STRIDE]);
         let tension = &mut tile.state[i][state::TENSION];
         store(lambda.mul_add(force, load(simd, tension)), tension);
         pull = own;

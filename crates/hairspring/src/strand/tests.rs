@@ -1,14 +1,19 @@
 //! The kernel's pieces, each held against scalar f64.
 
 use super::{
-    assemble::{Step, Stretching, Sweep, assemble, substitute},
+    assemble::{Step, Sweep, assemble, substitute},
     band::{Band, back_substitute, factor_rows},
     lanes::{F, LANES, Row, V3},
-    model::{Curvature, Rod, Springs, bend::bend, springs::altitude},
+    model::{
+        Curvature, Rod, Springs, Stretching,
+        bend::bend,
+        springs::{BEND, TORSION, altitude},
+    },
     reference::{self, dense_solve},
     root::Root,
     scratch::Scratch,
     tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
+    truss::ASIDE,
 };
 use fearless_simd::{Level, dispatch, prelude::*};
 use glam::{DVec3, Mat3, Vec3};
@@ -317,5 +322,27 @@ fn solve_once<S: Simd>(simd: S, step: &Step<S>, tile: &mut Tile, scratch: &mut S
             assemble::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
             substitute::<S, Springs, 3, 12>(simd, step, tile, scratch);
         }
+    }
+}
+
+/// The springs' laws make up for their levers: a joint that bends or twists by φ resists by B φ or C φ.
+#[test]
+fn a_joint_of_springs_is_linear() {
+    // Bending: arms to p₂ and to e₀ with the angle θ₀ + φ between them. Twisting: e₀ and e₁ a quarter turn + φ apart, a segment's length along.
+    let arm = (0.25 + ASIDE * ASIDE).sqrt();
+    let start = std::f64::consts::PI - (2.0 * ASIDE).atan();
+    let bend = |phi: f64| (1.0 + arm * arm - 2.0 * arm * (start + phi).cos()).sqrt();
+    let twist = |phi: f64| (1.0 + 2.0 * ASIDE * ASIDE * (1.0 + phi.sin())).sqrt();
+    for (law, length) in [(TORSION, &bend as &dyn Fn(f64) -> f64), (BEND, &twist)] {
+        let rest = length(0.0);
+        let energy = |phi: f64| law.pull(length(phi) - rest, rest).1;
+        let moment = |phi: f64| (energy(phi + 1e-4) - energy(phi - 1e-4)) / 2e-4;
+        let stiffness = moment(1e-3) / 1e-3;
+        for phi in [-0.3, -0.15, 0.15, 0.3] {
+            let error = (moment(phi) / (stiffness * phi) - 1.0).abs();
+            assert!(error < 0.07 * (phi / 0.3f64).abs().powi(2), "{error} at {phi}");
+        }
+        let pulled = law.lengthened(law.pull(0.1, rest).0, rest + 0.1);
+        assert!((pulled - 0.1).abs() < 1e-9, "{pulled}");
     }
 }

@@ -12,7 +12,7 @@ pub mod state {
     pub const X: usize = 0;
     /// Velocity [m/s], 3 rows.
     pub const V: usize = 3;
-    /// Tension of the segment from this point to the next, found by the last substep [N].
+    /// Tension of the segment from this point to the strand's next, found by the last substep [N].
     pub const TENSION: usize = 6;
     /// The frame's normal on the segment from this point to the next, 3 rows.
     pub const NORMAL: usize = 7;
@@ -24,7 +24,7 @@ pub mod state {
 
 /// Rows of the rest shape a point.
 pub mod rest {
-    /// Rest length of the segment from this point to the next [m]; 0 from the tip on.
+    /// Rest length of the segment from this point to the strand's next [m]; 0 from the tip on.
     pub const LENGTH: usize = 0;
     /// Mass [kg].
     pub const MASS: usize = 1;
@@ -73,11 +73,13 @@ pub mod strand {
     pub const ROWS: usize = 29;
 }
 
-/// What rows of the rest shape hold in the springs model.
+/// What rows hold in the springs model. The points of a strand are its even particles; what is said of a segment is said at them.
 pub mod springs {
-    use super::rest;
-    /// Stiffness of the spring to the particle after the next [N/m].
+    use super::{rest, state};
+    /// Stiffness of the spring from this extra particle to the next [N/m].
     pub const K2: usize = rest::BEND;
+    /// Stiffness of a triangle's sides besides what all segments have, at its first point (see `truss`) [N/m].
+    pub const BRACE: usize = rest::BEND;
     /// Its rest length [m].
     pub const L2: usize = rest::TURN;
     /// Rest length of the spring to the third particle after [m].
@@ -86,6 +88,10 @@ pub mod springs {
     pub const VOLUME: usize = rest::TURN + 2;
     /// Stiffness of the spring to the third particle after, and of the altitude spring [N/m].
     pub const K3: usize = rest::TWIST;
+    /// Length of a triangle's two sides beside the strand's segment, at its extra particle [m].
+    pub const SIDES: usize = rest::LENGTH;
+    /// Row of state: tension of the triangle's side from this particle to the next, found by the last substep [N].
+    pub const SIDE: usize = state::NORMAL;
 }
 
 /// Rows a point of what the second-order integrator remembers.
@@ -162,8 +168,8 @@ impl Elastic {
         if self == Self::Springs { 2 } else { 1 }
     }
 
-    /// Points at the root that are driven.
+    /// Simulated points at the root that are driven: the strand's first segment.
     pub fn driven(self) -> usize {
-        if self == Self::Springs { 3 } else { 2 }
+        self.stride() + 1
     }
 }

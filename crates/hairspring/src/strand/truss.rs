@@ -1,24 +1,57 @@
 //! The rest shape of a strand of the springs model, in f64: where its extra particles are, lengths, stiffness, and the sag-free start.
 //!
-//! Springs (k−1, k), (k−2, k), (k−3, k) hold particle k from three directions, so the truss is statically determinate: from the tip to the
-//! root, three tensions balance what pulls on each particle, and the rest lengths that give them follow. Exact wherever the
-//! three directions span space, which the extra particles see to.
+//! Between two points of the strand, an extra particle beside the middle makes a rigid triangle; each is a quarter turn from the last.
+//! Three springs span a joint between two triangles, and what they resist is a joint's bending stiffness B = EI/L̄ and
+//! twisting stiffness C = GJ/L̄. With x̂ along a straight strand, n₀ and n₁ the directions of the extra particles e₀ and e₁ before
+//! and after the joint at p₁, ε L their way aside and w = ε L₀ L₁, a turn φ of the joint lengthens a spring of length ℓ by J·φ/ℓ:
+//!
+//! ```text
+//! p₀ e₁   J = −w x̂×n₁                     alone resists bending toward n₁:       k = B ℓ²/w²
+//! e₀ p₂   J = −w x̂×n₀                     alone resists bending toward n₀:       k = B ℓ²/w²
+//! e₀ e₁   J = −½w x̂×(n₀ + n₁) + εw x̂      with the others resists twist:         k = ℓ²/w² / (ε²/C − ¼(1/B₀ + 1/B₁))
+//! ```
+//!
+//! The truss is statically determinate, so compliances add: 1/C = [ℓ²/k + ¼(ℓ²/k + ℓ²/k)] / (εw)², from which the third line. The same
+//! holds for the start under gravity: springs (k−1, k), (k−2, k), (k−3, k) hold particle k from three directions; from the tip to the
+//! root, three tensions balance what pulls on each particle, and the rest lengths that give them follow.
 
-use super::rest_shape::{Fibre, RestPoint, RestShape};
+use super::{
+    lanes::{F, V3},
+    model::springs::{BEND, Progressive, TORSION},
+    rest_shape::{Fibre, RestPoint, RestShape, rest_shape},
+};
+use fearless_simd::prelude::*;
 use glam::{DMat3, DVec3, Vec3};
 
-/// How far an extra particle is set aside over the length of its segment [1]: far enough that single precision tells bending from noise
-/// (at 0.1 a cantilever of 64 points stays where rounding leaves it).
-const ASIDE: f64 = 0.25;
+/// How far an extra particle is set aside over the length of its segment, ε [1]. The farther, the more digits single precision has for
+/// bending, and the less the springs' levers change as a joint bends (see `springs`, whose law is for this one).
+pub const ASIDE: f64 = 1.5;
 
-/// EI of the truss over k·ℓ·ε², its springs' stiffness, spacing and offset squared [1]: what the extra particles' bend and torsion springs
-/// resist. Fitted to the elastica; `bending_is_material` holds it.
-const EI_OF_TRUSS: f64 = 0.475;
+/// On which side of the frame's normal and binormal, by turns, the extra particles are [1]: each side as often as the other, and as many left
+/// turns as right. Always to the right, a loaded curl would wind itself up.
+const SIDES: [f64; 8] = [1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0, -1.0];
+
+/// Share of a segment's mass in its extra particle [1]: it is no mass of the fibre's, and out of line with it.
+const EXTRA: f64 = 1.0 / 1024.0;
+
+/// Bounds of ε²/C − ¼(1/B₀ + 1/B₁) over 1/B [1]: a round fibre with GJ/EI above 4 or below 0.3 gets what the truss can. A joint that twists too
+/// easily turns its springs' levers away from the bend, and folds.
+const TWISTING: (f64, f64) = (0.05, 7.0);
+
+/// How much stiffer than the joints the triangles are in the matrix, over B/L² [1]: softer ones bend in the joints' stead, and a
+/// cantilever falls apart. The least, and what is enough for all that single precision has digits for.
+const BRACED: [f64; 2] = [8.0, 30.0];
+
+/// Least lever of a spring on its joint over that in a straight strand [1].
+const LEAST_LEVER: f64 = 0.5;
+
+/// Largest turn of a joint out of its natural one at the sag-free start [rad]: less than a rod may have, because a truss folds sooner.
+const LARGEST_SAG: f64 = 0.15;
 
 /// Largest relative change of a spring's rest length at the sag-free start [1]; beyond it the spring is stiffened.
-const LARGEST_STRAIN: f64 = 0.05;
+const LARGEST_STRAIN: f64 = 0.2;
 
-/// The particles of a strand: its points, and one beside the middle of each segment, a third of a turn after the last. Shape `[2 points − 1]`.
+/// The particles of a strand: its points, and one beside the middle of each segment, a quarter turn from the last. Shape `[2 points − 1]`.
 pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
     let mut out = Vec::with_capacity(2 * points.len() - 1);
     let mut normal = DVec3::ZERO;
@@ -26,6 +59,7 @@ pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
     for (k, w) in points.windows(2).enumerate() {
         let (a, b) = (w[0].as_dvec3(), w[1].as_dvec3());
         let t = (b - a).normalize_or(DVec3::Y);
+        // The frame of `rest_shape`.
         normal = if k == 0 {
             t.any_orthonormal_vector()
         } else {
@@ -33,8 +67,8 @@ pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
             (normal - (before + t) * scale).normalize_or(normal)
         };
         before = t;
-        let angle = k as f64 * std::f64::consts::TAU / 3.0;
-        let aside = normal * angle.cos() + t.cross(normal) * angle.sin();
+        let binormal = t.cross(normal);
+        let aside = if k % 2 == 0 { normal } else { binormal } * SIDES[k % 8];
         out.push(w[0]);
         out.push((0.5 * (a + b) + aside * (ASIDE * a.distance(b))).as_vec3());
     }
@@ -42,38 +76,64 @@ pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
     out
 }
 
-/// The rest shape of the truss through `particles` [m] with the fibre's radii at them, in balance under `gravity` [m/s²] or stress-free.
+/// The rest shape of the truss through `particles` [m] with the fibre's radii at the strand's points, in balance under `gravity` [m/s²]
+/// or stress-free.
 ///
-/// In the rest points `bend` is the stiffness of the spring to the particle after the next [N/m], `twist` that to the third
-/// after, `turn` their rest lengths [m] and six times the volume of the tetrahedron [m³].
+/// What the rest points hold is said in `tile::springs`; `tension` is that of the strand's segment, `normal.x` that of the side to the
+/// next particle [N].
 pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
+    let points: Vec<Vec3> = particles.iter().step_by(2).copied().collect();
+    let strand = rest_shape(&points, fibre, gravity);
     let n = particles.len();
     let x: Vec<DVec3> = particles.iter().map(|p| p.as_dvec3()).collect();
     let mut rest = vec![RestPoint::default(); n];
-    let total: f64 = x.windows(2).map(|w| w[0].distance(w[1])).sum();
-    let mut along = 0.0;
-    for i in 0..n {
-        let before = if i > 0 { x[i].distance(x[i - 1]) } else { 0.0 };
-        let after = if i + 1 < n { x[i].distance(x[i + 1]) } else { 0.0 };
-        let r = fibre.radii[i] as f64;
-        rest[i].mass = fibre.density * std::f64::consts::PI * r * r * 0.5 * (before + after);
-        rest[i].length = after;
-        let young = fibre.young * (1.0 + (fibre.tip - 1.0) * along / total);
-        let ei = young * std::f64::consts::FRAC_PI_4 * r.powi(4);
-        along += after;
-        if i + 2 < n {
-            let spacing = 0.5 * x[i].distance(x[i + 2]).max(1e-9);
-            let aside = 2.0 * spacing * ASIDE;
-            rest[i].bend = (ei / (EI_OF_TRUSS * spacing * aside * aside)).min(fibre.stiffest(rest[i].mass));
-            rest[i].turn.x = x[i].distance(x[i + 2]);
-        }
+    for (i, at) in rest.iter_mut().enumerate() {
+        let RestPoint { length, mass, .. } = strand.points[i / 2];
+        let r = fibre.radii[i / 2] as f64;
+        let segment = fibre.density * std::f64::consts::PI * r * r * length;
+        (at.length, at.mass) = if i % 2 == 0 {
+            (length, (1.0 - EXTRA) * mass)
+        } else {
+            (length * (0.25 + ASIDE * ASIDE).sqrt(), EXTRA * segment)
+        };
         if i + 3 < n {
-            rest[i].twist = rest[i].bend;
-            rest[i].turn.y = x[i].distance(x[i + 3]);
-            rest[i].turn.z = (x[i + 1] - x[i]).dot((x[i + 2] - x[i]).cross(x[i + 3] - x[i]));
+            at.turn.y = x[i].distance(x[i + 3]);
+            at.turn.z = (x[i + 1] - x[i]).dot((x[i + 2] - x[i]).cross(x[i + 3] - x[i]));
         }
     }
-    let mut stiffened = 0;
+    for j in 1..points.len() - 1 {
+        let lengths = [strand.points[j - 1].length, strand.points[j].length];
+        let shorter = lengths[0].min(lengths[1]);
+        let stiffest = fibre.stiffest(strand.points[j].mass);
+        let hardest = 1.0 + fibre.flat;
+        let (before, at) = (&strand.points[j - 1], &strand.points[j]);
+        let t = [2 * j, 2 * j + 2].map(|k| (x[k] - x[k - 2]).normalize_or_zero());
+        let natural = before.normal * at.turn.x + t[0].cross(before.normal) * at.turn.y + t[0] * at.turn.z;
+        let sag = (t[1] - t[0] - natural).length();
+        let bend = at.bend * (sag / LARGEST_SAG).max(1.0);
+        let bend = bend.min(stiffest * shorter * shorter / (BRACED[0] * hardest));
+        // A flat fibre bends harder toward its frame's normal, where every other extra particle is.
+        let harder = [j - 1, j].map(|segment| if segment % 2 == 0 { hardest } else { 1.0 });
+        let easier = 0.25 * (1.0 / harder[0] + 1.0 / harder[1]);
+        let twisting = fibre.twist_ratio.map_or(0.0, |ratio| ASIDE * ASIDE / ratio - easier);
+        let (p0, e0, p1, e1, p2) = (2 * j - 2, 2 * j - 1, 2 * j, 2 * j + 1, 2 * j + 2);
+        let straight = |from: usize, to: usize| ASIDE * lengths[0] * lengths[1] / x[from].distance(x[to]);
+        // In the strand's own shape.
+        let lever = |from: usize, to: usize| {
+            let along = (x[to] - x[from]).normalize_or_zero();
+            (x[to] - x[p1]).cross(along).length().max(LEAST_LEVER * straight(from, to))
+        };
+        rest[p0].twist = bend * harder[1] / lever(p0, e1).powi(2);
+        rest[e0].twist = bend * harder[0] / lever(e0, p2).powi(2);
+        rest[e0].bend = bend / twisting.clamp(TWISTING.0, TWISTING.1) / straight(e0, e1).powi(2);
+        rest[e0].turn.x = x[e0].distance(x[e1]);
+        for (point, length) in [p0, p1].into_iter().zip(lengths) {
+            let brace = (BRACED[1] * hardest * bend / (length * length)).min(stiffest);
+            rest[point].bend = rest[point].bend.max(brace);
+        }
+    }
+    rest[0].normal = strand.points[0].normal;
+    let mut stiffened = strand.stiffened;
     if gravity != DVec3::ZERO {
         let mut pull: Vec<DVec3> = rest.iter().map(|p| gravity * p.mass).collect();
         for k in (3..n).rev() {
@@ -83,23 +143,35 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             for j in 0..3 {
                 pull[k - j - 1] -= towards[j] * tension[j];
             }
-            rest[k - 1].tension = tension[0];
-            for (j, length) in [(1, way[1].length()), (2, way[2].length())] {
-                let at = &mut rest[k - j - 1];
+            rest[k - 1].normal.x = tension[0];
+            let mut rest_length = |j: usize, stiffness: &mut f64, law: Progressive| {
+                let length = way[j].length();
                 let needed = tension[j].abs() / (LARGEST_STRAIN * length);
-                let stiffness = if j == 1 { &mut at.bend } else { &mut at.twist };
                 if needed > *stiffness {
                     *stiffness = needed;
                     stiffened += 1;
                 }
-                let rest_length = length - tension[j] / *stiffness;
-                if j == 1 { at.turn.x = rest_length } else { at.turn.y = rest_length }
+                length - law.lengthened(tension[j] / stiffness.max(f64::MIN_POSITIVE), length)
+            };
+            rest[k - 3].turn.y = rest_length(2, &mut rest[k - 3].twist, TORSION);
+            if k % 2 == 0 {
+                rest[k - 2].tension = tension[1];
+            } else {
+                rest[k - 2].turn.x = rest_length(1, &mut rest[k - 2].bend, BEND);
             }
         }
     }
-    // The frame of the root, in which the third particle is driven.
-    rest[0].normal = (x[1] - x[0]).normalize_or(DVec3::Y).any_orthonormal_vector();
     RestShape { points: rest, stiffened }
+}
+
+/// An extra particle at `p`, put where its triangle over a segment between `ends` of rest length `length` has it.
+#[inline(always)]
+pub fn beside<S: Simd>(simd: S, p: V3<S>, ends: [V3<S>; 2], length: F<S>) -> V3<S> {
+    let middle = (ends[0] + ends[1]) * F::splat(simd, 0.5);
+    let along = (ends[1] - ends[0]).length_and_unit().1;
+    let way = p - middle;
+    let aside = (way - along * along.dot(way)).length_and_unit().1;
+    aside.mul_add(length * ASIDE as f32, middle)
 }
 
 /// The tensions along three directions that add up to `force`; the least ones where the directions do not span space.

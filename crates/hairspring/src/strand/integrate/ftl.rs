@@ -15,7 +15,8 @@ use crate::{
         assemble::Step,
         lanes::{F, V3, load},
         scratch::Scratch,
-        tile::{Tile, rest, state},
+        tile::{Elastic, Tile, rest, state},
+        truss::beside,
     },
 };
 use fearless_simd::prelude::*;
@@ -35,22 +36,28 @@ pub fn advance<S: Simd>(
     let zero = V3::zero(simd);
     let h = F::<S>::splat(simd, step.h);
     let share = if integrator == Integrator::Dftl { -KEPT / step.h } else { 0.0 };
-    let mut before = step.root.first;
-    for i in 2..tile.rest.len() {
+    let stride = tile.model.stride();
+    let mut before = V3::load(simd, &scratch.x[stride]);
+    for i in (2 * stride..tile.rest.len()).step_by(stride) {
         let x = V3::load(simd, &scratch.x[i]);
         let u = (x - before).length_and_unit().1;
         let v = V3::load(simd, &tile.state[i][state::V..]);
         let p = x + (v + outside(simd, step, tile, i, u) * h) * h - step.moved;
-        let length = load(simd, &tile.rest[i - 1][rest::LENGTH]);
+        let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
         let free = load(simd, &scratch.inverse_mass[i]).simd_gt(0.0);
         let followed = before + (p - before).length_and_unit().1 * length;
         let new = V3::select(free, followed, x);
         new.store(&mut scratch.x[i]);
         // The correction of this point goes to the velocity of the one before it.
-        if i > 2 {
-            ((new - p) * F::splat(simd, share)).store(&mut scratch.kick[i - 1]);
+        if i > 2 * stride {
+            ((new - p) * F::splat(simd, share)).store(&mut scratch.kick[i - stride]);
         }
         zero.store(&mut scratch.kick[i]);
+        if tile.model == Elastic::Springs {
+            let extra = V3::load(simd, &scratch.x[i - 1]);
+            beside(simd, extra, [before, new], length).store(&mut scratch.x[i - 1]);
+            zero.store(&mut scratch.kick[i - 1]);
+        }
         before = new;
     }
 }

@@ -29,7 +29,11 @@ pub fn advance<S: Simd>(
     for _ in 0..interval.projections {
         let Scratch { factors, x, inverse_mass, .. } = &mut *scratch;
         let force = step.inertia() / (step.h * step.h);
-        if !project(simd, force, tile, inverse_mass, x, factors) {
+        let moved = match tile.model {
+            Elastic::Springs => project::<S, 2>(simd, force, tile, inverse_mass, x, factors),
+            Elastic::Curvature | Elastic::Rod => project::<S, 1>(simd, force, tile, inverse_mass, x, factors),
+        };
+        if !moved {
             break;
         }
     }

@@ -8,10 +8,11 @@ mod implicit;
 mod local_global;
 
 use super::{
-    assemble::{Step, Stretching},
+    assemble::Step,
     interval::Interval,
     lanes::{F, V3, load, store},
     limit::{Finish, LIMIT, limit},
+    model::Stretching,
     root::Root,
     scratch::Scratch,
     tile::{Elastic, Tile, hold, rest, state},
@@ -76,7 +77,13 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
                 finish.kick = Some(&scratch.kick);
             }
         }
-        limit(simd, &finish, substep, &root, moved, tile, (&scratch.x, &scratch.inverse_mass));
+        let solved = (&scratch.x[..], &scratch.inverse_mass[..]);
+        match tile.model {
+            Elastic::Springs => limit::<S, 2>(simd, &finish, substep, &root, moved, tile, solved),
+            Elastic::Curvature | Elastic::Rod => {
+                limit::<S, 1>(simd, &finish, substep, &root, moved, tile, solved);
+            }
+        }
         continues = true;
     }
 }

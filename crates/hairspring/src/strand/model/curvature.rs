@@ -1,12 +1,12 @@
 //! The curvature model: stretch, and bending by the curvature vector in a frame carried from the root.
 
 use super::{
-    At, Model,
+    At, Model, Solved,
     bend::{bend, transport},
 };
 use crate::strand::{
     band::Band,
-    lanes::{F, Row, V3, load},
+    lanes::{Row, V3, load},
     root::Root,
     tile::{Tile, rest},
 };
@@ -41,7 +41,7 @@ impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
     }
 
     #[inline(always)]
-    fn take(_: S, _: usize, _: V3<S>, _: &[F<S>; 9], _: &mut Tile) {}
+    fn take(_: S, _: &Solved<S, 9>, _: &mut Tile) {}
 }
 
 /// A rest turn in world axes: the frame is (normal, binormal, tangent).

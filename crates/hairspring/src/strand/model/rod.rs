@@ -14,7 +14,7 @@
 //!
 //! A flat fibre bends more easily across its short axis: ΔB is the stiffness that it has more in the direction of its frame's normal.
 
-use super::{At, Model, bend::bend, bend::transport, curvature::turn_in_frame};
+use super::{At, Model, Solved, bend::bend, bend::transport, curvature::turn_in_frame};
 use crate::strand::{
     band::Band,
     lanes::{F, Row, Sym3, V3, load},
@@ -119,9 +119,10 @@ impl<S: Simd> Model<S, 4, 12> for Rod<S> {
     }
 
     #[inline(always)]
-    fn take(simd: S, i: usize, u: V3<S>, unknowns: &[F<S>; 12], tile: &mut Tile) {
-        let turn = unknowns[3].max(-LARGEST_TURN).min(LARGEST_TURN);
-        let row = &mut tile.state[i][state::NORMAL..];
+    fn take(simd: S, solved: &Solved<S, 12>, tile: &mut Tile) {
+        let u = (solved.x[1] - solved.x[0]).length_and_unit().1;
+        let turn = solved.unknowns[3].max(-LARGEST_TURN).min(LARGEST_TURN);
+        let row = &mut tile.state[solved.i][state::NORMAL..];
         let m = V3::load(simd, row);
         u.cross(m).mul_add(turn, m).length_and_unit().1.store(row);
     }

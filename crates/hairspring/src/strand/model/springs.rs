@@ -1,24 +1,25 @@
 //! Springs only: stretch, bend, torsion, and an altitude spring in every tetrahedron of four neighbours.
 //!
 //! ```text
-//!        e₀          e₁              o  the strand's points        stretch   (k, k+1)
-//!       ╱ ╲         ╱ ╲              e  extra particles, set aside bend      (k, k+2)
-//!  o₀ ─╱───╲─ o₁ ──╱───╲─ o₂            from the middle of each    torsion   (k, k+3)
-//!                                       segment, a third of a turn altitude  k … k+3
+//!        e₀          e₁              o  the strand's points        stretch   (k, k+1), and (k, k+2) from a point
+//!       ╱ ╲         ╱ ╲              e  extra particles, beside    bend      (k, k+2) from an extra particle
+//!  o₀ ─╱───╲─ o₁ ──╱───╲─ o₂            the middle of each         torsion   (k, k+3)
+//!                                       segment, turn by turn      altitude  k … k+3
 //! ```
 //!
 //! Selle, Lentine, Fedkiw 2008, *A Mass Spring Model for Hair Simulation*, §3: a distance spring has no stiffness sideways, so a straight
-//! strand gets extra particles beside it, and the four neighbours' tetrahedra make a truss that bends and twists as a whole. An
-//! altitude spring acts along the shortest height of its tetrahedron (between a point and a face, or two edges), which keeps it from
-//! collapsing or turning inside out. Where we deviate: the height is kept by the rest volume over the present area, V₀/|n|, so one number a
-//! tetrahedron is enough; and every edge (k, k+1) is projected to its length like the segments of the other models.
+//! strand gets extra particles beside it, and the four neighbours' tetrahedra make a truss that bends and twists as a whole; how stiff the
+//! springs are for that is in `truss`. An altitude spring acts along the shortest height of its tetrahedron (between a point and a face,
+//! or two edges), which keeps it from collapsing or turning inside out. Where we deviate: it acts below half the rest volume only, since
+//! the others already resist as much as the fibre does; its height is kept by the volume over the present area, so one number a
+//! tetrahedron is enough; and the strand's segments are projected to their lengths as in the other models, their triangles with them.
 
-use super::{At, Model};
+use super::{At, Model, Solved, Stretching};
 use crate::strand::{
     band::Band,
-    lanes::{F, Row, Sym3, V3, load},
+    lanes::{F, Row, Sym3, V3, load, store},
     root::Root,
-    tile::{Tile, springs},
+    tile::{Tile, springs, strand},
 };
 use fearless_simd::{mask32x8, prelude::*};
 
@@ -26,11 +27,17 @@ use fearless_simd::{mask32x8, prelude::*};
 pub struct Springs;
 
 impl<S: Simd> Model<S, 3, 12> for Springs {
-    const DRIVEN: usize = 3;
+    const STRIDE: usize = 2;
 
     #[inline(always)]
     fn begin(_: S, _: &Tile, _: &Root<S>) -> Self {
         Springs
+    }
+
+    #[inline(always)]
+    fn along(simd: S, stretching: Stretching, h: f32, tile: &Tile, point: usize) -> F<S> {
+        let damped = load(simd, &tile.strand[strand::DAMPING]) * (1.0 / h) + 1.0;
+        stretching.stiffness(simd, h, tile, point) + load(simd, &tile.rest[point][springs::BRACE]) * damped
     }
 
     #[inline(always)]
@@ -39,35 +46,117 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
         let rest = &tile.rest[i];
         let point = |k: usize| V3::load(simd, &x[(i + k).min(n - 1)]);
         let p = [point(0), point(1), point(2), point(3)];
-        for (far, length, stiffness) in [(2, springs::L2, springs::K2), (3, springs::L3, springs::K3)] {
-            let k = load(simd, &rest[stiffness]);
+
+        // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
+        // much as along: kept where it pulls alone (Choi & Ko 2002), it would resist every turn of a segment; left out, it cancels.
+        let k = Self::along(simd, at.stretching, at.h, tile, i - i % 2);
+        let (l, u) = (p[1] - p[0]).length_and_unit();
+        let tension = load(simd, &tile.state[i][springs::SIDE]);
+        let pull = k.mul_add(l - load(simd, &tile.rest[i | 1][springs::SIDES]), tension);
+        add_spring(band, 1, u * pull, Sym3::outer(u, k));
+
+        // From a point, the particle after the next is the strand's next point: that spring is the segment's.
+        let joint = [(2, springs::L2, springs::K2, BEND), (3, springs::L3, springs::K3, TORSION)];
+        for (far, length, stiffness, law) in joint.into_iter().skip(1 - i % 2) {
+            let (k, length) = (load(simd, &rest[stiffness]), load(simd, &rest[length]));
             let (l, u) = (p[far] - p[0]).length_and_unit();
-            let length = load(simd, &rest[length]);
-            // Kept positive semi-definite under compression (Choi & Ko 2002).
-            let across = k * (F::splat(simd, 1.0) - length / l).max(0.0) * at.damped;
-            let block = Sym3::outer(u, k * at.damped - across).add_identity(across);
-            let force = u * (k * (l - length));
-            band.add_diagonal(0, block);
-            band.add_diagonal(far, block);
-            band.add_block(0, far, &-block.full());
-            band.add_force(0, force);
-            band.add_force(far, -force);
+            let [secant, tangent] = law.stiffness(simd, (l - length) / length.max(1e-12));
+            let force = u * (k * secant * (l - length));
+            add_spring(band, far, force, Sym3::outer(u, k * tangent * at.damped));
         }
-        let k = load(simd, &rest[springs::K3]);
-        let (normal, c, strain) = altitude(simd, p, load(simd, &rest[springs::VOLUME]));
-        let block = Sym3::outer(normal, k * at.damped);
-        for a in 0..4 {
-            let scaled = block * c[a];
-            band.add_diagonal(a, scaled * c[a]);
-            for (b, c) in c.iter().enumerate().skip(a + 1) {
-                band.add_block(a, b, &(scaled * *c).full());
-            }
-            band.add_force(a, normal * -(k * strain * c[a]));
-        }
+        add_altitude(simd, at, p, rest, band);
     }
 
     #[inline(always)]
-    fn take(_: S, _: usize, _: V3<S>, _: &[F<S>; 12], _: &mut Tile) {}
+    fn take(simd: S, solved: &Solved<S, 12>, tile: &mut Tile) {
+        let i = solved.i;
+        let k = Self::along(simd, solved.stretching, solved.h, tile, i - i % 2);
+        let taken = solved.taken(1, load(simd, &tile.rest[i | 1][springs::SIDES]), k);
+        let row = &mut tile.state[i][springs::SIDE];
+        store(load(simd, row) + taken, row);
+    }
+}
+
+/// How a spring grows stiffer with its strain x: F = k (ℓ − L)(1 + ax + bx²).
+///
+/// A spring's two arms on its joint are rigid; turned by φ, its lever shortens on one side and grows on the other. With these numbers, which
+/// are the series for ε = 3/2 (see `truss`), its moment is linear in φ to third order. Linear springs let a joint go at a bend of 0.5 rad.
+pub struct Progressive {
+    a: f32,
+    b: f32,
+}
+
+/// Of the springs between extra particles, for a joint that twists.
+pub const BEND: Progressive = Progressive { a: 1.5, b: 4.5 };
+
+/// Of the springs from points to extra particles, for a joint that bends.
+pub const TORSION: Progressive = Progressive { a: 3.0, b: 12.0 };
+
+impl Progressive {
+    /// Largest strain at which the stiffness still changes [1].
+    const LARGEST: f32 = 0.35;
+
+    /// Secant and tangent stiffness under `strain`, over that at rest [1].
+    #[inline(always)]
+    fn stiffness<S: Simd>(&self, simd: S, strain: F<S>) -> [F<S>; 2] {
+        let one = F::<S>::splat(simd, 1.0);
+        let x = strain.max(-Self::LARGEST).min(Self::LARGEST);
+        let poly = |a: f32, b: f32| x.mul_add(x * b + a, one);
+        [poly(self.a, self.b), poly(2.0 * self.a, 3.0 * self.b)]
+    }
+
+    /// Force and energy of a spring of linear stiffness 1 and rest length `rest` that is longer by `longer` [m], [m²].
+    pub fn pull(&self, longer: f64, rest: f64) -> (f64, f64) {
+        let (a, b) = (self.a as f64, self.b as f64);
+        let x = longer / rest;
+        (longer * (1.0 + x * (a + x * b)), longer * longer * (0.5 + x * (a / 3.0 + x * b / 4.0)))
+    }
+
+    /// How much longer than at rest a spring is that is `length` long under a tension that would lengthen a linear one by `linear` [m].
+    pub fn lengthened(&self, linear: f64, length: f64) -> f64 {
+        let mut longer = linear;
+        for _ in 0..40 {
+            let x = (longer / (length - longer)).clamp(-Self::LARGEST as f64, Self::LARGEST as f64);
+            longer += 0.5 * (linear / (1.0 + x * (self.a as f64 + x * self.b as f64)) - longer);
+        }
+        longer
+    }
+}
+
+/// Adds a spring between the window's first particle, on which it acts with `force`, and the one `far` after it.
+#[inline(always)]
+fn add_spring<S: Simd>(band: &mut Band<S, 3, 12>, far: usize, force: V3<S>, block: Sym3<S>) {
+    band.add_diagonal(0, block);
+    band.add_diagonal(far, block);
+    band.add_block(0, far, &-block.full());
+    band.add_force(0, force);
+    band.add_force(far, -force);
+}
+
+/// Volume over the rest volume below which an altitude spring acts [1].
+const FLATTENED: f32 = 0.5;
+
+/// Adds the altitude spring of the particles `p` where their tetrahedron is flattened.
+#[inline(always)]
+fn add_altitude<S: Simd>(simd: S, at: &At<S>, p: [V3<S>; 4], rest: &[Row], band: &mut Band<S, 3, 12>) {
+    let zero = F::<S>::splat(simd, 0.0);
+    let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
+    let volume = (p[1] - p[0]).dot((p[2] - p[0]).cross(p[3] - p[0]));
+    let flattened = (volume * kept).simd_lt(kept * kept);
+    if !flattened.any_true() {
+        return;
+    }
+    let k = flattened.select(load(simd, &rest[springs::K3]), zero);
+    let (normal, c, strain) = altitude(simd, p, kept);
+    let block = Sym3::outer(normal, k * at.damped);
+    for a in 0..4 {
+        let scaled = block * c[a];
+        band.add_diagonal(a, scaled * c[a]);
+        for (b, c) in c.iter().enumerate().skip(a + 1) {
+            band.add_block(a, b, &(scaled * *c).full());
+        }
+        band.add_force(a, normal * -(k * strain * c[a]));
+    }
 }
 
 /// The heights of a tetrahedron: the points p, q, r, v, and whether from the face pqr to v, or from the edge pq to the edge rv.

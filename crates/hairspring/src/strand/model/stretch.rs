@@ -8,8 +8,36 @@
 //! EA/L, which is a hundred times more: one linearised solve is not stable there, and the projection that follows
 //! makes the segment inextensible all the same.
 
-use crate::strand::lanes::{F, Sym3, V3};
+use crate::strand::{
+    lanes::{F, Sym3, V3, load},
+    tile::{Tile, rest, strand},
+};
 use fearless_simd::prelude::*;
+
+/// Stiffness of the segments' springs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Stretching {
+    /// As stiff as one linearised solve bears; projection does the rest.
+    Moderate,
+    /// The fibre's own, EA/L.
+    Fibre,
+}
+
+impl Stretching {
+    /// Stiffness of the spring along the segment from `point` in a substep of `h` [s]; 0 for padding [N/m].
+    #[inline(always)]
+    pub fn stiffness<S: Simd>(self, simd: S, h: f32, tile: &Tile, point: usize) -> F<S> {
+        let rest = &tile.rest[point];
+        let length = load(simd, &rest[rest::LENGTH]);
+        let k = match self {
+            Self::Moderate => load(simd, &rest[rest::MASS]) * (STRETCH / (h * h)),
+            Self::Fibre => {
+                load(simd, &tile.strand[strand::AXIAL]) * (F::splat(simd, 1.0) / length.max(1e-12))
+            }
+        };
+        length.simd_gt(0.0).select(k, F::splat(simd, 0.0))
+    }
+}
 
 /// Stretch stiffness in units of m/h² [1]. Stable in every test from 10² to 10³; above about 10⁴ it blows up.
 pub const STRETCH: f32 = 400.0;

@@ -23,6 +23,7 @@ pub const CASE: Case = Case {
     ],
     method: MOVING,
     points_fixed: false,
+    out_of_reach: |_| None,
     reference: |_| Ok(beam::modes(3).into_iter().map(|beta| beta * beta).collect()),
     measure: |_, method| beam::modes(3).into_par_iter().map(|beta| measure(beta, method)).collect(),
     sweep: Sweep::Modes { label: "ω/√(EI/ρAL⁴)" },

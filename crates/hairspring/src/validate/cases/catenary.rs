@@ -23,6 +23,7 @@ pub const CASE: Case = Case {
     ],
     method: STILL,
     points_fixed: false,
+    out_of_reach: |_| None,
     reference: |values| {
         let shape = catenary(values[0]);
         Ok(vec![shape.sag, shape.end_tension])

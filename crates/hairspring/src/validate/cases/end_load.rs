@@ -24,6 +24,7 @@ pub const CASE: Case = Case {
     ],
     method: STILL,
     points_fixed: false,
+    out_of_reach: |_| None,
     reference: |values| {
         let shape = cantilever(0.0, values[0]);
         Ok(vec![shape.tip_angle, shape.drop, 1.0 - shape.reach])

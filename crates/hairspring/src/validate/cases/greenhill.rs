@@ -18,6 +18,7 @@ pub const CASE: Case = Case {
     quantities: &[Quantity { name: "threshold Γ", tolerance: THRESHOLD }],
     method: STILL,
     points_fixed: false,
+    out_of_reach: |_| None,
     reference: |_| Ok(vec![greenhill()]),
     measure: |_, method| {
         let stiffness = |gamma| {

@@ -23,6 +23,7 @@ pub const CASE: Case = Case {
     ],
     method: MOVING,
     points_fixed: false,
+    out_of_reach: |_| None,
     reference: |_| Ok(chain::modes(3).into_iter().map(f64::sqrt).collect()),
     measure: |_, method| {
         let unit = (GRAVITY / LENGTH).sqrt();

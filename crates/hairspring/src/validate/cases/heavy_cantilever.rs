@@ -21,6 +21,7 @@ pub const CASE: Case = Case {
     ],
     method: STILL,
     points_fixed: false,
+    out_of_reach: |_| None,
     reference: |values| {
         let shape = cantilever(values[0], 0.0);
         Ok(vec![shape.drop, shape.reach, shape.drop / shape.reach])

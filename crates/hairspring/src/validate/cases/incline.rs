@@ -19,6 +19,7 @@ pub const CASE: Case = Case {
     quantities: &[Quantity { name: "tan θ at which it slips", tolerance: FRICTION }],
     method: STILL,
     points_fixed: false,
+    out_of_reach: |_| None,
     reference: |values| Ok(vec![values[0]]),
     measure: |values, method| {
         let mu = values[0];

@@ -1,7 +1,8 @@
 //! A straight strand bent to a ring and twisted writhes out of its plane: Michell's instability.
 
-use super::{THRESHOLD, TWISTED};
+use super::{NO_TWIST, THRESHOLD, TWISTED};
 use crate::{
+    material::Model,
     simulation::Hold,
     validate::{
         Case, Failure, GJ_OVER_EI, Method, Parameter, Quantity,
@@ -22,6 +23,17 @@ pub const CASE: Case = Case {
     quantities: &[Quantity { name: "total twist Φ [rad]", tolerance: THRESHOLD }],
     method: TWISTED,
     points_fixed: false,
+    out_of_reach: |model| match model {
+        Model::Curvature => Some(NO_TWIST),
+        Model::Springs => Some(
+            "a ring of round fibre may turn about its clamped tangent at no cost; a truss has joints with sides, and turns to \
+             where they are best bent",
+        ),
+        Model::Auto => Some(
+            "auto takes the curvature model for a strand that is straight at rest, and that knows no twist",
+        ),
+        Model::Rod => None,
+    },
     reference: |values| Ok(vec![writhing_twist(values[0])]),
     measure: |values, method| {
         let ratio = values[0];

@@ -40,3 +40,6 @@ const THRESHOLD: f64 = 0.05;
 
 /// Relative error of friction that passes.
 const FRICTION: f64 = 0.03;
+
+/// Why the curvature model does not pass where a strand twists.
+const NO_TWIST: &str = "the model knows no twist";

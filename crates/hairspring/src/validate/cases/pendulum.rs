@@ -22,6 +22,7 @@ pub const CASE: Case = Case {
     // More points would be a whip and not a pendulum.
     method: Method { points: 3, ..MOVING },
     points_fixed: true,
+    out_of_reach: |_| None,
     reference: |values| Ok(vec![period_ratio(values[0].to_radians()), 1.0]),
     measure: |values, method| measure(values[0].to_radians(), method),
     sweep: Sweep::Parameter { index: 0, from: 10.0, to: 150.0, log: false },
