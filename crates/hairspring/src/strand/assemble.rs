@@ -114,63 +114,11 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
     let n = tile.rest.len();
     let mut elements = Elements::<S, M, B, N>::begin(simd, step, tile, &scratch.x);
     let (mut held, rows) = (0, factor_rows(B, N));
-    for i in 0..n {
-        if i + 1 < n {
-            let segment = elements.add(simd, step, tile, &scratch.x);
-            let band = &mut elements.band;
-
-            // Mass, air and gravity of point i+1. Drag along a slender fibre is half of that across it (Batchelor 1970).
-            let inv_h = 1.0 / step.h;
-            let mass = segment.mass;
-            let v = V3::load(simd, &tile.state[i + 1][state::V..]);
-            let root_velocity = step.moved * F::splat(simd, inv_h);
-            let m_h2 = mass * (step.inertia() * inv_h * inv_h);
-            let mut right = (v - root_velocity) * (mass * inv_h);
-            if step.second_order {
-                let before = &tile.history[i + 1];
-                let v_before = V3::load(simd, &before[history::V..]);
-                let way_before = V3::load(simd, &before[history::WAY..]);
-                let p = (v * F::splat(simd, 4.0) - v_before) * F::splat(simd, 0.5 * inv_h)
-                    + (way_before * F::splat(simd, 3.0) - step.moved * F::splat(simd, 9.0))
-                        * F::splat(simd, 0.25 * inv_h * inv_h);
-                right = p * mass;
-            }
-            let air = mass * segment.drag;
-            let across = air * inv_h;
-            let slip = V3::splat(simd, step.wind) - root_velocity;
-            let slip = slip - segment.u * (segment.u.dot(slip) * 0.5);
-            right += slip * air + V3::splat(simd, step.gravity) * mass;
-            if sweep == Sweep::Again {
-                let way = V3::load(simd, &scratch.x[i + 1]) - V3::load(simd, &tile.state[i + 1][state::X..]);
-                right -= way * (m_h2 + across) - segment.u * (segment.u.dot(way) * across * 0.5);
-            }
-            band.add_force(1, right);
-            band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5));
-            band.add_identity(1, m_h2 + across);
-
-            // What holds or pulls it from outside.
-            while held < tile.holds.len() && tile.holds[held].point as usize <= i + 1 {
-                let at = &tile.holds[held];
-                if at.point as usize == i + 1 {
-                    let pinned = load(simd, &at.rows[hold::PINNED]);
-                    let target = V3::load(simd, &at.rows[hold::TARGET..]) - step.root.position;
-                    let k = pinned * m_h2 * HOLD;
-                    band.add_identity(1, k);
-                    band.add_force(1, (target - V3::load(simd, &scratch.x[i + 1])) * k);
-                    band.add_force(1, V3::load(simd, &at.rows[hold::FORCE..]));
-                    if B > 3 {
-                        band.add((1, 3), (1, 3), load(simd, &at.rows[hold::CLAMPED]) * HOLD_FRAME);
-                    }
-                }
-                held += 1;
-            }
-            let work = &mut scratch.contacts[i + 1];
-            press(simd, step, tile, (i + 1, &scratch.x[i + 1]), band, work);
-        }
+    // The driven points and the last by themselves: one loop for all would carry the window through its branches.
+    for i in 0..M::DRIVEN {
+        add_point(simd, sweep, step, tile, scratch, &mut elements, &mut held);
         // An angle of the driven first segment is driven too, of the second it is not.
-        if i >= M::DRIVEN {
-            elements.band.eliminate(simd, &mut scratch.factors[i * rows..]);
-        } else if i == 1 && B > 3 {
+        if i == 1 && B > 3 {
             for k in 0..3 {
                 elements.band.hold(simd, k);
             }
@@ -179,6 +127,77 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
             elements.band.shift(simd);
         }
     }
+    for i in M::DRIVEN..n - 1 {
+        add_point(simd, sweep, step, tile, scratch, &mut elements, &mut held);
+        elements.band.eliminate(simd, &mut scratch.factors[i * rows..]);
+    }
+    elements.band.eliminate(simd, &mut scratch.factors[(n - 1) * rows..]);
+}
+
+/// Adds everything that begins at the walk's next point i, and what acts on point i+1.
+#[inline(always)]
+fn add_point<S, M, const B: usize, const N: usize>(
+    simd: S,
+    sweep: Sweep,
+    step: &Step<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+    elements: &mut Elements<S, M, B, N>,
+    held: &mut usize,
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    let segment = elements.add(simd, step, tile, &scratch.x);
+    let (i, band) = (elements.at.i, &mut elements.band);
+
+    // Mass, air and gravity of point i+1. Drag along a slender fibre is half of that across it (Batchelor 1970).
+    let inv_h = 1.0 / step.h;
+    let mass = segment.mass;
+    let v = V3::load(simd, &tile.state[i + 1][state::V..]);
+    let root_velocity = step.moved * F::splat(simd, inv_h);
+    let m_h2 = mass * (step.inertia() * inv_h * inv_h);
+    let mut right = (v - root_velocity) * (mass * inv_h);
+    if step.second_order {
+        let before = &tile.history[i + 1];
+        let v_before = V3::load(simd, &before[history::V..]);
+        let way_before = V3::load(simd, &before[history::WAY..]);
+        let p = (v * F::splat(simd, 4.0) - v_before) * F::splat(simd, 0.5 * inv_h)
+            + (way_before * F::splat(simd, 3.0) - step.moved * F::splat(simd, 9.0))
+                * F::splat(simd, 0.25 * inv_h * inv_h);
+        right = p * mass;
+    }
+    let air = mass * segment.drag;
+    let across = air * inv_h;
+    let slip = V3::splat(simd, step.wind) - root_velocity;
+    let slip = slip - segment.u * (segment.u.dot(slip) * 0.5);
+    right += slip * air + V3::splat(simd, step.gravity) * mass;
+    if sweep == Sweep::Again {
+        let way = V3::load(simd, &scratch.x[i + 1]) - V3::load(simd, &tile.state[i + 1][state::X..]);
+        right -= way * (m_h2 + across) - segment.u * (segment.u.dot(way) * across * 0.5);
+    }
+    band.add_force(1, right);
+    band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5));
+    band.add_identity(1, m_h2 + across);
+
+    // What holds or pulls it from outside.
+    while *held < tile.holds.len() && tile.holds[*held].point as usize <= i + 1 {
+        let at = &tile.holds[*held];
+        if at.point as usize == i + 1 {
+            let pinned = load(simd, &at.rows[hold::PINNED]);
+            let target = V3::load(simd, &at.rows[hold::TARGET..]) - step.root.position;
+            let k = pinned * m_h2 * HOLD;
+            band.add_identity(1, k);
+            band.add_force(1, (target - V3::load(simd, &scratch.x[i + 1])) * k);
+            band.add_force(1, V3::load(simd, &at.rows[hold::FORCE..]));
+            if B > 3 {
+                band.add((1, 3), (1, 3), load(simd, &at.rows[hold::CLAMPED]) * HOLD_FRAME);
+            }
+        }
+        *held += 1;
+    }
+    let work = &mut scratch.contacts[i + 1];
+    press(simd, step, tile, (i + 1, &scratch.x[i + 1]), band, work);
 }
 
 /// The sweep up: adds the solution to `scratch.x`, and to the tensions what the springs took.
