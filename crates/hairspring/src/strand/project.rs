@@ -36,7 +36,12 @@ pub fn project<S: Simd, const STRIDE: usize>(
     work: &mut [Row],
 ) -> bool {
     let zero = F::<S>::splat(simd, 0.0);
-    let segments = (tile.rest.len() - 1) / STRIDE;
+    // Cut to one length, so that the loops need no checks.
+    let points = tile.rest.len();
+    let (x, inverse_mass) = (&mut x[..points], &inverse_mass[..points]);
+    let (rest, state) = (&tile.rest[..points], &mut tile.state[..points]);
+    let segments = (points - 1) / STRIDE;
+    let work = &mut work.as_chunks_mut::<{ scratch::ROWS }>().0[..segments];
     let mut here = V3::load(simd, &x[STRIDE]);
     let mut before = V3::zero(simd);
     let (mut d_before, mut inv_before) = (zero, zero);
@@ -45,7 +50,7 @@ pub fn project<S: Simd, const STRIDE: usize>(
     for k in 1..segments {
         let i = k * STRIDE;
         let next = V3::load(simd, &x[i + STRIDE]);
-        let length = load(simd, &tile.rest[i][rest::LENGTH]);
+        let length = load(simd, &rest[i][rest::LENGTH]);
         let real = length.simd_gt(0.0);
         let (l, u) = (next - here).length_and_unit();
         let w1 = load(simd, &inverse_mass[i + STRIDE]);
@@ -57,12 +62,10 @@ pub fn project<S: Simd, const STRIDE: usize>(
         // Row i: −w0 (û·û₋) λ₋ + (w0 + w1) λ − w1 (û·û₊) λ₊ = ℓ − L
         let coupling = w0 * before.dot(u);
         let c_before = coupling * inv_before;
-        if k > 1 {
-            store(c_before, &mut work[(k - 1) * scratch::ROWS + scratch::C]);
-        }
+        store(c_before, &mut work[k - 1][scratch::C]);
         let inv = F::splat(simd, 1.0) / (-coupling).mul_add(c_before, w0 + w1).max(1e-30);
         let d = coupling.mul_add(d_before, error) * inv;
-        let out = &mut work[k * scratch::ROWS..];
+        let out = &mut work[k];
         u.store(&mut out[scratch::U..]);
         store(d, &mut out[scratch::D]);
         (before, d_before, inv_before, w0, here) = (u, d, inv, w1, next);
@@ -72,20 +75,21 @@ pub fn project<S: Simd, const STRIDE: usize>(
     if !active.any_true() {
         return false;
     }
+    store(zero, &mut work[segments - 1][scratch::C]);
     // Up: λ_i = d_i + c_i λ_{i+1};  Δx_{i+1} = −w (û_i λ_i − û_{i+1} λ_{i+1})
     let (mut lambda, mut pull) = (zero, V3::zero(simd));
     for k in (1..segments).rev() {
         let i = k * STRIDE;
-        let at = &work[k * scratch::ROWS..];
+        let at = &work[k];
         let u = V3::load(simd, &at[scratch::U..]);
         let d = load(simd, &at[scratch::D]);
-        lambda = if k + 1 < segments { load(simd, &at[scratch::C]).mul_add(lambda, d) } else { d };
+        lambda = load(simd, &at[scratch::C]).mul_add(lambda, d);
         lambda = active.select(lambda, zero);
         let own = u * lambda;
         let w1 = load(simd, &inverse_mass[i + STRIDE]);
         let p = V3::load(simd, &x[i + STRIDE]);
         (p + (pull - own) * w1).store(&mut x[i + STRIDE]);
-        let tension = &mut tile.state[i][state::TENSION];
+        let tension = &mut state[i][state::TENSION];
         store(lambda.mul_add(force, load(simd, tension)), tension);
         pull = own;
     }
