@@ -57,7 +57,8 @@ pub struct Solver {
     pub sag_free: bool,
     /// Whether hair collides with the body's mesh. Default true.
     pub collide_body: bool,
-    /// Iterations of fast projection a substep (Goldenthal 2007), 0 to 20. Default 3. For the implicit integrators.
+    /// Iterations of fast projection a substep (Goldenthal 2007), 0 to 20; strands of more than 32 points for each may take one for every
+    /// 32. Default 3. For the implicit integrators.
     pub projections: u32,
     /// How a substep is made. Default `backward-euler`.
     pub integrator: Integrator,
