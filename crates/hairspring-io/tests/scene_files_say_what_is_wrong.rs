@@ -64,6 +64,7 @@ fn a_scene_is_what_its_file_describes() {
         [material.mine]
         preset = "curly"
         friction = 0.5
+        mass_profile = [1, 1.5, 4]
         [[collider]]
         shape.sphere = { center = [0, 0, 0], radius = 0.5 }
         [[collider]]
@@ -87,6 +88,7 @@ fn a_scene_is_what_its_file_describes() {
     );
     let curly = hairspring::material::preset("curly").unwrap();
     assert_eq!((groom.materials[0].bend, groom.materials[0].friction), (curly.bend, 0.5));
+    assert_eq!(groom.materials[0].mass_profile, [1.0, 1.5, 4.0]);
     assert_eq!(groom.materials[1], hairspring::material::preset("coily").unwrap());
     assert!(matches!(scene.colliders[0].shape, Shape::Sphere { radius: 0.5, .. }));
     let floor = Shape::Plane { point: Vec3::NEG_Y, normal: Vec3::Y * 2.0 };
@@ -135,6 +137,21 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
         (format!("{GROOM}[solver]\nsubsteps = 0\n"), &["line 4", "1 to 64"]),
         (format!("{GROOM}[camera]\nfov = 200\n"), &["line 4", "1 to 170"]),
         (format!("{GROOM}material = \"a\"\n[material.a]\nfriction = 7\n"), &["line 5", "0 to 1"]),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nbend = 2\nmass_profile = [1, 0, 2]\n"),
+            &["line 6", "`mass_profile` must be 1 to 64 numbers above 0"],
+        ),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [1, 101]\n"),
+            &["line 5", "at most 100 times the smallest"],
+        ),
+        (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = []\n"), &["line 5", "1 to 64"]),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [{}]\n", ["1"; 65].join(", ")),
+            &["line 5", "1 to 64"],
+        ),
+        (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [1, nan]\n"), &["line 5", "above 0"]),
+        (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = 3\n"), &["line 4", "sequence"]),
         (
             "[[groom]]\nfile = \"hiar.data\"\n".into(),
             &["hiar.data was not found", "the groom that", "line 2"],

@@ -48,6 +48,17 @@ fn groom() -> Groom {
 
 #[test]
 fn a_groom_at_rest_stays_where_it_was_authored() {
+    stays_where_it_was_authored(&[1.0]);
+}
+
+#[test]
+fn so_does_one_whose_mass_has_a_profile() {
+    for profile in [&[1.0, 1.0, 1.0, 1.0, 10.0][..], &[10.0, 1.0]] {
+        stays_where_it_was_authored(profile);
+    }
+}
+
+fn stays_where_it_was_authored(mass_profile: &[f32]) {
     let groom = Arc::new(groom());
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
     let roots: Vec<Rigid> = all
@@ -59,7 +70,7 @@ fn a_groom_at_rest_stays_where_it_was_authored() {
         let mut simulation = Simulation::new(
             groom.clone(),
             &all,
-            &[Material { model, ..preset(name).unwrap() }],
+            &[Material { model, mass_profile: mass_profile.to_vec(), ..preset(name).unwrap() }],
             Solver::default(),
             Vec3::new(0.0, -9.81, 0.0),
             Rigid::default(),

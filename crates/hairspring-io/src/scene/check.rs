@@ -25,6 +25,13 @@ fn from_0(x: f32) -> bool {
     x.is_finite() && x >= 0.0
 }
 
+/// Weights of a material's mass profile.
+fn profile(weights: &[f32]) -> bool {
+    let least = weights.iter().copied().fold(f32::INFINITY, f32::min);
+    let holds = |w: &f32| w.is_finite() && *w > 0.0 && *w <= least * 100.0;
+    (1..=64).contains(&weights.len()) && weights.iter().all(holds)
+}
+
 /// A colour's channels: 0 to 1.
 fn color(c: Vec3) -> bool {
     c.is_finite() && c.min_element() >= 0.0 && c.max_element() <= 1.0
@@ -185,6 +192,11 @@ pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Prob
     let checks = [
         (above_0(m.radius), "radius", "above 0 [m]"),
         (above_0(Some(m.density)), "density", "above 0 [kg/m³]"),
+        (
+            profile(&m.mass_profile),
+            "mass_profile",
+            "1 to 64 numbers above 0, the largest at most 100 times the smallest",
+        ),
         (above_0(Some(m.young)), "young", "above 0 [Pa]"),
         (above_0(Some(m.shear)), "shear", "above 0 [Pa]"),
         (from_0(m.bend), "bend", "0 or more"),

@@ -14,6 +14,14 @@ pub struct Material {
     pub radius: Option<f32>,
     /// Density of the fibre [kg/m³]. Default 1310: dry hair, 1300 to 1320.
     pub density: f32,
+    /// How the mass lies along a strand: weights at equal spacing in arc length from root to tip, linear in between. Default `[1.0]`: evenly.
+    /// Only their ratios count, and a strand weighs what its density says: `[1.0, 3.0]` is three times as heavy at the tip as at the
+    /// root. Stiffness is the fibre's, whatever its mass, and so is the moment of the air about the root (one rate slows a whole strand).
+    ///
+    /// 1 to 64 values above 0, the largest at most 100 times the smallest: a light strand under a heavy tip is as hard to solve as one of many
+    /// more points. In the bench's shake at 4 substeps, 32 points stay quiet with `[1, 1, 1, 100]`; 64 points do with
+    /// `[1, 1, 1, 10]`, and with 30 in place of 10 at 8 substeps.
+    pub mass_profile: Vec<f32>,
     /// Young's modulus along the fibre [Pa]. Default 3.9e9.
     pub young: f32,
     /// Shear modulus of the fibre [Pa], above 0. Default 0.89e9: hair is anisotropic, so that it is set by itself and not from
@@ -73,6 +81,7 @@ impl Default for Material {
             model: Model::Auto,
             radius: None,
             density: 1310.0,
+            mass_profile: vec![1.0],
             young: 3.9e9,
             shear: 0.89e9,
             bend: 1.0,

@@ -150,6 +150,7 @@ impl Simulation {
                     let fibre = Fibre {
                         radii: &radii,
                         density: material.density as f64,
+                        mass_profile: &material.mass_profile,
                         young: (material.young * material.bend * scale.bend * section.bend) as f64,
                         tip: material.bend_tip as f64,
                         flat: section.flat as f64,
@@ -165,7 +166,7 @@ impl Simulation {
                     let radius = radii.iter().sum::<f32>() / radii.len() as f32;
                     let rows = &mut *into.strand;
                     rows[strand::DRAG].0[lane] =
-                        material.drag * scale.drag * drag_rate(radius, material.density);
+                        material.drag * scale.drag * drag_rate(radius, material.density) * shape.air as f32;
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
                     rows[strand::FRICTION].0[lane] = material.friction;
                     rows[strand::TWIST_RATIO].0[lane] = section.twist_ratio;

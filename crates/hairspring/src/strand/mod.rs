@@ -6,6 +6,7 @@ pub(crate) mod integrate;
 pub(crate) mod interval;
 pub(crate) mod lanes;
 pub(crate) mod limit;
+pub(crate) mod mass;
 pub(crate) mod model;
 pub(crate) mod press;
 pub(crate) mod project;

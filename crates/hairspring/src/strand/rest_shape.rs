@@ -19,6 +19,7 @@
 //! the shape, bending stiffness is raised by the least that does (Hsu et al. 2023, *Sag-Free Initialization for Strand-Based
 //! Hybrid Hair Simulation*, raise it too; what holds a style in life is wax and neighbours).
 
+use super::mass::{air_share, masses};
 use glam::{DVec3, Vec3};
 
 /// Largest |m|/B of a joint at the sag-free start [rad]: beyond it the linear moment is not a fibre's any more.
@@ -43,6 +44,8 @@ pub struct Fibre<'a> {
     pub radii: &'a [f32],
     /// Density [kg/m³].
     pub density: f64,
+    /// How its mass lies along the strand: weights at equal spacing from root to tip; empty: evenly.
+    pub mass_profile: &'a [f32],
     /// Young's modulus times the style's multiplier, at the root [Pa].
     pub young: f64,
     /// The same at the tip, as a fraction of the root's.
@@ -73,6 +76,8 @@ pub struct RestPoint {
     pub length: f64,
     /// Mass [kg].
     pub mass: f64,
+    /// Mass of the segment from here [kg].
+    pub segment_mass: f64,
     /// Bending stiffness of the joint here [N m].
     pub bend: f64,
     /// Rest turn here, in the frame (normal, binormal, tangent) of the segment before.
@@ -91,6 +96,8 @@ pub struct RestShape {
     pub points: Vec<RestPoint>,
     /// Joints whose stiffness was raised for the sag-free start.
     pub stiffened: usize,
+    /// Rate at which air stops the strand over that of one with its mass evenly shared [1].
+    pub air: f64,
 }
 
 /// The rest shape of the strand through `points` (three or more, no two neighbours alike) [m], in balance under `gravity` [m/s²],
@@ -104,11 +111,10 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     let total: f64 = lengths.iter().sum();
 
     let mut rest = vec![RestPoint::default(); n];
-    for i in 0..n {
-        let half = 0.5 * (if i > 0 { lengths[i - 1] } else { 0.0 } + lengths.get(i).copied().unwrap_or(0.0));
-        let r = fibre.radii[i] as f64;
-        rest[i].mass = fibre.density * std::f64::consts::PI * r * r * half;
-        rest[i].length = lengths.get(i).copied().unwrap_or(0.0);
+    let masses = masses(&lengths, fibre);
+    for (i, (at, mass)) in rest.iter_mut().zip(&masses).enumerate() {
+        (at.mass, at.segment_mass) = (mass.point, mass.segment);
+        at.length = lengths.get(i).copied().unwrap_or(0.0);
     }
     let mut along = 0.0;
     for j in 1..n - 1 {
@@ -155,6 +161,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             rest[i].tension = axial / lengths[i];
             let mean =
                 if i == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[i - 1] + lengths[i]) };
+            // The fibre's own here: with the mean of what hangs beyond, strands with heavy tips gave way.
             let weight_per_length = g * rest[i].mass / mean;
             let held = (moment.length() / LARGEST_CURVATURE).powf(1.5) / weight_per_length.sqrt() / mean;
             let twisting = fibre.twist_ratio.map_or(0.0, |ratio| torque.abs() / (ratio * LARGEST_TWIST));
@@ -188,5 +195,5 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let (d, frame) = (rest[i].turn, rest[i - 1].normal);
         rest[i].turn = DVec3::new(d.dot(frame), d.dot(t[i - 1].cross(frame)), d.dot(t[i - 1]));
     }
-    RestShape { points: rest, stiffened }
+    RestShape { points: rest, stiffened, air: air_share(&lengths, &masses) }
 }

@@ -88,13 +88,11 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     let x: Vec<DVec3> = particles.iter().map(|p| p.as_dvec3()).collect();
     let mut rest = vec![RestPoint::default(); n];
     for (i, at) in rest.iter_mut().enumerate() {
-        let RestPoint { length, mass, .. } = strand.points[i / 2];
-        let r = fibre.radii[i / 2] as f64;
-        let segment = fibre.density * std::f64::consts::PI * r * r * length;
+        let RestPoint { length, mass, segment_mass, .. } = strand.points[i / 2];
         (at.length, at.mass) = if i % 2 == 0 {
             (length, (1.0 - EXTRA) * mass)
         } else {
-            (length * (0.25 + ASIDE * ASIDE).sqrt(), EXTRA * segment)
+            (length * (0.25 + ASIDE * ASIDE).sqrt(), EXTRA * segment_mass)
         };
         if i + 3 < n {
             at.turn.y = x[i].distance(x[i + 3]);
@@ -161,7 +159,7 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             }
         }
     }
-    RestShape { points: rest, stiffened }
+    RestShape { points: rest, stiffened, air: strand.air }
 }
 
 /// An extra particle at `p`, put where its triangle over a segment between `ends` of rest length `length` has it.

@@ -1,0 +1,180 @@
+//! How a strand's mass is shared among its points, in f64.
+//!
+//! A point has the mass of the half segments on both sides of it. Where the material has a profile w(s), that is
+//!
+//! ```text
+//! m_i = c ρA_i ∫ w ds  over the half segments of point i,      c so that Σ m_i is the mass of the strand without a profile
+//! ```
+//!
+//! integrated and not sampled, so that a narrow bead keeps its weight however few points a strand has.
+
+use super::rest_shape::Fibre;
+use std::f64::consts::PI;
+
+/// Mass of one point, and of the segment from it [kg].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Mass {
+    /// Of the point: half of each of its segments.
+    pub point: f64,
+    /// The same without a profile.
+    pub even: f64,
+    /// Of the segment from it; 0 at the tip.
+    pub segment: f64,
+}
+
+/// The masses of a strand with segments of these `lengths` [m], shape `[points]`.
+pub fn masses(lengths: &[f64], fibre: &Fibre) -> Vec<Mass> {
+    let profile = Profile::new(fibre.mass_profile, lengths.iter().sum());
+    let mut out = Vec::with_capacity(lengths.len() + 1);
+    let (mut along, mut before) = (0.0, 0.0);
+    let (mut even, mut shared) = (0.0, 0.0);
+    for (i, r) in fibre.radii.iter().map(|r| *r as f64).enumerate() {
+        let length = lengths.get(i).copied().unwrap_or(0.0);
+        let line = fibre.density * PI * r * r;
+        let half = 0.5 * (before + length);
+        let mass = Mass {
+            point: line * half * profile.mean(along - 0.5 * before, along + 0.5 * length),
+            even: line * half,
+            segment: line * length * profile.mean(along, along + length),
+        };
+        (even, shared) = (even + mass.even, shared + mass.point);
+        (along, before) = (along + length, length);
+        out.push(mass);
+    }
+    let scale = if shared > 0.0 { even / shared } else { 1.0 };
+    out.iter_mut().for_each(|m| (m.point, m.segment) = (m.point * scale, m.segment * scale));
+    out
+}
+
+/// Rate at which air stops a strand with these masses over that of one whose mass lies evenly [1].
+///
+/// Air takes hold of length, whatever its mass, so that its rate goes down where mass goes up. The kernel knows one rate a strand: this one
+/// keeps the moment of the air about the root, which is what leans a hanging strand in the wind.
+pub fn air_share(lengths: &[f64], masses: &[Mass]) -> f64 {
+    let (mut along, mut even, mut shared) = (0.0, 0.0, 0.0);
+    for (length, mass) in lengths.iter().zip(&masses[1..]) {
+        along += length;
+        (even, shared) = (even + mass.even * along, shared + mass.point * along);
+    }
+    if shared > 0.0 { even / shared } else { 1.0 }
+}
+
+/// Values at equal spacing along a strand, linear in between.
+enum Profile<'a> {
+    /// The same everywhere.
+    Even,
+    /// From root to tip, two or more, and the length of the strand [m].
+    Line(&'a [f32], f64),
+}
+
+impl<'a> Profile<'a> {
+    fn new(values: &'a [f32], length: f64) -> Self {
+        if values.iter().all(|v| *v == values[0]) { Self::Even } else { Self::Line(values, length) }
+    }
+
+    /// Mean from `from` to `to` [m]; of an even one exactly 1.
+    fn mean(&self, from: f64, to: f64) -> f64 {
+        let Self::Line(values, length) = *self else { return 1.0 };
+        // Integral from the root, over the spacing.
+        let intervals = (values.len() - 1) as f64;
+        let integral = |s: f64| {
+            let at = (s / length * intervals).clamp(0.0, intervals);
+            let k = (at as usize).min(values.len() - 2);
+            let (part, v) = (at - k as f64, |k: usize| values[k] as f64);
+            let whole: f64 = (0..k).map(|j| 0.5 * (v(j) + v(j + 1))).sum();
+            whole + part * (v(k) + 0.5 * part * (v(k + 1) - v(k)))
+        };
+        if to > from { (integral(to) - integral(from)) * length / (intervals * (to - from)) } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::masses;
+    use crate::strand::{
+        rest_shape::{Fibre, rest_shape},
+        truss::{particles, truss},
+    };
+    use glam::{DVec3, Vec3};
+
+    const LINE: f64 = 1310.0 * std::f64::consts::PI * 4e-5 * 4e-5;
+
+    fn fibre<'a>(radii: &'a [f32], mass_profile: &'a [f32]) -> Fibre<'a> {
+        Fibre {
+            radii,
+            density: 1310.0,
+            mass_profile,
+            young: 3.9e9,
+            tip: 1.0,
+            flat: 0.0,
+            twist_ratio: Some(0.46),
+            substep: 1.0 / 240.0,
+        }
+    }
+
+    fn near(a: f64, b: f64) -> bool {
+        (a / b - 1.0).abs() < 1e-5
+    }
+
+    #[test]
+    fn a_profile_shares_the_mass_and_adds_none() {
+        let lengths = [0.01, 0.03, 0.02, 0.04];
+        let radii = [4e-5; 5];
+        let even = masses(&lengths, &fibre(&radii, &[1.0]));
+        let shared = masses(&lengths, &fibre(&radii, &[0.5, 1.5]));
+        // w = ½ + s/L, whose mean over a length is its value in the middle of it.
+        let middles = [0.0025, 0.015, 0.0375, 0.065, 0.09];
+        for ((even, shared), middle) in even.iter().zip(&shared).zip(middles) {
+            assert!(near(shared.point, even.point * (0.5 + middle / 0.1)), "{shared:?}, {even:?}");
+        }
+        let total: f64 = shared.iter().map(|m| m.point).sum();
+        let segments: f64 = shared.iter().map(|m| m.segment).sum();
+        assert!(near(total, LINE * 0.1) && near(segments, total), "{total} kg, {segments} kg");
+        // Only ratios count, to the last bit where they are one.
+        for same in [&[7.0, 7.0, 7.0][..], &[]] {
+            let same = masses(&lengths, &fibre(&radii, same));
+            assert!(same.iter().zip(&even).all(|(a, b)| a.point == b.point && a.segment == b.segment));
+        }
+        // A taper and a profile: still the mass that the taper has.
+        let tapered = [6e-5, 5e-5, 4e-5, 3e-5, 2e-5];
+        let sum = |profile: &[f32]| {
+            masses(&lengths, &fibre(&tapered, profile)).iter().map(|m| m.point).sum::<f64>()
+        };
+        assert!(near(sum(&[1.0, 5.0, 2.0]), sum(&[1.0])));
+    }
+
+    #[test]
+    fn a_bead_between_two_points_keeps_its_weight() {
+        // A triangle of 100 over 1 at the middle of the third of four segments, and as wide as half of it.
+        let mut profile = [1.0; 33];
+        profile[20] = 100.0;
+        let lengths = [0.05; 4];
+        let masses = masses(&lengths, &fibre(&[4e-5; 5], &profile));
+        let (bead, rest) = (99.0 / 32.0, 1.0);
+        let unit = LINE * 0.2 / (bead + rest);
+        for (mass, share) in masses.iter().zip([0.125, 0.25, 0.25 + 0.5 * bead, 0.25 + 0.5 * bead, 0.125]) {
+            assert!(near(mass.point, unit * share), "{masses:?}");
+        }
+        assert!(near(masses[2].segment, unit * (0.25 + bead)), "{masses:?}");
+    }
+
+    #[test]
+    fn what_hangs_is_carried_above_it() {
+        let points: Vec<Vec3> = (0..33).map(|i| Vec3::NEG_Y * (0.2 * i as f32 / 32.0)).collect();
+        let (radii, gravity) = ([4e-5; 33], DVec3::NEG_Y * 9.81);
+        let fibre = fibre(&radii, &[1.0, 3.0]);
+        for (model, rest, stride) in [
+            ("rod", rest_shape(&points, &fibre, gravity), 1),
+            ("springs", truss(&particles(&points), &fibre, gravity), 2),
+        ] {
+            for i in 1..32 {
+                // All beyond the middle of the segment: ∫ (½ + s) ds to the tip, of a whole of 1.
+                let s = (i as f64 + 0.5) / 32.0;
+                let weight = 9.81 * LINE * 0.2 * (0.5 * (1.0 - s) + 0.5 * (1.0 - s * s));
+                let tension = rest.points[stride * i].tension;
+                // A thousandth of the mass is in the extra particles, which hang beside.
+                assert!((tension / weight - 1.0).abs() < 3e-3, "{model}: {tension} N for {weight} N at {s}");
+            }
+        }
+    }
+}
