@@ -26,6 +26,12 @@ impl Grid {
         !self.displacements.is_empty()
     }
 
+    /// The ball around the whole grid, outside of which nothing is inside: its middle and radius [m].
+    pub fn bounds(&self) -> (Vec3, f32) {
+        let half = (self.size - UVec3::ONE).as_vec3() * (0.5 * self.cell);
+        (self.origin + half, half.length())
+    }
+
     /// Distance [m] and outward unit normal at `p` [m]; outside the grid, the distance to the grid is added.
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
         let top = (self.size - UVec3::ONE).as_vec3();

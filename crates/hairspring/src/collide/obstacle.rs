@@ -5,7 +5,7 @@ use crate::strand::{
     lanes::{F, V3, load},
     root::transform,
 };
-use fearless_simd::prelude::*;
+use fearless_simd::{mask32x8, prelude::*};
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use std::sync::Arc;
 
@@ -99,9 +99,25 @@ pub struct ObstaclePose {
     pub start: (Mat3, Vec3),
     /// Fraction of an interval that the substep lasts: a deforming field's displacement is for a whole interval.
     pub share: f32,
+    /// A ball that holds all of it at the end: its middle in the world and its radius [m], which is infinite for a plane.
+    bounds: (Vec3, f32),
 }
 
 impl ObstaclePose {
+    /// A shape that moves from `start` to `end` in a substep that lasts `share` of an interval.
+    pub fn new(shape: Obstacle, start: (Mat3, Vec3), end: (Mat3, Vec3), share: f32) -> Self {
+        let (center, radius) = shape.bounds();
+        let bounds = (end.0 * center + end.1, radius);
+        Self { shape, start, end, share, bounds }
+    }
+
+    /// Which of eight points may be inside at the end of the substep; the others are not.
+    #[inline(always)]
+    pub(crate) fn near<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
+        let d = p - V3::splat(simd, self.bounds.0);
+        d.dot(d).simd_le(F::splat(simd, self.bounds.1 * self.bounds.1))
+    }
+
     /// The distance from `p` [m] (world) to the surface at the end of the substep, negative inside; one point, for
     /// checks and for follow hairs.
     pub fn distance(&self, p: Vec3) -> f32 {
@@ -127,6 +143,16 @@ impl Obstacle {
             }
             Obstacle::Plane { point, normal } => ((p - *point).dot(*normal), *normal),
             Obstacle::Field(grid) => grid.distance_and_normal(p),
+        }
+    }
+
+    /// A ball around all of it: its middle and radius [m].
+    fn bounds(&self) -> (Vec3, f32) {
+        match self {
+            Obstacle::Sphere { center, radius } => (*center, *radius),
+            Obstacle::Capsule { a, b, radius } => (a.midpoint(*b), 0.5 * a.distance(*b) + radius),
+            Obstacle::Plane { .. } => (Vec3::ZERO, f32::INFINITY),
+            Obstacle::Field(grid) => grid.bounds(),
         }
     }
 

@@ -61,7 +61,7 @@ impl Bench {
         let groom = Arc::new(groom(strands, points));
         let shape = Obstacle::Sphere { center: Vec3::ZERO, radius: RADIUS };
         let rest = (Mat3::IDENTITY, Vec3::ZERO);
-        let pose = ObstaclePose { shape: shape.clone(), start: rest, end: rest, share: 1.0 };
+        let pose = ObstaclePose::new(shape.clone(), rest, rest, 1.0);
         let roots: Vec<Vec3> = (0..strands as usize).map(|s| groom.strand(s)[0]).collect();
         let all: Vec<u32> = (0..strands).collect();
         // Hair falls from standing out: a start in balance would be one that no fibre holds.

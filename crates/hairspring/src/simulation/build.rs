@@ -82,9 +82,7 @@ impl Simulation {
                 let points = strands().map(|s| groom.range(s).len()).max().unwrap_or(0).max(3);
                 let points = ((points - 1) * model.stride() + 1) as u32;
                 let flat = model == Elastic::Rod && strands().any(|s| material(s).flatness != 1.0);
-                // Only a strand that starts out straight and free of load needs no rest turn.
-                let curled = solver.sag_free || strands().any(|s| !is_straight(groom.strand(s)));
-                let place = TilePlace { first, points, model, curled, flat };
+                let place = TilePlace { first, points, model, flat };
                 first += points;
                 place
             })
@@ -155,11 +153,14 @@ impl Simulation {
                         tip: material.bend_tip as f64,
                         flat: section.flat as f64,
                         substep: super::step::substep_length(&solver),
-                        twist_ratio: (model != Elastic::Curvature).then_some(section.twist_ratio as f64),
+                        twist_ratio: (!matches!(model, Elastic::Straight | Elastic::Curvature))
+                            .then_some(section.twist_ratio as f64),
                     };
                     let shape = match model {
                         Elastic::Springs => truss(&points, &fibre, gravity),
-                        Elastic::Curvature | Elastic::Rod => rest_shape(&points, &fibre, gravity),
+                        Elastic::Straight | Elastic::Curvature | Elastic::Rod => {
+                            rest_shape(&points, &fibre, gravity)
+                        }
                     };
                     stiffened += shape.stiffened;
                     into.write_strand(&points, &shape, anchor, obstacles);
@@ -204,21 +205,22 @@ pub(super) fn simulated_points(model: Elastic, points: &[Vec3]) -> Cow<'_, [Vec3
     }
     match model {
         Elastic::Springs => Cow::Owned(particles(&points)),
-        Elastic::Curvature | Elastic::Rod => points,
+        Elastic::Straight | Elastic::Curvature | Elastic::Rod => points,
     }
 }
 
 /// The elastic model that simulates a strand.
 fn elastic(material: &Material, points: &[Vec3], solver: &Solver) -> Elastic {
+    // Only a strand that starts out straight and free of load needs no rest turn.
+    let straight = !solver.sag_free && is_straight(points);
     match material.model {
         // Constant matrix and curvature are all that it knows.
         _ if solver.integrator == Integrator::LocalGlobal => Elastic::Curvature,
         Model::Springs => Elastic::Springs,
+        Model::Curvature if straight => Elastic::Straight,
         Model::Curvature => Elastic::Curvature,
         Model::Rod => Elastic::Rod,
-        Model::Auto if !solver.sag_free && material.flatness == 1.0 && is_straight(points) => {
-            Elastic::Curvature
-        }
+        Model::Auto if straight && material.flatness == 1.0 => Elastic::Straight,
         Model::Auto => Elastic::Rod,
     }
 }

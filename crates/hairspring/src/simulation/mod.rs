@@ -66,7 +66,6 @@ struct TilePlace {
     /// The elastic model of all its strands.
     model: Elastic,
     /// Whether any strand has rest turns.
-    curled: bool,
     /// Whether any fibre is flat.
     flat: bool,
 }

@@ -5,14 +5,14 @@ use crate::{
     collide::{Obstacle, ObstaclePose, Rigid},
     scene::{Integrator, Quality, Solver, Wind},
     strand::{
-        integrate::run_tile,
         interval::{Interval, Substep},
         lanes::LANES,
+        model::{curvature, rod, springs, straight},
         scratch::Scratch,
-        tile::{HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, strand},
+        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, strand},
     },
 };
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use glam::Vec3;
 use std::cell::RefCell;
 
@@ -155,11 +155,9 @@ impl Simulation {
             substep.anchor = from.lerp(&drive.anchor, fraction).matrix();
             substep.wind = drive.air.velocity(fraction * drive.dt);
             substep.obstacles.clear();
-            substep.obstacles.extend(drive.obstacles.iter().map(|o| ObstaclePose {
-                shape: o.shape.clone(),
-                start: o.start.lerp(&o.end, before).matrix(),
-                end: o.start.lerp(&o.end, fraction).matrix(),
-                share: 1.0 / count as f32,
+            substep.obstacles.extend(drive.obstacles.iter().map(|o| {
+                let at = |t: f32| o.start.lerp(&o.end, t).matrix();
+                ObstaclePose::new(o.shape.clone(), at(before), at(fraction), 1.0 / count as f32)
             }));
         }
     }
@@ -225,7 +223,6 @@ impl<'a> Piece<'a> {
         let points = at..at + place.points as usize;
         Tile {
             model: place.model,
-            curled: place.curled,
             flat: place.flat,
             strand: &self.strand[k],
             rest: &self.rest[points.clone()],
@@ -249,7 +246,13 @@ fn run(level: Level, interval: &Interval, mut piece: Piece) -> bool {
         let mut broken = false;
         for k in 0..count {
             let mut tile = piece.tile(k);
-            dispatch!(level, simd => run_tile(simd, interval, &mut tile, scratch));
+            let run = match tile.model {
+                Elastic::Straight => straight::run,
+                Elastic::Curvature => curvature::run,
+                Elastic::Rod => rod::run,
+                Elastic::Springs => springs::run,
+            };
+            run(level, interval, &mut tile, scratch);
             broken |= !reset::all_finite(tile.state);
         }
         broken

@@ -238,12 +238,7 @@ impl StagedBody {
     pub(super) fn poses(&self) -> Vec<ObstaclePose> {
         self.obstacles
             .iter()
-            .map(|o| ObstaclePose {
-                shape: o.shape.clone(),
-                start: o.start.matrix(),
-                end: o.end.matrix(),
-                share: 1.0,
-            })
+            .map(|o| ObstaclePose::new(o.shape.clone(), o.start.matrix(), o.end.matrix(), 1.0))
             .collect()
     }
 

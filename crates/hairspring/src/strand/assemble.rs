@@ -13,9 +13,9 @@
 
 use super::{
     band::{Band, back_substitute, factor_rows},
-    lanes::{F, Row, Sym3, V3, load, store},
+    lanes::{F, Sym3, V3, load, store},
     model::{
-        At, Model, Solved, Stretching,
+        At, Model, Solved,
         stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2, stretch},
     },
     press::{press, relieve},
@@ -44,8 +44,6 @@ pub struct Step<'a, S: Simd> {
     pub second_order: bool,
     /// Colliders, each at the start and the end of it.
     pub obstacles: &'a [ObstaclePose],
-    /// What holds the segments' lengths.
-    pub stretching: Stretching,
 }
 
 impl<S: Simd> Step<'_, S> {
@@ -80,13 +78,13 @@ pub fn forces<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let n = tile.rest.len();
-    let mut elements = Elements::<S, M, B, N>::begin(simd, step, tile, &scratch.x);
+    let mut elements = Elements::<S, M, B, N>::begin(simd, step, tile, scratch);
     for i in 0..n {
         if i + 1 < n {
-            elements.add(simd, step, tile, &scratch.x);
+            elements.add(simd, i % M::STRIDE, step, tile, scratch);
         }
         elements.band.force().store(&mut scratch.kick[i]);
-        elements.band.shift(simd);
+        elements.band.shift();
     }
 }
 
@@ -112,33 +110,41 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let n = tile.rest.len();
-    let mut elements = Elements::<S, M, B, N>::begin(simd, step, tile, &scratch.x);
-    let (mut held, rows) = (0, factor_rows(B, N));
+    let mut elements = Elements::<S, M, B, N>::begin(simd, step, tile, scratch);
+    let (mut held, rows) = (0, factor_rows(B, N, M::HALF));
     // The driven points and the last by themselves: one loop for all would carry the window through its branches.
-    for i in 0..M::DRIVEN {
-        add_point(simd, sweep, step, tile, scratch, &mut elements, &mut held);
+    let first = M::DRIVEN.next_multiple_of(M::STRIDE);
+    for i in 0..first {
+        add_point(simd, (sweep, i % M::STRIDE), step, tile, scratch, &mut elements, &mut held);
         // An angle of the driven first segment is driven too, of the second it is not.
-        if i == 1 && B > 3 {
+        let angle = i == 1 && B > 3;
+        if angle {
             for k in 0..3 {
                 elements.band.hold(simd, k);
             }
-            elements.band.eliminate(simd, &mut scratch.factors[i * rows..]);
+        }
+        if angle || i >= M::DRIVEN {
+            elements.band.eliminate(simd, M::HALF, &mut scratch.factors[i * rows..]);
         } else {
-            elements.band.shift(simd);
+            elements.band.shift();
         }
     }
-    for i in M::DRIVEN..n - 1 {
-        add_point(simd, sweep, step, tile, scratch, &mut elements, &mut held);
-        elements.band.eliminate(simd, &mut scratch.factors[i * rows..]);
+    for i in (first..n - 1).step_by(M::STRIDE) {
+        add_point(simd, (sweep, 0), step, tile, scratch, &mut elements, &mut held);
+        elements.band.eliminate(simd, M::HALF, &mut scratch.factors[i * rows..]);
+        if M::STRIDE == 2 {
+            add_point(simd, (sweep, 1), step, tile, scratch, &mut elements, &mut held);
+            elements.band.eliminate(simd, M::HALF, &mut scratch.factors[(i + 1) * rows..]);
+        }
     }
-    elements.band.eliminate(simd, &mut scratch.factors[(n - 1) * rows..]);
+    elements.band.eliminate(simd, M::HALF, &mut scratch.factors[(n - 1) * rows..]);
 }
 
 /// Adds everything that begins at the walk's next point i, and what acts on point i+1.
 #[inline(always)]
 fn add_point<S, M, const B: usize, const N: usize>(
     simd: S,
-    sweep: Sweep,
+    (sweep, phase): (Sweep, usize),
     step: &Step<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
@@ -148,7 +154,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
     S: Simd,
     M: Model<S, B, N>,
 {
-    let segment = elements.add(simd, step, tile, &scratch.x);
+    let segment = elements.add(simd, phase, step, tile, scratch);
     let (i, band) = (elements.at.i, &mut elements.band);
 
     // Mass, air and gravity of point i+1. Drag along a slender fibre is half of that across it (Batchelor 1970).
@@ -218,14 +224,14 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
         x: [zero; 3],
         moved: [zero; 3],
         unknowns: [F::<S>::splat(simd, 0.0); N],
-        h: step.h,
-        stretching: step.stretching,
+        along: F::splat(simd, 0.0),
     };
     for i in (1..n).rev() {
         let x = V3::load(simd, &scratch.x[i]);
         let mut delta = zero;
         if i >= M::DRIVEN || B > 3 {
-            back_substitute::<S, B, N>(simd, &scratch.factors[i * factor_rows(B, N)..], &mut solved.unknowns);
+            let factors = &scratch.factors[i * factor_rows(B, N, M::HALF)..];
+            back_substitute::<S, B, N>(simd, M::HALF, factors, &mut solved.unknowns);
         }
         if i >= M::DRIVEN {
             let unknowns = &solved.unknowns;
@@ -234,17 +240,18 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
             relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
         }
         solved.i = i;
+        let fixed = &scratch.fixed[i - i % M::STRIDE];
+        solved.along = load(simd, &fixed.along);
         solved.x = [x, solved.x[0], solved.x[1]];
         solved.moved = [delta, solved.moved[0], solved.moved[1]];
         if i + 1 < n {
             M::take(simd, &solved, tile);
         }
         if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
-            let length = load(simd, &tile.rest[i][rest::LENGTH]);
-            let k = M::along(simd, step.stretching, step.h, tile, i);
+            // Padding has no stiffness, and so takes nothing.
+            let length = [load(simd, &tile.rest[i][rest::LENGTH]), load(simd, &fixed.inverse_length)];
             let row = &mut tile.state[i][state::TENSION];
-            let tension = load(simd, row) + solved.taken(M::STRIDE, length, k);
-            store(length.simd_gt(0.0).select(tension, F::splat(simd, 0.0)), row);
+            store(load(simd, row) + solved.taken(M::STRIDE, length, solved.along), row);
         }
     }
 }
@@ -273,49 +280,58 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
     /// At the root.
     #[inline(always)]
-    pub fn begin(simd: S, step: &Step<S>, tile: &Tile, x: &[[Row; 3]]) -> Self {
+    pub fn begin(simd: S, step: &Step<S>, tile: &Tile, scratch: &Scratch) -> Self {
         let (drag, damping, _) = Root::<S>::fibre(simd, tile.strand);
-        let first = V3::load(simd, &x[M::STRIDE]);
-        let inverse = F::splat(simd, 1.0) / load(simd, &tile.rest[0][rest::LENGTH]).max(1e-12);
+        let first = V3::load(simd, &scratch.x[M::STRIDE]);
+        let inverse = load(simd, &scratch.fixed[0].inverse_length);
         let at = At {
             i: usize::MAX,
+            phase: 0,
             e: [first; 2],
             u: [first.length_and_unit().1; 2],
             inverse_length: [inverse; 2],
             damped: damping * (1.0 / step.h) + 1.0,
+            along: [load(simd, &scratch.fixed[0].along); 2],
             h: step.h,
-            stretching: step.stretching,
         };
         Self { band: Band::new(simd), model: M::begin(simd, tile, &step.root), at, x1: first, drag }
     }
 
-    /// Adds what begins at the next point i: the model's elements, and the stretch of the strand's segment from point i+1.
+    /// Adds what begins at the next point i: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i
+    /// modulo the model's stride, told apart so that it can be a constant.
     #[inline(always)]
-    pub fn add(&mut self, simd: S, step: &Step<S>, tile: &mut Tile, x: &[[Row; 3]]) -> Segment<S> {
-        let nought = F::<S>::splat(simd, 0.0);
+    pub fn add(
+        &mut self,
+        simd: S,
+        phase: usize,
+        step: &Step<S>,
+        tile: &mut Tile,
+        scratch: &Scratch,
+    ) -> Segment<S> {
+        let Scratch { x, fixed, .. } = scratch;
         self.at.i = self.at.i.wrapping_add(1);
+        self.at.phase = phase;
+        self.band.enter(simd);
         let next = self.at.i + 1;
         let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
-        if !next.is_multiple_of(M::STRIDE) {
+        if phase + 1 < M::STRIDE {
             self.model.add(simd, &self.at, x, tile, &mut self.band);
             return Segment { u: self.at.u[1], mass, drag: self.drag };
         }
         let at = &mut self.at;
         let length = load(simd, &row[rest::LENGTH]);
-        let real = length.simd_gt(0.0);
         let far = next + M::STRIDE;
         let x2 = if far < tile.rest.len() { V3::load(simd, &x[far]) } else { self.x1 };
         let e = x2 - self.x1;
         let (l, u) = e.length_and_unit();
-        let u = V3::select(real, u, V3::zero(simd));
         at.e = [at.e[1], e];
         at.u = [at.u[1], u];
-        at.inverse_length =
-            [at.inverse_length[1], real.select(F::splat(simd, 1.0) / length.max(1e-12), nought)];
+        at.inverse_length = [at.inverse_length[1], load(simd, &fixed[next].inverse_length)];
+        at.along = [at.along[1], load(simd, &fixed[next].along)];
         self.model.add(simd, at, x, tile, &mut self.band);
 
-        let k = M::along(simd, step.stretching, step.h, tile, next);
+        let k = at.along[1];
         let tension = load(simd, &tile.state[next][state::TENSION]);
         let (force, block) = stretch((l, u), length, k, tension, step.explicit_tension());
         self.band.add_diagonal(1, block);

@@ -14,24 +14,27 @@
 use super::lanes::{F, M3, Row, Sym3, V3, load, store};
 use fearless_simd::{mask32x8, prelude::*};
 
-/// `body` once for each index below 12, the widest window: loops over constants that must not stay loops, so that the
-/// window's entries are registers (the compiler unrolls no nest of this size).
-macro_rules! each {
-    ($i:ident, $body:block) => {
-        each!(@ $i, $body, 0 1 2 3 4 5 6 7 8 9 10 11)
-    };
-    (@ $i:ident, $body:block, $($k:literal)*) => {
-        $({
-            let $i: usize = $k;
-            $body
-        })*
-    };
+/// The zero that a sum begins with: adding to −0 is exact for every number, 0 and −0 included, and so costs nothing.
+const NOTHING: f32 = -0.0;
+
+/// Rows of factors that [`Band::eliminate`] writes for a point, where an unknown meets none more than `half` after it.
+pub const fn factor_rows(block: usize, window: usize, half: usize) -> usize {
+    factor_row(block, window, half)
 }
 
-/// Rows of factors that [`Band::eliminate`] writes for a point.
-pub const fn factor_rows(block: usize, window: usize) -> usize {
-    // Row r of the block keeps its l of the N − 1 − r unknowns after it, and y.
-    block * window - block * (block - 1) / 2
+/// The first of them that belongs to unknown `r` of the point: its l of the unknowns after it, then y.
+const fn factor_row(r: usize, window: usize, half: usize) -> usize {
+    let (mut row, mut k) = (0, 0);
+    while k < r {
+        row += last_met(k, window, half) - k + 1;
+        k += 1;
+    }
+    row
+}
+
+/// The last unknown of the window that unknown `r` meets.
+const fn last_met(r: usize, window: usize, half: usize) -> usize {
+    if r + half < window { r + half } else { window - 1 }
 }
 
 /// The part of the matrix that is being worked on, of eight strands: the unknowns of a point and of the half-bandwidth
@@ -44,10 +47,28 @@ pub struct Band<S: Simd, const B: usize, const N: usize> {
 }
 
 impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
+    /// An empty window.
     #[inline(always)]
     pub fn new(simd: S) -> Self {
-        let zero = F::<S>::splat(simd, 0.0);
-        Self { a: [[zero; N]; N], b: [zero; N] }
+        let nothing = F::<S>::splat(simd, NOTHING);
+        Self { a: [[nothing; N]; N], b: [nothing; N] }
+    }
+
+    /// Empties what belongs to the window's last point, of which nothing has been said yet. Apart from [`Band::eliminate`], so that the
+    /// compiler sees what the first addition adds to.
+    #[inline(always)]
+    pub fn enter(&mut self, simd: S) {
+        let nothing = F::<S>::splat(simd, NOTHING);
+        each!(c, {
+            if c + B >= N && c < N {
+                each!(r, {
+                    if r <= c {
+                        self.a[r][c] = nothing;
+                    }
+                });
+                self.b[c] = nothing;
+            }
+        });
     }
 
     /// Adds to one entry: unknown `j` of point `p` of the window with unknown `k` of point `q`, in the upper triangle.
@@ -76,6 +97,14 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         }
     }
 
+    /// Adds `s` times the identity to the block of the displacements of points `p` < `q`.
+    #[inline(always)]
+    pub fn add_identity_block(&mut self, p: usize, q: usize, s: F<S>) {
+        for k in 0..3 {
+            self.a[p * B + k][q * B + k] += s;
+        }
+    }
+
     /// Adds `m` to the block of the displacements of points `p` < `q`.
     #[inline(always)]
     pub fn add_block(&mut self, p: usize, q: usize, m: &M3<S>) {
@@ -85,6 +114,23 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
             o[q * B + 1] += row.y;
             o[q * B + 2] += row.z;
         }
+    }
+
+    /// Adds `stiffness` times the square of a gradient, which is `c[p]` times `direction` at the displacement of point `p`.
+    #[inline(always)]
+    pub fn add_rank_one<const P: usize>(&mut self, direction: V3<S>, c: [F<S>; P], stiffness: F<S>) {
+        let block = Sym3::outer(direction, stiffness);
+        each!(p, {
+            if p < P {
+                let scaled = block * c[p];
+                self.add_diagonal(p, scaled * c[p]);
+                each!(q, {
+                    if q > p && q < P {
+                        self.add_block(p, q, &(scaled * c[q]).full());
+                    }
+                });
+            }
+        });
     }
 
     /// Adds `v` to the column of unknown `k` of point `q` in the rows of the displacement of point `p`, wherever the two are.
@@ -155,56 +201,54 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         self.b[k] = value;
     }
 
-    /// Eliminates the window's first point, writes its factors, and moves the window on by a point; what enters is zero.
+    /// Eliminates the window's first point, writes its factors, and moves the window on by a point, which is to [`Band::enter`]. No
+    /// unknown of the matrix meets one more than `half` after it.
     #[inline(always)]
-    pub fn eliminate(&mut self, simd: S, factors: &mut [Row]) {
+    pub fn eliminate(&mut self, simd: S, half: usize, factors: &mut [Row]) {
         let one = F::<S>::splat(simd, 1.0);
-        let factors = &mut factors[..factor_rows(B, N)];
+        let factors = &mut factors[..factor_rows(B, N, half)];
+        let last = |k: usize| last_met(k, N, half);
         let mut l = [[one; N]; B];
-        each!(r, {
+        each!(r of 0 1 2 3, {
             if r < B {
-                each!(k, {
+                each!(k of 0 1 2, {
                     if k < r {
-                        each!(c, {
-                            if c >= r && c < N {
-                                self.a[r][c] = (-l[k][r]).mul_add(self.a[k][c], self.a[r][c]);
-                            }
-                        });
-                        self.b[r] = (-l[k][r]).mul_add(self.b[k], self.b[r]);
+                        self.update(r, k, last(k), l[k]);
                     }
                 });
-                let at = r * N - r * r.saturating_sub(1) / 2;
+                let at = factor_row(r, N, half);
                 let inverse = one / self.a[r][r];
-                each!(c, {
-                    if c > r && c < N {
-                        l[r][c] = self.a[r][c] * inverse;
-                        store(l[r][c], &mut factors[at + c - r - 1]);
-                    }
-                });
-                store(self.b[r] * inverse, &mut factors[at + N - r - 1]);
+                for c in r + 1..last(r) + 1 {
+                    l[r][c] = self.a[r][c] * inverse;
+                    store(l[r][c], &mut factors[at + c - r - 1]);
+                }
+                store(self.b[r] * inverse, &mut factors[at + last(r) - r]);
             }
         });
-        each!(r, {
+        each!(r of 1 2 3 4 5 6 7 8 9 10 11, {
             if r >= B && r < N {
-                each!(k, {
-                    if k < B {
-                        each!(c, {
-                            if c >= r && c < N {
-                                self.a[r][c] = (-l[k][r]).mul_add(self.a[k][c], self.a[r][c]);
-                            }
-                        });
-                        self.b[r] = (-l[k][r]).mul_add(self.b[k], self.b[r]);
+                each!(k of 0 1 2 3, {
+                    if k < B && r <= last(k) {
+                        self.update(r, k, last(k), l[k]);
                     }
                 });
             }
         });
-        self.shift(simd);
+        self.shift();
+    }
+
+    /// Takes row `k` times its l, up to column `last`, from row `r`.
+    #[inline(always)]
+    fn update(&mut self, r: usize, k: usize, last: usize, l: [F<S>; N]) {
+        for c in r..last + 1 {
+            self.a[r][c] = (-l[r]).mul_add(self.a[k][c], self.a[r][c]);
+        }
+        self.b[r] = (-l[r]).mul_add(self.b[k], self.b[r]);
     }
 
     /// Moves the window on by a point without eliminating the first.
     #[inline(always)]
-    pub fn shift(&mut self, simd: S) {
-        let zero = F::<S>::splat(simd, 0.0);
+    pub fn shift(&mut self) {
         each!(r, {
             if r + B < N {
                 each!(c, {
@@ -215,39 +259,33 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                 self.b[r] = self.b[r + B];
             }
         });
-        each!(c, {
-            if c + B >= N && c < N {
-                each!(r, {
-                    if r <= c {
-                        self.a[r][c] = zero;
-                    }
-                });
-                self.b[c] = zero;
-            }
-        });
     }
 }
 
 /// The sweep up: the unknowns of a point, put before those of the points after it in `x`.
 #[inline(always)]
-pub fn back_substitute<S: Simd, const B: usize, const N: usize>(simd: S, factors: &[Row], x: &mut [F<S>; N]) {
-    let factors = &factors[..factor_rows(B, N)];
+pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
+    simd: S,
+    half: usize,
+    factors: &[Row],
+    x: &mut [F<S>; N],
+) {
+    let factors = &factors[..factor_rows(B, N, half)];
     let after = *x;
     each!(k, {
         if k >= B && k < N {
             x[k] = after[k - B];
         }
     });
-    each!(back, {
+    each!(back of 0 1 2 3, {
         if back < B {
             let r = B - 1 - back;
-            let at = r * N - r * r.saturating_sub(1) / 2;
-            let mut sum = load(simd, &factors[at + N - 1 - r]);
-            each!(c, {
-                if c > r && c < N {
-                    sum = (-load(simd, &factors[at + c - r - 1])).mul_add(x[c], sum);
-                }
-            });
+            let (at, end) = (factor_row(r, N, half), last_met(r, N, half));
+            let mut sum = load(simd, &factors[at + end - r]);
+            // Those found last come last: the sums of three unknowns are one chain from tip to root.
+            for c in (r + 1..end + 1).rev() {
+                sum = (-load(simd, &factors[at + c - r - 1])).mul_add(x[c], sum);
+            }
             x[r] = sum;
         }
     });

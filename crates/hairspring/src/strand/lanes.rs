@@ -196,6 +196,19 @@ impl<S: Simd> Sym3<S> {
         Self { xx: u.x * v.x, xy: u.x * v.y, xz: u.x * v.z, yy: u.y * v.y, yz: u.y * v.z, zz: u.z * v.z }
     }
 
+    /// `self * s + o`.
+    #[inline(always)]
+    pub fn mul_add(self, s: F<S>, o: Self) -> Self {
+        Self {
+            xx: self.xx.mul_add(s, o.xx),
+            xy: self.xy.mul_add(s, o.xy),
+            xz: self.xz.mul_add(s, o.xz),
+            yy: self.yy.mul_add(s, o.yy),
+            yz: self.yz.mul_add(s, o.yz),
+            zz: self.zz.mul_add(s, o.zz),
+        }
+    }
+
     #[inline(always)]
     pub fn add_identity(self, s: F<S>) -> Self {
         Self { xx: self.xx + s, yy: self.yy + s, zz: self.zz + s, ..self }
@@ -244,6 +257,21 @@ impl<S: Simd> Add for Sym3<S> {
     }
 }
 
+impl<S: Simd> Sub for Sym3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self {
+            xx: self.xx - o.xx,
+            xy: self.xy - o.xy,
+            xz: self.xz - o.xz,
+            yy: self.yy - o.yy,
+            yz: self.yz - o.yz,
+            zz: self.zz - o.zz,
+        }
+    }
+}
+
 /// A 3×3 matrix of each strand, by rows.
 #[derive(Clone, Copy)]
 pub struct M3<S: Simd> {
@@ -264,6 +292,14 @@ impl<S: Simd> Add for M3<S> {
     #[inline(always)]
     fn add(self, o: Self) -> Self {
         M3 { rows: [self.rows[0] + o.rows[0], self.rows[1] + o.rows[1], self.rows[2] + o.rows[2]] }
+    }
+}
+
+impl<S: Simd> Sub for M3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        M3 { rows: [self.rows[0] - o.rows[0], self.rows[1] - o.rows[1], self.rows[2] - o.rows[2]] }
     }
 }
 

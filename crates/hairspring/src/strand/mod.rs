@@ -1,7 +1,11 @@
 //! One strand, one band: forces, the banded solver and the substep, for eight strands at a time.
 
+#[macro_use]
+mod each;
+
 pub(crate) mod assemble;
 pub(crate) mod band;
+pub(crate) mod fixed;
 pub(crate) mod integrate;
 pub(crate) mod interval;
 pub(crate) mod lanes;

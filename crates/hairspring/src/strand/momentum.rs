@@ -3,10 +3,15 @@
 
 use super::{
     assemble::{Elements, Step},
+    fixed::fix,
     lanes::{F, LANES, Row},
-    model::{Curvature, Model, Rod, Springs, Stretching, stretch::stretch},
+    model::{
+        Model, Stretching, curvature::Curvature, rod::Rod, springs::Springs, straight::Straight,
+        stretch::stretch,
+    },
     reference,
     root::Root,
+    scratch::Scratch,
     tests::{lane, rows, splat, vector},
     tile::{Elastic, Tile, rest, springs, strand},
 };
@@ -40,7 +45,6 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
     }
     let mut tile = Tile {
         model,
-        curled: true,
         flat: true,
         strand: &strand_rows,
         rest: &rest_rows,
@@ -49,9 +53,10 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         holds: &[],
     };
     dispatch!(Level::new(), simd => match model {
+        Elastic::Straight => walk::<_, Straight, 3, 9>(simd, s, &mut tile),
         Elastic::Curvature => walk::<_, Curvature<_>, 3, 9>(simd, s, &mut tile),
-        Elastic::Rod => walk::<_, Rod<_>, 4, 12>(simd, s, &mut tile),
-        Elastic::Springs => walk::<_, Springs, 3, 12>(simd, s, &mut tile),
+        Elastic::Rod => walk::<_, Rod<_>, 4, 11>(simd, s, &mut tile),
+        Elastic::Springs => walk::<_, Springs<true>, 3, 12>(simd, s, &mut tile),
     })
 }
 
@@ -70,18 +75,20 @@ where
         root,
         second_order: false,
         obstacles: &[],
-        stretching: Stretching::Moderate,
     };
-    let x: Vec<[Row; 3]> = s.x.iter().map(|x| x.as_vec3().to_array().map(|c| Row([c; LANES]))).collect();
-    let mut elements = Elements::<S, M, B, N>::begin(simd, &step, tile, &x);
+    let mut scratch = Scratch::default();
+    scratch.reserve(s.x.len());
+    fix(simd, step.h, Stretching::Moderate, tile, &mut scratch);
+    scratch.begin(tile.state);
+    let mut elements = Elements::<S, M, B, N>::begin(simd, &step, tile, &scratch);
     let mut forces = Forces::default();
-    for i in 0..x.len() {
-        if i + 1 < x.len() {
-            elements.add(simd, &step, tile, &x);
+    for i in 0..s.x.len() {
+        if i + 1 < s.x.len() {
+            elements.add(simd, i % M::STRIDE, &step, tile, &scratch);
         }
         forces.0.push(lane(elements.band.force()));
         forces.1.push(if B > 3 { elements.band.right(3)[3] as f64 } else { 0.0 });
-        elements.band.shift(simd);
+        elements.band.shift();
     }
     forces
 }
@@ -143,13 +150,13 @@ proptest! {
             length: (0..n).map(|i| if i + 1 < n { 0.008 } else { 0.0 }).collect(),
             x: x.clone(),
         };
-        for model in [Elastic::Curvature, Elastic::Rod, Elastic::Springs] {
+        for model in [Elastic::Straight, Elastic::Curvature, Elastic::Rod, Elastic::Springs] {
             let (forces, moments) = internal(&strand, model);
             let size: f64 = forces.iter().map(|f| f.length()).sum();
             prop_assert!(size > 1e-8, "{model:?}: no force to speak of");
             let sum: DVec3 = forces.iter().sum();
             prop_assert!(sum.length() < 1e-5 * size, "{model:?}: pushes itself by {sum} of {size}");
-            if model == Elastic::Curvature {
+            if matches!(model, Elastic::Straight | Elastic::Curvature) {
                 continue;
             }
             // A rigid turn by ω swings each segment, and turns it about itself by ω·u.

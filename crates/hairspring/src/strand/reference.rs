@@ -7,6 +7,7 @@ use super::model::stretch::STRETCH;
 use glam::{DMat3, DQuat, DVec3};
 
 /// One strand in one substep, in f64.
+#[derive(Clone)]
 pub struct Strand {
     pub x: Vec<DVec3>,
     pub v: Vec<DVec3>,

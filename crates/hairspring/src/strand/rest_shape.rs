@@ -129,7 +129,8 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     }
     let stiffest = |rest: &[RestPoint], j: usize| {
         let shorter = lengths[j - 1].min(lengths[j]);
-        fibre.stiffest(rest[j].mass) * shorter * shorter
+        // A joint takes hold of its middle point with both segments, 4 B/L² in all, where a spring does with one: half leaves it the digits.
+        0.5 * fibre.stiffest(rest[j].mass) * shorter * shorter
     };
 
     // The frame carried along the strand (the same transport as `bend::transport`).

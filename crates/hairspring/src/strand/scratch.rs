@@ -1,13 +1,13 @@
 //! Working memory of one thread, reused by every tile that it runs.
 
-use super::{band::factor_rows, lanes::Row, press};
+use super::{band::factor_rows, fixed::Fixed, lanes::Row, press, tile::StateRows, tile::state};
 
 /// Working memory of one thread.
 #[derive(Default)]
 pub struct Scratch {
     /// Factors of the band, point after point; other sweeps' rows lie over them.
     pub factors: Vec<Row>,
-    /// New positions relative to the root, shape `[points]`.
+    /// New positions relative to the root, shape `[points + BEYOND]`.
     pub x: Vec<[Row; 3]>,
     /// What is added to the velocities of `(new − old) / h`, shape `[points]` [m/s]; forces before that. Of integrators other than the
     /// implicit ones.
@@ -16,20 +16,34 @@ pub struct Scratch {
     pub change: Vec<[Row; 3]>,
     /// What the solve knows of contact, shape `[points]`; see `press::scratch`.
     pub contacts: Vec<[Row; press::scratch::ROWS]>,
-    /// Inverse masses; 0 for driven points, held points and the padding.
-    pub inverse_mass: Vec<Row>,
+    /// What stays as it is for an interval, shape `[points]`.
+    pub fixed: Vec<Fixed>,
 }
 
+/// Most rows of factors a point, those of the rod.
+const MOST_FACTORS: usize = factor_rows(4, 11, 10);
+
+/// Positions after the last point, so that four that follow each other can be read at any: they are finite and nothing depends on them.
+const BEYOND: usize = 3;
+
 impl Scratch {
+    /// Fills `x` from the positions in `state`, shape `[points]`.
+    pub fn begin(&mut self, state: &[StateRows]) {
+        for (x, at) in self.x.iter_mut().zip(state) {
+            x.copy_from_slice(&at[state::X..state::X + 3]);
+        }
+        self.x[state.len()..state.len() + BEYOND].fill([Row::default(); 3]);
+    }
+
     /// Room for a tile of `points`.
     pub fn reserve(&mut self, points: usize) {
-        if self.inverse_mass.len() < points {
-            self.factors.resize(points * factor_rows(4, 12), Row::default());
+        if self.fixed.len() < points {
+            self.factors.resize(points * MOST_FACTORS, Row::default());
             self.kick.resize(points, [Row::default(); 3]);
             self.change.resize(points, [Row::default(); 3]);
-            self.x.resize(points, [Row::default(); 3]);
+            self.x.resize(points + BEYOND, [Row::default(); 3]);
             self.contacts.resize(points, [Row::default(); press::scratch::ROWS]);
-            self.inverse_mass.resize(points, Row::default());
+            self.fixed.resize(points, Fixed::default());
         }
     }
 }

@@ -140,8 +140,6 @@ pub type HistoryRows = [Row; history::ROWS];
 /// Eight strands: borrowed pieces of the simulation's arrays.
 pub struct Tile<'a> {
     pub model: Elastic,
-    /// Whether any of the strands is curved at rest.
-    pub curled: bool,
     /// Whether any of the strands is flat.
     pub flat: bool,
     pub strand: &'a StrandRows,
@@ -157,6 +155,8 @@ pub struct Tile<'a> {
 /// The elastic model of a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Elastic {
+    /// The curvature model where no rest turn is needed.
+    Straight,
     Curvature,
     Rod,
     Springs,

@@ -164,10 +164,8 @@ impl Specimen {
             .into_iter()
             .map(|shape| MovingObstacle { shape, start: Rigid::default(), end: Rigid::default() })
             .collect();
-        let poses: Vec<ObstaclePose> = obstacles
-            .iter()
-            .map(|o| ObstaclePose { shape: o.shape.clone(), start: rest, end: rest, share: 1.0 })
-            .collect();
+        let poses: Vec<ObstaclePose> =
+            obstacles.iter().map(|o| ObstaclePose::new(o.shape.clone(), rest, rest, 1.0)).collect();
         let gravity = setup.gravity.as_vec3();
         let simulation = Simulation::new(groom, &[0], &[material], solver, gravity, Rigid::default(), &poses);
         debug_assert_eq!(simulation.point_count(), count);

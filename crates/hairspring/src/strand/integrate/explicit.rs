@@ -12,27 +12,26 @@ use crate::{
     strand::{
         assemble::{Step, forces},
         lanes::{F, V3, load},
-        model::{Curvature, Rod, Springs},
+        model::Model,
         scratch::Scratch,
-        tile::{Elastic, Tile, state},
+        tile::{Tile, state},
     },
 };
 use fearless_simd::prelude::*;
 
 /// Leaves the new positions in `scratch.x` and what the velocities get besides in `scratch.kick`.
 #[inline(always)]
-pub fn advance<S: Simd>(
+pub fn advance<S, M, const B: usize, const N: usize>(
     simd: S,
     integrator: Integrator,
     step: &Step<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
-) {
-    match tile.model {
-        Elastic::Curvature => forces::<S, Curvature<S>, 3, 9>(simd, step, tile, scratch),
-        Elastic::Rod => forces::<S, Rod<S>, 4, 12>(simd, step, tile, scratch),
-        Elastic::Springs => forces::<S, Springs, 3, 12>(simd, step, tile, scratch),
-    }
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    forces::<S, M::Guarded, B, N>(simd, step, tile, scratch);
     let zero = V3::zero(simd);
     let h = F::<S>::splat(simd, step.h);
     let mut tip = zero;
@@ -42,7 +41,7 @@ pub fn advance<S: Simd>(
             tip = (V3::load(simd, &scratch.x[i + 1]) - x).length_and_unit().1;
         }
         let v = V3::load(simd, &tile.state[i][state::V..]);
-        let inverse = load(simd, &scratch.inverse_mass[i]);
+        let inverse = load(simd, &scratch.fixed[i].inverse_mass);
         let a = outside(simd, step, tile, i, tip) + V3::load(simd, &scratch.kick[i]) * inverse;
         let free = inverse.simd_gt(0.0);
         let gain = V3::select(free, a * h, zero);

@@ -44,7 +44,7 @@ pub fn advance<S: Simd>(
         let v = V3::load(simd, &tile.state[i][state::V..]);
         let p = x + (v + outside(simd, step, tile, i, u) * h) * h - step.moved;
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
-        let free = load(simd, &scratch.inverse_mass[i]).simd_gt(0.0);
+        let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
         let followed = before + (p - before).length_and_unit().1 * length;
         let new = V3::select(free, followed, x);
         new.store(&mut scratch.x[i]);

@@ -5,35 +5,33 @@ use crate::strand::{
     assemble::{Step, Sweep, assemble, substitute},
     interval::Interval,
     lanes::{F, V3, load},
-    model::{Curvature, Model, Rod, Springs},
+    model::Model,
     project::project,
     scratch::Scratch,
-    tile::{Elastic, Tile, rest},
+    tile::{Tile, rest},
 };
 use fearless_simd::prelude::*;
 
 /// Leaves the new positions in `scratch.x`.
 #[inline(always)]
-pub fn advance<S: Simd>(
+pub fn advance<S, M, const B: usize, const N: usize>(
     simd: S,
     interval: &Interval,
     step: &Step<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
-) {
-    match tile.model {
-        Elastic::Curvature => solve::<S, Curvature<S>, 3, 9>(simd, interval, step, tile, scratch),
-        Elastic::Rod => solve::<S, Rod<S>, 4, 12>(simd, interval, step, tile, scratch),
-        Elastic::Springs => solve::<S, Springs, 3, 12>(simd, interval, step, tile, scratch),
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    if M::needs_guard(simd, tile, &scratch.x) {
+        solve::<S, M::Guarded, B, N>(simd, interval, step, tile, scratch);
+    } else {
+        solve::<S, M, B, N>(simd, interval, step, tile, scratch);
     }
+    let force = step.inertia() / (step.h * step.h);
     for _ in 0..projections(interval.projections, tile.rest.len()) {
-        let Scratch { factors, x, inverse_mass, .. } = &mut *scratch;
-        let force = step.inertia() / (step.h * step.h);
-        let moved = match tile.model {
-            Elastic::Springs => project::<S, 2>(simd, force, tile, inverse_mass, x, factors),
-            Elastic::Curvature | Elastic::Rod => project::<S, 1>(simd, force, tile, inverse_mass, x, factors),
-        };
-        if !moved {
+        if !project(simd, M::STRIDE, force, tile, scratch) {
             break;
         }
     }
@@ -63,16 +61,20 @@ fn solve<S, M, const B: usize, const N: usize>(
     S: Simd,
     M: Model<S, B, N>,
 {
-    assemble::<S, M, B, N>(simd, Sweep::First, step, tile, scratch);
-    substitute::<S, M, B, N>(simd, step, tile, scratch);
     // Newton: the linearisation again where the last one led. A correction that is larger than the one before tells of a step that went
     // too far, and the next goes half as far (the natural monotonicity test of Deuflhard 2004, *Newton Methods*, §3.3).
     let mut share = F::<S>::splat(simd, 1.0);
     let mut last = F::<S>::splat(simd, f32::INFINITY);
-    for _ in 1..interval.iterations {
-        scratch.kick.copy_from_slice(&scratch.x);
-        assemble::<S, M, B, N>(simd, Sweep::Again, step, tile, scratch);
+    for iteration in 0..interval.iterations {
+        let sweep = if iteration == 0 { Sweep::First } else { Sweep::Again };
+        if sweep == Sweep::Again {
+            scratch.kick.copy_from_slice(&scratch.x);
+        }
+        assemble::<S, M, B, N>(simd, sweep, step, tile, scratch);
         substitute::<S, M, B, N>(simd, step, tile, scratch);
+        if sweep == Sweep::First {
+            continue;
+        }
         let (mut size, mut length) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 0.0));
         for i in M::DRIVEN..tile.rest.len() {
             let change = V3::load(simd, &scratch.x[i]) - V3::load(simd, &scratch.kick[i]);

@@ -20,7 +20,7 @@ use crate::strand::{
 use fearless_simd::prelude::*;
 
 /// Rows of factors a point: l of the next two points and 1/d.
-const ROWS: usize = factor_rows(1, 3);
+const ROWS: usize = factor_rows(1, 3, 2);
 
 /// Factors the constant matrix into `scratch.factors`.
 #[inline(always)]
@@ -29,6 +29,7 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
     let n = tile.rest.len();
     let mut band = Band::<S, 1, 3>::new(simd);
     for i in 0..n {
+        band.enter(simd);
         if i + 1 < n {
             let [alpha, beta, stretch, bend] = weights(simd, h, tile, i);
             let mass = load(simd, &tile.rest[i + 1][rest::MASS]);
@@ -43,10 +44,10 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
             band.add((2, 0), (2, 0), stretch);
         }
         // Points that do not move are cut off.
-        let free = load(simd, &scratch.inverse_mass[i]).simd_gt(0.0);
+        let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
         band.cut(simd, free);
         band.set_right(0, one);
-        band.eliminate(simd, &mut scratch.factors[i * ROWS..]);
+        band.eliminate(simd, 2, &mut scratch.factors[i * ROWS..]);
     }
 }
 
@@ -110,7 +111,7 @@ pub fn advance<S: Simd>(simd: S, iterations: u32, step: &Step<S>, tile: &mut Til
                 normal = V3::select(real, transport(normal, u0, u1), normal);
                 (x, u0) = ([x[1], x2], V3::select(real, u1, u0));
             }
-            let free = load(simd, &scratch.inverse_mass[i]).simd_gt(0.0);
+            let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             let z = V3::select(free, b[0], zero);
             let row = &scratch.factors[i * ROWS..(i + 1) * ROWS];
             b = [b[1] - z * load(simd, &row[0]), b[2] - z * load(simd, &row[1]), zero];
@@ -119,7 +120,7 @@ pub fn advance<S: Simd>(simd: S, iterations: u32, step: &Step<S>, tile: &mut Til
         let mut after = [zero; 2];
         for i in (0..n).rev() {
             let row = &scratch.factors[i * ROWS..(i + 1) * ROWS];
-            let free = load(simd, &scratch.inverse_mass[i]).simd_gt(0.0);
+            let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             let change = V3::load(simd, &scratch.change[i])
                 - after[0] * load(simd, &row[0])
                 - after[1] * load(simd, &row[1]);

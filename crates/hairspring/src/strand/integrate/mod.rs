@@ -9,22 +9,36 @@ mod local_global;
 
 use super::{
     assemble::Step,
+    fixed::fix,
     interval::Interval,
-    lanes::{F, V3, load, store},
+    lanes::V3,
     limit::{Finish, LIMIT, limit},
-    model::Stretching,
+    model::{Model, Stretching},
     root::Root,
     scratch::Scratch,
-    tile::{Elastic, Tile, hold, rest, state},
+    tile::{Tile, state},
 };
 use crate::scene::Integrator;
 use fearless_simd::prelude::*;
 
 /// All substeps of `interval` for one tile.
 #[inline(always)]
-pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
+pub fn run_tile<S, M, const B: usize, const N: usize>(
+    simd: S,
+    interval: &Interval,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
     scratch.reserve(tile.rest.len());
-    free_masses(simd, tile, scratch);
+    let stretching = match interval.integrator {
+        Integrator::ExplicitEuler | Integrator::Verlet => Stretching::Fibre,
+        _ => Stretching::Moderate,
+    };
+    fix(simd, interval.h, stretching, tile, scratch);
+    scratch.begin(tile.state);
     if interval.integrator == Integrator::LocalGlobal {
         local_global::factor(simd, interval.h, tile, scratch);
     }
@@ -34,18 +48,15 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
         let next = Root::at(simd, tile.strand, substep);
         let moved = next.position - root.position;
         root = next;
-        // Where the solve starts: every point where it was, the driven segment already where it goes.
-        for (x, at) in scratch.x.iter_mut().zip(tile.state.iter()) {
-            x.copy_from_slice(&at[state::X..state::X + 3]);
-        }
+        // Where the solve starts: every point where the last substep left it, the driven segment already where it goes.
         V3::zero(simd).store(&mut scratch.x[0]);
         root.first.store(&mut scratch.x[1]);
-        if tile.model == Elastic::Springs {
+        if M::STRIDE == 2 {
             Root::third(simd, tile.strand, substep).store(&mut scratch.x[2]);
         }
 
         let second_order = interval.integrator == Integrator::Bdf2 && continues;
-        let mut step = Step {
+        let step = Step {
             h: interval.h,
             gravity: interval.gravity,
             wind: substep.wind,
@@ -53,19 +64,17 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
             moved,
             second_order,
             obstacles: &substep.obstacles,
-            stretching: Stretching::Moderate,
         };
-        let mut finish = Finish { h: interval.h, limit: LIMIT, press: 0.0, second_order, kick: None };
+        let mut finish = Finish { limit: LIMIT, press: 0.0, kicks: false };
         match interval.integrator {
             Integrator::BackwardEuler | Integrator::Bdf2 => {
-                implicit::advance(simd, interval, &step, tile, scratch);
+                implicit::advance::<S, M, B, N>(simd, interval, &step, tile, scratch);
                 finish.press = step.inertia() / (step.h * step.h);
             }
             Integrator::ExplicitEuler | Integrator::Verlet => {
-                step.stretching = Stretching::Fibre;
                 finish.limit = f32::INFINITY;
-                explicit::advance(simd, interval.integrator, &step, tile, scratch);
-                finish.kick = Some(&scratch.kick);
+                explicit::advance::<S, M, B, N>(simd, interval.integrator, &step, tile, scratch);
+                finish.kicks = true;
             }
             Integrator::LocalGlobal => {
                 finish.limit = f32::INFINITY;
@@ -74,37 +83,11 @@ pub fn run_tile<S: Simd>(simd: S, interval: &Interval, tile: &mut Tile, scratch:
             Integrator::Ftl | Integrator::Dftl => {
                 finish.limit = f32::INFINITY;
                 ftl::advance(simd, interval.integrator, &step, tile, scratch);
-                finish.kick = Some(&scratch.kick);
+                finish.kicks = true;
             }
         }
-        let solved = (&scratch.x[..], &scratch.inverse_mass[..]);
-        match tile.model {
-            Elastic::Springs => limit::<S, 2>(simd, &finish, substep, &root, moved, tile, solved),
-            Elastic::Curvature | Elastic::Rod => {
-                limit::<S, 1>(simd, &finish, substep, &root, moved, tile, solved);
-            }
-        }
+        limit(simd, M::STRIDE, &finish, &step, tile, scratch);
         continues = true;
-    }
-}
-
-/// Inverse masses of the points that projection may move.
-#[inline(always)]
-fn free_masses<S: Simd>(simd: S, tile: &Tile, scratch: &mut Scratch) {
-    let zero = F::<S>::splat(simd, 0.0);
-    for (i, at) in tile.rest.iter().enumerate() {
-        let mass = load(simd, &at[rest::MASS]);
-        let inverse = if i < tile.model.driven() {
-            zero
-        } else {
-            mass.simd_gt(0.0).select(F::splat(simd, 1.0) / mass, zero)
-        };
-        store(inverse, &mut scratch.inverse_mass[i]);
-    }
-    for hold in tile.holds {
-        let row = &mut scratch.inverse_mass[hold.point as usize];
-        let inverse = load(simd, row);
-        store(load(simd, &hold.rows[hold::PINNED]).simd_gt(0.0).select(zero, inverse), row);
     }
 }
 

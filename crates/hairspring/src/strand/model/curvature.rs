@@ -6,14 +6,17 @@ use super::{
 };
 use crate::strand::{
     band::Band,
+    integrate::run_tile,
+    interval::Interval,
     lanes::{Row, V3, load},
     root::Root,
+    scratch::Scratch,
     tile::{Tile, rest},
 };
-use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, prelude::*};
 
 /// Bending in a frame that is carried along the strand by the least rotation and so knows no twist: right and cheapest for
-/// strands that are straight at rest, where no frame matters. A coil slowly forgets its shape in it, and swung curls gain energy, because
+/// strands that are straight at rest, where no frame matters (see `straight`). A coil slowly forgets its shape in it, and swung curls gain energy, because
 /// the force does not know of its share in the frames beyond.
 pub struct Curvature<S: Simd> {
     /// The frame's normal on segment i.
@@ -21,6 +24,8 @@ pub struct Curvature<S: Simd> {
 }
 
 impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
+    type Guarded = Self;
+
     #[inline(always)]
     fn begin(_: S, _: &Tile, root: &Root<S>) -> Self {
         Self { normal: root.normal }
@@ -30,18 +35,20 @@ impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
     fn add(&mut self, simd: S, at: &At<S>, _: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 3, 9>) {
         let joint = &tile.rest[at.i + 1];
         let stiffness = load(simd, &joint[rest::BEND]);
-        let mut d = V3::zero(simd);
-        if tile.curled {
-            let turn = V3::load(simd, &joint[rest::TURN..]);
-            d = turn_in_frame(turn, self.normal, at.u[0]);
-            let last = at.u[1].dot(at.u[1]).simd_eq(0.0);
-            self.normal = V3::select(last, self.normal, transport(self.normal, at.u[0], at.u[1]));
-        }
-        bend(at.e, at.u[0], at.inverse_length, d, stiffness, stiffness * at.damped).add_to(band);
+        let turn = V3::load(simd, &joint[rest::TURN..]);
+        let d = turn_in_frame(turn, self.normal, at.u[0]);
+        let last = at.u[1].dot(at.u[1]).simd_eq(0.0);
+        self.normal = V3::select(last, self.normal, transport(self.normal, at.u[0], at.u[1]));
+        bend(at.e, at.u[0], at.inverse_length, d, stiffness, stiffness * at.damped).joint.add_to(band);
     }
 
     #[inline(always)]
     fn take(_: S, _: &Solved<S, 9>, _: &mut Tile) {}
+}
+
+/// One tile through an interval, on the widest lanes that there are.
+pub fn run(level: Level, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
+    dispatch!(level, simd => run_tile::<_, Curvature<_>, 3, 9>(simd, interval, tile, scratch));
 }
 
 /// A rest turn in world axes: the frame is (normal, binormal, tangent).

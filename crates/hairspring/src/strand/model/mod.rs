@@ -2,21 +2,21 @@
 //!
 //! | model | unknowns a point | half-bandwidth | |
 //! | --- | --: | --: | --- |
-//! | [`Springs`] | 3 | 3 | stretch, bend, torsion and altitude springs (Selle et al. 2008) |
-//! | [`Curvature`] | 3 | 2 | stretch and the curvature vector, in a frame carried from the root |
-//! | [`Rod`] | 4 | 2 | curvature in a frame that twists (discrete elastic rod) |
+//! | [`springs`] | 3 | 3 | stretch, bend, torsion and altitude springs (Selle et al. 2008) |
+//! | [`straight`] | 3 | 2 | stretch and the curvature vector of strands that are straight at rest, which needs no frame |
+//! | [`curvature`] | 3 | 2 | stretch and the curvature vector, in a frame carried from the root |
+//! | [`rod`] | 4 | 2 | curvature in a frame that twists (discrete elastic rod) |
 //!
 //! Stretch of the segments is the same in all (see `stretch`).
 
 pub mod bend;
 pub mod curvature;
-mod rod;
+pub mod joint;
+pub mod rod;
 pub mod springs;
+pub mod straight;
 pub mod stretch;
 
-pub use curvature::Curvature;
-pub use rod::Rod;
-pub use springs::Springs;
 pub use stretch::Stretching;
 
 use super::{
@@ -32,6 +32,8 @@ use fearless_simd::prelude::*;
 pub struct At<S: Simd> {
     /// The window's first point.
     pub i: usize,
+    /// Which it is of the points that a point of the strand stands for: `i` modulo the model's stride.
+    pub phase: usize,
     /// Segments i and i+1 [m].
     pub e: [V3<S>; 2],
     /// Their unit vectors; zero for padding.
@@ -40,10 +42,10 @@ pub struct At<S: Simd> {
     pub inverse_length: [F<S>; 2],
     /// 1 + τ/h: how much stiffer bending is in the matrix, for its damping τ.
     pub damped: F<S>,
+    /// Stiffness of the springs along them [N/m]; zero for padding.
+    pub along: [F<S>; 2],
     /// Length of the substep [s].
     pub h: f32,
-    /// What holds the segments' lengths.
-    pub stretching: Stretching,
 }
 
 /// What is known of a point once its solve is done, root-ward from the tip.
@@ -56,19 +58,19 @@ pub struct Solved<S: Simd, const N: usize> {
     pub moved: [V3<S>; 3],
     /// The unknowns from this point on.
     pub unknowns: [F<S>; N],
-    /// Length of the substep [s].
-    pub h: f32,
-    /// What holds the segments' lengths.
-    pub stretching: Stretching,
+    /// Stiffness of the spring along the strand's segment at it [N/m].
+    pub along: F<S>,
 }
 
 impl<S: Simd, const N: usize> Solved<S, N> {
-    /// The tension that the spring to the point `far` after this one, of rest length `length` and stiffness `k`, took in the
-    /// solve: k (ℓ − L + û·(δ_far − δ)) [N].
+    /// The tension that the spring to the point `far` after this one, of rest length L and stiffness `k`, took in the solve:
+    /// k (C + e·(δ_far − δ) / L) [N], with C the measure of length that projection has, which needs no root.
     #[inline(always)]
-    pub fn taken(&self, far: usize, length: F<S>, k: F<S>) -> F<S> {
-        let (l, u) = (self.x[far] - self.x[0]).length_and_unit();
-        k * (l - length + u.dot(self.moved[far] - self.moved[0]))
+    pub fn taken(&self, far: usize, [length, inverse]: [F<S>; 2], k: F<S>) -> F<S> {
+        let u = (self.x[far] - self.x[0]) * inverse;
+        // Bounded, because C grows with the square where a root has jumped.
+        let longer = length * u.dot(u).min(4.0).mul_add(0.5, F::splat(k.simd, -0.5));
+        k * (u.dot(self.moved[far] - self.moved[0]) + longer)
     }
 }
 
@@ -77,17 +79,23 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// Simulated points from one point of the strand to the next.
     const STRIDE: usize = 1;
 
+    /// Largest distance of two unknowns that meet in the matrix.
+    const HALF: usize = N - 1;
+
     /// Points at the root that are driven: its first segment.
     const DRIVEN: usize = Self::STRIDE + 1;
 
+    /// The same model with elements that are seldom needed, which its sweep has no branch for.
+    type Guarded: Model<S, B, N>;
+
+    /// Whether a substep that begins at the positions `x` needs them.
+    #[inline(always)]
+    fn needs_guard(_simd: S, _tile: &Tile, _x: &[[Row; 3]]) -> bool {
+        false
+    }
+
     /// Starts at the root of a strand.
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self;
-
-    /// Stiffness of the spring along the strand's segment from `point` in a substep of `h` [s]; 0 for padding [N/m].
-    #[inline(always)]
-    fn along(simd: S, stretching: Stretching, h: f32, tile: &Tile, point: usize) -> F<S> {
-        stretching.stiffness(simd, h, tile, point)
-    }
 
     /// Adds all elements whose first point is `at.i`, which is the band's first.
     fn add(&mut self, simd: S, at: &At<S>, x: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, B, N>);

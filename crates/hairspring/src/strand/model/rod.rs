@@ -14,14 +14,21 @@
 //!
 //! A flat fibre bends more easily across its short axis: ΔB is the stiffness that it has more in the direction of its frame's normal.
 
-use super::{At, Model, Solved, bend::bend, bend::transport, curvature::turn_in_frame};
+use super::{
+    At, Model, Solved,
+    bend::{Bend, bend, transport},
+    curvature::turn_in_frame,
+};
 use crate::strand::{
     band::Band,
-    lanes::{F, Row, Sym3, V3, load},
+    integrate::run_tile,
+    interval::Interval,
+    lanes::{F, Row, V3, load},
     root::Root,
+    scratch::Scratch,
     tile::{Tile, rest, state, strand},
 };
-use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, prelude::*};
 
 /// Largest turn of a frame about its segment in a substep [rad]: a Newton step is not to be believed beyond.
 const LARGEST_TURN: f32 = 0.5;
@@ -39,7 +46,9 @@ pub struct Rod<S: Simd> {
     flat: F<S>,
 }
 
-impl<S: Simd> Model<S, 4, 12> for Rod<S> {
+impl<S: Simd> Model<S, 4, 11> for Rod<S> {
+    type Guarded = Self;
+
     #[inline(always)]
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self {
         Self {
@@ -50,9 +59,9 @@ impl<S: Simd> Model<S, 4, 12> for Rod<S> {
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, at: &At<S>, _: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 4, 12>) {
-        let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
-        let joint = &tile.rest[at.i + 1];
+    fn add(&mut self, simd: S, at: &At<S>, _: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 4, 11>) {
+        let one = F::<S>::splat(simd, 1.0);
+        let own = &tile.rest[at.i + 1];
         let [u0, u1] = at.u;
         let [alpha, beta] = at.inverse_length;
         let m0 = self.normal;
@@ -60,66 +69,75 @@ impl<S: Simd> Model<S, 4, 12> for Rod<S> {
         // The frame of segment i+1 as the last substep left it, swung onto the segment.
         let carried = transport(m0, u0, u1);
         let row = &mut tile.state[at.i + 1][state::NORMAL..];
-        let own = V3::load(simd, row);
-        let across = own - u1 * own.dot(u1);
+        let was = V3::load(simd, row);
+        let across = was - u1 * was.dot(u1);
         let size = across.dot(across);
         let m1 = V3::select(size.simd_gt(1e-6), across * (one / size.max(1e-6).sqrt()), carried);
         m1.store(row);
 
-        let stiffness = load(simd, &joint[rest::BEND]);
-        let turn = V3::load(simd, &joint[rest::TURN..]);
+        let stiffness = load(simd, &own[rest::BEND]);
+        let turn = V3::load(simd, &own[rest::TURN..]);
         let d = turn_in_frame(turn, m0, u0);
-        let joint_bend = bend(at.e, u0, at.inverse_length, d, stiffness, stiffness * at.damped);
-        joint_bend.add_to(band);
+        let Bend { mut joint, moment } =
+            bend(at.e, u0, at.inverse_length, d, stiffness, stiffness * at.damped);
         // The rest turn turns with the frame: ∂r/∂θ = −s.
         let s = u0.cross(d);
         let implicit = s * (stiffness * at.damped);
-        let along = implicit * (u0.dot(d) + 1.0) * alpha;
-        band.add_column(0, (0, 3), -along);
-        band.add_column(1, (0, 3), implicit.mul_add(beta, along));
-        band.add_column(2, (0, 3), implicit * -beta);
-        band.add((0, 3), (0, 3), implicit.dot(s));
-        band.add_right((0, 3), joint_bend.moment.dot(s));
+        let mut angle = Angle {
+            segments: [implicit * (u0.dot(d) + 1.0) * alpha, implicit * -beta],
+            own: implicit.dot(s),
+            moment: moment.dot(s),
+        };
 
         // Twist: how a change of the two segments turns their frames against each other is ∂τ/∂e = κb / 2ℓ on either side,
-        // κb = 2 û₀×û₁ / (1 + û₀·û₁) (Bergou et al. 2010, *Discrete Viscous Threads*, §4.2.2).
+        // κb = 2 û₀×û₁ / (1 + û₀·û₁) (Bergou et al. 2010, *Discrete Viscous Threads*, §4.2.2). ∂τ/∂θ is −1 and 1.
         let sine = carried.cross(m1).dot(u1);
         // Bounded near the half turn, where the measure would grow without end.
         let tau = (sine + sine) / (carried.dot(m1) + 1.0).max(0.5);
         let slope = (tau * tau).mul_add(0.25, one);
         let twisting = stiffness * self.twist_ratio * slope;
-        let element = RankOne {
-            direction: u0.cross(u1) * (one / (u0.dot(u1) + 1.0).max(0.1)),
-            points: [-alpha, alpha - beta, beta],
-            angles: [-one, one],
-            force: twisting * (tau - load(simd, &joint[rest::TWIST])),
-            stiffness: twisting * slope * at.damped,
-        };
-        element.add_to(band);
+        let k = twisting * slope * at.damped;
+        let force = twisting * (tau - load(simd, &own[rest::TWIST]));
+        let direction = u0.cross(u1) * (one / (u0.dot(u1) + 1.0).max(0.1));
+        joint.add_rank_one(direction, [alpha, beta], force, k);
+        let column = direction * k;
+        let columns = [column * alpha, column * beta];
+        angle.segments = [angle.segments[0] - columns[0], angle.segments[1] - columns[1]];
+        angle.own += k;
+        angle.moment += force;
+        band.add_column(1, (1, 3), columns[0] - columns[1]);
+        band.add_column(0, (1, 3), -columns[0]);
+        band.add_column(2, (1, 3), columns[1]);
+        band.add((0, 3), (1, 3), -k);
+        band.add((1, 3), (1, 3), k);
+        band.add_right((1, 3), -force);
 
         if tile.flat {
             // m·κ against its rest value; κ = e₁/L₁ − û₀.
             let kappa = at.e[1] * beta - u0;
             let a1 = u0.dot(kappa) + 1.0;
             let stiffer = stiffness * self.flat;
-            let element = RankOne {
-                direction: m0,
-                points: [alpha * a1, -(alpha * a1) - beta, beta],
-                angles: [-(m0.dot(u0.cross(kappa))), zero],
-                force: stiffer * (m0.dot(kappa) - turn.x),
-                stiffness: stiffer * at.damped,
-            };
-            element.add_to(band);
+            let (k, force) = (stiffer * at.damped, stiffer * (m0.dot(kappa) - turn.x));
+            let along = [-(alpha * a1), beta];
+            joint.add_rank_one(m0, along, force, k);
+            let turned = -(m0.dot(u0.cross(kappa)));
+            let column = m0 * (k * turned);
+            angle.segments =
+                [column.mul_add(along[0], angle.segments[0]), column.mul_add(along[1], angle.segments[1])];
+            angle.own += k * turned * turned;
+            angle.moment -= force * turned;
         }
+        joint.add_to(band);
+        angle.add_to(band);
 
-        let inertia = load(simd, &joint[rest::MASS]) * (INERTIA / (at.h * at.h));
-        let real = load(simd, &joint[rest::LENGTH]).simd_gt(0.0);
+        let inertia = load(simd, &own[rest::MASS]) * (INERTIA / (at.h * at.h));
+        let real = load(simd, &own[rest::LENGTH]).simd_gt(0.0);
         band.add((1, 3), (1, 3), real.select(inertia, one));
         self.normal = V3::select(real, m1, m0);
     }
 
     #[inline(always)]
-    fn take(simd: S, solved: &Solved<S, 12>, tile: &mut Tile) {
+    fn take(simd: S, solved: &Solved<S, 11>, tile: &mut Tile) {
         let u = (solved.x[1] - solved.x[0]).length_and_unit().1;
         let turn = solved.unknowns[3].max(-LARGEST_TURN).min(LARGEST_TURN);
         let row = &mut tile.state[solved.i][state::NORMAL..];
@@ -128,38 +146,29 @@ impl<S: Simd> Model<S, 4, 12> for Rod<S> {
     }
 }
 
-/// An element with one strain: its gradient is `points[k]` times `direction` at the three points, and `angles` at the two angles.
-struct RankOne<S: Simd> {
-    direction: V3<S>,
-    points: [F<S>; 3],
-    angles: [F<S>; 2],
-    /// Stiffness times strain.
-    force: F<S>,
-    /// Stiffness, with damping.
-    stiffness: F<S>,
+/// One tile through an interval, on the widest lanes that there are.
+pub fn run(level: Level, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
+    dispatch!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, scratch));
 }
 
-impl<S: Simd> RankOne<S> {
+/// What the elements of a joint say of the angle of its first segment.
+struct Angle<S: Simd> {
+    /// Its column of the matrix, by the joint's two segments.
+    segments: [V3<S>; 2],
+    /// Its own entry.
+    own: F<S>,
+    /// The moment on it [N m].
+    moment: F<S>,
+}
+
+impl<S: Simd> Angle<S> {
     #[inline(always)]
-    fn add_to(&self, band: &mut Band<S, 4, 12>) {
-        let Self { direction, points, angles, force, stiffness } = self;
-        let block = Sym3::outer(*direction, *stiffness);
-        for p in 0..3 {
-            let scaled = block * points[p];
-            band.add_diagonal(p, scaled * points[p]);
-            for (q, c) in points.iter().enumerate().skip(p + 1) {
-                band.add_block(p, q, &(scaled * *c).full());
-            }
-            band.add_force(p, *direction * -(*force * points[p]));
-            for (q, angle) in angles.iter().enumerate() {
-                band.add_column(p, (q, 3), *direction * (*stiffness * points[p] * *angle));
-            }
-        }
-        for (p, a) in angles.iter().enumerate() {
-            for (q, b) in angles.iter().enumerate().skip(p) {
-                band.add((p, 3), (q, 3), *stiffness * *a * *b);
-            }
-            band.add_right((p, 3), -(*force * *a));
-        }
+    fn add_to(&self, band: &mut Band<S, 4, 11>) {
+        let [c0, c1] = self.segments;
+        band.add_column(0, (0, 3), -c0);
+        band.add_column(1, (0, 3), c0 - c1);
+        band.add_column(2, (0, 3), c1);
+        band.add((0, 3), (0, 3), self.own);
+        band.add_right((0, 3), self.moment);
     }
 }

@@ -14,20 +14,37 @@
 //! the others already resist as much as the fibre does; its height is kept by the volume over the present area, so one number a
 //! tetrahedron is enough; and the strand's segments are projected to their lengths as in the other models, their triangles with them.
 
-use super::{At, Model, Solved, Stretching};
+use super::{At, Model, Solved};
 use crate::strand::{
     band::Band,
+    integrate::run_tile,
+    interval::Interval,
     lanes::{F, Row, Sym3, V3, load, store},
     root::Root,
+    scratch::Scratch,
     tile::{Tile, springs, strand},
 };
-use fearless_simd::{mask32x8, prelude::*};
+use fearless_simd::{Level, dispatch, mask32x8, prelude::*};
 
-/// A truss of distance springs; see above.
-pub struct Springs;
+/// A truss of distance springs, see above; with altitude springs or, where no tetrahedron is flattened, without.
+pub struct Springs<const ALTITUDES: bool>;
 
-impl<S: Simd> Model<S, 3, 12> for Springs {
+impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
     const STRIDE: usize = 2;
+
+    type Guarded = Springs<true>;
+
+    /// Whether any tetrahedron is so flat that its altitude spring acts. (What Newton's iterations flatten is resisted from the next
+    /// substep on.)
+    #[inline(always)]
+    fn needs_guard(simd: S, tile: &Tile, x: &[[Row; 3]]) -> bool {
+        let mut any = mask32x8::splat(simd, false);
+        for (x, rest) in x.array_windows::<4>().zip(tile.rest.iter()) {
+            let p = x.each_ref().map(|p| V3::load(simd, p));
+            any |= is_flattened(p, load(simd, &rest[springs::VOLUME]) * FLATTENED);
+        }
+        any.any_true()
+    }
 
     #[inline(always)]
     fn begin(_: S, _: &Tile, _: &Root<S>) -> Self {
@@ -35,46 +52,63 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
     }
 
     #[inline(always)]
-    fn along(simd: S, stretching: Stretching, h: f32, tile: &Tile, point: usize) -> F<S> {
-        let damped = load(simd, &tile.strand[strand::DAMPING]) * (1.0 / h) + 1.0;
-        stretching.stiffness(simd, h, tile, point) + load(simd, &tile.rest[point][springs::BRACE]) * damped
-    }
-
-    #[inline(always)]
     fn add(&mut self, simd: S, at: &At<S>, x: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 3, 12>) {
-        let (i, n) = (at.i, tile.rest.len());
+        let i = at.i;
         let rest = &tile.rest[i];
-        let point = |k: usize| V3::load(simd, &x[(i + k).min(n - 1)]);
-        let p = [point(0), point(1), point(2), point(3)];
+        let p: &[_; 4] = x[i..].first_chunk().expect("positions go on past the tip");
+        let p = p.each_ref().map(|p| V3::load(simd, p));
 
         // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
         // much as along: kept where it pulls alone (Choi & Ko 2002), it would resist every turn of a segment; left out, it cancels.
-        let k = Self::along(simd, at.stretching, at.h, tile, i - i % 2);
+        let k = at.along[1 - at.phase];
         let (l, u) = (p[1] - p[0]).length_and_unit();
         let tension = load(simd, &tile.state[i][springs::SIDE]);
         let pull = k.mul_add(l - load(simd, &tile.rest[i | 1][springs::SIDES]), tension);
         add_spring(band, 1, u * pull, Sym3::outer(u, k));
 
         // From a point, the particle after the next is the strand's next point: that spring is the segment's.
-        let joint = [(2, springs::L2, springs::K2, BEND), (3, springs::L3, springs::K3, TORSION)];
-        for (far, length, stiffness, law) in joint.into_iter().skip(1 - i % 2) {
-            let (k, length) = (load(simd, &rest[stiffness]), load(simd, &rest[length]));
-            let (l, u) = (p[far] - p[0]).length_and_unit();
-            let [secant, tangent] = law.stiffness(simd, (l - length) / length.max(1e-12));
-            let force = u * (k * secant * (l - length));
-            add_spring(band, far, force, Sym3::outer(u, k * tangent * at.damped));
+        if at.phase == 1 {
+            let spring = BEND.spring(
+                p[2] - p[0],
+                load(simd, &rest[springs::L2]),
+                load(simd, &rest[springs::K2]),
+                at.damped,
+            );
+            add_spring(band, 2, spring.0, spring.1);
         }
-        add_altitude(simd, at, p, rest, band);
+        let spring = TORSION.spring(
+            p[3] - p[0],
+            load(simd, &rest[springs::L3]),
+            load(simd, &rest[springs::K3]),
+            at.damped,
+        );
+        add_spring(band, 3, spring.0, spring.1);
+        if ALTITUDES {
+            add_altitude(simd, at, p, rest, band);
+        }
     }
 
     #[inline(always)]
     fn take(simd: S, solved: &Solved<S, 12>, tile: &mut Tile) {
         let i = solved.i;
-        let k = Self::along(simd, solved.stretching, solved.h, tile, i - i % 2);
-        let taken = solved.taken(1, load(simd, &tile.rest[i | 1][springs::SIDES]), k);
+        let side = load(simd, &tile.rest[i | 1][springs::SIDES]);
+        let inverse = F::splat(simd, 1.0) / side.max(1e-12);
+        let taken = solved.taken(1, [side, inverse], solved.along);
         let row = &mut tile.state[i][springs::SIDE];
         store(load(simd, row) + taken, row);
     }
+}
+
+/// One tile through an interval, on the widest lanes that there are.
+pub fn run(level: Level, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
+    dispatch!(level, simd => run_tile::<_, Springs<false>, 3, 12>(simd, interval, tile, scratch));
+}
+
+/// What a triangle's sides have besides the stiffness of all segments, for the triangle that begins at `point` (see `truss`) [N/m].
+#[inline(always)]
+pub fn brace<S: Simd>(simd: S, h: f32, tile: &Tile, point: usize) -> F<S> {
+    let damped = load(simd, &tile.strand[strand::DAMPING]) * (1.0 / h) + 1.0;
+    load(simd, &tile.rest[point][springs::BRACE]) * damped
 }
 
 /// How a spring grows stiffer with its strain x: F = k (ℓ − L)(1 + ax + bx²).
@@ -103,6 +137,14 @@ impl Progressive {
         let x = strain.max(-Self::LARGEST).min(Self::LARGEST);
         let poly = |a: f32, b: f32| x.mul_add(x * b + a, one);
         [poly(self.a, self.b), poly(2.0 * self.a, 3.0 * self.b)]
+    }
+
+    /// Force on the nearer end of a spring from there to the farther, which is at `e` [N], and its matrix.
+    #[inline(always)]
+    fn spring<S: Simd>(&self, e: V3<S>, rest: F<S>, k: F<S>, damped: F<S>) -> (V3<S>, Sym3<S>) {
+        let (l, u) = e.length_and_unit();
+        let [secant, tangent] = self.stiffness(k.simd, (l - rest) / rest.max(1e-12));
+        (u * (k * secant * (l - rest)), Sym3::outer(u, k * tangent * damped))
     }
 
     /// Force and energy of a spring of linear stiffness 1 and rest length `rest` that is longer by `longer` [m], [m²].
@@ -136,27 +178,29 @@ fn add_spring<S: Simd>(band: &mut Band<S, 3, 12>, far: usize, force: V3<S>, bloc
 /// Volume over the rest volume below which an altitude spring acts [1].
 const FLATTENED: f32 = 0.5;
 
+/// Where the tetrahedron of the particles `p` has less than `kept` of its volume, times six [m³].
+#[inline(always)]
+fn is_flattened<S: Simd>(p: [V3<S>; 4], kept: F<S>) -> mask32x8<S> {
+    let volume = (p[1] - p[0]).dot((p[2] - p[0]).cross(p[3] - p[0]));
+    (volume * kept).simd_lt(kept * kept)
+}
+
 /// Adds the altitude spring of the particles `p` where their tetrahedron is flattened.
 #[inline(always)]
 fn add_altitude<S: Simd>(simd: S, at: &At<S>, p: [V3<S>; 4], rest: &[Row], band: &mut Band<S, 3, 12>) {
-    let zero = F::<S>::splat(simd, 0.0);
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
-    let volume = (p[1] - p[0]).dot((p[2] - p[0]).cross(p[3] - p[0]));
-    let flattened = (volume * kept).simd_lt(kept * kept);
+    let flattened = is_flattened(p, kept);
     if !flattened.any_true() {
         return;
     }
-    let k = flattened.select(load(simd, &rest[springs::K3]), zero);
+    let k = flattened.select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
     let (normal, c, strain) = altitude(simd, p, kept);
-    let block = Sym3::outer(normal, k * at.damped);
-    for a in 0..4 {
-        let scaled = block * c[a];
-        band.add_diagonal(a, scaled * c[a]);
-        for (b, c) in c.iter().enumerate().skip(a + 1) {
-            band.add_block(a, b, &(scaled * *c).full());
-        }
-        band.add_force(a, normal * -(k * strain * c[a]));
-    }
+    band.add_rank_one(normal, c, k * at.damped);
+    let force = normal * -(k * strain);
+    band.add_force(0, force * c[0]);
+    band.add_force(1, force * c[1]);
+    band.add_force(2, force * c[2]);
+    band.add_force(3, force * c[3]);
 }
 
 /// The heights of a tetrahedron: the points p, q, r, v, and whether from the face pqr to v, or from the edge pq to the edge rv.
@@ -180,8 +224,9 @@ pub fn altitude<S: Simd>(simd: S, x: [V3<S>; 4], volume: F<S>) -> (V3<S>, [F<S>;
     let (mut a, mut b, mut d, mut n) = (nought, nought, nought, nought);
     let mut largest = F::<S>::splat(simd, -1.0);
     let mut sign = one;
-    let mut chosen = [largest.simd_gt(one); 7];
-    for (k, ([p, q, r, v], face)) in HEIGHTS.into_iter().enumerate() {
+    let mut which = zero;
+    each!(k of 0 1 2 3 4 5 6, {
+        let ([p, q, r, v], face) = HEIGHTS[k];
         let side = x[q] - x[p];
         let (other, across) = if face { (x[r] - x[p], x[v] - x[p]) } else { (x[v] - x[r], x[r] - x[p]) };
         let cross = side.cross(other);
@@ -191,21 +236,20 @@ pub fn altitude<S: Simd>(simd: S, x: [V3<S>; 4], volume: F<S>) -> (V3<S>, [F<S>;
         (a, b) = (V3::select(better, side, a), V3::select(better, other, b));
         (d, n) = (V3::select(better, across, d), V3::select(better, cross, n));
         sign = better.select(F::splat(simd, ORIENTATION[k]), sign);
-        for chosen in chosen.iter_mut().take(k) {
-            *chosen &= !better;
-        }
-        chosen[k] = better;
-    }
+        which = better.select(F::splat(simd, k as f32), which);
+    });
     let inverse = one / largest.max(1e-30);
     let s = d.cross(b).dot(n) * inverse;
     let t = d.cross(a).dot(n) * inverse;
     let mut c = [zero; 4];
-    for (k, ([p, q, r, v], face)) in HEIGHTS.into_iter().enumerate() {
+    each!(k of 0 1 2 3 4 5 6, {
+        let (points, face) = HEIGHTS[k];
         let weights = if face { [s - t - one, -s, t, one] } else { [s - one, -s, one - t, t] };
-        for (point, weight) in [p, q, r, v].into_iter().zip(weights) {
-            c[point] = chosen[k].select(weight, c[point]);
+        let chosen = which.simd_eq(k as f32);
+        for (point, weight) in points.into_iter().zip(weights) {
+            c[point] = chosen.select(weight, c[point]);
         }
-    }
+    });
     let scale = inverse.sqrt();
     let strain = (n.dot(d) - sign * volume) * scale;
     (n * scale, c, strain)

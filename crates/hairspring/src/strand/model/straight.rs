@@ -1,0 +1,57 @@
+//! The curvature model for strands that are straight at rest: no rest turn, so no frame, and blocks that are multiples of the identity.
+
+use super::{At, Model, Solved};
+use crate::strand::{
+    band::Band,
+    integrate::run_tile,
+    interval::Interval,
+    lanes::{Row, load},
+    root::Root,
+    scratch::Scratch,
+    tile::{Tile, rest},
+};
+use fearless_simd::{Level, dispatch, prelude::*};
+
+/// Bending by the curvature vector with d = 0: `bend` where P is the identity.
+pub struct Straight;
+
+impl<S: Simd> Model<S, 3, 9> for Straight {
+    // Points i and i+2 meet in bending alone, an axis by itself.
+    const HALF: usize = 6;
+
+    type Guarded = Self;
+
+    #[inline(always)]
+    fn begin(_: S, _: &Tile, _: &Root<S>) -> Self {
+        Self
+    }
+
+    #[inline(always)]
+    fn add(&mut self, simd: S, at: &At<S>, _: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 3, 9>) {
+        let stiffness = load(simd, &tile.rest[at.i + 1][rest::BEND]);
+        let ([e0, e1], [alpha, beta]) = (at.e, at.inverse_length);
+        let moment = (e1 * beta - e0 * alpha) * stiffness;
+        let pull = [moment * alpha, moment * beta];
+        band.add_force(0, -pull[0]);
+        band.add_force(1, pull[0] + pull[1]);
+        band.add_force(2, -pull[1]);
+
+        let implicit = stiffness * at.damped;
+        let (a, b) = (implicit * alpha, implicit * beta);
+        let [aa, ab, bb] = [a * alpha, a * beta, b * beta];
+        band.add_identity(0, aa);
+        band.add_identity(1, aa + ab + ab + bb);
+        band.add_identity(2, bb);
+        band.add_identity_block(0, 1, -(aa + ab));
+        band.add_identity_block(0, 2, ab);
+        band.add_identity_block(1, 2, -(ab + bb));
+    }
+
+    #[inline(always)]
+    fn take(_: S, _: &Solved<S, 9>, _: &mut Tile) {}
+}
+
+/// One tile through an interval, on the widest lanes that there are.
+pub fn run(level: Level, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
+    dispatch!(level, simd => run_tile::<_, Straight, 3, 9>(simd, interval, tile, scratch));
+}
