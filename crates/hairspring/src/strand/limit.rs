@@ -175,7 +175,7 @@ impl<S: Simd> Tether<S> {
         size.simd_gt(length * (longest * longest)) | size.simd_lt(length * (shortest * shortest))
     }
 
-    /// `p` step.moved along the segment until its length is within the limit.
+    /// `p` moved along the segment until its length is within the limit.
     #[inline(always)]
     fn clamp(&self, p: V3<S>) -> V3<S> {
         let (l, u) = (p - self.before).length_and_unit();
