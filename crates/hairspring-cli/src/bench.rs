@@ -1,5 +1,7 @@
 //! `hairspring bench`: the speed and the quality of the simulation on the standard scene.
 
+mod table;
+
 use crate::{
     console::{Console, say},
     fault::Fault,
@@ -10,6 +12,7 @@ use clap::Parser;
 use hairspring::{
     material::{Material, Model},
     scene::{Integrator, Quality, Solver, bench::Bench},
+    simulation::Simulation,
 };
 use serde_json::json;
 use std::time::Instant;
@@ -22,12 +25,16 @@ use std::time::Instant;
 /// `ns_per_point_substep` is per core: wall time x threads / (strands x points x substeps). Stretch and depth are
 /// measured between the frames, outside the timed part: as they are after the last frame, and (`_ever`) the worst after
 /// any frame.
+///
+/// `--table` steps the scene for every elastic model on every instruction set that this processor has, and as the same code built without SIMD (scalar),
+/// turn by turn in one process, so that whatever else the machine does slows all of them alike.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
   hairspring bench
   hairspring bench --strands 100000 --frames 60
-  hairspring --threads 1 bench --simd sse2 --json")]
+  hairspring --threads 1 bench --simd sse2 --json
+  hairspring bench --table --frames 60")]
 pub struct Options {
     /// Strands
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
@@ -65,6 +72,10 @@ pub struct Options {
     #[arg(long, value_name = "NAME")]
     simd: Option<String>,
 
+    /// Compare all models on all instruction sets of this processor and without any, the same frames for each
+    #[arg(long, conflicts_with_all = ["simd", "model", "integrator", "high_quality"])]
+    table: bool,
+
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
@@ -72,11 +83,27 @@ pub struct Options {
 
 const DEVICES: [&str; 1] = ["cpu"];
 
-/// Names that an instruction set may have; which of them a processor has is asked at run time.
-const INSTRUCTION_SETS: [&str; 6] = ["avx512", "avx2", "sse4_2", "sse2", "neon", "fallback"];
-
 /// Most points of a bench: their state is some 100 bytes a point.
 const MOST_POINTS: u64 = 200_000_000;
+
+/// What each frame took [s].
+struct Times(Vec<f64>);
+
+impl Times {
+    /// The time that a share of the frames stayed under, of a frame that there was (the nearest rank) [ms].
+    fn rank(&self, share: f64) -> f64 {
+        let mut sorted = self.0.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted[((share * sorted.len() as f64).ceil() as usize).clamp(1, sorted.len()) - 1] * 1e3
+    }
+
+    /// Of the median frame of a bench on all threads, per core [ns a point and substep].
+    fn per_point(&self, options: &Options) -> f64 {
+        let Options { strands, points, substeps, .. } = *options;
+        let work = f64::from(strands) * f64::from(points) * f64::from(substeps);
+        self.rank(0.5) * 1e6 * rayon::current_num_threads() as f64 / work
+    }
+}
 
 /// Runs the command.
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
@@ -87,12 +114,18 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let model = Model::ALL.into_iter().find(|m| m.name() == options.model).unwrap_or_default();
     let quality = if options.high_quality { Quality::High } else { Quality::Normal };
     known("device", &options.device, &DEVICES)?;
-    if u64::from(strands) * u64::from(points) > MOST_POINTS {
-        let text =
-            format!("{strands} strands of {points} points are more than {MOST_POINTS} points; choose fewer");
+    let benches = if options.table { table::cells().len() } else { 1 };
+    if benches as u64 * u64::from(strands) * u64::from(points) > MOST_POINTS {
+        let times = if options.table { format!(", {benches} times,") } else { String::new() };
+        let text = format!(
+            "{strands} strands of {points} points{times} are more than {MOST_POINTS} points; choose fewer"
+        );
         return Err(Fault::Usage(text));
     }
     interrupt::listen();
+    if options.table {
+        return table::run(options, console);
+    }
     let mut bench = Bench::of(
         strands,
         points,
@@ -102,12 +135,10 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if let Some(name) = &options.simd
         && !bench.simulation.use_instruction_set(name)
     {
-        let simulation = &mut bench.simulation;
-        let there: Vec<&str> =
-            INSTRUCTION_SETS.into_iter().filter(|n| simulation.use_instruction_set(n)).collect();
-        known("instruction set", name, &there)?;
+        let there = Simulation::instruction_sets();
+        known("instruction set", name, &there.iter().map(String::as_str).collect::<Vec<_>>())?;
     }
-    let mut times = Vec::with_capacity(frames as usize);
+    let mut times = Times(Vec::with_capacity(frames as usize));
     let (mut stretch_ever, mut depth_ever, mut reset) = (0f64, 0f64, 0);
     let mut measure = bench.measure();
     let mut progress = console.progress("simulating", frames);
@@ -115,7 +146,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         let began = Instant::now();
         let report = bench.step();
         let time = began.elapsed().as_secs_f64();
-        times.push(time);
+        times.0.push(time);
         reset += report.reset_strands;
         measure = bench.measure();
         stretch_ever = stretch_ever.max(measure.stretch_max);
@@ -129,19 +160,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
                 measure.inside_points
             )
         });
-        if interrupt::asked() {
-            let text = format!("stopped after frame {frame} of {frames}: no figures were taken");
-            return Err(Fault::Interrupted(text));
-        }
+        go_on(frame, frames)?;
     }
     drop(progress);
-    times.sort_by(f64::total_cmp);
-    // The nearest rank: a frame that there was.
-    let rank = |share: f64| times[((share * times.len() as f64).ceil() as usize).clamp(1, times.len()) - 1];
-    let (median, p95) = (rank(0.5) * 1e3, rank(0.95) * 1e3);
+    let (median, p95, ns) = (times.rank(0.5), times.rank(0.95), times.per_point(options));
     let threads = rayon::current_num_threads();
-    let work = f64::from(strands) * f64::from(points) * f64::from(substeps);
-    let ns = median * 1e6 * threads as f64 / work;
     let simulation = &bench.simulation;
     let bytes = simulation.bytes() as f64 / simulation.point_count() as f64;
     let simd = simulation.instruction_set();
@@ -173,8 +196,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         }));
         return Ok(());
     }
-    let all = grouped(strands as usize * points as usize);
-    say(format_args!("scene    {} strands x {points} points = {all} points", grouped(strands as usize)));
+    say_scene(options);
     say(format_args!(
         "on       {}, {threads} threads, {simd}, {}, {substeps} substeps, {frames} frames of 1/60 s",
         options.device, options.integrator
@@ -196,6 +218,24 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     say(format_args!("memory   {bytes:.1} bytes a point"));
     say(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
     Ok(())
+}
+
+/// Says what hair is stepped.
+fn say_scene(options: &Options) {
+    let (strands, points) = (options.strands as usize, options.points as usize);
+    let all = grouped(strands * points);
+    say(format_args!("scene    {} strands x {points} points = {all} points", grouped(strands)));
+}
+
+/// Whether the user let the bench go on after a frame.
+fn go_on(frame: u32, frames: u32) -> Result<(), Fault> {
+    match interrupt::asked() {
+        false => Ok(()),
+        true => {
+            let text = format!("stopped after frame {frame} of {frames}: no figures were taken");
+            Err(Fault::Interrupted(text))
+        }
+    }
 }
 
 /// Refuses a name that is not among those that there are.

@@ -3,7 +3,7 @@
 //!
 //! The bounds are those of the base issue, after 5 seconds of shaking: mean stretch under 0.05 %, worst under 1.1 %, no
 //! point deeper than 0.1 mm inside the sphere, nothing that is not finite, under 120 bytes a point. Time is reported and
-//! not judged: this machine may be busy.
+//! not judged: this machine may be busy. `--table` does so for every model on every instruction set.
 
 mod common;
 
@@ -71,6 +71,57 @@ fn an_older_instruction_set_is_used_when_asked() {
     let best = best["simd"].as_str().unwrap();
     let again = json(&succeed(Path::new("."), &[&small[..], &["--simd", best]].concat()));
     assert_eq!(again["simd"], best);
+}
+
+#[test]
+fn a_table_has_every_model_on_every_instruction_set() {
+    let small = ["bench", "--table", "--strands", "16", "--points", "8", "--frames", "7", "--substeps", "2"];
+    let mut sets = hairspring::simulation::Simulation::instruction_sets();
+    sets.push("scalar".into());
+    let found = json(&succeed(Path::new("."), &[&small[..], &["--threads", "2", "--json"]].concat()));
+    let cells = found.as_array().unwrap();
+    let mut named = Vec::new();
+    for cell in cells {
+        named.push((cell["simd"].as_str().unwrap(), cell["model"].as_str().unwrap()));
+        // The keys are those of a bench of one of them.
+        let strange = cell.as_object().unwrap().keys().find(|key| !KEYS.contains(&key.as_str()));
+        assert_eq!(strange, None);
+        let number = |key: &str| cell[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", cell[key]));
+        for (key, want) in
+            [("threads", 2.0), ("strands", 16.0), ("points", 8.0), ("substeps", 2.0), ("frames", 7.0)]
+        {
+            assert_eq!(number(key), want, "{key}");
+        }
+        let ns = number("ms_per_frame_median") * 1e6 * 2.0 / (16.0 * 8.0 * 2.0);
+        assert!(ns > 0.0 && (number("ns_per_point_substep") / ns - 1.0).abs() < 1e-9, "{cell}");
+    }
+    let all: Vec<(&str, &str)> = sets
+        .iter()
+        .flat_map(|set| ["curvature", "rod", "springs"].map(|model| (set.as_str(), model)))
+        .collect();
+    assert_eq!(named, all);
+
+    let told = succeed(Path::new("."), &small);
+    for word in
+        sets.iter().map(String::as_str).chain(["curvature", "rod", "springs", "16 strands x 8 points"])
+    {
+        assert!(told.contains(word), "{word} is missing in: {told}");
+    }
+}
+
+#[test]
+fn a_table_chooses_models_and_instruction_sets_itself() {
+    for (flag, name) in [("--simd", "sse2"), ("--model", "rod"), ("--integrator", "bdf2")] {
+        let output = run(Path::new("."), &["bench", "--table", flag, name]);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        let first = told.lines().next().unwrap_or_default();
+        assert!(first.contains("--table") && first.contains(flag), "{told}");
+    }
+    let output = run(Path::new("."), &["bench", "--table", "--strands", "10000000", "--points", "16"]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), told.lines().count()), (Some(2), 1), "{told}");
+    assert!(told.contains("choose fewer"), "{told}");
 }
 
 #[test]

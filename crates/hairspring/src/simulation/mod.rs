@@ -98,33 +98,21 @@ impl Simulation {
 
     /// Name of the instruction set in use.
     pub fn instruction_set(&self) -> String {
-        let name = format!("{:?}", self.level);
-        name.split('(').next().unwrap_or_default().to_lowercase()
+        name(self.level)
     }
 
-    /// Uses an older instruction set of this processor than the best one, by the name that
-    /// [`Simulation::instruction_set`] gives it: for comparisons and for tests. False, and nothing changes, where the
-    /// processor has none of that name.
-    pub fn use_instruction_set(&mut self, name: &str) -> bool {
-        let best = Level::new();
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        let known = [
-            best.as_avx512().map(Level::Avx512),
-            best.as_avx2().map(Level::Avx2),
-            best.as_sse4_2().map(Level::Sse4_2),
-            best.as_sse2().map(Level::Sse2),
-        ];
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        let known = [Some(best)];
-        let before = self.level;
-        for level in known.into_iter().flatten() {
-            self.level = level;
-            if self.instruction_set() == name {
-                return true;
-            }
-        }
-        self.level = before;
-        false
+    /// Names of the instruction sets that this processor has, the best first.
+    pub fn instruction_sets() -> Vec<String> {
+        levels().map(name).collect()
+    }
+
+    /// Uses another instruction set of this processor than the best one, by one of the names of
+    /// [`Simulation::instruction_sets`]: for comparisons and for tests. False, and nothing changes, where the processor has none
+    /// of that name.
+    pub fn use_instruction_set(&mut self, set: &str) -> bool {
+        let found = levels().find(|level| name(*level) == set);
+        self.level = found.unwrap_or(self.level);
+        found.is_some()
     }
 
     /// The simulated strands, as indices of the groom, in the order given to [`Simulation::new`].
@@ -180,4 +168,25 @@ impl Simulation {
         // The same arithmetic as the kernel's, so that a body at rest has the same bits.
         m.x_axis * local.x + m.y_axis * local.y + m.z_axis * local.z + t
     }
+}
+
+/// Instruction sets of this processor, the best first.
+fn levels() -> impl Iterator<Item = Level> {
+    let best = Level::new();
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    let levels = [
+        best.as_avx512().map(Level::Avx512),
+        best.as_avx2().map(Level::Avx2),
+        best.as_sse4_2().map(Level::Sse4_2),
+        best.as_sse2().map(Level::Sse2),
+    ];
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    let levels = [Some(best)];
+    levels.into_iter().flatten()
+}
+
+/// Name of an instruction set.
+fn name(level: Level) -> String {
+    let name = format!("{level:?}");
+    name.split('(').next().unwrap_or_default().to_lowercase()
 }

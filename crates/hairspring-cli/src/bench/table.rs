@@ -1,0 +1,143 @@
+//! `hairspring bench --table`: every elastic model on every instruction set, side by side.
+
+use super::{Options, Times, go_on, say_scene};
+use crate::{
+    console::{Console, say},
+    fault::Fault,
+};
+use hairspring::{material::Model, scene::Integrator, simulation::Simulation};
+use serde_json::{Value, json};
+use std::time::Instant;
+
+/// The models that a strand can have; `auto` is one of them.
+const MODELS: [Model; 3] = [Model::Curvature, Model::Rod, Model::Springs];
+
+/// Frames that a cell of the table steps in its turn: the first finds the caches full of another's hair, which the median is then free of.
+const TURN: u32 = 5;
+
+/// Name of the row of the library that is built without SIMD.
+const SCALAR: &str = "scalar";
+
+/// One figure of the table.
+pub(super) struct Cell {
+    model: Model,
+    simd: String,
+}
+
+/// The figures of the table, a row of models for each instruction set, the best first and none at all last.
+pub(super) fn cells() -> Vec<Cell> {
+    let row = |simd: String| MODELS.map(|model| Cell { model, simd: simd.clone() });
+    Simulation::instruction_sets().into_iter().chain([SCALAR.into()]).flat_map(row).collect()
+}
+
+/// Measures and prints the table.
+pub(super) fn run(options: &Options, console: Console) -> Result<(), Fault> {
+    let cells = cells();
+    let mut steppers: Vec<_> = cells.iter().map(|cell| stepper(options, cell)).collect();
+    let mut times: Vec<Times> =
+        cells.iter().map(|_| Times(Vec::with_capacity(options.frames as usize))).collect();
+    let mut progress = console.progress_in("simulating", options.frames, "frames of each");
+    for first in (1..=options.frames).step_by(TURN as usize) {
+        let turn = TURN.min(options.frames + 1 - first);
+        for (step, times) in steppers.iter_mut().zip(&mut times) {
+            for frame in first..first + turn {
+                let began = Instant::now();
+                step();
+                times.0.push(began.elapsed().as_secs_f64());
+                go_on(frame, options.frames)?;
+            }
+        }
+        for frame in first..first + turn {
+            progress.step(|| {
+                let took: Vec<String> = cells
+                    .iter()
+                    .zip(&times)
+                    .map(|(cell, times)| {
+                        let ms = times.0[frame as usize - 1] * 1e3;
+                        format!("{} {} {ms:.2}", cell.simd, cell.model.name())
+                    })
+                    .collect();
+                format!("frame {frame}: {} ms", took.join(", "))
+            });
+        }
+    }
+    drop(progress);
+    let figures: Vec<f64> = times.iter().map(|times| times.per_point(options)).collect();
+    match options.json {
+        true => {
+            say(Value::from_iter(cells.iter().zip(&times).map(|(cell, times)| object(options, cell, times))))
+        }
+        false => print(options, &cells, &figures),
+    }
+    Ok(())
+}
+
+/// The bench scene as one of the two builds of the library knows it.
+macro_rules! bench {
+    ($library:ident, $options:ident, $cell:ident) => {{
+        use $library::{
+            material::{Material, Model},
+            scene::{Solver, bench::Bench},
+        };
+        let model =
+            Model::ALL.into_iter().find(|model| model.name() == $cell.model.name()).unwrap_or_default();
+        let material = Material { model, ..Material::default() };
+        let solver = Solver { substeps: $options.substeps, ..Solver::default() };
+        Bench::of($options.strands, $options.points, material, solver)
+    }};
+}
+
+/// What steps a cell's hair by a frame.
+fn stepper(options: &Options, cell: &Cell) -> Box<dyn FnMut()> {
+    if cell.simd == SCALAR {
+        let mut bench = bench!(hairspring_scalar, options, cell);
+        return Box::new(move || _ = bench.step());
+    }
+    let mut bench = bench!(hairspring, options, cell);
+    bench.simulation.use_instruction_set(&cell.simd);
+    Box::new(move || _ = bench.step())
+}
+
+/// A figure for machines, under the keys of a bench without `--table`.
+fn object(options: &Options, cell: &Cell, times: &Times) -> Value {
+    json!({
+        "model": cell.model.name(),
+        "simd": cell.simd,
+        "device": options.device,
+        "threads": rayon::current_num_threads(),
+        "strands": options.strands,
+        "points": options.points,
+        "substeps": options.substeps,
+        "frames": options.frames,
+        "integrator": Integrator::default().name(),
+        "ms_per_frame_median": times.rank(0.5),
+        "ms_per_frame_p95": times.rank(0.95),
+        "ns_per_point_substep": times.per_point(options),
+    })
+}
+
+/// The table for people: each figure, and how many times as fast as the last row of its column, the scalar one.
+fn print(options: &Options, cells: &[Cell], figures: &[f64]) {
+    say_scene(options);
+    say(format_args!(
+        "on       {}, {} threads, {}, {} substeps, {} frames of 1/60 s of each, {TURN} in turn",
+        options.device,
+        rayon::current_num_threads(),
+        Integrator::default().name(),
+        options.substeps,
+        options.frames
+    ));
+    say(
+        "ns a point and substep per core (wall time x threads), medians; in brackets times as fast as scalar",
+    );
+    let line = |name: &str, cells: [String; MODELS.len()]| {
+        let cells: String = cells.iter().map(|cell| format!("{cell:>18}")).collect();
+        say(format_args!("{name:<9}{cells}"));
+    };
+    line("", MODELS.map(|model| model.name().to_owned()));
+    let scalar = &figures[figures.len() - MODELS.len()..];
+    for (row, cell) in figures.chunks(MODELS.len()).zip(cells.iter().step_by(MODELS.len())) {
+        let text = |k: usize| format!("{:.2} ({:.1} x)", row[k], scalar[k] / row[k]);
+        line(&cell.simd, std::array::from_fn(text));
+    }
+}

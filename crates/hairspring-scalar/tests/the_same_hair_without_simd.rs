@@ -1,0 +1,51 @@
+//! Promise: the scalar build is the same code: its hair has the bits of SSE2, lane for lane.
+//!
+//! What `hairspring bench --table` calls scalar would say nothing about SIMD if it did other work. Neither fuses products, so that not a
+//! rounding differs; on a processor without SSE2 there is nothing to hold it against.
+
+use glam::Vec3;
+
+/// Positions after a tenth of a second of the bench scene, in one of the two builds of the library, for each model.
+macro_rules! positions {
+    ($library:ident, $prepare:expr) => {{
+        use $library::{
+            material::{Material, Model},
+            scene::{Integrator, Solver, bench::Bench},
+        };
+        let cases = Model::ALL.map(|model| (model, Integrator::BackwardEuler));
+        cases
+            .into_iter()
+            .chain([(Model::Rod, Integrator::Bdf2), (Model::Curvature, Integrator::LocalGlobal)])
+            .map(|(model, integrator)| {
+                let material = Material { model, ..Material::default() };
+                let mut bench = Bench::of(60, 17, material, Solver { integrator, ..Solver::default() });
+                $prepare(&mut bench);
+                (0..6).for_each(|_| _ = bench.step());
+                let mut points = vec![Vec3::ZERO; bench.simulation.point_count()];
+                bench.simulation.write_points(&mut points);
+                (format!("{model:?}, {integrator:?}"), points)
+            })
+            .collect::<Vec<_>>()
+    }};
+}
+
+#[test]
+fn scalar_has_the_bits_of_sse2() {
+    let mut there = true;
+    let mut set = |bench: &mut hairspring::scene::bench::Bench| {
+        there &= bench.simulation.use_instruction_set("sse2");
+    };
+    let simd = positions!(hairspring, set);
+    if !there {
+        println!("skipped: this processor has no SSE2");
+        return;
+    }
+    let is_scalar = |bench: &mut hairspring_scalar::scene::bench::Bench| {
+        assert_eq!(bench.simulation.instruction_set(), "scalar");
+    };
+    let scalar = positions!(hairspring_scalar, is_scalar);
+    for ((name, simd), (_, scalar)) in simd.iter().zip(&scalar) {
+        let apart = simd.iter().zip(scalar).filter(|(a, b)| a != b).count();
+        assert!(apart == 0, "{name}: {apart} of {} points differ", simd.len());
+    }
+}
