@@ -26,8 +26,9 @@ use std::time::Instant;
 /// measured between the frames, outside the timed part: as they are after the last frame, and (`_ever`) the worst after
 /// any frame.
 ///
-/// `--table` steps the scene for every elastic model on every instruction set that this processor has, and as the same code built without SIMD (scalar),
-/// turn by turn in one process, so that whatever else the machine does slows all of them alike.
+/// `--table` steps the scene for every elastic model on every instruction set that this processor has, and as the same
+/// code built without SIMD (scalar), turn by turn in one process, so that whatever else the machine does slows all of
+/// them alike.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:

@@ -1,4 +1,7 @@
 //! `hairspring bench --table`: every elastic model on every instruction set, side by side.
+//!
+//! Each figure has a scene of its own, and all step the same frames. They do so a few frames in turn, so that whatever else the machine does
+//! slows all alike; what is timed is the step alone, contact included, as in a bench without the table.
 
 use super::{Options, Times, go_on, say_scene};
 use crate::{
@@ -17,6 +20,17 @@ const TURN: u32 = 5;
 
 /// Name of the row of the library that is built without SIMD.
 const SCALAR: &str = "scalar";
+
+/// What the compiler was allowed throughout the program. The scalar row has no more; the others add their instruction set at run time.
+const COMPILED_FOR: &[(&str, bool)] = &[
+    ("sse2", cfg!(target_feature = "sse2")),
+    ("sse4.2", cfg!(target_feature = "sse4.2")),
+    ("avx", cfg!(target_feature = "avx")),
+    ("avx2", cfg!(target_feature = "avx2")),
+    ("fma", cfg!(target_feature = "fma")),
+    ("avx512f", cfg!(target_feature = "avx512f")),
+    ("neon", cfg!(target_feature = "neon")),
+];
 
 /// One figure of the table.
 pub(super) struct Cell {
@@ -62,14 +76,21 @@ pub(super) fn run(options: &Options, console: Console) -> Result<(), Fault> {
         }
     }
     drop(progress);
-    let figures: Vec<f64> = times.iter().map(|times| times.per_point(options)).collect();
-    match options.json {
-        true => {
-            say(Value::from_iter(cells.iter().zip(&times).map(|(cell, times)| object(options, cell, times))))
-        }
-        false => print(options, &cells, &figures),
+    if options.json {
+        let scalar = &times[times.len() - MODELS.len()..];
+        let scalar = scalar.iter().map(|times| times.per_point(options)).cycle();
+        let each = cells.iter().zip(&times).zip(scalar);
+        say(Value::from_iter(each.map(|((cell, times), scalar)| object(options, cell, times, scalar))));
+    } else {
+        let figures: Vec<f64> = times.iter().map(|times| times.per_point(options)).collect();
+        print(options, &cells, &figures);
     }
     Ok(())
+}
+
+/// Names of what the whole program was compiled for.
+fn compiled_for() -> Vec<&'static str> {
+    COMPILED_FOR.iter().filter(|(_, there)| *there).map(|(name, _)| *name).collect()
 }
 
 /// The bench scene as one of the two builds of the library knows it.
@@ -98,8 +119,9 @@ fn stepper(options: &Options, cell: &Cell) -> Box<dyn FnMut()> {
     Box::new(move || _ = bench.step())
 }
 
-/// A figure for machines, under the keys of a bench without `--table`.
-fn object(options: &Options, cell: &Cell, times: &Times) -> Value {
+/// A figure for machines, under the keys of a bench without `--table`, and what only a table has; `scalar` is the figure of its model
+/// without SIMD.
+fn object(options: &Options, cell: &Cell, times: &Times, scalar: f64) -> Value {
     json!({
         "model": cell.model.name(),
         "simd": cell.simd,
@@ -113,6 +135,9 @@ fn object(options: &Options, cell: &Cell, times: &Times) -> Value {
         "ms_per_frame_median": times.rank(0.5),
         "ms_per_frame_p95": times.rank(0.95),
         "ns_per_point_substep": times.per_point(options),
+        "times_as_fast_as_scalar": scalar / times.per_point(options),
+        "frames_in_turn": TURN,
+        "compiled_for": compiled_for(),
     })
 }
 
@@ -127,9 +152,15 @@ fn print(options: &Options, cells: &[Cell], figures: &[f64]) {
         options.substeps,
         options.frames
     ));
-    say(
-        "ns a point and substep per core (wall time x threads), medians; in brackets times as fast as scalar",
-    );
+    say(format_args!(
+        "figures  ns a point and substep per core (wall time x threads), medians of the {} frames; in brackets times as fast as scalar",
+        options.frames
+    ));
+    say("         a step is all of it, contact too; reading positions and measuring are not in it");
+    say(format_args!(
+        "scalar   the same code on one number at a time, compiled like the whole program for: {}",
+        compiled_for().join(", ")
+    ));
     let line = |name: &str, cells: [String; MODELS.len()]| {
         let cells: String = cells.iter().map(|cell| format!("{cell:>18}")).collect();
         say(format_args!("{name:<9}{cells}"));
