@@ -200,8 +200,7 @@ fn a_heavy_tip_leans_less_in_the_wind() {
             let want = integral(0.0, 1.0, |s| 0.5 * (a + b) / (a + 0.5 * (b - a) * (1.0 + s)));
             let got = lean(&profile) / even;
             println!("{model:?}, {profile:?}: {got} of an even strand's lean, want {want}");
-            // Wide, because the kernel knows one rate for a whole strand: a chain leans as a rod would.
-            assert!((got / want - 1.0).abs() < 0.15, "{model:?}, {profile:?}: {got} instead of {want}");
+            assert!((got / want - 1.0).abs() < 0.02, "{model:?}, {profile:?}: {got} instead of {want}");
         }
     }
 }

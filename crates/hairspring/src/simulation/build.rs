@@ -9,6 +9,7 @@ use crate::{
     strand::{
         interval::Interval,
         lanes::{LANES, Row},
+        model::stretch::stiffening,
         rest_shape::{Fibre, RestShape, rest_shape},
         tile::{Elastic, RestRows, StateRows, StrandRows, history, rest, state, strand},
         truss::{particles, truss},
@@ -166,12 +167,14 @@ impl Simulation {
                     into.write_strand(&points, &shape, anchor, obstacles);
                     let radius = radii.iter().sum::<f32>() / radii.len() as f32;
                     let rows = &mut *into.strand;
-                    rows[strand::DRAG].0[lane] =
-                        material.drag * scale.drag * drag_rate(radius, material.density) * shape.air as f32;
+                    rows[strand::DRAG].0[lane] = material.drag * scale.drag * drag_per_length(radius);
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
                     rows[strand::FRICTION].0[lane] = material.friction;
                     rows[strand::TWIST_RATIO].0[lane] = section.twist_ratio;
                     rows[strand::FLAT].0[lane] = section.flat;
+                    let points = groom.range(s).len();
+                    rows[strand::POINTS].0[lane] = points as f32;
+                    rows[strand::STIFFENING].0[lane] = stiffening(points);
                     rows[strand::AXIAL].0[lane] = material.young * std::f32::consts::PI * radius * radius;
                 }
                 stiffened
@@ -255,13 +258,13 @@ impl Section {
     }
 }
 
-/// Rate at which still air stops a lone fibre moving across itself [1/s].
+/// Force of still air on a lone fibre moving across itself, over length and speed [N s/m²]: the radius counts, the mass does not.
 ///
 /// Slender body in Stokes flow: force per length 4πμ v / (ln(ℓ/r) + ½) across (Batchelor 1970, eq. 8.11), with the length over
-/// radius of a hair's segment of a centimetre, about 250; over the mass per length ρπr².
-fn drag_rate(radius: f32, density: f32) -> f32 {
+/// radius of a hair's segment of a centimetre, about 250.
+fn drag_per_length(radius: f32) -> f32 {
     let slenderness = (0.01 / radius).max(2.0).ln() + 0.5;
-    4.0 * AIR_VISCOSITY / (slenderness * density * radius * radius)
+    4.0 * std::f32::consts::PI * AIR_VISCOSITY / slenderness
 }
 
 /// One lane of a tile, to write.
@@ -284,6 +287,7 @@ impl Lane<'_> {
             rows[rest::MASS].0[lane] = 1.0;
             rows[rest::CLEARANCE].0[lane] = f32::MIN;
         }
+        self.strand[strand::STIFFENING].0[lane] = 1.0;
         self.strand[strand::TURN_START + 3].0[lane] = 1.0;
         self.strand[strand::TURN_END + 3].0[lane] = 1.0;
         Self::write_vector(&mut self.strand[strand::FIRST..], lane, Vec3::Y * 0.01);

@@ -128,9 +128,10 @@ impl Simulation {
         let spring = match integrator {
             Integrator::ExplicitEuler | Integrator::Verlet => Spring::Fibre,
             Integrator::Ftl | Integrator::Dftl => Spring::None,
-            Integrator::BackwardEuler | Integrator::Bdf2 | Integrator::LocalGlobal => {
-                Spring::PerMass(per_mass)
+            Integrator::BackwardEuler | Integrator::Bdf2 => {
+                Spring::PerMass(per_mass * self.strand[tile][strand::STIFFENING].0[place % LANES] as f64)
             }
+            Integrator::LocalGlobal => Spring::PerMass(per_mass),
         };
         if matches!(spring, Spring::None) {
             return energy;

@@ -12,24 +12,27 @@
 //! Baraff & Witkin 1998, *Large Steps in Cloth Simulation*; BDF2 after Choi & Ko 2002, *Stable but Responsive Cloth*, eq. 17.
 
 use super::{
-    band::{Band, back_substitute, factor_rows},
-    lanes::{F, Sym3, V3, load, store},
+    band::{Band, back_substitute, factor_rows, reach},
+    lanes::{F, Row, Sym3, V3, load, store},
     model::{
         At, Model, Solved,
         stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2, stretch},
     },
+    prefetch::ask_beyond,
     press::{press, relieve},
     root::Root,
     scratch::Scratch,
-    tile::{Tile, history, hold, rest, state},
+    tile::{Tile, history, hold, rest, state, strand},
 };
 use crate::collide::ObstaclePose;
-use fearless_simd::prelude::*;
+use fearless_simd::{mask32x8, prelude::*};
 use glam::Vec3;
 
 /// One substep of one tile, as the assembly needs it.
 #[derive(Clone, Copy)]
 pub struct Step<'a, S: Simd> {
+    /// Which it is of the interval's.
+    pub number: usize,
     /// Length [s].
     pub h: f32,
     /// Gravity [m/s²].
@@ -78,10 +81,10 @@ pub fn forces<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let n = tile.rest.len();
-    let mut elements = Elements::<S, M, B, N>::begin(simd, step, tile, scratch);
+    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::First, step, tile, scratch);
     for i in 0..n {
         if i + 1 < n {
-            elements.add(simd, i % M::STRIDE, step, tile, scratch);
+            elements.add(simd, i % M::STRIDE, tile, scratch);
         }
         elements.band.force().store(&mut scratch.kick[i]);
         elements.band.shift();
@@ -97,6 +100,13 @@ pub enum Sweep {
     Again,
 }
 
+impl Sweep {
+    /// How much of a segment's present error of length is news to its tension: all, or nothing once a solve has taken it.
+    pub fn news(self) -> f32 {
+        if self == Self::First { 1.0 } else { 0.0 }
+    }
+}
+
 /// Assembles and eliminates down the strand, at the positions in `scratch.x`.
 #[inline(always)]
 pub fn assemble<S, M, const B: usize, const N: usize>(
@@ -110,10 +120,13 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let n = tile.rest.len();
-    let mut elements = Elements::<S, M, B, N>::begin(simd, step, tile, scratch);
-    let (mut held, rows) = (0, factor_rows(B, N, M::HALF));
-    // The driven points and the last by themselves: one loop for all would carry the window through its branches.
+    let mut elements = Elements::<S, M, B, N>::begin(simd, sweep, step, tile, scratch);
+    let mut held = 0;
     let first = M::DRIVEN.next_multiple_of(M::STRIDE);
+    // Before the first that is eliminated, nothing is.
+    let (eliminated, rows) = (if B > 3 { 1 } else { M::DRIVEN }, factor_rows(B, N, M::HALF));
+    scratch.factors[eliminated * rows..(eliminated + reach(B, N)) * rows].fill(Row::default());
+    // The driven points and the last by themselves: one loop for all would carry the window through its branches.
     for i in 0..first {
         add_point(simd, (sweep, i % M::STRIDE), step, tile, scratch, &mut elements, &mut held);
         // An angle of the driven first segment is driven too, of the second it is not.
@@ -124,20 +137,20 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
             }
         }
         if angle || i >= M::DRIVEN {
-            elements.band.eliminate(simd, M::HALF, &mut scratch.factors[i * rows..]);
+            elements.band.eliminate(simd, M::HALF, i, &mut scratch.factors);
         } else {
             elements.band.shift();
         }
     }
     for i in (first..n - 1).step_by(M::STRIDE) {
         add_point(simd, (sweep, 0), step, tile, scratch, &mut elements, &mut held);
-        elements.band.eliminate(simd, M::HALF, &mut scratch.factors[i * rows..]);
+        elements.band.eliminate(simd, M::HALF, i, &mut scratch.factors);
         if M::STRIDE == 2 {
             add_point(simd, (sweep, 1), step, tile, scratch, &mut elements, &mut held);
-            elements.band.eliminate(simd, M::HALF, &mut scratch.factors[(i + 1) * rows..]);
+            elements.band.eliminate(simd, M::HALF, i + 1, &mut scratch.factors);
         }
     }
-    elements.band.eliminate(simd, M::HALF, &mut scratch.factors[(n - 1) * rows..]);
+    elements.band.eliminate(simd, M::HALF, n - 1, &mut scratch.factors);
 }
 
 /// Adds everything that begins at the walk's next point i, and what acts on point i+1.
@@ -154,8 +167,11 @@ fn add_point<S, M, const B: usize, const N: usize>(
     S: Simd,
     M: Model<S, B, N>,
 {
-    let segment = elements.add(simd, phase, step, tile, scratch);
+    let segment = elements.add(simd, phase, tile, scratch);
     let (i, band) = (elements.at.i, &mut elements.band);
+    ask_beyond(tile.rest, i, step.number);
+    ask_beyond(tile.state, i, 2 * step.number);
+    ask_beyond(tile.state, i, 2 * step.number + 1);
 
     // Mass, air and gravity of point i+1. Drag along a slender fibre is half of that across it (Batchelor 1970).
     let inv_h = 1.0 / step.h;
@@ -173,18 +189,24 @@ fn add_point<S, M, const B: usize, const N: usize>(
                 * F::splat(simd, 0.25 * inv_h * inv_h);
         right = p * mass;
     }
-    let air = mass * segment.drag;
-    let across = air * inv_h;
-    let slip = V3::splat(simd, step.wind) - root_velocity;
-    let slip = slip - segment.u * (segment.u.dot(slip) * 0.5);
-    right += slip * air + V3::splat(simd, step.gravity) * mass;
+    right += V3::splat(simd, step.gravity) * mass;
+    let way = || V3::load(simd, &scratch.x[i + 1]) - V3::load(simd, &tile.state[i + 1][state::X..]);
     if sweep == Sweep::Again {
-        let way = V3::load(simd, &scratch.x[i + 1]) - V3::load(simd, &tile.state[i + 1][state::X..]);
-        right -= way * (m_h2 + across) - segment.u * (segment.u.dot(way) * across * 0.5);
+        right -= way() * m_h2;
+    }
+    band.add_identity(1, m_h2);
+    let on_strand = phase + 1 == M::STRIDE;
+    if on_strand {
+        let across = segment.air * inv_h;
+        let slip = V3::splat(simd, step.wind) - root_velocity;
+        let slip = slip - segment.u * (segment.u.dot(slip) * 0.5);
+        right += slip * segment.air;
+        if sweep == Sweep::Again {
+            right -= way() * across - segment.u * (segment.u.dot(way()) * across * 0.5);
+        }
+        band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5).add_identity(across));
     }
     band.add_force(1, right);
-    band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5));
-    band.add_identity(1, m_h2 + across);
 
     // What holds or pulls it from outside.
     while *held < tile.holds.len() && tile.holds[*held].point as usize <= i + 1 {
@@ -202,14 +224,18 @@ fn add_point<S, M, const B: usize, const N: usize>(
         }
         *held += 1;
     }
-    let work = &mut scratch.contacts[i + 1];
-    press(simd, step, tile, (i + 1, &scratch.x[i + 1]), band, work);
+    if on_strand {
+        let work = &mut scratch.contacts[i + 1];
+        press(simd, step, tile, (i + 1, &scratch.x[i + 1]), band, work);
+    }
 }
 
-/// The sweep up: adds the solution to `scratch.x`, and to the tensions what the springs took.
+/// The sweep up: adds the solution to `scratch.x`, and to the tensions what the springs took; another sweep than the first only in the
+/// strands of which it is `asked`.
 #[inline(always)]
 pub fn substitute<S, M, const B: usize, const N: usize>(
     simd: S,
+    (sweep, asked): (Sweep, mask32x8<S>),
     step: &Step<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
@@ -225,19 +251,27 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
         moved: [zero; 3],
         unknowns: [F::<S>::splat(simd, 0.0); N],
         along: F::splat(simd, 0.0),
+        news: sweep.news(),
     };
     for i in (1..n).rev() {
         let x = V3::load(simd, &scratch.x[i]);
         let mut delta = zero;
         if i >= M::DRIVEN || B > 3 {
-            let factors = &scratch.factors[i * factor_rows(B, N, M::HALF)..];
+            let factors = &scratch.factors[(i + reach(B, N)) * factor_rows(B, N, M::HALF)..];
             back_substitute::<S, B, N>(simd, M::HALF, factors, &mut solved.unknowns);
+            if sweep == Sweep::Again {
+                for unknown in &mut solved.unknowns[..B] {
+                    *unknown = asked.select(*unknown, zero.x);
+                }
+            }
         }
         if i >= M::DRIVEN {
             let unknowns = &solved.unknowns;
             delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
             (x + delta).store(&mut scratch.x[i]);
-            relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
+            if i.is_multiple_of(M::STRIDE) {
+                relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
+            }
         }
         solved.i = i;
         let fixed = &scratch.fixed[i - i % M::STRIDE];
@@ -245,7 +279,7 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
         solved.x = [x, solved.x[0], solved.x[1]];
         solved.moved = [delta, solved.moved[0], solved.moved[1]];
         if i + 1 < n {
-            M::take(simd, &solved, tile);
+            M::take(simd, &solved, tile, &scratch.fixed);
         }
         if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
             // Padding has no stiffness, and so takes nothing.
@@ -262,8 +296,8 @@ pub struct Segment<S: Simd> {
     pub u: V3<S>,
     /// Its mass [kg].
     pub mass: F<S>,
-    /// Rate at which still air stops the fibre [1/s].
-    pub drag: F<S>,
+    /// Force of still air on the half segments around it, over speed [N s/m].
+    pub air: F<S>,
 }
 
 /// The walk down a strand that fills the band: elasticity only.
@@ -274,14 +308,20 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
     at: At<S>,
     /// The strand's next point.
     x1: V3<S>,
-    drag: F<S>,
+    /// Force of still air on half a unit of length, over speed [N s/m²].
+    half_drag: F<S>,
+    /// See [`stretch`].
+    explicit: F<S>,
+    /// Rest length of the strand's segment before the walk's next point.
+    before: F<S>,
 }
 
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
     /// At the root.
     #[inline(always)]
-    pub fn begin(simd: S, step: &Step<S>, tile: &Tile, scratch: &Scratch) -> Self {
+    pub fn begin(simd: S, sweep: Sweep, step: &Step<S>, tile: &Tile, scratch: &Scratch) -> Self {
         let (drag, damping, _) = Root::<S>::fibre(simd, tile.strand);
+        let before = load(simd, &tile.rest[0][rest::LENGTH]);
         let first = V3::load(simd, &scratch.x[M::STRIDE]);
         let inverse = load(simd, &scratch.fixed[0].inverse_length);
         let at = At {
@@ -292,22 +332,19 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             inverse_length: [inverse; 2],
             damped: damping * (1.0 / step.h) + 1.0,
             along: [load(simd, &scratch.fixed[0].along); 2],
+            news: sweep.news(),
             h: step.h,
         };
-        Self { band: Band::new(simd), model: M::begin(simd, tile, &step.root), at, x1: first, drag }
+        let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
+        let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
+        let explicit = F::splat(simd, step.explicit_tension()) / stiffening;
+        Self { band, model, at, x1: first, half_drag, before, explicit }
     }
 
     /// Adds what begins at the next point i: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i
     /// modulo the model's stride, told apart so that it can be a constant.
     #[inline(always)]
-    pub fn add(
-        &mut self,
-        simd: S,
-        phase: usize,
-        step: &Step<S>,
-        tile: &mut Tile,
-        scratch: &Scratch,
-    ) -> Segment<S> {
+    pub fn add(&mut self, simd: S, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
         let Scratch { x, fixed, .. } = scratch;
         self.at.i = self.at.i.wrapping_add(1);
         self.at.phase = phase;
@@ -316,8 +353,9 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
         if phase + 1 < M::STRIDE {
-            self.model.add(simd, &self.at, x, tile, &mut self.band);
-            return Segment { u: self.at.u[1], mass, drag: self.drag };
+            self.model.add(simd, &self.at, scratch, tile, &mut self.band);
+            // Air does not meet what is no part of the fibre.
+            return Segment { u: self.at.u[1], mass, air: F::splat(simd, 0.0) };
         }
         let at = &mut self.at;
         let length = load(simd, &row[rest::LENGTH]);
@@ -329,17 +367,19 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         at.u = [at.u[1], u];
         at.inverse_length = [at.inverse_length[1], load(simd, &fixed[next].inverse_length)];
         at.along = [at.along[1], load(simd, &fixed[next].along)];
-        self.model.add(simd, at, x, tile, &mut self.band);
+        self.model.add(simd, at, scratch, tile, &mut self.band);
 
         let k = at.along[1];
         let tension = load(simd, &tile.state[next][state::TENSION]);
-        let (force, block) = stretch((l, u), length, k, tension, step.explicit_tension());
+        let (force, block) = stretch((l, u), (l - length) * at.news, k, tension, self.explicit);
         self.band.add_diagonal(1, block);
         self.band.add_diagonal(1 + M::STRIDE, block);
         self.band.add_block(1, 1 + M::STRIDE, &-block.full());
         self.band.add_force(1, force);
         self.band.add_force(1 + M::STRIDE, -force);
         self.x1 = x2;
-        Segment { u, mass, drag: self.drag }
+        let air = self.half_drag * (self.before + length);
+        self.before = length;
+        Segment { u, mass, air }
     }
 }

@@ -2,27 +2,28 @@
 //!
 //! ```text
 //!          point i   i+1  i+2           a window of N = B (half-bandwidth + 1) unknowns, upper triangle
-//!   i    [ D  U  U ]                    eliminating point i:
-//!   i+1  [    D  U ]                      l = u / d,   A −= l uᵀ,   b −= l b_i
-//!   i+2  [       D ]                    for each of its B unknowns
+//!   i    [ D  U  U ]                    eliminating point i, for each of its B unknowns r:
+//!   i+1  [    D  U ]                      u_r = A_r − Σ (u_kr / d_k) u_k,   y_r = b_r − Σ (u_kr / d_k) y_k    over the k before r
+//!   i+2  [       D ]                      d_r = u_rr;                    up again:   x_r = (y_r − Σ u_rc x_c) / d_r
 //! ```
 //!
-//! Right-looking, so that the rows below the one being eliminated can still be assembled while it goes: the matrix
-//! is never stored, only the factors `l` and `y = b / d`. By single unknowns rather than by inverted blocks: it is a
-//! third fewer operations, because all of the symmetry is used. Golub & Van Loan, *Matrix Computations*, 4th ed., §4.1.2, §4.3.5.
+//! Left-looking: a row is assembled, meets all that were eliminated before it in registers, and is written once, as `u` and `y`. The matrix is never stored, and the window holds only what elements have said of the points ahead. By single unknowns
+//! rather than by inverted blocks: it is a third fewer operations, because all of the symmetry is used. Golub & Van Loan, *Matrix
+//! Computations*, 4th ed., §4.1.2, §4.3.5.
 
 use super::lanes::{F, M3, Row, Sym3, V3, load, store};
 use fearless_simd::{mask32x8, prelude::*};
+use std::sync::atomic::{Ordering, compiler_fence};
 
 /// The zero that a sum begins with: adding to −0 is exact for every number, 0 and −0 included, and so costs nothing.
 const NOTHING: f32 = -0.0;
 
 /// Rows of factors that [`Band::eliminate`] writes for a point, where an unknown meets none more than `half` after it.
 pub const fn factor_rows(block: usize, window: usize, half: usize) -> usize {
-    factor_row(block, window, half)
+    pivot_row(0, block, window, half) + block
 }
 
-/// The first of them that belongs to unknown `r` of the point: its l of the unknowns after it, then y.
+/// The first of them that belongs to unknown `r` of the point: its row after the diagonal, then its right-hand side.
 const fn factor_row(r: usize, window: usize, half: usize) -> usize {
     let (mut row, mut k) = (0, 0);
     while k < r {
@@ -30,6 +31,16 @@ const fn factor_row(r: usize, window: usize, half: usize) -> usize {
         k += 1;
     }
     row
+}
+
+/// The one with −1/d of unknown `r`'s pivot d.
+const fn pivot_row(r: usize, block: usize, window: usize, half: usize) -> usize {
+    factor_row(block, window, half) + r
+}
+
+/// Points before a point that meet it.
+pub const fn reach(block: usize, window: usize) -> usize {
+    (window - 1) / block
 }
 
 /// The last unknown of the window that unknown `r` meets.
@@ -201,49 +212,48 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         self.b[k] = value;
     }
 
-    /// Eliminates the window's first point, writes its factors, and moves the window on by a point, which is to [`Band::enter`]. No
-    /// unknown of the matrix meets one more than `half` after it.
+    /// Eliminates the window's first point, the strand's `i`th, and moves the window on by a point, which is to [`Band::enter`]. Its factors
+    /// follow in `factors` on those of the points before it, of which there are `reach` more than the strand has. No unknown of the matrix
+    /// meets one more than `half` after it.
     #[inline(always)]
-    pub fn eliminate(&mut self, simd: S, half: usize, factors: &mut [Row]) {
-        let one = F::<S>::splat(simd, 1.0);
-        let factors = &mut factors[..factor_rows(B, N, half)];
-        let last = |k: usize| last_met(k, N, half);
-        let mut l = [[one; N]; B];
+    #[allow(clippy::needless_range_loop, reason = "columns count in the row and in the factors")]
+    pub fn eliminate(&mut self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
+        let minus_one = F::<S>::splat(simd, -1.0);
+        let (rows, reach) = (factor_rows(B, N, half), reach(B, N));
+        let factors = &mut factors[i * rows..(i + reach + 1) * rows];
         each!(r of 0 1 2 3, {
             if r < B {
-                each!(k of 0 1 2, {
-                    if k < r {
-                        self.update(r, k, last(k), l[k]);
+                let (mut row, mut right) = (self.a[r], self.b[r]);
+                each!(back of 3 2 1 0, {
+                    if back <= reach {
+                        // Costs nothing by itself. Without it the compiler loads all factors long before they are used, and then has to
+                        // put them back into memory: a sixth more instructions.
+                        compiler_fence(Ordering::SeqCst);
+                        each!(k of 0 1 2 3, {
+                            let last = last_met(k, N, half);
+                            if k < B && back * B + r <= last && (back > 0 || k < r) {
+                                let point = &factors[(reach - back) * rows..][..rows];
+                                let at = factor_row(k, N, half);
+                                let a = |c: usize| load(simd, &point[at + back * B + c - k - 1]);
+                                let l = a(r) * load(simd, &point[pivot_row(k, B, N, half)]);
+                                for c in r..N.min(last + 1 - back * B) {
+                                    row[c] = l.mul_add(a(c), row[c]);
+                                }
+                                right = l.mul_add(load(simd, &point[at + last - k]), right);
+                            }
+                        });
                     }
                 });
-                let at = factor_row(r, N, half);
-                let inverse = one / self.a[r][r];
-                for c in r + 1..last(r) + 1 {
-                    l[r][c] = self.a[r][c] * inverse;
-                    store(l[r][c], &mut factors[at + c - r - 1]);
+                let point = &mut factors[reach * rows..][..rows];
+                let (at, last) = (factor_row(r, N, half), last_met(r, N, half));
+                for c in r + 1..last + 1 {
+                    store(row[c], &mut point[at + c - r - 1]);
                 }
-                store(self.b[r] * inverse, &mut factors[at + last(r) - r]);
-            }
-        });
-        each!(r of 1 2 3 4 5 6 7 8 9 10 11, {
-            if r >= B && r < N {
-                each!(k of 0 1 2 3, {
-                    if k < B && r <= last(k) {
-                        self.update(r, k, last(k), l[k]);
-                    }
-                });
+                store(right, &mut point[at + last - r]);
+                store(minus_one / row[r], &mut point[pivot_row(r, B, N, half)]);
             }
         });
         self.shift();
-    }
-
-    /// Takes row `k` times its l, up to column `last`, from row `r`.
-    #[inline(always)]
-    fn update(&mut self, r: usize, k: usize, last: usize, l: [F<S>; N]) {
-        for c in r..last + 1 {
-            self.a[r][c] = (-l[r]).mul_add(self.a[k][c], self.a[r][c]);
-        }
-        self.b[r] = (-l[r]).mul_add(self.b[k], self.b[r]);
     }
 
     /// Moves the window on by a point without eliminating the first.
@@ -281,12 +291,12 @@ pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
         if back < B {
             let r = B - 1 - back;
             let (at, end) = (factor_row(r, N, half), last_met(r, N, half));
-            let mut sum = load(simd, &factors[at + end - r]);
+            let mut sum = -load(simd, &factors[at + end - r]);
             // Those found last come last: the sums of three unknowns are one chain from tip to root.
             for c in (r + 1..end + 1).rev() {
-                sum = (-load(simd, &factors[at + c - r - 1])).mul_add(x[c], sum);
+                sum = load(simd, &factors[at + c - r - 1]).mul_add(x[c], sum);
             }
-            x[r] = sum;
+            x[r] = sum * load(simd, &factors[pivot_row(r, B, N, half)]);
         }
     });
 }

@@ -4,7 +4,7 @@ use super::{
     lanes::{F, Row, load, store},
     model::{Stretching, springs},
     scratch::Scratch,
-    tile::{Elastic, Tile, hold, rest},
+    tile::{self, Elastic, Tile, hold, rest},
 };
 use fearless_simd::prelude::*;
 
@@ -17,6 +17,8 @@ pub struct Fixed {
     pub inverse_length: Row,
     /// Stiffness of the spring along that segment [N/m]; 0 for padding.
     pub along: Row,
+    /// Inverse rest lengths of the springs to the second and third particle after this one, of the springs model [1/m].
+    pub inverse_spans: [Row; 2],
 }
 
 /// Fills `scratch.fixed` for substeps of `h` [s].
@@ -32,6 +34,11 @@ pub fn fix<S: Simd>(simd: S, h: f32, stretching: Stretching, tile: &Tile, scratc
         let mut along = stretching.stiffness(simd, h, tile, i);
         if tile.model == Elastic::Springs {
             along += springs::brace(simd, h, tile, i);
+            for (row, span) in
+                scratch.fixed[i].inverse_spans.iter_mut().zip([tile::springs::L2, tile::springs::L3])
+            {
+                store(one / load(simd, &at[span]).max(1e-12), row);
+            }
         }
         let fixed = &mut scratch.fixed[i];
         store(inverse_mass, &mut fixed.inverse_mass);

@@ -19,7 +19,7 @@ pub type F<S> = f32x8<S>;
 
 #[inline(always)]
 pub fn load<S: Simd>(simd: S, row: &Row) -> F<S> {
-    F::simd_from(simd, row.0)
+    F::from_slice(simd, &row.0)
 }
 
 #[inline(always)]

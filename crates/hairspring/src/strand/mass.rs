@@ -46,19 +46,6 @@ pub fn masses(lengths: &[f64], fibre: &Fibre) -> Vec<Mass> {
     out
 }
 
-/// Rate at which air stops a strand with these masses over that of one whose mass lies evenly [1].
-///
-/// Air takes hold of length, whatever its mass, so that its rate goes down where mass goes up. The kernel knows one rate a strand: this one
-/// keeps the moment of the air about the root, which is what leans a hanging strand in the wind.
-pub fn air_share(lengths: &[f64], masses: &[Mass]) -> f64 {
-    let (mut along, mut even, mut shared) = (0.0, 0.0, 0.0);
-    for (length, mass) in lengths.iter().zip(&masses[1..]) {
-        along += length;
-        (even, shared) = (even + mass.even * along, shared + mass.point * along);
-    }
-    if shared > 0.0 { even / shared } else { 1.0 }
-}
-
 /// Values at equal spacing along a strand, linear in between.
 enum Profile<'a> {
     /// The same everywhere.

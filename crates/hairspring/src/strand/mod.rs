@@ -12,6 +12,8 @@ pub(crate) mod lanes;
 pub(crate) mod limit;
 pub(crate) mod mass;
 pub(crate) mod model;
+
+pub(crate) mod prefetch;
 pub(crate) mod press;
 pub(crate) mod project;
 pub(crate) mod rest_shape;

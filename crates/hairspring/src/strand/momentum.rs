@@ -2,7 +2,7 @@
 //! spring, which all models share, is the gradient of its energy.
 
 use super::{
-    assemble::{Elements, Step},
+    assemble::{Elements, Step, Sweep},
     fixed::fix,
     lanes::{F, LANES, Row},
     model::{
@@ -56,7 +56,7 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         Elastic::Straight => walk::<_, Straight, 3, 9>(simd, s, &mut tile),
         Elastic::Curvature => walk::<_, Curvature<_>, 3, 9>(simd, s, &mut tile),
         Elastic::Rod => walk::<_, Rod<_>, 4, 11>(simd, s, &mut tile),
-        Elastic::Springs => walk::<_, Springs<true>, 3, 12>(simd, s, &mut tile),
+        Elastic::Springs => walk::<_, Springs, 3, 12>(simd, s, &mut tile),
     })
 }
 
@@ -68,6 +68,7 @@ where
 {
     let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
     let step = Step {
+        number: 0,
         h: s.h as f32,
         gravity: Vec3::ZERO,
         wind: Vec3::ZERO,
@@ -80,11 +81,11 @@ where
     scratch.reserve(s.x.len());
     fix(simd, step.h, Stretching::Moderate, tile, &mut scratch);
     scratch.begin(tile.state);
-    let mut elements = Elements::<S, M, B, N>::begin(simd, &step, tile, &scratch);
+    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::First, &step, tile, &scratch);
     let mut forces = Forces::default();
     for i in 0..s.x.len() {
         if i + 1 < s.x.len() {
-            elements.add(simd, i % M::STRIDE, &step, tile, &scratch);
+            elements.add(simd, i % M::STRIDE, tile, &scratch);
         }
         forces.0.push(lane(elements.band.force()));
         forces.1.push(if B > 3 { elements.band.right(3)[3] as f64 } else { 0.0 });
@@ -103,7 +104,7 @@ proptest! {
         let ((ours, block), u) = dispatch!(Level::new(), simd => {
             let f = |v: f64| F::splat(simd, v as f32);
             let (l, u) = splat(simd, e).length_and_unit();
-            let (force, block) = stretch((l, u), f(rest), f(k), f(tension), 0.0);
+            let (force, block) = stretch((l, u), l - f(rest), f(k), f(tension), f(0.0));
             let m = [block.xx, block.xy, block.xz, block.yy, block.yz, block.zz].map(|v| v[3] as f64);
             ((lane(force), m), lane(u))
         });

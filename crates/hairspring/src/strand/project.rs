@@ -31,7 +31,7 @@ const ENOUGH: f32 = 1e-4;
 /// One iteration over `scratch.x`, of which every `stride`th is the strand's; false once the lengths were already right. λ times
 /// `force` (a/h² of the integrator) goes into the tension.
 #[inline(always)]
-pub fn project<S: Simd>(simd: S, stride: usize, force: f32, tile: &mut Tile, scratch: &mut Scratch) -> bool {
+pub fn project<S: Simd>(simd: S, stride: usize, force: F<S>, tile: &mut Tile, scratch: &mut Scratch) -> bool {
     let Scratch { factors, x, fixed, .. } = scratch;
     let zero = F::<S>::splat(simd, 0.0);
     // Cut to one length, so that the loops need no checks.

@@ -99,7 +99,8 @@ impl Strand {
         for i in 0..n {
             let u = if i + 1 < n { (self.x[i + 1] - self.x[i]).normalize() } else { DVec3::ZERO };
             let across = DMat3::IDENTITY - outer(u, u) * 0.5;
-            let air = across * (self.mass[i] * self.drag);
+            let around = 0.5 * (self.length[i.saturating_sub(1)] + self.length[i]);
+            let air = across * (around * self.drag);
             a[i][i] += DMat3::IDENTITY * (self.mass[i] / (self.h * self.h)) + air * (1.0 / self.h);
             b[i] += (self.v[i] * self.h - self.moved) * (self.mass[i] / (self.h * self.h))
                 + air * (self.wind - self.moved / self.h)

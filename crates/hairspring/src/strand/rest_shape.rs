@@ -19,7 +19,7 @@
 //! the shape, bending stiffness is raised by the least that does (Hsu et al. 2023, *Sag-Free Initialization for Strand-Based
 //! Hybrid Hair Simulation*, raise it too; what holds a style in life is wax and neighbours).
 
-use super::mass::{air_share, masses};
+use super::mass::masses;
 use glam::{DVec3, Vec3};
 
 /// Largest |m|/B of a joint at the sag-free start [rad]: beyond it the linear moment is not a fibre's any more.
@@ -96,8 +96,6 @@ pub struct RestShape {
     pub points: Vec<RestPoint>,
     /// Joints whose stiffness was raised for the sag-free start.
     pub stiffened: usize,
-    /// Rate at which air stops the strand over that of one with its mass evenly shared [1].
-    pub air: f64,
 }
 
 /// The rest shape of the strand through `points` (three or more, no two neighbours alike) [m], in balance under `gravity` [m/s²],
@@ -111,8 +109,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     let total: f64 = lengths.iter().sum();
 
     let mut rest = vec![RestPoint::default(); n];
-    let masses = masses(&lengths, fibre);
-    for (i, (at, mass)) in rest.iter_mut().zip(&masses).enumerate() {
+    for (i, (at, mass)) in rest.iter_mut().zip(masses(&lengths, fibre)).enumerate() {
         (at.mass, at.segment_mass) = (mass.point, mass.segment);
         at.length = lengths.get(i).copied().unwrap_or(0.0);
     }
@@ -129,8 +126,9 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     }
     let stiffest = |rest: &[RestPoint], j: usize| {
         let shorter = lengths[j - 1].min(lengths[j]);
-        // A joint takes hold of its middle point with both segments, 4 B/L² in all, where a spring does with one: half leaves it the digits.
-        0.5 * fibre.stiffest(rest[j].mass) * shorter * shorter
+        // A joint takes hold of its middle point with both segments, 4 B/L² in all, where a spring does with one: a quarter leaves it the
+        // digits.
+        0.25 * fibre.stiffest(rest[j].mass) * shorter * shorter
     };
 
     // The frame carried along the strand (the same transport as `bend::transport`).
@@ -196,5 +194,5 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let (d, frame) = (rest[i].turn, rest[i - 1].normal);
         rest[i].turn = DVec3::new(d.dot(frame), d.dot(t[i - 1].cross(frame)), d.dot(t[i - 1]));
     }
-    RestShape { points: rest, stiffened, air: air_share(&lengths, &masses) }
+    RestShape { points: rest, stiffened }
 }

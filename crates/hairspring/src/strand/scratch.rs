@@ -1,6 +1,13 @@
 //! Working memory of one thread, reused by every tile that it runs.
 
-use super::{band::factor_rows, fixed::Fixed, lanes::Row, press, tile::StateRows, tile::state};
+use super::{
+    band::{factor_rows, reach},
+    fixed::Fixed,
+    lanes::Row,
+    press,
+    tile::StateRows,
+    tile::state,
+};
 
 /// Working memory of one thread.
 #[derive(Default)]
@@ -23,6 +30,9 @@ pub struct Scratch {
 /// Most rows of factors a point, those of the rod.
 const MOST_FACTORS: usize = factor_rows(4, 11, 10);
 
+/// Most points that meet a point from before it, those of the springs.
+const MOST_REACH: usize = reach(3, 12);
+
 /// Positions after the last point, so that four that follow each other can be read at any: they are finite and nothing depends on them.
 const BEYOND: usize = 3;
 
@@ -38,7 +48,7 @@ impl Scratch {
     /// Room for a tile of `points`.
     pub fn reserve(&mut self, points: usize) {
         if self.fixed.len() < points {
-            self.factors.resize(points * MOST_FACTORS, Row::default());
+            self.factors.resize((points + MOST_REACH) * MOST_FACTORS, Row::default());
             self.kick.resize(points, [Row::default(); 3]);
             self.change.resize(points, [Row::default(); 3]);
             self.x.resize(points + BEYOND, [Row::default(); 3]);

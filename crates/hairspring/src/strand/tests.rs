@@ -2,7 +2,7 @@
 
 use super::{
     assemble::{Step, Sweep, assemble, substitute},
-    band::{Band, back_substitute, factor_rows},
+    band::{Band, back_substitute, factor_rows, reach},
     fixed::fix,
     lanes::{F, LANES, Row, V3},
     model::{
@@ -19,7 +19,7 @@ use super::{
     tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
     truss::ASIDE,
 };
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, dispatch, mask32x8, prelude::*};
 use glam::{DVec3, Mat3, Vec3};
 use proptest::prelude::*;
 
@@ -45,7 +45,7 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
 ) -> Vec<f64> {
     let (n, rows) = (b.len() / B, factor_rows(B, N, half));
     let f = |v: f64| F::<S>::splat(simd, v as f32);
-    let mut factors = vec![Row::default(); n * rows];
+    let mut factors = vec![Row::default(); (n + reach(B, N)) * rows];
     let mut band = Band::<S, B, N>::new(simd);
     for i in 0..n {
         band.enter(simd);
@@ -58,12 +58,12 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
             }
             band.add_right((0, r - i * B), f(b[r]));
         }
-        band.eliminate(simd, half, &mut factors[i * rows..]);
+        band.eliminate(simd, half, i, &mut factors);
     }
     let mut unknowns = [f(0.0); N];
     let mut out = vec![0.0; n * B];
     for i in (0..n).rev() {
-        back_substitute::<S, B, N>(simd, half, &factors[i * rows..], &mut unknowns);
+        back_substitute::<S, B, N>(simd, half, &factors[(i + reach(B, N)) * rows..], &mut unknowns);
         (0..B).for_each(|k| out[i * B + k] = unknowns[k][3] as f64);
     }
     out
@@ -227,7 +227,7 @@ proptest! {
             bend: (0..n).map(|i| if i == 0 || i + 1 == n { 0.0 } else { 4e-6f32 as f64 }).collect(),
             turn,
             tension: vec![tension; n],
-            drag, damping, wind, moved, h,
+            drag: drag * mass / 0.008, damping, wind, moved, h,
             gravity: DVec3::new(0.0, -9.81, 0.0),
             length: length.iter().copied().chain([0.0]).collect(),
             x: x.clone(),
@@ -266,6 +266,7 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
     let mut normal = first.normalize().any_orthonormal_vector();
     set(&mut strand_rows, strand::FIRST, &first.as_vec3().to_array());
     set(&mut strand_rows, strand::NORMAL, &normal.as_vec3().to_array());
+    set(&mut strand_rows, strand::STIFFENING, &[1.0]);
     set(&mut strand_rows, strand::DRAG, &[s.drag as f32]);
     set(&mut strand_rows, strand::DAMPING, &[s.damping as f32]);
     set(&mut strand_rows, strand::TWIST_RATIO, &[reference::TWIST_RATIO as f32]);
@@ -306,6 +307,7 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
     dispatch!(Level::new(), simd => {
         let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
         let step = Step {
+            number: 0,
             h: s.h as f32,
             gravity: s.gravity.as_vec3(),
             wind: s.wind.as_vec3(),
@@ -328,19 +330,43 @@ fn solve_once<S: Simd>(simd: S, step: &Step<S>, tile: &mut Tile, scratch: &mut S
     match tile.model {
         Elastic::Straight => {
             assemble::<S, Straight, 3, 9>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Straight, 3, 9>(simd, step, tile, scratch);
+            substitute::<S, Straight, 3, 9>(
+                simd,
+                (Sweep::First, mask32x8::splat(simd, true)),
+                step,
+                tile,
+                scratch,
+            );
         }
         Elastic::Curvature => {
             assemble::<S, Curvature<S>, 3, 9>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Curvature<S>, 3, 9>(simd, step, tile, scratch);
+            substitute::<S, Curvature<S>, 3, 9>(
+                simd,
+                (Sweep::First, mask32x8::splat(simd, true)),
+                step,
+                tile,
+                scratch,
+            );
         }
         Elastic::Rod => {
             assemble::<S, Rod<S>, 4, 11>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Rod<S>, 4, 11>(simd, step, tile, scratch);
+            substitute::<S, Rod<S>, 4, 11>(
+                simd,
+                (Sweep::First, mask32x8::splat(simd, true)),
+                step,
+                tile,
+                scratch,
+            );
         }
         Elastic::Springs => {
-            assemble::<S, Springs<true>, 3, 12>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Springs<true>, 3, 12>(simd, step, tile, scratch);
+            assemble::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
+            substitute::<S, Springs, 3, 12>(
+                simd,
+                (Sweep::First, mask32x8::splat(simd, true)),
+                step,
+                tile,
+                scratch,
+            );
         }
     }
 }

@@ -55,7 +55,7 @@ pub mod strand {
     pub const FIRST: usize = 14;
     /// The frame's normal on the first segment in the rest pose, 3 rows.
     pub const NORMAL: usize = 17;
-    /// Rate at which still air stops the fibre moving across itself [1/s].
+    /// Force of still air on a length of the fibre that moves across itself, over length and speed [N s/m²].
     pub const DRAG: usize = 20;
     /// Relaxation time of bending [s].
     pub const DAMPING: usize = 21;
@@ -69,8 +69,12 @@ pub mod strand {
     pub const AXIAL: usize = 25;
     /// The third point in the rest pose, from the root [m], 3 rows: driven too in the springs model.
     pub const THIRD: usize = 26;
+    /// Points of the strand, extra particles not counted [1].
+    pub const POINTS: usize = 29;
+    /// How many times stiffer its segments are than most strands', see `stiffening` [1].
+    pub const STIFFENING: usize = 30;
     /// Rows a strand.
-    pub const ROWS: usize = 29;
+    pub const ROWS: usize = 31;
 }
 
 /// What rows hold in the springs model. The points of a strand are its even particles; what is said of a segment is said at them.

@@ -159,16 +159,15 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             }
         }
     }
-    RestShape { points: rest, stiffened, air: strand.air }
+    RestShape { points: rest, stiffened }
 }
 
 /// An extra particle at `p`, put where its triangle over a segment between `ends` of rest length `length` has it.
 #[inline(always)]
 pub fn beside<S: Simd>(simd: S, p: V3<S>, ends: [V3<S>; 2], length: F<S>) -> V3<S> {
     let middle = (ends[0] + ends[1]) * F::splat(simd, 0.5);
-    let along = (ends[1] - ends[0]).length_and_unit().1;
-    let way = p - middle;
-    let aside = (way - along * along.dot(way)).length_and_unit().1;
+    let (e, way) = (ends[1] - ends[0], p - middle);
+    let aside = (way - e * (e.dot(way) / e.dot(e).max(1e-30))).length_and_unit().1;
     aside.mul_add(length * ASIDE as f32, middle)
 }
 

@@ -11,16 +11,21 @@
 use super::outside;
 use crate::strand::{
     assemble::Step,
-    band::{Band, factor_rows},
-    lanes::{F, V3, load},
+    band::{Band, factor_rows, reach},
+    lanes::{F, Row, V3, load},
     model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
     scratch::Scratch,
     tile::{Tile, rest, state},
 };
 use fearless_simd::prelude::*;
 
-/// Rows of factors a point: l of the next two points and 1/d.
+/// Rows of factors a point: u of the next two points, a right-hand side of its own that is not used, and −1/d.
 const ROWS: usize = factor_rows(1, 3, 2);
+/// The last of them.
+const MINUS_INVERSE: usize = ROWS - 1;
+
+/// Points of factors before the first.
+const BEFORE: usize = reach(1, 3);
 
 /// Factors the constant matrix into `scratch.factors`.
 #[inline(always)]
@@ -28,6 +33,7 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
     let one = F::<S>::splat(simd, 1.0);
     let n = tile.rest.len();
     let mut band = Band::<S, 1, 3>::new(simd);
+    scratch.factors[..BEFORE * ROWS].fill(Row::default());
     for i in 0..n {
         band.enter(simd);
         if i + 1 < n {
@@ -47,7 +53,7 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
         band.cut(simd, free);
         band.set_right(0, one);
-        band.eliminate(simd, 2, &mut scratch.factors[i * ROWS..]);
+        band.eliminate(simd, 2, i, &mut scratch.factors);
     }
 }
 
@@ -113,17 +119,18 @@ pub fn advance<S: Simd>(simd: S, iterations: u32, step: &Step<S>, tile: &mut Til
             }
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             let z = V3::select(free, b[0], zero);
-            let row = &scratch.factors[i * ROWS..(i + 1) * ROWS];
+            let row = &scratch.factors[(i + BEFORE) * ROWS..][..ROWS];
+            let z = z * -load(simd, &row[MINUS_INVERSE]);
             b = [b[1] - z * load(simd, &row[0]), b[2] - z * load(simd, &row[1]), zero];
-            (z * load(simd, &row[2])).store(&mut scratch.change[i]);
+            z.store(&mut scratch.change[i]);
         }
         let mut after = [zero; 2];
         for i in (0..n).rev() {
-            let row = &scratch.factors[i * ROWS..(i + 1) * ROWS];
+            let row = &scratch.factors[(i + BEFORE) * ROWS..][..ROWS];
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
+            let inverse = -load(simd, &row[MINUS_INVERSE]);
             let change = V3::load(simd, &scratch.change[i])
-                - after[0] * load(simd, &row[0])
-                - after[1] * load(simd, &row[1]);
+                - (after[0] * load(simd, &row[0]) + after[1] * load(simd, &row[1])) * inverse;
             let change = V3::select(free, change, zero);
             (V3::load(simd, &scratch.x[i]) + change).store(&mut scratch.x[i]);
             after = [change, after[0]];

@@ -11,12 +11,12 @@ use super::{
     assemble::Step,
     fixed::fix,
     interval::Interval,
-    lanes::V3,
+    lanes::{F, V3, load},
     limit::{Finish, LIMIT, limit},
     model::{Model, Stretching},
     root::Root,
     scratch::Scratch,
-    tile::{Tile, state},
+    tile::{Tile, rest, state},
 };
 use crate::scene::Integrator;
 use fearless_simd::prelude::*;
@@ -44,7 +44,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     }
     let mut root = Root::between(simd, tile.strand, 0.0, &interval.anchor);
     let mut continues = interval.continues;
-    for substep in &interval.substeps {
+    for (number, substep) in interval.substeps.iter().enumerate() {
         let next = Root::at(simd, tile.strand, substep);
         let moved = next.position - root.position;
         root = next;
@@ -57,6 +57,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
 
         let second_order = interval.integrator == Integrator::Bdf2 && continues;
         let step = Step {
+            number,
             h: interval.h,
             gravity: interval.gravity,
             wind: substep.wind,
@@ -94,7 +95,11 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
 /// Acceleration of point `i` by gravity and by the air it moves through [m/s²]; `u` is the segment from it.
 #[inline(always)]
 fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, u: V3<S>) -> V3<S> {
-    let drag = Root::<S>::fibre(simd, tile.strand).0;
+    let (stride, zero) = (tile.model.stride(), F::<S>::splat(simd, 0.0));
+    let length = |i: usize| load(simd, &tile.rest[i][rest::LENGTH]);
+    // Air takes hold of the half segments around a point, not of what is no part of the fibre.
+    let around = if i.is_multiple_of(stride) { (length(i - stride) + length(i)) * 0.5 } else { zero };
+    let drag = Root::<S>::fibre(simd, tile.strand).0 * around / load(simd, &tile.rest[i][rest::MASS]);
     let slip = V3::splat(simd, step.wind) - V3::load(simd, &tile.state[i][state::V..]);
     let slip = slip - u * (u.dot(slip) * 0.5);
     slip.mul_add(drag, V3::splat(simd, step.gravity))

@@ -6,9 +6,10 @@ use super::{
 };
 use crate::strand::{
     band::Band,
+    fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
-    lanes::{Row, V3, load},
+    lanes::{V3, load},
     root::Root,
     scratch::Scratch,
     tile::{Tile, rest},
@@ -24,15 +25,13 @@ pub struct Curvature<S: Simd> {
 }
 
 impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
-    type Guarded = Self;
-
     #[inline(always)]
     fn begin(_: S, _: &Tile, root: &Root<S>) -> Self {
         Self { normal: root.normal }
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, at: &At<S>, _: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 3, 9>) {
+    fn add(&mut self, simd: S, at: &At<S>, _: &Scratch, tile: &mut Tile, band: &mut Band<S, 3, 9>) {
         let joint = &tile.rest[at.i + 1];
         let stiffness = load(simd, &joint[rest::BEND]);
         let turn = V3::load(simd, &joint[rest::TURN..]);
@@ -43,7 +42,7 @@ impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
     }
 
     #[inline(always)]
-    fn take(_: S, _: &Solved<S, 9>, _: &mut Tile) {}
+    fn take(_: S, _: &Solved<S, 9>, _: &mut Tile, _: &[Fixed]) {}
 }
 
 /// One tile through an interval, on the widest lanes that there are.

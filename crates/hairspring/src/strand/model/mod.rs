@@ -21,8 +21,10 @@ pub use stretch::Stretching;
 
 use super::{
     band::Band,
-    lanes::{F, Row, V3},
+    fixed::Fixed,
+    lanes::{F, V3},
     root::Root,
+    scratch::Scratch,
     tile::Tile,
 };
 use fearless_simd::prelude::*;
@@ -44,6 +46,8 @@ pub struct At<S: Simd> {
     pub damped: F<S>,
     /// Stiffness of the springs along them [N/m]; zero for padding.
     pub along: [F<S>; 2],
+    /// How much of the present errors of length is news to the tensions, see `Sweep::news`.
+    pub news: f32,
     /// Length of the substep [s].
     pub h: f32,
 }
@@ -60,6 +64,8 @@ pub struct Solved<S: Simd, const N: usize> {
     pub unknowns: [F<S>; N],
     /// Stiffness of the spring along the strand's segment at it [N/m].
     pub along: F<S>,
+    /// How much of the errors of length before the solve is news to the tensions, see `Sweep::news`.
+    pub news: f32,
 }
 
 impl<S: Simd, const N: usize> Solved<S, N> {
@@ -70,7 +76,7 @@ impl<S: Simd, const N: usize> Solved<S, N> {
         let u = (self.x[far] - self.x[0]) * inverse;
         // Bounded, because C grows with the square where a root has jumped.
         let longer = length * u.dot(u).min(4.0).mul_add(0.5, F::splat(k.simd, -0.5));
-        k * (u.dot(self.moved[far] - self.moved[0]) + longer)
+        k * longer.mul_add(self.news, u.dot(self.moved[far] - self.moved[0]))
     }
 }
 
@@ -85,21 +91,12 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// Points at the root that are driven: its first segment.
     const DRIVEN: usize = Self::STRIDE + 1;
 
-    /// The same model with elements that are seldom needed, which its sweep has no branch for.
-    type Guarded: Model<S, B, N>;
-
-    /// Whether a substep that begins at the positions `x` needs them.
-    #[inline(always)]
-    fn needs_guard(_simd: S, _tile: &Tile, _x: &[[Row; 3]]) -> bool {
-        false
-    }
-
     /// Starts at the root of a strand.
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self;
 
     /// Adds all elements whose first point is `at.i`, which is the band's first.
-    fn add(&mut self, simd: S, at: &At<S>, x: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, B, N>);
+    fn add(&mut self, simd: S, at: &At<S>, scratch: &Scratch, tile: &mut Tile, band: &mut Band<S, B, N>);
 
     /// Takes what the solve found besides displacements.
-    fn take(simd: S, solved: &Solved<S, N>, tile: &mut Tile);
+    fn take(simd: S, solved: &Solved<S, N>, tile: &mut Tile, fixed: &[Fixed]);
 }

@@ -21,9 +21,10 @@ use super::{
 };
 use crate::strand::{
     band::Band,
+    fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
-    lanes::{F, Row, V3, load},
+    lanes::{F, V3, load},
     root::Root,
     scratch::Scratch,
     tile::{Tile, rest, state, strand},
@@ -47,8 +48,6 @@ pub struct Rod<S: Simd> {
 }
 
 impl<S: Simd> Model<S, 4, 11> for Rod<S> {
-    type Guarded = Self;
-
     #[inline(always)]
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self {
         Self {
@@ -59,7 +58,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, at: &At<S>, _: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 4, 11>) {
+    fn add(&mut self, simd: S, at: &At<S>, _: &Scratch, tile: &mut Tile, band: &mut Band<S, 4, 11>) {
         let one = F::<S>::splat(simd, 1.0);
         let own = &tile.rest[at.i + 1];
         let [u0, u1] = at.u;
@@ -137,7 +136,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
     }
 
     #[inline(always)]
-    fn take(simd: S, solved: &Solved<S, 11>, tile: &mut Tile) {
+    fn take(simd: S, solved: &Solved<S, 11>, tile: &mut Tile, _: &[Fixed]) {
         let u = (solved.x[1] - solved.x[0]).length_and_unit().1;
         let turn = solved.unknowns[3].max(-LARGEST_TURN).min(LARGEST_TURN);
         let row = &mut tile.state[solved.i][state::NORMAL..];

@@ -17,6 +17,7 @@
 use super::{At, Model, Solved};
 use crate::strand::{
     band::Band,
+    fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
     lanes::{F, Row, Sym3, V3, load, store},
@@ -26,25 +27,11 @@ use crate::strand::{
 };
 use fearless_simd::{Level, dispatch, mask32x8, prelude::*};
 
-/// A truss of distance springs, see above; with altitude springs or, where no tetrahedron is flattened, without.
-pub struct Springs<const ALTITUDES: bool>;
+/// A truss of distance springs, see above.
+pub struct Springs;
 
-impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
+impl<S: Simd> Model<S, 3, 12> for Springs {
     const STRIDE: usize = 2;
-
-    type Guarded = Springs<true>;
-
-    /// Whether any tetrahedron is so flat that its altitude spring acts. (What Newton's iterations flatten is resisted from the next
-    /// substep on.)
-    #[inline(always)]
-    fn needs_guard(simd: S, tile: &Tile, x: &[[Row; 3]]) -> bool {
-        let mut any = mask32x8::splat(simd, false);
-        for (x, rest) in x.array_windows::<4>().zip(tile.rest.iter()) {
-            let p = x.each_ref().map(|p| V3::load(simd, p));
-            any |= is_flattened(p, load(simd, &rest[springs::VOLUME]) * FLATTENED);
-        }
-        any.any_true()
-    }
 
     #[inline(always)]
     fn begin(_: S, _: &Tile, _: &Root<S>) -> Self {
@@ -52,25 +39,26 @@ impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, at: &At<S>, x: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 3, 12>) {
+    fn add(&mut self, simd: S, at: &At<S>, scratch: &Scratch, tile: &mut Tile, band: &mut Band<S, 3, 12>) {
         let i = at.i;
-        let rest = &tile.rest[i];
-        let p: &[_; 4] = x[i..].first_chunk().expect("positions go on past the tip");
+        let (rest, fixed) = (&tile.rest[i], &scratch.fixed[i]);
+        let p: &[_; 4] = scratch.x[i..].first_chunk().expect("positions go on past the tip");
         let p = p.each_ref().map(|p| V3::load(simd, p));
+        add_altitude(simd, at, p, rest, band);
 
         // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
         // much as along: kept where it pulls alone (Choi & Ko 2002), it would resist every turn of a segment; left out, it cancels.
         let k = at.along[1 - at.phase];
         let (l, u) = (p[1] - p[0]).length_and_unit();
         let tension = load(simd, &tile.state[i][springs::SIDE]);
-        let pull = k.mul_add(l - load(simd, &tile.rest[i | 1][springs::SIDES]), tension);
+        let pull = k.mul_add((l - load(simd, &tile.rest[i | 1][springs::SIDES])) * at.news, tension);
         add_spring(band, 1, u * pull, Sym3::outer(u, k));
 
         // From a point, the particle after the next is the strand's next point: that spring is the segment's.
         if at.phase == 1 {
             let spring = BEND.spring(
                 p[2] - p[0],
-                load(simd, &rest[springs::L2]),
+                [load(simd, &rest[springs::L2]), load(simd, &fixed.inverse_spans[0])],
                 load(simd, &rest[springs::K2]),
                 at.damped,
             );
@@ -78,21 +66,18 @@ impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
         }
         let spring = TORSION.spring(
             p[3] - p[0],
-            load(simd, &rest[springs::L3]),
+            [load(simd, &rest[springs::L3]), load(simd, &fixed.inverse_spans[1])],
             load(simd, &rest[springs::K3]),
             at.damped,
         );
         add_spring(band, 3, spring.0, spring.1);
-        if ALTITUDES {
-            add_altitude(simd, at, p, rest, band);
-        }
     }
 
     #[inline(always)]
-    fn take(simd: S, solved: &Solved<S, 12>, tile: &mut Tile) {
+    fn take(simd: S, solved: &Solved<S, 12>, tile: &mut Tile, fixed: &[Fixed]) {
         let i = solved.i;
         let side = load(simd, &tile.rest[i | 1][springs::SIDES]);
-        let inverse = F::splat(simd, 1.0) / side.max(1e-12);
+        let inverse = load(simd, &fixed[i | 1].inverse_length);
         let taken = solved.taken(1, [side, inverse], solved.along);
         let row = &mut tile.state[i][springs::SIDE];
         store(load(simd, row) + taken, row);
@@ -101,7 +86,7 @@ impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
 
 /// One tile through an interval, on the widest lanes that there are.
 pub fn run(level: Level, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
-    dispatch!(level, simd => run_tile::<_, Springs<false>, 3, 12>(simd, interval, tile, scratch));
+    dispatch!(level, simd => run_tile::<_, Springs, 3, 12>(simd, interval, tile, scratch));
 }
 
 /// What a triangle's sides have besides the stiffness of all segments, for the triangle that begins at `point` (see `truss`) [N/m].
@@ -139,11 +124,18 @@ impl Progressive {
         [poly(self.a, self.b), poly(2.0 * self.a, 3.0 * self.b)]
     }
 
-    /// Force on the nearer end of a spring from there to the farther, which is at `e` [N], and its matrix.
+    /// Force on the nearer end of a spring from there to the farther, which is at `e` [N], and its matrix; with its rest length and
+    /// the inverse.
     #[inline(always)]
-    fn spring<S: Simd>(&self, e: V3<S>, rest: F<S>, k: F<S>, damped: F<S>) -> (V3<S>, Sym3<S>) {
+    fn spring<S: Simd>(
+        &self,
+        e: V3<S>,
+        [rest, inverse]: [F<S>; 2],
+        k: F<S>,
+        damped: F<S>,
+    ) -> (V3<S>, Sym3<S>) {
         let (l, u) = e.length_and_unit();
-        let [secant, tangent] = self.stiffness(k.simd, (l - rest) / rest.max(1e-12));
+        let [secant, tangent] = self.stiffness(k.simd, (l - rest) * inverse);
         (u * (k * secant * (l - rest)), Sym3::outer(u, k * tangent * damped))
     }
 
@@ -178,18 +170,12 @@ fn add_spring<S: Simd>(band: &mut Band<S, 3, 12>, far: usize, force: V3<S>, bloc
 /// Volume over the rest volume below which an altitude spring acts [1].
 const FLATTENED: f32 = 0.5;
 
-/// Where the tetrahedron of the particles `p` has less than `kept` of its volume, times six [m³].
-#[inline(always)]
-fn is_flattened<S: Simd>(p: [V3<S>; 4], kept: F<S>) -> mask32x8<S> {
-    let volume = (p[1] - p[0]).dot((p[2] - p[0]).cross(p[3] - p[0]));
-    (volume * kept).simd_lt(kept * kept)
-}
-
 /// Adds the altitude spring of the particles `p` where their tetrahedron is flattened.
 #[inline(always)]
 fn add_altitude<S: Simd>(simd: S, at: &At<S>, p: [V3<S>; 4], rest: &[Row], band: &mut Band<S, 3, 12>) {
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
-    let flattened = is_flattened(p, kept);
+    let volume = (p[1] - p[0]).dot((p[2] - p[0]).cross(p[3] - p[0]));
+    let flattened = (volume * kept).simd_lt(kept * kept);
     if !flattened.any_true() {
         return;
     }

@@ -3,9 +3,10 @@
 use super::{At, Model, Solved};
 use crate::strand::{
     band::Band,
+    fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
-    lanes::{Row, load},
+    lanes::load,
     root::Root,
     scratch::Scratch,
     tile::{Tile, rest},
@@ -19,15 +20,13 @@ impl<S: Simd> Model<S, 3, 9> for Straight {
     // Points i and i+2 meet in bending alone, an axis by itself.
     const HALF: usize = 6;
 
-    type Guarded = Self;
-
     #[inline(always)]
     fn begin(_: S, _: &Tile, _: &Root<S>) -> Self {
         Self
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, at: &At<S>, _: &[[Row; 3]], tile: &mut Tile, band: &mut Band<S, 3, 9>) {
+    fn add(&mut self, simd: S, at: &At<S>, _: &Scratch, tile: &mut Tile, band: &mut Band<S, 3, 9>) {
         let stiffness = load(simd, &tile.rest[at.i + 1][rest::BEND]);
         let ([e0, e1], [alpha, beta]) = (at.e, at.inverse_length);
         let moment = (e1 * beta - e0 * alpha) * stiffness;
@@ -48,7 +47,7 @@ impl<S: Simd> Model<S, 3, 9> for Straight {
     }
 
     #[inline(always)]
-    fn take(_: S, _: &Solved<S, 9>, _: &mut Tile) {}
+    fn take(_: S, _: &Solved<S, 9>, _: &mut Tile, _: &[Fixed]) {}
 }
 
 /// One tile through an interval, on the widest lanes that there are.
