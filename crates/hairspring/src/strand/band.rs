@@ -206,15 +206,9 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         }
     }
 
-    /// Sets the right-hand side of unknown `k` of the first point.
-    #[inline(always)]
-    pub fn set_right(&mut self, k: usize, value: F<S>) {
-        self.b[k] = value;
-    }
-
     /// Eliminates the window's first point, the strand's `i`th, and moves the window on by a point, which is to [`Band::enter`]. Its factors
-    /// follow in `factors` on those of the points before it, of which there are `reach` more than the strand has. No unknown of the matrix
-    /// meets one more than `half` after it.
+    /// follow in `factors` on those of the points before it, which begin with zeros for [`reach`] points that there are not. No unknown of the
+    /// matrix meets one more than `half` after it.
     #[inline(always)]
     #[allow(clippy::needless_range_loop, reason = "columns count in the row and in the factors")]
     pub fn eliminate(&mut self, simd: S, half: usize, i: usize, factors: &mut [Row]) {

@@ -12,7 +12,7 @@ use super::{
 /// Working memory of one thread.
 #[derive(Default)]
 pub struct Scratch {
-    /// Factors of the band, point after point; other sweeps' rows lie over them.
+    /// Factors of the band, point after point, after zeros for those that the first would meet; other sweeps' rows lie over them.
     pub factors: Vec<Row>,
     /// New positions relative to the root, shape `[points + BEYOND]`.
     pub x: Vec<[Row; 3]>,

@@ -30,7 +30,6 @@ const BEFORE: usize = reach(1, 3);
 /// Factors the constant matrix into `scratch.factors`.
 #[inline(always)]
 pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
-    let one = F::<S>::splat(simd, 1.0);
     let n = tile.rest.len();
     let mut band = Band::<S, 1, 3>::new(simd);
     scratch.factors[..BEFORE * ROWS].fill(Row::default());
@@ -52,7 +51,6 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
         // Points that do not move are cut off.
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
         band.cut(simd, free);
-        band.set_right(0, one);
         band.eliminate(simd, 2, i, &mut scratch.factors);
     }
 }
