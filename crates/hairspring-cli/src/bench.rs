@@ -11,7 +11,7 @@ use crate::{
 use clap::Parser;
 use hairspring::{
     material::{Material, Model},
-    scene::{Integrator, Quality, Solver, bench::Bench},
+    scene::{Integrator, Quality, Solver, Volume, VolumeMethod, bench::Bench},
     simulation::Simulation,
 };
 use serde_json::json;
@@ -69,12 +69,16 @@ pub struct Options {
     #[arg(long, value_name = "NAME", default_value = DEVICES[0])]
     device: String,
 
+    /// Let hair meet hair as a volume: off, density, incompressible [default: off; density where no method is named]
+    #[arg(long, value_name = "METHOD", num_args = 0..=1, default_value = VolumeMethod::Off.name(), default_missing_value = VolumeMethod::Density.name(), hide_default_value = true)]
+    hair_hair: String,
+
     /// Instruction set, an older one of this processor (avx512, avx2, sse4_2, sse2) [default: its best]
     #[arg(long, value_name = "NAME")]
     simd: Option<String>,
 
     /// Compare all models on all instruction sets of this processor and without any, the same frames for each
-    #[arg(long, conflicts_with_all = ["simd", "model", "integrator", "high_quality"])]
+    #[arg(long, conflicts_with_all = ["simd", "model", "integrator", "high_quality", "hair_hair"])]
     table: bool,
 
     /// Print the figures as JSON
@@ -114,6 +118,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let integrator = Integrator::ALL.into_iter().find(|i| i.name() == options.integrator).unwrap_or_default();
     let model = Model::ALL.into_iter().find(|m| m.name() == options.model).unwrap_or_default();
     let quality = if options.high_quality { Quality::High } else { Quality::Normal };
+    known("method of hair on hair", &options.hair_hair, &VolumeMethod::ALL.map(VolumeMethod::name))?;
+    let method = VolumeMethod::ALL.into_iter().find(|m| m.name() == options.hair_hair).unwrap_or_default();
     known("device", &options.device, &DEVICES)?;
     let benches = if options.table { table::cells().len() } else { 1 };
     if benches as u64 * u64::from(strands) * u64::from(points) > MOST_POINTS {
@@ -133,6 +139,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         Material { model, ..Material::default() },
         Solver { substeps, integrator, quality, ..Solver::default() },
     );
+    bench.simulation.set_volume(&Volume { method, ..Volume::default() });
     if let Some(name) = &options.simd
         && !bench.simulation.use_instruction_set(name)
     {
@@ -178,7 +185,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "substeps": substeps,
             "frames": frames,
             "integrator": options.integrator,
-            "hair_hair": false,
+            "hair_hair": method != VolumeMethod::Off,
             "ms_per_frame_median": median,
             "ms_per_frame_p95": p95,
             "ns_per_point_substep": ns,
@@ -189,6 +196,12 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "non_finite": measure.non_finite,
             "bytes_per_point": bytes,
             "stages": { "simulate": median },
+            "volume": simulation.volume().map(|v| json!({
+                "method": method.name(),
+                "cell_m": v.cell,
+                "nodes": v.nodes,
+                "share": v.share,
+            })),
             "simd": simd,
             "model": options.model,
             "stretch_max_ever": stretch_ever,
@@ -216,6 +229,15 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         measure.max_depth * 1e3,
         depth_ever * 1e3
     ));
+    if let Some(volume) = simulation.volume() {
+        say(format_args!(
+            "volume   {}, cells of {:.1} mm, {} nodes, {:.1} % of the rest volume taken up",
+            method.name(),
+            volume.cell * 1e3,
+            grouped(volume.nodes),
+            volume.share * 1e2
+        ));
+    }
     say(format_args!("memory   {bytes:.1} bytes a point"));
     say(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
     Ok(())

@@ -13,6 +13,7 @@ pub mod simulation;
 pub mod stage;
 pub(crate) mod strand;
 pub mod validate;
+pub(crate) mod volume;
 
 // The README's example is a test.
 #[cfg(doctest)]

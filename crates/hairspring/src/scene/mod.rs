@@ -9,7 +9,7 @@ pub mod swing;
 
 pub use camera::Camera;
 pub use look::{HairColor, HairLook};
-pub use settings::{Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Wind};
+pub use settings::{Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Volume, VolumeMethod, Wind};
 
 use crate::{
     body::{Body, Clip},
@@ -55,6 +55,8 @@ pub struct Scene {
     pub gravity: Vec3,
     /// Time steps and contact.
     pub solver: Solver,
+    /// How hair meets hair.
+    pub volume: Volume,
     /// Where it is seen from; `None`: framed automatically.
     pub camera: Option<Camera>,
 }

@@ -96,6 +96,7 @@ impl Simulation {
             state: vec![[Row::default(); state::ROWS]; first as usize],
             history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],
             holds: Vec::new(),
+            volume: None,
             last_h: 0.0,
             groom,
             lanes,

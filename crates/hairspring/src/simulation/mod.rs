@@ -1,6 +1,7 @@
 //! Strands in motion: the state of all simulated strands, and one step of it.
 
 mod build;
+mod crowd;
 mod energy;
 mod hold;
 mod measure;
@@ -11,6 +12,7 @@ mod step;
 pub use energy::Energy;
 pub use hold::Hold;
 pub use measure::Measure;
+pub use crate::volume::VolumeReport;
 pub use step::{Air, Drive, MovingObstacle, StepReport};
 
 use crate::{
@@ -20,6 +22,7 @@ use crate::{
         lanes::LANES,
         tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, state, strand},
     },
+    volume::Volume,
 };
 use fearless_simd::Level;
 use glam::Vec3;
@@ -29,10 +32,10 @@ use std::sync::Arc;
 /// Simulated strands: mass-spring chains stepped by backward Euler with a direct banded solver.
 ///
 /// Settings come in by [`Simulation::new`] and never change; state is positions, velocities and tensions. A step gives the
-/// same bits for any number of threads. Strands meet only the body and the air.
+/// same bits for any number of threads. Strands meet the body, the air, and each other as a volume (see [`Simulation::set_volume`]).
 ///
 /// # Missing
-/// Hair against hair, contact between points (a segment may cut a corner that its ends stay out of), wind sheltered by the body, cutting and wetting: each is an issue of its own.
+/// Hair against hair as strands, contact between points (a segment may cut a corner that its ends stay out of), wind sheltered by the body, cutting and wetting: each is an issue of its own.
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
@@ -45,6 +48,8 @@ pub struct Simulation {
     history: Vec<HistoryRows>,
     /// What holds points from outside, for each tile; empty where nothing does.
     holds: Vec<Vec<HoldRows>>,
+    /// Hair on hair; `None`: strands pass through each other.
+    volume: Option<Box<Volume>>,
     /// Length of the last substep [s].
     last_h: f32,
     settings: build::Settings,
@@ -92,6 +97,7 @@ impl Simulation {
             + size_of_val(&self.rest[..])
             + size_of_val(&self.state[..])
             + size_of_val(&self.history[..])
+            + self.volume.as_ref().map_or(0, |volume| volume.bytes())
             + (self.lanes.len() + self.places.len()) * size_of::<u32>()
             + self.tiles.len() * size_of::<TilePlace>()
     }

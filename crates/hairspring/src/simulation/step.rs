@@ -6,7 +6,7 @@ use crate::{
     scene::{Integrator, Quality, Solver, Wind},
     strand::{
         interval::{Interval, Substep},
-        lanes::LANES,
+        lanes::{LANES, Row},
         model::{curvature, rod, springs, straight},
         scratch::Scratch,
         tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, strand},
@@ -109,6 +109,10 @@ impl Simulation {
             ((drive.dt / substep_length(&solver) as f32 - 1e-3).ceil() as u32).clamp(1, MAX_SUBSTEPS);
         let mut interval = std::mem::take(&mut self.interval);
         self.fill_interval(drive, substeps, &mut interval);
+        if let Some(volume) = &mut self.volume {
+            let anchor = self.settings.anchor;
+            volume.exchange(drive.dt, (&self.strand, &self.state), &anchor, drive.obstacles);
+        }
         self.move_roots(drive);
         let reset = run(
             self.level,
@@ -119,6 +123,7 @@ impl Simulation {
                 rest: &self.rest,
                 state: &mut self.state,
                 history: &mut self.history,
+                push: self.volume.as_ref().map_or(&[], |volume| volume.push()),
                 holds: &self.holds,
             },
         );
@@ -191,6 +196,7 @@ struct Piece<'a> {
     rest: &'a [RestRows],
     state: &'a mut [StateRows],
     history: &'a mut [HistoryRows],
+    push: &'a [[Row; 3]],
     holds: &'a [Vec<HoldRows>],
 }
 
@@ -203,15 +209,17 @@ impl<'a> Piece<'a> {
         let (rest, more_rest) = self.rest.split_at(points);
         let (state, more_state) = self.state.split_at_mut(points);
         let (history, more_history) = self.history.split_at_mut(points.min(self.history.len()));
+        let (push, more_push) = self.push.split_at(points.min(self.push.len()));
         let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
         (
-            Piece { tiles, strand, rest, state, history, holds },
+            Piece { tiles, strand, rest, state, history, push, holds },
             Piece {
                 tiles: more_tiles,
                 strand: more_strand,
                 rest: more_rest,
                 state: more_state,
                 history: more_history,
+                push: more_push,
                 holds: more_holds,
             },
         )
@@ -227,7 +235,8 @@ impl<'a> Piece<'a> {
             strand: &self.strand[k],
             rest: &self.rest[points.clone()],
             state: &mut self.state[points.clone()],
-            history: if self.history.is_empty() { &mut [] } else { &mut self.history[points] },
+            history: if self.history.is_empty() { &mut [] } else { &mut self.history[points.clone()] },
+            push: if self.push.is_empty() { &[] } else { &self.push[points] },
             holds: self.holds.get(k).map_or(&[], |holds| holds),
         }
     }

@@ -35,7 +35,7 @@ impl StagedHair {
         let groom = Arc::new(groom);
         let (simulated, weights) = roles(&groom, guides);
         let obstacles = body.poses();
-        let simulation = Simulation::new(
+        let mut simulation = Simulation::new(
             groom.clone(),
             &simulated,
             &materials,
@@ -44,6 +44,7 @@ impl StagedHair {
             body.anchor(),
             &obstacles,
         );
+        simulation.set_volume(&scene.volume);
         let follow = weights.map(|w| Follow::new(groom.clone(), &simulated, &w, effects, &obstacles));
         let mesh = scene.body.as_ref().map(|b| &b.mesh).filter(|_| !groom.roots.is_empty());
         let rest_frames = mesh.map_or(Vec::new(), |mesh| {

@@ -190,6 +190,9 @@ fn add_point<S, M, const B: usize, const N: usize>(
         right = p * mass;
     }
     right += V3::splat(simd, step.gravity) * mass;
+    if let Some(push) = tile.push.get(i + 1) {
+        right += V3::load(simd, push) * mass;
+    }
     let way = || V3::load(simd, &scratch.x[i + 1]) - V3::load(simd, &tile.state[i + 1][state::X..]);
     if sweep == Sweep::Again {
         right -= way() * m_h2;

@@ -50,6 +50,7 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         rest: &rest_rows,
         state: &mut state_rows,
         history: &mut [],
+        push: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => match model {

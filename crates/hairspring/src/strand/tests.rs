@@ -302,6 +302,7 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
         rest: &rest_rows,
         state: &mut state_rows,
         history: &mut [],
+        push: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => {

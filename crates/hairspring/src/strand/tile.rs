@@ -152,6 +152,8 @@ pub struct Tile<'a> {
     pub state: &'a mut [StateRows],
     /// Shape `[points]` for the integrator of second order, else empty.
     pub history: &'a mut [HistoryRows],
+    /// Acceleration by the hair around, frozen for the interval [m/s²]: shape `[points]`, empty where there is none.
+    pub push: &'a [[Row; 3]],
     /// What holds or pulls points, sorted by point.
     pub holds: &'a [HoldRows],
 }

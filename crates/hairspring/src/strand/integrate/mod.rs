@@ -92,7 +92,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     }
 }
 
-/// Acceleration of point `i` by gravity and by the air it moves through [m/s²]; `u` is the segment from it.
+/// Acceleration of point `i` by gravity, by the hair around and by the air it moves through [m/s²]; `u` is the segment from it.
 #[inline(always)]
 fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, u: V3<S>) -> V3<S> {
     let (stride, zero) = (tile.model.stride(), F::<S>::splat(simd, 0.0));
@@ -102,5 +102,6 @@ fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, u: V3<S>) ->
     let drag = Root::<S>::fibre(simd, tile.strand).0 * around / load(simd, &tile.rest[i][rest::MASS]);
     let slip = V3::splat(simd, step.wind) - V3::load(simd, &tile.state[i][state::V..]);
     let slip = slip - u * (u.dot(slip) * 0.5);
-    slip.mul_add(drag, V3::splat(simd, step.gravity))
+    let push = tile.push.get(i).map_or(V3::zero(simd), |push| V3::load(simd, push));
+    slip.mul_add(drag, V3::splat(simd, step.gravity) + push)
 }

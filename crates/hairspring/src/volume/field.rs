@@ -1,0 +1,98 @@
+//! What the sums of all points come to at each node and cell.
+
+use super::{
+    splat::{NODE, ROOM, Sums, Units},
+    window::Window,
+};
+use rayon::prelude::*;
+
+/// Hair as a continuum, and what it does to the points in it.
+#[derive(Default)]
+pub struct Field {
+    /// Where.
+    pub window: Window,
+    /// Mean velocity at each node [m/s], and its mass in that of the largest point; shape `[nodes]`.
+    pub nodes: Vec<[f32; 4]>,
+    /// Room of the points in each cell [cells].
+    rooms: Vec<f32>,
+    /// How full each cell is: room over volume, averaged with its neighbours', as on a quadratic B-spline [1].
+    pub fill: Vec<f32>,
+    /// What a point takes with its trilinear weights: an acceleration [m/s²] and the share of its own velocity that it loses [1/s].
+    pub push: Vec<[f32; 4]>,
+}
+
+impl Field {
+    /// Room for so many nodes ever.
+    pub fn reserve(&mut self, nodes: usize) {
+        self.nodes.reserve_exact(nodes);
+        self.rooms.reserve_exact(nodes);
+        self.fill.reserve_exact(nodes);
+        self.push.reserve_exact(nodes);
+    }
+
+    /// Adds up what each thread has summed.
+    pub fn collect(&mut self, window: Window, units: &Units, sums: &[Sums]) {
+        self.window = window;
+        let (count, slab) = (window.nodes(), window.slab());
+        self.nodes.resize(count, [0.0; 4]);
+        self.rooms.resize(count, 0.0);
+        self.fill.resize(count, 0.0);
+        self.push.resize(count, [0.0; 4]);
+        let (to_speed, to_mass) = (units.mass / units.momentum, 1.0 / units.mass);
+        self.nodes.par_chunks_mut(slab).zip(self.rooms.par_chunks_mut(slab)).enumerate().for_each(
+            |(z, (nodes, rooms))| {
+                let first = z * slab;
+                for (n, node) in nodes.iter_mut().enumerate() {
+                    let mut sum = [0; NODE];
+                    for own in sums {
+                        let Some(own) = own.nodes[(first + n) * NODE..].first_chunk::<NODE>() else { continue };
+                        for (sum, own) in sum.iter_mut().zip(own) {
+                            *sum += own;
+                        }
+                    }
+                    let mass = sum[3] as f32;
+                    let inverse = if mass > 0.0 { to_speed / mass } else { 0.0 };
+                    let [x, y, z] = [0, 1, 2].map(|k| sum[k] as f32 * inverse);
+                    *node = [x, y, z, mass * to_mass];
+                }
+                for (n, room) in rooms.iter_mut().enumerate() {
+                    let sum = sums.iter().fold(0_u32, |sum, own| sum.saturating_add(own.rooms[first + n]));
+                    *room = sum as f32 * (1.0 / ROOM);
+                }
+            },
+        );
+        self.smooth();
+    }
+
+    /// `fill` from `rooms`: ¼, ½, ¼ along each axis, which is what averaging cells to nodes and nodes to cells does.
+    fn smooth(&mut self) {
+        let [nx, ny, nz] = self.window.dims;
+        let (slab, rooms) = (nx * ny, &self.rooms);
+        self.fill.par_chunks_mut(slab).enumerate().for_each(|(z, fill)| {
+            fill.fill(0.0);
+            if z == 0 || z + 1 >= nz {
+                return;
+            }
+            for y in 1..ny.saturating_sub(1) {
+                let row = |dy: usize, dz: usize| {
+                    let first = (z + dz - 1) * slab + (y + dy - 1) * nx;
+                    &rooms[first..first + nx]
+                };
+                let out = &mut fill[y * nx..(y + 1) * nx];
+                for (dy, dz) in (0..3).flat_map(|dz| (0..3).map(move |dy| (dy, dz))) {
+                    let weight = [0.25, 0.5, 0.25][dy] * [0.25, 0.5, 0.25][dz];
+                    for (out, room) in out.iter_mut().zip(row(dy, dz)) {
+                        *out += weight * room;
+                    }
+                }
+                let mut before = 0.0;
+                for x in 0..nx - 1 {
+                    let now = out[x];
+                    out[x] = 0.25 * (before + out[x + 1]) + 0.5 * now;
+                    before = now;
+                }
+                out[nx - 1] = 0.0;
+            }
+        });
+    }
+}

@@ -1,0 +1,116 @@
+//! Velocities made free of divergence (McAdams, Selle, Ward, Sifakis, Teran 2009, *Detail Preserving Continuum Simulation of Straight Hair*).
+//!
+//! ```text
+//! D M⁻¹ Dᵀ p = d − D v       v⁺ = v + M⁻¹ Dᵀ p       p ≥ 0,       d = e/τ where a cell is overfull by e
+//! ```
+//!
+//! over the cells that are full. (D v) of a cell is the divergence of the velocities at its eight corners, p its pressure times time, M the
+//! mass at the nodes: one operator and its transpose, so that what pushes a node pushes another back and the result is exact for these
+//! very velocities. Cells that are not full have no pressure: hair's surface is free. Nodes inside a collider move with it and have no
+//! inverse mass: hair is pressed off the body.
+//!
+//! Hair is no liquid, and nothing keeps it from parting (McAdams §4.2 targets densities for that): cells that the solve finds to pull are
+//! let go, and the others solved again (one step of an active set, as Narain, Golas, Lin 2010 do it for sand).
+
+use super::{conjugate::Solve, field::Field};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// How full a cell is that hair presses in [1]: below what chance leaves of a full one, see `rest::POINTS_A_CELL`.
+const FULL: f32 = 0.8;
+
+/// Least mass at a corner of such a cell, over the mean of its eight [1]: what hangs on less is at the surface.
+const LEAST_MASS: f32 = 0.05;
+
+/// Solves: of all full cells, then of those that press.
+const SOLVES: usize = 2;
+
+/// What the projection keeps from frame to frame: memory.
+#[derive(Default)]
+pub struct Projection {
+    solve: Solve,
+    /// Velocities in the lattice's axes [m/s].
+    velocities: [Vec<f32>; 3],
+}
+
+/// What a projection came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Projected {
+    /// Cells that press.
+    pub cells: usize,
+    /// Iterations of the last solve.
+    pub iterations: u32,
+    /// What is left of the divergence of the cells that press, over what it was (root mean squares) [1].
+    pub left: f64,
+}
+
+impl Projection {
+    /// Room for so many nodes ever.
+    pub fn reserve(&mut self, nodes: usize) {
+        self.solve.reserve(nodes);
+        self.velocities.iter_mut().for_each(|v| v.reserve_exact(nodes));
+    }
+
+    /// Finds what changes the velocities of `field`. `to_lattice` turns a node's velocity into the lattice's axes and says whether the node
+    /// is solid, in which case it is the solid's; `wanted` is the divergence that a cell is to have, times 4 cells [m/s].
+    pub fn project(
+        &mut self,
+        field: &Field,
+        to_lattice: impl Fn(usize, &[f32; 4]) -> (Vec3, bool) + Sync,
+        wanted: impl Fn(usize) -> f32 + Sync,
+    ) -> Projected {
+        let window = field.window;
+        let (slab, corners) = (window.slab(), window.corners());
+        self.velocities.iter_mut().for_each(|v| v.resize(window.nodes(), 0.0));
+        self.solve.begin(window);
+        let [vx, vy, vz] = &mut self.velocities;
+        let inverse = &mut self.solve.inverse_mass;
+        let parts = field.nodes.par_chunks(slab).zip(inverse.par_chunks_mut(slab));
+        let parts = parts.zip(vx.par_chunks_mut(slab).zip(vy.par_chunks_mut(slab)).zip(vz.par_chunks_mut(slab)));
+        parts.enumerate().for_each(|(z, ((nodes, inverse), ((vx, vy), vz)))| {
+            for (n, node) in nodes.iter().enumerate() {
+                (inverse[n], vx[n], vy[n], vz[n]) = (0.0, 0.0, 0.0, 0.0);
+                if node[3] > 0.0 {
+                    let (v, solid) = to_lattice(z * slab + n, node);
+                    (vx[n], vy[n], vz[n]) = (v.x, v.y, v.z);
+                    inverse[n] = if solid { 0.0 } else { 1.0 / node[3] };
+                }
+            }
+        });
+        let [vx, vy, vz] = &self.velocities;
+        let cells = self.solve.fill(|cell| {
+            if field.fill[cell] < FULL {
+                return None;
+            }
+            let masses = corners.map(|k| field.nodes[cell + k][3]);
+            let least = masses.iter().copied().fold(f32::INFINITY, f32::min);
+            if least <= LEAST_MASS * 0.125 * masses.iter().sum::<f32>() {
+                return None;
+            }
+            let mut flow = wanted(cell);
+            for (k, corner) in corners.iter().enumerate() {
+                let n = cell + corner;
+                let out = |v: &[f32], bit: usize| if k & bit == 0 { v[n] } else { -v[n] };
+                flow += out(vx, 1) + out(vy, 2) + out(vz, 4);
+            }
+            Some(flow)
+        });
+        let mut projected = Projected { cells, ..Projected::default() };
+        for solve in 0..SOLVES {
+            if solve > 0 {
+                projected.cells = self.solve.let_go();
+            }
+            if projected.cells == 0 {
+                break;
+            }
+            (projected.iterations, projected.left) = self.solve.run();
+        }
+        self.solve.press();
+        projected
+    }
+
+    /// Change of the velocity of node `n` in the lattice's axes [m/s].
+    pub fn change(&self, n: usize) -> Vec3 {
+        self.solve.change(n)
+    }
+}

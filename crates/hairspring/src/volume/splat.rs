@@ -1,0 +1,213 @@
+//! Points to lattice: mass and momentum to the corners of a point's cell, its room to the cell.
+//!
+//! Sums are whole numbers, so that they have the same bits in any order, and each thread may have a grid of its own.
+
+use super::window::{Chart, Placed, Window, nearest};
+use crate::strand::{
+    lanes::{LANES, Row},
+    tile::{StateRows, StrandRows, state},
+};
+use glam::{IVec3, Vec3};
+
+/// What is known of one point of eight strands for good.
+pub mod own {
+    /// Mass over the largest of all points'; 0 for what is no point of a strand [1].
+    pub const MASS: usize = 0;
+    /// The part of the hair's rest volume that is the point's, a whole number of [`super::ROOM`]ths of a cell.
+    pub const ROOM: usize = 1;
+    /// Rows a point.
+    pub const ROWS: usize = 2;
+}
+
+/// What is known of one point of eight strands for good.
+pub type OwnRows = [Row; own::ROWS];
+
+/// Units of room in a cell: a point's room, about an eighth of a cell, is then known to a thousandth.
+pub const ROOM: f32 = 4096.0;
+
+/// Speed that counts as no more [m/s]: one strand that is gone wild takes no digits from the others.
+const FASTEST: f32 = 50.0;
+
+/// Some tiles that follow each other.
+#[derive(Clone, Copy)]
+pub struct Tiles<'a> {
+    /// Index of each one's first point, and of the first after the last.
+    pub firsts: &'a [u32],
+    /// Shape `[tiles]`.
+    pub strand: &'a [StrandRows],
+    /// Shape `[points]` of all tiles, as `own`.
+    pub state: &'a [StateRows],
+    /// Shape `[points]` of all tiles.
+    pub own: &'a [OwnRows],
+}
+
+impl<'a> Tiles<'a> {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.strand.len()
+    }
+
+    /// Each tile's strands and points.
+    pub fn iter(&self) -> impl Iterator<Item = (&'a StrandRows, &'a [StateRows], &'a [OwnRows])> {
+        let (state, own) = (self.state, self.own);
+        self.strand.iter().zip(self.firsts.windows(2)).map(move |(strand, first)| {
+            let points = first[0] as usize..first[1] as usize;
+            (strand, &state[points.clone()], &own[points])
+        })
+    }
+
+    /// The `part`th of `parts` that are about as large.
+    pub fn part(&self, part: usize, parts: usize) -> Self {
+        let at = |k: usize| k * self.count() / parts;
+        let (a, b) = (at(part), at(part + 1));
+        Self { firsts: &self.firsts[a..=b], strand: &self.strand[a..b], ..*self }
+    }
+}
+
+/// The box that points are in, and the fastest of them.
+#[derive(Clone, Copy)]
+pub struct Extent {
+    /// Lowest corner [cells].
+    pub lo: Vec3,
+    /// Highest corner [cells].
+    pub hi: Vec3,
+    /// Largest component of a velocity, at most [`FASTEST`] [m/s].
+    pub speed: f32,
+}
+
+impl Extent {
+    /// Of no points.
+    pub const NONE: Self = Self { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY, speed: 0.0 };
+
+    /// Of these points; what is not finite does not count.
+    pub fn of(tiles: &Tiles, chart: &Chart) -> Self {
+        let (mut lo, mut hi) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
+        let mut speed = [0.0_f32; LANES];
+        for (strand, state, own) in tiles.iter() {
+            let roots = chart.roots(strand, IVec3::ZERO);
+            for (at, own) in state.iter().zip(own) {
+                let points = chart.points(at, &roots);
+                for lane in 0..LANES {
+                    let counts = own[own::MASS].0[lane] > 0.0;
+                    for k in 0..3 {
+                        let p = points[k][lane];
+                        // Comparisons that a NaN fails.
+                        lo[k][lane] = if counts & (p < lo[k][lane]) { p } else { lo[k][lane] };
+                        hi[k][lane] = if counts & (p > hi[k][lane]) { p } else { hi[k][lane] };
+                        let v = at[state::V + k].0[lane].abs();
+                        speed[lane] = if counts & (v > speed[lane]) { v } else { speed[lane] };
+                    }
+                }
+            }
+        }
+        let least = |row: [f32; LANES]| row.into_iter().fold(f32::INFINITY, f32::min);
+        let most = |row: [f32; LANES]| row.into_iter().fold(f32::NEG_INFINITY, f32::max);
+        Self {
+            lo: lo.map(least).into(),
+            hi: hi.map(most).into(),
+            speed: most(speed).min(FASTEST),
+        }
+    }
+
+    /// Of the points of both.
+    pub fn with(self, other: Self) -> Self {
+        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), speed: self.speed.max(other.speed) }
+    }
+}
+
+/// The whole numbers that mass and momentum are counted in.
+#[derive(Clone, Copy)]
+pub struct Units {
+    /// Units in the largest point's mass.
+    pub mass: f32,
+    /// Units of momentum of that mass at 1 m/s [s/m].
+    pub momentum: f32,
+    /// Largest component of a velocity [m/s].
+    pub speed: f32,
+}
+
+/// Most units in a point: they are rounded by [`nearest`].
+const MOST_UNITS: f32 = (1 << 21) as f32;
+
+impl Units {
+    /// As fine as they can be while a node could hold all `points`, of `total` mass over the largest one's, and none faster than `speed`
+    /// [m/s]: the sum of what 320,000 points could leave in one node is below 2³¹, each to one part in 6,000.
+    pub fn new(points: usize, total: f64, speed: f32) -> Self {
+        // Each may be rounded up by half a unit.
+        let most = (f64::from(i32::MAX) - 0.5 * points as f64) / total.max(1.0);
+        let mass = (most.max(1.0).log2().floor().exp2() as f32).min(MOST_UNITS);
+        let speed = speed.max(f32::MIN_POSITIVE.sqrt());
+        Self { mass, momentum: mass / speed, speed }
+    }
+}
+
+/// Sums at the nodes and cells of a window.
+#[derive(Default)]
+pub struct Sums {
+    /// Momentum along x, y, z, and mass, of each node.
+    pub nodes: Vec<i32>,
+    /// Room of the points in each cell.
+    pub rooms: Vec<u32>,
+}
+
+/// Numbers a node.
+pub const NODE: usize = 4;
+
+impl Sums {
+    /// Room for so many nodes ever.
+    pub fn reserve(&mut self, nodes: usize) {
+        self.nodes.reserve_exact((nodes * NODE).saturating_sub(self.nodes.len()));
+        self.rooms.reserve_exact(nodes.saturating_sub(self.rooms.len()));
+    }
+
+    /// So many nodes, all 0.
+    pub fn clear(&mut self, nodes: usize) {
+        self.nodes.clear();
+        self.nodes.resize(nodes * NODE, 0);
+        self.rooms.clear();
+        self.rooms.resize(nodes, 0);
+    }
+
+    /// Adds points to the nodes of `window`.
+    pub fn add(&mut self, tiles: &Tiles, chart: &Chart, window: &Window, units: &Units) {
+        let [_, _, row, _, slab, _, both, _] = window.corners();
+        for (strand, state, own) in tiles.iter() {
+            let roots = chart.roots(strand, window.lo);
+            for (at, own) in state.iter().zip(own) {
+                let placed = Placed::new(&chart.points(at, &roots), window);
+                // [mass, momentum], and the room, of eight points.
+                let mut counted = [[0.0; LANES]; NODE];
+                let mut room = [0.0; LANES];
+                for lane in 0..LANES {
+                    let v = [0, 1, 2].map(|k| at[state::V + k].0[lane]);
+                    // 0 for finite numbers, else NaN.
+                    let finite = v[0] * 0.0 + v[1] * 0.0 + v[2] * 0.0 == 0.0;
+                    let there = if finite { placed.inside[lane] } else { 0.0 };
+                    let mass = own[own::MASS].0[lane] * there;
+                    for k in 0..3 {
+                        let high = if v[k] < units.speed { v[k] } else { units.speed };
+                        let v = if high > -units.speed { high } else { -units.speed };
+                        counted[k][lane] = v * (mass * units.momentum);
+                    }
+                    counted[3][lane] = mass * units.mass;
+                    room[lane] = own[own::ROOM].0[lane] * there;
+                }
+                for lane in 0..LANES {
+                    let cell = placed.cell[lane] as usize;
+                    let point = [0, 1, 2, 3, 0, 1, 2, 3].map(|k| counted[k][lane]);
+                    for (k, corner) in [0, row, slab, both].into_iter().enumerate() {
+                        let [a, b] = [placed.weights[2 * k][lane], placed.weights[2 * k + 1][lane]];
+                        let weight = [a, a, a, a, b, b, b, b];
+                        let Some(pair) = self.nodes[(cell + corner) * NODE..].first_chunk_mut::<8>() else {
+                            continue;
+                        };
+                        for c in 0..8 {
+                            pair[c] = pair[c].wrapping_add(nearest(point[c] * weight[c]));
+                        }
+                    }
+                    self.rooms[cell] = self.rooms[cell].saturating_add(room[lane] as u32);
+                }
+            }
+        }
+    }
+}
