@@ -11,7 +11,7 @@ use glam::Vec3;
 use hairspring::{
     body::{Body, Clip},
     groom::Groom,
-    scene::{Guides, Scene, Shape},
+    scene::{Guides, Scene, Shape, Volume, VolumeMethod},
 };
 use hairspring_io::{Error, ErrorKind, Loaded, read_scene, scene::check_text, write_groom};
 use std::{fs, path::Path};
@@ -71,6 +71,9 @@ fn a_scene_is_what_its_file_describes() {
         shape.plane = { point = [0, -1, 0], normal = [0, 2, 0] }
         [wind]
         velocity = [1, 0, 0]
+        [volume]
+        method = "incompressible"
+        cell = 0.02
     "#;
     let Loaded { value: scene, notes, .. } = read(folder.path(), text).unwrap();
     assert_eq!((scene.name.as_str(), scene.gravity), ("scene", Vec3::new(0.0, -1.6, 0.0)));
@@ -94,6 +97,8 @@ fn a_scene_is_what_its_file_describes() {
     let floor = Shape::Plane { point: Vec3::NEG_Y, normal: Vec3::Y * 2.0 };
     assert_eq!(scene.colliders[1].shape, floor);
     assert_eq!(scene.solver, Default::default());
+    let volume = Volume { method: VolumeMethod::Incompressible, cell: Some(0.02), ..Volume::default() };
+    assert_eq!(scene.volume, volume);
 }
 
 #[test]
@@ -119,6 +124,9 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
         (format!("{GROOM}giudes = 3\n"), &["scene.toml, line 3", "`giudes`", "did you mean `guides`?"][..]),
         (format!("[solver]\nsubstep = 3\n{GROOM}"), &["line 2", "did you mean `substeps`?"]),
         (format!("[slover]\n{GROOM}"), &["line 1", "did you mean `solver`?"]),
+        (format!("{GROOM}[volume]\nmethod = \"densty\"\n"), &["line 4", "did you mean `density`?"]),
+        (format!("{GROOM}[volume]\ncell = 0\n"), &["line 4", "`cell` must be above 0 [m]"]),
+        (format!("{GROOM}[volume]\nfriction = -1\n"), &["line 4", "`friction` must be 0 or more [1/s]"]),
         (
             format!("{GROOM}[material.a]\npreset = \"wavvy\"\n")
                 .replace("data\"\n", "data\"\nmaterial = \"a\"\n"),
@@ -265,11 +273,13 @@ fn bodies_of_several_files_and_hair_grown_on_them() {
 fn the_page_leaves_no_setting_out() {
     let page = include_str!("../../../docs/scene.md");
     let material = hairspring::material::Material { radius: Some(1.0), ..Default::default() };
+    let volume = hairspring::scene::Volume { cell: Some(1.0), ..Default::default() };
     for (name, fields) in [
         ("look", toml::Table::try_from(hairspring::scene::HairLook::default())),
         ("effects", toml::Table::try_from(hairspring::scene::Effects::default())),
         ("wind", toml::Table::try_from(hairspring::scene::Wind::default())),
         ("solver", toml::Table::try_from(hairspring::scene::Solver::default())),
+        ("volume", toml::Table::try_from(volume)),
         ("camera", toml::Table::try_from(hairspring::scene::Camera::default())),
         ("material", toml::Table::try_from(material)),
     ] {

@@ -2,7 +2,7 @@
 //!
 //! A counting allocator around the system's; one thread, because a thread pool's own queues are not the simulation's.
 
-use hairspring::scene::{Solver, bench::Bench};
+use hairspring::scene::{Solver, Volume, VolumeMethod, bench::Bench};
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     sync::atomic::{AtomicUsize, Ordering},
@@ -32,14 +32,17 @@ static ALLOCATOR: Counting = Counting;
 #[test]
 fn after_the_first_step_none_allocates() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let counted = pool.install(|| {
-        let mut bench = Bench::new(200, 16, Solver::default());
-        bench.step();
-        let before = COUNT.load(Ordering::Relaxed);
-        for _ in 0..20 {
+    for method in VolumeMethod::ALL {
+        let counted = pool.install(|| {
+            let mut bench = Bench::new(200, 16, Solver::default());
+            bench.simulation.set_volume(&Volume { method, ..Volume::default() });
             bench.step();
-        }
-        COUNT.load(Ordering::Relaxed) - before
-    });
-    assert_eq!(counted, 0, "{counted} allocations in 20 steps");
+            let before = COUNT.load(Ordering::Relaxed);
+            for _ in 0..20 {
+                bench.step();
+            }
+            COUNT.load(Ordering::Relaxed) - before
+        });
+        assert_eq!(counted, 0, "{counted} allocations in 20 steps, hair on hair {}", method.name());
+    }
 }

@@ -10,7 +10,7 @@ use hairspring::{
     collide::{Obstacle, Rigid},
     material::{Material, Model},
     scene::{
-        Guides, Solver,
+        Guides, Solver, Volume, VolumeMethod,
         bench::{self, Bench},
         builtin::{BuiltinOptions, Style, scene},
     },
@@ -19,10 +19,11 @@ use hairspring::{
 };
 use std::sync::Arc;
 
-fn shaken(threads: usize) -> Vec<Vec3> {
+fn shaken(threads: usize, method: VolumeMethod) -> Vec<Vec3> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
         let mut bench = Bench::new(333, 20, Solver::default());
+        bench.simulation.set_volume(&Volume { method, ..Volume::default() });
         (0..60).for_each(|_| _ = bench.step());
         let mut points = vec![Vec3::ZERO; bench.simulation.point_count()];
         bench.simulation.write_points(&mut points);
@@ -32,9 +33,11 @@ fn shaken(threads: usize) -> Vec<Vec3> {
 
 #[test]
 fn threads_do_not_show_in_the_simulation() {
-    let one = shaken(1);
-    assert!(one == shaken(2), "two threads give other bits than one");
-    assert!(one == shaken(7), "seven threads give other bits than one");
+    for method in VolumeMethod::ALL {
+        let one = shaken(1, method);
+        assert!(one == shaken(2, method), "{method:?}: two threads give other bits than one");
+        assert!(one == shaken(7, method), "{method:?}: seven threads give other bits than one");
+    }
 }
 
 #[test]

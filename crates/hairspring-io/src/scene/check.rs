@@ -153,6 +153,14 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         ((0..=20).contains(&solver.projections), "projections", "0 to 20"),
     ];
     first_failure(text, section("[solver]"), &solvers)?;
+    let volume = &scene.volume;
+    let volumes = [
+        (above_0(volume.cell), "cell", "above 0 [m]"),
+        (from_0(volume.friction), "friction", "0 or more [1/s]"),
+        (from_0(volume.pressure), "pressure", "0 or more [m/s]"),
+        (from_0(volume.regain), "regain", "0 or more [1/s]"),
+    ];
+    first_failure(text, section("[volume]"), &volumes)?;
     if let Some(camera) = &scene.camera {
         let cameras = [
             (finite(camera.position), "position", "three finite numbers [m]"),

@@ -4,7 +4,7 @@ use glam::Vec3;
 use hairspring::{
     body::Travel,
     groom::{Growth, Thicken},
-    scene::{Camera, Collider, Effects, Guides, HairLook, Shape, Solver, Wind},
+    scene::{Camera, Collider, Effects, Guides, HairLook, Shape, Solver, Volume, Wind},
 };
 use serde::{Deserialize, Deserializer, de};
 use std::{collections::BTreeMap, path::PathBuf};
@@ -45,6 +45,9 @@ pub(super) struct SceneFile {
     /// Time steps and contact.
     #[serde(default)]
     pub solver: Solver,
+    /// How hair meets hair.
+    #[serde(default)]
+    pub volume: Volume,
     /// Where the scene is seen from. Default: framed automatically.
     pub camera: Option<Camera>,
 }

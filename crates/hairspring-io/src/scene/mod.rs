@@ -118,6 +118,7 @@ impl Reader<'_> {
             wind: file.wind,
             gravity: file.gravity,
             solver: file.solver,
+            volume: file.volume,
             camera: file.camera,
             ..Scene::default()
         };

@@ -9,7 +9,9 @@ pub mod swing;
 
 pub use camera::Camera;
 pub use look::{HairColor, HairLook};
-pub use settings::{Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Volume, VolumeMethod, Wind};
+pub use settings::{
+    Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
+};
 
 use crate::{
     body::{Body, Clip},

@@ -9,10 +9,10 @@ mod place;
 mod reset;
 mod step;
 
+pub use crate::volume::VolumeReport;
 pub use energy::Energy;
 pub use hold::Hold;
 pub use measure::Measure;
-pub use crate::volume::VolumeReport;
 pub use step::{Air, Drive, MovingObstacle, StepReport};
 
 use crate::{

@@ -6,7 +6,7 @@ mod hair;
 use crate::{
     groom::{Groom, bind_roots},
     scene::{HairLook, Scene},
-    simulation::{Air, Measure, StepReport},
+    simulation::{Air, Measure, StepReport, VolumeReport},
 };
 use body::StagedBody;
 use glam::Vec3;
@@ -168,6 +168,11 @@ impl Stage {
     /// Joints whose stiffness the sag-free start had to raise.
     pub fn stiffened_joints(&self) -> usize {
         self.hair.iter().map(|h| h.simulation().stiffened_joints()).sum()
+    }
+
+    /// What is known of the volume of each groom's hair; `None` where its strands pass through each other.
+    pub fn volumes(&self) -> impl ExactSizeIterator<Item = Option<VolumeReport>> {
+        self.hair.iter().map(|h| h.simulation().volume())
     }
 
     /// Name of the instruction set that strands are simulated with.

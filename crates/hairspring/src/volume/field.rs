@@ -45,7 +45,9 @@ impl Field {
                 for (n, node) in nodes.iter_mut().enumerate() {
                     let mut sum = [0; NODE];
                     for own in sums {
-                        let Some(own) = own.nodes[(first + n) * NODE..].first_chunk::<NODE>() else { continue };
+                        let Some(own) = own.nodes[(first + n) * NODE..].first_chunk::<NODE>() else {
+                            continue;
+                        };
                         for (sum, own) in sum.iter_mut().zip(own) {
                             *sum += own;
                         }

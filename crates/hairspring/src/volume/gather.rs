@@ -44,12 +44,12 @@ fn gather(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; 4]], pus
                 }
                 (0..4).for_each(|c| taken[c][lane] = sum[c]);
             }
-            for k in 0..3 {
-                for lane in 0..LANES {
-                    let a = taken[k][lane] - taken[3][lane] * at[state::V + k].0[lane];
-                    // Comparisons that a NaN fails.
-                    let sound = (a.abs() < f32::MAX) & (placed.inside[lane] > 0.0);
-                    push[k].0[lane] = if sound { a } else { 0.0 };
+            for lane in 0..LANES {
+                let a = [0, 1, 2].map(|k| taken[k][lane] - taken[3][lane] * at[state::V + k].0[lane]);
+                // 0 for finite numbers, else NaN.
+                let sound = (a[0] * 0.0 + a[1] * 0.0 + a[2] * 0.0 == 0.0) & (placed.inside[lane] > 0.0);
+                for k in 0..3 {
+                    push[k].0[lane] = if sound { a[k] } else { 0.0 };
                 }
             }
         }

@@ -66,7 +66,8 @@ impl Projection {
         let [vx, vy, vz] = &mut self.velocities;
         let inverse = &mut self.solve.inverse_mass;
         let parts = field.nodes.par_chunks(slab).zip(inverse.par_chunks_mut(slab));
-        let parts = parts.zip(vx.par_chunks_mut(slab).zip(vy.par_chunks_mut(slab)).zip(vz.par_chunks_mut(slab)));
+        let parts =
+            parts.zip(vx.par_chunks_mut(slab).zip(vy.par_chunks_mut(slab)).zip(vz.par_chunks_mut(slab)));
         parts.enumerate().for_each(|(z, ((nodes, inverse), ((vx, vy), vz)))| {
             for (n, node) in nodes.iter().enumerate() {
                 (inverse[n], vx[n], vy[n], vz[n]) = (0.0, 0.0, 0.0, 0.0);

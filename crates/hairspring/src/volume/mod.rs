@@ -81,7 +81,8 @@ pub(crate) struct Volume {
     projection: Projection,
     /// Acceleration of each point for an interval [m/s²]; shape `[points]` of all tiles.
     push: Vec<[Row; 3]>,
-    share: f64,
+    /// What hair took up of its cells at rest and at the start of the last interval, see [`taken_up`].
+    taken_up: [f64; 2],
 }
 
 /// What is known of a simulation's hair volume.
@@ -93,7 +94,8 @@ pub struct VolumeReport {
     pub grown: bool,
     /// Nodes of the lattice that the last interval used.
     pub nodes: usize,
-    /// The part of the hair's volume at rest that it took up at the start of the last interval [1]: what of its cells it filled, none more than once.
+    /// The volume that the hair took up at the start of the last interval, over that at rest [1]. The volume is that of its cells as far as
+    /// they are filled, none more than once: where strands crowd into each other's room, theirs is lost.
     pub share: f64,
 }
 
@@ -126,7 +128,9 @@ impl Volume {
         let mut own: Vec<OwnRows> = at
             .mass
             .iter()
-            .map(|m| [m.0.map(|m| m / largest), m.0.map(|m| (m / largest * splat::ROOM / 8.0).ceil())].map(Row))
+            .map(|m| {
+                [m.0.map(|m| m / largest), m.0.map(|m| (m / largest * splat::ROOM / 8.0).ceil())].map(Row)
+            })
             .collect();
         let tiles = Tiles { firsts: &at.firsts, strand: at.strand, state: at.state, own: &own };
         let asked = settings.cell.unwrap_or_else(|| rest::cell_for(&tiles, &at.anchor, at.segment.max(1e-4)));
@@ -152,13 +156,14 @@ impl Volume {
             field: Field::default(),
             pressures: Vec::new(),
             projection: Projection::default(),
-            share: 1.0,
+            taken_up: [1.0; 2],
         };
         volume.reserve();
         let chart = Chart::new(&at.anchor, cell);
         let work = (&mut volume.sums[0], &mut volume.field);
         volume.rest.measure((at.strand, at.state), &volume.firsts, &mut own, &chart, work);
         volume.own = own;
+        volume.taken_up = [taken_up(&volume.field.fill); 2];
         Some(volume)
     }
 
@@ -186,7 +191,7 @@ impl Volume {
     /// See [`VolumeReport`].
     pub fn report(&self) -> VolumeReport {
         let nodes = self.field.window.nodes();
-        VolumeReport { cell: self.cell, grown: self.grown, nodes, share: self.share }
+        VolumeReport { cell: self.cell, grown: self.grown, nodes, share: self.taken_up[1] / self.taken_up[0] }
     }
 
     /// Bytes that it holds a strand's points in, the lattice not counted.
@@ -219,7 +224,7 @@ impl Volume {
             sums.add(&tiles.part(part, parts), &chart, &window, &units);
         });
         self.field.collect(window, &units, sums);
-        self.share = self.measure_share();
+        self.taken_up[1] = taken_up(&self.field.fill);
         match self.settings.method {
             VolumeMethod::Off => {}
             VolumeMethod::Density => self.press(dt, anchor),
@@ -261,16 +266,14 @@ impl Volume {
         let friction = friction(&self.settings, dt);
         fill_push(&mut self.field, friction, |n, _| turn * projection.change(n) / dt);
     }
+}
 
-    /// What the hair takes up of its volume at rest.
-    fn measure_share(&self) -> f64 {
-        let (all, filled) = self
-            .field
-            .fill
-            .iter()
-            .fold((0.0, 0.0), |(all, filled), fill| (all + f64::from(*fill), filled + f64::from(fill.min(1.0))));
-        if all > 0.0 { filled / all } else { 1.0 }
-    }
+/// The part of the points' rooms that is filled once [1]: what is fuller than full has lost it.
+fn taken_up(fill: &[f32]) -> f64 {
+    let (all, once) = fill
+        .iter()
+        .fold((0.0, 0.0), |(all, once), fill| (all + f64::from(*fill), once + f64::from(fill.min(1.0))));
+    if all > 0.0 { once / all } else { 1.0 }
 }
 
 /// β of full cells for intervals of `dt` [s] [1/s].

@@ -102,11 +102,7 @@ impl Extent {
         }
         let least = |row: [f32; LANES]| row.into_iter().fold(f32::INFINITY, f32::min);
         let most = |row: [f32; LANES]| row.into_iter().fold(f32::NEG_INFINITY, f32::max);
-        Self {
-            lo: lo.map(least).into(),
-            hi: hi.map(most).into(),
-            speed: most(speed).min(FASTEST),
-        }
+        Self { lo: lo.map(least).into(), hi: hi.map(most).into(), speed: most(speed).min(FASTEST) }
     }
 
     /// Of the points of both.

@@ -1,0 +1,246 @@
+//! What the lattice does to hair that is laid into it by hand: it takes nothing from a rest or a common motion, keeps momentum, presses
+//! what is squeezed apart, and leaves no divergence where hair is full.
+
+use super::{AtRest, Volume, conjugate::TOLERANCE, field::Field, incompressible::Projection};
+use crate::{
+    collide::Rigid,
+    scene::{self, VolumeMethod},
+    strand::{
+        lanes::{LANES, Row},
+        tile::{StateRows, StrandRows, state, strand},
+    },
+};
+use glam::{Quat, Vec3};
+
+/// Points of a strand.
+const POINTS: usize = 16;
+/// Strands along a side of the bundle.
+const SIDE: usize = 24;
+/// Distance of neighbouring strands, and of neighbouring points [m].
+const APART: f32 = 0.005;
+/// Length of an interval [s].
+const DT: f32 = 1.0 / 60.0;
+
+const METHODS: [VolumeMethod; 2] = [VolumeMethod::Density, VolumeMethod::Incompressible];
+
+/// A square bundle of strands, whose masses differ.
+struct Bundle {
+    strand: Vec<StrandRows>,
+    state: Vec<StateRows>,
+    mass: Vec<Row>,
+}
+
+impl Bundle {
+    /// At rest.
+    fn new() -> Self {
+        let tiles = SIDE * SIDE / LANES;
+        let mut bundle = Self {
+            strand: vec![[Row::default(); strand::ROWS]; tiles],
+            state: vec![[Row::default(); state::ROWS]; tiles * POINTS],
+            mass: vec![Row::default(); tiles * POINTS],
+        };
+        bundle.set(|p| (p, Vec3::ZERO), &Rigid::default());
+        for s in 0..SIDE * SIDE {
+            for i in 0..POINTS {
+                bundle.mass[s / LANES * POINTS + i].0[s % LANES] = 1e-9 * (1 + s % 3) as f32;
+            }
+        }
+        bundle
+    }
+
+    /// Where point `i` of strand `s` is at rest, seen from the middle of the bundle.
+    fn rest(s: usize, i: usize) -> Vec3 {
+        // Off the lattice of the bundle by less than it is apart, so that no two planes of points coincide with cells.
+        let chance =
+            |k: usize| (((s * 7 + i * 3 + k) * 2_654_435_761 % 1_000) as f32 / 1_000.0 - 0.5) * APART;
+        let p = Vec3::new((s % SIDE) as f32, i as f32, (s / SIDE) as f32) * APART
+            + Vec3::from_array([0, 1, 2].map(chance));
+        p - Vec3::new(SIDE as f32, POINTS as f32, SIDE as f32) * (0.5 * APART)
+    }
+
+    /// Puts every point where `of` its rest says, with that velocity, seen from `anchor`.
+    fn set(&mut self, of: impl Fn(Vec3) -> (Vec3, Vec3), anchor: &Rigid) {
+        for s in 0..SIDE * SIDE {
+            let (tile, lane) = (s / LANES, s % LANES);
+            let root = of(Self::rest(s, 0)).0;
+            for k in 0..3 {
+                self.strand[tile][strand::ROOT_END + k].0[lane] = root[k];
+            }
+            for i in 0..POINTS {
+                let (x, v) = of(Self::rest(s, i));
+                let (x, v) = (anchor.rotation * (x - root), anchor.rotation * v);
+                let rows = &mut self.state[tile * POINTS + i];
+                for k in 0..3 {
+                    rows[state::X + k].0[lane] = x[k];
+                    rows[state::V + k].0[lane] = v[k];
+                }
+            }
+        }
+    }
+
+    /// Its volume, of what it is now as its rest.
+    fn volume(&self, method: VolumeMethod) -> Volume {
+        let at = AtRest {
+            firsts: (0..=self.strand.len() as u32).map(|t| t * POINTS as u32).collect(),
+            mass: self.mass.clone(),
+            strand: &self.strand,
+            state: &self.state,
+            anchor: Rigid::default(),
+            segment: APART,
+            length: APART * POINTS as f32,
+        };
+        Volume::new(&scene::Volume { method, ..scene::Volume::default() }, at).unwrap()
+    }
+
+    /// The accelerations that it gets, of all points.
+    fn exchange(&self, volume: &mut Volume, anchor: &Rigid) -> Vec<Vec3> {
+        volume.exchange(DT, (&self.strand, &self.state), anchor, &[]);
+        volume
+            .push()
+            .iter()
+            .flat_map(|p| (0..LANES).map(|l| Vec3::new(p[0].0[l], p[1].0[l], p[2].0[l])))
+            .collect()
+    }
+
+    fn masses(&self) -> impl Iterator<Item = f32> + '_ {
+        self.mass.iter().flat_map(|m| m.0)
+    }
+}
+
+#[test]
+fn a_rest_is_left_alone_in_every_pose_of_the_head() {
+    for method in METHODS {
+        let mut bundle = Bundle::new();
+        let mut volume = bundle.volume(method);
+        let push = bundle.exchange(&mut volume, &Rigid::default());
+        assert!(push.iter().all(|a| *a == Vec3::ZERO), "{method:?}: hair at rest is pushed");
+        for k in 1..20 {
+            let rotation = Quat::from_euler(glam::EulerRot::XYZ, 0.3 * k as f32, 0.7, -0.2 * k as f32);
+            let anchor = Rigid { rotation, translation: Vec3::new(1.0, 2.0, 30.0) };
+            bundle.set(|p| (p, Vec3::ZERO), &anchor);
+            let push = bundle.exchange(&mut volume, &anchor);
+            let most = push.iter().map(|a| a.length()).fold(0.0, f32::max);
+            // A point that rounding takes to the next cell fills it by a few hundredths: a tenth of gravity, there.
+            assert!(most < 1.0, "{method:?}, pose {k}: {most} m/s²");
+        }
+    }
+}
+
+#[test]
+fn what_moves_together_is_not_braked() {
+    for method in METHODS {
+        let mut bundle = Bundle::new();
+        let mut volume = bundle.volume(method);
+        bundle.set(|p| (p, Vec3::new(3.0, -1.0, 2.0)), &Rigid::default());
+        let most =
+            bundle.exchange(&mut volume, &Rigid::default()).iter().map(|a| a.length()).fold(0.0, f32::max);
+        // All of it in a frame would be 220 m/s².
+        assert!(most < 0.05, "{method:?}: {most} m/s²");
+    }
+}
+
+#[test]
+fn pressure_and_friction_keep_momentum() {
+    for method in METHODS {
+        let mut bundle = Bundle::new();
+        let mut volume = bundle.volume(method);
+        let swirl = |p: Vec3| Vec3::new((90.0 * p.z).sin(), (150.0 * p.x).cos(), -20.0 * p.x) + Vec3::Y;
+        bundle.set(|p| (p * Vec3::new(0.7, 1.0, 0.8), swirl(p)), &Rigid::default());
+        let push = bundle.exchange(&mut volume, &Rigid::default());
+        let (mut sum, mut size) = (Vec3::ZERO, 0.0);
+        for (m, a) in bundle.masses().zip(&push) {
+            (sum, size) = (sum + m * *a, size + m * a.length());
+        }
+        assert!(size > 0.0);
+        println!("{method:?}: {} of what acts", sum.length() / size);
+        assert!(sum.length() < 2e-4 * size, "{method:?}: {sum} N of {size} N");
+    }
+}
+
+#[test]
+fn what_is_squeezed_is_pressed_apart() {
+    for method in METHODS {
+        let mut bundle = Bundle::new();
+        let mut volume = bundle.volume(method);
+        bundle.set(|p| (p * Vec3::new(0.6, 1.0, 1.0), Vec3::ZERO), &Rigid::default());
+        let push = bundle.exchange(&mut volume, &Rigid::default());
+        let share = volume.report().share;
+        assert!((0.55..0.75).contains(&share), "{method:?}: {share} of the volume at 0.6 of the width");
+        for (side, outward) in [(0..SIDE / 4, -1.0), (3 * SIDE / 4..SIDE, 1.0)] {
+            let of = |k: usize| side.contains(&((k / (POINTS * LANES) * LANES + k % LANES) % SIDE));
+            let all: Vec<f32> = (0..push.len()).filter(|k| of(*k)).map(|k| push[k].x * outward).collect();
+            let mean = all.iter().sum::<f32>() / all.len() as f32;
+            assert!(mean > 0.5, "{method:?}: {mean} m/s² outward");
+        }
+    }
+}
+
+#[test]
+fn no_divergence_is_left_where_hair_is_full() {
+    let mut bundle = Bundle::new();
+    let mut volume = bundle.volume(VolumeMethod::Incompressible);
+    // Falls in on itself, and is heavier on one side than on the other.
+    bundle.set(|p| (p, Vec3::new(-4.0, 1.0, -2.0) * p), &Rigid::default());
+    bundle.exchange(&mut volume, &Rigid::default());
+    let field: &Field = &volume.field;
+    let mut projection = Projection::default();
+    let found = projection.project(field, |_, v| (Vec3::new(v[0], v[1], v[2]), false), |_| 0.0);
+    assert!(found.cells > 500 && found.left < TOLERANCE, "{found:?}");
+    // By hand, over the cells inside: what flows out of each.
+    let corners = field.window.corners();
+    let out = |cell: usize, projected: bool| -> f64 {
+        let flow = |(k, corner): (usize, &usize)| {
+            let n = cell + corner;
+            let [x, y, z, _] = field.nodes[n];
+            let v = Vec3::new(x, y, z) + if projected { projection.change(n) } else { Vec3::ZERO };
+            let sign = |bit: usize| if k & bit == 0 { -1.0 } else { 1.0 };
+            f64::from(v.dot(Vec3::new(sign(1), sign(2), sign(4))))
+        };
+        corners.iter().enumerate().map(flow).sum()
+    };
+    let full = (0..field.window.nodes()).filter(|c| field.fill[*c] > 0.95);
+    let (mut before, mut after) = (0.0, 0.0);
+    for cell in full {
+        (before, after) = (before + out(cell, false).powi(2), after + out(cell, true).powi(2));
+    }
+    let left = (after / before).sqrt();
+    println!("{found:?}, by hand {left}");
+    assert!(left < 0.1, "{left} of the divergence is left");
+}
+
+#[test]
+fn threads_do_not_show() {
+    for method in METHODS {
+        let mut bundle = Bundle::new();
+        let mut volume = bundle.volume(method);
+        bundle.set(|p| (p * 0.8, Vec3::new(p.z, -p.x, p.y) * 20.0), &Rigid::default());
+        let mut run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| bundle.exchange(&mut volume, &Rigid::default()))
+        };
+        let one = run(1);
+        assert!(one == run(2), "{method:?}: two threads give other bits than one");
+        assert!(one == run(7), "{method:?}: seven threads give other bits than one");
+    }
+}
+
+#[test]
+fn what_is_not_finite_does_not_count() {
+    for method in METHODS {
+        let mut bundle = Bundle::new();
+        let mut volume = bundle.volume(method);
+        bundle.set(|p| (p * 0.8, p * -3.0), &Rigid::default());
+        for (point, row, x) in
+            [(3, state::X, f32::NAN), (40, state::V + 1, f32::INFINITY), (90, state::X + 2, f32::INFINITY)]
+        {
+            bundle.state[point][row].0[5] = x;
+        }
+        bundle.strand[7][strand::ROOT_END].0[2] = f32::NAN;
+        let push = bundle.exchange(&mut volume, &Rigid::default());
+        assert!(push.iter().all(|a| a.is_finite()), "{method:?}");
+        assert!(push.iter().any(|a| a.length() > 0.1), "{method:?}: the others are pushed");
+        for k in [3 * LANES + 5, 40 * LANES + 5, 90 * LANES + 5, 7 * POINTS * LANES + 2] {
+            assert_eq!(push[k], Vec3::ZERO, "{method:?}");
+        }
+    }
+}
