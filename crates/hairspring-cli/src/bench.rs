@@ -196,17 +196,17 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "non_finite": measure.non_finite,
             "bytes_per_point": bytes,
             "stages": { "simulate": median },
+            "simd": simd,
+            "model": options.model,
+            "stretch_max_ever": stretch_ever,
+            "max_depth_m_ever": depth_ever,
+            "reset_strands": reset,
             "volume": simulation.volume().map(|v| json!({
                 "method": method.name(),
                 "cell_m": v.cell,
                 "nodes": v.nodes,
                 "share": v.share,
             })),
-            "simd": simd,
-            "model": options.model,
-            "stretch_max_ever": stretch_ever,
-            "max_depth_m_ever": depth_ever,
-            "reset_strands": reset,
         }));
         return Ok(());
     }

@@ -65,6 +65,23 @@ fn five_seconds_of_shaking() {
 }
 
 #[test]
+fn hair_meets_hair_when_asked() {
+    let bench = |more: &[&str]| {
+        let small = ["bench", "--strands", "300", "--points", "16", "--frames", "30", "--json"];
+        json(&succeed(Path::new("."), &[&small[..], more].concat()))
+    };
+    assert!(bench(&[])["volume"].is_null());
+    for (more, method) in
+        [(&["--hair-hair"][..], "density"), (&["--hair-hair", "incompressible"], "incompressible")]
+    {
+        let found = bench(more);
+        assert_eq!((&found["hair_hair"], &found["volume"]["method"]), (&true.into(), &method.into()));
+        assert!(found["volume"]["cell_m"].as_f64().unwrap() > 0.0, "{found}");
+        assert!((0.1..1.1).contains(&found["volume"]["share"].as_f64().unwrap()), "{found}");
+    }
+}
+
+#[test]
 fn an_older_instruction_set_is_used_when_asked() {
     let small = ["bench", "--strands", "16", "--frames", "5", "--json"];
     let best = json(&succeed(Path::new("."), &small));

@@ -1,4 +1,4 @@
-//! Pressure down the gradient of density, and friction (Petrovic, Henne, Anderson 2005, *Volumetric Methods for Simulation and Rendering of Hair*, §3).
+//! Pressure down the gradient of density, and friction (Petrovic, Henne, Anderson 2005, *Volumetric Methods for Simulation and Rendering of Hair*).
 //!
 //! ```text
 //! cell   p = c² e ρ_least           e: how much fuller the cell is than it may be,   ρ_least: the least density at its corners
@@ -6,7 +6,7 @@
 //! ```
 //!
 //! What pushes a node pushes another back, so momentum is kept; ρ_least bounds what a node with next to no hair can take, and makes the
-//! pressure 0 at the surface. Where Petrovic presses hair toward a density that an artist paints, here cells are filled as at rest.
+//! pressure 0 at the surface. The density that hair is pressed toward is that of the groom: cells are filled as at rest.
 
 use super::field::Field;
 use glam::Vec3;

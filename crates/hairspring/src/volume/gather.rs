@@ -24,6 +24,7 @@ pub fn all(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; 4]], pu
 }
 
 /// The same on one thread.
+#[expect(clippy::needless_range_loop, reason = "a lane is one point, in several rows")]
 fn gather(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; 4]], push: &mut [[Row; 3]]) {
     let [_, _, row, _, slab, _, both, _] = window.corners();
     let mut push = push.iter_mut();
@@ -44,12 +45,19 @@ fn gather(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; 4]], pus
                 }
                 (0..4).for_each(|c| taken[c][lane] = sum[c]);
             }
-            for lane in 0..LANES {
-                let a = [0, 1, 2].map(|k| taken[k][lane] - taken[3][lane] * at[state::V + k].0[lane]);
-                // 0 for finite numbers, else NaN.
-                let sound = (a[0] * 0.0 + a[1] * 0.0 + a[2] * 0.0 == 0.0) & (placed.inside[lane] > 0.0);
-                for k in 0..3 {
-                    push[k].0[lane] = if sound { a[k] } else { 0.0 };
+            let mut sound = placed.inside;
+            for k in 0..3 {
+                let Row(v) = &at[state::V + k];
+                for lane in 0..LANES {
+                    let a = taken[k][lane] - taken[3][lane] * v[lane];
+                    // 0 for finite numbers, else NaN.
+                    sound[lane] = if a * 0.0 == 0.0 { sound[lane] } else { 0.0 };
+                    push[k].0[lane] = a;
+                }
+            }
+            for row in push {
+                for lane in 0..LANES {
+                    row.0[lane] = if sound[lane] > 0.0 { row.0[lane] } else { 0.0 };
                 }
             }
         }

@@ -9,8 +9,8 @@
 //! very velocities. Cells that are not full have no pressure: hair's surface is free. Nodes inside a collider move with it and have no
 //! inverse mass: hair is pressed off the body.
 //!
-//! Hair is no liquid, and nothing keeps it from parting (McAdams §4.2 targets densities for that): cells that the solve finds to pull are
-//! let go, and the others solved again (one step of an active set, as Narain, Golas, Lin 2010 do it for sand).
+//! Hair is no liquid, and nothing keeps it from parting: pressure only presses (as Narain, Golas, Lin 2010 have it for sand). Cells that the solve
+//! finds to pull are let go, and the others solved again from what they have: one step of an active set, after which what still pulls counts as 0.
 
 use super::{conjugate::Solve, field::Field};
 use glam::Vec3;

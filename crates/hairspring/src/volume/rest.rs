@@ -98,10 +98,10 @@ impl Rest {
                 for i in first[0] as usize..first[1] as usize {
                     let placed = Placed::new(&chart.points(&state[i], &roots), &window);
                     let room = &mut own[i][own::ROOM].0;
-                    for lane in 0..LANES {
-                        let fill = field.fill[placed.cell[lane] as usize];
-                        if room[lane] > 0.0 && fill > 0.0 {
-                            room[lane] = (room[lane] / fill).round().clamp(1.0, MOST_ROOM * ROOM);
+                    for (room, cell) in room.iter_mut().zip(placed.cell) {
+                        let fill = field.fill[cell as usize];
+                        if *room > 0.0 && fill > 0.0 {
+                            *room = (*room / fill).round().clamp(1.0, MOST_ROOM * ROOM);
                         }
                     }
                 }

@@ -167,38 +167,47 @@ impl Sums {
     /// Adds points to the nodes of `window`.
     pub fn add(&mut self, tiles: &Tiles, chart: &Chart, window: &Window, units: &Units) {
         let [_, _, row, _, slab, _, both, _] = window.corners();
+        let per_speed = units.momentum / units.mass;
         for (strand, state, own) in tiles.iter() {
             let roots = chart.roots(strand, window.lo);
             for (at, own) in state.iter().zip(own) {
                 let placed = Placed::new(&chart.points(at, &roots), window);
-                // [mass, momentum], and the room, of eight points.
-                let mut counted = [[0.0; LANES]; NODE];
-                let mut room = [0.0; LANES];
-                for lane in 0..LANES {
-                    let v = [0, 1, 2].map(|k| at[state::V + k].0[lane]);
-                    // 0 for finite numbers, else NaN.
-                    let finite = v[0] * 0.0 + v[1] * 0.0 + v[2] * 0.0 == 0.0;
-                    let there = if finite { placed.inside[lane] } else { 0.0 };
-                    let mass = own[own::MASS].0[lane] * there;
-                    for k in 0..3 {
-                        let high = if v[k] < units.speed { v[k] } else { units.speed };
-                        let v = if high > -units.speed { high } else { -units.speed };
-                        counted[k][lane] = v * (mass * units.momentum);
+                // Momentum and mass, and room, of eight points.
+                let mut there = placed.inside;
+                for k in 0..3 {
+                    let Row(v) = &at[state::V + k];
+                    for lane in 0..LANES {
+                        // 0 for finite numbers, else NaN.
+                        there[lane] = if v[lane] * 0.0 == 0.0 { there[lane] } else { 0.0 };
                     }
-                    counted[3][lane] = mass * units.mass;
-                    room[lane] = own[own::ROOM].0[lane] * there;
+                }
+                let mut counted = [[0.0; LANES]; NODE];
+                let mut room = [0; LANES];
+                for lane in 0..LANES {
+                    counted[3][lane] = own[own::MASS].0[lane] * there[lane] * units.mass;
+                    room[lane] = nearest(own[own::ROOM].0[lane] * there[lane]);
+                }
+                for k in 0..3 {
+                    let Row(v) = &at[state::V + k];
+                    for lane in 0..LANES {
+                        let high = if v[lane] < units.speed { v[lane] } else { units.speed };
+                        let v = if high > -units.speed { high } else { -units.speed };
+                        counted[k][lane] = v * (counted[3][lane] * per_speed);
+                    }
                 }
                 for lane in 0..LANES {
                     let cell = placed.cell[lane] as usize;
-                    let point = [0, 1, 2, 3, 0, 1, 2, 3].map(|k| counted[k][lane]);
+                    let point = [counted[0][lane], counted[1][lane], counted[2][lane], counted[3][lane]];
                     for (k, corner) in [0, row, slab, both].into_iter().enumerate() {
-                        let [a, b] = [placed.weights[2 * k][lane], placed.weights[2 * k + 1][lane]];
-                        let weight = [a, a, a, a, b, b, b, b];
                         let Some(pair) = self.nodes[(cell + corner) * NODE..].first_chunk_mut::<8>() else {
                             continue;
                         };
-                        for c in 0..8 {
-                            pair[c] = pair[c].wrapping_add(nearest(point[c] * weight[c]));
+                        let [a, b] = [placed.weights[2 * k][lane], placed.weights[2 * k + 1][lane]];
+                        for c in 0..NODE {
+                            pair[c] = pair[c].wrapping_add(nearest(point[c] * a));
+                        }
+                        for c in 0..NODE {
+                            pair[NODE + c] = pair[NODE + c].wrapping_add(nearest(point[c] * b));
                         }
                     }
                     self.rooms[cell] = self.rooms[cell].saturating_add(room[lane] as u32);
