@@ -10,7 +10,7 @@
 use super::{
     lanes::{F, Row, V3, load, store},
     scratch::Scratch,
-    tile::{Tile, rest, state},
+    tile::{Tile, rest, state, strand},
 };
 use fearless_simd::{mask32x8, prelude::*};
 
@@ -25,8 +25,12 @@ const D: usize = 1;
 /// step that it would ask for grows without end.
 const SHORT: f32 = 0.25;
 
-/// Relative length error below which no further iteration is made [1].
+/// Relative length error below which no further iteration is made [1], of a strand of [`SHORT_STRAND`] points; less in longer ones, which
+/// otherwise tremble with what all of their segments are let off at once.
 const ENOUGH: f32 = 1e-4;
+
+/// Points of a strand, see [`ENOUGH`].
+const SHORT_STRAND: f32 = 32.0;
 
 /// One iteration over `scratch.edges`, of every `stride`th particle, in the strands that are `asked`; false where all their lengths were
 /// already right. λ times `force` (a/h² of the integrator) goes into the tension.
@@ -48,6 +52,8 @@ pub fn project<S: Simd>(
     let work = &mut factors.as_chunks_mut::<ROWS>().0[..segments];
     let mut before = V3::zero(simd);
     let (mut d_before, mut inv_before) = (zero, zero);
+    let shorter = (F::splat(simd, SHORT_STRAND) / load(simd, &tile.strand[strand::POINTS])).min(1.0);
+    let enough = shorter * -ENOUGH;
     let mut worst = zero;
     let mut w0 = zero;
     for k in 1..segments {
@@ -60,7 +66,7 @@ pub fn project<S: Simd>(
         // Nothing to do between two points that are held.
         let loose = (w0 + w1).simd_gt(0.0);
         let error = loose.select(length * size.mul_add(0.5, F::splat(simd, -0.5)), zero);
-        worst = worst.max(length.mul_add(-ENOUGH, error.abs()));
+        worst = worst.max(length.mul_add(enough, error.abs()));
         // Row i: −w0 (u·u₋) λ₋ + (w0 + w1) u·u λ − w1 (u·u₊) λ₊ = C
         let coupling = w0 * before.dot(u);
         let c_before = coupling * inv_before;
