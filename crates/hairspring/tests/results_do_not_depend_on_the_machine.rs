@@ -8,6 +8,7 @@
 use glam::Vec3;
 use hairspring::{
     collide::{Obstacle, Rigid},
+    groom::Groom,
     material::{Material, Model},
     scene::{
         Guides, Solver, Volume, VolumeMethod,
@@ -111,7 +112,21 @@ fn neighbours_do_not_show_in_contact() {
 /// Strands that share a tile do not show in each other, whatever branch one of them takes.
 #[test]
 fn neighbours_do_not_show() {
-    let groom = Arc::new(bench::groom(8, 20));
+    neighbours_do_not_show_in(Arc::new(bench::groom(8, 20)));
+}
+
+/// Nor does it show that one of them is longer, and is granted more iterations.
+#[test]
+fn longer_neighbours_do_not_show() {
+    let strand = |k: usize| {
+        let points = 12 << (k / 2);
+        let out = Vec3::new((k as f32).cos(), 0.2, (k as f32).sin());
+        (0..points).map(|i| i as f32 / 100.0).map(|s| out * s - Vec3::Y * s * s).collect::<Vec<_>>()
+    };
+    neighbours_do_not_show_in(Arc::new(Groom::from_strands((0..8).map(strand), 40e-6)));
+}
+
+fn neighbours_do_not_show_in(groom: Arc<Groom>) {
     for model in Model::ALL {
         let run = |strands: &[u32]| {
             let material = Material { model, ..Material::default() };

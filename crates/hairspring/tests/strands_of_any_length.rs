@@ -100,14 +100,14 @@ fn from_three_points_to_a_thousand_and_from_a_millimetre_to_two_metres() {
     }
 }
 
-/// Fine and long strands, whose segments are stiff over what they weigh, lie still and come to rest again.
+/// Fine and long strands, whose segments are stiff over what they weigh, lie still and come to rest again, in every model.
 #[test]
 fn long_strands_come_to_rest() {
     let strands: [(usize, f32); 7] =
         [(64, 2.0), (256, 0.6), (512, 2.0), (1024, 1.0), (1024, 1.5), (1024, 3.0), (1024, 6.0)];
     let groom = Arc::new(Groom::from_strands(strands.map(|(points, length)| coil(points, length)), 40e-6));
     let all: Vec<u32> = (0..strands.len() as u32).collect();
-    for model in [Model::Auto, Model::Rod] {
+    for model in Model::ALL {
         for substeps in [4, 10] {
             let material = Material { model, bend: 4.0, ..Material::default() };
             let solver = Solver { substeps, ..Solver::default() };
@@ -136,14 +136,19 @@ fn long_strands_come_to_rest() {
                 let x = 0.05 * (std::f32::consts::TAU * 2.0 * frame as f32 / 60.0).sin();
                 step(&mut simulation, strands.len(), Rigid { translation: Vec3::X * x, ..Rigid::default() });
             }
-            (0..120).for_each(|_| step(&mut simulation, strands.len(), Rigid::default()));
+            // With four substeps, segments of 1 mm are too soft for the style that they are to hold, and take their time.
+            let seconds = if substeps == 4 { 8 } else { 2 };
+            (0..60 * seconds).for_each(|_| step(&mut simulation, strands.len(), Rigid::default()));
             let shaken = speed(&mut simulation);
             println!(
-                "{model:?}, {substeps} substeps: {at_rest} m/s at rest, {shaken} m/s two seconds after a shake"
+                "{model:?}, {substeps} substeps: {at_rest} m/s at rest, {shaken} m/s {seconds} seconds after a shake"
             );
             assert!(at_rest < 0.01, "{model:?}, {substeps} substeps: {at_rest} m/s at rest");
-            // A strand of 3 m swings that fast of itself.
-            assert!(shaken < 0.1, "{model:?}, {substeps} substeps: {shaken} m/s two seconds after a shake");
+            let bound = if substeps == 4 { 0.02 } else { 0.1 };
+            assert!(
+                shaken < bound,
+                "{model:?}, {substeps} substeps: {shaken} m/s {seconds} seconds after a shake"
+            );
         }
     }
 }

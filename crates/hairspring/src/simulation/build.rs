@@ -317,9 +317,10 @@ impl Lane<'_> {
                 Self::write_vector(&mut self.state[i][state::NORMAL..], lane, p.normal.as_vec3());
             }
             let at = points[i.min(last)];
+            let before = points[i.saturating_sub(1).min(last)];
             let depth = obstacles.iter().map(|o| o.distance(at)).fold(0.0_f32, f32::min);
             rows[rest::CLEARANCE].0[lane] = depth;
-            Self::write_vector(&mut self.state[i][state::X..], lane, at - points[0]);
+            Self::write_vector(&mut self.state[i][state::EDGE..], lane, at - before);
         }
         let root = anchor.inverse_point(points[0]);
         let turn = anchor.rotation.inverse();

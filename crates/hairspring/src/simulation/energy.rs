@@ -85,14 +85,15 @@ impl Simulation {
         let down = gravity.normalize_or_zero();
         let fall = |place: usize| {
             let stride = self.tiles[place / LANES].model.stride();
-            let mut at = self.vector(place, stride, state::X).as_dvec3();
+            let mut particles = self.particles(place).enumerate().skip(stride);
+            let mut at = particles.next().unwrap_or_default().1.as_dvec3();
             let mut energy = 0.0;
-            for i in stride + 1..self.simulated_points(place) {
+            for (i, x) in particles {
                 // An extra particle falls to its segment's middle.
                 let from = (i - 1) / stride * stride;
                 let step = down * (self.rest(place, from, rest::LENGTH) as f64 / stride as f64);
                 at += step;
-                let way = at - self.vector(place, i, state::X).as_dvec3();
+                let way = at - x.as_dvec3();
                 energy += self.rest(place, i, rest::MASS) as f64 * gravity.dot(way);
             }
             energy
@@ -117,11 +118,11 @@ impl Simulation {
         let (tile, n) = (place / LANES, self.simulated_points(place));
         let stride = self.tiles[tile].model.stride();
         let mut energy = Energy::default();
-        for i in stride + 1..n {
+        for (i, x) in self.particles(place).enumerate().skip(stride + 1) {
             let mass = self.rest(place, i, rest::MASS) as f64;
             let v = self.vector(place, i, state::V).as_dvec3();
             energy.kinetic += 0.5 * mass * v.length_squared();
-            energy.gravitational -= mass * gravity.dot(root + self.vector(place, i, state::X).as_dvec3());
+            energy.gravitational -= mass * gravity.dot(root + x.as_dvec3());
         }
         let integrator = self.settings.solver.integrator;
         let per_mass = if self.last_h > 0.0 { STRETCH as f64 / (self.last_h as f64).powi(2) } else { 0.0 };
@@ -139,8 +140,8 @@ impl Simulation {
         // Tension is a force there; the direct solver's is a multiplier, which does no work on a segment that keeps its length.
         let pulls = !matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2);
         let axial = self.strand[tile][strand::AXIAL].0[place % LANES] as f64;
-        let way = |i: usize, j: usize| {
-            (self.vector(place, j, state::X) - self.vector(place, i, state::X)).as_dvec3()
+        let way = |i: usize, j: usize| -> DVec3 {
+            (i + 1..=j).map(|k| self.vector(place, k, state::EDGE).as_dvec3()).sum()
         };
         for i in (stride..n - 1).step_by(stride) {
             let length = self.rest(place, i, rest::LENGTH) as f64;

@@ -63,9 +63,9 @@ impl Simulation {
     }
     /// Holds the extra particle after particle `point` of the springs model, over its segment between `ends`, where it is around it.
     fn hold_extra(&mut self, place: usize, point: u32, ends: [Vec3; 2]) {
-        let at = |i: u32| self.vector(place, (point + i) as usize, state::X);
+        let edge = |i: u32| self.vector(place, (point + i) as usize, state::EDGE);
         let (tile, lane) = (place / LANES, place % LANES);
-        let aside = at(1) - 0.5 * (at(0) + at(2));
+        let aside = 0.5 * (edge(1) - edge(2));
         let along = (ends[1] - ends[0]).normalize_or_zero();
         let across = aside.reject_from(along).normalize_or_zero() * aside.length();
         let target = 0.5 * (ends[0] + ends[1]) + across;

@@ -56,15 +56,15 @@ impl Simulation {
         let root = self.root_position(place);
         let n = self.simulated_points(place);
         let stride = self.tiles[place / LANES].model.stride();
-        for i in 0..n {
-            let (x, v) = (self.vector(place, i, state::X), self.vector(place, i, state::V));
+        for (i, x) in self.particles(place).enumerate() {
+            let v = self.vector(place, i, state::V);
             out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
             out.speed_max = out.speed_max.max(v.length() as f64);
             // The segments that are drawn, whatever else a model puts between their points.
             if i % stride == 0 && i + stride < n {
-                let next = self.vector(place, i + stride, state::X);
+                let edges = (i + 1..=i + stride).map(|k| self.vector(place, k, state::EDGE).as_dvec3());
                 let length = self.rest(place, i, rest::LENGTH) as f64;
-                let strain = ((next.as_dvec3() - x.as_dvec3()).length() / length - 1.0).abs();
+                let strain = (edges.sum::<glam::DVec3>().length() / length - 1.0).abs();
                 sum += strain;
                 segments += 1;
                 out.stretch_max = out.stretch_max.max(strain);

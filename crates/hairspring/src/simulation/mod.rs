@@ -140,8 +140,8 @@ impl Simulation {
         pieces.into_par_iter().with_min_len(256).for_each(|(place, piece)| {
             let root = self.root_position(place);
             let stride = self.tiles[place / LANES].model.stride();
-            for (i, p) in piece.iter_mut().enumerate() {
-                *p = root + self.vector(place, i * stride, state::X);
+            for (p, x) in piece.iter_mut().zip(self.particles(place).step_by(stride)) {
+                *p = root + x;
             }
         });
     }
@@ -150,6 +150,14 @@ impl Simulation {
     fn simulated_points(&self, place: usize) -> usize {
         (self.groom.range(self.lanes[place] as usize).len() - 1) * self.tiles[place / LANES].model.stride()
             + 1
+    }
+
+    /// The simulated points of the strand in lane `place`, from its root [m].
+    fn particles(&self, place: usize) -> impl Iterator<Item = Vec3> + '_ {
+        (0..self.simulated_points(place)).scan(Vec3::ZERO, move |x, i| {
+            *x += self.vector(place, i, state::EDGE);
+            Some(*x)
+        })
     }
 
     /// A vector of state of point `i` of the strand in lane `place`.

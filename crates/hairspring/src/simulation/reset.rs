@@ -46,7 +46,8 @@ impl Simulation {
             .into_owned();
         let springs = self.tiles[tile].model == Elastic::Springs;
         for i in 0..self.tiles[tile].points as usize {
-            let p: Vec3 = turn * (points[i.min(points.len() - 1)] - points[0]);
+            let at = |i: usize| points[i.min(points.len() - 1)];
+            let edge: Vec3 = turn * (at(i) - at(i.saturating_sub(1)));
             let at = self.tiles[tile].first as usize + i;
             if let Some(history) = self.history.get_mut(at) {
                 history.iter_mut().for_each(|r| r.0[lane] = 0.0);
@@ -59,7 +60,7 @@ impl Simulation {
                     row.0[lane] = 0.0;
                 }
             }
-            for (row, x) in rows[state::X..].iter_mut().zip(p.to_array()) {
+            for (row, x) in rows[state::EDGE..].iter_mut().zip(edge.to_array()) {
                 row.0[lane] = x;
             }
         }

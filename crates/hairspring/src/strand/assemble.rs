@@ -8,7 +8,11 @@
 //! BDF2             a = 9/4   p = (4v − v⁻)/2h + 3Δ⁻/4h² − 9Δr/4h²              v⁺ = (3Δ − Δ⁻) / 2h
 //! ```
 //!
-//! so a teleporting root puts no strain into the linearisation, and far from the world's origin no digit is lost.
+//! so a teleporting root puts no strain into the linearisation, and far from the world's origin no digit is lost. What is solved for is
+//! not δ but by how much it differs from the drift δ₀ = h (v − v_root): element by element, what a force makes of δ₀ goes to the right.
+//! So the rounding of a stiff entry multiplies the change of a velocity and not the velocity. (It weighs as much as the mass in
+//! strands of a thousand points, where it pushed or braked them: 10 to 70 m/s at rest.)
+//!
 //! Baraff & Witkin 1998, *Large Steps in Cloth Simulation*; BDF2 after Choi & Ko 2002, *Stable but Responsive Cloth*, eq. 17.
 
 use super::{
@@ -25,7 +29,7 @@ use super::{
     tile::{Tile, history, hold, rest, state, strand},
 };
 use crate::collide::ObstaclePose;
-use fearless_simd::{mask32x8, prelude::*};
+use fearless_simd::prelude::*;
 use glam::Vec3;
 
 /// One substep of one tile, as the assembly needs it.
@@ -69,7 +73,7 @@ const HOLD: f32 = 1e6;
 /// Stiffness of a held frame [N m]: far above any hair's, about 1e-6.
 const HOLD_FRAME: f32 = 1.0;
 
-/// Elastic forces of all points at the positions in `scratch.x`, into `scratch.kick` [N].
+/// Elastic forces of all points at `scratch.edges`, into `scratch.kick` [N].
 #[inline(always)]
 pub fn forces<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -81,7 +85,7 @@ pub fn forces<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let n = tile.rest.len();
-    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::First, step, tile, scratch);
+    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, step, tile, scratch);
     for i in 0..n {
         if i + 1 < n {
             elements.add(simd, i % M::STRIDE, tile, scratch);
@@ -94,6 +98,8 @@ pub fn forces<S, M, const B: usize, const N: usize>(
 /// What a sweep down makes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Sweep {
+    /// Forces, and no factors.
+    Forces,
     /// The factors of the system at the start of the substep.
     First,
     /// The factors of the system at positions that have moved since (Newton).
@@ -103,11 +109,16 @@ pub enum Sweep {
 impl Sweep {
     /// How much of a segment's present error of length is news to its tension: all, or nothing once a solve has taken it.
     pub fn news(self) -> f32 {
-        if self == Self::First { 1.0 } else { 0.0 }
+        if self == Self::Again { 0.0 } else { 1.0 }
+    }
+
+    /// How long velocities act until where the solve begins, of a substep of `h` [s].
+    fn drift(self, h: f32) -> f32 {
+        if self == Self::First { h } else { 0.0 }
     }
 }
 
-/// Assembles and eliminates down the strand, at the positions in `scratch.x`.
+/// Assembles and eliminates down the strand, at `scratch.edges`.
 #[inline(always)]
 pub fn assemble<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -168,7 +179,12 @@ fn add_point<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let segment = elements.add(simd, phase, tile, scratch);
-    let (i, band) = (elements.at.i, &mut elements.band);
+    let i = elements.at.i;
+    if sweep == Sweep::Again {
+        let [new, old] = [&scratch.edges[i + 1][..], &tile.state[i + 1][state::EDGE..]];
+        elements.way += V3::load(simd, new) - V3::load(simd, old);
+    }
+    let (x, way, band) = (elements.x, elements.way, &mut elements.band);
     ask_beyond(tile.rest, i, step.number);
     ask_beyond(tile.state, i, 2 * step.number);
     ask_beyond(tile.state, i, 2 * step.number + 1);
@@ -178,35 +194,36 @@ fn add_point<S, M, const B: usize, const N: usize>(
     let mass = segment.mass;
     let v = V3::load(simd, &tile.state[i + 1][state::V..]);
     let root_velocity = step.moved * F::splat(simd, inv_h);
-    let m_h2 = mass * (step.inertia() * inv_h * inv_h);
-    let mut right = (v - root_velocity) * (mass * inv_h);
+    let (a, inv_h2) = (step.inertia(), inv_h * inv_h);
+    let m_h2 = mass * (a * inv_h2);
+    let root = V3::load(simd, &tile.state[0][state::V..]);
+    let drift = || (v - root) * F::splat(simd, sweep.drift(step.h));
+    // Where the solve begins, from where the substep does, and p less a/h² of it.
+    let (way, mut p) = match sweep {
+        // All strands' points alike: what of the root's motion is new.
+        Sweep::First => (drift(), (root - root_velocity) * F::splat(simd, inv_h)),
+        _ => (way, (v - root_velocity - way * F::splat(simd, inv_h)) * F::splat(simd, inv_h)),
+    };
     if step.second_order {
         let before = &tile.history[i + 1];
         let v_before = V3::load(simd, &before[history::V..]);
         let way_before = V3::load(simd, &before[history::WAY..]);
-        let p = (v * F::splat(simd, 4.0) - v_before) * F::splat(simd, 0.5 * inv_h)
+        p = (v * F::splat(simd, 4.0) - v_before) * F::splat(simd, 0.5 * inv_h)
             + (way_before * F::splat(simd, 3.0) - step.moved * F::splat(simd, 9.0))
-                * F::splat(simd, 0.25 * inv_h * inv_h);
-        right = p * mass;
+                * F::splat(simd, 0.25 * inv_h2)
+            - way * F::splat(simd, a * inv_h2);
     }
-    right += V3::splat(simd, step.gravity) * mass;
+    p += V3::splat(simd, step.gravity);
     if let Some(push) = tile.push.get(i + 1) {
-        right += V3::load(simd, push) * mass;
+        p += V3::load(simd, push);
     }
-    let way = || V3::load(simd, &scratch.x[i + 1]) - V3::load(simd, &tile.state[i + 1][state::X..]);
-    if sweep == Sweep::Again {
-        right -= way() * m_h2;
-    }
+    let mut right = p * mass;
     band.add_identity(1, m_h2);
     let on_strand = phase + 1 == M::STRIDE;
     if on_strand {
         let across = segment.air * inv_h;
-        let slip = V3::splat(simd, step.wind) - root_velocity;
-        let slip = slip - segment.u * (segment.u.dot(slip) * 0.5);
-        right += slip * segment.air;
-        if sweep == Sweep::Again {
-            right -= way() * across - segment.u * (segment.u.dot(way()) * across * 0.5);
-        }
+        let slip = V3::splat(simd, step.wind) - root_velocity - way * F::splat(simd, inv_h);
+        right += (slip - segment.u * (segment.u.dot(slip) * 0.5)) * segment.air;
         band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5).add_identity(across));
     }
     band.add_force(1, right);
@@ -219,7 +236,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
             let target = V3::load(simd, &at.rows[hold::TARGET..]) - step.root.position;
             let k = pinned * m_h2 * HOLD;
             band.add_identity(1, k);
-            band.add_force(1, (target - V3::load(simd, &scratch.x[i + 1])) * k);
+            band.add_force(1, (target - x - drift()) * k);
             band.add_force(1, V3::load(simd, &at.rows[hold::FORCE..]));
             if B > 3 {
                 band.add((1, 3), (1, 3), load(simd, &at.rows[hold::CLAMPED]) * HOLD_FRAME);
@@ -229,16 +246,15 @@ fn add_point<S, M, const B: usize, const N: usize>(
     }
     if on_strand {
         let work = &mut scratch.contacts[i + 1];
-        press(simd, step, tile, (i + 1, &scratch.x[i + 1]), band, work);
+        press(simd, step, tile, (i + 1, x, drift(), way), band, work);
     }
 }
 
-/// The sweep up: adds the solution to `scratch.x`, and to the tensions what the springs took; another sweep than the first only in the
-/// strands of which it is `asked`.
+/// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took.
 #[inline(always)]
 pub fn substitute<S, M, const B: usize, const N: usize>(
     simd: S,
-    (sweep, asked): (Sweep, mask32x8<S>),
+    sweep: Sweep,
     step: &Step<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
@@ -248,30 +264,26 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
 {
     let zero = V3::zero(simd);
     let n = tile.rest.len();
+    let root_velocity = V3::load(simd, &tile.state[0][state::V..]);
     let mut solved = Solved {
         i: n,
-        x: [zero; 3],
+        edges: [zero; 2],
         moved: [zero; 3],
         unknowns: [F::<S>::splat(simd, 0.0); N],
         along: F::splat(simd, 0.0),
         news: sweep.news(),
     };
     for i in (1..n).rev() {
-        let x = V3::load(simd, &scratch.x[i]);
         let mut delta = zero;
         if i >= M::DRIVEN || B > 3 {
             let factors = &scratch.factors[(i + reach(B, N)) * factor_rows(B, N, M::HALF)..];
             back_substitute::<S, B, N>(simd, M::HALF, factors, &mut solved.unknowns);
-            if sweep == Sweep::Again {
-                for unknown in &mut solved.unknowns[..B] {
-                    *unknown = asked.select(*unknown, zero.x);
-                }
-            }
         }
         if i >= M::DRIVEN {
             let unknowns = &solved.unknowns;
+            let drift = V3::load(simd, &tile.state[i][state::V..]) - root_velocity;
             delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
-            (x + delta).store(&mut scratch.x[i]);
+            delta = drift.mul_add(F::splat(simd, sweep.drift(step.h)), delta);
             if i.is_multiple_of(M::STRIDE) {
                 relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
             }
@@ -279,9 +291,11 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
         solved.i = i;
         let fixed = &scratch.fixed[i - i % M::STRIDE];
         solved.along = load(simd, &fixed.along);
-        solved.x = [x, solved.x[0], solved.x[1]];
         solved.moved = [delta, solved.moved[0], solved.moved[1]];
         if i + 1 < n {
+            let edge = V3::load(simd, &scratch.edges[i + 1]);
+            solved.edges = [edge, solved.edges[0]];
+            (edge + (solved.moved[1] - delta)).store(&mut scratch.edges[i + 1]);
             M::take(simd, &solved, tile, &scratch.fixed);
         }
         if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
@@ -309,8 +323,12 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
     pub band: Band<S, B, N>,
     model: M,
     at: At<S>,
-    /// The strand's next point.
-    x1: V3<S>,
+    /// The next particle, from the root [m].
+    x: V3<S>,
+    /// How far it has gone since the start of the substep, of a sweep again [m].
+    way: V3<S>,
+    /// Velocity of the strand's next point [m/s].
+    v1: V3<S>,
     /// Force of still air on half a unit of length, over speed [N s/m²].
     half_drag: F<S>,
     /// See [`stretch`].
@@ -325,7 +343,11 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     pub fn begin(simd: S, sweep: Sweep, step: &Step<S>, tile: &Tile, scratch: &Scratch) -> Self {
         let (drag, damping, _) = Root::<S>::fibre(simd, tile.strand);
         let before = load(simd, &tile.rest[0][rest::LENGTH]);
-        let first = V3::load(simd, &scratch.x[M::STRIDE]);
+        let zero = V3::zero(simd);
+        let mut first = V3::load(simd, &scratch.edges[1]);
+        if M::STRIDE == 2 {
+            first += V3::load(simd, &scratch.edges[2]);
+        }
         let inverse = load(simd, &scratch.fixed[0].inverse_length);
         let at = At {
             i: usize::MAX,
@@ -336,23 +358,27 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             damped: damping * (1.0 / step.h) + 1.0,
             along: [load(simd, &scratch.fixed[0].along); 2],
             news: sweep.news(),
+            drift: [zero; 2],
+            drifting: F::splat(simd, sweep.drift(step.h)),
             h: step.h,
         };
         let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
         let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
         let explicit = F::splat(simd, step.explicit_tension()) / stiffening;
-        Self { band, model, at, x1: first, half_drag, before, explicit }
+        let v1 = V3::load(simd, &tile.state[0][state::V..]);
+        Self { band, model, at, x: zero, way: zero, v1, half_drag, before, explicit }
     }
 
     /// Adds what begins at the next point i: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i
     /// modulo the model's stride, told apart so that it can be a constant.
     #[inline(always)]
     pub fn add(&mut self, simd: S, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
-        let Scratch { x, fixed, .. } = scratch;
+        let Scratch { edges, fixed, .. } = scratch;
         self.at.i = self.at.i.wrapping_add(1);
         self.at.phase = phase;
         self.band.enter(simd);
         let next = self.at.i + 1;
+        self.x += V3::load(simd, &edges[next]);
         let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
         if phase + 1 < M::STRIDE {
@@ -363,10 +389,17 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let at = &mut self.at;
         let length = load(simd, &row[rest::LENGTH]);
         let far = next + M::STRIDE;
-        let x2 = if far < tile.rest.len() { V3::load(simd, &x[far]) } else { self.x1 };
-        let e = x2 - self.x1;
+        let (mut e, mut v2) = (V3::zero(simd), self.v1);
+        if far < tile.rest.len() {
+            v2 = V3::load(simd, &tile.state[far][state::V..]);
+            e = V3::load(simd, &edges[far]);
+            if M::STRIDE == 2 {
+                e += V3::load(simd, &edges[next + 1]);
+            }
+        }
         let (l, u) = e.length_and_unit();
         at.e = [at.e[1], e];
+        at.drift = [at.drift[1], (v2 - self.v1) * at.drifting];
         at.u = [at.u[1], u];
         at.inverse_length = [at.inverse_length[1], load(simd, &fixed[next].inverse_length)];
         at.along = [at.along[1], load(simd, &fixed[next].along)];
@@ -378,9 +411,10 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         self.band.add_diagonal(1, block);
         self.band.add_diagonal(1 + M::STRIDE, block);
         self.band.add_block(1, 1 + M::STRIDE, &-block.full());
+        let force = force + block * at.drift[1];
         self.band.add_force(1, force);
         self.band.add_force(1 + M::STRIDE, -force);
-        self.x1 = x2;
+        self.v1 = v2;
         let air = self.half_drag * (self.before + length);
         self.before = length;
         Segment { u, mass, air }

@@ -242,6 +242,15 @@ impl<S: Simd> Mul<F<S>> for Sym3<S> {
     }
 }
 
+impl<S: Simd> Mul<V3<S>> for Sym3<S> {
+    type Output = V3<S>;
+    #[inline(always)]
+    fn mul(self, v: V3<S>) -> V3<S> {
+        let M3 { rows } = self.full();
+        V3 { x: rows[0].dot(v), y: rows[1].dot(v), z: rows[2].dot(v) }
+    }
+}
+
 impl<S: Simd> Add for Sym3<S> {
     type Output = Self;
     #[inline(always)]

@@ -7,7 +7,7 @@
 
 use super::{
     assemble::Step,
-    lanes::{F, Row, V3, load, store},
+    lanes::{F, V3, load, store},
     root::Root,
     scratch::Scratch,
     tile::{Tile, history, rest, state},
@@ -33,7 +33,7 @@ pub const LIMIT: f32 = 0.01;
 /// collider's radius.
 const CORRECTIONS: usize = 2;
 
-/// Applies strain limit and contact to the new positions `scratch.x`, of which every `stride`th is the strand's, and writes state.
+/// Applies strain limit and contact to the new `scratch.edges`, of every `stride`th particle, and writes state.
 #[inline(always)]
 pub fn limit<S: Simd>(
     simd: S,
@@ -45,65 +45,75 @@ pub fn limit<S: Simd>(
 ) {
     let inv_h = F::<S>::splat(simd, 1.0 / step.h);
     // The root itself, and what it drives.
-    for (at, driven) in tile.state.iter_mut().zip(&scratch.x).take(stride + 1) {
-        V3::load(simd, driven).store(&mut at[state::X..]);
-        (step.moved * inv_h).store(&mut at[state::V..]);
+    let mut at = At { x: step.root.position, way: V3::zero(simd) };
+    for (rows, driven) in tile.state.iter_mut().zip(&scratch.edges).take(stride + 1) {
+        let edge = V3::load(simd, driven);
+        at = at.on(edge, V3::load(simd, &rows[state::EDGE..]));
+        edge.store(&mut rows[state::EDGE..]);
+        (step.moved * inv_h).store(&mut rows[state::V..]);
     }
-    let mut before = V3::load(simd, &scratch.x[stride]);
+    // By how much the point before is elsewhere than the integrator had it.
+    let mut shift = V3::zero(simd);
     for i in (2 * stride..tile.rest.len()).step_by(stride) {
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
-        let tether = Tether { before, length, limit: finish.limit };
-        let mut p = V3::load(simd, &scratch.x[i]);
+        let tether = Tether { length, limit: finish.limit };
+        // From the strand's point before, wherever that is now.
+        let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
+        let solved = if stride == 2 { extra + V3::load(simd, &scratch.edges[i]) } else { extra };
+        let mut e = solved;
+        shift = V3::zero(simd);
         // A branch, so that a segment waits for the one before it only where something is to be done.
-        let world = p + step.root.position;
+        let world = at.x + e;
         let near = step.obstacles.iter().any(|pose| pose.near(simd, world).any_true());
-        if near || tether.wrong(p).any_true() {
-            p = place(simd, finish, step, tile, (i, p), &tether);
+        if near || tether.wrong(e).any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
-            p = V3::select(free, p, V3::load(simd, &scratch.x[i]));
-            p.store(&mut scratch.x[i]);
+            e = V3::select(free, place(simd, finish, step, tile, (i, stride, e), (&at, &tether)), e);
+            shift = e - solved;
             let press = &mut tile.state[i][state::PRESS];
             store(free.select(load(simd, press), F::splat(simd, 0.0)), press);
         }
+        let mut last = e;
         if stride == 2 {
             // An extra particle meets nothing and weighs next to nothing: it goes where its triangle puts it.
-            let mut extra = V3::load(simd, &scratch.x[i - 1]);
             if finish.limit.is_finite() {
                 let free = load(simd, &scratch.fixed[i - 1].inverse_mass).simd_gt(0.0);
-                extra = V3::select(free, beside(simd, extra, [before, p], length), extra);
-                extra.store(&mut scratch.x[i - 1]);
+                extra = V3::select(free, beside(simd, extra, e, length), extra);
             }
-            write(simd, finish, step, (i - 1, extra), tile, &scratch.kick);
+            at = write(simd, finish, step, (i - 1, &at, extra), tile, scratch);
+            last = e - extra;
         }
-        write(simd, finish, step, (i, p), tile, &scratch.kick);
-        before = p;
+        at = write(simd, finish, step, (i, &at, last), tile, scratch);
     }
 }
 
-/// Where point `i` at `p` may be: within the limits of its segment, outside of every collider.
+/// Where point `i` may be that is at `e` from the strand's point before, which is `at`: within the limits of its segment, outside of every
+/// collider.
 #[inline(always)]
 fn place<S: Simd>(
     simd: S,
     finish: &Finish,
     step: &Step<S>,
     tile: &mut Tile,
-    (i, p): (usize, V3<S>),
-    tether: &Tether<S>,
+    (i, stride, e): (usize, usize, V3<S>),
+    (at, tether): (&At<S>, &Tether<S>),
 ) -> V3<S> {
     let friction = Root::<S>::fibre(simd, tile.strand).2;
     let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
-    let old = V3::load(simd, &tile.state[i][state::X..]);
+    let mut old = V3::load(simd, &tile.state[i][state::EDGE..]);
+    if stride == 2 {
+        old += V3::load(simd, &tile.state[i - 1][state::EDGE..]);
+    }
     let mut press = load(simd, &tile.state[i][state::PRESS]);
-    let mut p = tether.clamp(p);
+    let mut e = tether.clamp(e);
     for pose in step.obstacles {
-        let world = p + step.root.position;
+        let world = at.x + e;
         let (distance, normal) = contact(simd, pose, world);
         let depth = (clearance - distance).max(0.0);
         if depth.simd_gt(0.0).any_true() {
             // Out along the normal; then back along the surface, at most μ times as far.
-            let pushed = p + normal * depth;
+            let pushed = e + normal * depth;
             let carried = surface_displacement(simd, pose, world);
-            let slide = pushed - old + step.moved - carried;
+            let slide = at.way + (pushed - old) + step.moved - carried;
             let tangent = slide - normal * normal.dot(slide);
             let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
             let held = pushed - tangent * hold.min(1.0);
@@ -116,31 +126,48 @@ fn place<S: Simd>(
             // ear) its length goes before its depth, so that it slips free in time.
             let mut q = tether.clamp(held);
             for _ in 0..CORRECTIONS {
-                let (distance, normal) = contact(simd, pose, q + step.root.position);
+                let (distance, normal) = contact(simd, pose, at.x + q);
                 q = tether.clamp(tether.swing_out(q, normal, (clearance - distance).max(0.0)));
             }
-            p = V3::select(depth.simd_gt(0.0), q, p);
+            e = V3::select(depth.simd_gt(0.0), q, e);
         }
     }
     store(press, &mut tile.state[i][state::PRESS]);
-    p
+    e
 }
 
-/// Writes the new position `p` of point `i` and its velocity.
+/// A particle on the walk from root to tip.
+struct At<S: Simd> {
+    /// Where it is, in the world [m].
+    x: V3<S>,
+    /// How far it went in the substep, besides the root's way [m].
+    way: V3<S>,
+}
+
+impl<S: Simd> At<S> {
+    /// The particle after this one, by the edge to it and what that was before the substep.
+    #[inline(always)]
+    fn on(&self, edge: V3<S>, old: V3<S>) -> Self {
+        Self { x: self.x + edge, way: self.way + (edge - old) }
+    }
+}
+
+/// Writes the new edge to particle `i` from the one before, which is `before`, and its velocity; returns where it is.
 #[inline(always)]
 fn write<S: Simd>(
     simd: S,
     finish: &Finish,
     step: &Step<S>,
-    (i, p): (usize, V3<S>),
+    (i, before, edge): (usize, &At<S>, V3<S>),
     tile: &mut Tile,
-    kick: &[[Row; 3]],
-) {
+    scratch: &mut Scratch,
+) -> At<S> {
     let inv_h = F::<S>::splat(simd, 1.0 / step.h);
-    let way = p - V3::load(simd, &tile.state[i][state::X..]) + step.moved;
+    let at = before.on(edge, V3::load(simd, &tile.state[i][state::EDGE..]));
+    let way = at.way + step.moved;
     let mut v = way * inv_h;
     if finish.kicks {
-        v += V3::load(simd, &kick[i]);
+        v += V3::load(simd, &scratch.kick[i]);
     }
     if let Some(history) = tile.history.get_mut(i) {
         if step.second_order {
@@ -150,15 +177,15 @@ fn write<S: Simd>(
         V3::load(simd, &tile.state[i][state::V..]).store(&mut history[history::V..]);
         way.store(&mut history[history::WAY..]);
     }
-    let at = &mut tile.state[i];
-    v.store(&mut at[state::V..state::V + 3]);
-    p.store(&mut at[state::X..state::X + 3]);
+    let rows = &mut tile.state[i];
+    v.store(&mut rows[state::V..state::V + 3]);
+    edge.store(&mut rows[state::EDGE..state::EDGE + 3]);
+    edge.store(&mut scratch.edges[i]);
+    at
 }
 
-/// What holds a point to the one before it.
+/// What holds a point to the one before it, from which it is at `e`.
 struct Tether<S: Simd> {
-    /// The point before.
-    before: V3<S>,
     /// Rest length of the segment [m].
     length: F<S>,
     /// Largest relative change of it.
@@ -166,34 +193,32 @@ struct Tether<S: Simd> {
 }
 
 impl<S: Simd> Tether<S> {
-    /// Where the segment to `p` is too long or too short.
+    /// Where the segment is too long or too short.
     #[inline(always)]
-    fn wrong(&self, p: V3<S>) -> mask32x8<S> {
-        let e = p - self.before;
+    fn wrong(&self, e: V3<S>) -> mask32x8<S> {
         let (size, length) = (e.dot(e), self.length * self.length);
         let (shortest, longest) = ((1.0 - self.limit).max(0.0), 1.0 + self.limit);
         size.simd_gt(length * (longest * longest)) | size.simd_lt(length * (shortest * shortest))
     }
 
-    /// `p` moved along the segment until its length is within the limit.
+    /// The point moved along the segment until its length is within the limit.
     #[inline(always)]
-    fn clamp(&self, p: V3<S>) -> V3<S> {
-        let (l, u) = (p - self.before).length_and_unit();
+    fn clamp(&self, e: V3<S>) -> V3<S> {
+        let (l, u) = e.length_and_unit();
         let l = l.min(self.length * (1.0 + self.limit)).max(self.length * (1.0 - self.limit));
-        V3::select(self.wrong(p), self.before + u * l, p)
+        V3::select(self.wrong(e), u * l, e)
     }
 
-    /// `p` swung about the point before until it is `depth` farther out along `normal`: for a flat surface both its length and the surface
+    /// The point swung about the point before until it is `depth` farther out along `normal`: for a flat surface both its length and the surface
     /// hold at once. (Out and back in turn hardly moves a tip that meets the surface head on.) Where the point before is deeper than the
     /// segment is long, it points straight out.
     #[inline(always)]
-    fn swing_out(&self, p: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
-        let e = p - self.before;
+    fn swing_out(&self, e: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
         let (l, _) = e.length_and_unit();
         let along = e.dot(normal);
         let (_, side) = (e - normal * along).length_and_unit();
         let out = (along + depth).min(l);
         let aside = (l * l - out * out).max(0.0).sqrt();
-        V3::select(depth.simd_gt(0.0), self.before + normal * out + side * aside, p)
+        V3::select(depth.simd_gt(0.0), normal * out + side * aside, e)
     }
 }

@@ -82,7 +82,7 @@ where
     scratch.reserve(s.x.len());
     fix(simd, step.h, Stretching::Moderate, tile, &mut scratch);
     scratch.begin(tile.state);
-    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::First, &step, tile, &scratch);
+    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, &step, tile, &scratch);
     let mut forces = Forces::default();
     for i in 0..s.x.len() {
         if i + 1 < s.x.len() {

@@ -37,13 +37,14 @@ pub mod scratch {
     pub const ROWS: usize = 4;
 }
 
-/// Adds contact to point `i`, the second of the band's window, which is at `x`.
+/// Adds contact to point `i`, the second of the band's window, which is at `x` from the root, drifts by
+/// `drift` and is by then `way` from where the substep began.
 #[inline(always)]
 pub fn press<S: Simd, const B: usize, const N: usize>(
     simd: S,
     step: &Step<S>,
     tile: &mut Tile,
-    (i, x): (usize, &[Row; 3]),
+    (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
     band: &mut Band<S, B, N>,
     work: &mut [Row; scratch::ROWS],
 ) {
@@ -52,7 +53,6 @@ pub fn press<S: Simd, const B: usize, const N: usize>(
     if !force.simd_gt(0.0).any_true() {
         return;
     }
-    let x = V3::load(simd, x);
     let world = x + step.root.position;
     // The surface that is nearest, and how far it moves here.
     let (mut gap, mut normal, mut carried) = (F::splat(simd, f32::MAX), V3::zero(simd), V3::zero(simd));
@@ -80,9 +80,11 @@ pub fn press<S: Simd, const B: usize, const N: usize>(
     let before = V3::load(simd, &tile.state[i][state::V..]) * F::splat(simd, step.h);
     let (slid, _) = along(before - carried).length_and_unit();
     let rub = (Root::<S>::fibre(simd, tile.strand).2 * force / slid).min(k);
-    let way = x - V3::load(simd, &tile.state[i][state::X..]) + step.moved;
     band.add_diagonal(1, Sym3::outer(normal, k - rub).add_identity(rub));
-    band.add_force(1, normal * (force - k * gap) - along(way - carried) * rub);
+    band.add_force(
+        1,
+        normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub,
+    );
 }
 
 /// The force that presses point `i` once the solve has moved it by `delta`.

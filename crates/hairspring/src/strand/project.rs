@@ -8,11 +8,11 @@
 //! exactly by one sweep down and one up (Thomas). Their C needs no root and no unit vector. The root and the second point are driven.
 
 use super::{
-    lanes::{F, V3, load, store},
+    lanes::{F, Row, V3, load, store},
     scratch::Scratch,
-    tile::{Tile, rest, state},
+    tile::{Tile, rest, state, strand},
 };
-use fearless_simd::prelude::*;
+use fearless_simd::{mask32x8, prelude::*};
 
 /// Rows of scratch a segment: the coefficient of the next λ, and λ without it.
 const ROWS: usize = 2;
@@ -25,38 +25,48 @@ const D: usize = 1;
 /// step that it would ask for grows without end.
 const SHORT: f32 = 0.25;
 
-/// Relative length error below which no further iteration is made [1].
+/// Relative length error below which no further iteration is made [1], of a strand of [`SHORT_STRAND`] points; less in longer ones, which
+/// otherwise tremble with what all of their segments are let off at once.
 const ENOUGH: f32 = 1e-4;
 
-/// One iteration over `scratch.x`, of which every `stride`th is the strand's; false once the lengths were already right. λ times
-/// `force` (a/h² of the integrator) goes into the tension.
+/// Points of a strand, see [`ENOUGH`].
+const SHORT_STRAND: f32 = 32.0;
+
+/// One iteration over `scratch.edges`, of every `stride`th particle, in the strands that are `asked`; false where all their lengths were
+/// already right. λ times `force` (a/h² of the integrator) goes into the tension.
 #[inline(always)]
-pub fn project<S: Simd>(simd: S, stride: usize, force: F<S>, tile: &mut Tile, scratch: &mut Scratch) -> bool {
-    let Scratch { factors, x, fixed, .. } = scratch;
+pub fn project<S: Simd>(
+    simd: S,
+    stride: usize,
+    (force, asked): (F<S>, mask32x8<S>),
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) -> bool {
+    let Scratch { factors, edges, fixed, .. } = scratch;
     let zero = F::<S>::splat(simd, 0.0);
     // Cut to one length, so that the loops need no checks.
     let points = tile.rest.len();
-    let (x, fixed) = (&mut x[..points], &fixed[..points]);
+    let (edges, fixed) = (&mut edges[..points], &fixed[..points]);
     let (rest, state) = (&tile.rest[..points], &mut tile.state[..points]);
     let segments = (points - 1) / stride;
     let work = &mut factors.as_chunks_mut::<ROWS>().0[..segments];
-    let mut here = V3::load(simd, &x[stride]);
     let mut before = V3::zero(simd);
     let (mut d_before, mut inv_before) = (zero, zero);
+    let shorter = (F::splat(simd, SHORT_STRAND) / load(simd, &tile.strand[strand::POINTS])).min(1.0);
+    let enough = shorter * -ENOUGH;
     let mut worst = zero;
     let mut w0 = zero;
     for k in 1..segments {
         let i = k * stride;
-        let next = V3::load(simd, &x[i + stride]);
         let length = load(simd, &rest[i][rest::LENGTH]);
         let w1 = load(simd, &fixed[i + stride].inverse_mass);
         // Padding has neither length nor inverse length: all of its row is nought.
-        let u = (next - here) * load(simd, &fixed[i].inverse_length);
+        let u = segment(simd, stride, edges, i) * load(simd, &fixed[i].inverse_length);
         let size = u.dot(u);
         // Nothing to do between two points that are held.
         let loose = (w0 + w1).simd_gt(0.0);
         let error = loose.select(length * size.mul_add(0.5, F::splat(simd, -0.5)), zero);
-        worst = worst.max(length.mul_add(-ENOUGH, error.abs()));
+        worst = worst.max(length.mul_add(enough, error.abs()));
         // Row i: −w0 (u·u₋) λ₋ + (w0 + w1) u·u λ − w1 (u·u₊) λ₊ = C
         let coupling = w0 * before.dot(u);
         let c_before = coupling * inv_before;
@@ -64,10 +74,10 @@ pub fn project<S: Simd>(simd: S, stride: usize, force: F<S>, tile: &mut Tile, sc
         let inv = F::splat(simd, 1.0) / (-coupling).mul_add(c_before, (w0 + w1) * size.max(SHORT)).max(1e-30);
         let d = coupling.mul_add(d_before, error) * inv;
         store(d, &mut work[k][D]);
-        (before, d_before, inv_before, w0, here) = (u, d, inv, w1, next);
+        (before, d_before, inv_before, w0) = (u, d, inv, w1);
     }
     // Strands whose lengths are right keep their bits, whatever their neighbours in the tile do.
-    let active = worst.simd_gt(0.0);
+    let active = asked & worst.simd_gt(0.0);
     if !active.any_true() {
         return false;
     }
@@ -76,18 +86,28 @@ pub fn project<S: Simd>(simd: S, stride: usize, force: F<S>, tile: &mut Tile, sc
     let (mut lambda, mut pull) = (zero, V3::zero(simd));
     for k in (1..segments).rev() {
         let i = k * stride;
-        let next = here;
-        here = V3::load(simd, &x[i]);
-        let u = (next - here) * load(simd, &fixed[i].inverse_length);
+        let u = segment(simd, stride, edges, i) * load(simd, &fixed[i].inverse_length);
         let d = load(simd, &work[k][D]);
         lambda = load(simd, &work[k][C]).mul_add(lambda, d);
         lambda = active.select(lambda, zero);
         let own = u * lambda;
-        let w1 = load(simd, &fixed[i + stride].inverse_mass);
-        (pull - own).mul_add(w1, next).store(&mut x[i + stride]);
+        let move_outer = (pull - own) * load(simd, &fixed[i + stride].inverse_mass);
+        // The edge into the point that moves, and the one out of it.
+        for (edge, sign) in [(i + stride, 1.0), (i + stride + 1, -1.0)] {
+            if let Some(edge) = edges.get_mut(edge) {
+                move_outer.mul_add(F::splat(simd, sign), V3::load(simd, edge)).store(edge);
+            }
+        }
         let tension = &mut state[i][state::TENSION];
         store(lambda.mul_add(force, load(simd, tension)), tension);
         pull = own;
     }
     true
+}
+
+/// From particle `i` to the strand's next point.
+#[inline(always)]
+fn segment<S: Simd>(simd: S, stride: usize, edges: &[[Row; 3]], i: usize) -> V3<S> {
+    let last = V3::load(simd, &edges[i + stride]);
+    if stride == 1 { last } else { V3::load(simd, &edges[i + 1]) + last }
 }

@@ -14,8 +14,8 @@ use super::{
 pub struct Scratch {
     /// Factors of the band, point after point, after zeros for those that the first would meet; other sweeps' rows lie over them.
     pub factors: Vec<Row>,
-    /// New positions relative to the root, shape `[points + BEYOND]`.
-    pub x: Vec<[Row; 3]>,
+    /// From each particle's predecessor to it, anew, shape `[points + BEYOND]` [m]; see `state::EDGE`.
+    pub edges: Vec<[Row; 3]>,
     /// What is added to the velocities of `(new − old) / h`, shape `[points]` [m/s]; forces before that. Of integrators other than the
     /// implicit ones.
     pub kick: Vec<[Row; 3]>,
@@ -33,16 +33,16 @@ const MOST_FACTORS: usize = factor_rows(4, 11, 10);
 /// Most points that meet a point from before it, those of the springs.
 const MOST_REACH: usize = reach(3, 12);
 
-/// Positions after the last point, so that four that follow each other can be read at any: they are finite and nothing depends on them.
+/// Edges after the last, so that three that follow each other can be read at any: they are finite and nothing depends on them.
 const BEYOND: usize = 3;
 
 impl Scratch {
-    /// Fills `x` from the positions in `state`, shape `[points]`.
+    /// Fills `edges` from those in `state`, shape `[points]`.
     pub fn begin(&mut self, state: &[StateRows]) {
-        for (x, at) in self.x.iter_mut().zip(state) {
-            x.copy_from_slice(&at[state::X..state::X + 3]);
+        for (edge, at) in self.edges.iter_mut().zip(state) {
+            edge.copy_from_slice(&at[state::EDGE..state::EDGE + 3]);
         }
-        self.x[state.len()..state.len() + BEYOND].fill([Row::default(); 3]);
+        self.edges[state.len()..state.len() + BEYOND].fill([Row::default(); 3]);
     }
 
     /// Room for a tile of `points`.
@@ -51,7 +51,7 @@ impl Scratch {
             self.factors.resize((points + MOST_REACH) * MOST_FACTORS, Row::default());
             self.kick.resize(points, [Row::default(); 3]);
             self.change.resize(points, [Row::default(); 3]);
-            self.x.resize(points + BEYOND, [Row::default(); 3]);
+            self.edges.resize(points + BEYOND, [Row::default(); 3]);
             self.contacts.resize(points, [Row::default(); press::scratch::ROWS]);
             self.fixed.resize(points, Fixed::default());
         }

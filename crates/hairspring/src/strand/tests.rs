@@ -19,7 +19,7 @@ use super::{
     tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
     truss::ASIDE,
 };
-use fearless_simd::{Level, dispatch, mask32x8, prelude::*};
+use fearless_simd::{Level, dispatch, prelude::*};
 use glam::{DVec3, Mat3, Vec3};
 use proptest::prelude::*;
 
@@ -126,7 +126,7 @@ proptest! {
         let ours = dispatch!(Level::new(), simd => {
             let f = |v: f64| F::splat(simd, v as f32);
             let [p0, p1] = bend(
-                [splat(simd, e0), splat(simd, e1)],
+                [[splat(simd, e0), splat(simd, e1)], [V3::zero(simd); 2]],
                 splat(simd, was),
                 [f(1.0 / lengths[0]), f(1.0 / lengths[1])],
                 splat(simd, turn),
@@ -280,7 +280,7 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
             set(&mut rest_rows[i], rest::TURN, &s.turn[i].as_vec3().to_array());
             normal -= (t0 + t1) * (normal.dot(t1) / (1.0 + t0.dot(t1)));
         }
-        set(&mut state_rows[i], state::X, &s.x[i].as_vec3().to_array());
+        set(&mut state_rows[i], state::EDGE, &(s.x[i] - s.x[i.saturating_sub(1)]).as_vec3().to_array());
         set(&mut state_rows[i], state::V, &s.v[i].as_vec3().to_array());
         normals.push(normal);
         set(&mut state_rows[i], state::NORMAL, &normal.as_vec3().to_array());
@@ -322,7 +322,11 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
         fix(simd, step.h, Stretching::Moderate, &tile, &mut scratch);
         solve_once(simd, &step, &mut tile, &mut scratch);
     });
-    let solved = scratch.x[..n].iter().map(|x| Vec3::from(x.map(|row| row.0[0])).as_dvec3());
+    let edges = scratch.edges[..n].iter().map(|e| Vec3::from(e.map(|row| row.0[0])).as_dvec3());
+    let solved = edges.scan(DVec3::ZERO, |x, e| {
+        *x += e;
+        Some(*x)
+    });
     (solved.collect(), normals)
 }
 
@@ -331,43 +335,19 @@ fn solve_once<S: Simd>(simd: S, step: &Step<S>, tile: &mut Tile, scratch: &mut S
     match tile.model {
         Elastic::Straight => {
             assemble::<S, Straight, 3, 9>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Straight, 3, 9>(
-                simd,
-                (Sweep::First, mask32x8::splat(simd, true)),
-                step,
-                tile,
-                scratch,
-            );
+            substitute::<S, Straight, 3, 9>(simd, Sweep::First, step, tile, scratch);
         }
         Elastic::Curvature => {
             assemble::<S, Curvature<S>, 3, 9>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Curvature<S>, 3, 9>(
-                simd,
-                (Sweep::First, mask32x8::splat(simd, true)),
-                step,
-                tile,
-                scratch,
-            );
+            substitute::<S, Curvature<S>, 3, 9>(simd, Sweep::First, step, tile, scratch);
         }
         Elastic::Rod => {
             assemble::<S, Rod<S>, 4, 11>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Rod<S>, 4, 11>(
-                simd,
-                (Sweep::First, mask32x8::splat(simd, true)),
-                step,
-                tile,
-                scratch,
-            );
+            substitute::<S, Rod<S>, 4, 11>(simd, Sweep::First, step, tile, scratch);
         }
         Elastic::Springs => {
             assemble::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Springs, 3, 12>(
-                simd,
-                (Sweep::First, mask32x8::splat(simd, true)),
-                step,
-                tile,
-                scratch,
-            );
+            substitute::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
         }
     }
 }

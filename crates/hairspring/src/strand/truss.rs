@@ -18,7 +18,7 @@
 use super::{
     lanes::{F, V3},
     model::springs::{BEND, Progressive, TORSION},
-    rest_shape::{Fibre, RestPoint, RestShape, rest_shape},
+    rest_shape::{Fibre, RestPoint, RestShape, fine, rest_shape},
 };
 use fearless_simd::prelude::*;
 use glam::{DMat3, DVec3, Vec3};
@@ -126,7 +126,7 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         rest[e0].bend = bend / twisting.clamp(TWISTING.0, TWISTING.1) / straight(e0, e1).powi(2);
         rest[e0].turn.x = x[e0].distance(x[e1]);
         for (point, length) in [p0, p1].into_iter().zip(lengths) {
-            let brace = (BRACED[1] * hardest * bend / (length * length)).min(stiffest);
+            let brace = (BRACED[1] * hardest * bend / (length * length)).min(fine(points.len()) * stiffest);
             rest[point].bend = rest[point].bend.max(brace);
         }
     }
@@ -162,11 +162,11 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     RestShape { points: rest, stiffened }
 }
 
-/// An extra particle at `p`, put where its triangle over a segment between `ends` of rest length `length` has it.
+/// An extra particle at `p`, put where its triangle over the segment `e` of rest length `length` has it; from the segment's start.
 #[inline(always)]
-pub fn beside<S: Simd>(simd: S, p: V3<S>, ends: [V3<S>; 2], length: F<S>) -> V3<S> {
-    let middle = (ends[0] + ends[1]) * F::splat(simd, 0.5);
-    let (e, way) = (ends[1] - ends[0], p - middle);
+pub fn beside<S: Simd>(simd: S, p: V3<S>, e: V3<S>, length: F<S>) -> V3<S> {
+    let middle = e * F::splat(simd, 0.5);
+    let way = p - middle;
     let aside = (way - e * (e.dot(way) / e.dot(e).max(1e-30))).length_and_unit().1;
     aside.mul_add(length * ASIDE as f32, middle)
 }

@@ -29,9 +29,10 @@ fn gather(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; 4]], pus
     let [_, _, row, _, slab, _, both, _] = window.corners();
     let mut push = push.iter_mut();
     for (strand, state, _) in tiles.iter() {
-        let roots = chart.roots(strand, window.lo);
+        let mut places = chart.roots(strand, window.lo);
         for (at, push) in state.iter().zip(&mut push) {
-            let placed = Placed::new(&chart.points(at, &roots), window);
+            chart.walk(&mut places, at);
+            let placed = Placed::new(&places, window);
             let mut taken = [[0.0; LANES]; 4];
             for lane in 0..LANES {
                 let cell = placed.cell[lane] as usize;

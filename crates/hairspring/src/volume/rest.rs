@@ -36,11 +36,11 @@ pub fn cell_for(tiles: &Tiles, anchor: &Rigid, shortest: f32) -> f32 {
         let chart = Chart::new(anchor, cell);
         occupied.clear();
         for (strand, state, own) in tiles.iter() {
-            let roots = chart.roots(strand, IVec3::ZERO);
+            let mut places = chart.roots(strand, IVec3::ZERO);
             for (at, own) in state.iter().zip(own) {
-                let points = chart.points(at, &roots);
+                chart.walk(&mut places, at);
                 for lane in (0..LANES).filter(|lane| own[own::MASS].0[*lane] > 0.0) {
-                    let key = |k: usize| (points[k][lane].floor() as i64 & 0x1f_ffff) as u64;
+                    let key = |k: usize| (places[k][lane].floor() as i64 & 0x1f_ffff) as u64;
                     occupied.push(key(2) << 42 | key(1) << 21 | key(0));
                 }
             }
@@ -94,9 +94,10 @@ impl Rest {
                 break;
             }
             for (rows, first) in strand.iter().zip(firsts.windows(2)) {
-                let roots = chart.roots(rows, window.lo);
+                let mut places = chart.roots(rows, window.lo);
                 for i in first[0] as usize..first[1] as usize {
-                    let placed = Placed::new(&chart.points(&state[i], &roots), &window);
+                    chart.walk(&mut places, &state[i]);
+                    let placed = Placed::new(&places, &window);
                     let room = &mut own[i][own::ROOM].0;
                     for (room, cell) in room.iter_mut().zip(placed.cell) {
                         let fill = field.fill[cell as usize];

@@ -84,13 +84,13 @@ impl Extent {
         let (mut lo, mut hi) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
         let mut speed = [0.0_f32; LANES];
         for (strand, state, own) in tiles.iter() {
-            let roots = chart.roots(strand, IVec3::ZERO);
+            let mut places = chart.roots(strand, IVec3::ZERO);
             for (at, own) in state.iter().zip(own) {
-                let points = chart.points(at, &roots);
+                chart.walk(&mut places, at);
                 for lane in 0..LANES {
                     let counts = own[own::MASS].0[lane] > 0.0;
                     for k in 0..3 {
-                        let p = points[k][lane];
+                        let p = places[k][lane];
                         // Comparisons that a NaN fails.
                         lo[k][lane] = if counts & (p < lo[k][lane]) { p } else { lo[k][lane] };
                         hi[k][lane] = if counts & (p > hi[k][lane]) { p } else { hi[k][lane] };
@@ -169,9 +169,10 @@ impl Sums {
         let [_, _, row, _, slab, _, both, _] = window.corners();
         let per_speed = units.momentum / units.mass;
         for (strand, state, own) in tiles.iter() {
-            let roots = chart.roots(strand, window.lo);
+            let mut places = chart.roots(strand, window.lo);
             for (at, own) in state.iter().zip(own) {
-                let placed = Placed::new(&chart.points(at, &roots), window);
+                chart.walk(&mut places, at);
+                let placed = Placed::new(&places, window);
                 // Momentum and mass, and room, of eight points.
                 let mut there = placed.inside;
                 for k in 0..3 {

@@ -68,10 +68,11 @@ impl Bundle {
             }
             for i in 0..POINTS {
                 let (x, v) = of(Self::rest(s, i));
-                let (x, v) = (anchor.rotation * (x - root), anchor.rotation * v);
+                let before = of(Self::rest(s, i.saturating_sub(1))).0;
+                let (edge, v) = (anchor.rotation * (x - before), anchor.rotation * v);
                 let rows = &mut self.state[tile * POINTS + i];
                 for k in 0..3 {
-                    rows[state::X + k].0[lane] = x[k];
+                    rows[state::EDGE + k].0[lane] = edge[k];
                     rows[state::V + k].0[lane] = v[k];
                 }
             }
@@ -231,7 +232,7 @@ fn what_is_not_finite_does_not_count() {
         let mut volume = bundle.volume(method);
         bundle.set(|p| (p * 0.8, p * -3.0), &Rigid::default());
         for (point, row, x) in
-            [(3, state::X, f32::NAN), (40, state::V + 1, f32::INFINITY), (90, state::X + 2, f32::INFINITY)]
+            [(3, state::EDGE, f32::NAN), (40, state::V + 1, f32::INFINITY), (90, state::EDGE + 2, f32::INFINITY)]
         {
             bundle.state[point][row].0[5] = x;
         }

@@ -83,18 +83,16 @@ impl Chart {
         })
     }
 
-    /// Eight points of strands with these roots [cells].
+    /// Takes eight places [cells] from a point of their strands to the next.
     #[inline(always)]
-    pub fn points(&self, at: &StateRows, roots: &[[f32; LANES]; 3]) -> [[f32; LANES]; 3] {
-        let [Row(x), Row(y), Row(z)] = [&at[state::X], &at[state::X + 1], &at[state::X + 2]];
+    pub fn walk(&self, places: &mut [[f32; LANES]; 3], next: &StateRows) {
+        let [Row(x), Row(y), Row(z)] = &next[state::EDGE..].first_chunk::<3>().expect("an edge is three rows");
         let [a, b, c] = [self.turn.x_axis, self.turn.y_axis, self.turn.z_axis].map(|axis| axis.to_array());
-        let mut points = *roots;
-        for (k, row) in points.iter_mut().enumerate() {
+        for (k, row) in places.iter_mut().enumerate() {
             for lane in 0..LANES {
                 row[lane] += a[k] * x[lane] + b[k] * y[lane] + c[k] * z[lane];
             }
         }
-        points
     }
 }
 

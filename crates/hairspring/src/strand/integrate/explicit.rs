@@ -19,7 +19,7 @@ use crate::{
 };
 use fearless_simd::prelude::*;
 
-/// Leaves the new positions in `scratch.x` and what the velocities get besides in `scratch.kick`.
+/// Leaves the new edges in `scratch.edges` and what the velocities get besides in `scratch.kick`.
 #[inline(always)]
 pub fn advance<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -34,11 +34,10 @@ pub fn advance<S, M, const B: usize, const N: usize>(
     forces::<S, M, B, N>(simd, step, tile, scratch);
     let zero = V3::zero(simd);
     let h = F::<S>::splat(simd, step.h);
-    let mut tip = zero;
+    let (mut tip, mut before) = (zero, zero);
     for i in 2..tile.rest.len() {
-        let x = V3::load(simd, &scratch.x[i]);
         if i + 1 < tile.rest.len() {
-            tip = (V3::load(simd, &scratch.x[i + 1]) - x).length_and_unit().1;
+            tip = V3::load(simd, &scratch.edges[i + 1]).length_and_unit().1;
         }
         let v = V3::load(simd, &tile.state[i][state::V..]);
         let inverse = load(simd, &scratch.fixed[i].inverse_mass);
@@ -46,7 +45,10 @@ pub fn advance<S, M, const B: usize, const N: usize>(
         let free = inverse.simd_gt(0.0);
         let gain = V3::select(free, a * h, zero);
         let (now, later) = if integrator == Integrator::Verlet { (gain, zero) } else { (zero, gain) };
-        V3::select(free, x + (v + now) * h - step.moved, x).store(&mut scratch.x[i]);
+        let change = V3::select(free, (v + now) * h - step.moved, zero);
+        let edge = &mut scratch.edges[i];
+        (V3::load(simd, edge) + (change - before)).store(edge);
+        before = change;
         later.store(&mut scratch.kick[i]);
     }
 }

@@ -24,7 +24,7 @@ use fearless_simd::prelude::*;
 /// s of the dynamic form [1]; 1 keeps all of the energy and is just stable.
 const KEPT: f32 = 0.9;
 
-/// Leaves the new positions in `scratch.x` and the velocity correction in `scratch.kick`.
+/// Leaves the new edges in `scratch.edges` and the velocity correction in `scratch.kick`.
 #[inline(always)]
 pub fn advance<S: Simd>(
     simd: S,
@@ -37,27 +37,30 @@ pub fn advance<S: Simd>(
     let h = F::<S>::splat(simd, step.h);
     let share = if integrator == Integrator::Dftl { -KEPT / step.h } else { 0.0 };
     let stride = tile.model.stride();
-    let mut before = V3::load(simd, &scratch.x[stride]);
+    // By how much the point before has moved.
+    let mut shift = zero;
     for i in (2 * stride..tile.rest.len()).step_by(stride) {
-        let x = V3::load(simd, &scratch.x[i]);
-        let u = (x - before).length_and_unit().1;
+        // From where the point before is now.
+        let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
+        let old = if stride == 2 { extra + V3::load(simd, &scratch.edges[i]) } else { extra };
+        let u = old.length_and_unit().1;
         let v = V3::load(simd, &tile.state[i][state::V..]);
-        let p = x + (v + outside(simd, step, tile, i, u) * h) * h - step.moved;
+        let p = old + (v + outside(simd, step, tile, i, u) * h) * h - step.moved;
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
-        let followed = before + (p - before).length_and_unit().1 * length;
-        let new = V3::select(free, followed, x);
-        new.store(&mut scratch.x[i]);
+        let new = V3::select(free, p.length_and_unit().1 * length, old);
+        new.store(&mut scratch.edges[i]);
         // The correction of this point goes to the velocity of the one before it.
         if i > 2 * stride {
             ((new - p) * F::splat(simd, share)).store(&mut scratch.kick[i - stride]);
         }
         zero.store(&mut scratch.kick[i]);
         if tile.model == Elastic::Springs {
-            let extra = V3::load(simd, &scratch.x[i - 1]);
-            beside(simd, extra, [before, new], length).store(&mut scratch.x[i - 1]);
+            extra = beside(simd, extra, new, length);
+            extra.store(&mut scratch.edges[i - 1]);
+            (new - extra).store(&mut scratch.edges[i]);
             zero.store(&mut scratch.kick[i - 1]);
         }
-        before = new;
+        shift = new - old;
     }
 }

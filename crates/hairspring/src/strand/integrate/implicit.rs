@@ -10,9 +10,9 @@ use crate::strand::{
     scratch::Scratch,
     tile::{Tile, rest, strand},
 };
-use fearless_simd::{mask32x8, prelude::*};
+use fearless_simd::prelude::*;
 
-/// Leaves the new positions in `scratch.x`.
+/// Leaves the new edges in `scratch.edges`.
 #[inline(always)]
 pub fn advance<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -28,27 +28,26 @@ pub fn advance<S, M, const B: usize, const N: usize>(
     // Where springs are stiffer they have taken more of a load in the solve, and projection's part is noise.
     let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
     let force = F::splat(simd, step.inertia() / (step.h * step.h)) / stiffening;
-    for _ in 0..projections(interval.projections, tile.rest.len()) {
-        if !project(simd, M::STRIDE, force, tile, scratch) {
+    let granted = granted(simd, interval.projections, tile);
+    for iteration in 1.. {
+        let asked = granted.simd_ge(iteration as f32);
+        if !asked.any_true() || !project(simd, M::STRIDE, (force, asked), tile, scratch) {
             break;
         }
     }
 }
 
 /// Points of a strand for which one more iteration of projection is granted.
-const POINTS_AN_ITERATION: usize = 32;
+const POINTS_AN_ITERATION: f32 = 32.0;
 
-/// Iterations of projection that a strand of `points` may take where `setting` of them are asked for: the springs of the solve carry a
-/// change of load along some 60 points in a substep (see `stiffening`), and the longer the strand, the more is left to projection. It
-/// ends as soon as lengths are right.
-fn projections(setting: u32, points: usize) -> u32 {
-    if setting == 0 { 0 } else { setting.max((points / POINTS_AN_ITERATION) as u32) }
+/// Iterations of projection that each strand may take where `setting` of them are asked for: the springs of the solve carry a change of
+/// load along some 60 points in a substep (see `stiffening`), and the longer the strand, the more is left to projection. It ends as soon
+/// as lengths are right.
+#[inline(always)]
+fn granted<S: Simd>(simd: S, setting: u32, tile: &Tile) -> F<S> {
+    let points = load(simd, &tile.strand[strand::POINTS]) * (1.0 / POINTS_AN_ITERATION);
+    if setting == 0 { F::splat(simd, 0.0) } else { points.max(setting as f32) }
 }
-
-/// Points a strand from which on the solve is repeated once at what it found (iterative refinement). The finer a strand, the stiffer
-/// its segments are over their mass, until their rounding in the matrix weighs as much as the mass, and pushes or brakes it: strands
-/// of 1,024 points reached 10 to 70 m/s at rest, by chance of their length. The second solve is of the true residual, and they rest.
-const REFINED: f32 = 512.0;
 
 /// Largest correction over the longest segment below which Newton is done [1]: what f32 can tell apart.
 const CONVERGED: f32 = 1e-5;
@@ -69,24 +68,20 @@ fn solve<S, M, const B: usize, const N: usize>(
     let mut share = F::<S>::splat(simd, 1.0);
     let mut last = F::<S>::splat(simd, f32::INFINITY);
     let points = tile.rest.len();
-    let fine = load(simd, &tile.strand[strand::POINTS]).simd_gt(REFINED);
-    let (iterations, asked) = match interval.iterations {
-        1 if fine.any_true() => (2, fine),
-        iterations => (iterations, mask32x8::splat(simd, true)),
-    };
-    for iteration in 0..iterations {
+    for iteration in 0..interval.iterations {
         let sweep = if iteration == 0 { Sweep::First } else { Sweep::Again };
         if sweep == Sweep::Again {
-            scratch.kick[..points].copy_from_slice(&scratch.x[..points]);
+            scratch.kick[..points].copy_from_slice(&scratch.edges[..points]);
         }
         assemble::<S, M, B, N>(simd, sweep, step, tile, scratch);
-        substitute::<S, M, B, N>(simd, (sweep, asked), step, tile, scratch);
+        substitute::<S, M, B, N>(simd, sweep, step, tile, scratch);
         if sweep == Sweep::First {
             continue;
         }
         let (mut size, mut length) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 0.0));
+        let mut change = V3::zero(simd);
         for i in M::DRIVEN..points {
-            let change = V3::load(simd, &scratch.x[i]) - V3::load(simd, &scratch.kick[i]);
+            change += V3::load(simd, &scratch.edges[i]) - V3::load(simd, &scratch.kick[i]);
             size = size.max(change.dot(change));
             length = length.max(load(simd, &tile.rest[i - 1][rest::LENGTH]));
         }
@@ -98,8 +93,8 @@ fn solve<S, M, const B: usize, const N: usize>(
         let share_now = going.select(share, F::splat(simd, 0.0));
         for i in M::DRIVEN..points {
             let from = V3::load(simd, &scratch.kick[i]);
-            let change = V3::load(simd, &scratch.x[i]) - from;
-            change.mul_add(share_now, from).store(&mut scratch.x[i]);
+            let change = V3::load(simd, &scratch.edges[i]) - from;
+            change.mul_add(share_now, from).store(&mut scratch.edges[i]);
         }
         if !going.any_true() {
             break;

@@ -70,31 +70,32 @@ fn weights<S: Simd>(simd: S, h: f32, tile: &Tile, i: usize) -> [F<S>; 4] {
     ]
 }
 
-/// Leaves the new positions in `scratch.x` after so many iterations.
+/// Leaves the new edges in `scratch.edges` after so many iterations.
 #[inline(always)]
 pub fn advance<S: Simd>(simd: S, iterations: u32, step: &Step<S>, tile: &mut Tile, scratch: &mut Scratch) {
     let zero = V3::zero(simd);
     let n = tile.rest.len();
     let h = F::<S>::splat(simd, step.h);
     let inv_h2 = 1.0 / (step.h * step.h);
-    // x̂
+    // x̂ − x
     for i in 2..n {
-        let x = V3::load(simd, &scratch.x[i]);
-        let u = (x - V3::load(simd, &scratch.x[i - 1])).length_and_unit().1;
+        let u = V3::load(simd, &scratch.edges[i]).length_and_unit().1;
         let v = V3::load(simd, &tile.state[i][state::V..]);
-        (x + (v + outside(simd, step, tile, i, u) * h) * h - step.moved).store(&mut scratch.kick[i]);
+        ((v + outside(simd, step, tile, i, u) * h) * h - step.moved).store(&mut scratch.kick[i]);
     }
     for _ in 0..iterations {
         // Right-hand sides and the sweep down in one: z_i = b_i − l z of the two points before.
-        let mut x = [zero, V3::load(simd, &scratch.x[1])];
-        let mut u0 = x[1].length_and_unit().1;
+        let mut e0 = V3::load(simd, &scratch.edges[1]);
+        let mut u0 = e0.length_and_unit().1;
+        // How far a point has gone.
+        let mut way = zero;
         let mut normal = step.root.normal;
         let mut b = [zero; 3];
         for i in 0..n {
             if i + 1 < n {
                 let [alpha, beta, stretch, bend] = weights(simd, step.h, tile, i);
-                let x2 = if i + 2 < n { V3::load(simd, &scratch.x[i + 2]) } else { x[1] };
-                let (e0, e1) = (x[1] - x[0], x2 - x[1]);
+                let e1 = if i + 2 < n { V3::load(simd, &scratch.edges[i + 2]) } else { zero };
+                way += e0 - V3::load(simd, &tile.state[i + 1][state::EDGE..]);
                 let u1 = e1.length_and_unit().1;
                 let turn = V3::load(simd, &tile.rest[i + 1][rest::TURN..]);
                 let d = turn_in_frame(turn, normal, u0);
@@ -110,10 +111,10 @@ pub fn advance<S: Simd>(simd: S, iterations: u32, step: &Step<S>, tile: &mut Til
                 b[2] -= pull;
                 if i >= 1 {
                     let mass = load(simd, &tile.rest[i + 1][rest::MASS]);
-                    b[1] += (V3::load(simd, &scratch.kick[i + 1]) - x[1]) * (mass * inv_h2);
+                    b[1] += (V3::load(simd, &scratch.kick[i + 1]) - way) * (mass * inv_h2);
                 }
                 normal = V3::select(real, transport(normal, u0, u1), normal);
-                (x, u0) = ([x[1], x2], V3::select(real, u1, u0));
+                (e0, u0) = (e1, V3::select(real, u1, u0));
             }
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             let z = V3::select(free, b[0], zero);
@@ -130,7 +131,9 @@ pub fn advance<S: Simd>(simd: S, iterations: u32, step: &Step<S>, tile: &mut Til
             let change = V3::load(simd, &scratch.change[i])
                 - (after[0] * load(simd, &row[0]) + after[1] * load(simd, &row[1])) * inverse;
             let change = V3::select(free, change, zero);
-            (V3::load(simd, &scratch.x[i]) + change).store(&mut scratch.x[i]);
+            for (edge, change) in scratch.edges[i..n].iter_mut().zip([change, -change]) {
+                (V3::load(simd, edge) + change).store(edge);
+            }
             after = [change, after[0]];
         }
     }

@@ -43,17 +43,27 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
         local_global::factor(simd, interval.h, tile, scratch);
     }
     let mut root = Root::between(simd, tile.strand, 0.0, &interval.anchor);
+    // What the root drives drifts with it.
+    let velocity: [_; 3] = std::array::from_fn(|k| tile.state[0][state::V + k]);
+    for driven in &mut tile.state[1..M::DRIVEN] {
+        driven[state::V..state::V + 3].copy_from_slice(&velocity);
+    }
     let mut continues = interval.continues;
     for (number, substep) in interval.substeps.iter().enumerate() {
         let next = Root::at(simd, tile.strand, substep);
         let moved = next.position - root.position;
         root = next;
-        // Where the solve starts: every point where the last substep left it, the driven segment already where it goes.
-        V3::zero(simd).store(&mut scratch.x[0]);
-        root.first.store(&mut scratch.x[1]);
-        if M::STRIDE == 2 {
-            Root::third(simd, tile.strand, substep).store(&mut scratch.x[2]);
+        // Where the solve starts: every point where the last substep left it, the driven segment already where it goes, the rest
+        // staying behind.
+        let third = Root::third(simd, tile.strand, substep);
+        let driven = [V3::zero(simd), root.first, third - root.first];
+        let mut behind = V3::zero(simd);
+        for (edge, new) in scratch.edges.iter_mut().zip(driven).take(M::DRIVEN) {
+            behind += new - V3::load(simd, edge);
+            new.store(edge);
         }
+        let next = &mut scratch.edges[M::DRIVEN];
+        (V3::load(simd, next) - behind).store(next);
 
         let second_order = interval.integrator == Integrator::Bdf2 && continues;
         let step = Step {

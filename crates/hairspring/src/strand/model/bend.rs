@@ -23,16 +23,16 @@ use fearless_simd::prelude::*;
 /// A joint that bends.
 pub struct Bend<S: Simd> {
     pub joint: Joint<S>,
-    /// B r, the moment vector [N m].
+    /// B r, the moment vector, where the solve begins [N m].
     pub moment: V3<S>,
 }
 
-/// Bending at a joint: `e0`, `e1` the segments before and after it [m], `u0` the unit vector of `e0`, `alpha`, `beta` the
+/// Bending at a joint: `e0`, `e1` the segments before and after it and `d0`, `d1` their drifts [m], `u0` the unit vector of `e0`, `alpha`, `beta` the
 /// inverse rest lengths, `d` the rest turn in world axes, `stiffness` B [N m], and `implicit` the stiffness with damping
 /// for the matrix, B (1 + τ/h).
 #[inline(always)]
 pub fn bend<S: Simd>(
-    [e0, e1]: [V3<S>; 2],
+    [[e0, e1], [d0, d1]]: [[V3<S>; 2]; 2],
     u0: V3<S>,
     [alpha, beta]: [F<S>; 2],
     d: V3<S>,
@@ -41,9 +41,9 @@ pub fn bend<S: Simd>(
 ) -> Bend<S> {
     let r = e1 * beta - e0 * alpha - d;
     let a1 = u0.dot(d) + 1.0;
-    let pt_r = r * a1 - d * u0.dot(r);
-    let moment = r * stiffness;
-    let pull = [pt_r * (stiffness * alpha), -(moment * beta)];
+    let drift = d1 * beta - (d0 * a1 - u0 * d.dot(d0)) * alpha;
+    let moment = r * stiffness + drift * implicit;
+    let pull = [(moment * a1 - d * u0.dot(moment)) * alpha, -(moment * beta)];
 
     let (a, b) = (implicit * alpha, implicit * beta);
     let [aa, ab] = [a * alpha, b * alpha];

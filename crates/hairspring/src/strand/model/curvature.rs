@@ -38,7 +38,9 @@ impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
         let d = turn_in_frame(turn, self.normal, at.u[0]);
         let last = at.u[1].dot(at.u[1]).simd_eq(0.0);
         self.normal = V3::select(last, self.normal, transport(self.normal, at.u[0], at.u[1]));
-        bend(at.e, at.u[0], at.inverse_length, d, stiffness, stiffness * at.damped).joint.add_to(band);
+        bend([at.e, at.drift], at.u[0], at.inverse_length, d, stiffness, stiffness * at.damped)
+            .joint
+            .add_to(band);
     }
 
     #[inline(always)]

@@ -48,6 +48,10 @@ pub struct At<S: Simd> {
     pub along: [F<S>; 2],
     /// How much of the present errors of length is news to the tensions, see `Sweep::news`.
     pub news: f32,
+    /// By how much they change until where the solve begins, as their points' velocities say [m].
+    pub drift: [V3<S>; 2],
+    /// How long velocities act until there [s].
+    pub drifting: F<S>,
     /// Length of the substep [s].
     pub h: f32,
 }
@@ -56,9 +60,9 @@ pub struct At<S: Simd> {
 pub struct Solved<S: Simd, const N: usize> {
     /// The point.
     pub i: usize,
-    /// It and the two after it before the solve, relative to the root [m].
-    pub x: [V3<S>; 3],
-    /// Their displacements [m].
+    /// From it to the next and from there to the one after, before the solve [m].
+    pub edges: [V3<S>; 2],
+    /// Displacements of the three [m].
     pub moved: [V3<S>; 3],
     /// The unknowns from this point on.
     pub unknowns: [F<S>; N],
@@ -73,7 +77,8 @@ impl<S: Simd, const N: usize> Solved<S, N> {
     /// k (C + e·(δ_far − δ) / L) [N], with C the measure of length that projection has, which needs no root.
     #[inline(always)]
     pub fn taken(&self, far: usize, [length, inverse]: [F<S>; 2], k: F<S>) -> F<S> {
-        let u = (self.x[far] - self.x[0]) * inverse;
+        let [edge, next] = self.edges;
+        let u = (if far == 1 { edge } else { edge + next }) * inverse;
         // Bounded, because C grows with the square where a root has jumped.
         let longer = length * u.dot(u).min(4.0).mul_add(0.5, F::splat(k.simd, -0.5));
         k * longer.mul_add(self.news, u.dot(self.moved[far] - self.moved[0]))

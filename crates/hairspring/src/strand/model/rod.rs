@@ -78,7 +78,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
         let turn = V3::load(simd, &own[rest::TURN..]);
         let d = turn_in_frame(turn, m0, u0);
         let Bend { mut joint, moment } =
-            bend(at.e, u0, at.inverse_length, d, stiffness, stiffness * at.damped);
+            bend([at.e, at.drift], u0, at.inverse_length, d, stiffness, stiffness * at.damped);
         // The rest turn turns with the frame: ∂r/∂θ = −s.
         let s = u0.cross(d);
         let implicit = s * (stiffness * at.damped);
@@ -96,8 +96,10 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
         let slope = (tau * tau).mul_add(0.25, one);
         let twisting = stiffness * self.twist_ratio * slope;
         let k = twisting * slope * at.damped;
-        let force = twisting * (tau - load(simd, &own[rest::TWIST]));
         let direction = u0.cross(u1) * (one / (u0.dot(u1) + 1.0).max(0.1));
+        let [d0, d1] = at.drift;
+        let drift = direction.dot(d0 * alpha + d1 * beta);
+        let force = k.mul_add(drift, twisting * (tau - load(simd, &own[rest::TWIST])));
         joint.add_rank_one(direction, [alpha, beta], force, k);
         let column = direction * k;
         let columns = [column * alpha, column * beta];
@@ -116,8 +118,10 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
             let kappa = at.e[1] * beta - u0;
             let a1 = u0.dot(kappa) + 1.0;
             let stiffer = stiffness * self.flat;
-            let (k, force) = (stiffer * at.damped, stiffer * (m0.dot(kappa) - turn.x));
             let along = [-(alpha * a1), beta];
+            let drift = m0.dot(d0 * along[0] + d1 * along[1]);
+            let k = stiffer * at.damped;
+            let force = k.mul_add(drift, stiffer * (m0.dot(kappa) - turn.x));
             joint.add_rank_one(m0, along, force, k);
             let turned = -(m0.dot(u0.cross(kappa)));
             let column = m0 * (k * turned);
@@ -137,7 +141,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
 
     #[inline(always)]
     fn take(simd: S, solved: &Solved<S, 11>, tile: &mut Tile, _: &[Fixed]) {
-        let u = (solved.x[1] - solved.x[0]).length_and_unit().1;
+        let u = solved.edges[0].length_and_unit().1;
         let turn = solved.unknowns[3].max(-LARGEST_TURN).min(LARGEST_TURN);
         let row = &mut tile.state[solved.i][state::NORMAL..];
         let m = V3::load(simd, row);

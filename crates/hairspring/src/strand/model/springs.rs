@@ -23,7 +23,7 @@ use crate::strand::{
     lanes::{F, Row, Sym3, V3, load, store},
     root::Root,
     scratch::Scratch,
-    tile::{Tile, springs, strand},
+    tile::{Tile, springs, state, strand},
 };
 use fearless_simd::{Level, dispatch, mask32x8, prelude::*};
 
@@ -42,33 +42,42 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
     fn add(&mut self, simd: S, at: &At<S>, scratch: &Scratch, tile: &mut Tile, band: &mut Band<S, 3, 12>) {
         let i = at.i;
         let (rest, fixed) = (&tile.rest[i], &scratch.fixed[i]);
-        let p: &[_; 4] = scratch.x[i..].first_chunk().expect("positions go on past the tip");
-        let p = p.each_ref().map(|p| V3::load(simd, p));
-        add_altitude(simd, at, p, rest, band);
+        let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges go on past the tip");
+        let [e1, e2, e3] = edges.each_ref().map(|e| V3::load(simd, e));
+        // From this particle to the three after it.
+        let p = [e1, e1 + e2, e1 + e2 + e3];
+        let v = match tile.state[i..].first_chunk::<4>() {
+            Some(rows) => rows.each_ref().map(|row| V3::load(simd, &row[state::V..])),
+            // Beyond the tip nothing is stiff.
+            None => [0, 1, 2, 3]
+                .map(|k| V3::load(simd, &tile.state[(i + k).min(tile.rest.len() - 1)][state::V..])),
+        };
+        let drift = |far: usize| v[far] - v[0];
+        add_altitude(simd, at, (p, &drift), rest, band);
 
         // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
         // much as along: kept where it pulls alone (Choi & Ko 2002), it would resist every turn of a segment; left out, it cancels.
         let k = at.along[1 - at.phase];
-        let (l, u) = (p[1] - p[0]).length_and_unit();
+        let (l, u) = p[0].length_and_unit();
         let tension = load(simd, &tile.state[i][springs::SIDE]);
         let pull = k.mul_add((l - load(simd, &tile.rest[i | 1][springs::SIDES])) * at.news, tension);
-        add_spring(band, 1, u * pull, Sym3::outer(u, k));
+        add_spring(band, 1, u * k.mul_add(u.dot(drift(1)) * at.drifting, pull), Sym3::outer(u, k));
 
         // From a point, the particle after the next is the strand's next point: that spring is the segment's.
         if at.phase == 1 {
             let spring = BEND.spring(
-                p[2] - p[0],
+                [p[1], drift(2)],
                 [load(simd, &rest[springs::L2]), load(simd, &fixed.inverse_spans[0])],
                 load(simd, &rest[springs::K2]),
-                at.damped,
+                [at.damped, at.drifting],
             );
             add_spring(band, 2, spring.0, spring.1);
         }
         let spring = TORSION.spring(
-            p[3] - p[0],
+            [p[2], drift(3)],
             [load(simd, &rest[springs::L3]), load(simd, &fixed.inverse_spans[1])],
             load(simd, &rest[springs::K3]),
-            at.damped,
+            [at.damped, at.drifting],
         );
         add_spring(band, 3, spring.0, spring.1);
     }
@@ -124,19 +133,20 @@ impl Progressive {
         [poly(self.a, self.b), poly(2.0 * self.a, 3.0 * self.b)]
     }
 
-    /// Force on the nearer end of a spring from there to the farther, which is at `e` [N], and its matrix; with its rest length and
-    /// the inverse.
+    /// Force on the nearer end of a spring from there to the farther, which is at `e` and drifts with `v` [N], and its matrix; with
+    /// its rest length and the inverse.
     #[inline(always)]
     fn spring<S: Simd>(
         &self,
-        e: V3<S>,
+        [e, v]: [V3<S>; 2],
         [rest, inverse]: [F<S>; 2],
         k: F<S>,
-        damped: F<S>,
+        [damped, drifting]: [F<S>; 2],
     ) -> (V3<S>, Sym3<S>) {
         let (l, u) = e.length_and_unit();
         let [secant, tangent] = self.stiffness(k.simd, (l - rest) * inverse);
-        (u * (k * secant * (l - rest)), Sym3::outer(u, k * tangent * damped))
+        let implicit = k * tangent * damped;
+        (u * implicit.mul_add(u.dot(v) * drifting, k * secant * (l - rest)), Sym3::outer(u, implicit))
     }
 
     /// Force and energy of a spring of linear stiffness 1 and rest length `rest` that is longer by `longer` [m], [m²].
@@ -170,19 +180,27 @@ fn add_spring<S: Simd>(band: &mut Band<S, 3, 12>, far: usize, force: V3<S>, bloc
 /// Volume over the rest volume below which an altitude spring acts [1].
 const FLATTENED: f32 = 0.5;
 
-/// Adds the altitude spring of the particles `p` where their tetrahedron is flattened.
+/// Adds the altitude spring of a particle and the three after it, which are at `p` from it and drift with velocities `drift` against its, where their
+/// tetrahedron is flattened.
 #[inline(always)]
-fn add_altitude<S: Simd>(simd: S, at: &At<S>, p: [V3<S>; 4], rest: &[Row], band: &mut Band<S, 3, 12>) {
+fn add_altitude<S: Simd>(
+    simd: S,
+    at: &At<S>,
+    (p, drift): ([V3<S>; 3], &impl Fn(usize) -> V3<S>),
+    rest: &[Row],
+    band: &mut Band<S, 3, 12>,
+) {
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
-    let volume = (p[1] - p[0]).dot((p[2] - p[0]).cross(p[3] - p[0]));
+    let volume = p[0].dot(p[1].cross(p[2]));
     let flattened = (volume * kept).simd_lt(kept * kept);
     if !flattened.any_true() {
         return;
     }
     let k = flattened.select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
-    let (normal, c, strain) = altitude(simd, p, kept);
+    let (normal, c, strain) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
     band.add_rank_one(normal, c, k * at.damped);
-    let force = normal * -(k * strain);
+    let drifted = normal.dot(drift(1) * c[1] + drift(2) * c[2] + drift(3) * c[3]);
+    let force = normal * -(k * at.damped.mul_add(drifted * at.drifting, strain));
     band.add_force(0, force * c[0]);
     band.add_force(1, force * c[1]);
     band.add_force(2, force * c[2]);

@@ -29,13 +29,14 @@ impl<S: Simd> Model<S, 3, 9> for Straight {
     fn add(&mut self, simd: S, at: &At<S>, _: &Scratch, tile: &mut Tile, band: &mut Band<S, 3, 9>) {
         let stiffness = load(simd, &tile.rest[at.i + 1][rest::BEND]);
         let ([e0, e1], [alpha, beta]) = (at.e, at.inverse_length);
-        let moment = (e1 * beta - e0 * alpha) * stiffness;
+        let implicit = stiffness * at.damped;
+        let [d0, d1] = at.drift;
+        let moment = (e1 * beta - e0 * alpha) * stiffness + (d1 * beta - d0 * alpha) * implicit;
         let pull = [moment * alpha, moment * beta];
         band.add_force(0, -pull[0]);
         band.add_force(1, pull[0] + pull[1]);
         band.add_force(2, -pull[1]);
 
-        let implicit = stiffness * at.damped;
         let (a, b) = (implicit * alpha, implicit * beta);
         let [aa, ab, bb] = [a * alpha, a * beta, b * beta];
         band.add_identity(0, aa);
