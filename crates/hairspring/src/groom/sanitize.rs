@@ -318,7 +318,8 @@ mod tests {
         let width = 1.02e-6 / 13.0;
         let mut places = vec![0.0, 1.0 - 0.0092];
         places.extend((1..14).map(|i| (i % 2) as f32));
-        let mut groom = Groom::from_strands([places.iter().map(|x| Vec3::X * (x * width)).collect::<Vec<_>>()], 4e-5);
+        let mut groom =
+            Groom::from_strands([places.iter().map(|x| Vec3::X * (x * width)).collect::<Vec<_>>()], 4e-5);
         assert!(groom.strand_length(0) > SHORTEST_STRAND);
         assert_eq!(sanitize(&mut groom).zero_segments, 1);
         assert_eq!(sanitize(&mut groom).total(), 0);
