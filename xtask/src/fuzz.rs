@@ -6,8 +6,12 @@ use std::{path::Path, process::Child};
 /// Targets that run at the same time.
 const AT_ONCE: usize = 2;
 
-/// Builds all targets, fills their corpora with the seeds that are made by code, and runs each for `seconds`.
-pub fn all(seconds: u32) -> Result<(), String> {
+/// Seed of the search that CI makes: one and the same, so that whether a commit passes is a matter of the commit.
+pub const ALWAYS_THE_SAME: Option<u32> = Some(1);
+
+/// Builds all targets, fills their corpora with the seeds that are made by code, and runs each for `seconds`. Without a
+/// `seed` every run is another search.
+pub fn all(seconds: u32, seed: Option<u32>) -> Result<(), String> {
     let seeds = ["run", "--release", "-p", "hairspring-io", "--example", "fuzz_seeds", "fuzz/corpus"];
     run::cargo(&seeds, &[])?;
     let unstable = [("RUSTC_BOOTSTRAP", "1")];
@@ -20,6 +24,8 @@ pub fn all(seconds: u32) -> Result<(), String> {
         }
         println!("fuzzing {target} for {seconds} s");
         let time = format!("-max_total_time={seconds}");
+        // libFuzzer's own default, 0, is a new seed each time.
+        let seed = format!("-seed={}", seed.unwrap_or(0));
         // A gibibyte and ten seconds for one input are what no reader may take.
         let arguments = [
             "fuzz",
@@ -29,6 +35,7 @@ pub fn all(seconds: u32) -> Result<(), String> {
             &target,
             "--",
             &time,
+            &seed,
             "-timeout=10",
             "-rss_limit_mb=1024",
             "-verbosity=0",

@@ -18,15 +18,15 @@ fn main() {
     let done = match words[..] {
         ["test"] => test::all(),
         ["lint"] => lint(),
-        ["fuzz"] => fuzz::all(60),
+        ["fuzz"] => fuzz::all(60, None),
         ["fuzz", seconds] => match seconds.parse() {
-            Ok(seconds) => fuzz::all(seconds),
+            Ok(seconds) => fuzz::all(seconds, None),
             Err(_) => Err(format!("'{seconds}' is not a number of seconds")),
         },
         ["golden"] => {
             run::cargo(&["test", "--release", "-p", "hairspring-view"], &[("HAIRSPRING_GOLDEN", "write")])
         }
-        ["ci"] => lint().and_then(|()| fuzz::all(60)).and_then(|()| test::all()),
+        ["ci"] => lint().and_then(|()| fuzz::all(60, fuzz::ALWAYS_THE_SAME)).and_then(|()| test::all()),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
             Ok(())

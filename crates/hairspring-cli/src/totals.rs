@@ -107,6 +107,20 @@ impl Totals {
             rayon::current_num_threads(),
             stage.instruction_set()
         ));
+        let start = stage.start();
+        if start.stiffened > 0 {
+            say(format_args!(
+                "start    {} stiffer than their fibre, by the least that holds the groom as authored",
+                joints(start.stiffened)
+            ));
+        }
+        if start.held_back > 0 {
+            say(format_args!(
+                "start    {} softer than asked: single precision bears no more at {} substeps; more of them give it back",
+                joints(start.held_back),
+                stage.scene().solver.substeps
+            ));
+        }
         let stages: Vec<String> = self.stages().iter().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
         say(format_args!("ms/frame {}", stages.join(", ")));
         if self.reset_strands > 0 {
@@ -131,6 +145,8 @@ impl Totals {
             "points": points,
             "simulated_strands": guides,
             "simulated_points": guide_points,
+            "stiffened_joints": stage.start().stiffened,
+            "held_back_joints": stage.start().held_back,
             "substeps": self.substeps,
             "threads": rayon::current_num_threads(),
             "simd": stage.instruction_set(),
@@ -143,6 +159,11 @@ impl Totals {
         all.extend(rest);
         Value::Object(all)
     }
+}
+
+/// `1 joint is`, `2 joints are`.
+fn joints(n: usize) -> String {
+    format!("{} joint{}", grouped(n), if n == 1 { " is" } else { "s are" })
 }
 
 /// `1 frame`, `2 frames`.

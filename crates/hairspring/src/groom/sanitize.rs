@@ -137,20 +137,12 @@ fn fill_non_finite(points: &mut [Vec3]) -> usize {
     bad
 }
 
-/// Spreads points whose segments are below the shortest allowed, along the strand as it is. Returns how many segments
-/// were too short.
+/// Spreads points whose segments are below the shortest allowed, along the strand as it is; where that is not enough (a
+/// strand folded onto itself), evenly; then straight out; and what has no shape even so becomes a stub. Returns how many
+/// segments were too short. Each way out is judged as the strand that came in was, so that a second call finds nothing:
+/// a way along the old strand is shorter than it, by its corners, and may fall below what counts as a shape.
 fn spread_zero_segments(points: &mut [Vec3]) -> usize {
-    let segments = points.len() - 1;
-    let length: f32 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
-    // Below the spacing of f32 at these coordinates a length is noise.
-    let reach = points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
-    let noise = noise_of(points.len(), reach);
-    if length < SHORTEST_STRAND.max(noise) {
-        stub(points, noise);
-        return segments;
-    }
-    let shortest = SHORTEST_SEGMENT * length / segments as f32;
-    let short = points.windows(2).filter(|w| w[0].distance(w[1]) < shortest).count();
+    let short = short_segments(points);
     if short == 0 {
         return 0;
     }
@@ -159,63 +151,85 @@ fn spread_zero_segments(points: &mut [Vec3]) -> usize {
     for w in old.windows(2) {
         at.push(at[at.len() - 1] + w[0].distance(w[1]));
     }
-    // Where along the strand each point should be: no nearer to the one before than twice the shortest, and the
-    // same from the tip back, so that the tip stays. Chords at a bend are shorter than the way along it.
-    let gap = 2.0 * shortest;
-    let mut to = at.clone();
+    for spread in [spread_apart, spread_evenly, spread_straight] {
+        spread(points, &old, &at);
+        if short_segments(points) == 0 && points.iter().all(|p| p.abs().max_element() <= FARTHEST) {
+            return short;
+        }
+    }
+    points.copy_from_slice(&old);
+    stub(points);
+    short
+}
+
+/// Segments below the shortest allowed; all of them where the strand is too short to have a shape.
+fn short_segments(points: &[Vec3]) -> usize {
+    let length: f32 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+    if length < SHORTEST_STRAND.max(noise_of(points)) {
+        return points.len() - 1;
+    }
+    let shortest = shortest_segment(points.len(), length);
+    points.windows(2).filter(|w| w[0].distance(w[1]) < shortest).count()
+}
+
+/// Shortest segment that a strand of `count` points and `length` [m] may have [m].
+fn shortest_segment(count: usize, length: f32) -> f32 {
+    SHORTEST_SEGMENT * length / (count - 1) as f32
+}
+
+/// Moves the points that are too near to a neighbour along the old strand (`at` [m]: how far along it each point is):
+/// no nearer to the one before than twice the shortest, and the same from the tip back, so that the tip stays. Twice,
+/// because chords at a bend are shorter than the way along it.
+fn spread_apart(points: &mut [Vec3], old: &[Vec3], at: &[f32]) {
+    let (last, length) = (at.len() - 1, at[at.len() - 1]);
+    let gap = 2.0 * shortest_segment(at.len(), length);
+    let mut to = at.to_vec();
     for i in 1..to.len() {
         to[i] = to[i].max(to[i - 1] + gap);
     }
-    let last = to.len() - 1;
     to[last] = length;
     for i in (0..last).rev() {
         to[i] = to[i].min(to[i + 1] - gap);
     }
-    to[0] = 0.0;
     for i in 1..last {
         if to[i] != at[i] {
-            points[i] = along(&old, &at, to[i]);
+            points[i] = along(old, at, to[i]);
         }
     }
-    if points.windows(2).any(|w| w[0].distance(w[1]) < shortest) {
-        // Folded back on itself within the gap: even spacing, and where even that fails the straight line or a stub.
-        spread_evenly(points, &old, &at, shortest);
-    }
-    short
 }
 
-/// Even spacing along the old strand; if a chord still comes out too short (a strand folded onto itself), straight out.
-fn spread_evenly(points: &mut [Vec3], old: &[Vec3], at: &[f32], shortest: f32) {
-    let (last, length) = (points.len() - 1, at[at.len() - 1]);
+/// Spaces the points evenly along the old strand.
+fn spread_evenly(points: &mut [Vec3], old: &[Vec3], at: &[f32]) {
+    let (last, length) = (at.len() - 1, at[at.len() - 1]);
     for (i, p) in points.iter_mut().enumerate().take(last).skip(1) {
         *p = along(old, at, length * i as f32 / last as f32);
     }
-    if points.windows(2).any(|w| w[0].distance(w[1]) < shortest) {
-        let direction = (old[last] - old[0]).try_normalize().unwrap_or(Vec3::Y);
-        for (i, p) in points.iter_mut().enumerate() {
-            *p = old[0] + direction * (length * i as f32 / last as f32);
-        }
-        if points.iter().any(|p| p.abs().max_element() > FARTHEST) {
-            points[0] = old[0];
-            stub(points, noise_of(points.len(), FARTHEST));
-        }
+}
+
+/// Spaces the points evenly on a straight line of the old strand's length, from its root toward its tip.
+fn spread_straight(points: &mut [Vec3], old: &[Vec3], at: &[f32]) {
+    let (last, length) = (at.len() - 1, at[at.len() - 1]);
+    let direction = (old[last] - old[0]).try_normalize().unwrap_or(Vec3::Y);
+    for (i, p) in points.iter_mut().enumerate() {
+        *p = old[0] + direction * (length * i as f32 / last as f32);
     }
 }
 
 /// Replaces a strand without a shape by a straight one along +Y from its root (toward the origin where the root is at the
-/// end of what is believed), long enough to be told from `noise` [m].
-fn stub(points: &mut [Vec3], noise: f32) {
+/// end of what is believed), long enough to be told from noise wherever it is.
+fn stub(points: &mut [Vec3]) {
     let root = points[0];
     let up = if root.y > FARTHEST * 0.5 { -1.0 } else { 1.0 };
-    let step = up * STUB.max(noise * 4.0) / (points.len() - 1) as f32;
+    let step = up * STUB.max(noise_of(points) * 4.0) / (points.len() - 1) as f32;
     for (i, p) in points.iter_mut().enumerate() {
         *p = root + Vec3::Y * (step * i as f32);
     }
 }
 
-/// Length that f32 can not tell from zero for a strand of `count` points whose largest coordinate is `reach` [m].
-fn noise_of(count: usize, reach: f32) -> f32 {
-    reach * f32::EPSILON * 16.0 * (count - 1) as f32
+/// Length that f32 can not tell from zero for a strand at these coordinates [m]: below their spacing a length is noise.
+fn noise_of(points: &[Vec3]) -> f32 {
+    let reach = points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
+    reach * f32::EPSILON * 16.0 * (points.len() - 1) as f32
 }
 
 /// The point with no coordinate beyond [`FARTHEST`].
@@ -297,6 +311,20 @@ mod tests {
         assert_eq!(groom.radii, [2e-5; 3]);
     }
 
+    /// A zigzag of a little more than a micrometre with a short segment at its first fold, where spreading along the
+    /// strand brings two points together; spread evenly, it cuts its corners and is shorter than a micrometre.
+    #[test]
+    fn a_repair_that_leaves_no_shape_is_a_stub() {
+        let width = 1.02e-6 / 13.0;
+        let mut places = vec![0.0, 1.0 - 0.0092];
+        places.extend((1..14).map(|i| (i % 2) as f32));
+        let mut groom =
+            Groom::from_strands([places.iter().map(|x| Vec3::X * (x * width)).collect::<Vec<_>>()], 4e-5);
+        assert!(groom.strand_length(0) > SHORTEST_STRAND);
+        assert_eq!(sanitize(&mut groom).zero_segments, 1);
+        assert_eq!(sanitize(&mut groom).total(), 0);
+    }
+
     /// Coordinates as bad files have them.
     fn coordinate() -> impl Strategy<Value = f32> {
         prop_oneof![
@@ -313,6 +341,8 @@ mod tests {
             strands in prop::collection::vec(
                 prop::collection::vec((coordinate(), coordinate(), coordinate(), 0u8..4), 0..12), 0..6),
             radius in prop_oneof![Just(4e-5f32), Just(0.0), Just(f32::NAN)],
+            // Some grooms are of the size at which a strand ceases to have a shape.
+            scale in prop_oneof![2 => Just(1.0f32), 1 => 1e-7f32..1e-5],
         ) {
             let strands: Vec<Vec<Vec3>> = strands
                 .into_iter()
@@ -322,7 +352,7 @@ mod tests {
                         // Some repeat the point before, or fold back to the one before that.
                         let back = points.len().checked_sub(kind as usize);
                         let folded = back.filter(|_| kind > 0).and_then(|i| points.get(i)).copied();
-                        points.push(folded.filter(|_| kind < 3).unwrap_or(Vec3::new(x, y, z)));
+                        points.push(folded.filter(|_| kind < 3).unwrap_or(Vec3::new(x, y, z) * scale));
                     }
                     points
                 })

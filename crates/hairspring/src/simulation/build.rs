@@ -10,7 +10,7 @@ use crate::{
         interval::Interval,
         lanes::{LANES, Row},
         model::stretch::stiffening,
-        rest_shape::{Fibre, RestShape, rest_shape},
+        rest_shape::{Fibre, RestShape, Start, rest_shape},
         tile::{Elastic, RestRows, StateRows, StrandRows, history, rest, state, strand},
         truss::{particles, truss},
     },
@@ -105,7 +105,7 @@ impl Simulation {
             interval: Interval::default(),
             level: Level::new(),
             places,
-            stiffened: 0,
+            start: Start::default(),
         };
         simulation.fill(materials, obstacles);
         simulation
@@ -129,11 +129,11 @@ impl Simulation {
             (rest_of, state_of) = (more_rest, more_state);
             work.push((tile.model, lanes, strand, rest, state));
         }
-        self.stiffened = work
+        self.start = work
             .into_par_iter()
             .with_min_len(16)
             .map(|(model, lanes, strand, rest, state)| {
-                let mut stiffened = 0;
+                let mut start = Start::default();
                 for (lane, s) in lanes.iter().enumerate() {
                     let mut into = Lane { lane, strand: &mut *strand, rest: &mut *rest, state: &mut *state };
                     if *s == u32::MAX {
@@ -164,7 +164,7 @@ impl Simulation {
                             rest_shape(&points, &fibre, gravity)
                         }
                     };
-                    stiffened += shape.stiffened;
+                    start = start + shape.start;
                     into.write_strand(&points, &shape, anchor, obstacles);
                     let radius = radii.iter().sum::<f32>() / radii.len() as f32;
                     let rows = &mut *into.strand;
@@ -178,7 +178,7 @@ impl Simulation {
                     rows[strand::STIFFENING].0[lane] = stiffening(points);
                     rows[strand::AXIAL].0[lane] = material.young * std::f32::consts::PI * radius * radius;
                 }
-                stiffened
+                start
             })
             .sum();
     }

@@ -9,6 +9,7 @@ mod place;
 mod reset;
 mod step;
 
+pub use crate::strand::rest_shape::Start;
 pub use crate::volume::VolumeReport;
 pub use energy::Energy;
 pub use hold::Hold;
@@ -58,7 +59,7 @@ pub struct Simulation {
     level: Level,
     /// Lane of each simulated strand, in the order that the caller named them.
     places: Vec<u32>,
-    stiffened: usize,
+    start: Start,
 }
 
 /// Where a tile's points are.
@@ -70,7 +71,6 @@ struct TilePlace {
     points: u32,
     /// The elastic model of all its strands.
     model: Elastic,
-    /// Whether any strand has rest turns.
     /// Whether any fibre is flat.
     flat: bool,
 }
@@ -86,9 +86,9 @@ impl Simulation {
         self.strands().map(|s| self.groom.range(s as usize).len()).sum()
     }
 
-    /// Joints whose bending stiffness the sag-free start had to raise to hold the groom's shape.
-    pub fn stiffened_joints(&self) -> usize {
-        self.stiffened
+    /// Joints that the sag-free start had to make stiffer than the fibre, and those that are softer than they should be.
+    pub fn start(&self) -> Start {
+        self.start
     }
 
     /// Bytes of state, rest shape and strand data that the simulation holds, padding included.

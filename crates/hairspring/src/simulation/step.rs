@@ -8,7 +8,7 @@ use crate::{
         interval::{Interval, Substep},
         lanes::{LANES, Row},
         model::{curvature, rod, springs, straight},
-        scratch::Scratch,
+        scratch::Memory,
         tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, strand},
     },
 };
@@ -84,7 +84,7 @@ const NEWTON: u32 = 12;
 const TILES_PER_TASK: usize = 8;
 
 thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
+    static MEMORY: RefCell<Memory> = RefCell::default();
 }
 
 /// The longest substep [s].
@@ -251,7 +251,7 @@ fn run(level: Level, interval: &Interval, mut piece: Piece) -> bool {
         let (a, b) = rayon::join(|| run(level, interval, a), || run(level, interval, b));
         return a | b;
     }
-    SCRATCH.with_borrow_mut(|scratch| {
+    MEMORY.with_borrow_mut(|memory| {
         let mut broken = false;
         for k in 0..count {
             let mut tile = piece.tile(k);
@@ -261,7 +261,7 @@ fn run(level: Level, interval: &Interval, mut piece: Piece) -> bool {
                 Elastic::Rod => rod::run,
                 Elastic::Springs => springs::run,
             };
-            run(level, interval, &mut tile, scratch);
+            run(level, interval, &mut tile, memory);
             broken |= !reset::all_finite(tile.state);
         }
         broken

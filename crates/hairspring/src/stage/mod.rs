@@ -6,7 +6,7 @@ mod hair;
 use crate::{
     groom::{Groom, bind_roots},
     scene::{HairLook, Scene},
-    simulation::{Air, Measure, StepReport, VolumeReport},
+    simulation::{Air, Measure, Start, StepReport, VolumeReport},
 };
 use body::StagedBody;
 use glam::Vec3;
@@ -165,9 +165,9 @@ impl Stage {
         (self.hair.iter().map(|h| h.simulation().point_count()).sum(), all)
     }
 
-    /// Joints whose stiffness the sag-free start had to raise.
-    pub fn stiffened_joints(&self) -> usize {
-        self.hair.iter().map(|h| h.simulation().stiffened_joints()).sum()
+    /// Joints that the sag-free start had to make stiffer than the fibre, and those that are softer than they should be.
+    pub fn start(&self) -> Start {
+        self.hair.iter().map(|h| h.simulation().start()).sum()
     }
 
     /// What is known of the volume of each groom's hair; `None` where its strands pass through each other.

@@ -88,7 +88,7 @@ pub fn forces<S, M, const B: usize, const N: usize>(
     let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, step, tile, scratch);
     for i in 0..n {
         if i + 1 < n {
-            elements.add(simd, i % M::STRIDE, tile, scratch);
+            elements.add(simd, i, i % M::STRIDE, tile, scratch);
         }
         elements.band.force().store(&mut scratch.kick[i]);
         elements.band.shift();
@@ -139,7 +139,7 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
     scratch.factors[eliminated * rows..(eliminated + reach(B, N)) * rows].fill(Row::default());
     // The driven points and the last by themselves: one loop for all would carry the window through its branches.
     for i in 0..first {
-        add_point(simd, (sweep, i % M::STRIDE), step, tile, scratch, &mut elements, &mut held);
+        add_point(simd, (sweep, i, i % M::STRIDE), step, tile, scratch, &mut elements, &mut held);
         // An angle of the driven first segment is driven too, of the second it is not.
         let angle = i == 1 && B > 3;
         if angle {
@@ -148,27 +148,30 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
             }
         }
         if angle || i >= M::DRIVEN {
-            elements.band.eliminate(simd, M::HALF, i, &mut scratch.factors);
+            elements.band.eliminate(simd, M::HALF, i, scratch.factors);
         } else {
             elements.band.shift();
         }
     }
-    for i in (first..n - 1).step_by(M::STRIDE) {
-        add_point(simd, (sweep, 0), step, tile, scratch, &mut elements, &mut held);
-        elements.band.eliminate(simd, M::HALF, i, &mut scratch.factors);
+    let mut i = first;
+    // Not `i + STRIDE < n`, from which the compiler does not learn that i + 1 is below n.
+    while i < n.saturating_sub(M::STRIDE) {
+        add_point(simd, (sweep, i, 0), step, tile, scratch, &mut elements, &mut held);
+        elements.band.eliminate(simd, M::HALF, i, scratch.factors);
         if M::STRIDE == 2 {
-            add_point(simd, (sweep, 1), step, tile, scratch, &mut elements, &mut held);
-            elements.band.eliminate(simd, M::HALF, i + 1, &mut scratch.factors);
+            add_point(simd, (sweep, i + 1, 1), step, tile, scratch, &mut elements, &mut held);
+            elements.band.eliminate(simd, M::HALF, i + 1, scratch.factors);
         }
+        i += M::STRIDE;
     }
-    elements.band.eliminate(simd, M::HALF, n - 1, &mut scratch.factors);
+    elements.band.eliminate(simd, M::HALF, n - 1, scratch.factors);
 }
 
-/// Adds everything that begins at the walk's next point i, and what acts on point i+1.
+/// Adds everything that begins at the walk's next point i, and what acts on point i+1; `phase` is i modulo the model's stride.
 #[inline(always)]
 fn add_point<S, M, const B: usize, const N: usize>(
     simd: S,
-    (sweep, phase): (Sweep, usize),
+    (sweep, i, phase): (Sweep, usize, usize),
     step: &Step<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
@@ -178,13 +181,12 @@ fn add_point<S, M, const B: usize, const N: usize>(
     S: Simd,
     M: Model<S, B, N>,
 {
-    let segment = elements.add(simd, phase, tile, scratch);
-    let i = elements.at.i;
+    let segment = elements.add(simd, i, phase, tile, scratch);
     if sweep == Sweep::Again {
         let [new, old] = [&scratch.edges[i + 1][..], &tile.state[i + 1][state::EDGE..]];
         elements.way += V3::load(simd, new) - V3::load(simd, old);
     }
-    let (x, way, band) = (elements.x, elements.way, &mut elements.band);
+    let Elements { x, way, root_velocity, ref still, ref mut band, .. } = *elements;
     ask_beyond(tile.rest, i, step.number);
     ask_beyond(tile.state, i, 2 * step.number);
     ask_beyond(tile.state, i, 2 * step.number + 1);
@@ -193,27 +195,26 @@ fn add_point<S, M, const B: usize, const N: usize>(
     let inv_h = 1.0 / step.h;
     let mass = segment.mass;
     let v = V3::load(simd, &tile.state[i + 1][state::V..]);
-    let root_velocity = step.moved * F::splat(simd, inv_h);
     let (a, inv_h2) = (step.inertia(), inv_h * inv_h);
     let m_h2 = mass * (a * inv_h2);
-    let root = V3::load(simd, &tile.state[0][state::V..]);
-    let drift = || (v - root) * F::splat(simd, sweep.drift(step.h));
-    // Where the solve begins, from where the substep does, and p less a/h² of it.
-    let (way, mut p) = match sweep {
-        // All strands' points alike: what of the root's motion is new.
-        Sweep::First => (drift(), (root - root_velocity) * F::splat(simd, inv_h)),
-        _ => (way, (v - root_velocity - way * F::splat(simd, inv_h)) * F::splat(simd, inv_h)),
-    };
-    if step.second_order {
+    let drift = || (v - root_velocity) * F::splat(simd, sweep.drift(step.h));
+    // Where the solve begins, from where the substep does.
+    let way = || if sweep == Sweep::First { drift() } else { way };
+    // p less a/h² of that, and gravity.
+    let mut p = if step.second_order {
         let before = &tile.history[i + 1];
         let v_before = V3::load(simd, &before[history::V..]);
         let way_before = V3::load(simd, &before[history::WAY..]);
-        p = (v * F::splat(simd, 4.0) - v_before) * F::splat(simd, 0.5 * inv_h)
+        V3::splat(simd, step.gravity)
+            + (v * F::splat(simd, 4.0) - v_before) * F::splat(simd, 0.5 * inv_h)
             + (way_before * F::splat(simd, 3.0) - step.moved * F::splat(simd, 9.0))
                 * F::splat(simd, 0.25 * inv_h2)
-            - way * F::splat(simd, a * inv_h2);
-    }
-    p += V3::splat(simd, step.gravity);
+            - way() * F::splat(simd, a * inv_h2)
+    } else if sweep == Sweep::First {
+        still.pull
+    } else {
+        still.pull + (v - root_velocity - way() * F::splat(simd, inv_h)) * F::splat(simd, inv_h)
+    };
     if let Some(push) = tile.push.get(i + 1) {
         p += V3::load(simd, push);
     }
@@ -222,7 +223,11 @@ fn add_point<S, M, const B: usize, const N: usize>(
     let on_strand = phase + 1 == M::STRIDE;
     if on_strand {
         let across = segment.air * inv_h;
-        let slip = V3::splat(simd, step.wind) - root_velocity - way * F::splat(simd, inv_h);
+        let slip = if sweep == Sweep::First {
+            still.wind - v
+        } else {
+            still.wind - root_velocity - way() * F::splat(simd, inv_h)
+        };
         right += (slip - segment.u * (segment.u.dot(slip) * 0.5)) * segment.air;
         band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5).add_identity(across));
     }
@@ -246,7 +251,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
     }
     if on_strand {
         let work = &mut scratch.contacts[i + 1];
-        press(simd, step, tile, (i + 1, x, drift(), way), band, work);
+        press(simd, step, tile, (i + 1, x, drift(), way()), band, work);
     }
 }
 
@@ -317,6 +322,14 @@ pub struct Segment<S: Simd> {
     pub air: F<S>,
 }
 
+/// What acts alike on all points of strands whose points all move as their roots did.
+struct Still<S: Simd> {
+    /// Gravity, and how the root's own motion changes [m/s²].
+    pull: V3<S>,
+    /// The wind that a point feels, where it moves as the root did, and its own velocity [m/s].
+    wind: V3<S>,
+}
+
 /// The walk down a strand that fills the band: elasticity only.
 pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
     /// The window, which begins at the point that the walk is at.
@@ -327,14 +340,13 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
     x: V3<S>,
     /// How far it has gone since the start of the substep, of a sweep again [m].
     way: V3<S>,
-    /// Velocity of the strand's next point [m/s].
-    v1: V3<S>,
+    /// Velocity of the root in the last substep [m/s].
+    root_velocity: V3<S>,
+    still: Still<S>,
     /// Force of still air on half a unit of length, over speed [N s/m²].
     half_drag: F<S>,
     /// See [`stretch`].
     explicit: F<S>,
-    /// Rest length of the strand's segment before the walk's next point.
-    before: F<S>,
 }
 
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
@@ -342,21 +354,18 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     #[inline(always)]
     pub fn begin(simd: S, sweep: Sweep, step: &Step<S>, tile: &Tile, scratch: &Scratch) -> Self {
         let (drag, damping, _) = Root::<S>::fibre(simd, tile.strand);
-        let before = load(simd, &tile.rest[0][rest::LENGTH]);
         let zero = V3::zero(simd);
         let mut first = V3::load(simd, &scratch.edges[1]);
         if M::STRIDE == 2 {
             first += V3::load(simd, &scratch.edges[2]);
         }
-        let inverse = load(simd, &scratch.fixed[0].inverse_length);
         let at = At {
-            i: usize::MAX,
+            i: 0,
             phase: 0,
             e: [first; 2],
             u: [first.length_and_unit().1; 2],
-            inverse_length: [inverse; 2],
+            inverse_length: [F::splat(simd, 0.0); 2],
             damped: damping * (1.0 / step.h) + 1.0,
-            along: [load(simd, &scratch.fixed[0].along); 2],
             news: sweep.news(),
             drift: [zero; 2],
             drifting: F::splat(simd, sweep.drift(step.h)),
@@ -365,19 +374,23 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
         let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
         let explicit = F::splat(simd, step.explicit_tension()) / stiffening;
-        let v1 = V3::load(simd, &tile.state[0][state::V..]);
-        Self { band, model, at, x: zero, way: zero, v1, half_drag, before, explicit }
+        let root_velocity = V3::load(simd, &tile.state[0][state::V..]);
+        let now = step.moved * F::splat(simd, 1.0 / step.h);
+        let still = Still {
+            pull: (root_velocity - now).mul_add(F::splat(simd, 1.0 / step.h), V3::splat(simd, step.gravity)),
+            wind: V3::splat(simd, step.wind) + (root_velocity - now),
+        };
+        Self { band, model, at, x: zero, way: zero, root_velocity, still, half_drag, explicit }
     }
 
-    /// Adds what begins at the next point i: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i
-    /// modulo the model's stride, told apart so that it can be a constant.
+    /// Adds what begins at the next point `i`: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i
+    /// modulo the model's stride. Both are known to the walk; it is for the compiler that they are told.
     #[inline(always)]
-    pub fn add(&mut self, simd: S, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
+    pub fn add(&mut self, simd: S, i: usize, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
         let Scratch { edges, fixed, .. } = scratch;
-        self.at.i = self.at.i.wrapping_add(1);
-        self.at.phase = phase;
+        (self.at.i, self.at.phase) = (i, phase);
         self.band.enter(simd);
-        let next = self.at.i + 1;
+        let next = i + 1;
         self.x += V3::load(simd, &edges[next]);
         let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
@@ -386,26 +399,25 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             // Air does not meet what is no part of the fibre.
             return Segment { u: self.at.u[1], mass, air: F::splat(simd, 0.0) };
         }
-        let at = &mut self.at;
-        let length = load(simd, &row[rest::LENGTH]);
-        let far = next + M::STRIDE;
-        let (mut e, mut v2) = (V3::zero(simd), self.v1);
-        if far < tile.rest.len() {
-            v2 = V3::load(simd, &tile.state[far][state::V..]);
-            e = V3::load(simd, &edges[far]);
-            if M::STRIDE == 2 {
-                e += V3::load(simd, &edges[next + 1]);
-            }
-        }
+        // What the step before had in hand is read again: it would wait in memory all the same.
+        let (before, far) = (next - M::STRIDE, next + M::STRIDE);
+        let [v1, v2] =
+            [next, far.min(tile.rest.len() - 1)].map(|i| V3::load(simd, &tile.state[i][state::V..]));
+        let segment = |to: usize| {
+            let last = V3::load(simd, &edges[to]);
+            if M::STRIDE == 1 { last } else { V3::load(simd, &edges[to - 1]) + last }
+        };
+        let e = segment(far);
         let (l, u) = e.length_and_unit();
-        at.e = [at.e[1], e];
-        at.drift = [at.drift[1], (v2 - self.v1) * at.drifting];
+        let at = &mut self.at;
+        at.e = [segment(next), e];
+        at.drift = [at.drift[1], (v2 - v1) * at.drifting];
         at.u = [at.u[1], u];
-        at.inverse_length = [at.inverse_length[1], load(simd, &fixed[next].inverse_length)];
-        at.along = [at.along[1], load(simd, &fixed[next].along)];
+        at.inverse_length = [before, next].map(|i| load(simd, &fixed[i].inverse_length));
         self.model.add(simd, at, scratch, tile, &mut self.band);
 
-        let k = at.along[1];
+        let length = load(simd, &row[rest::LENGTH]);
+        let k = load(simd, &fixed[next].along);
         let tension = load(simd, &tile.state[next][state::TENSION]);
         let (force, block) = stretch((l, u), (l - length) * at.news, k, tension, self.explicit);
         self.band.add_diagonal(1, block);
@@ -414,9 +426,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let force = force + block * at.drift[1];
         self.band.add_force(1, force);
         self.band.add_force(1 + M::STRIDE, -force);
-        self.v1 = v2;
-        let air = self.half_drag * (self.before + length);
-        self.before = length;
+        let air = self.half_drag * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
         Segment { u, mass, air }
     }
 }

@@ -214,7 +214,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     pub fn eliminate(&mut self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
         let minus_one = F::<S>::splat(simd, -1.0);
         let (rows, reach) = (factor_rows(B, N, half), reach(B, N));
-        let factors = &mut factors[i * rows..(i + reach + 1) * rows];
+        let factors = &mut factors[i * rows..][..(reach + 1) * rows];
         each!(r of 0 1 2 3, {
             if r < B {
                 let (mut row, mut right) = (self.a[r], self.b[r]);

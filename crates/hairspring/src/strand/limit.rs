@@ -45,8 +45,8 @@ pub fn limit<S: Simd>(
 ) {
     let inv_h = F::<S>::splat(simd, 1.0 / step.h);
     // The root itself, and what it drives.
-    let mut at = At { x: step.root.position, way: V3::zero(simd) };
-    for (rows, driven) in tile.state.iter_mut().zip(&scratch.edges).take(stride + 1) {
+    let mut at = Particle { x: V3::zero(simd), way: step.moved };
+    for (rows, driven) in tile.state.iter_mut().zip(&*scratch.edges).take(stride + 1) {
         let edge = V3::load(simd, driven);
         at = at.on(edge, V3::load(simd, &rows[state::EDGE..]));
         edge.store(&mut rows[state::EDGE..]);
@@ -54,7 +54,8 @@ pub fn limit<S: Simd>(
     }
     // By how much the point before is elsewhere than the integrator had it.
     let mut shift = V3::zero(simd);
-    for i in (2 * stride..tile.rest.len()).step_by(stride) {
+    let mut i = 2 * stride;
+    while i < tile.rest.len() {
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
         let tether = Tether { length, limit: finish.limit };
         // From the strand's point before, wherever that is now.
@@ -63,7 +64,7 @@ pub fn limit<S: Simd>(
         let mut e = solved;
         shift = V3::zero(simd);
         // A branch, so that a segment waits for the one before it only where something is to be done.
-        let world = at.x + e;
+        let world = step.root.position + (at.x + e);
         let near = step.obstacles.iter().any(|pose| pose.near(simd, world).any_true());
         if near || tether.wrong(e).any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
@@ -83,6 +84,7 @@ pub fn limit<S: Simd>(
             last = e - extra;
         }
         at = write(simd, finish, step, (i, &at, last), tile, scratch);
+        i += stride;
     }
 }
 
@@ -95,7 +97,7 @@ fn place<S: Simd>(
     step: &Step<S>,
     tile: &mut Tile,
     (i, stride, e): (usize, usize, V3<S>),
-    (at, tether): (&At<S>, &Tether<S>),
+    (at, tether): (&Particle<S>, &Tether<S>),
 ) -> V3<S> {
     let friction = Root::<S>::fibre(simd, tile.strand).2;
     let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
@@ -105,15 +107,17 @@ fn place<S: Simd>(
     }
     let mut press = load(simd, &tile.state[i][state::PRESS]);
     let mut e = tether.clamp(e);
+    // Summed from the root, like in `press`: far from the world's origin a sum there would lose digits at every point.
+    let in_world = |e: V3<S>| step.root.position + (at.x + e);
     for pose in step.obstacles {
-        let world = at.x + e;
+        let world = in_world(e);
         let (distance, normal) = contact(simd, pose, world);
         let depth = (clearance - distance).max(0.0);
         if depth.simd_gt(0.0).any_true() {
             // Out along the normal; then back along the surface, at most μ times as far.
             let pushed = e + normal * depth;
             let carried = surface_displacement(simd, pose, world);
-            let slide = at.way + (pushed - old) + step.moved - carried;
+            let slide = at.way + (pushed - old) - carried;
             let tangent = slide - normal * normal.dot(slide);
             let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
             let held = pushed - tangent * hold.min(1.0);
@@ -126,7 +130,7 @@ fn place<S: Simd>(
             // ear) its length goes before its depth, so that it slips free in time.
             let mut q = tether.clamp(held);
             for _ in 0..CORRECTIONS {
-                let (distance, normal) = contact(simd, pose, at.x + q);
+                let (distance, normal) = contact(simd, pose, in_world(q));
                 q = tether.clamp(tether.swing_out(q, normal, (clearance - distance).max(0.0)));
             }
             e = V3::select(depth.simd_gt(0.0), q, e);
@@ -137,14 +141,14 @@ fn place<S: Simd>(
 }
 
 /// A particle on the walk from root to tip.
-struct At<S: Simd> {
-    /// Where it is, in the world [m].
+struct Particle<S: Simd> {
+    /// Where it is, from the root [m].
     x: V3<S>,
-    /// How far it went in the substep, besides the root's way [m].
+    /// How far it went in the substep [m].
     way: V3<S>,
 }
 
-impl<S: Simd> At<S> {
+impl<S: Simd> Particle<S> {
     /// The particle after this one, by the edge to it and what that was before the substep.
     #[inline(always)]
     fn on(&self, edge: V3<S>, old: V3<S>) -> Self {
@@ -158,24 +162,23 @@ fn write<S: Simd>(
     simd: S,
     finish: &Finish,
     step: &Step<S>,
-    (i, before, edge): (usize, &At<S>, V3<S>),
+    (i, before, edge): (usize, &Particle<S>, V3<S>),
     tile: &mut Tile,
     scratch: &mut Scratch,
-) -> At<S> {
+) -> Particle<S> {
     let inv_h = F::<S>::splat(simd, 1.0 / step.h);
     let at = before.on(edge, V3::load(simd, &tile.state[i][state::EDGE..]));
-    let way = at.way + step.moved;
-    let mut v = way * inv_h;
+    let mut v = at.way * inv_h;
     if finish.kicks {
         v += V3::load(simd, &scratch.kick[i]);
     }
     if let Some(history) = tile.history.get_mut(i) {
         if step.second_order {
             let before = V3::load(simd, &history[history::WAY..]);
-            v += (way - before) * (inv_h * 0.5);
+            v += (at.way - before) * (inv_h * 0.5);
         }
         V3::load(simd, &tile.state[i][state::V..]).store(&mut history[history::V..]);
-        way.store(&mut history[history::WAY..]);
+        at.way.store(&mut history[history::WAY..]);
     }
     let rows = &mut tile.state[i];
     v.store(&mut rows[state::V..state::V + 3]);

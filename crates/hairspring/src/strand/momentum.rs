@@ -11,7 +11,7 @@ use super::{
     },
     reference,
     root::Root,
-    scratch::Scratch,
+    scratch::Memory,
     tests::{lane, rows, splat, vector},
     tile::{Elastic, Tile, rest, springs, strand},
 };
@@ -78,15 +78,15 @@ where
         second_order: false,
         obstacles: &[],
     };
-    let mut scratch = Scratch::default();
-    scratch.reserve(s.x.len());
+    let mut memory = Memory::default();
+    let mut scratch = memory.scratch(s.x.len());
     fix(simd, step.h, Stretching::Moderate, tile, &mut scratch);
     scratch.begin(tile.state);
     let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, &step, tile, &scratch);
     let mut forces = Forces::default();
     for i in 0..s.x.len() {
         if i + 1 < s.x.len() {
-            elements.add(simd, i % M::STRIDE, tile, &scratch);
+            elements.add(simd, i, i % M::STRIDE, tile, &scratch);
         }
         forces.0.push(lane(elements.band.force()));
         forces.1.push(if B > 3 { elements.band.right(3)[3] as f64 } else { 0.0 });

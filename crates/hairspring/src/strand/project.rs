@@ -32,8 +32,8 @@ const ENOUGH: f32 = 1e-4;
 /// Points of a strand, see [`ENOUGH`].
 const SHORT_STRAND: f32 = 32.0;
 
-/// One iteration over `scratch.edges`, of every `stride`th particle, in the strands that are `asked`; false where all their lengths were
-/// already right. λ times `force` (a/h² of the integrator) goes into the tension.
+/// One iteration over `scratch.edges`, of every `stride`th particle, in the strands that are `asked`; false where all their lengths are
+/// right, before it or after. λ times `force` (a/h² of the integrator) goes into the tension.
 #[inline(always)]
 pub fn project<S: Simd>(
     simd: S,
@@ -44,29 +44,30 @@ pub fn project<S: Simd>(
 ) -> bool {
     let Scratch { factors, edges, fixed, .. } = scratch;
     let zero = F::<S>::splat(simd, 0.0);
-    // Cut to one length, so that the loops need no checks.
     let points = tile.rest.len();
-    let (edges, fixed) = (&mut edges[..points], &fixed[..points]);
-    let (rest, state) = (&tile.rest[..points], &mut tile.state[..points]);
     let segments = (points - 1) / stride;
     let work = &mut factors.as_chunks_mut::<ROWS>().0[..segments];
-    let mut before = V3::zero(simd);
-    let (mut d_before, mut inv_before) = (zero, zero);
     let shorter = (F::splat(simd, SHORT_STRAND) / load(simd, &tile.strand[strand::POINTS])).min(1.0);
     let enough = shorter * -ENOUGH;
+    // Error of a segment's length, from the square of its relative length, and by how much it is more than enough. Padding has neither length
+    // nor inverse length: all of its row is nought.
+    let error = |length: F<S>, size: F<S>, loose: mask32x8<S>| {
+        let error = loose.select(length * size.mul_add(0.5, F::splat(simd, -0.5)), zero);
+        (error, length.mul_add(enough, error.abs()))
+    };
+    let mut before = V3::zero(simd);
+    let (mut d_before, mut inv_before) = (zero, zero);
     let mut worst = zero;
     let mut w0 = zero;
     for k in 1..segments {
         let i = k * stride;
-        let length = load(simd, &rest[i][rest::LENGTH]);
+        let length = load(simd, &tile.rest[i][rest::LENGTH]);
         let w1 = load(simd, &fixed[i + stride].inverse_mass);
-        // Padding has neither length nor inverse length: all of its row is nought.
         let u = segment(simd, stride, edges, i) * load(simd, &fixed[i].inverse_length);
         let size = u.dot(u);
         // Nothing to do between two points that are held.
-        let loose = (w0 + w1).simd_gt(0.0);
-        let error = loose.select(length * size.mul_add(0.5, F::splat(simd, -0.5)), zero);
-        worst = worst.max(length.mul_add(enough, error.abs()));
+        let (error, excess) = error(length, size, (w0 + w1).simd_gt(0.0));
+        worst = worst.max(excess);
         // Row i: −w0 (u·u₋) λ₋ + (w0 + w1) u·u λ − w1 (u·u₊) λ₊ = C
         let coupling = w0 * before.dot(u);
         let c_before = coupling * inv_before;
@@ -82,27 +83,42 @@ pub fn project<S: Simd>(
         return false;
     }
     store(zero, &mut work[segments - 1][C]);
-    // Up: λ_i = d_i + c_i λ_{i+1};  Δx_{i+1} = −w (u_i λ_i − u_{i+1} λ_{i+1})
+    // Up: λ_i = d_i + c_i λ_{i+1};  Δx_{i+1} = −w (u_i λ_i − u_{i+1} λ_{i+1}). A segment has its length once both of its ends have moved.
     let (mut lambda, mut pull) = (zero, V3::zero(simd));
+    let mut waiting = V3::zero(simd);
+    let mut w_outer = zero;
+    worst = zero;
     for k in (1..segments).rev() {
         let i = k * stride;
-        let u = segment(simd, stride, edges, i) * load(simd, &fixed[i].inverse_length);
+        let s = segment(simd, stride, edges, i);
+        let u = s * load(simd, &fixed[i].inverse_length);
         let d = load(simd, &work[k][D]);
         lambda = load(simd, &work[k][C]).mul_add(lambda, d);
         lambda = active.select(lambda, zero);
         let own = u * lambda;
-        let move_outer = (pull - own) * load(simd, &fixed[i + stride].inverse_mass);
+        let w = load(simd, &fixed[i + stride].inverse_mass);
+        let move_outer = (pull - own) * w;
+        waiting -= move_outer;
         // The edge into the point that moves, and the one out of it.
-        for (edge, sign) in [(i + stride, 1.0), (i + stride + 1, -1.0)] {
-            if let Some(edge) = edges.get_mut(edge) {
-                move_outer.mul_add(F::splat(simd, sign), V3::load(simd, edge)).store(edge);
-            }
+        let last = V3::load(simd, &edges[i + stride]) + move_outer;
+        last.store(&mut edges[i + stride]);
+        let after = i + stride;
+        if after + stride < points {
+            let first = if stride == 1 { waiting } else { V3::load(simd, &edges[after + 1]) - move_outer };
+            first.store(&mut edges[after + 1]);
+            let size = waiting * load(simd, &fixed[after].inverse_length);
+            let loose = (w + w_outer).simd_gt(0.0);
+            worst = worst.max(error(load(simd, &tile.rest[after][rest::LENGTH]), size.dot(size), loose).1);
         }
-        let tension = &mut state[i][state::TENSION];
+        waiting = s + move_outer;
+        w_outer = w;
+        let tension = &mut tile.state[i][state::TENSION];
         store(lambda.mul_add(force, load(simd, tension)), tension);
         pull = own;
     }
-    true
+    let size = waiting * load(simd, &fixed[stride].inverse_length);
+    let first = error(load(simd, &tile.rest[stride][rest::LENGTH]), size.dot(size), w_outer.simd_gt(0.0)).1;
+    (asked & worst.max(first).simd_gt(0.0)).any_true()
 }
 
 /// From particle `i` to the strand's next point.

@@ -104,8 +104,32 @@ pub struct RestPoint {
 pub struct RestShape {
     /// Shape `[points]`.
     pub points: Vec<RestPoint>,
-    /// Joints whose stiffness was raised for the sag-free start.
+    /// What the fibre could not do as it is.
+    pub start: Start,
+}
+
+/// What was changed of fibres so that strands start as they were authored, and what could not be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Start {
+    /// Joints whose bending stiffness the sag-free start raised, by the least that holds the shape: no fibre of the material could.
     pub stiffened: usize,
+    /// Joints that are softer than the material, or than the shape asks for, because single precision bears no more in a substep of this
+    /// length: what fine segments let off, more substeps give back. (Springs that hold a truss's extra particles are not counted.)
+    pub held_back: usize,
+}
+
+impl std::ops::Add for Start {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { stiffened: self.stiffened + other.stiffened, held_back: self.held_back + other.held_back }
+    }
+}
+
+impl std::iter::Sum for Start {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, one| sum + one)
+    }
 }
 
 /// The rest shape of the strand through `points` (three or more, no two neighbours alike) [m], in balance under `gravity` [m/s²],
@@ -134,11 +158,16 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let mean = if j == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[j - 1] + lengths[j]) };
         rest[j].bend = ei / mean;
     }
-    let stiffest = |rest: &[RestPoint], j: usize| {
+    let mut start = Start::default();
+    // Holds a joint back; whether it had to.
+    let hold_back = |j: usize, at: &mut RestPoint| {
         let shorter = lengths[j - 1].min(lengths[j]);
         // A joint takes hold of its middle point with both segments, 4 B/L² in all, where a spring does with one: a quarter leaves it the
         // digits.
-        0.25 * fine(n) * fibre.stiffest(rest[j].mass) * shorter * shorter
+        let stiffest = 0.25 * fine(n) * fibre.stiffest(at.mass) * shorter * shorter;
+        let asked = at.bend;
+        at.bend = asked.min(stiffest);
+        usize::from(asked > stiffest)
     };
 
     // The frame carried along the strand (the same transport as `bend::transport`).
@@ -149,7 +178,6 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         rest[i].normal = (frame - (t[i - 1] + t[i]) * scale).normalize_or(frame);
     }
 
-    let mut stiffened = 0;
     if gravity != DVec3::ZERO {
         let up = -gravity.normalize();
         let g = gravity.length();
@@ -178,9 +206,9 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             let needed = sag.max(held).max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
             if needed > rest[i].bend {
                 rest[i].bend = needed;
-                stiffened += 1;
+                start.stiffened += 1;
             }
-            rest[i].bend = rest[i].bend.min(stiffest(&rest, i));
+            start.held_back += hold_back(i, &mut rest[i]);
             let frame = rest[i - 1].normal;
             let stiff = frame * (frame.dot(moment) * fibre.flat / (1.0 + fibre.flat));
             let kappa = t[i] - t[i - 1];
@@ -194,7 +222,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         }
     } else {
         for i in 1..n - 1 {
-            rest[i].bend = rest[i].bend.min(stiffest(&rest, i));
+            start.held_back += hold_back(i, &mut rest[i]);
             rest[i].turn = t[i] - t[i - 1];
         }
     }
@@ -204,5 +232,5 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let (d, frame) = (rest[i].turn, rest[i - 1].normal);
         rest[i].turn = DVec3::new(d.dot(frame), d.dot(t[i - 1].cross(frame)), d.dot(t[i - 1]));
     }
-    RestShape { points: rest, stiffened }
+    RestShape { points: rest, start }
 }

@@ -9,22 +9,32 @@ use super::{
     tile::state,
 };
 
-/// Working memory of one thread.
+/// Working memory of one thread, as large as the longest tile that it ran.
 #[derive(Default)]
-pub struct Scratch {
+pub struct Memory {
+    factors: Vec<Row>,
+    edges: Vec<[Row; 3]>,
+    kick: Vec<[Row; 3]>,
+    change: Vec<[Row; 3]>,
+    contacts: Vec<[Row; press::scratch::ROWS]>,
+    fixed: Vec<Fixed>,
+}
+
+/// What one tile needs of it, cut to the tile's length, so that walks along the strand need no checks.
+pub struct Scratch<'a> {
     /// Factors of the band, point after point, after zeros for those that the first would meet; other sweeps' rows lie over them.
-    pub factors: Vec<Row>,
+    pub factors: &'a mut [Row],
     /// From each particle's predecessor to it, anew, shape `[points + BEYOND]` [m]; see `state::EDGE`.
-    pub edges: Vec<[Row; 3]>,
+    pub edges: &'a mut [[Row; 3]],
     /// What is added to the velocities of `(new − old) / h`, shape `[points]` [m/s]; forces before that. Of integrators other than the
     /// implicit ones.
-    pub kick: Vec<[Row; 3]>,
+    pub kick: &'a mut [[Row; 3]],
     /// Changes of the positions in one iteration, shape `[points]` [m].
-    pub change: Vec<[Row; 3]>,
+    pub change: &'a mut [[Row; 3]],
     /// What the solve knows of contact, shape `[points]`; see `press::scratch`.
-    pub contacts: Vec<[Row; press::scratch::ROWS]>,
+    pub contacts: &'a mut [[Row; press::scratch::ROWS]],
     /// What stays as it is for an interval, shape `[points]`.
-    pub fixed: Vec<Fixed>,
+    pub fixed: &'a mut [Fixed],
 }
 
 /// Most rows of factors a point, those of the rod.
@@ -36,17 +46,23 @@ const MOST_REACH: usize = reach(3, 12);
 /// Edges after the last, so that three that follow each other can be read at any: they are finite and nothing depends on them.
 const BEYOND: usize = 3;
 
-impl Scratch {
-    /// Fills `edges` from those in `state`, shape `[points]`.
-    pub fn begin(&mut self, state: &[StateRows]) {
-        for (edge, at) in self.edges.iter_mut().zip(state) {
-            edge.copy_from_slice(&at[state::EDGE..state::EDGE + 3]);
+impl Memory {
+    /// What a tile of `points` needs.
+    #[inline(always)]
+    pub fn scratch(&mut self, points: usize) -> Scratch<'_> {
+        self.reserve(points);
+        Scratch {
+            factors: &mut self.factors[..(points + MOST_REACH) * MOST_FACTORS],
+            edges: &mut self.edges[..points + BEYOND],
+            kick: &mut self.kick[..points],
+            change: &mut self.change[..points],
+            contacts: &mut self.contacts[..points],
+            fixed: &mut self.fixed[..points],
         }
-        self.edges[state.len()..state.len() + BEYOND].fill([Row::default(); 3]);
     }
 
     /// Room for a tile of `points`.
-    pub fn reserve(&mut self, points: usize) {
+    fn reserve(&mut self, points: usize) {
         if self.fixed.len() < points {
             self.factors.resize((points + MOST_REACH) * MOST_FACTORS, Row::default());
             self.kick.resize(points, [Row::default(); 3]);
@@ -55,5 +71,15 @@ impl Scratch {
             self.contacts.resize(points, [Row::default(); press::scratch::ROWS]);
             self.fixed.resize(points, Fixed::default());
         }
+    }
+}
+
+impl Scratch<'_> {
+    /// Fills `edges` from those in `state`, shape `[points]`.
+    pub fn begin(&mut self, state: &[StateRows]) {
+        for (edge, at) in self.edges.iter_mut().zip(state) {
+            edge.copy_from_slice(&at[state::EDGE..state::EDGE + 3]);
+        }
+        self.edges[state.len()..state.len() + BEYOND].fill([Row::default(); 3]);
     }
 }

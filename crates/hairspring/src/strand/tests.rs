@@ -15,7 +15,7 @@ use super::{
     },
     reference::{self, dense_solve},
     root::Root,
-    scratch::Scratch,
+    scratch::{Memory, Scratch},
     tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
     truss::ASIDE,
 };
@@ -281,7 +281,9 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
             normal -= (t0 + t1) * (normal.dot(t1) / (1.0 + t0.dot(t1)));
         }
         set(&mut state_rows[i], state::EDGE, &(s.x[i] - s.x[i.saturating_sub(1)]).as_vec3().to_array());
-        set(&mut state_rows[i], state::V, &s.v[i].as_vec3().to_array());
+        // What the root drives drifts with it.
+        let v = s.v[if i < 2 { 0 } else { i }];
+        set(&mut state_rows[i], state::V, &v.as_vec3().to_array());
         normals.push(normal);
         set(&mut state_rows[i], state::NORMAL, &normal.as_vec3().to_array());
         set(&mut state_rows[i], state::TENSION, &[s.tension[i] as f32]);
@@ -294,7 +296,8 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
 fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
     let n = s.x.len();
     let (strand_rows, rest_rows, mut state_rows, normals) = rows(s);
-    let mut scratch = Scratch::default();
+    let mut memory = Memory::default();
+    let mut scratch = memory.scratch(n);
     let mut tile = Tile {
         model,
         flat: false,
@@ -317,7 +320,6 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
             second_order: false,
             obstacles: &[],
         };
-        scratch.reserve(n);
         scratch.begin(tile.state);
         fix(simd, step.h, Stretching::Moderate, &tile, &mut scratch);
         solve_once(simd, &step, &mut tile, &mut scratch);

@@ -159,6 +159,22 @@ pub struct Tile<'a> {
     pub holds: &'a [HoldRows],
 }
 
+impl Tile<'_> {
+    /// The same tile, of which the compiler knows that its arrays are equally long.
+    #[inline(always)]
+    pub fn cut(&mut self) -> Tile<'_> {
+        let points = self.rest.len();
+        let [history, push] =
+            [self.history.is_empty(), self.push.is_empty()].map(|none| if none { 0 } else { points });
+        Tile {
+            state: &mut self.state[..points],
+            history: &mut self.history[..history],
+            push: &self.push[..push],
+            ..*self
+        }
+    }
+}
+
 /// The elastic model of a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Elastic {

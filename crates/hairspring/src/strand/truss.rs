@@ -18,7 +18,7 @@
 use super::{
     lanes::{F, V3},
     model::springs::{BEND, Progressive, TORSION},
-    rest_shape::{Fibre, RestPoint, RestShape, fine, rest_shape},
+    rest_shape::{Fibre, RestPoint, RestShape, Start, fine, rest_shape},
 };
 use fearless_simd::prelude::*;
 use glam::{DMat3, DVec3, Vec3};
@@ -99,6 +99,7 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             at.turn.z = (x[i + 1] - x[i]).dot((x[i + 2] - x[i]).cross(x[i + 3] - x[i]));
         }
     }
+    let mut start = Start { held_back: 0, ..strand.start };
     for j in 1..points.len() - 1 {
         let lengths = [strand.points[j - 1].length, strand.points[j].length];
         let shorter = lengths[0].min(lengths[1]);
@@ -109,7 +110,10 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let natural = before.normal * at.turn.x + t[0].cross(before.normal) * at.turn.y + t[0] * at.turn.z;
         let sag = (t[1] - t[0] - natural).length();
         let bend = at.bend * (sag / LARGEST_SAG).max(1.0);
-        let bend = bend.min(stiffest * shorter * shorter / (BRACED[0] * hardest));
+        let most = stiffest * shorter * shorter / (BRACED[0] * hardest);
+        // Never more than the rod may have, whose joint may have been held back to just that.
+        start.held_back += usize::from(bend >= most);
+        let bend = bend.min(most);
         // A flat fibre bends harder toward its frame's normal, where every other extra particle is.
         let harder = [j - 1, j].map(|segment| if segment % 2 == 0 { hardest } else { 1.0 });
         let easier = 0.25 * (1.0 / harder[0] + 1.0 / harder[1]);
@@ -131,7 +135,6 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         }
     }
     rest[0].normal = strand.points[0].normal;
-    let mut stiffened = strand.stiffened;
     if gravity != DVec3::ZERO {
         let mut pull: Vec<DVec3> = rest.iter().map(|p| gravity * p.mass).collect();
         for k in (3..n).rev() {
@@ -147,7 +150,7 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
                 let needed = tension[j].abs() / (LARGEST_STRAIN * length);
                 if needed > *stiffness {
                     *stiffness = needed;
-                    stiffened += 1;
+                    start.stiffened += 1;
                 }
                 length - law.lengthened(tension[j] / stiffness.max(f64::MIN_POSITIVE), length)
             };
@@ -159,7 +162,7 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             }
         }
     }
-    RestShape { points: rest, stiffened }
+    RestShape { points: rest, start }
 }
 
 /// An extra particle at `p`, put where its triangle over the segment `e` of rest length `length` has it; from the segment's start.

@@ -231,9 +231,11 @@ fn what_is_not_finite_does_not_count() {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
         bundle.set(|p| (p * 0.8, p * -3.0), &Rigid::default());
-        for (point, row, x) in
-            [(3, state::EDGE, f32::NAN), (40, state::V + 1, f32::INFINITY), (90, state::EDGE + 2, f32::INFINITY)]
-        {
+        for (point, row, x) in [
+            (3, state::EDGE, f32::NAN),
+            (40, state::V + 1, f32::INFINITY),
+            (90, state::EDGE + 2, f32::INFINITY),
+        ] {
             bundle.state[point][row].0[5] = x;
         }
         bundle.strand[7][strand::ROOT_END].0[2] = f32::NAN;

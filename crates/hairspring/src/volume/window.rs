@@ -86,7 +86,8 @@ impl Chart {
     /// Takes eight places [cells] from a point of their strands to the next.
     #[inline(always)]
     pub fn walk(&self, places: &mut [[f32; LANES]; 3], next: &StateRows) {
-        let [Row(x), Row(y), Row(z)] = &next[state::EDGE..].first_chunk::<3>().expect("an edge is three rows");
+        let [Row(x), Row(y), Row(z)] =
+            &next[state::EDGE..].first_chunk::<3>().expect("an edge is three rows");
         let [a, b, c] = [self.turn.x_axis, self.turn.y_axis, self.turn.z_axis].map(|axis| axis.to_array());
         for (k, row) in places.iter_mut().enumerate() {
             for lane in 0..LANES {

@@ -51,7 +51,7 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
         // Points that do not move are cut off.
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
         band.cut(simd, free);
-        band.eliminate(simd, 2, i, &mut scratch.factors);
+        band.eliminate(simd, 2, i, scratch.factors);
     }
 }
 

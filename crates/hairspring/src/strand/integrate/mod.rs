@@ -15,7 +15,7 @@ use super::{
     limit::{Finish, LIMIT, limit},
     model::{Model, Stretching},
     root::Root,
-    scratch::Scratch,
+    scratch::Memory,
     tile::{Tile, rest, state},
 };
 use crate::scene::Integrator;
@@ -27,12 +27,13 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     simd: S,
     interval: &Interval,
     tile: &mut Tile,
-    scratch: &mut Scratch,
+    memory: &mut Memory,
 ) where
     S: Simd,
     M: Model<S, B, N>,
 {
-    scratch.reserve(tile.rest.len());
+    let scratch = &mut memory.scratch(tile.rest.len());
+    let tile = &mut tile.cut();
     let stretching = match interval.integrator {
         Integrator::ExplicitEuler | Integrator::Verlet => Stretching::Fibre,
         _ => Stretching::Moderate,

@@ -11,7 +11,7 @@ use crate::strand::{
     interval::Interval,
     lanes::{V3, load},
     root::Root,
-    scratch::Scratch,
+    scratch::{Memory, Scratch},
     tile::{Tile, rest},
 };
 use fearless_simd::{Level, dispatch, prelude::*};
@@ -48,8 +48,8 @@ impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
 }
 
 /// One tile through an interval, on the widest lanes that there are.
-pub fn run(level: Level, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
-    dispatch!(level, simd => run_tile::<_, Curvature<_>, 3, 9>(simd, interval, tile, scratch));
+pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
+    dispatch!(level, simd => run_tile::<_, Curvature<_>, 3, 9>(simd, interval, tile, memory));
 }
 
 /// A rest turn in world axes: the frame is (normal, binormal, tangent).

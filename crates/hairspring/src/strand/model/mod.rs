@@ -44,8 +44,6 @@ pub struct At<S: Simd> {
     pub inverse_length: [F<S>; 2],
     /// 1 + τ/h: how much stiffer bending is in the matrix, for its damping τ.
     pub damped: F<S>,
-    /// Stiffness of the springs along them [N/m]; zero for padding.
-    pub along: [F<S>; 2],
     /// How much of the present errors of length is news to the tensions, see `Sweep::news`.
     pub news: f32,
     /// By how much they change until where the solve begins, as their points' velocities say [m].

@@ -26,7 +26,7 @@ use crate::strand::{
     interval::Interval,
     lanes::{F, V3, load},
     root::Root,
-    scratch::Scratch,
+    scratch::{Memory, Scratch},
     tile::{Tile, rest, state, strand},
 };
 use fearless_simd::{Level, dispatch, prelude::*};
@@ -150,8 +150,8 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
 }
 
 /// One tile through an interval, on the widest lanes that there are.
-pub fn run(level: Level, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
-    dispatch!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, scratch));
+pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
+    dispatch!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, memory));
 }
 
 /// What the elements of a joint say of the angle of its first segment.

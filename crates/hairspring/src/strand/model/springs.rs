@@ -22,7 +22,7 @@ use crate::strand::{
     interval::Interval,
     lanes::{F, Row, Sym3, V3, load, store},
     root::Root,
-    scratch::Scratch,
+    scratch::{Memory, Scratch},
     tile::{Tile, springs, state, strand},
 };
 use fearless_simd::{Level, dispatch, mask32x8, prelude::*};
@@ -57,7 +57,7 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
 
         // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
         // much as along: kept where it pulls alone (Choi & Ko 2002), it would resist every turn of a segment; left out, it cancels.
-        let k = at.along[1 - at.phase];
+        let k = load(simd, &scratch.fixed[i & !1].along);
         let (l, u) = p[0].length_and_unit();
         let tension = load(simd, &tile.state[i][springs::SIDE]);
         let pull = k.mul_add((l - load(simd, &tile.rest[i | 1][springs::SIDES])) * at.news, tension);
@@ -94,8 +94,8 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
 }
 
 /// One tile through an interval, on the widest lanes that there are.
-pub fn run(level: Level, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
-    dispatch!(level, simd => run_tile::<_, Springs, 3, 12>(simd, interval, tile, scratch));
+pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
+    dispatch!(level, simd => run_tile::<_, Springs, 3, 12>(simd, interval, tile, memory));
 }
 
 /// What a triangle's sides have besides the stiffness of all segments, for the triangle that begins at `point` (see `truss`) [N/m].

@@ -8,7 +8,7 @@ use crate::strand::{
     interval::Interval,
     lanes::load,
     root::Root,
-    scratch::Scratch,
+    scratch::{Memory, Scratch},
     tile::{Tile, rest},
 };
 use fearless_simd::{Level, dispatch, prelude::*};
@@ -52,6 +52,6 @@ impl<S: Simd> Model<S, 3, 9> for Straight {
 }
 
 /// One tile through an interval, on the widest lanes that there are.
-pub fn run(level: Level, interval: &Interval, tile: &mut Tile, scratch: &mut Scratch) {
-    dispatch!(level, simd => run_tile::<_, Straight, 3, 9>(simd, interval, tile, scratch));
+pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
+    dispatch!(level, simd => run_tile::<_, Straight, 3, 9>(simd, interval, tile, memory));
 }
