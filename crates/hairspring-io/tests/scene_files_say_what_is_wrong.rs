@@ -69,6 +69,8 @@ fn a_scene_is_what_its_file_describes() {
         shape.sphere = { center = [0, 0, 0], radius = 0.5 }
         [[collider]]
         shape.plane = { point = [0, -1, 0], normal = [0, 2, 0] }
+        [[collider]]
+        shape.box = { center = [0, 1, 0], size = [0.2, 0.4, 0.6], rotation = [0, 90, 0] }
         [wind]
         velocity = [1, 0, 0]
         [volume]
@@ -96,6 +98,11 @@ fn a_scene_is_what_its_file_describes() {
     assert!(matches!(scene.colliders[0].shape, Shape::Sphere { radius: 0.5, .. }));
     let floor = Shape::Plane { point: Vec3::NEG_Y, normal: Vec3::Y * 2.0 };
     assert_eq!(scene.colliders[1].shape, floor);
+    // Turned by 90° about Y, its 0.6 m lie along x.
+    let shelf = scene.colliders[2].shape.obstacle();
+    for (at, distance) in [(Vec3::new(0.31, 1.0, 0.0), 0.01), (Vec3::new(0.0, 1.0, 0.09), -0.01)] {
+        assert!((shelf.distance(at) - distance).abs() < 1e-6, "{} at {at}", shelf.distance(at));
+    }
     assert_eq!(scene.solver, Default::default());
     let volume = Volume { method: VolumeMethod::Incompressible, cell: Some(0.02), ..Volume::default() };
     assert_eq!(scene.volume, volume);
@@ -189,6 +196,10 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
             &["line 6", "no joint of the motion"],
         ),
         (format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nname = \"dance\"\n"), &["line 6", "\"dance\""]),
+        (
+            format!("{GROOM}[[collider]]\nshape.box = {{ center = [0, 0, 0], size = [1, 0, 1] }}\n"),
+            &["line 4", "edges above 0"],
+        ),
         (
             format!(
                 "{GROOM}[[collider]]\njoint = \"x\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"

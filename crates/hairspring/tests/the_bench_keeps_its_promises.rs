@@ -6,11 +6,11 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::Rigid,
+    collide::{Obstacle, ObstaclePose, Rigid},
     groom::Groom,
     material::{Material, Model, PRESETS, preset},
-    scene::{Solver, bench::Bench},
-    simulation::{Air, Drive, Simulation},
+    scene::{Solver, Volume, VolumeMethod, bench::Bench},
+    simulation::{Air, Drive, MovingObstacle, Simulation},
 };
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -94,10 +94,11 @@ const VIOLENCE: f32 = 60.0;
 const FORGOTTEN: f32 = 0.5;
 
 /// Strands of mixed lengths and counts, one of them folded on itself and one with segments of no and of next to no length, on a root
-/// that does what `motion` says of a time for a minute, in frames of the lengths that `frames` gives, and then rests.
+/// that does what `motion` says of a time for a minute, in frames of the lengths that `frames` gives, and then rests. With a method of
+/// hair on hair the root is on a head, a ball of 20 cm.
 fn shaken(
     what: &str,
-    material: &Material,
+    (material, method): (&Material, VolumeMethod),
     gravity: f32,
     frames: impl Fn(u32) -> f32,
     motion: impl Fn(f32) -> Rigid,
@@ -115,6 +116,10 @@ fn shaken(
     let groom = Arc::new(groom);
     let root = groom.strand(0)[0];
     let gravity = Vec3::new(0.0, -gravity, 0.0);
+    let head = Obstacle::Sphere { center: Vec3::Y * -HEAD, radius: HEAD };
+    let at_rest = Rigid { translation: root, ..Rigid::default() };
+    let alone = method == VolumeMethod::Off;
+    let rest = ObstaclePose::new(head.clone(), at_rest.matrix(), at_rest.matrix(), 1.0);
     let mut simulation = Simulation::new(
         groom,
         &(0..count as u32).collect::<Vec<_>>(),
@@ -122,8 +127,10 @@ fn shaken(
         Solver::default(),
         gravity,
         Rigid::default(),
-        &[],
+        if alone { &[] } else { std::slice::from_ref(&rest) },
     );
+    simulation.set_volume(&Volume { method, ..Volume::default() });
+    let mut before = at_rest;
     let (mut time, mut frame) = (0.0, 0);
     while time < VIOLENCE + FORGOTTEN {
         let dt = if time < VIOLENCE { frames(frame) } else { 1.0 / 60.0 };
@@ -131,20 +138,45 @@ fn shaken(
         frame += 1;
         let pose = motion(time.min(VIOLENCE));
         let pose = Rigid { translation: pose.translation + root, rotation: pose.rotation };
+        let body = [MovingObstacle { shape: head.clone(), start: before, end: pose }];
+        before = pose;
         let report = simulation.step(&Drive {
             dt,
             anchor: pose,
             roots: &vec![pose; count],
-            obstacles: &[],
+            obstacles: if alone { &[] } else { &body },
             air: Air::default(),
         });
-        assert_eq!(report.reset_strands, 0, "{what}, {time} s: {material:?}");
+        assert_eq!(report.reset_strands, 0, "{what}, {method:?}, {time} s: {material:?}");
     }
     simulation
 }
 
+/// Radius of a head [m].
+const HEAD: f32 = 0.1;
+
 #[test]
 fn violence_is_survived_and_forgotten() {
+    let stiffnesses = [1e-4, 1.0, 1e4];
+    violence(cases(&stiffnesses).into_iter().map(|material| (material, VolumeMethod::Off)).collect());
+}
+
+#[test]
+fn so_it_is_with_a_head_and_hair_on_hair() {
+    let methods = [VolumeMethod::Density, VolumeMethod::Incompressible];
+    violence(cases(&[1.0]).into_iter().flat_map(|m| methods.map(|method| (m.clone(), method))).collect());
+}
+
+/// Every preset with every model and stiffness.
+fn cases(stiffnesses: &[f32]) -> Vec<Material> {
+    PRESETS
+        .iter()
+        .flat_map(|name| Model::ALL.map(|model| Material { model, ..preset(name).unwrap() }))
+        .flat_map(|base| stiffnesses.iter().map(move |by| Material { bend: base.bend * by, ..base.clone() }))
+        .collect()
+}
+
+fn violence(cases: Vec<(Material, VolumeMethod)>) {
     let even = |_: u32| 1.0 / 60.0;
     // From 1 to 100 ms.
     let uneven = |f: u32| 0.001 + 0.099 * ((f.wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32);
@@ -156,15 +188,10 @@ fn violence_is_survived_and_forgotten() {
         ..Rigid::default()
     };
     let shake = |t: f32| at(Vec3::X * (0.2 * (std::f32::consts::TAU * 2.0 * t).sin()));
-    let cases: Vec<Material> = PRESETS
-        .iter()
-        .flat_map(|name| Model::ALL.map(|model| Material { model, ..preset(name).unwrap() }))
-        .flat_map(|base| [1e-4, 1.0, 1e4].map(|by| Material { bend: base.bend * by, ..base.clone() }))
-        .collect();
-    cases.into_par_iter().for_each(|material| {
+    cases.into_par_iter().for_each(|(material, method)| {
         let check = |what, gravity, frames: &dyn Fn(u32) -> f32, motion: &dyn Fn(f32) -> Rigid| {
-            let end = shaken(what, &material, gravity, frames, motion).measure(&[]);
-            assert!(end.stretch_max < 0.011, "{what}: {end:?} of {material:?}");
+            let end = shaken(what, (&material, method), gravity, frames, motion).measure(&[]);
+            assert!(end.stretch_max < 0.011, "{what}, {method:?}: {end:?} of {material:?}");
         };
         check("teleport", 9.81, &even, &teleport);
         check("spin", 9.81, &even, &spin);

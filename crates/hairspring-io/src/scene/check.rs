@@ -120,7 +120,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
                 (
                     grow.get_ref().inside.as_ref().is_none_or(sound),
                     "inside",
-                    "finite, with a radius above 0 [m] or a normal that is not 0",
+                    "finite, with a radius or edges above 0 [m] or a normal that is not 0",
                 ),
             ];
             first_failure(text, line_at(text, grow.span().start), &grown)?;
@@ -137,7 +137,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             &[(
                 sound(&collider.shape),
                 "shape",
-                "finite, with a radius above 0 [m] or a normal that is not 0",
+                "finite, with a radius or edges above 0 [m] or a normal that is not 0",
             )],
         )?;
     }
@@ -181,6 +181,9 @@ fn sound(shape: &Shape) -> bool {
     match *shape {
         Shape::Sphere { center, radius } => finite(center) && above_0(Some(radius)),
         Shape::Capsule { a, b, radius } => finite(a) && finite(b) && above_0(Some(radius)),
+        Shape::Box { center, size, rotation } => {
+            finite(center) && finite(size) && size.min_element() > 0.0 && finite(rotation)
+        }
         Shape::Plane { point, normal } => finite(point) && normal.try_normalize().is_some(),
     }
 }

@@ -6,7 +6,6 @@ use glam::Vec3;
 use hairspring::{
     body::Body,
     groom::{Groom, grow},
-    scene::Shape,
 };
 use toml::Spanned;
 
@@ -39,8 +38,9 @@ impl Reader<'_> {
             }
         }
         if let Some(shape) = &file.inside {
+            let shape = shape.obstacle();
             for (t, allowed) in allowed.iter_mut().enumerate() {
-                *allowed &= is_inside(shape, mesh.corners(t).iter().sum::<Vec3>() / 3.0);
+                *allowed &= shape.distance(mesh.corners(t).iter().sum::<Vec3>() / 3.0) < 0.0;
             }
         }
         let groom = grow(mesh, &file.growth(), |t| allowed[t]);
@@ -61,16 +61,4 @@ fn strongest(body: &Body, vertex: usize) -> usize {
         let pairs = skin.joints[vertex].into_iter().zip(skin.weights[vertex]);
         pairs.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(j, _)| j as usize)
     })
-}
-
-fn is_inside(shape: &Shape, p: Vec3) -> bool {
-    match *shape {
-        Shape::Sphere { center, radius } => p.distance(center) < radius,
-        Shape::Capsule { a, b, radius } => {
-            let axis = b - a;
-            let t = ((p - a).dot(axis) / axis.length_squared().max(1e-12)).clamp(0.0, 1.0);
-            p.distance(a + axis * t) < radius
-        }
-        Shape::Plane { point, normal } => (p - point).dot(normal) < 0.0,
-    }
 }

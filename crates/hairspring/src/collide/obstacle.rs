@@ -77,6 +77,15 @@ pub enum Obstacle {
         /// Radius [m].
         radius: f32,
     },
+    /// A box.
+    Cuboid {
+        /// Middle [m].
+        center: Vec3,
+        /// Half of its edges [m].
+        half: Vec3,
+        /// Unit vectors along them, orthogonal.
+        axes: Mat3,
+    },
     /// All of space on the side of a plane that its normal points away from: a floor, a wall, a slope.
     Plane {
         /// A point of the plane [m].
@@ -141,6 +150,21 @@ impl Obstacle {
                 let t = ((p - *a).dot(axis) / axis.length_squared().max(1e-12)).clamp(0.0, 1.0);
                 ball(p - (*a + axis * t), *radius)
             }
+            Obstacle::Cuboid { center, half, axes } => {
+                let l = axes.transpose() * (p - *center);
+                let q = l.abs() - *half;
+                let most = q.max_element();
+                let (distance, normal) = if most <= 0.0 {
+                    // Out through the nearest face.
+                    let face = [Vec3::X, Vec3::Y, Vec3::Z]
+                        [usize::from(q.x < most) + usize::from(q.x < most && q.y < most)];
+                    (most, face)
+                } else {
+                    let out = q.max(Vec3::ZERO);
+                    (out.length(), out.normalize())
+                };
+                (distance, *axes * Vec3::select(l.cmplt(Vec3::ZERO), -normal, normal))
+            }
             Obstacle::Plane { point, normal } => ((p - *point).dot(*normal), *normal),
             Obstacle::Field(grid) => grid.distance_and_normal(p),
         }
@@ -151,6 +175,7 @@ impl Obstacle {
         match self {
             Obstacle::Sphere { center, radius } => (*center, *radius),
             Obstacle::Capsule { a, b, radius } => (a.midpoint(*b), 0.5 * a.distance(*b) + radius),
+            Obstacle::Cuboid { center, half, .. } => (*center, half.length()),
             Obstacle::Plane { .. } => (Vec3::ZERO, f32::INFINITY),
             Obstacle::Field(grid) => grid.bounds(),
         }
@@ -166,6 +191,11 @@ impl Obstacle {
                 let t = from.dot(V3::splat(simd, axis)) * (1.0 / axis.length_squared().max(1e-12));
                 let t = t.max(0.0).min(1.0);
                 ball_lanes(from - V3::splat(simd, axis) * t, *radius)
+            }
+            Obstacle::Cuboid { center, half, axes } => {
+                let local = transform(simd, &axes.transpose(), p - V3::splat(simd, *center));
+                let (distance, normal) = cuboid_lanes(simd, local, *half);
+                (distance, transform(simd, axes, normal))
             }
             Obstacle::Plane { point, normal } => {
                 let normal = V3::splat(simd, *normal);
@@ -210,4 +240,79 @@ pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<
 fn ball_lanes<S: Simd>(d: V3<S>, radius: f32) -> (F<S>, V3<S>) {
     let (length, normal) = d.length_and_unit();
     (length - radius, normal)
+}
+
+/// Distance and normal of a box around the origin: from its faces, edges and corners outside, out through the nearest face inside.
+#[inline(always)]
+fn cuboid_lanes<S: Simd>(simd: S, l: V3<S>, half: Vec3) -> (F<S>, V3<S>) {
+    let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
+    let q = V3 { x: l.x.abs() - half.x, y: l.y.abs() - half.y, z: l.z.abs() - half.z };
+    let (length, out) = V3 { x: q.x.max(zero), y: q.y.max(zero), z: q.z.max(zero) }.length_and_unit();
+    let most = q.x.max(q.y).max(q.z);
+    let inside = most.simd_le(0.0);
+    let [x, y] = [q.x.simd_ge(most), q.y.simd_ge(most)];
+    let face = V3 {
+        x: x.select(one, zero),
+        y: x.select(zero, y.select(one, zero)),
+        z: x.select(zero, y.select(zero, one)),
+    };
+    let normal = V3::select(inside, face, out);
+    let toward = |l: F<S>, n: F<S>| l.simd_lt(0.0).select(-n, n);
+    let normal = V3 { x: toward(l.x, normal.x), y: toward(l.y, normal.y), z: toward(l.z, normal.z) };
+    (inside.select(most, length), normal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strand::lanes::{LANES, Row};
+    use fearless_simd::{Level, dispatch};
+    use glam::Quat;
+    use proptest::prelude::*;
+
+    fn vector(size: f32) -> impl Strategy<Value = Vec3> {
+        (-size..size, -size..size, -size..size).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        /// Every shape's distance is that to the nearest place of its surface, its normal the way there or from there, and eight points get
+        /// what one gets.
+        #[test]
+        fn a_step_along_the_normal_leads_to_the_surface(
+            center in vector(0.2), half in vector(0.1), turn in vector(3.0), p in vector(0.4),
+        ) {
+            let half = half.abs() + 0.01;
+            let axes = Mat3::from_quat(Quat::from_scaled_axis(turn));
+            let end = center + axes.x_axis * half.x;
+            let shapes = [
+                Obstacle::Sphere { center, radius: half.x },
+                Obstacle::Capsule { a: center, b: end, radius: half.y },
+                Obstacle::Cuboid { center, half, axes },
+                Obstacle::Plane { point: center, normal: axes.y_axis },
+            ];
+            for shape in shapes {
+                let (distance, normal) = shape.distance_and_normal(p);
+                prop_assert!((normal.length() - 1.0).abs() < 1e-5, "{shape:?}: {normal}");
+                let on = p - normal * distance;
+                prop_assert!(shape.distance(on).abs() < 1e-5, "{shape:?}: {} left at {on}", shape.distance(on));
+                // Nothing of the surface is nearer: a ball of that size around p has no place on the other side.
+                for k in 0..64 {
+                    let way = Quat::from_euler(glam::EulerRot::XYZ, k as f32, 1.7 * k as f32, 0.3) * Vec3::X;
+                    let other = shape.distance(p + way * (0.98 * distance.abs()));
+                    prop_assert!(other * distance >= -1e-9, "{shape:?}: {other} near {distance}");
+                }
+                let pose = ObstaclePose::new(shape.clone(), (Mat3::IDENTITY, Vec3::ZERO), (Mat3::IDENTITY, Vec3::ZERO), 1.0);
+                let (lanes, normals, near) = dispatch!(Level::new(), simd => {
+                    let at = V3::splat(simd, p);
+                    let (d, n) = contact(simd, &pose, at);
+                    let mut rows = [Row([0.0; LANES]); 3];
+                    n.store(&mut rows);
+                    (d[3], Vec3::from(rows.map(|r| r.0[3])), pose.near(simd, at).any_true())
+                });
+                prop_assert!((lanes - distance).abs() < 1e-6, "{shape:?}: {lanes}, alone {distance}");
+                prop_assert!(normals.distance(normal) < 1e-3, "{shape:?}: {normals}, alone {normal}");
+                prop_assert!(near || distance > 0.0, "{shape:?}: inside, and not near");
+            }
+        }
+    }
 }

@@ -1,11 +1,11 @@
 //! The standard bench scene, shared by `hairspring bench`, the tests and the profiler: a shaken ball of hair.
 //!
 //! A sphere scalp of radius 0.1 m, strands of 0.25 m evenly over its upper half, 60 Hz frames, the scalp shaken 5 cm at 2 Hz,
-//! contact with the sphere, every strand simulated.
+//! contact with the sphere, every strand simulated; the sphere as the distance field of a mesh and wind where they are asked for.
 
-use super::Solver;
+use super::{Solver, Wind};
 use crate::{
-    collide::{Obstacle, ObstaclePose, Rigid},
+    collide::{Obstacle, ObstaclePose, Rigid, voxelize},
     groom::Groom,
     material::Material,
     simulation::{Air, Drive, Measure, MovingObstacle, Simulation, StepReport},
@@ -24,10 +24,72 @@ pub const AMPLITUDE: f32 = 0.05;
 /// Rate of the shake [Hz].
 pub const RATE: f32 = 2.0;
 
+/// Cells of the distance field along the scalp's diameter: a head in the 5 mm that a scene's body has.
+const FIELD_CELLS: f32 = 40.0;
+
+/// Quads of the scalp's mesh from pole to pole; twice as many go around.
+const MESH_QUADS: u32 = 48;
+
+/// What the hair meets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Head {
+    /// The sphere itself.
+    #[default]
+    Sphere,
+    /// The distance field of the sphere's mesh, as a scene's body is met.
+    Field,
+}
+
+impl Head {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Sphere, Self::Field];
+
+    /// Its name: `sphere`, `sdf`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sphere => "sphere",
+            Self::Field => "sdf",
+        }
+    }
+
+    fn shape(self) -> Obstacle {
+        match self {
+            Self::Sphere => Obstacle::Sphere { center: Vec3::ZERO, radius: RADIUS },
+            Self::Field => {
+                let (positions, triangles) = ball();
+                Obstacle::Field(Arc::new(voxelize(&positions, &triangles, 2.0 * RADIUS / FIELD_CELLS)))
+            }
+        }
+    }
+}
+
+/// The scalp as a mesh: rings of quads cut in two, closed at the poles by quads with two corners in one place.
+fn ball() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let (rows, columns) = (MESH_QUADS, 2 * MESH_QUADS);
+    let step = std::f32::consts::PI / rows as f32;
+    let positions = (0..=rows).flat_map(|r| {
+        (0..columns).map(move |c| {
+            let (across, up) = (r as f32 * step).sin_cos();
+            let (z, x) = (c as f32 * step).sin_cos();
+            Vec3::new(across * x, up, across * z) * RADIUS
+        })
+    });
+    let triangles = (0..rows).flat_map(|r| {
+        (0..columns).flat_map(move |c| {
+            let at = |r: u32, c: u32| r * columns + c % columns;
+            let [a, b, d, e] = [at(r, c), at(r, c + 1), at(r + 1, c), at(r + 1, c + 1)];
+            [[a, b, e], [a, e, d]]
+        })
+    });
+    (positions.collect(), triangles.collect())
+}
+
 /// The bench scene in motion.
 pub struct Bench {
     /// The strands.
     pub simulation: Simulation,
+    /// The air. Default: still.
+    pub wind: Wind,
     roots: Vec<Vec3>,
     poses: Vec<Rigid>,
     obstacle: MovingObstacle,
@@ -58,8 +120,13 @@ impl Bench {
 
     /// The scene with hair of this material.
     pub fn of(strands: u32, points: u32, material: Material, solver: Solver) -> Self {
+        Self::on(Head::Sphere, strands, points, material, solver)
+    }
+
+    /// The scene with hair of this material on this head.
+    pub fn on(head: Head, strands: u32, points: u32, material: Material, solver: Solver) -> Self {
         let groom = Arc::new(groom(strands, points));
-        let shape = Obstacle::Sphere { center: Vec3::ZERO, radius: RADIUS };
+        let shape = head.shape();
         let rest = (Mat3::IDENTITY, Vec3::ZERO);
         let pose = ObstaclePose::new(shape.clone(), rest, rest, 1.0);
         let roots: Vec<Vec3> = (0..strands as usize).map(|s| groom.strand(s)[0]).collect();
@@ -77,6 +144,7 @@ impl Bench {
         );
         Self {
             simulation,
+            wind: Wind::default(),
             poses: roots.iter().map(|p| Rigid { translation: *p, ..Rigid::default() }).collect(),
             roots,
             obstacle: MovingObstacle { shape, start: Rigid::default(), end: Rigid::default() },
@@ -101,12 +169,29 @@ impl Bench {
             anchor: end,
             roots: &self.poses,
             obstacles: std::slice::from_ref(&self.obstacle),
-            air: Air::default(),
+            air: Air { wind: self.wind, time: (self.frame - 1) as f32 * FRAME },
         })
     }
 
     /// Figures at the end of the last frame.
     pub fn measure(&self) -> Measure {
         self.simulation.measure(std::slice::from_ref(&self.obstacle))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_field_is_the_sphere() {
+        let shape = Head::Field.shape();
+        for k in 0..200 {
+            let out = Vec3::new((k as f32).sin(), (k as f32 * 0.7).cos(), (k as f32 * 1.3).sin()).normalize();
+            for at in [0.9, 1.0, 1.02] {
+                let distance = shape.distance(out * (at * RADIUS));
+                assert!((distance - (at - 1.0) * RADIUS).abs() < 5e-4, "{distance} at {at} radii");
+            }
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Settings of a scene that both code and scene files set; each field's default is the value that a file may leave out.
 
-use glam::Vec3;
+use crate::collide::Obstacle;
+use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Which strands of a groom are simulated; the others follow them.
@@ -222,6 +223,16 @@ pub enum Shape {
         /// Radius [m], above 0.
         radius: f32,
     },
+    /// A box.
+    Box {
+        /// Middle [m].
+        center: Vec3,
+        /// Lengths of its edges [m], above 0.
+        size: Vec3,
+        /// How it is turned: about X, then Y, then Z [degrees]. Default 0.
+        #[serde(default)]
+        rotation: Vec3,
+    },
     /// All of space on the side of a plane that `normal` points away from: a floor, a wall, a slope.
     Plane {
         /// A point of the plane [m].
@@ -229,4 +240,20 @@ pub enum Shape {
         /// Direction out of the solid, of any length above 0.
         normal: Vec3,
     },
+}
+
+impl Shape {
+    /// The collider of this shape.
+    pub fn obstacle(&self) -> Obstacle {
+        match *self {
+            Self::Sphere { center, radius } => Obstacle::Sphere { center, radius },
+            Self::Capsule { a, b, radius } => Obstacle::Capsule { a, b, radius },
+            Self::Box { center, size, rotation } => {
+                let [x, y, z] = rotation.to_array().map(f32::to_radians);
+                let axes = Mat3::from_rotation_z(z) * Mat3::from_rotation_y(y) * Mat3::from_rotation_x(x);
+                Obstacle::Cuboid { center, half: 0.5 * size, axes }
+            }
+            Self::Plane { point, normal } => Obstacle::Plane { point, normal: normal.normalize_or(Vec3::Y) },
+        }
+    }
 }

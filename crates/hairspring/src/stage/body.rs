@@ -4,7 +4,7 @@ use super::{PosedBody, StageError};
 use crate::{
     body::{Body, Trs},
     collide::{Grid, Obstacle, ObstaclePose, Rigid, Voxelizer},
-    scene::{Scene, Shape},
+    scene::Scene,
     simulation::MovingObstacle,
 };
 use glam::{Affine3A, Vec3};
@@ -106,14 +106,7 @@ impl StagedBody {
                 (Some(name), None) => return Err(StageError::NoSuchJoint { joint: name.clone() }),
                 (None, _) => (!staged.rest.is_empty()).then_some(staged.anchor),
             };
-            let shape = match collider.shape {
-                Shape::Sphere { center, radius } => Obstacle::Sphere { center, radius },
-                Shape::Capsule { a, b, radius } => Obstacle::Capsule { a, b, radius },
-                Shape::Plane { point, normal } => {
-                    Obstacle::Plane { point, normal: normal.normalize_or(Vec3::Y) }
-                }
-            };
-            staged.add(shape, joint);
+            staged.add(collider.shape.obstacle(), joint);
         }
         staged.repose();
         Ok(staged)
