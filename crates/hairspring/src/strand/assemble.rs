@@ -301,7 +301,7 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
             let edge = V3::load(simd, &scratch.edges[i + 1]);
             solved.edges = [edge, solved.edges[0]];
             (edge + (solved.moved[1] - delta)).store(&mut scratch.edges[i + 1]);
-            M::take(simd, &solved, tile, &scratch.fixed);
+            M::take(simd, &solved, tile, scratch.fixed);
         }
         if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
             // Padding has no stiffness, and so takes nothing.
