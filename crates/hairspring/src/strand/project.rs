@@ -106,7 +106,10 @@ pub fn project<S: Simd>(
         if after + stride < points {
             let first = if stride == 1 { waiting } else { V3::load(simd, &edges[after + 1]) - move_outer };
             first.store(&mut edges[after + 1]);
-            let size = waiting * load(simd, &fixed[after].inverse_length);
+            // Summed as the next sweep down would, to the bit: where the two differed, it would depend on a strand's neighbours in the tile
+            // whether it is asked again.
+            let now = if stride == 1 { waiting } else { segment(simd, stride, edges, after) };
+            let size = now * load(simd, &fixed[after].inverse_length);
             let loose = (w + w_outer).simd_gt(0.0);
             worst = worst.max(error(load(simd, &tile.rest[after][rest::LENGTH]), size.dot(size), loose).1);
         }
@@ -116,7 +119,7 @@ pub fn project<S: Simd>(
         store(lambda.mul_add(force, load(simd, tension)), tension);
         pull = own;
     }
-    let size = waiting * load(simd, &fixed[stride].inverse_length);
+    let size = segment(simd, stride, edges, stride) * load(simd, &fixed[stride].inverse_length);
     let first = error(load(simd, &tile.rest[stride][rest::LENGTH]), size.dot(size), w_outer.simd_gt(0.0)).1;
     (asked & worst.max(first).simd_gt(0.0)).any_true()
 }
