@@ -144,9 +144,8 @@ fn long_strands_come_to_rest() {
                 "{model:?}, {substeps} substeps: {at_rest} m/s at rest, {shaken} m/s {seconds} seconds after a shake"
             );
             assert!(at_rest < 0.01, "{model:?}, {substeps} substeps: {at_rest} m/s at rest");
-            let bound = if substeps == 4 { 0.02 } else { 0.1 };
             assert!(
-                shaken < bound,
+                shaken < 0.02,
                 "{model:?}, {substeps} substeps: {shaken} m/s {seconds} seconds after a shake"
             );
         }
