@@ -1,5 +1,6 @@
 //! What the hair is made of: constants of the human fibre, and presets of style.
 
+use crate::around::ghost::Ghost;
 use serde::{Deserialize, Serialize};
 
 /// The fibre of one group of strands: physical constants, and dimensionless multipliers for the artist.
@@ -43,6 +44,8 @@ pub struct Material {
     pub drag: f32,
     /// Coulomb friction against the body, 0 to 1. Default 0.3: hair on skin, 0.1 to 0.3 along the scales, higher against.
     pub friction: f32,
+    /// Pull to the rest shape, carried by the root; switched by `Solver::ghost`. Default: none.
+    pub ghost: Ghost,
 }
 
 /// The elastic model of a strand.
@@ -90,6 +93,7 @@ impl Default for Material {
             damping: 0.01,
             drag: 0.5,
             friction: 0.3,
+            ghost: Ghost::default(),
         }
     }
 }

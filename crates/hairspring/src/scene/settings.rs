@@ -65,6 +65,8 @@ pub struct Solver {
     pub integrator: Integrator,
     /// How exactly its equations are solved. Default `normal`.
     pub quality: Quality,
+    /// Whether materials' ghost rest shapes pull. Default true; no material has one by default.
+    pub ghost: bool,
 }
 
 /// How positions and velocities come out of a substep (DESIGN §4); all on the same strands, to be compared.
@@ -134,6 +136,7 @@ impl Default for Solver {
             projections: 3,
             integrator: Integrator::default(),
             quality: Quality::default(),
+            ghost: true,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Simulation, TilePlace};
 use crate::{
+    around::Around,
     collide::{ObstaclePose, Rigid},
     groom::Groom,
     material::{Material, Model},
@@ -96,6 +97,8 @@ impl Simulation {
             state: vec![[Row::default(); state::ROWS]; first as usize],
             history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],
             holds: Vec::new(),
+            around: Around::default(),
+            ghosts: materials.iter().map(|m| m.ghost).collect(),
             volume: None,
             last_h: 0.0,
             groom,

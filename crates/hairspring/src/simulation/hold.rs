@@ -14,8 +14,12 @@ pub struct Hold {
     pub strand: u32,
     /// The point of it; 2 or more, because the first two are driven by the root.
     pub point: u32,
-    /// Where the point is held, in the world [m]; `None`: it is free.
+    /// Where the point is held at the end of the next frame, in the world [m]; `None`: it is free.
     pub target: Option<Vec3>,
+    /// How far the target moves in the next frame [m]; after it, the target rests.
+    pub way: Vec3,
+    /// Stiffness of the spring that pulls the point to the target [N/m], above 0; `None`: it is held fast.
+    pub stiffness: Option<f32>,
     /// Force on it [N].
     pub force: Vec3,
     /// Whether the frame of the segment from this point keeps its twist (models that twist). With the segment's two points held, the strand
@@ -48,8 +52,11 @@ impl Simulation {
             for k in 0..3 {
                 rows[hold::TARGET + k].0[lane] = target[k];
                 rows[hold::FORCE + k].0[lane] = held.force[k];
+                rows[hold::WAY + k].0[lane] = held.way[k];
             }
-            rows[hold::PINNED].0[lane] = if held.target.is_some() { 1.0 } else { 0.0 };
+            let fast = held.target.is_some() && held.stiffness.is_none();
+            rows[hold::PINNED].0[lane] = if fast { 1.0 } else { 0.0 };
+            rows[hold::STIFFNESS].0[lane] = held.target.and(held.stiffness).unwrap_or(0.0);
             rows[hold::CLAMPED].0[lane] = if held.clamped { 1.0 } else { 0.0 };
             let next = |h: &&Hold| h.strand == held.strand && h.point == held.point + 1;
             let end = holds.iter().find(next).and_then(|h| h.target);
@@ -61,6 +68,14 @@ impl Simulation {
         }
         self.holds.iter_mut().for_each(|tile| tile.sort_by_key(|h| h.point));
     }
+
+    /// Targets are where they were to go.
+    pub(super) fn rest_holds(&mut self) {
+        for held in self.holds.iter_mut().flatten() {
+            held.rows[hold::WAY..hold::WAY + 3].fill(Row::default());
+        }
+    }
+
     /// Holds the extra particle after particle `point` of the springs model, over its segment between `ends`, where it is around it.
     fn hold_extra(&mut self, place: usize, point: u32, ends: [Vec3; 2]) {
         let edge = |i: u32| self.vector(place, (point + i) as usize, state::EDGE);

@@ -8,6 +8,7 @@ mod measure;
 mod place;
 mod reset;
 mod step;
+mod surround;
 
 pub use crate::strand::rest_shape::Start;
 pub use crate::volume::VolumeReport;
@@ -17,6 +18,7 @@ pub use measure::Measure;
 pub use step::{Air, Drive, MovingObstacle, StepReport};
 
 use crate::{
+    around::{Around, ghost::Ghost},
     groom::Groom,
     strand::{
         interval::Interval,
@@ -49,6 +51,10 @@ pub struct Simulation {
     history: Vec<HistoryRows>,
     /// What holds points from outside, for each tile; empty where nothing does.
     holds: Vec<Vec<HoldRows>>,
+    /// What acts on points from outside in the last frame.
+    around: Around,
+    /// Pull of each material to the rest shape; a group past the end uses the last.
+    ghosts: Vec<Ghost>,
     /// Hair on hair; `None`: strands pass through each other.
     volume: Option<Box<Volume>>,
     /// Length of the last substep [s].
@@ -64,15 +70,15 @@ pub struct Simulation {
 
 /// Where a tile's points are.
 #[derive(Clone, Copy, Debug)]
-struct TilePlace {
+pub(crate) struct TilePlace {
     /// Index of its first point, counting the points of all tiles before it.
-    first: u32,
+    pub first: u32,
     /// Points of its longest strand.
-    points: u32,
+    pub points: u32,
     /// The elastic model of all its strands.
-    model: Elastic,
+    pub model: Elastic,
     /// Whether any fibre is flat.
-    flat: bool,
+    pub flat: bool,
 }
 
 impl Simulation {
@@ -97,6 +103,7 @@ impl Simulation {
             + size_of_val(&self.rest[..])
             + size_of_val(&self.state[..])
             + size_of_val(&self.history[..])
+            + self.around.bytes()
             + self.volume.as_ref().map_or(0, |volume| volume.bytes())
             + (self.lanes.len() + self.places.len()) * size_of::<u32>()
             + self.tiles.len() * size_of::<TilePlace>()

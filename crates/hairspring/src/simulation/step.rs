@@ -9,7 +9,7 @@ use crate::{
         lanes::{LANES, Row},
         model::{curvature, rod, springs, straight},
         scratch::Memory,
-        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, strand},
+        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, grip, strand},
     },
 };
 use fearless_simd::Level;
@@ -109,11 +109,7 @@ impl Simulation {
             ((drive.dt / substep_length(&solver) as f32 - 1e-3).ceil() as u32).clamp(1, MAX_SUBSTEPS);
         let mut interval = std::mem::take(&mut self.interval);
         self.fill_interval(drive, substeps, &mut interval);
-        if let Some(volume) = &mut self.volume {
-            let anchor = self.settings.anchor;
-            volume.exchange(drive.dt, (&self.strand, &self.state), &anchor, drive.obstacles);
-        }
-        self.move_roots(drive);
+        self.exchange(drive);
         let reset = run(
             self.level,
             &interval,
@@ -123,10 +119,13 @@ impl Simulation {
                 rest: &self.rest,
                 state: &mut self.state,
                 history: &mut self.history,
-                push: self.volume.as_ref().map_or(&[], |volume| volume.push()),
+                push: &self.around.push,
+                grip: &self.around.grip,
+                air: &self.around.air,
                 holds: &self.holds,
             },
         );
+        self.rest_holds();
         self.last_h = interval.h;
         // The colliders' shapes are the caller's again.
         interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
@@ -168,7 +167,7 @@ impl Simulation {
     }
 
     /// Last frame's root poses become the start, the drive's the end, both relative to the anchor.
-    fn move_roots(&mut self, drive: &Drive) {
+    pub(super) fn move_roots(&mut self, drive: &Drive) {
         let turn = drive.anchor.rotation.inverse();
         for (&place, root) in self.places.iter().zip(drive.roots) {
             let (tile, lane) = (place as usize / LANES, place as usize % LANES);
@@ -197,6 +196,8 @@ struct Piece<'a> {
     state: &'a mut [StateRows],
     history: &'a mut [HistoryRows],
     push: &'a [[Row; 3]],
+    grip: &'a [[Row; grip::ROWS]],
+    air: &'a [[Row; 3]],
     holds: &'a [Vec<HoldRows>],
 }
 
@@ -210,9 +211,11 @@ impl<'a> Piece<'a> {
         let (state, more_state) = self.state.split_at_mut(points);
         let (history, more_history) = self.history.split_at_mut(points.min(self.history.len()));
         let (push, more_push) = self.push.split_at(points.min(self.push.len()));
+        let (grip, more_grip) = self.grip.split_at(points.min(self.grip.len()));
+        let (air, more_air) = self.air.split_at(points.min(self.air.len()));
         let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
         (
-            Piece { tiles, strand, rest, state, history, push, holds },
+            Piece { tiles, strand, rest, state, history, push, grip, air, holds },
             Piece {
                 tiles: more_tiles,
                 strand: more_strand,
@@ -220,6 +223,8 @@ impl<'a> Piece<'a> {
                 state: more_state,
                 history: more_history,
                 push: more_push,
+                grip: more_grip,
+                air: more_air,
                 holds: more_holds,
             },
         )
@@ -236,7 +241,9 @@ impl<'a> Piece<'a> {
             rest: &self.rest[points.clone()],
             state: &mut self.state[points.clone()],
             history: if self.history.is_empty() { &mut [] } else { &mut self.history[points.clone()] },
-            push: if self.push.is_empty() { &[] } else { &self.push[points] },
+            push: if self.push.is_empty() { &[] } else { &self.push[points.clone()] },
+            grip: if self.grip.is_empty() { &[] } else { &self.grip[points.clone()] },
+            air: if self.air.is_empty() { &[] } else { &self.air[points] },
             holds: self.holds.get(k).map_or(&[], |holds| holds),
         }
     }

@@ -26,7 +26,7 @@ use super::{
     press::{press, relieve},
     root::Root,
     scratch::Scratch,
-    tile::{Tile, history, hold, rest, state, strand},
+    tile::{Tile, grip, history, hold, rest, state, strand},
 };
 use crate::collide::ObstaclePose;
 use fearless_simd::prelude::*;
@@ -37,6 +37,8 @@ use glam::Vec3;
 pub struct Step<'a, S: Simd> {
     /// Which it is of the interval's.
     pub number: usize,
+    /// Fraction of the interval that is left at its end.
+    pub left: f32,
     /// Length [s].
     pub h: f32,
     /// Gravity [m/s²].
@@ -218,16 +220,25 @@ fn add_point<S, M, const B: usize, const N: usize>(
     if let Some(push) = tile.push.get(i + 1) {
         p += V3::load(simd, push);
     }
+    if let Some(rows) = tile.grip.get(i + 1) {
+        let stiffness = load(simd, &rows[grip::STIFFNESS]);
+        let brake = load(simd, &rows[grip::BRAKE]) * inv_h;
+        p = p - (x + drift()) * stiffness - (way() + step.moved) * brake;
+        band.add_identity(1, mass * (stiffness + brake));
+    }
     let mut right = p * mass;
     band.add_identity(1, m_h2);
     let on_strand = phase + 1 == M::STRIDE;
     if on_strand {
         let across = segment.air * inv_h;
-        let slip = if sweep == Sweep::First {
+        let mut slip = if sweep == Sweep::First {
             still.wind - v
         } else {
             still.wind - root_velocity - way() * F::splat(simd, inv_h)
         };
+        if let Some(air) = tile.air.get(i + 1) {
+            slip += V3::load(simd, air);
+        }
         right += (slip - segment.u * (segment.u.dot(slip) * 0.5)) * segment.air;
         band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5).add_identity(across));
     }
@@ -238,8 +249,9 @@ fn add_point<S, M, const B: usize, const N: usize>(
         let at = &tile.holds[*held];
         if at.point as usize == i + 1 {
             let pinned = load(simd, &at.rows[hold::PINNED]);
-            let target = V3::load(simd, &at.rows[hold::TARGET..]) - step.root.position;
-            let k = pinned * m_h2 * HOLD;
+            let way = V3::load(simd, &at.rows[hold::WAY..]) * F::splat(simd, step.left);
+            let target = V3::load(simd, &at.rows[hold::TARGET..]) - way - step.root.position;
+            let k = (pinned * HOLD).mul_add(m_h2, load(simd, &at.rows[hold::STIFFNESS]));
             band.add_identity(1, k);
             band.add_force(1, (target - x - drift()) * k);
             band.add_force(1, V3::load(simd, &at.rows[hold::FORCE..]));

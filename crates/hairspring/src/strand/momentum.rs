@@ -51,6 +51,8 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         state: &mut state_rows,
         history: &mut [],
         push: &[],
+        grip: &[],
+        air: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => match model {
@@ -70,6 +72,7 @@ where
     let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
     let step = Step {
         number: 0,
+        left: 0.0,
         h: s.h as f32,
         gravity: Vec3::ZERO,
         wind: Vec3::ZERO,

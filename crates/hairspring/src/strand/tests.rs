@@ -306,12 +306,15 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
         state: &mut state_rows,
         history: &mut [],
         push: &[],
+        grip: &[],
+        air: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => {
         let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
         let step = Step {
             number: 0,
+            left: 0.0,
             h: s.h as f32,
             gravity: s.gravity.as_vec3(),
             wind: s.wind.as_vec3(),

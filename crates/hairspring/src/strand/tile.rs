@@ -111,16 +111,30 @@ pub mod history {
 
 /// Rows of a hold.
 pub mod hold {
-    /// Where the point is held, in the world [m], 3 rows.
+    /// Where the point is held at the end of the interval, in the world [m], 3 rows.
     pub const TARGET: usize = 0;
     /// Force on it [N], 3 rows.
     pub const FORCE: usize = 3;
-    /// 1 where the point is held, else 0.
+    /// 1 where the point is held fast, else 0.
     pub const PINNED: usize = 6;
     /// 1 where the frame of the segment from this point is held, else 0.
     pub const CLAMPED: usize = 7;
+    /// Stiffness of the spring that pulls it to the target where it is not held fast [N/m].
+    pub const STIFFNESS: usize = 8;
+    /// How far the target moves in the interval [m], 3 rows.
+    pub const WAY: usize = 9;
     /// Rows.
-    pub const ROWS: usize = 8;
+    pub const ROWS: usize = 12;
+}
+
+/// Rows of how a point is gripped.
+pub mod grip {
+    /// Stiffness of the spring that pulls it to a place, over its mass [1/s²].
+    pub const STIFFNESS: usize = 0;
+    /// How fast it takes on a velocity [1/s].
+    pub const BRAKE: usize = 1;
+    /// Rows a point.
+    pub const ROWS: usize = 2;
 }
 
 /// What holds or pulls one point of eight strands from outside.
@@ -153,8 +167,14 @@ pub struct Tile<'a> {
     pub state: &'a mut [StateRows],
     /// Shape `[points]` for the integrator of second order, else empty.
     pub history: &'a mut [HistoryRows],
-    /// Acceleration by the hair around, frozen for the interval [m/s²]: shape `[points]`, empty where there is none.
+    /// Acceleration from outside, frozen for the interval [m/s²]: shape `[points]`, empty where there is none. Where a point is gripped, it is
+    /// that at the root, at rest in the world: stiffness times the place, from the root, that it is pulled to, and brake times the
+    /// velocity that it takes on are part of it.
     pub push: &'a [[Row; 3]],
+    /// How points are gripped, frozen for the interval, see `grip`: shape `[points]`, empty where none is.
+    pub grip: &'a [[Row; grip::ROWS]],
+    /// Velocity of the air besides the wind of all points, frozen for the interval [m/s]: shape `[points]`, empty where there is none.
+    pub air: &'a [[Row; 3]],
     /// What holds or pulls points, sorted by point.
     pub holds: &'a [HoldRows],
 }
@@ -164,12 +184,14 @@ impl Tile<'_> {
     #[inline(always)]
     pub fn cut(&mut self) -> Tile<'_> {
         let points = self.rest.len();
-        let [history, push] =
-            [self.history.is_empty(), self.push.is_empty()].map(|none| if none { 0 } else { points });
+        let all_or_none = |none: bool| if none { 0 } else { points };
+        let history = all_or_none(self.history.is_empty());
         Tile {
             state: &mut self.state[..points],
             history: &mut self.history[..history],
-            push: &self.push[..push],
+            push: &self.push[..all_or_none(self.push.is_empty())],
+            grip: &self.grip[..all_or_none(self.grip.is_empty())],
+            air: &self.air[..all_or_none(self.air.is_empty())],
             ..*self
         }
     }

@@ -81,8 +81,6 @@ pub(crate) struct Volume {
     field: Field,
     pressures: Vec<f32>,
     projection: Projection,
-    /// Acceleration of each point for an interval [m/s²]; shape `[points]` of all tiles.
-    push: Vec<[Row; 3]>,
     /// What hair took up of its cells at rest and at the start of the last interval, see [`taken_up`].
     taken_up: [f64; 2],
 }
@@ -149,7 +147,6 @@ impl Volume {
             grown: cell > asked,
             reach,
             firsts: at.firsts,
-            push: vec![[Row::default(); 3]; own.len()],
             own: Vec::new(),
             points,
             total,
@@ -185,11 +182,6 @@ impl Volume {
         }
     }
 
-    /// Acceleration of each point [m/s²], shape `[points]` of all tiles.
-    pub fn push(&self) -> &[[Row; 3]] {
-        &self.push
-    }
-
     /// See [`VolumeReport`].
     pub fn report(&self) -> VolumeReport {
         let nodes = self.field.window.nodes();
@@ -198,16 +190,18 @@ impl Volume {
 
     /// Bytes that it holds a strand's points in, the lattice not counted.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.own[..]) + size_of_val(&self.push[..])
+        size_of_val(&self.own[..])
     }
 
-    /// Finds the accelerations of all points for an interval of `dt` [s], at its start, where the anchor is at `anchor`.
+    /// Finds the accelerations of all points for an interval of `dt` [s], at its start, where the anchor is at `anchor`: `push` [m/s²], shape
+    /// `[points]` of all tiles.
     pub fn exchange(
         &mut self,
         dt: f32,
         (strand, state): (&[StrandRows], &[StateRows]),
         anchor: &Rigid,
         obstacles: &[MovingObstacle],
+        push: &mut [[Row; 3]],
     ) {
         self.reserve();
         let chart = Chart::new(anchor, self.cell);
@@ -233,7 +227,7 @@ impl Volume {
             VolumeMethod::Incompressible => self.project(dt, anchor, obstacles),
         }
         let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
-        gather::all(&tiles, &chart, &window, &self.field.push, &mut self.push);
+        gather::all(&tiles, &chart, &window, &self.field.push, push);
     }
 
     /// Acceleration by the pressure of crowded cells.

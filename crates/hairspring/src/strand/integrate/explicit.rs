@@ -35,13 +35,15 @@ pub fn advance<S, M, const B: usize, const N: usize>(
     let zero = V3::zero(simd);
     let h = F::<S>::splat(simd, step.h);
     let (mut tip, mut before) = (zero, zero);
+    let mut x = V3::load(simd, &scratch.edges[1]);
     for i in 2..tile.rest.len() {
         if i + 1 < tile.rest.len() {
             tip = V3::load(simd, &scratch.edges[i + 1]).length_and_unit().1;
         }
+        x += V3::load(simd, &scratch.edges[i]);
         let v = V3::load(simd, &tile.state[i][state::V..]);
         let inverse = load(simd, &scratch.fixed[i].inverse_mass);
-        let a = outside(simd, step, tile, i, tip) + V3::load(simd, &scratch.kick[i]) * inverse;
+        let a = outside(simd, step, tile, i, [tip, x]) + V3::load(simd, &scratch.kick[i]) * inverse;
         let free = inverse.simd_gt(0.0);
         let gain = V3::select(free, a * h, zero);
         let (now, later) = if integrator == Integrator::Verlet { (gain, zero) } else { (zero, gain) };

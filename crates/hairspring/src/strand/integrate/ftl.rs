@@ -39,13 +39,19 @@ pub fn advance<S: Simd>(
     let stride = tile.model.stride();
     // By how much the point before has moved.
     let mut shift = zero;
+    // Where the point before was.
+    let mut x = V3::load(simd, &scratch.edges[1]);
+    if stride == 2 {
+        x += V3::load(simd, &scratch.edges[2]);
+    }
     for i in (2 * stride..tile.rest.len()).step_by(stride) {
         // From where the point before is now.
         let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
         let old = if stride == 2 { extra + V3::load(simd, &scratch.edges[i]) } else { extra };
         let u = old.length_and_unit().1;
+        x += old + shift;
         let v = V3::load(simd, &tile.state[i][state::V..]);
-        let p = old + (v + outside(simd, step, tile, i, u) * h) * h - step.moved;
+        let p = old + (v + outside(simd, step, tile, i, [u, x]) * h) * h - step.moved;
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
         let new = V3::select(free, p.length_and_unit().1 * length, old);

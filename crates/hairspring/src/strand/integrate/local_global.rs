@@ -78,10 +78,13 @@ pub fn advance<S: Simd>(simd: S, iterations: u32, step: &Step<S>, tile: &mut Til
     let h = F::<S>::splat(simd, step.h);
     let inv_h2 = 1.0 / (step.h * step.h);
     // x̂ − x
+    let mut x = V3::load(simd, &scratch.edges[1]);
     for i in 2..n {
-        let u = V3::load(simd, &scratch.edges[i]).length_and_unit().1;
+        let edge = V3::load(simd, &scratch.edges[i]);
+        x += edge;
+        let u = edge.length_and_unit().1;
         let v = V3::load(simd, &tile.state[i][state::V..]);
-        ((v + outside(simd, step, tile, i, u) * h) * h - step.moved).store(&mut scratch.kick[i]);
+        ((v + outside(simd, step, tile, i, [u, x]) * h) * h - step.moved).store(&mut scratch.kick[i]);
     }
     for _ in 0..iterations {
         // Right-hand sides and the sweep down in one: z_i = b_i − l z of the two points before.

@@ -16,7 +16,7 @@ use super::{
     model::{Model, Stretching},
     root::Root,
     scratch::Memory,
-    tile::{Tile, rest, state},
+    tile::{Tile, grip, rest, state},
 };
 use crate::scene::Integrator;
 use fearless_simd::prelude::*;
@@ -69,6 +69,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
         let second_order = interval.integrator == Integrator::Bdf2 && continues;
         let step = Step {
             number,
+            left: 1.0 - substep.fraction,
             h: interval.h,
             gravity: interval.gravity,
             wind: substep.wind,
@@ -103,16 +104,24 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     }
 }
 
-/// Acceleration of point `i` by gravity, by the hair around and by the air it moves through [m/s²]; `u` is the segment from it.
+/// Acceleration of point `i` by gravity, by what pushes and grips it and by the air it moves through [m/s²]; `u` is the segment from it, `x` where it
+/// is, from the root.
 #[inline(always)]
-fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, u: V3<S>) -> V3<S> {
+fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, [u, x]: [V3<S>; 2]) -> V3<S> {
     let (stride, zero) = (tile.model.stride(), F::<S>::splat(simd, 0.0));
     let length = |i: usize| load(simd, &tile.rest[i][rest::LENGTH]);
     // Air takes hold of the half segments around a point, not of what is no part of the fibre.
     let around = if i.is_multiple_of(stride) { (length(i - stride) + length(i)) * 0.5 } else { zero };
     let drag = Root::<S>::fibre(simd, tile.strand).0 * around / load(simd, &tile.rest[i][rest::MASS]);
-    let slip = V3::splat(simd, step.wind) - V3::load(simd, &tile.state[i][state::V..]);
+    let v = V3::load(simd, &tile.state[i][state::V..]);
+    let nothing = V3::zero(simd);
+    let air = tile.air.get(i).map_or(nothing, |air| V3::load(simd, air));
+    let slip = V3::splat(simd, step.wind) + air - v;
     let slip = slip - u * (u.dot(slip) * 0.5);
-    let push = tile.push.get(i).map_or(V3::zero(simd), |push| V3::load(simd, push));
-    slip.mul_add(drag, V3::splat(simd, step.gravity) + push)
+    let push = tile.push.get(i).map_or(nothing, |push| V3::load(simd, push));
+    let gripped = tile
+        .grip
+        .get(i)
+        .map_or(nothing, |rows| x * load(simd, &rows[grip::STIFFNESS]) + v * load(simd, &rows[grip::BRAKE]));
+    slip.mul_add(drag, V3::splat(simd, step.gravity) + (push - gripped))
 }

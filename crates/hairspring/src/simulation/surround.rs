@@ -1,0 +1,40 @@
+//! What acts on points from outside in a frame: the hair volume first, then each effect.
+
+use super::{Drive, Simulation};
+use crate::around::{Frame, Kinds, Strands, Surrounded};
+
+impl Simulation {
+    /// Finds what acts on all points in the frame; roots have not moved yet.
+    pub(super) fn exchange(&mut self, drive: &Drive) {
+        let ghosts = self.settings.solver.ghost && self.ghosts.iter().any(|ghost| ghost.is_on());
+        let kinds = Kinds { push: self.volume.is_some(), grip: ghosts, air: false };
+        self.around.prepare(self.state.len(), kinds, self.volume.is_some());
+        if let Some(volume) = &mut self.volume {
+            let anchor = self.settings.anchor;
+            let hair = (&self.strand[..], &self.state[..]);
+            volume.exchange(drive.dt, hair, &anchor, drive.obstacles, &mut self.around.push);
+        }
+        self.move_roots(drive);
+        if !ghosts {
+            return;
+        }
+        let (groom, materials) = (&self.groom, &self.ghosts);
+        let act = |strand: &mut Surrounded| {
+            let s = strand.strand;
+            if let Some(ghost) = materials.get(groom.group(s) as usize).or(materials.last()) {
+                ghost.add(groom.scale(s).ghost, groom.strand(s), strand);
+            }
+        };
+        let frame = Frame { anchor: [self.settings.anchor, drive.anchor], dt: drive.dt };
+        let strands = Strands {
+            tiles: &self.tiles,
+            lanes: &self.lanes,
+            strand: &self.strand,
+            state: &self.state,
+            push: &mut self.around.push,
+            grip: &mut self.around.grip,
+            air: &mut self.around.air,
+        };
+        strands.each(&frame, &act);
+    }
+}
