@@ -124,7 +124,8 @@ fn shaken(
         groom,
         &(0..count as u32).collect::<Vec<_>>(),
         std::slice::from_ref(material),
-        Solver::default(),
+        // The solver bears a jump by itself.
+        Solver { jump: f32::MAX, ..Solver::default() },
         gravity,
         Rigid::default(),
         if alone { &[] } else { std::slice::from_ref(&rest) },

@@ -151,6 +151,8 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     let solvers = [
         ((1..=64).contains(&solver.substeps), "substeps", "1 to 64"),
         ((0..=20).contains(&solver.projections), "projections", "0 to 20"),
+        ((0.0..=1.0).contains(&solver.inertia), "inertia", "0 to 1"),
+        (above_0(Some(solver.jump)), "jump", "above 0 [m]"),
     ];
     first_failure(text, section("[solver]"), &solvers)?;
     let volume = &scene.volume;

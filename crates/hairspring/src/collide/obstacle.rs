@@ -47,6 +47,17 @@ impl Rigid {
         (Mat3::from_quat(self.rotation), self.translation)
     }
 
+    /// `first`, then `self`.
+    pub fn after(&self, first: &Rigid) -> Rigid {
+        Rigid { rotation: self.rotation * first.rotation, translation: self.point(first.translation) }
+    }
+
+    /// What undoes it.
+    pub fn inverse(&self) -> Rigid {
+        let rotation = self.rotation.inverse();
+        Rigid { rotation, translation: -(rotation * self.translation) }
+    }
+
     /// A point of this frame in the world [m].
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.rotation * p + self.translation

@@ -65,6 +65,11 @@ pub struct Solver {
     pub integrator: Integrator,
     /// How exactly its equations are solved. Default `normal`.
     pub quality: Quality,
+    /// How much of the head's motion hair feels, 0 (none: it moves as if the head stood still) to 1 (all of it, the default): for art direction.
+    pub inertia: f32,
+    /// A head that moves farther than this in a frame, over how it moved before, has jumped, and hair is carried along as it is [m], above 0. Default 1:
+    /// what moves so in 1/24 s is accelerated by 60 g.
+    pub jump: f32,
     /// Whether materials' ghost rest shapes pull. Default true; no material has one by default.
     pub ghost: bool,
 }
@@ -136,6 +141,8 @@ impl Default for Solver {
             projections: 3,
             integrator: Integrator::default(),
             quality: Quality::default(),
+            inertia: 1.0,
+            jump: 1.0,
             ghost: true,
         }
     }

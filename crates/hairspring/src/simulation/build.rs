@@ -12,7 +12,7 @@ use crate::{
         lanes::{LANES, Row},
         model::stretch::stiffening,
         rest_shape::{Fibre, RestShape, Start, rest_shape},
-        tile::{Elastic, RestRows, StateRows, StrandRows, history, rest, state, strand},
+        tile::{Elastic, RestRows, StateRows, StrandRows, history, rest, springs, state, strand},
         truss::{particles, truss},
     },
 };
@@ -100,6 +100,8 @@ impl Simulation {
             around: Around::default(),
             ghosts: materials.iter().map(|m| m.ghost).collect(),
             volume: None,
+            tensions: Default::default(),
+            motion: super::carry::Motion::default(),
             last_h: 0.0,
             groom,
             lanes,
@@ -111,6 +113,9 @@ impl Simulation {
             start: Start::default(),
         };
         simulation.fill(materials, obstacles);
+        let springs = simulation.tiles.iter().any(|tile| tile.model == Elastic::Springs);
+        let rows = |at: usize| simulation.state.iter().map(|rows| rows[at].clone()).collect();
+        simulation.tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
         simulation
     }
 

@@ -1,6 +1,7 @@
 //! Strands in motion: the state of all simulated strands, and one step of it.
 
 mod build;
+mod carry;
 mod crowd;
 mod energy;
 mod hold;
@@ -22,7 +23,7 @@ use crate::{
     groom::Groom,
     strand::{
         interval::Interval,
-        lanes::LANES,
+        lanes::{LANES, Row},
         tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, state, strand},
     },
     volume::Volume,
@@ -57,6 +58,10 @@ pub struct Simulation {
     ghosts: Vec<Ghost>,
     /// Hair on hair; `None`: strands pass through each other.
     volume: Option<Box<Volume>>,
+    /// Tensions of the rest shape, of segments and, in the springs model, of triangles' sides; shapes as `state`, the second empty without springs.
+    tensions: [Vec<Row>; 2],
+    /// How the anchor moved in the last frame.
+    motion: carry::Motion,
     /// Length of the last substep [s].
     last_h: f32,
     settings: build::Settings,
@@ -104,6 +109,7 @@ impl Simulation {
             + size_of_val(&self.state[..])
             + size_of_val(&self.history[..])
             + self.around.bytes()
+            + self.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
             + self.volume.as_ref().map_or(0, |volume| volume.bytes())
             + (self.lanes.len() + self.places.len()) * size_of::<u32>()
             + self.tiles.len() * size_of::<TilePlace>()

@@ -27,7 +27,7 @@ impl Simulation {
                     rows[at + k].0[lane] = v;
                 }
             }
-            self.reset_strand(place);
         }
+        self.reset();
     }
 }

@@ -36,6 +36,15 @@ impl Simulation {
         count
     }
 
+    /// Puts every strand back to rest at its root as that is now, at rest.
+    pub fn reset(&mut self) {
+        for k in 0..self.places.len() {
+            self.reset_strand(self.places[k] as usize);
+        }
+        self.motion = super::carry::Motion::default();
+        self.last_h = 0.0;
+    }
+
     pub(super) fn reset_strand(&mut self, place: usize) {
         let (tile, lane) = (place / LANES, place % LANES);
         let rows = &self.strand[tile];
@@ -53,12 +62,11 @@ impl Simulation {
                 history.iter_mut().for_each(|r| r.0[lane] = 0.0);
             }
             let rows = &mut self.state[at];
-            // A finite tension is kept: it is what holds the rest shape.
-            let kept: &[usize] = if springs { &[state::TENSION, springs::SIDE] } else { &[state::TENSION] };
-            for (k, row) in rows.iter_mut().enumerate() {
-                if !kept.contains(&k) || !row.0[lane].is_finite() {
-                    row.0[lane] = 0.0;
-                }
+            rows.iter_mut().for_each(|row| row.0[lane] = 0.0);
+            // What holds the rest shape.
+            rows[state::TENSION].0[lane] = self.tensions[0][at].0[lane];
+            if springs {
+                rows[springs::SIDE].0[lane] = self.tensions[1][at].0[lane];
             }
             for (row, x) in rows[state::EDGE..].iter_mut().zip(edge.to_array()) {
                 row.0[lane] = x;

@@ -41,6 +41,19 @@ pub struct MovingObstacle {
     pub end: Rigid,
 }
 
+impl MovingObstacle {
+    /// Its start for hair that was carried along by `by` before the frame: the obstacle was too, or it was not, whichever leaves it less far to go.
+    pub(crate) fn start(&self, by: Option<&Rigid>) -> Rigid {
+        let Some(by) = by else { return self.start };
+        let carried = by.after(&self.start);
+        let far = |from: &Rigid| {
+            let turned = 1.0 - from.rotation.dot(self.end.rotation).abs();
+            from.translation.distance_squared(self.end.translation) + turned
+        };
+        if far(&carried) < far(&self.start) { carried } else { self.start }
+    }
+}
+
 /// Wind at a time.
 #[derive(Clone, Copy, Default)]
 pub struct Air {
@@ -107,9 +120,10 @@ impl Simulation {
         let solver = self.settings.solver;
         let substeps =
             ((drive.dt / substep_length(&solver) as f32 - 1e-3).ceil() as u32).clamp(1, MAX_SUBSTEPS);
+        let carried = self.carry_along(drive);
         let mut interval = std::mem::take(&mut self.interval);
-        self.fill_interval(drive, substeps, &mut interval);
-        self.exchange(drive);
+        self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
+        self.exchange(drive, carried.as_ref());
         let reset = run(
             self.level,
             &interval,
@@ -136,7 +150,7 @@ impl Simulation {
     }
 
     /// Fills `interval` for a frame; its memory is used again.
-    fn fill_interval(&self, drive: &Drive, count: u32, interval: &mut Interval) {
+    fn fill_interval(&self, drive: &Drive, carried: Option<&Rigid>, count: u32, interval: &mut Interval) {
         let from = self.settings.anchor;
         interval.h = drive.dt / count as f32;
         let solver = self.settings.solver;
@@ -160,7 +174,8 @@ impl Simulation {
             substep.wind = drive.air.velocity(fraction * drive.dt);
             substep.obstacles.clear();
             substep.obstacles.extend(drive.obstacles.iter().map(|o| {
-                let at = |t: f32| o.start.lerp(&o.end, t).matrix();
+                let start = o.start(carried);
+                let at = |t: f32| start.lerp(&o.end, t).matrix();
                 ObstaclePose::new(o.shape.clone(), at(before), at(fraction), 1.0 / count as f32)
             }));
         }

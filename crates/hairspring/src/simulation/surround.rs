@@ -1,18 +1,22 @@
 //! What acts on points from outside in a frame: the hair volume first, then each effect.
 
 use super::{Drive, Simulation};
-use crate::around::{Frame, Kinds, Strands, Surrounded};
+use crate::{
+    around::{Frame, Kinds, Strands, Surrounded},
+    collide::Rigid,
+};
 
 impl Simulation {
-    /// Finds what acts on all points in the frame; roots have not moved yet.
-    pub(super) fn exchange(&mut self, drive: &Drive) {
+    /// Finds what acts on all points in the frame, and moves the roots; hair was `carried` along before it.
+    pub(super) fn exchange(&mut self, drive: &Drive, carried: Option<&Rigid>) {
         let ghosts = self.settings.solver.ghost && self.ghosts.iter().any(|ghost| ghost.is_on());
         let kinds = Kinds { push: self.volume.is_some(), grip: ghosts, air: false };
         self.around.prepare(self.state.len(), kinds, self.volume.is_some());
         if let Some(volume) = &mut self.volume {
             let anchor = self.settings.anchor;
             let hair = (&self.strand[..], &self.state[..]);
-            volume.exchange(drive.dt, hair, &anchor, drive.obstacles, &mut self.around.push);
+            let obstacles = (drive.obstacles, carried);
+            volume.exchange(drive.dt, hair, &anchor, obstacles, &mut self.around.push);
         }
         self.move_roots(drive);
         if !ghosts {

@@ -200,7 +200,7 @@ impl Volume {
         dt: f32,
         (strand, state): (&[StrandRows], &[StateRows]),
         anchor: &Rigid,
-        obstacles: &[MovingObstacle],
+        obstacles: (&[MovingObstacle], Option<&Rigid>),
         push: &mut [[Row; 3]],
     ) {
         self.reserve();
@@ -242,7 +242,7 @@ impl Volume {
     }
 
     /// Acceleration that makes velocities free of divergence where hair is full.
-    fn project(&mut self, dt: f32, anchor: &Rigid, obstacles: &[MovingObstacle]) {
+    fn project(&mut self, dt: f32, anchor: &Rigid, obstacles: (&[MovingObstacle], Option<&Rigid>)) {
         let (field, rest, window, cell) = (&self.field, &self.rest, self.field.window, self.cell);
         let turn = Mat3::from_quat(anchor.rotation);
         let back = turn.transpose();
@@ -297,10 +297,10 @@ fn fill_push(field: &mut Field, friction: f32, acceleration: impl Fn(usize, f32)
     });
 }
 
-/// Velocity of the collider that `place` [m] is in at the start of an interval of `dt` [s], in the world [m/s].
-fn solid(obstacles: &[MovingObstacle], place: Vec3, dt: f32) -> Option<Vec3> {
+/// Velocity of the collider that `place` [m] is in at the start of an interval of `dt` [s] before which hair was carried along, in the world [m/s].
+fn solid((obstacles, carried): (&[MovingObstacle], Option<&Rigid>), place: Vec3, dt: f32) -> Option<Vec3> {
     obstacles.iter().find_map(|o| {
-        let local = o.start.inverse_point(place);
+        let local = o.start(carried).inverse_point(place);
         (o.shape.distance(local) < 0.0).then(|| (o.end.point(local) - place) / dt)
     })
 }

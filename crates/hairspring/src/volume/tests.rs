@@ -96,7 +96,7 @@ impl Bundle {
     /// The accelerations that it gets, of all points.
     fn exchange(&self, volume: &mut Volume, anchor: &Rigid) -> Vec<Vec3> {
         let mut push = vec![[Row::default(); 3]; self.state.len()];
-        volume.exchange(DT, (&self.strand, &self.state), anchor, &[], &mut push);
+        volume.exchange(DT, (&self.strand, &self.state), anchor, (&[], None), &mut push);
         push.iter().flat_map(|p| (0..LANES).map(|l| Vec3::new(p[0].0[l], p[1].0[l], p[2].0[l]))).collect()
     }
 

@@ -1,0 +1,221 @@
+//! Promise: hair goes where its head goes, however that gets there.
+//!
+//! A teleport keeps shape and motion: what follows is what would have followed, elsewhere. A head that jumps does the same by itself, and its
+//! colliders do not sweep through the hair. Inertia scales how much of the head's motion hair feels, down to none. A reset is the start again, to the bit.
+
+use glam::{Quat, Vec3};
+use hairspring::{
+    collide::{Obstacle, ObstaclePose, Rigid},
+    groom::Groom,
+    material::{Material, Model},
+    scene::{Integrator, Solver, Volume, VolumeMethod},
+    simulation::{Air, Drive, MovingObstacle, Simulation},
+};
+use std::sync::Arc;
+
+const FRAME: f32 = 1.0 / 60.0;
+/// Radius of the head [m].
+const HEAD: f32 = 0.09;
+const POINTS: usize = 16;
+
+/// Bowed strands of 20 cm around a head.
+fn groom() -> Groom {
+    Groom::from_strands(
+        (0..24).map(|k| {
+            let around = Quat::from_rotation_y(k as f32 * 0.7);
+            let out = around * Vec3::new(0.8, 0.6, 0.0);
+            (0..POINTS)
+                .map(|i| {
+                    let s = i as f32 / (POINTS - 1) as f32;
+                    out * (HEAD + 0.2 * s) - Vec3::Y * (0.1 * s * s)
+                })
+                .collect::<Vec<_>>()
+        }),
+        35e-6,
+    )
+}
+
+/// Hair and its head.
+struct Head {
+    groom: Arc<Groom>,
+    simulation: Simulation,
+    pose: Rigid,
+}
+
+impl Head {
+    fn new(model: Model, solver: Solver, volume: VolumeMethod) -> Self {
+        let groom = Arc::new(groom());
+        let rest = Rigid::default();
+        let obstacle = ObstaclePose::new(ball(), rest.matrix(), rest.matrix(), 1.0);
+        let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
+        let material = Material { model, ..Material::default() };
+        let gravity = Vec3::new(0.0, -9.81, 0.0);
+        let mut simulation =
+            Simulation::new(groom.clone(), &all, &[material], solver, gravity, rest, &[obstacle]);
+        simulation.set_volume(&Volume { method: volume, ..Volume::default() });
+        Self { groom, simulation, pose: rest }
+    }
+
+    fn roots(&self, pose: &Rigid) -> Vec<Rigid> {
+        (0..self.groom.strand_count())
+            .map(|s| Rigid { translation: pose.point(self.groom.strand(s)[0]), rotation: pose.rotation })
+            .collect()
+    }
+
+    /// A frame in which the head goes to `pose`.
+    fn step(&mut self, pose: Rigid) {
+        let roots = self.roots(&pose);
+        let report = self.simulation.step(&Drive {
+            dt: FRAME,
+            anchor: pose,
+            roots: &roots,
+            obstacles: &[MovingObstacle { shape: ball(), start: self.pose, end: pose }],
+            air: Air::default(),
+        });
+        assert_eq!(report.reset_strands, 0);
+        self.pose = pose;
+    }
+
+    /// The points as seen from the head [m].
+    fn seen(&self) -> Vec<Vec3> {
+        let mut points = vec![Vec3::ZERO; self.simulation.point_count()];
+        self.simulation.write_points(&mut points);
+        points.iter().map(|p| self.pose.inverse_point(*p)).collect()
+    }
+}
+
+fn ball() -> Obstacle {
+    Obstacle::Sphere { center: Vec3::ZERO, radius: HEAD }
+}
+
+/// A head that sways by 10 cm and turns, as it would walk.
+fn sway(frame: u32) -> Rigid {
+    let t = frame as f32 * FRAME;
+    Rigid {
+        translation: Vec3::new(0.05 * (9.0 * t).sin(), 0.02 * (5.0 * t).sin(), 0.6 * t),
+        rotation: Quat::from_rotation_y(0.5 * (7.0 * t).sin()),
+    }
+}
+
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+}
+
+/// About the vertical, which gravity does not notice.
+fn elsewhere() -> Rigid {
+    Rigid { rotation: Quat::from_rotation_y(2.0), translation: Vec3::new(5.0, 1.0, -3.0) }
+}
+
+const CASES: [(Model, Integrator, VolumeMethod); 5] = [
+    (Model::Rod, Integrator::BackwardEuler, VolumeMethod::Off),
+    (Model::Rod, Integrator::Bdf2, VolumeMethod::Off),
+    (Model::Curvature, Integrator::BackwardEuler, VolumeMethod::Incompressible),
+    (Model::Springs, Integrator::BackwardEuler, VolumeMethod::Density),
+    (Model::Rod, Integrator::Dftl, VolumeMethod::Off),
+];
+
+#[test]
+fn what_follows_a_teleport_is_what_would_have_followed_elsewhere() {
+    for (model, integrator, volume) in CASES {
+        let solver = Solver { integrator, ..Solver::default() };
+        let [mut here, mut there] = [0; 2].map(|_| Head::new(model, solver, volume));
+        let mut moved = Rigid::default();
+        for frame in 1..60 {
+            if frame == 30 {
+                moved = elsewhere();
+                there.simulation.teleport(moved);
+                there.pose = moved.after(&there.pose);
+            }
+            here.step(sway(frame));
+            there.step(moved.after(&sway(frame)));
+        }
+        // What rounding does to hair that touches and lets go: 0.1 mm in half a second.
+        let apart = farthest(&here.seen(), &there.seen());
+        assert!(apart < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {apart} m");
+    }
+}
+
+#[test]
+fn a_jump_is_a_teleport_without_being_called_one() {
+    for (model, integrator, volume) in CASES {
+        let solver = Solver { integrator, ..Solver::default() };
+        let [mut here, mut there] = [0; 2].map(|_| Head::new(model, solver, volume));
+        for frame in 1..30 {
+            here.step(sway(frame));
+            there.step(sway(frame));
+        }
+        // Hair swings on, as if the head had stopped.
+        here.step(sway(29));
+        there.step(elsewhere().after(&sway(29)));
+        let apart = farthest(&here.seen(), &there.seen());
+        assert!(apart < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {apart} m in the jump");
+    }
+}
+
+#[test]
+fn what_is_no_jump_is_not_taken_for_one() {
+    // A ride at 50 m/s at 24 frames a second goes 2 m a frame, and is felt: it begins in one frame, and there alone hair is carried.
+    let [mut carried, mut felt] = [1.0, f32::MAX]
+        .map(|jump| Head::new(Model::Rod, Solver { jump, ..Solver::default() }, VolumeMethod::Off));
+    let ride = |frame: u32| Rigid { translation: Vec3::Z * (50.0 / 24.0 * frame as f32), ..Rigid::default() };
+    for head in [&mut carried, &mut felt] {
+        head.step(ride(1));
+    }
+    assert!(farthest(&carried.seen(), &felt.seen()) > 0.05, "the jump is not felt");
+    let swaying = |frame: u32| ride(frame).after(&sway(frame));
+    for frame in 2..120 {
+        carried.step(swaying(frame));
+        felt.step(swaying(frame));
+    }
+    // What was carried sways as what was not, when that has come to rest from its start.
+    let most = farthest(&carried.seen(), &felt.seen());
+    assert!(most < 0.02, "{most} m");
+}
+
+#[test]
+fn inertia_scales_what_hair_feels_of_its_head() {
+    let swing = |inertia: f32| {
+        let mut head = Head::new(Model::Rod, Solver { inertia, ..Solver::default() }, VolumeMethod::Off);
+        let rest = head.seen();
+        let mut most = 0.0f32;
+        for frame in 1..120 {
+            let t = frame as f32 * FRAME;
+            // Small, so that what hair does is in proportion.
+            head.step(Rigid { translation: Vec3::X * (0.004 * (8.0 * t).sin()), ..Rigid::default() });
+            most = most.max(farthest(&rest, &head.seen()));
+        }
+        most
+    };
+    let [none, half, all] = [0.0, 0.5, 1.0].map(swing);
+    assert!(none < 2e-5, "with no inertia hair hangs as on a head that stands still: {none} m");
+    assert!((half / all - 0.5).abs() < 0.1, "half: {half} m of {all} m");
+    // A turn is felt as little.
+    let mut head = Head::new(Model::Rod, Solver { inertia: 0.0, ..Solver::default() }, VolumeMethod::Off);
+    let rest = head.seen();
+    for frame in 1..60 {
+        head.step(Rigid { rotation: Quat::from_rotation_y(0.1 * frame as f32), ..Rigid::default() });
+    }
+    let turned = farthest(&rest, &head.seen());
+    assert!(turned < 1e-4, "{turned} m after turning");
+}
+
+#[test]
+fn a_reset_is_the_start_again() {
+    for (model, integrator, volume) in CASES {
+        let solver = Solver { integrator, ..Solver::default() };
+        let mut head = Head::new(model, solver, volume);
+        let (anchor, roots) = (Rigid::default(), head.roots(&Rigid::default()));
+        let mut run = |head: &mut Head| {
+            head.simulation.place(anchor, &roots);
+            head.pose = anchor;
+            (1..30).for_each(|frame| head.step(sway(frame)));
+            head.seen()
+        };
+        let [first, again] = [run(&mut head), run(&mut head)];
+        assert!(first == again, "{model:?}, {integrator:?}, {volume:?}: {} m", farthest(&first, &again));
+        // And where it stands: every strand as it was authored.
+        head.simulation.reset();
+        let authored = farthest(&head.seen(), &head.groom.points);
+        assert!(authored < 1e-6, "{model:?}, {integrator:?}: {authored} m");
+    }
+}
