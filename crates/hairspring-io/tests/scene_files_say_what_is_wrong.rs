@@ -247,6 +247,14 @@ fn the_page_that_documents_scenes_is_right() {
             .replace("# bones =", "bones ="),
     )
     .unwrap();
+    let said = |keys: &[&str]| -> String {
+        let line = |k: &&str| {
+            example.lines().filter_map(|l| l.strip_prefix("# ")).find(|l| l.starts_with(*k)).unwrap()
+        };
+        keys.iter().map(|k| format!("{}\n", line(k))).collect()
+    };
+    let builtin = said(&["[builtin]", "style =", "strands =", "guides =", "material =", "motion ="]);
+    check_text(&format!("{builtin}[clip]\n{}", said(&["keys ="]))).unwrap();
 }
 
 #[test]
@@ -278,6 +286,49 @@ fn bodies_of_several_files_and_hair_grown_on_them() {
     assert!(wrong("file = \"hair.data\"\ngrow = {}").contains("needs `file` or `grow`, and not both"));
     assert!(wrong("guides = 3").contains("needs `file` or `grow`"));
     assert!(message("[[groom]]\ngrow = {}\n").contains("`grow` needs a [body]"));
+}
+
+#[test]
+fn a_scene_may_be_laid_over_the_one_made_by_code() {
+    let folder = folder();
+    let text = "[builtin]\nstyle = \"short-fur\"\nstrands = 50\nguides = \"all\"\nmaterial = \"mine\"\n\
+                [material.mine]\nfriction = 0.5\n[[groom]]\nfile = \"hair.data\"\n";
+    let scene = read(folder.path(), text).unwrap().value;
+    let hair = &scene.grooms[0];
+    assert_eq!((hair.groom.strand_count(), hair.guides, hair.materials[0].friction), (50, Guides::All, 0.5));
+    assert_eq!(scene.grooms.len(), 3, "hair, brows, and the file's own");
+    assert!(scene.clip.is_some() && scene.collision.is_some() && scene.camera.is_some());
+    // By keys, as one piece, its collision mesh with it.
+    let keyed = "[builtin]\nstrands = 50\n[clip]\npivot = [0, -0.1, 0]\n\
+                 keys = [{ time = 0.5 }, { time = 1, position = [0, 0.2, 0], rotation = [0, 90, 0] }]\n";
+    let scene = read(folder.path(), keyed).unwrap().value;
+    let (clip, body) = (scene.clip.unwrap(), scene.body.unwrap());
+    assert_eq!((clip.joint_count, body.joints.len(), clip.frame_count()), (1, 1, 61));
+    assert_eq!(scene.collision.unwrap().joints.len(), 1);
+    let still = read(folder.path(), "[builtin]\nstrands = 50\nmotion = false\n").unwrap().value;
+    assert_eq!(still.clip, None);
+
+    let wrong = |text: &str| message(&format!("[builtin]\n{text}\n"));
+    assert!(
+        wrong("style = \"wavvy\"")
+            .contains("line 2: the style `wavvy` is not known here; did you mean `wavy`?")
+    );
+    assert!(wrong("strands = 0").contains("line 2: `strands` must be 1 to 10000000"));
+    assert!(wrong("guides = \"file\"").contains("line 2: `guides` must be a number above 0 or \"all\""));
+    assert!(wrong("material = \"wavvy\"").contains("line 2: the material `wavvy`"));
+    assert!(wrong("[body]\nfile = \"head.obj\"").contains("has a body of its own"));
+    let keys = |keys: &str| wrong(&format!("strands = 50\n[clip]\nkeys = {keys}"));
+    assert!(keys("[{ time = 1 }, { time = 0.5 }]").contains("line 4: `keys` must be in order of `time`"));
+    assert!(
+        keys("[{ time = -1 }]").contains("line 4: `keys` must be in order of `time`, from 0 to 3600 [s]")
+    );
+    assert!(
+        keys("[{ time = 1 }]\nfile = \"nod.bvh\"")
+            .contains("`keys` must be left out where there is a `file`")
+    );
+    assert!(
+        keys("[{ time = 1, rotation = [inf, 0, 0] }]").contains("line 4: `keys` must be of finite numbers")
+    );
 }
 
 #[test]

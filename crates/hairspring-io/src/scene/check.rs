@@ -1,12 +1,15 @@
 //! Values that a scene file may not have: not finite, or outside the range that the field's description gives.
 
 use super::{
-    file::{BodyFile, SceneFile},
+    file::{BodyFile, KeyFile, SceneFile},
     sentence::{line_at, line_of_key},
 };
 use crate::Problem;
 use glam::Vec3;
-use hairspring::{material::Material, scene::Shape};
+use hairspring::{
+    material::Material,
+    scene::{Guides, Shape},
+};
 
 /// One check: whether it holds, the key it is about, what is expected.
 type Check = (bool, &'static str, &'static str);
@@ -51,19 +54,43 @@ fn first_failure(text: &str, from: usize, checks: &[Check]) -> Result<(), Proble
 /// Checks all settings but the materials.
 pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     let section = |name: &str| text.find(name).map_or(1, |at| line_at(text, at));
-    if scene.groom.is_empty() {
+    if scene.groom.is_empty() && scene.builtin.is_none() {
         return Err(Problem::whole("the scene has no [[groom]]: name one with `file = …`"));
     }
     first_failure(text, 1, &[(finite(scene.gravity), "gravity", "three finite numbers [m/s²]")])?;
     for body in scene.body.iter().chain(&scene.collision) {
         body_ranges(text, body)?;
     }
-    if let Some(clip) = &scene.clip {
+    if let Some(builtin) = &scene.builtin {
+        let strands = builtin.strands.as_ref().is_none_or(|n| (1..=10_000_000).contains(n.get_ref()));
         let checks = [
+            (strands, "strands", "1 to 10000000"),
+            (builtin.guides != Some(Guides::FromGroom), "guides", "a number above 0 or \"all\""),
+        ];
+        first_failure(text, section("[builtin]"), &checks)?;
+        if scene.body.is_some() || scene.collision.is_some() {
+            return Err(Problem::line(
+                section("[builtin]"),
+                "`[builtin]` has a body of its own: leave out [body] and [collision]",
+            ));
+        }
+    }
+    if let Some(clip) = &scene.clip {
+        let keys = &clip.keys;
+        let ordered = keys.windows(2).all(|w| w[0].time < w[1].time);
+        let inside = |key: &KeyFile| (0.0..=3600.0).contains(&key.time);
+        let checks = [
+            (keys.is_empty() || clip.file.is_none(), "keys", "left out where there is a `file`"),
+            (ordered && keys.iter().all(inside), "keys", "in order of `time`, from 0 to 3600 [s]"),
+            (keys.iter().all(|k| finite(k.position) && finite(k.rotation)), "keys", "of finite numbers"),
             (above_0(clip.scale), "scale", "above 0 [m a unit]"),
             (clip.pivot.is_none_or(finite), "pivot", "three finite numbers [m]"),
             (clip.facing.is_none_or(f32::is_finite), "facing", "a finite number [degrees]"),
-            (clip.pivot.is_none() || clip.joint.is_some(), "pivot", "left out where there is no `joint`"),
+            (
+                clip.pivot.is_none() || clip.joint.is_some() || !keys.is_empty(),
+                "pivot",
+                "left out where there is no `joint` and no `keys`",
+            ),
             (
                 clip.rest_frame.is_none() || clip.joint.is_some(),
                 "rest_frame",

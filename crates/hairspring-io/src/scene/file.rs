@@ -1,8 +1,8 @@
 //! The fields of a scene file. Every field that is not said to be needed may be left out.
 
-use glam::Vec3;
+use glam::{EulerRot, Quat, Vec3};
 use hairspring::{
-    body::Travel,
+    body::{Key, Travel},
     groom::{Growth, Thicken},
     scene::{Camera, Collider, Effects, Guides, HairLook, Shape, Solver, Volume, Wind},
 };
@@ -21,6 +21,8 @@ pub(super) type FileName = Spanned<PathBuf>;
 pub(super) struct SceneFile {
     /// Shown in reports. Default: the file's name.
     pub name: Option<String>,
+    /// The scene that is made by code, in place of `body`.
+    pub builtin: Option<BuiltinFile>,
     /// Gravity [m/s²]. Default (0, −9.81, 0).
     #[serde(default = "earth")]
     pub gravity: Vec3,
@@ -33,7 +35,7 @@ pub(super) struct SceneFile {
     pub collider: Vec<Collider>,
     /// Motion of the body.
     pub clip: Option<ClipFile>,
-    /// The hairstyles; one is needed.
+    /// The hairstyles; one is needed, or `builtin`.
     #[serde(default)]
     pub groom: Vec<GroomFile>,
     /// Materials by name: `preset`, then any field of a material over it.
@@ -50,6 +52,23 @@ pub(super) struct SceneFile {
     pub volume: Volume,
     /// Where the scene is seen from. Default: framed automatically.
     pub camera: Option<Camera>,
+}
+
+/// `[builtin]`: a bust with a head of hair, and further grooms, colliders and settings over it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BuiltinFile {
+    /// The hairstyle, a preset's name. Default wavy.
+    pub style: Option<Spanned<String>>,
+    /// Hairs on the scalp. Default 100,000.
+    pub strands: Option<Spanned<u32>>,
+    /// A number of guides, or "all". Default 2,000.
+    #[serde(default, deserialize_with = "guides_or_default")]
+    pub guides: Option<Guides>,
+    /// Name of a `[material.NAME]` or a preset. Default: the style's.
+    pub material: Option<OneOrMore>,
+    /// Whether it nods, turns and shakes where there is no `[clip]`. Default true.
+    pub motion: Option<bool>,
 }
 
 /// `[body]` and `[collision]`.
@@ -105,8 +124,38 @@ pub(super) struct ClipFile {
     /// With `joint`: what is kept of the way through the world: "keep", "in-place" (bobbing only) or "none".
     /// Default "in-place".
     pub travel: Option<TravelName>,
+    /// In place of `file`: the body is one rigid piece that goes from key to key, and is at rest at each.
+    #[serde(default)]
+    pub keys: Vec<KeyFile>,
     /// With `joint`: direction that the body faces, about +Y from +Z [degrees]. Default 0.
     pub facing: Option<f32>,
+}
+
+/// A key of `[clip]`.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeyFile {
+    /// When [s]; needed, and after that of the key before.
+    pub time: f32,
+    /// How far from its rest the body is [m]. Default 0.
+    #[serde(default)]
+    pub position: Vec3,
+    /// How it is turned about `pivot`: about X, then Y, then Z [degrees]. Default 0.
+    #[serde(default)]
+    pub rotation: Vec3,
+}
+
+impl KeyFile {
+    /// The key.
+    pub(super) fn key(&self) -> Key {
+        Key { time: self.time, position: self.position, rotation: turn(self.rotation) }
+    }
+}
+
+/// A turn about X, then Y, then Z [degrees].
+pub(super) fn turn(degrees: Vec3) -> Quat {
+    let [x, y, z] = degrees.to_array().map(f32::to_radians);
+    Quat::from_euler(EulerRot::ZYX, z, y, x)
 }
 
 /// [`Travel`] as a scene file names it.
@@ -250,6 +299,11 @@ fn guides<'de, D: Deserializer<'de>>(from: D) -> Result<Guides, D::Error> {
         Named::Name(name) if name == "file" => Ok(Guides::FromGroom),
         _ => Err(de::Error::custom("expected a number of guides above 0, \"all\" or \"file\"")),
     }
+}
+
+/// The same, where the table may be there without it.
+fn guides_or_default<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Guides>, D::Error> {
+    guides(from).map(Some)
 }
 
 /// One factor, or three.

@@ -1,6 +1,7 @@
 //! Scene files: TOML that names grooms, a body, its motion and settings (`docs/scene.md` shows every field).
 
 mod body;
+mod builtin;
 mod check;
 mod file;
 mod grow;
@@ -12,7 +13,7 @@ use crate::{
     tfxbone::RootBones,
 };
 use file::{FileName, GroomFile, OneOrMore, SceneFile};
-use glam::{Affine3A, EulerRot, Quat};
+use glam::Affine3A;
 use hairspring::{
     body::Body,
     groom::{Groom, Repairs, bind_roots_where, thicken},
@@ -61,7 +62,17 @@ fn materials(
     scene: &SceneFile,
     groom: &GroomFile,
 ) -> std::result::Result<Vec<Material>, Problem> {
-    let names: &[String] = match &groom.material {
+    named_materials(text, scene, groom.material.as_ref(), groom.start())
+}
+
+/// The materials of these names, which the table that begins at byte `start` gives.
+fn named_materials(
+    text: &str,
+    scene: &SceneFile,
+    named: Option<&OneOrMore>,
+    start: usize,
+) -> std::result::Result<Vec<Material>, Problem> {
+    let names: &[String] = match named {
         None => &[],
         Some(OneOrMore::One(name)) => std::slice::from_ref(name),
         Some(OneOrMore::More(names)) => names,
@@ -73,7 +84,7 @@ fn materials(
             (Some(table), _) => overlaid(text, table),
             (None, Some(preset)) => Ok(preset),
             (None, None) => {
-                let line = line_of_key(text, line_at(text, groom.start()), "material").unwrap_or(1);
+                let line = line_of_key(text, line_at(text, start), "material").unwrap_or(1);
                 Err(Problem::line(line, format!("the material {}", unknown(name, known()))))
             }
         })
@@ -110,26 +121,42 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn scene(mut self, file: SceneFile) -> Result<Loaded<Scene>> {
-        let character = file.body.as_ref().map(|b| self.body(b, "body")).transpose()?;
+        let (base, character) = match (&file.builtin, &file.body) {
+            (Some(named), _) => {
+                let materials = named_materials(
+                    self.text,
+                    &file,
+                    named.material.as_ref(),
+                    self.text.find("[builtin]").unwrap_or(0),
+                );
+                self.builtin(named, materials.map_err(|p| p.in_file(self.path))?)?
+            }
+            (None, body) => (Scene::default(), body.as_ref().map(|b| self.body(b, "body")).transpose()?),
+        };
         let collision = file.collision.as_ref().map(|b| self.body(b, "collision mesh")).transpose()?;
         let mut scene = Scene {
             name: file.name.clone().unwrap_or_else(|| stem(self.path)),
+            grooms: base.grooms,
             colliders: file.collider.clone(),
             wind: file.wind,
             gravity: file.gravity,
             solver: file.solver,
             volume: file.volume,
-            camera: file.camera,
+            camera: file.camera.or(base.camera),
             ..Scene::default()
         };
         for groom in &file.groom {
             let materials = materials(self.text, &file, groom).map_err(|p| p.in_file(self.path))?;
             scene.grooms.push(self.groom(groom, materials, character.as_ref().map(|c| &c.body))?);
         }
-        let (body, clip) = self.motion(file.clip.as_ref(), character)?;
+        let (body, clip) = self.motion(file.clip.as_ref(), character, file.builtin.is_some())?;
+        // The built-in collision mesh has the joints of the built-in body, as long as that has them.
+        let one_piece = body.as_ref().is_some_and(|b| b.joints.len() == 1);
+        let made = base.collision.map(|c| if one_piece { body::rigid(c) } else { c });
+        let collision = collision.map(|c| c.body).or(made);
         scene.collision = match (collision, &body, &file.collision) {
-            (Some(collision), Some(body), Some(named)) => Some(self.carried(collision.body, body, named)?),
-            (collision, ..) => collision.map(|c| c.body),
+            (Some(collision), Some(body), Some(named)) => Some(self.carried(collision, body, named)?),
+            (collision, ..) => collision,
         };
         (scene.body, scene.clip) = (body, clip);
         self.colliders(&scene)?;
@@ -183,12 +210,7 @@ impl Reader<'_> {
             (None, None) => Groom::default(),
         };
         let t = named.transform;
-        let [x, y, z] = t.rotation.to_array().map(f32::to_radians);
-        let place = Affine3A::from_scale_rotation_translation(
-            t.scale,
-            Quat::from_euler(EulerRot::ZYX, z, y, x),
-            t.position,
-        );
+        let place = Affine3A::from_scale_rotation_translation(t.scale, file::turn(t.rotation), t.position);
         if place != Affine3A::IDENTITY {
             groom.points.iter_mut().for_each(|p| *p = place.transform_point3(*p));
         }

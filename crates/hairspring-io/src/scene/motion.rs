@@ -1,8 +1,13 @@
 //! `[clip]`: which motion, and how it moves the body.
 
-use super::{Reader, body::rigid, file::ClipFile, sentence::unknown};
+use super::{
+    Reader,
+    body::rigid,
+    file::{ClipFile, KeyFile},
+    sentence::unknown,
+};
 use crate::{Character, ReadOptions, Result, load::pick_clip, read_motion};
-use hairspring::body::{Body, Clip, HeadMotion, head_motion, retarget};
+use hairspring::body::{Body, Clip, HeadMotion, Key, head_motion, keyed, retarget};
 
 impl Reader<'_> {
     /// The body as it is simulated, and its motion.
@@ -10,15 +15,25 @@ impl Reader<'_> {
         &mut self,
         named: Option<&ClipFile>,
         character: Option<Character>,
+        builtin: bool,
     ) -> Result<(Option<Body>, Option<Clip>)> {
         let Some(named) = named else {
-            return Ok((character.map(|c| c.body), None));
+            // Motions of a body's file are for a [clip] to choose from; the built-in body has one and goes by it.
+            return Ok(match character {
+                Some(c) if builtin => (Some(c.body), c.clips.into_iter().next()),
+                other => (other.map(|c| c.body), None),
+            });
         };
         let near =
             named.file.as_ref().map_or_else(|| self.text.find("[clip]").unwrap_or(0), |f| f.span().start);
         let Some(character) = character else {
             return Err(self.wrong(near, "file", "[clip] moves a body, but there is no [body]".into()));
         };
+        if !named.keys.is_empty() {
+            let pivot = named.pivot.unwrap_or_default();
+            let keys: Vec<Key> = named.keys.iter().map(KeyFile::key).collect();
+            return Ok((Some(rigid(character.body)), Some(keyed(&keys, pivot))));
+        }
         let Some(file) = &named.file else {
             let clip = pick_clip(&character.clips, named.name.as_deref());
             let clip =

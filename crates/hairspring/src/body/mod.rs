@@ -1,12 +1,15 @@
 //! The body that hair grows on and meets: mesh, skeleton, skin weights, clips of motion.
 
 mod clip;
+mod keyed;
 mod mesh;
 mod nearest;
 mod pose;
 mod retarget;
 
 pub use clip::{Clip, Trs};
+pub(crate) use keyed::ease;
+pub use keyed::{Key, keyed};
 pub use mesh::{Mesh, Part};
 pub use nearest::{NearestPlace, NearestTree};
 pub(crate) use nearest::{at as place_on, nearest_on_triangle};

@@ -1,7 +1,7 @@
 //! The head's motion: nods, turns to both sides, a shake, and back to rest.
 
 use super::bust::{CHEST, HEAD, NECK};
-use crate::body::{Body, Clip, Trs};
+use crate::body::{Body, Clip, Trs, ease};
 use glam::{EulerRot, Quat};
 use std::f32::consts::TAU;
 
@@ -79,9 +79,4 @@ fn eased(keys: &[Key], t: f32) -> f32 {
         before = *key;
     }
     before.1
-}
-
-/// 0 to 1 with no speed nor acceleration at both ends (minimum jerk; Flash and Hogan 1985): how people move.
-fn ease(t: f32) -> f32 {
-    t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
 }
