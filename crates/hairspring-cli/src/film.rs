@@ -1,7 +1,7 @@
 //! Pictures and clips being written while the next frame is simulated and drawn.
 
-use crate::fault::Fault;
-use hairspring_view::{ClipWriter, Image, OutputError, write_png};
+use crate::{fault::Fault, output};
+use hairspring_view::{ClipWriter, Image, OutputError, write_jpeg, write_png};
 use std::{
     path::PathBuf,
     sync::mpsc::{Receiver, SyncSender, channel, sync_channel},
@@ -106,8 +106,11 @@ impl Sink {
     fn write(&mut self, number: u32, image: &Image) -> Result<(), OutputError> {
         match self {
             Self::Clip(clip) => clip.push(image),
-            Self::Pictures(pattern) => write_png(&crate::output::frame_path(pattern, number), image),
-            Self::Still(path, frame) if *frame == number => write_png(path, image),
+            Self::Pictures(pattern) => write_png(&output::frame_path(pattern, number), image),
+            Self::Still(path, frame) if *frame == number => match output::extension(path).as_str() {
+                "jpg" => write_jpeg(path, image),
+                _ => write_png(path, image),
+            },
             Self::Still(..) => Ok(()),
         }
     }

@@ -32,7 +32,7 @@ pub struct Options {
     #[command(flatten)]
     input: Input,
 
-    /// What to write: still.png, numbered pictures such as frame.####.png, or clip.mp4
+    /// What to write: still.png, still.jpg, numbered pictures such as frame.####.png, or clip.mp4
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
@@ -190,10 +190,10 @@ impl Kind {
     fn of(path: &Path) -> Result<Self, Fault> {
         match (output::extension(path).as_str(), output::is_sequence(path)) {
             ("png", true) => Ok(Self::Pictures),
-            ("png", false) => Ok(Self::Still),
+            ("png" | "jpg", false) => Ok(Self::Still),
             ("mp4", false) => Ok(Self::Clip),
             _ => Err(Fault::Usage(format!(
-                "{}: pictures are written as still.png or frame.####.png, clips as clip.mp4",
+                "{}: pictures are written as still.png, still.jpg or frame.####.png, clips as clip.mp4",
                 path.display()
             ))),
         }

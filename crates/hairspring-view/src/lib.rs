@@ -41,6 +41,6 @@ pub use camera::frame_camera;
 pub use frame::{Frame, HairDraw, MeshDraw, Quality};
 pub use image::Image;
 pub use lighting::{Background, Light, Lighting};
-pub use output::{ClipWriter, OutputError, encode_png, read_png, sequence_path, write_png};
+pub use output::{ClipWriter, OutputError, encode_png, read_png, sequence_path, write_jpeg, write_png};
 pub use renderer::{Renderer, Timings};
 pub use work::Work;

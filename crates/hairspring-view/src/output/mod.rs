@@ -1,10 +1,12 @@
 //! Pictures and clips as files. Every file is written beside its place under a temporary name and renamed when complete.
 
 mod clip;
+mod jpeg;
 mod png;
 mod yuv;
 
 pub use clip::ClipWriter;
+pub use jpeg::write_jpeg;
 pub use png::{encode_png, read_png, sequence_path, write_png};
 
 use std::path::{Path, PathBuf};
