@@ -9,9 +9,10 @@ mod common;
 use common::data;
 use glam::Vec3;
 use hairspring::{
+    around::{Tool, comb::Comb, tie::Tie},
     body::{Body, Clip},
     groom::Groom,
-    scene::{Guides, Scene, Shape, Volume, VolumeMethod},
+    scene::{Guides, Hand, Scene, Shape, Volume, VolumeMethod},
 };
 use hairspring_io::{Error, ErrorKind, Loaded, read_scene, scene::check_text, write_groom};
 use std::{fs, path::Path};
@@ -76,6 +77,13 @@ fn a_scene_is_what_its_file_describes() {
         [volume]
         method = "incompressible"
         cell = 0.02
+        [[hand]]
+        tool.tie = { center = [0, 1, 0], axis = [0, -1, 0], radius = 0.01, reach = 0.1 }
+        [[hand]]
+        tool.comb = { a = [0, 0, 0], b = [0.1, 0, 0], radius = 0.02, grip = 400 }
+        joint = "root"
+        path = [[0, 0, 0, 0], [2, 0, -0.4, 0]]
+        until = 2
     "#;
     let Loaded { value: scene, notes, .. } = read(folder.path(), text).unwrap();
     assert_eq!((scene.name.as_str(), scene.gravity), ("scene", Vec3::new(0.0, -1.6, 0.0)));
@@ -106,6 +114,12 @@ fn a_scene_is_what_its_file_describes() {
     assert_eq!(scene.solver, Default::default());
     let volume = Volume { method: VolumeMethod::Incompressible, cell: Some(0.02), ..Volume::default() };
     assert_eq!(scene.volume, volume);
+    let (center, axis) = (Vec3::Y, Vec3::NEG_Y);
+    let tie = Tie { center, axis, radius: 0.01, reach: 0.1, gather: 0.5, pull: 60.0, damping: 1.0 };
+    assert_eq!(scene.hands[0], Hand::new(Tool::Tie(tie)));
+    let comb = Comb { a: Vec3::ZERO, b: Vec3::X * 0.1, radius: 0.02, grip: 400.0, friction: 3.0 };
+    assert_eq!(scene.hands[1].tool, Tool::Comb(comb));
+    assert_eq!(scene.hands[1].moved(1.0), Vec3::NEG_Y * 0.2);
 }
 
 #[test]
@@ -127,6 +141,7 @@ fn a_head_joint_drives_a_bust() {
 #[test]
 fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
     const GROOM: &str = "[[groom]]\nfile = \"hair.data\"\n";
+    const GRAB: &str = "[[hand]]\ntool.grab = { center = [0, 0, 0], radius = 1 }\n";
     for (text, parts) in [
         (format!("{GROOM}giudes = 3\n"), &["scene.toml, line 3", "`giudes`", "did you mean `guides`?"][..]),
         (format!("[solver]\nsubstep = 3\n{GROOM}"), &["line 2", "did you mean `substeps`?"]),
@@ -209,6 +224,40 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
         (
             format!("{GROOM}[[collider]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 0, 0] }}\n"),
             &["line 4", "normal"],
+        ),
+        (
+            format!("{GROOM}[[hand]]\ntool.grap = {{ center = [0, 0, 0], radius = 1 }}\n"),
+            &["line 4", "did you mean `grab`?"],
+        ),
+        (
+            format!("{GROOM}[[hand]]\ntool.grab = {{ center = [0, 0, 0], radius = 0 }}\n"),
+            &["line 4", "`tool` must be given a `radius` above 0 [m]"],
+        ),
+        (format!("{GROOM}{GRAB}{GRAB}joint = \"x\"\n"), &["line 7", "`x` is not known here"]),
+        (
+            format!("{GROOM}{GRAB}{GRAB}path = [[1, 0, 0, 0], [1, 0, 0, 1]]\n"),
+            &["line 7", "`path` must be finite, at rising times [s]"],
+        ),
+        (format!("{GROOM}{GRAB}from = 2\nuntil = 1\n"), &["line 6", "`until` must be after `from` [s]"]),
+        (
+            format!(
+                "{GROOM}[[hand]]\ntool.tie = {{ center = [0, 0, 0], axis = [0, 0, 0], radius = 1, reach = 1 }}\n"
+            ),
+            &["line 4", "`axis` that is finite and not 0"],
+        ),
+        (
+            format!(
+                "{GROOM}[[hand]]\ntool.comb = {{ a = [0, 0, 0], b = [1, 0, 0], radius = 1, grip = 2, friction = 3 }}\n"
+            ),
+            &["line 4", "`friction` from 0 to its `grip`"],
+        ),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nghost = {{ pull = 61 }}\n"),
+            &["line 5", "`pull` 0 to 60 [Hz]"],
+        ),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nghost = {{ pul = 6 }}\n"),
+            &["did you mean `pull`?"],
         ),
         (format!("{GROOM}bones = \"x.tfxbone\"\n"), &["x.tfxbone was not found"]),
         ("name = \"empty\"\n".into(), &["scene.toml", "[[groom]]"]),

@@ -2,7 +2,13 @@
 //!
 //! A counting allocator around the system's; one thread, because a thread pool's own queues are not the simulation's.
 
-use hairspring::scene::{Solver, Volume, VolumeMethod, bench::Bench};
+use glam::Vec3;
+use hairspring::{
+    around::{Tool, comb::Comb, ghost::Ghost, grab::Grab, tie::Tie},
+    collide::Rigid,
+    material::Material,
+    scene::{Solver, Volume, VolumeMethod, bench::Bench},
+};
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     sync::atomic::{AtomicUsize, Ordering},
@@ -45,4 +51,33 @@ fn after_the_first_step_none_allocates() {
         });
         assert_eq!(counted, 0, "{counted} allocations in 20 steps, hair on hair {}", method.name());
     }
+    // With hands on the hair and a ghost, while a tie still gathers.
+    let counted = pool.install(|| {
+        let material = Material { ghost: Ghost { pull: 2.0, ..Ghost::default() }, ..Material::default() };
+        let mut bench = Bench::of(200, 16, material, Solver::default());
+        let center = Vec3::Y * 0.2;
+        let (axis, half) = (Vec3::Y, Vec3::X * 0.1);
+        for tool in [
+            Tool::Grab(Grab { center: Vec3::X * 0.2, radius: 0.1, pull: 60.0, damping: 1.0 }),
+            Tool::Comb(Comb {
+                a: center - half,
+                b: center + half,
+                radius: 0.05,
+                grip: 1000.0,
+                friction: 3.0,
+            }),
+            Tool::Tie(Tie { center, axis, radius: 0.02, reach: 0.3, gather: 0.5, pull: 60.0, damping: 1.0 }),
+        ] {
+            let id = bench.simulation.take(tool, Rigid::default());
+            let holds = bench.simulation.held(id).count();
+            assert!(matches!(tool, Tool::Comb(_)) || holds > 10, "{tool:?} holds {holds} points");
+        }
+        bench.step();
+        let before = COUNT.load(Ordering::Relaxed);
+        for _ in 0..40 {
+            bench.step();
+        }
+        COUNT.load(Ordering::Relaxed) - before
+    });
+    assert_eq!(counted, 0, "{counted} allocations in 40 steps, hands on the hair");
 }

@@ -7,8 +7,9 @@ use super::{
 use crate::Problem;
 use glam::Vec3;
 use hairspring::{
+    around::{Tool, ghost::Ghost},
     material::Material,
-    scene::{Guides, Shape},
+    scene::{Guides, Hand, Shape},
 };
 
 /// One check: whether it holds, the key it is about, what is expected.
@@ -202,6 +203,10 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         ];
         first_failure(text, section("[camera]"), &cameras)?;
     }
+    let starts = text.match_indices("[[hand]]").map(|(at, _)| line_at(text, at));
+    for (hand, from) in scene.hand.iter().zip(starts.chain(std::iter::repeat(1))) {
+        hand_ranges(text, from, hand)?;
+    }
     Ok(())
 }
 
@@ -227,6 +232,44 @@ fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
     body.more.iter().try_for_each(|file| body_ranges(text, file))
 }
 
+/// Checks a hand whose table begins in line `from`.
+fn hand_ranges(text: &str, from: usize, hand: &Hand) -> Result<(), Problem> {
+    let keys = hand.path.iter().flatten().all(|x| x.is_finite());
+    let checks = [
+        (keys && hand.path.windows(2).all(|w| w[0][0] < w[1][0]), "path", "finite, at rising times [s]"),
+        (from_0(hand.from), "from", "0 or more [s]"),
+        (hand.until.is_none_or(|t| t.is_finite() && t > hand.from), "until", "after `from` [s]"),
+    ];
+    first_failure(text, from, &checks)?;
+    first_failure(text, from, &tool_checks(&hand.tool))
+}
+
+/// The checks of a tool, all said of the line that it stands in.
+fn tool_checks(tool: &Tool) -> Vec<Check> {
+    let place = |ok: bool| (ok, "tool", "at three finite numbers [m]");
+    let radius = |r: f32| (above_0(Some(r)), "tool", "given a `radius` above 0 [m]");
+    let pull = |f: f32| ((0.0..=1e3).contains(&f), "tool", "given a `pull` from 0 to 1000 [Hz]");
+    let damping = |d: f32| ((0.0..=10.0).contains(&d), "tool", "given a `damping` from 0 to 10");
+    match *tool {
+        Tool::Grab(g) => vec![place(finite(g.center)), radius(g.radius), pull(g.pull), damping(g.damping)],
+        Tool::Comb(c) => vec![
+            place(finite(c.a) && finite(c.b)),
+            radius(c.radius),
+            ((0.0..=1e4).contains(&c.grip), "tool", "given a `grip` from 0 to 10000 [1/s]"),
+            ((0.0..=c.grip).contains(&c.friction), "tool", "given a `friction` from 0 to its `grip` [1/s]"),
+        ],
+        Tool::Tie(t) => vec![
+            place(finite(t.center)),
+            radius(t.radius),
+            (t.axis.try_normalize().is_some(), "tool", "given an `axis` that is finite and not 0"),
+            (above_0(Some(t.reach)), "tool", "given a `reach` above 0 [m]"),
+            (from_0(t.gather), "tool", "given a `gather` of 0 or more [s]"),
+            pull(t.pull),
+            damping(t.damping),
+        ],
+    }
+}
+
 /// Checks a material whose table begins in line `from`.
 pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Problem> {
     let checks = [
@@ -245,6 +288,12 @@ pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Prob
         (from_0(m.damping), "damping", "0 or more [s]"),
         (from_0(m.drag), "drag", "0 or more"),
         ((0.0..=1.0).contains(&m.friction), "friction", "0 to 1"),
+        (ghost(&m.ghost), "ghost", "`pull` 0 to 60 [Hz], `tip` 0 or more, `damping` 0 to 10"),
     ];
     first_failure(text, from, &checks)
+}
+
+/// Whether a ghost rest shape's numbers are in their ranges.
+fn ghost(ghost: &Ghost) -> bool {
+    (0.0..=60.0).contains(&ghost.pull) && from_0(ghost.tip) && (0.0..=10.0).contains(&ghost.damping)
 }

@@ -4,7 +4,7 @@ use glam::{EulerRot, Quat, Vec3};
 use hairspring::{
     body::{Key, Travel},
     groom::{Growth, Thicken},
-    scene::{Camera, Collider, Effects, Guides, HairLook, Shape, Solver, Volume, Wind},
+    scene::{Camera, Collider, Effects, Guides, HairLook, Hand, Shape, Solver, Volume, Wind},
 };
 use serde::{Deserialize, Deserializer, de};
 use std::{collections::BTreeMap, path::PathBuf};
@@ -52,6 +52,9 @@ pub(super) struct SceneFile {
     pub volume: Volume,
     /// Where the scene is seen from. Default: framed automatically.
     pub camera: Option<Camera>,
+    /// What hands hold to the hair.
+    #[serde(default)]
+    pub hand: Vec<Hand>,
 }
 
 /// `[builtin]`: a bust with a head of hair, and further grooms, colliders and settings over it.

@@ -143,6 +143,7 @@ impl Reader<'_> {
             solver: file.solver,
             volume: file.volume,
             camera: file.camera.or(base.camera),
+            hands: file.hand.clone(),
             ..Scene::default()
         };
         for groom in &file.groom {
@@ -159,7 +160,7 @@ impl Reader<'_> {
             (collision, ..) => collision,
         };
         (scene.body, scene.clip) = (body, clip);
-        self.colliders(&scene)?;
+        self.joints(&scene)?;
         Ok(Loaded {
             value: scene,
             format: Format::Scene,
@@ -291,16 +292,18 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Checks that the joints of colliders are there.
-    fn colliders(&self, scene: &Scene) -> Result<()> {
-        for collider in &scene.colliders {
-            let Some(name) = &collider.joint else {
+    /// Checks that the joints of colliders and hands are there.
+    fn joints(&self, scene: &Scene) -> Result<()> {
+        let colliders = scene.colliders.iter().map(|c| ("[[collider]]", &c.joint));
+        let hands = scene.hands.iter().map(|h| ("[[hand]]", &h.joint));
+        for (section, joint) in colliders.chain(hands) {
+            let Some(name) = joint else {
                 continue;
             };
             let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
             if !joints.iter().any(|j| j.name.eq_ignore_ascii_case(name)) {
                 let text = format!("the joint {}", unknown(name, joints.iter().map(|j| j.name.as_str())));
-                return Err(self.wrong(self.text.find("[[collider]]").unwrap_or(0), "joint", text));
+                return Err(self.wrong(self.text.find(section).unwrap_or(0), "joint", text));
             }
         }
         Ok(())

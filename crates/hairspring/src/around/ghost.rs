@@ -5,7 +5,6 @@
 //! ```
 //!
 //! The global shape of *Augmented Mass-Spring* (AMS 2025) and of the engines' tools. It is not physics: it holds a style that the fibre would not.
-//! T is where it is at the end of the frame.
 
 use super::Surrounded;
 use glam::Vec3;
@@ -46,7 +45,7 @@ impl Ghost {
             let curve = 1.0 + (self.tip - 1.0) * (i as f32 / last);
             let omega = std::f32::consts::TAU * self.pull * scale * curve;
             let [from, to] = [start, end].map(|root| root.rotation * (*p - authored[0]));
-            strand.pull(i, to, omega * omega);
+            strand.pull(i, [from, to], omega * omega);
             strand.carry(i, (way + (to - from)) * inv_dt, 2.0 * self.damping * omega);
         }
     }

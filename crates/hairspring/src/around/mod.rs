@@ -6,18 +6,28 @@
 //! | effect | |
 //! | --- | --- |
 //! | [`ghost`] | a weak pull to the rest shape |
+//! | [`grab`] | a hand holds what is in a ball |
+//! | [`comb`] | tines take hair along across itself |
+//! | [`tie`] | a ring gathers strands |
 
+pub(crate) mod bond;
+pub mod comb;
 pub mod ghost;
+pub mod grab;
 mod strand;
+pub mod tie;
+mod tool;
 
 pub(crate) use strand::Surrounded;
+pub use tool::Tool;
+pub(crate) use tool::Used;
 
 use crate::{
     collide::Rigid,
     simulation::TilePlace,
     strand::{
         lanes::{LANES, Row},
-        tile::{StateRows, StrandRows, grip},
+        tile::{StateRows, StrandRows, grip, tines},
     },
 };
 
@@ -28,6 +38,8 @@ pub(crate) struct Around {
     pub push: Vec<[Row; 3]>,
     /// See `Tile::grip`.
     pub grip: Vec<[Row; grip::ROWS]>,
+    /// See `Tile::tines`.
+    pub tines: Vec<[Row; tines::ROWS]>,
     /// See `Tile::air`.
     pub air: Vec<[Row; 3]>,
 }
@@ -39,6 +51,8 @@ pub(crate) struct Kinds {
     pub push: bool,
     /// Pulls to a place or to a velocity; with them, accelerations.
     pub grip: bool,
+    /// What takes points along across their strands.
+    pub tines: bool,
     /// Air that moves otherwise than the wind of all points.
     pub air: bool,
 }
@@ -49,17 +63,22 @@ impl Around {
         let size = |on: bool| if on { points } else { 0 };
         self.push.resize(size(kinds.push || kinds.grip), [Row::default(); 3]);
         self.grip.resize(size(kinds.grip), [Row::default(); grip::ROWS]);
+        self.tines.resize(size(kinds.tines), [Row::default(); tines::ROWS]);
         self.air.resize(size(kinds.air), [Row::default(); 3]);
         if !kept {
             self.push.fill([Row::default(); 3]);
         }
         self.grip.fill([Row::default(); grip::ROWS]);
+        self.tines.fill([Row::default(); tines::ROWS]);
         self.air.fill([Row::default(); 3]);
     }
 
     /// Bytes that it holds.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.push[..]) + size_of_val(&self.grip[..]) + size_of_val(&self.air[..])
+        size_of_val(&self.push[..])
+            + size_of_val(&self.grip[..])
+            + size_of_val(&self.tines[..])
+            + size_of_val(&self.air[..])
     }
 }
 
@@ -72,6 +91,7 @@ pub(crate) struct Strands<'a> {
     pub state: &'a [StateRows],
     pub push: &'a mut [[Row; 3]],
     pub grip: &'a mut [[Row; grip::ROWS]],
+    pub tines: &'a mut [[Row; tines::ROWS]],
     pub air: &'a mut [[Row; 3]],
 }
 
@@ -104,6 +124,7 @@ impl Strands<'_> {
                     continue;
                 }
                 let (push, grip, air) = (all(self.push.len()), all(self.grip.len()), all(self.air.len()));
+                let tines = all(self.tines.len());
                 act(&mut Surrounded {
                     strand: strand as usize,
                     frame,
@@ -113,6 +134,7 @@ impl Strands<'_> {
                     state: &self.state[points.clone()],
                     push: &mut self.push[push],
                     grip: &mut self.grip[grip],
+                    tines: &mut self.tines[tines],
                     air: &mut self.air[air],
                 });
             }
@@ -128,9 +150,10 @@ impl Strands<'_> {
         let (state, more_state) = self.state.split_at(points);
         let (push, more_push) = self.push.split_at_mut(points.min(self.push.len()));
         let (grip, more_grip) = self.grip.split_at_mut(points.min(self.grip.len()));
+        let (tines, more_tines) = self.tines.split_at_mut(points.min(self.tines.len()));
         let (air, more_air) = self.air.split_at_mut(points.min(self.air.len()));
         (
-            Strands { tiles, lanes, strand, state, push, grip, air },
+            Strands { tiles, lanes, strand, state, push, grip, tines, air },
             Strands {
                 tiles: more_tiles,
                 lanes: more_lanes,
@@ -138,6 +161,7 @@ impl Strands<'_> {
                 state: more_state,
                 push: more_push,
                 grip: more_grip,
+                tines: more_tines,
                 air: more_air,
             },
         )

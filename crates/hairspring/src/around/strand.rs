@@ -5,7 +5,7 @@ use crate::{
     collide::Rigid,
     strand::{
         lanes::Row,
-        tile::{StateRows, StrandRows, grip, state, strand},
+        tile::{StateRows, StrandRows, grip, state, strand, tines},
     },
 };
 use glam::{Quat, Vec3};
@@ -22,6 +22,7 @@ pub(crate) struct Surrounded<'a> {
     pub(super) state: &'a [StateRows],
     pub(super) push: &'a mut [[Row; 3]],
     pub(super) grip: &'a mut [[Row; grip::ROWS]],
+    pub(super) tines: &'a mut [[Row; tines::ROWS]],
     pub(super) air: &'a mut [[Row; 3]],
 }
 
@@ -48,6 +49,14 @@ impl Surrounded<'_> {
         particles.step_by(self.stride)
     }
 
+    /// From point `i − 1` to point `i` at the start of the frame [m], and the velocity of point `i` [m/s]; `i` is 1 or more.
+    pub fn step(&self, i: usize) -> (Vec3, Vec3) {
+        let vector = |i: usize, at: usize| Vec3::from([0, 1, 2].map(|k| self.state[i][at + k].0[self.lane]));
+        let last = i * self.stride;
+        let edge = (last + 1 - self.stride..=last).map(|i| vector(i, state::EDGE)).sum();
+        (edge, vector(last, state::V))
+    }
+
     /// Accelerates point `i` by `a` [m/s²].
     pub fn push(&mut self, i: usize, a: Vec3) {
         let rows = &mut self.push[i * self.stride];
@@ -56,16 +65,30 @@ impl Surrounded<'_> {
         }
     }
 
-    /// Pulls point `i` to `place`, which is from where the root is [m], by a spring of `stiffness` over the point's mass [1/s²].
-    pub fn pull(&mut self, i: usize, place: Vec3, stiffness: f32) {
-        self.grip[i * self.stride][grip::STIFFNESS].0[self.lane] += stiffness;
-        self.push(i, place * stiffness);
+    /// Pulls point `i` to a place that goes from `from` to `to` in the frame, both from where the root is then [m], by a spring of `stiffness` over
+    /// the point's mass [1/s²].
+    pub fn pull(&mut self, i: usize, [from, to]: [Vec3; 2], stiffness: f32) {
+        let rows = &mut self.grip[i * self.stride];
+        rows[grip::STIFFNESS].0[self.lane] += stiffness;
+        for (row, way) in rows[grip::WAY..].iter_mut().zip((to - from).to_array()) {
+            row.0[self.lane] += way * stiffness;
+        }
+        self.push(i, to * stiffness);
     }
 
     /// Lets point `i` take on `velocity` [m/s] at `rate` [1/s].
     pub fn carry(&mut self, i: usize, velocity: Vec3, rate: f32) {
         self.grip[i * self.stride][grip::BRAKE].0[self.lane] += rate;
         self.push(i, velocity * rate);
+    }
+
+    /// Lets point `i` take on `velocity` [m/s] across its strand at `rate` [1/s].
+    pub fn carry_across(&mut self, i: usize, velocity: Vec3, rate: f32) {
+        let rows = &mut self.tines[i * self.stride];
+        rows[tines::BRAKE].0[self.lane] += rate;
+        for (row, carry) in rows[tines::CARRY..].iter_mut().zip((velocity * rate).to_array()) {
+            row.0[self.lane] += carry;
+        }
     }
 
     /// Moves the air at point `i` by `velocity` [m/s], on top of the wind of all points.

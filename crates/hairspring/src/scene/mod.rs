@@ -3,11 +3,13 @@
 pub mod bench;
 pub mod builtin;
 mod camera;
+mod hand;
 mod look;
 mod settings;
 pub mod swing;
 
 pub use camera::Camera;
+pub use hand::Hand;
 pub use look::{HairColor, HairLook};
 pub use settings::{
     Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
@@ -61,4 +63,6 @@ pub struct Scene {
     pub volume: Volume,
     /// Where it is seen from; `None`: framed automatically.
     pub camera: Option<Camera>,
+    /// What hands hold to the hair.
+    pub hands: Vec<Hand>,
 }

@@ -99,6 +99,7 @@ impl Simulation {
             holds: Vec::new(),
             around: Around::default(),
             ghosts: materials.iter().map(|m| m.ghost).collect(),
+            tools: super::hands::Tools::default(),
             volume: None,
             tensions: Default::default(),
             motion: super::carry::Motion::default(),

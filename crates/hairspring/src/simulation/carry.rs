@@ -55,6 +55,7 @@ impl Simulation {
                 }
             }
         }
+        self.carry_tools(&by);
         self.settings.anchor = by.after(&self.settings.anchor);
         self.motion.velocity = turn * self.motion.velocity;
         self.motion.spin = turn * self.motion.spin;

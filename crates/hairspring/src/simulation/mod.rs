@@ -4,6 +4,7 @@ mod build;
 mod carry;
 mod crowd;
 mod energy;
+mod hands;
 mod hold;
 mod measure;
 mod place;
@@ -14,6 +15,7 @@ mod surround;
 pub use crate::strand::rest_shape::Start;
 pub use crate::volume::VolumeReport;
 pub use energy::Energy;
+pub use hands::ToolId;
 pub use hold::Hold;
 pub use measure::Measure;
 pub use step::{Air, Drive, MovingObstacle, StepReport};
@@ -56,6 +58,8 @@ pub struct Simulation {
     around: Around,
     /// Pull of each material to the rest shape; a group past the end uses the last.
     ghosts: Vec<Ghost>,
+    /// What hands hold to the hair.
+    tools: hands::Tools,
     /// Hair on hair; `None`: strands pass through each other.
     volume: Option<Box<Volume>>,
     /// Tensions of the rest shape, of segments and, in the springs model, of triangles' sides; shapes as `state`, the second empty without springs.

@@ -9,7 +9,7 @@ use crate::{
         lanes::{LANES, Row},
         model::{curvature, rod, springs, straight},
         scratch::Memory,
-        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, grip, strand},
+        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, grip, strand, tines},
     },
 };
 use fearless_simd::Level;
@@ -123,6 +123,7 @@ impl Simulation {
         let carried = self.carry_along(drive);
         let mut interval = std::mem::take(&mut self.interval);
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
+        self.begin_tools();
         self.exchange(drive, carried.as_ref());
         let reset = run(
             self.level,
@@ -135,11 +136,13 @@ impl Simulation {
                 history: &mut self.history,
                 push: &self.around.push,
                 grip: &self.around.grip,
+                tines: &self.around.tines,
                 air: &self.around.air,
                 holds: &self.holds,
             },
         );
         self.rest_holds();
+        self.rest_tools(drive.dt);
         self.last_h = interval.h;
         // The colliders' shapes are the caller's again.
         interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
@@ -212,6 +215,7 @@ struct Piece<'a> {
     history: &'a mut [HistoryRows],
     push: &'a [[Row; 3]],
     grip: &'a [[Row; grip::ROWS]],
+    tines: &'a [[Row; tines::ROWS]],
     air: &'a [[Row; 3]],
     holds: &'a [Vec<HoldRows>],
 }
@@ -227,10 +231,11 @@ impl<'a> Piece<'a> {
         let (history, more_history) = self.history.split_at_mut(points.min(self.history.len()));
         let (push, more_push) = self.push.split_at(points.min(self.push.len()));
         let (grip, more_grip) = self.grip.split_at(points.min(self.grip.len()));
+        let (tines, more_tines) = self.tines.split_at(points.min(self.tines.len()));
         let (air, more_air) = self.air.split_at(points.min(self.air.len()));
         let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
         (
-            Piece { tiles, strand, rest, state, history, push, grip, air, holds },
+            Piece { tiles, strand, rest, state, history, push, grip, tines, air, holds },
             Piece {
                 tiles: more_tiles,
                 strand: more_strand,
@@ -239,6 +244,7 @@ impl<'a> Piece<'a> {
                 history: more_history,
                 push: more_push,
                 grip: more_grip,
+                tines: more_tines,
                 air: more_air,
                 holds: more_holds,
             },
@@ -258,6 +264,7 @@ impl<'a> Piece<'a> {
             history: if self.history.is_empty() { &mut [] } else { &mut self.history[points.clone()] },
             push: if self.push.is_empty() { &[] } else { &self.push[points.clone()] },
             grip: if self.grip.is_empty() { &[] } else { &self.grip[points.clone()] },
+            tines: if self.tines.is_empty() { &[] } else { &self.tines[points.clone()] },
             air: if self.air.is_empty() { &[] } else { &self.air[points] },
             holds: self.holds.get(k).map_or(&[], |holds| holds),
         }

@@ -208,13 +208,18 @@ impl StagedBody {
     /// Where obstacles are in the current pose.
     fn repose(&mut self) {
         let field_anchor = self.surface.is_some().then(|| self.anchor());
-        for (k, (obstacle, joint)) in self.obstacles.iter_mut().zip(&self.joints).enumerate() {
-            obstacle.end = match (joint, field_anchor) {
+        for k in 0..self.obstacles.len() {
+            self.obstacles[k].end = match (self.joints[k], field_anchor) {
                 (_, Some(anchor)) if k == 0 => anchor,
-                (Some(j), _) => Rigid::from_affine(&(self.world[*j] * self.rest[*j].inverse())),
+                (Some(j), _) => self.joint(j),
                 (None, _) => Rigid::default(),
             };
         }
+    }
+
+    /// How joint `j` has moved since rest.
+    pub(super) fn joint(&self, j: usize) -> Rigid {
+        Rigid::from_affine(&(self.world[j] * self.rest[j].inverse()))
     }
 
     /// The frame that roots move with.

@@ -2,11 +2,12 @@
 
 use super::{FrameReport, Strands, body::StagedBody};
 use crate::{
+    around::Tool,
     collide::Rigid,
     follow::{Follow, assign_guides, choose_guides},
     groom::Groom,
     scene::{Guides, HairLook, Scene, SceneGroom},
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Drive, Simulation, ToolId},
 };
 use glam::{Quat, Vec3};
 use std::{sync::Arc, time::Instant};
@@ -127,6 +128,26 @@ impl StagedHair {
             *turn = root.rotation;
         }
         follow.place(&self.guide_points, &self.turns, &body.poses(), &mut self.points);
+    }
+
+    /// See [`Simulation::take`].
+    pub(super) fn take(&mut self, tool: Tool, pose: Rigid) -> ToolId {
+        self.simulation.take(tool, pose)
+    }
+
+    /// See [`Simulation::carry`].
+    pub(super) fn carry(&mut self, id: ToolId, pose: Rigid) {
+        self.simulation.carry(id, pose);
+    }
+
+    /// See [`Simulation::let_go`].
+    pub(super) fn let_go(&mut self, id: ToolId) {
+        self.simulation.let_go(id);
+    }
+
+    /// See [`Simulation::let_go_all`].
+    pub(super) fn let_go_all(&mut self) {
+        self.simulation.let_go_all();
     }
 
     pub(super) fn strands(&self) -> Strands<'_> {

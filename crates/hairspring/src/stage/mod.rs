@@ -2,15 +2,19 @@
 
 mod body;
 mod hair;
+mod hands;
 
 use crate::{
+    around::Tool,
+    collide::Rigid,
     groom::{Groom, bind_roots},
     scene::{HairLook, Scene},
-    simulation::{Air, Measure, Start, StepReport, VolumeReport},
+    simulation::{Air, Measure, Start, StepReport, ToolId, VolumeReport},
 };
 use body::StagedBody;
 use glam::Vec3;
 use hair::StagedHair;
+use hands::StagedHands;
 use std::time::{Duration, Instant};
 
 /// Why a scene cannot be played.
@@ -43,8 +47,8 @@ pub enum StageError {
         /// Joints of the body.
         body_joints: usize,
     },
-    /// A collider is to follow a joint that is not there.
-    #[error("a collider follows the joint '{joint}', and the body has none of that name")]
+    /// A collider or a hand is to follow a joint that is not there.
+    #[error("a collider or a hand follows the joint '{joint}', and the body has none of that name")]
     NoSuchJoint {
         /// The name.
         joint: String,
@@ -91,6 +95,7 @@ pub struct Stage {
     scene: Scene,
     body: StagedBody,
     hair: Vec<StagedHair>,
+    hands: StagedHands,
     time: f32,
 }
 
@@ -103,27 +108,49 @@ impl Stage {
             scene.grooms.iter_mut().for_each(|g| bind_roots(&mut g.groom, &body.mesh));
         }
         let body = StagedBody::new(&scene)?;
+        let hands = StagedHands::new(hand_joints(&scene)?);
         let grooms = std::mem::take(&mut scene.grooms);
         let hair = grooms.into_iter().map(|groom| StagedHair::new(groom, &scene, &body)).collect();
-        let mut stage = Self { body, hair, time: 0.0, scene };
+        let mut stage = Self { body, hair, hands, time: 0.0, scene };
         stage.reset();
         Ok(stage)
     }
 
-    /// Back to time 0.
+    /// Back to time 0; no tool is in use.
     pub fn reset(&mut self) {
         self.time = 0.0;
         self.body.place(&self.scene, 0.0);
+        self.hands.reset();
         for hair in &mut self.hair {
+            hair.let_go_all();
             hair.place(&self.body);
         }
+    }
+
+    /// Takes a tool to the hair of all grooms as it is now, its space being at `pose` in the world, besides what the scene's hands do. It acts in every
+    /// step until it is let go of, or until a reset.
+    pub fn take(&mut self, tool: Tool, pose: Rigid) -> Option<ToolId> {
+        // Every groom was shown the same tools, and so counts them alike.
+        self.hair.iter_mut().map(|hair| hair.take(tool, pose)).last()
+    }
+
+    /// Moves a tool: its space goes to `pose` in the next step.
+    pub fn carry(&mut self, id: ToolId, pose: Rigid) {
+        self.hair.iter_mut().for_each(|hair| hair.carry(id, pose));
+    }
+
+    /// Lets go of a tool, and of what it holds.
+    pub fn let_go(&mut self, id: ToolId) {
+        self.hair.iter_mut().for_each(|hair| hair.let_go(id));
     }
 
     /// Plays `dt` [s] (above 0) of the scene.
     pub fn step(&mut self, dt: f32) -> FrameReport {
         let mut report = FrameReport::default();
         let began = Instant::now();
+        self.hands.begin(&self.scene.hands, self.time, &self.body, &mut self.hair);
         self.body.advance(&self.scene, self.time + dt);
+        self.hands.advance(&self.scene.hands, self.time + dt, &self.body, &mut self.hair);
         report.body = began.elapsed();
         let air = Air { wind: self.scene.wind, time: self.time };
         for hair in &mut self.hair {
@@ -197,6 +224,15 @@ impl Stage {
             speed_max: sum.speed_max.max(m.speed_max),
         })
     }
+}
+
+/// Joint of each of the scene's hands.
+fn hand_joints(scene: &Scene) -> Result<Vec<Option<usize>>, StageError> {
+    let joint = |name: &String| {
+        let found = scene.body.as_ref().and_then(|body| body.joint(name));
+        found.ok_or_else(|| StageError::NoSuchJoint { joint: name.clone() })
+    };
+    scene.hands.iter().map(|hand| hand.joint.as_ref().map(joint).transpose()).collect()
 }
 
 fn check(scene: &Scene) -> Result<(), StageError> {

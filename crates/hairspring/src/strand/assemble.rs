@@ -26,7 +26,7 @@ use super::{
     press::{press, relieve},
     root::Root,
     scratch::Scratch,
-    tile::{Tile, grip, history, hold, rest, state, strand},
+    tile::{Tile, grip, history, hold, rest, state, strand, tines},
 };
 use crate::collide::ObstaclePose;
 use fearless_simd::prelude::*;
@@ -223,7 +223,8 @@ fn add_point<S, M, const B: usize, const N: usize>(
     if let Some(rows) = tile.grip.get(i + 1) {
         let stiffness = load(simd, &rows[grip::STIFFNESS]);
         let brake = load(simd, &rows[grip::BRAKE]) * inv_h;
-        p = p - (x + drift()) * stiffness - (way() + step.moved) * brake;
+        let late = V3::load(simd, &rows[grip::WAY..]) * F::splat(simd, step.left);
+        p = p - late - (x + drift()) * stiffness - (way() + step.moved) * brake;
         band.add_identity(1, mass * (stiffness + brake));
     }
     let mut right = p * mass;
@@ -241,6 +242,13 @@ fn add_point<S, M, const B: usize, const N: usize>(
         }
         right += (slip - segment.u * (segment.u.dot(slip) * 0.5)) * segment.air;
         band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5).add_identity(across));
+        if let Some(rows) = tile.tines.get(i + 1) {
+            let brake = load(simd, &rows[tines::BRAKE]) * inv_h;
+            let slip = V3::load(simd, &rows[tines::CARRY..]) - (way() + step.moved) * brake;
+            right += (slip - segment.u * segment.u.dot(slip)) * mass;
+            let across = brake * mass;
+            band.add_diagonal(1, Sym3::outer(segment.u, -across).add_identity(across));
+        }
     }
     band.add_force(1, right);
 

@@ -212,10 +212,12 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             let frame = rest[i - 1].normal;
             let stiff = frame * (frame.dot(moment) * fibre.flat / (1.0 + fibre.flat));
             let kappa = t[i] - t[i - 1];
-            rest[i].turn = kappa - (moment - stiff) / rest[i].bend;
+            // Without stiffness, which only what hangs straight down may be, nothing turns it.
+            let bend = rest[i].bend.max(f64::MIN_POSITIVE);
+            rest[i].turn = kappa - (moment - stiff) / bend;
             below = moment * (1.0 + t[i - 1].dot(kappa)) - kappa * t[i - 1].dot(moment);
             if let Some(ratio) = fibre.twist_ratio {
-                rest[i].twist = -torque / (ratio * rest[i].bend);
+                rest[i].twist = -torque / (ratio * bend);
                 torque_after = binormal(i) * torque;
                 torque += moment.dot(t[i - 1].cross(kappa));
             }

@@ -133,8 +133,20 @@ pub mod grip {
     pub const STIFFNESS: usize = 0;
     /// How fast it takes on a velocity [1/s].
     pub const BRAKE: usize = 1;
+    /// How far its place goes in the interval, times that stiffness [m/s²], 3 rows.
+    pub const WAY: usize = 2;
     /// Rows a point.
-    pub const ROWS: usize = 2;
+    pub const ROWS: usize = 5;
+}
+
+/// Rows of how a point is taken along across its strand.
+pub mod tines {
+    /// How fast it takes on a velocity [1/s].
+    pub const BRAKE: usize = 0;
+    /// That velocity, times how fast [m/s²], 3 rows.
+    pub const CARRY: usize = 1;
+    /// Rows a point.
+    pub const ROWS: usize = 4;
 }
 
 /// What holds or pulls one point of eight strands from outside.
@@ -168,11 +180,13 @@ pub struct Tile<'a> {
     /// Shape `[points]` for the integrator of second order, else empty.
     pub history: &'a mut [HistoryRows],
     /// Acceleration from outside, frozen for the interval [m/s²]: shape `[points]`, empty where there is none. Where a point is gripped, it is
-    /// that at the root, at rest in the world: stiffness times the place, from the root, that it is pulled to, and brake times the
-    /// velocity that it takes on are part of it.
+    /// that at the root, at rest in the world, at the end of the interval: stiffness times the place, from the root, that it is pulled to, and
+    /// brake times the velocity that it takes on are part of it.
     pub push: &'a [[Row; 3]],
     /// How points are gripped, frozen for the interval, see `grip`: shape `[points]`, empty where none is.
     pub grip: &'a [[Row; grip::ROWS]],
+    /// How points are taken along across their strands, frozen for the interval, see `tines`: shape `[points]`, empty where none is.
+    pub tines: &'a [[Row; tines::ROWS]],
     /// Velocity of the air besides the wind of all points, frozen for the interval [m/s]: shape `[points]`, empty where there is none.
     pub air: &'a [[Row; 3]],
     /// What holds or pulls points, sorted by point.
@@ -191,6 +205,7 @@ impl Tile<'_> {
             history: &mut self.history[..history],
             push: &self.push[..all_or_none(self.push.is_empty())],
             grip: &self.grip[..all_or_none(self.grip.is_empty())],
+            tines: &self.tines[..all_or_none(self.tines.is_empty())],
             air: &self.air[..all_or_none(self.air.is_empty())],
             ..*self
         }

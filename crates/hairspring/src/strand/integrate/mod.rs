@@ -16,7 +16,7 @@ use super::{
     model::{Model, Stretching},
     root::Root,
     scratch::Memory,
-    tile::{Tile, grip, rest, state},
+    tile::{Tile, grip, rest, state, tines},
 };
 use crate::scene::Integrator;
 use fearless_simd::prelude::*;
@@ -119,9 +119,24 @@ fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, [u, x]: [V3<
     let slip = V3::splat(simd, step.wind) + air - v;
     let slip = slip - u * (u.dot(slip) * 0.5);
     let push = tile.push.get(i).map_or(nothing, |push| V3::load(simd, push));
-    let gripped = tile
-        .grip
-        .get(i)
-        .map_or(nothing, |rows| x * load(simd, &rows[grip::STIFFNESS]) + v * load(simd, &rows[grip::BRAKE]));
-    slip.mul_add(drag, V3::splat(simd, step.gravity) + (push - gripped))
+    let free = slip.mul_add(drag, V3::splat(simd, step.gravity) + push);
+    if tile.grip.is_empty() && tile.tines.is_empty() {
+        return free;
+    }
+    let (h, one) = (F::<S>::splat(simd, step.h), F::<S>::splat(simd, 1.0));
+    let (mut pulled, mut yielding) = (free, one);
+    if let Some(rows) = tile.grip.get(i) {
+        let (stiffness, brake) = (load(simd, &rows[grip::STIFFNESS]), load(simd, &rows[grip::BRAKE]));
+        let late = V3::load(simd, &rows[grip::WAY..]) * F::splat(simd, step.left);
+        pulled = pulled - late - (x + v * h - step.moved) * stiffness - v * brake;
+        yielding += (stiffness * h + brake) * h;
+    }
+    if let Some(rows) = tile.tines.get(i) {
+        let brake = load(simd, &rows[tines::BRAKE]);
+        let slip = V3::load(simd, &rows[tines::CARRY..]) - v * brake;
+        pulled += slip - u * u.dot(slip);
+        yielding += brake * h;
+    }
+    // Implicit by itself: methods that take steps as long as the implicit ones' would else not bear a firm grip.
+    pulled * (one / yielding)
 }
