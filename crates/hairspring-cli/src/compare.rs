@@ -156,7 +156,9 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         output::try_folder(path)?;
     }
     let scene = scene(options, console)?;
-    if scene.clip.is_none() && scene.wind.velocity.length() == 0.0 {
+    let still =
+        scene.wind.velocity.length() == 0.0 && scene.wind_sources.is_empty() && !scene.turbulence.is_on();
+    if scene.clip.is_none() && still && scene.charged.is_empty() {
         console.note("nothing moves the hair of this scene: only the swing tells the methods apart");
     }
     interrupt::listen();

@@ -9,6 +9,7 @@ mod common;
 use common::data;
 use glam::Vec3;
 use hairspring::{
+    air::{Flow, Shelter, Turbulence, WindSource},
     around::{Tool, comb::Comb, tie::Tie},
     body::{Body, Clip},
     groom::Groom,
@@ -74,6 +75,18 @@ fn a_scene_is_what_its_file_describes() {
         shape.box = { center = [0, 1, 0], size = [0.2, 0.4, 0.6], rotation = [0, 90, 0] }
         [wind]
         velocity = [1, 0, 0]
+        [[wind_source]]
+        gust = 0.5
+        shape.fan = { center = [0, 0, 1], axis = [0, 0, -1], radius = 0.1, speed = 3 }
+        [turbulence]
+        strength = 0.4
+        [shelter]
+        hair = 50
+        [[charged]]
+        center = [0, 1, 0]
+        radius = 0.1
+        charge = -1e-7
+        path = [{ time = 2, center = [1, 1, 0] }]
         [volume]
         method = "incompressible"
         cell = 0.02
@@ -120,6 +133,14 @@ fn a_scene_is_what_its_file_describes() {
     let comb = Comb { a: Vec3::ZERO, b: Vec3::X * 0.1, radius: 0.02, grip: 400.0, friction: 3.0 };
     assert_eq!(scene.hands[1].tool, Tool::Comb(comb));
     assert_eq!(scene.hands[1].moved(1.0), Vec3::NEG_Y * 0.2);
+    let fan = Flow::Fan { center: Vec3::Z, axis: Vec3::NEG_Z, radius: 0.1, speed: 3.0, spread: 11.8 };
+    let source = WindSource { joint: None, shape: fan, gust: 0.5, gust_rate: 0.0 };
+    assert_eq!(scene.wind_sources, [source]);
+    assert_eq!(scene.turbulence, Turbulence { strength: 0.4, ..Turbulence::default() });
+    assert_eq!(scene.shelter, Shelter { hair: 50.0, ..Shelter::default() });
+    let balloon = &scene.charged[0];
+    assert_eq!((balloon.charge, balloon.solid), (-1e-7, true));
+    assert_eq!(balloon.center(1.0), Vec3::new(0.5, 1.0, 0.0));
 }
 
 #[test]
@@ -260,6 +281,39 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
             &["did you mean `pull`?"],
         ),
         (format!("{GROOM}bones = \"x.tfxbone\"\n"), &["x.tfxbone was not found"]),
+        (format!("{GROOM}[turbulence]\nsize = 0\n"), &["line 4", "`size` must be above 0 [m]"]),
+        (format!("{GROOM}[shelter]\nhair = -1\n"), &["line 4", "`hair` must be 0 or more [1/m]"]),
+        (
+            format!("{GROOM}[[wind_source]]\nshape.fna = {{ center = [0, 0, 0] }}\n"),
+            &["line 4", "did you mean `fan`?"],
+        ),
+        (
+            format!(
+                "{GROOM}[[wind_source]]\nshape.point = {{ center = [0, 0, 0], radius = 1, speed = 1 }}\n[[wind_source]]\n\
+                 shape.vortex = {{ center = [0, 0, 0], axis = [0, 0, 0], radius = 1, speed = 1 }}\n"
+            ),
+            &["line 6", "an axis that is not 0"],
+        ),
+        (
+            format!(
+                "{GROOM}[[wind_source]]\njoint = \"x\"\nshape.point = {{ center = [0, 0, 0], radius = 1, speed = 1 }}\n"
+            ),
+            &["line 4", "`x`"],
+        ),
+        (
+            format!("{GROOM}[[charged]]\ncenter = [0, 0, 0]\nradius = 1\ncharge = 1\n"),
+            &["line 6", "`charge` must be -1e-3 to 1e-3 [C]"],
+        ),
+        (
+            format!(
+                "{GROOM}[[charged]]\ncenter = [0, 0, 0]\nradius = 1\ncharge = 0\npath = [{{ time = 0, center = [0, 0, 0] }}]\n"
+            ),
+            &["line 7", "each later than the one before"],
+        ),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\ncharge = 1\n"),
+            &["line 5", "`charge` must be -1e-6 to 1e-6 [C/m]"],
+        ),
         ("name = \"empty\"\n".into(), &["scene.toml", "[[groom]]"]),
         ("gravity = [0, 1\n".into(), &["line 1"]),
     ] {
@@ -389,6 +443,8 @@ fn the_page_leaves_no_setting_out() {
         ("look", toml::Table::try_from(hairspring::scene::HairLook::default())),
         ("effects", toml::Table::try_from(hairspring::scene::Effects::default())),
         ("wind", toml::Table::try_from(hairspring::scene::Wind::default())),
+        ("turbulence", toml::Table::try_from(hairspring::air::Turbulence::default())),
+        ("shelter", toml::Table::try_from(hairspring::air::Shelter::default())),
         ("solver", toml::Table::try_from(hairspring::scene::Solver::default())),
         ("volume", toml::Table::try_from(volume)),
         ("camera", toml::Table::try_from(hairspring::scene::Camera::default())),

@@ -3,6 +3,7 @@
 //!
 //! SI units throughout: metres, kilograms, seconds, newtons, pascals; right-handed, Y up.
 
+pub mod air;
 pub mod around;
 pub mod body;
 pub mod collide;

@@ -4,14 +4,22 @@
 
 use glam::Vec3;
 use hairspring::{
-    around::{Tool, comb::Comb, ghost::Ghost, grab::Grab, tie::Tie},
+    air::{Flow, Shelter, Source, Turbulence},
+    around::{Tool, charge::ChargedBall, comb::Comb, ghost::Ghost, grab::Grab, tie::Tie},
     collide::Rigid,
     material::Material,
-    scene::{Solver, Volume, VolumeMethod, bench::Bench},
+    scene::{
+        Solver, Volume, VolumeMethod, Wind,
+        bench::{self, Bench},
+    },
+    simulation::{Air, Drive, Simulation},
 };
 use std::{
     alloc::{GlobalAlloc, Layout, System},
-    sync::atomic::{AtomicUsize, Ordering},
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 struct Counting;
@@ -35,8 +43,14 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// One test: the harness allocates when another one ends.
 #[test]
 fn after_the_first_step_none_allocates() {
+    hair_on_hair_allocates_nothing();
+    wind_and_charge_allocate_nothing();
+}
+
+fn hair_on_hair_allocates_nothing() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     for method in VolumeMethod::ALL {
         let counted = pool.install(|| {
@@ -80,4 +94,42 @@ fn after_the_first_step_none_allocates() {
         COUNT.load(Ordering::Relaxed) - before
     });
     assert_eq!(counted, 0, "{counted} allocations in 40 steps, hands on the hair");
+}
+
+fn wind_and_charge_allocate_nothing() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let counted = pool.install(|| {
+        let groom = Arc::new(bench::groom(200, 16));
+        let strands: Vec<u32> = (0..200).collect();
+        let roots: Vec<Rigid> =
+            (0..200).map(|s| Rigid { translation: groom.strand(s)[0], ..Rigid::default() }).collect();
+        let material = Material { charge: 1e-9, ..Material::default() };
+        let gravity = Vec3::NEG_Y * 9.81;
+        let mut simulation =
+            Simulation::new(groom, &strands, &[material], Solver::default(), gravity, Rigid::default(), &[]);
+        simulation.set_shelter(&Shelter { hair: 50.0, ..Shelter::default() });
+        let flow = Flow::Point { center: Vec3::ZERO, radius: 0.1, speed: 1.0 };
+        let sources = [Source { flow, pose: Rigid::default(), factor: 1.0 }];
+        let ball = ChargedBall { centers: [Vec3::Z; 2], radius: 0.1, charge: 1e-7 };
+        let mut step = |frame: u32| {
+            simulation.set_charged([ball]);
+            simulation.step(&Drive {
+                dt: bench::FRAME,
+                anchor: Rigid::default(),
+                roots: &roots,
+                obstacles: &[],
+                air: Air {
+                    wind: Wind { velocity: Vec3::X, gust: 0.5, gust_rate: 1.0 },
+                    time: frame as f32 * bench::FRAME,
+                    sources: &sources,
+                    turbulence: Turbulence { strength: 0.5, ..Turbulence::default() },
+                },
+            });
+        };
+        step(0);
+        let before = COUNT.load(Ordering::Relaxed);
+        (1..20).for_each(step);
+        COUNT.load(Ordering::Relaxed) - before
+    });
+    assert_eq!(counted, 0, "{counted} allocations in 19 steps in moving air among charged bodies");
 }

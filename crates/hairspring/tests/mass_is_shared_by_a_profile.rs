@@ -31,7 +31,7 @@ fn step(simulation: &mut Simulation, dt: f64, wind: Vec3) -> Vec<Vec3> {
         anchor: Rigid::default(),
         roots: &[Rigid::default()],
         obstacles: &[],
-        air: Air { wind, time: 0.0 },
+        air: Air { wind, ..Air::default() },
     });
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
     simulation.write_points(&mut points);

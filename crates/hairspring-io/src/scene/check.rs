@@ -1,6 +1,7 @@
 //! Values that a scene file may not have: not finite, or outside the range that the field's description gives.
 
 use super::{
+    air,
     file::{BodyFile, KeyFile, SceneFile},
     sentence::{line_at, line_of_key},
 };
@@ -13,19 +14,19 @@ use hairspring::{
 };
 
 /// One check: whether it holds, the key it is about, what is expected.
-type Check = (bool, &'static str, &'static str);
+pub(super) type Check = (bool, &'static str, &'static str);
 
-fn finite(v: Vec3) -> bool {
+pub(super) fn finite(v: Vec3) -> bool {
     v.is_finite()
 }
 
 /// Finite and above 0, or absent.
-fn above_0(x: Option<f32>) -> bool {
+pub(super) fn above_0(x: Option<f32>) -> bool {
     x.is_none_or(|x| x.is_finite() && x > 0.0)
 }
 
 /// Finite, and 0 or more.
-fn from_0(x: f32) -> bool {
+pub(super) fn from_0(x: f32) -> bool {
     x.is_finite() && x >= 0.0
 }
 
@@ -42,7 +43,7 @@ fn color(c: Vec3) -> bool {
 }
 
 /// The first check that fails, placed at its key's line from line `from` on.
-fn first_failure(text: &str, from: usize, checks: &[Check]) -> Result<(), Problem> {
+pub(super) fn first_failure(text: &str, from: usize, checks: &[Check]) -> Result<(), Problem> {
     match checks.iter().find(|(holds, ..)| !holds) {
         None => Ok(()),
         Some((_, key, expected)) => {
@@ -169,13 +170,8 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             )],
         )?;
     }
-    let (wind, solver) = (&scene.wind, &scene.solver);
-    let winds = [
-        (finite(wind.velocity), "velocity", "three finite numbers [m/s]"),
-        ((0.0..=1.0).contains(&wind.gust), "gust", "0 to 1"),
-        (from_0(wind.gust_rate), "gust_rate", "0 or more [Hz]"),
-    ];
-    first_failure(text, section("[wind]"), &winds)?;
+    air::ranges(text, scene)?;
+    let solver = &scene.solver;
     let solvers = [
         ((1..=64).contains(&solver.substeps), "substeps", "1 to 64"),
         ((0..=20).contains(&solver.projections), "projections", "0 to 20"),
@@ -289,6 +285,7 @@ pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Prob
         (from_0(m.drag), "drag", "0 or more"),
         ((0.0..=1.0).contains(&m.friction), "friction", "0 to 1"),
         (ghost(&m.ghost), "ghost", "`pull` 0 to 60 [Hz], `tip` 0 or more, `damping` 0 to 10"),
+        ((-1e-6..=1e-6).contains(&m.charge), "charge", "-1e-6 to 1e-6 [C/m]"),
     ];
     first_failure(text, from, &checks)
 }

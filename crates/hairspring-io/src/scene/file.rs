@@ -2,6 +2,8 @@
 
 use glam::{EulerRot, Quat, Vec3};
 use hairspring::{
+    air::{Shelter, Turbulence, WindSource},
+    around::charge::Charged,
     body::{Key, Travel},
     groom::{Growth, Thicken},
     scene::{Camera, Collider, Effects, Guides, HairLook, Hand, Shape, Solver, Volume, Wind},
@@ -41,9 +43,21 @@ pub(super) struct SceneFile {
     /// Materials by name: `preset`, then any field of a material over it.
     #[serde(default)]
     pub material: BTreeMap<String, Spanned<toml::Table>>,
-    /// Moving air.
+    /// The wind of all points.
     #[serde(default)]
     pub wind: Wind,
+    /// What blows besides.
+    #[serde(default)]
+    pub wind_source: Vec<WindSource>,
+    /// Eddies in the air.
+    #[serde(default)]
+    pub turbulence: Turbulence,
+    /// Who stands in the lee.
+    #[serde(default)]
+    pub shelter: Shelter,
+    /// Charged bodies.
+    #[serde(default)]
+    pub charged: Vec<Charged>,
     /// Time steps and contact.
     #[serde(default)]
     pub solver: Solver,

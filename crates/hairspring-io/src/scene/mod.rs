@@ -1,5 +1,6 @@
 //! Scene files: TOML that names grooms, a body, its motion and settings (`docs/scene.md` shows every field).
 
+mod air;
 mod body;
 mod builtin;
 mod check;
@@ -139,6 +140,10 @@ impl Reader<'_> {
             grooms: base.grooms,
             colliders: file.collider.clone(),
             wind: file.wind,
+            wind_sources: file.wind_source.clone(),
+            turbulence: file.turbulence,
+            shelter: file.shelter,
+            charged: file.charged.clone(),
             gravity: file.gravity,
             solver: file.solver,
             volume: file.volume,
@@ -292,19 +297,26 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Checks that the joints of colliders and hands are there.
+    /// Checks that the joints that things follow are there.
     fn joints(&self, scene: &Scene) -> Result<()> {
-        let colliders = scene.colliders.iter().map(|c| ("[[collider]]", &c.joint));
+        let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
+        let known = |name: &str| joints.iter().any(|j| j.name.eq_ignore_ascii_case(name));
+        let sources = scene.wind_sources.iter().map(|s| ("[[wind_source]]", &s.joint));
+        let charged = scene.charged.iter().map(|c| ("[[charged]]", &c.joint));
         let hands = scene.hands.iter().map(|h| ("[[hand]]", &h.joint));
-        for (section, joint) in colliders.chain(hands) {
-            let Some(name) = joint else {
+        let followed = scene
+            .colliders
+            .iter()
+            .map(|c| ("[[collider]]", &c.joint))
+            .chain(sources)
+            .chain(charged)
+            .chain(hands);
+        for (section, joint) in followed {
+            let Some(name) = joint.as_ref().filter(|name| !known(name)) else {
                 continue;
             };
-            let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
-            if !joints.iter().any(|j| j.name.eq_ignore_ascii_case(name)) {
-                let text = format!("the joint {}", unknown(name, joints.iter().map(|j| j.name.as_str())));
-                return Err(self.wrong(self.text.find(section).unwrap_or(0), "joint", text));
-            }
+            let text = format!("the joint {}", unknown(name, joints.iter().map(|j| j.name.as_str())));
+            return Err(self.wrong(self.text.find(section).unwrap_or(0), "joint", text));
         }
         Ok(())
     }

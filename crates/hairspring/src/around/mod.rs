@@ -9,25 +9,33 @@
 //! | [`grab`] | a hand holds what is in a ball |
 //! | [`comb`] | tines take hair along across itself |
 //! | [`tie`] | a ring gathers strands |
+//! | [`charge`] | charged bodies, and charged hair |
+//! | [`wind`] | moving air that is not the same everywhere |
 
 pub(crate) mod bond;
+pub mod charge;
 pub mod comb;
 pub mod ghost;
 pub mod grab;
+mod hair_field;
 mod strand;
 pub mod tie;
 mod tool;
+mod wind;
 
+pub(crate) use charge::Charges;
+pub(crate) use hair_field::HairField;
 pub(crate) use strand::Surrounded;
 pub use tool::Tool;
 pub(crate) use tool::Used;
+pub(crate) use wind::Blow;
 
 use crate::{
     collide::Rigid,
     simulation::TilePlace,
     strand::{
         lanes::{LANES, Row},
-        tile::{StateRows, StrandRows, grip, tines},
+        tile::{RestRows, StateRows, StrandRows, grip, tines},
     },
 };
 
@@ -88,6 +96,7 @@ pub(crate) struct Strands<'a> {
     /// Strand of the groom in each lane; `u32::MAX` in lanes without one.
     pub lanes: &'a [u32],
     pub strand: &'a [StrandRows],
+    pub rest: &'a [RestRows],
     pub state: &'a [StateRows],
     pub push: &'a mut [[Row; 3]],
     pub grip: &'a mut [[Row; grip::ROWS]],
@@ -131,6 +140,7 @@ impl Strands<'_> {
                     lane,
                     stride: place.model.stride(),
                     rows: &self.strand[k],
+                    rest: &self.rest[points.clone()],
                     state: &self.state[points.clone()],
                     push: &mut self.push[push],
                     grip: &mut self.grip[grip],
@@ -147,17 +157,19 @@ impl Strands<'_> {
         let (tiles, more_tiles) = self.tiles.split_at(count);
         let (lanes, more_lanes) = self.lanes.split_at(count * LANES);
         let (strand, more_strand) = self.strand.split_at(count);
+        let (rest, more_rest) = self.rest.split_at(points);
         let (state, more_state) = self.state.split_at(points);
         let (push, more_push) = self.push.split_at_mut(points.min(self.push.len()));
         let (grip, more_grip) = self.grip.split_at_mut(points.min(self.grip.len()));
         let (tines, more_tines) = self.tines.split_at_mut(points.min(self.tines.len()));
         let (air, more_air) = self.air.split_at_mut(points.min(self.air.len()));
         (
-            Strands { tiles, lanes, strand, state, push, grip, tines, air },
+            Strands { tiles, lanes, strand, rest, state, push, grip, tines, air },
             Strands {
                 tiles: more_tiles,
                 lanes: more_lanes,
                 strand: more_strand,
+                rest: more_rest,
                 state: more_state,
                 push: more_push,
                 grip: more_grip,

@@ -5,7 +5,7 @@ use crate::{
     collide::Rigid,
     strand::{
         lanes::Row,
-        tile::{StateRows, StrandRows, grip, state, strand, tines},
+        tile::{RestRows, StateRows, StrandRows, grip, rest, state, strand, tines},
     },
 };
 use glam::{Quat, Vec3};
@@ -19,6 +19,7 @@ pub(crate) struct Surrounded<'a> {
     pub(super) lane: usize,
     pub(super) stride: usize,
     pub(super) rows: &'a StrandRows,
+    pub(super) rest: &'a [RestRows],
     pub(super) state: &'a [StateRows],
     pub(super) push: &'a mut [[Row; 3]],
     pub(super) grip: &'a mut [[Row; grip::ROWS]],
@@ -26,7 +27,7 @@ pub(crate) struct Surrounded<'a> {
     pub(super) air: &'a mut [[Row; 3]],
 }
 
-impl Surrounded<'_> {
+impl<'a> Surrounded<'a> {
     /// The root at the start and at the end of the frame: place and rotation since rest, in the world.
     pub fn roots(&self) -> [Rigid; 2] {
         let number = |row: usize| self.rows[row].0[self.lane];
@@ -39,14 +40,26 @@ impl Surrounded<'_> {
         )
     }
 
-    /// Place from the root [m] and velocity [m/s] of every point of the strand at the start of the frame, root first; and points of padding.
-    pub fn points(&self) -> impl Iterator<Item = (Vec3, Vec3)> + '_ {
-        let vector = |rows: &StateRows, at: usize| Vec3::from([0, 1, 2].map(|k| rows[at + k].0[self.lane]));
-        let particles = self.state.iter().scan(Vec3::ZERO, move |x, rows| {
+    /// Place from the root [m] and velocity [m/s] of every point of the strand at the start of the frame, root first.
+    pub fn points(&self) -> impl Iterator<Item = (Vec3, Vec3)> + use<'a> {
+        let (state, lane) = (self.state, self.lane);
+        let vector = move |rows: &StateRows, at: usize| Vec3::from([0, 1, 2].map(|k| rows[at + k].0[lane]));
+        let particles = state.iter().scan(Vec3::ZERO, move |x, rows| {
             *x += vector(rows, state::EDGE);
             Some((*x, vector(rows, state::V)))
         });
-        particles.step_by(self.stride)
+        particles.step_by(self.stride).take(self.rows[strand::POINTS].0[lane] as usize)
+    }
+
+    /// Length of hair that is point `i`'s: half of the segments around it [m].
+    pub fn length(&self, i: usize) -> f32 {
+        let length = |i: usize| self.rest[i * self.stride][rest::LENGTH].0[self.lane];
+        0.5 * (length(i) + if i > 0 { length(i - 1) } else { 0.0 })
+    }
+
+    /// Mass of point `i` [kg].
+    pub fn mass(&self, i: usize) -> f32 {
+        self.rest[i * self.stride][rest::MASS].0[self.lane]
     }
 
     /// From point `i − 1` to point `i` at the start of the frame [m], and the velocity of point `i` [m/s]; `i` is 1 or more.

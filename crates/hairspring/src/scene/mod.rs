@@ -16,6 +16,8 @@ pub use settings::{
 };
 
 use crate::{
+    air::{Shelter, Turbulence, WindSource},
+    around::charge::Charged,
     body::{Body, Clip},
     groom::Groom,
     material::Material,
@@ -53,8 +55,16 @@ pub struct Scene {
     pub colliders: Vec<Collider>,
     /// Motion of the body's joints; `None`: at rest.
     pub clip: Option<Clip>,
-    /// Moving air.
+    /// The wind of all points.
     pub wind: Wind,
+    /// What blows besides.
+    pub wind_sources: Vec<WindSource>,
+    /// Eddies in the air.
+    pub turbulence: Turbulence,
+    /// Who stands in the lee.
+    pub shelter: Shelter,
+    /// Charged bodies.
+    pub charged: Vec<Charged>,
     /// Gravity [m/s²]; the default of a scene file is (0, −9.81, 0).
     pub gravity: Vec3,
     /// Time steps and contact.

@@ -2,7 +2,8 @@
 
 use super::{Simulation, TilePlace};
 use crate::{
-    around::Around,
+    air::{Noise, Shade, Shelter},
+    around::{Around, HairField},
     collide::{ObstaclePose, Rigid},
     groom::Groom,
     material::{Material, Model},
@@ -100,9 +101,15 @@ impl Simulation {
             around: Around::default(),
             ghosts: materials.iter().map(|m| m.ghost).collect(),
             tools: super::hands::Tools::default(),
+            charges: materials.iter().map(|m| m.charge).collect(),
+            charged: Vec::new(),
+            hair_field: HairField::default(),
             volume: None,
             tensions: Default::default(),
             motion: super::carry::Motion::default(),
+            noise: Noise::default(),
+            shelter: Shelter::default(),
+            shade: Shade::default(),
             last_h: 0.0,
             groom,
             lanes,

@@ -1,14 +1,18 @@
-//! Hair on hair: the volume of the simulated strands.
+//! The volume of the simulated strands: hair on hair, and hair that shelters from the wind.
 
 use super::Simulation;
 use crate::{
-    scene,
+    air::Shelter,
+    scene::{self, VolumeMethod},
     strand::{
         lanes::{LANES, Row},
         tile::rest,
     },
     volume::{AtRest, Volume, VolumeReport},
 };
+
+/// Edge of a cell that is there for shelter alone, over its reach [1]: 16 mm for half a metre, about a lock of hair.
+const SHELTER_CELL: f32 = 1.0 / 32.0;
 
 impl Simulation {
     /// Lets strands meet each other as a volume from now on, or no more. As they are now counts as their rest: how full each place is, and
@@ -37,11 +41,25 @@ impl Simulation {
             segment: (sum / segments.max(1) as f64) as f32,
             length: longest,
         };
-        self.volume = Volume::new(settings, at_rest).map(Box::new);
+        let mut settings = *settings;
+        if settings.method == VolumeMethod::Off {
+            // Only measured, for shelter: as fine as a lee is seen.
+            settings.cell = settings.cell.or(Some(self.shelter.reach * SHELTER_CELL));
+        }
+        self.volume = Volume::new(&settings, self.shelter.is_on(), at_rest).map(Box::new);
+    }
+
+    /// Lets bodies and hair shelter from the wind from now on. Where strands do not meet each other as a volume, as they are now counts as
+    /// their rest: how dense they are where.
+    pub fn set_shelter(&mut self, shelter: &Shelter) {
+        self.shelter = *shelter;
+        if shelter.is_on() && self.volume.is_none() {
+            self.set_volume(&scene::Volume::default());
+        }
     }
 
     /// What is known of the hair's volume; `None` where strands pass through each other.
     pub fn volume(&self) -> Option<VolumeReport> {
-        self.volume.as_ref().map(|volume| volume.report())
+        self.volume.as_ref().filter(|volume| volume.acts()).map(|volume| volume.report())
     }
 }

@@ -12,16 +12,18 @@ mod reset;
 mod step;
 mod surround;
 
+pub use crate::air::Air;
 pub use crate::strand::rest_shape::Start;
 pub use crate::volume::VolumeReport;
 pub use energy::Energy;
 pub use hands::ToolId;
 pub use hold::Hold;
 pub use measure::Measure;
-pub use step::{Air, Drive, MovingObstacle, StepReport};
+pub use step::{Drive, MovingObstacle, StepReport};
 
 use crate::{
-    around::{Around, ghost::Ghost},
+    air::{Noise, Shade, Shelter},
+    around::{Around, HairField, charge::ChargedBall, ghost::Ghost},
     groom::Groom,
     strand::{
         interval::Interval,
@@ -41,7 +43,7 @@ use std::sync::Arc;
 /// same bits for any number of threads. Strands meet the body, the air, and each other as a volume (see [`Simulation::set_volume`]).
 ///
 /// # Missing
-/// Hair against hair as strands, contact between points (a segment may cut a corner that its ends stay out of), wind sheltered by the body, cutting and wetting: each is an issue of its own.
+/// Hair against hair as strands, contact between points (a segment may cut a corner that its ends stay out of), cutting and wetting: each is an issue of its own.
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
@@ -60,12 +62,21 @@ pub struct Simulation {
     ghosts: Vec<Ghost>,
     /// What hands hold to the hair.
     tools: hands::Tools,
-    /// Hair on hair; `None`: strands pass through each other.
+    /// Charge of each material's hair [C/m]; a group past the end uses the last.
+    charges: Vec<f32>,
+    charged: Vec<ChargedBall>,
+    hair_field: HairField,
+    /// Where hair is, and hair on hair; `None`: strands pass through each other, and nothing asks where they are.
     volume: Option<Box<Volume>>,
     /// Tensions of the rest shape, of segments and, in the springs model, of triangles' sides; shapes as `state`, the second empty without springs.
     tensions: [Vec<Row>; 2],
     /// How the anchor moved in the last frame.
     motion: carry::Motion,
+    /// The air's eddies in the last frame.
+    noise: Noise,
+    /// How bodies and hair shelter from the wind, and what they left of it in the last frame.
+    shelter: Shelter,
+    shade: Shade,
     /// Length of the last substep [s].
     last_h: f32,
     settings: build::Settings,
@@ -136,6 +147,12 @@ impl Simulation {
         let found = levels().find(|level| name(*level) == set);
         self.level = found.unwrap_or(self.level);
         found.is_some()
+    }
+
+    /// What charged bodies act on charged hair in the next frame.
+    pub fn set_charged(&mut self, balls: impl IntoIterator<Item = ChargedBall>) {
+        self.charged.clear();
+        self.charged.extend(balls);
     }
 
     /// The simulated strands, as indices of the groom, in the order given to [`Simulation::new`].

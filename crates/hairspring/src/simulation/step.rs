@@ -2,8 +2,9 @@
 
 use super::{Simulation, TilePlace, reset};
 use crate::{
+    air::Air,
     collide::{Obstacle, ObstaclePose, Rigid},
-    scene::{Integrator, Quality, Solver, Wind},
+    scene::{Integrator, Quality, Solver},
     strand::{
         interval::{Interval, Substep},
         lanes::{LANES, Row},
@@ -13,7 +14,6 @@ use crate::{
     },
 };
 use fearless_simd::Level;
-use glam::Vec3;
 use std::cell::RefCell;
 
 /// A frame's input, all at the end of it; the start is where the last step ended.
@@ -27,7 +27,7 @@ pub struct Drive<'a> {
     /// Colliders.
     pub obstacles: &'a [MovingObstacle],
     /// Moving air.
-    pub air: Air,
+    pub air: Air<'a>,
 }
 
 /// A collider and its pose at the start and the end of a frame.
@@ -51,24 +51,6 @@ impl MovingObstacle {
             from.translation.distance_squared(self.end.translation) + turned
         };
         if far(&carried) < far(&self.start) { carried } else { self.start }
-    }
-}
-
-/// Wind at a time.
-#[derive(Clone, Copy, Default)]
-pub struct Air {
-    /// Settings.
-    pub wind: Wind,
-    /// Time at the start of the frame [s].
-    pub time: f32,
-}
-
-impl Air {
-    /// Velocity of the air `after` the start of the frame [m/s]: two incommensurate sines make the gusts.
-    fn velocity(&self, after: f32) -> Vec3 {
-        let phase = std::f32::consts::TAU * self.wind.gust_rate * (self.time + after);
-        let gust = 0.6 * phase.sin() + 0.4 * (phase * 2.618 + 1.0).sin();
-        self.wind.velocity * (1.0 + self.wind.gust * gust)
     }
 }
 
@@ -174,7 +156,7 @@ impl Simulation {
             let before = k as f32 / count as f32;
             substep.fraction = fraction;
             substep.anchor = from.lerp(&drive.anchor, fraction).matrix();
-            substep.wind = drive.air.velocity(fraction * drive.dt);
+            substep.wind = drive.air.uniform(fraction * drive.dt);
             substep.obstacles.clear();
             substep.obstacles.extend(drive.obstacles.iter().map(|o| {
                 let start = o.start(carried);

@@ -2,7 +2,8 @@
 
 use super::{Drive, Simulation};
 use crate::{
-    around::{Frame, Kinds, Strands, Surrounded},
+    air::Bodies,
+    around::{Blow, Charges, Frame, Kinds, Strands, Surrounded},
     collide::Rigid,
 };
 
@@ -10,36 +11,64 @@ impl Simulation {
     /// Finds what acts on all points in the frame, and moves the roots; hair was `carried` along before it.
     pub(super) fn exchange(&mut self, drive: &Drive, carried: Option<&Rigid>) {
         let ghosts = self.settings.solver.ghost && self.ghosts.iter().any(|ghost| ghost.is_on());
-        let gripped = ghosts || !self.tools.used.is_empty();
+        let charged = self.charges.iter().any(|charge| *charge != 0.0);
+        let pressed = self.volume.as_ref().is_some_and(|volume| volume.acts());
+        let sheltered = self.shelter.is_on() && drive.air.moves();
+        let gripped = ghosts || charged || !self.tools.used.is_empty();
         let tines = self.tools.used.iter().any(|used| !used.tool.binds());
-        let kinds = Kinds { push: self.volume.is_some(), grip: gripped, tines, air: false };
-        self.around.prepare(self.state.len(), kinds, self.volume.is_some());
-        if let Some(volume) = &mut self.volume {
-            let anchor = self.settings.anchor;
+        let blown = sheltered || drive.air.varies();
+        let kinds = Kinds { push: pressed, grip: gripped, tines, air: blown };
+        self.around.prepare(self.state.len(), kinds, pressed);
+        let anchor = self.settings.anchor;
+        let obstacles = (drive.obstacles, carried);
+        if let Some(volume) = self.volume.as_mut().filter(|_| pressed || sheltered) {
             let hair = (&self.strand[..], &self.state[..]);
-            let obstacles = (drive.obstacles, carried);
-            volume.exchange(drive.dt, hair, &anchor, obstacles, &mut self.around.push);
+            volume.measure(hair, &anchor);
+            if pressed {
+                volume.exchange(drive.dt, hair, &anchor, obstacles, &mut self.around.push);
+            }
         }
         self.move_roots(drive);
-        if !gripped {
+        if !gripped && !blown {
             return;
         }
-        let (groom, materials, tools) = (&self.groom, &self.ghosts, &self.tools.used);
+        let frame = Frame { anchor: [anchor, drive.anchor], dt: drive.dt };
+        if charged {
+            self.charged.iter_mut().for_each(|ball| ball.carry(carried));
+            self.find_hair_field(&frame);
+        }
+        let air = drive.air.moment(drive.dt, &mut self.noise);
+        let shade = self.volume.as_ref().filter(|_| sheltered).map(|volume| {
+            let hair = volume.density(anchor);
+            self.shade.reserve(volume.most_nodes());
+            self.shade.cast(&self.shelter, &air, &Bodies::new(obstacles), &hair);
+            (&self.shade, hair)
+        });
+        let blow = Blow { air, shade };
+        let charges = Charges { balls: &self.charged, hair: &self.hair_field };
+        let (groom, ghost_of, charge_of) = (&self.groom, &self.ghosts, &self.charges);
+        let tools = &self.tools.used;
         let act = |strand: &mut Surrounded| {
             let s = strand.strand;
-            let ghost = materials.get(groom.group(s) as usize).or(materials.last()).filter(|_| ghosts);
-            if let Some(ghost) = ghost {
+            let group = groom.group(s) as usize;
+            if let Some(ghost) = of_group(ghost_of, group).filter(|_| ghosts) {
                 ghost.add(groom.scale(s).ghost, groom.strand(s), strand);
+            }
+            if let Some(charge) = of_group(charge_of, group).filter(|_| charged) {
+                charges.add(*charge, strand);
             }
             for used in tools {
                 used.act(strand, groom.range(s).len());
             }
+            if blown {
+                blow.add(strand);
+            }
         };
-        let frame = Frame { anchor: [self.settings.anchor, drive.anchor], dt: drive.dt };
         let strands = Strands {
             tiles: &self.tiles,
             lanes: &self.lanes,
             strand: &self.strand,
+            rest: &self.rest,
             state: &self.state,
             push: &mut self.around.push,
             grip: &mut self.around.grip,
@@ -48,4 +77,38 @@ impl Simulation {
         };
         strands.each(&frame, &act);
     }
+
+    /// Finds the field of the hair's own charge at the start of the frame.
+    fn find_hair_field(&mut self, frame: &Frame) {
+        let Self { groom, charges, hair_field, .. } = self;
+        // Those that follow are charged as their guides.
+        let hairs = groom.strand_count() as f32 / self.places.len() as f32;
+        let mut each = |act: &(dyn Fn(&mut Surrounded) + Sync)| {
+            let strands = Strands {
+                tiles: &self.tiles,
+                lanes: &self.lanes,
+                strand: &self.strand,
+                rest: &self.rest,
+                state: &self.state,
+                push: &mut self.around.push,
+                grip: &mut self.around.grip,
+                tines: &mut self.around.tines,
+                air: &mut self.around.air,
+            };
+            strands.each(frame, &act);
+        };
+        hair_field.clear();
+        each(&|strand| hair_field.reach(strand));
+        hair_field.lay_out();
+        each(&|strand| {
+            let charge = of_group(charges, groom.group(strand.strand) as usize).copied().unwrap_or(0.0);
+            hair_field.load(charge, hairs, strand);
+        });
+        hair_field.solve();
+    }
+}
+
+/// What is said of a group; one past the end has the last's.
+fn of_group<T>(all: &[T], group: usize) -> Option<&T> {
+    all.get(group).or(all.last())
 }

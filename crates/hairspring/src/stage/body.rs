@@ -1,7 +1,8 @@
 //! The posed body and what of it hair collides with.
 
-use super::{PosedBody, StageError};
+use super::{PosedBody, StageError, charged::StagedCharged};
 use crate::{
+    around::charge::ChargedBall,
     body::{Body, Trs},
     collide::{Grid, Obstacle, ObstaclePose, Rigid, Voxelizer},
     scene::Scene,
@@ -30,6 +31,7 @@ pub(super) struct StagedBody {
     joints: Vec<Option<usize>>,
     surface: Option<Surface>,
     reach: Reach,
+    charged: StagedCharged,
 }
 
 /// Where hair can be: no farther from a root than the longest strand is long.
@@ -93,22 +95,24 @@ impl StagedBody {
             joints: Vec::new(),
             surface: None,
             reach: Reach::new(scene),
+            charged: StagedCharged::default(),
         };
         if let Some(body) = &scene.body {
             body.skinned(&staged.world, &mut staged.positions, &mut staged.normals);
         }
         staged.add_surface(scene);
         for collider in &scene.colliders {
-            let joint = match (&collider.joint, &scene.body) {
-                (Some(name), Some(body)) => {
-                    Some(body.joint(name).ok_or(StageError::NoSuchJoint { joint: name.clone() })?)
-                }
-                (Some(name), None) => return Err(StageError::NoSuchJoint { joint: name.clone() }),
-                (None, _) => (!staged.rest.is_empty()).then_some(staged.anchor),
-            };
-            staged.add(collider.shape.obstacle(), joint);
+            let carried = joint_of(scene, collider.joint.as_deref(), "a collider")?;
+            staged.add(
+                collider.shape.obstacle(),
+                carried.or((!staged.rest.is_empty()).then_some(staged.anchor)),
+            );
         }
-        staged.repose();
+        staged.charged = StagedCharged::new(scene)?;
+        // After all others: they move by themselves.
+        let balls = staged.charged.obstacles(&scene.charged);
+        staged.obstacles.extend(balls);
+        staged.repose(scene, 0.0);
         Ok(staged)
     }
 
@@ -180,7 +184,8 @@ impl StagedBody {
         if let Some(body) = scene.collision.as_ref().or(scene.body.as_ref()) {
             self.rebuild_surface(body, false);
         }
-        self.repose();
+        self.charged.rest();
+        self.repose(scene, time);
     }
 
     /// Poses the body for time `time` [s] without motion.
@@ -189,7 +194,8 @@ impl StagedBody {
         if let Some(body) = scene.collision.as_ref().or(scene.body.as_ref()) {
             self.rebuild_surface(body, true);
         }
-        self.repose();
+        self.repose(scene, time);
+        self.charged.rest();
         for obstacle in &mut self.obstacles {
             obstacle.start = obstacle.end;
         }
@@ -205,21 +211,28 @@ impl StagedBody {
         }
     }
 
-    /// Where obstacles are in the current pose.
-    fn repose(&mut self) {
+    /// Where obstacles and charged bodies are in the current pose, at `time` [s].
+    fn repose(&mut self, scene: &Scene, time: f32) {
         let field_anchor = self.surface.is_some().then(|| self.anchor());
-        for k in 0..self.obstacles.len() {
-            self.obstacles[k].end = match (self.joints[k], field_anchor) {
-                (_, Some(anchor)) if k == 0 => anchor,
-                (Some(j), _) => self.joint(j),
-                (None, _) => Rigid::default(),
+        let Self { world, rest, obstacles, joints, charged, .. } = self;
+        let carried = |joint: Option<usize>| carried(world, rest, joint);
+        for (k, (obstacle, joint)) in obstacles.iter_mut().zip(&*joints).enumerate() {
+            obstacle.end = match field_anchor {
+                Some(anchor) if k == 0 => anchor,
+                _ => carried(*joint),
             };
         }
+        charged.advance(&scene.charged, time, carried, &mut obstacles[joints.len()..]);
     }
 
-    /// How joint `j` has moved since rest.
-    pub(super) fn joint(&self, j: usize) -> Rigid {
-        Rigid::from_affine(&(self.world[j] * self.rest[j].inverse()))
+    /// Where what a joint carries has gone since rest; nowhere without a joint.
+    pub(super) fn carried(&self, joint: Option<usize>) -> Rigid {
+        carried(&self.world, &self.rest, joint)
+    }
+
+    /// The charged bodies in the last frame.
+    pub(super) fn charged(&self) -> &[ChargedBall] {
+        self.charged.balls()
     }
 
     /// The frame that roots move with.
@@ -249,6 +262,22 @@ impl StagedBody {
         let mesh = &scene.body.as_ref()?.mesh;
         Some(PosedBody { mesh, positions: &self.positions, normals: &self.normals })
     }
+}
+
+/// The joint of the scene's body of this name, if any is named; `what` is to follow it.
+pub(super) fn joint_of(
+    scene: &Scene,
+    name: Option<&str>,
+    what: &'static str,
+) -> Result<Option<usize>, StageError> {
+    let Some(name) = name else { return Ok(None) };
+    let joint = scene.body.as_ref().and_then(|body| body.joint(name));
+    joint.map(Some).ok_or_else(|| StageError::NoSuchJoint { what, joint: name.into() })
+}
+
+/// Where what a joint carries has gone since `rest`, now that joints are at `world`; nowhere without a joint.
+fn carried(world: &[Affine3A], rest: &[Affine3A], joint: Option<usize>) -> Rigid {
+    joint.map_or(Rigid::default(), |j| Rigid::from_affine(&(world[j] * rest[j].inverse())))
 }
 
 /// The joint that carries most of the vertices near the roots; joint 0 of a rigid body.

@@ -46,6 +46,7 @@ impl StagedHair {
             &obstacles,
         );
         simulation.set_volume(&scene.volume);
+        simulation.set_shelter(&scene.shelter);
         let follow = weights.map(|w| Follow::new(groom.clone(), &simulated, &w, effects, &obstacles));
         let mesh = scene.body.as_ref().map(|b| &b.mesh).filter(|_| !groom.roots.is_empty());
         let rest_frames = mesh.map_or(Vec::new(), |mesh| {
@@ -102,6 +103,7 @@ impl StagedHair {
     pub(super) fn step(&mut self, dt: f32, body: &StagedBody, air: Air, report: &mut FrameReport) {
         let began = Instant::now();
         self.pose_roots(body);
+        self.simulation.set_charged(body.charged().iter().copied());
         let step = self.simulation.step(&Drive {
             dt,
             anchor: body.anchor(),

@@ -1,7 +1,15 @@
 //! The scene's hands at work: each takes hold, moves and lets go when its settings say so, at the start of a frame.
 
-use super::{body::StagedBody, hair::StagedHair};
-use crate::{collide::Rigid, scene::Hand, simulation::ToolId};
+use super::{
+    StageError,
+    body::{StagedBody, joint_of},
+    hair::StagedHair,
+};
+use crate::{
+    collide::Rigid,
+    scene::{Hand, Scene},
+    simulation::ToolId,
+};
 
 /// Where a hand is in its work.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -20,8 +28,9 @@ pub(super) struct StagedHands {
 }
 
 impl StagedHands {
-    pub(super) fn new(joints: Vec<Option<usize>>) -> Self {
-        Self { work: vec![Work::Before; joints.len()], joints }
+    pub(super) fn new(scene: &Scene) -> Result<Self, StageError> {
+        let joints = scene.hands.iter().map(|h| joint_of(scene, h.joint.as_deref(), "a hand"));
+        Ok(Self { work: vec![Work::Before; scene.hands.len()], joints: joints.collect::<Result<_, _>>()? })
     }
 
     /// Back to before they began.
@@ -57,7 +66,7 @@ impl StagedHands {
     }
 
     fn pose(&self, k: usize, hand: &Hand, time: f32, body: &StagedBody) -> Rigid {
-        let joint = self.joints[k].map_or(Rigid::default(), |joint| body.joint(joint));
+        let joint = body.carried(self.joints[k]);
         Rigid { translation: joint.point(hand.moved(time)), ..joint }
     }
 }

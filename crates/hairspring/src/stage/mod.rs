@@ -1,8 +1,10 @@
 //! A scene being played: the body posed, the guides stepped, the follow hairs placed, frame after frame.
 
 mod body;
+mod charged;
 mod hair;
 mod hands;
+mod wind;
 
 use crate::{
     around::Tool,
@@ -16,6 +18,7 @@ use glam::Vec3;
 use hair::StagedHair;
 use hands::StagedHands;
 use std::time::{Duration, Instant};
+use wind::StagedWind;
 
 /// Why a scene cannot be played.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -47,9 +50,11 @@ pub enum StageError {
         /// Joints of the body.
         body_joints: usize,
     },
-    /// A collider or a hand is to follow a joint that is not there.
-    #[error("a collider or a hand follows the joint '{joint}', and the body has none of that name")]
+    /// Something is to follow a joint that is not there.
+    #[error("{what} follows the joint '{joint}', and the body has none of that name")]
     NoSuchJoint {
+        /// What follows it.
+        what: &'static str,
         /// The name.
         joint: String,
     },
@@ -94,6 +99,7 @@ pub struct PosedBody<'a> {
 pub struct Stage {
     scene: Scene,
     body: StagedBody,
+    wind: StagedWind,
     hair: Vec<StagedHair>,
     hands: StagedHands,
     time: f32,
@@ -108,10 +114,11 @@ impl Stage {
             scene.grooms.iter_mut().for_each(|g| bind_roots(&mut g.groom, &body.mesh));
         }
         let body = StagedBody::new(&scene)?;
-        let hands = StagedHands::new(hand_joints(&scene)?);
+        let hands = StagedHands::new(&scene)?;
         let grooms = std::mem::take(&mut scene.grooms);
         let hair = grooms.into_iter().map(|groom| StagedHair::new(groom, &scene, &body)).collect();
-        let mut stage = Self { body, hair, hands, time: 0.0, scene };
+        let wind = StagedWind::new(&scene)?;
+        let mut stage = Self { body, wind, hair, hands, time: 0.0, scene };
         stage.reset();
         Ok(stage)
     }
@@ -149,10 +156,13 @@ impl Stage {
         let mut report = FrameReport::default();
         let began = Instant::now();
         self.hands.begin(&self.scene.hands, self.time, &self.body, &mut self.hair);
+        // Sources are where they are at the start, as points are.
+        self.wind.advance(&self.scene, self.time + 0.5 * dt, &self.body);
         self.body.advance(&self.scene, self.time + dt);
         self.hands.advance(&self.scene.hands, self.time + dt, &self.body, &mut self.hair);
         report.body = began.elapsed();
-        let air = Air { wind: self.scene.wind, time: self.time };
+        let Scene { wind, turbulence, .. } = self.scene;
+        let air = Air { wind, time: self.time, sources: self.wind.sources(), turbulence };
         for hair in &mut self.hair {
             hair.step(dt, &self.body, air, &mut report);
         }
@@ -224,15 +234,6 @@ impl Stage {
             speed_max: sum.speed_max.max(m.speed_max),
         })
     }
-}
-
-/// Joint of each of the scene's hands.
-fn hand_joints(scene: &Scene) -> Result<Vec<Option<usize>>, StageError> {
-    let joint = |name: &String| {
-        let found = scene.body.as_ref().and_then(|body| body.joint(name));
-        found.ok_or_else(|| StageError::NoSuchJoint { joint: name.clone() })
-    };
-    scene.hands.iter().map(|hand| hand.joint.as_ref().map(joint).transpose()).collect()
 }
 
 fn check(scene: &Scene) -> Result<(), StageError> {

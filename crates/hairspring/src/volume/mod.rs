@@ -33,6 +33,7 @@ mod field;
 mod gather;
 mod incompressible;
 mod rest;
+mod sample;
 mod splat;
 #[cfg(test)]
 mod tests;
@@ -52,6 +53,7 @@ use glam::{Mat3, Vec3};
 use incompressible::Projection;
 use rayon::prelude::*;
 use rest::Rest;
+pub(crate) use sample::Density;
 use splat::{Extent, OwnRows, Sums, Tiles, Units, own};
 use window::{Chart, Window};
 
@@ -118,10 +120,10 @@ pub(crate) struct AtRest<'a> {
 }
 
 impl Volume {
-    /// The volume of strands at rest; `None` where it is off or there is nothing to it.
-    pub fn new(settings: &scene::Volume, at: AtRest) -> Option<Self> {
+    /// The volume of strands at rest; `None` where there is nothing to it, or where it is off and not to be `measured` either.
+    pub fn new(settings: &scene::Volume, measured: bool, at: AtRest) -> Option<Self> {
         let largest = at.mass.iter().flat_map(|m| m.0).fold(0.0, f32::max);
-        if settings.method == VolumeMethod::Off || largest <= 0.0 {
+        if (settings.method == VolumeMethod::Off && !measured) || largest <= 0.0 {
             return None;
         }
         // Rooms begin as the masses are, and are found below.
@@ -168,7 +170,7 @@ impl Volume {
 
     /// Memory for a window around all that hair can reach, and a grid for each thread, so that no step has to ask for any.
     fn reserve(&mut self) {
-        let nodes = Window::around(self.reach.0 / self.cell, self.reach.1 / self.cell).nodes();
+        let nodes = self.most_nodes();
         let grids = rayon::current_num_threads().clamp(1, MOST_GRIDS);
         if self.sums.len() < grids {
             self.sums.resize_with(grids, Sums::default);
@@ -193,16 +195,23 @@ impl Volume {
         size_of_val(&self.own[..])
     }
 
-    /// Finds the accelerations of all points for an interval of `dt` [s], at its start, where the anchor is at `anchor`: `push` [m/s²], shape
-    /// `[points]` of all tiles.
-    pub fn exchange(
-        &mut self,
-        dt: f32,
-        (strand, state): (&[StrandRows], &[StateRows]),
-        anchor: &Rigid,
-        obstacles: (&[MovingObstacle], Option<&Rigid>),
-        push: &mut [[Row; 3]],
-    ) {
+    /// Whether it does anything to the points.
+    pub fn acts(&self) -> bool {
+        self.settings.method != VolumeMethod::Off
+    }
+
+    /// Most nodes that it ever has.
+    pub fn most_nodes(&self) -> usize {
+        Window::around(self.reach.0 / self.cell, self.reach.1 / self.cell).nodes()
+    }
+
+    /// How full of hair every place was when it was last measured, and the anchor at `anchor`.
+    pub fn density(&self, anchor: Rigid) -> Density<'_> {
+        Density::new(&self.field, self.cell, anchor)
+    }
+
+    /// Measures where hair is, at the start of an interval, where the anchor is at `anchor`.
+    pub fn measure(&mut self, (strand, state): (&[StrandRows], &[StateRows]), anchor: &Rigid) {
         self.reserve();
         let chart = Chart::new(anchor, self.cell);
         let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
@@ -221,13 +230,25 @@ impl Volume {
         });
         self.field.collect(window, &units, sums);
         self.taken_up[1] = taken_up(&self.field.fill);
+    }
+
+    /// Finds the accelerations of all points for an interval of `dt` [s] that has been measured: `push` [m/s²], shape `[points]` of all tiles.
+    pub fn exchange(
+        &mut self,
+        dt: f32,
+        (strand, state): (&[StrandRows], &[StateRows]),
+        anchor: &Rigid,
+        obstacles: (&[MovingObstacle], Option<&Rigid>),
+        push: &mut [[Row; 3]],
+    ) {
         match self.settings.method {
             VolumeMethod::Off => {}
             VolumeMethod::Density => self.press(dt, anchor),
             VolumeMethod::Incompressible => self.project(dt, anchor, obstacles),
         }
+        let chart = Chart::new(anchor, self.cell);
         let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
-        gather::all(&tiles, &chart, &window, &self.field.push, push);
+        gather::all(&tiles, &chart, &self.field.window, &self.field.push, push);
     }
 
     /// Acceleration by the pressure of crowded cells.

@@ -90,12 +90,13 @@ impl Bundle {
             segment: APART,
             length: APART * POINTS as f32,
         };
-        Volume::new(&scene::Volume { method, ..scene::Volume::default() }, at).unwrap()
+        Volume::new(&scene::Volume { method, ..scene::Volume::default() }, false, at).unwrap()
     }
 
     /// The accelerations that it gets, of all points.
     fn exchange(&self, volume: &mut Volume, anchor: &Rigid) -> Vec<Vec3> {
         let mut push = vec![[Row::default(); 3]; self.state.len()];
+        volume.measure((&self.strand, &self.state), anchor);
         volume.exchange(DT, (&self.strand, &self.state), anchor, (&[], None), &mut push);
         push.iter().flat_map(|p| (0..LANES).map(|l| Vec3::new(p[0].0[l], p[1].0[l], p[2].0[l]))).collect()
     }

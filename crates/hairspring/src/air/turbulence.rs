@@ -1,0 +1,214 @@
+//! Turbulence: curl noise, which no point gathers in and no point flees from.
+//!
+//! ```text
+//! v = ∇ × ψ,   ψ = Σ over the 8 corners c of a cell:  w_c(x) A_c(t) (x − c)        (Bridson 2007, Curl-Noise for Procedural Fluid Flow, eq. 1)
+//!   = Σ ∇w_c × A_c (x − c)  +  w_c ω_c,                ω_c = ∇ × A_c x
+//! ```
+//!
+//! ψ is gradient noise (Perlin 2002): each corner of a lattice has three gradients, the rows of A, and w is Perlin's weight of fifth degree, so that v is
+//! smooth. Its curl is written out, so that its divergence is 0 but for rounding. The noise moves in two ways: as a whole, with the wind of all
+//! points (gusts included), and by itself, as its gradients turn (Perlin & Neyret 2001, *Flow Noise*), one radian in the time ℓ/u that an eddy
+//! of size ℓ and speed u takes to turn over. Each octave has eddies of half the size, and by Kolmogorov 1941 of u ~ ℓ^(1/3).
+//!
+//! # Missing
+//! Sources of wind do not carry it along, and bodies do not stop it (Bridson 2007, §2.4: ψ brought to 0 at a wall).
+
+use glam::{DVec3, IVec3, Mat3, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// Eddies in the air.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Turbulence {
+    /// Root of the mean square of their velocity [m/s], 0 or more. Default 0: none. Outdoors a tenth to a third of the wind.
+    pub strength: f32,
+    /// Size of the largest eddies [m], above 0. Default 0.1: half a head, so that locks move apart and not hairs.
+    pub size: f32,
+    /// How many sizes of eddies there are, each half as large as the one before, 1 to 6. Default 2: smaller ones are smaller than a lock.
+    pub octaves: u32,
+}
+
+impl Default for Turbulence {
+    fn default() -> Self {
+        Self { strength: 0.0, size: 0.1, octaves: 2 }
+    }
+}
+
+impl Turbulence {
+    /// Whether there is any.
+    pub fn is_on(&self) -> bool {
+        self.strength > 0.0
+    }
+}
+
+/// Corners along an axis after which the noise repeats, and gradients that it draws from: a power of two.
+const PERIOD: usize = 256;
+
+/// Root of the mean square of the curl of noise whose gradients have entries of variance 1: the mean over a cell of
+/// Σ 2|∇w|²|d|² + 4w ∇w·d + 6w², d = x − c.
+const RMS: f32 = 2.1132;
+
+/// A corner's A, and the curl of A x.
+#[derive(Clone, Copy)]
+struct Corner {
+    a: Mat3,
+    curl: Vec3,
+}
+
+/// One size of eddies in a frame.
+#[derive(Clone, Copy)]
+struct Octave {
+    /// Over the size of an eddy [1/m].
+    scale: f32,
+    /// Velocity of noise whose gradients have entries of variance 1 [m/s].
+    speed: f32,
+    /// How far it has been carried [eddies], less whole periods.
+    way: Vec3,
+}
+
+/// The noise of a frame.
+#[derive(Default)]
+pub(crate) struct Noise {
+    octaves: Vec<Octave>,
+    /// Shape `[octaves][PERIOD]`.
+    corners: Vec<Corner>,
+}
+
+impl Noise {
+    /// The noise at `time` [s], when the wind has carried it `way` [m].
+    pub fn set(&mut self, settings: &Turbulence, way: DVec3, time: f64) {
+        self.octaves.clear();
+        self.corners.clear();
+        let octaves = settings.octaves.clamp(1, 6);
+        // Kolmogorov's eddies: u² goes by ℓ^(2/3).
+        let share = |k: u32| 2f32.powf(-2.0 / 3.0 * k as f32);
+        let all: f32 = (0..octaves).map(share).sum();
+        for k in 0..octaves {
+            let size = settings.size.max(1e-6) / (1 << k) as f32;
+            let speed = settings.strength * (share(k) / all).sqrt();
+            let cells = way / f64::from(size);
+            let period = DVec3::splat(PERIOD as f64);
+            let way = (cells - period * (cells / period).floor()).as_vec3();
+            self.octaves.push(Octave { scale: 1.0 / size, speed: speed / RMS, way });
+            let turned = f64::from(speed / size) * time;
+            self.corners.extend((0..PERIOD as u32).map(|n| corner(k * PERIOD as u32 + n, turned)));
+        }
+    }
+
+    /// Velocity of the eddies at `place` [m/s].
+    pub fn velocity(&self, place: Vec3) -> Vec3 {
+        let octaves = self.octaves.iter().zip(self.corners.chunks_exact(PERIOD));
+        octaves.map(|(octave, corners)| octave.velocity(place, corners)).sum()
+    }
+}
+
+impl Octave {
+    fn velocity(&self, place: Vec3, corners: &[Corner]) -> Vec3 {
+        let at = place * self.scale - self.way;
+        let cell = at.floor();
+        let f = at - cell;
+        let cell = cell.as_ivec3();
+        // Perlin's weight of the upper corner along each axis, and its slope.
+        let upper = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
+        let slope = f * f * (f * (f - 2.0) + 1.0) * 30.0;
+        let sides = [(Vec3::ONE - upper, -slope), (upper, slope)];
+        let mut v = Vec3::ZERO;
+        for corner in 0..8 {
+            let [x, y, z] = [corner & 1, corner >> 1 & 1, corner >> 2];
+            let (wx, wy, wz) = (sides[x].0.x, sides[y].0.y, sides[z].0.z);
+            let gradient = Vec3::new(sides[x].1.x * wy * wz, wx * sides[y].1.y * wz, wx * wy * sides[z].1.z);
+            let from = IVec3::new(x as i32, y as i32, z as i32);
+            let Corner { a, curl } = corners[hash(cell + from)];
+            v += gradient.cross(a * (f - from.as_vec3())) + curl * (wx * wy * wz);
+        }
+        v * self.speed
+    }
+}
+
+/// Which gradients the corner `at` of a lattice has, the same again after [`PERIOD`] corners.
+fn hash(at: IVec3) -> usize {
+    let [x, y, z] = (at & (PERIOD as i32 - 1)).to_array().map(|k| k as u32);
+    scatter(x | y << 8 | z << 16) as usize % PERIOD
+}
+
+/// A number that looks drawn at random (Jarzynski & Olano 2020, *Hash Functions for GPU Rendering*: PCG).
+fn scatter(n: u32) -> u32 {
+    let state = n.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    let word = (state >> ((state >> 28) + 4) ^ state).wrapping_mul(277_803_737);
+    word >> 22 ^ word
+}
+
+/// The gradients of number `n`, after eddies have turned by `turned` [rad].
+fn corner(n: u32, turned: f64) -> Corner {
+    // Evenly between ±√3: of variance 1.
+    let draw = |k: u32| (scatter(n * 19 + k) as f32 / u32::MAX as f32 - 0.5) * 12f32.sqrt();
+    let matrix = |from: u32| Mat3::from_cols_array(&std::array::from_fn(|k| draw(from + k as u32)));
+    // Some turn faster than others, so that the noise never comes again.
+    let angle = turned * f64::from(1.0 + 0.2 * draw(18));
+    let (sin, cos) = (angle.sin() as f32, angle.cos() as f32);
+    let a = matrix(0) * cos + matrix(9) * sin;
+    let [x, y, z] = [a.x_axis, a.y_axis, a.z_axis];
+    Corner { a, curl: Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(settings: &Turbulence, way: Vec3, time: f64) -> Noise {
+        let mut noise = Noise::default();
+        noise.set(settings, way.as_dvec3(), time);
+        noise
+    }
+
+    fn places() -> impl Iterator<Item = Vec3> {
+        (0..4000).map(|k| {
+            let [x, y, z] = [3 * k, 3 * k + 1, 3 * k + 2].map(|n| scatter(n) as f32 / u32::MAX as f32);
+            Vec3::new(x, y, z) * 8.0 - 4.0
+        })
+    }
+
+    #[test]
+    fn eddies_neither_gather_nor_part() {
+        let noise = noise(&Turbulence { strength: 1.0, size: 1.0, octaves: 1 }, Vec3::splat(0.3), 1.7);
+        let step = 4e-3;
+        let along = |p: Vec3, axis: Vec3| {
+            (noise.velocity(p + axis * step) - noise.velocity(p - axis * step)) / (2.0 * step)
+        };
+        let (mut most, mut change) = (0.0_f32, 0.0_f32);
+        for p in places() {
+            let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| along(p, axis));
+            most = most.max((x.x + y.y + z.z).abs());
+            change = change.max(x.length()).max(y.length()).max(z.length());
+        }
+        println!("divergence up to {most}, where velocity changes by up to {change} 1/s");
+        assert!(most < 2e-3 * change, "divergence {most} of changes of {change} 1/s");
+    }
+
+    #[test]
+    fn strength_is_the_root_of_the_mean_square() {
+        for octaves in [1, 3] {
+            let noise = noise(&Turbulence { strength: 2.0, size: 0.4, octaves }, Vec3::ZERO, 0.0);
+            let sum: f32 = places().map(|p| noise.velocity(p).length_squared()).sum();
+            let rms = (sum / 4000.0).sqrt();
+            println!("{octaves} octaves: {rms} m/s");
+            assert!((rms - 2.0).abs() < 0.1, "{octaves} octaves: {rms} m/s");
+        }
+    }
+
+    #[test]
+    fn the_wind_carries_eddies_and_time_changes_them() {
+        let settings = Turbulence { strength: 1.0, size: 0.1, ..Turbulence::default() };
+        let way = Vec3::new(0.37, -0.2, 1.1);
+        let (now, carried) = (noise(&settings, Vec3::ZERO, 2.0), noise(&settings, way, 2.0));
+        let (soon, later) = (noise(&settings, Vec3::ZERO, 2.001), noise(&settings, Vec3::ZERO, 3.0));
+        let (mut same, mut near, mut far) = (0.0_f32, 0.0_f32, 0.0_f32);
+        for p in places() {
+            same = same.max(now.velocity(p).distance(carried.velocity(p + way)));
+            near = near.max(now.velocity(p).distance(soon.velocity(p)));
+            far = far.max(now.velocity(p).distance(later.velocity(p)));
+        }
+        assert!(same < 2e-3, "eddies that were carried along differ by {same} m/s");
+        assert!(near < 0.1 && far > 1.0, "{near} m/s in a millisecond, {far} in a second");
+    }
+}

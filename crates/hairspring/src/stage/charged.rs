@@ -1,0 +1,74 @@
+//! The scene's charged bodies, where they are now.
+
+use super::{StageError, body::joint_of};
+use crate::{
+    around::charge::{Charged, ChargedBall},
+    collide::{Obstacle, Rigid},
+    scene::Scene,
+    simulation::MovingObstacle,
+};
+use glam::Vec3;
+
+/// Charged bodies in motion.
+#[derive(Default)]
+pub(super) struct StagedCharged {
+    /// The joint that carries each; `None`: fixed.
+    joints: Vec<Option<usize>>,
+    balls: Vec<ChargedBall>,
+}
+
+impl StagedCharged {
+    pub(super) fn new(scene: &Scene) -> Result<Self, StageError> {
+        let joints = scene.charged.iter().map(|c| joint_of(scene, c.joint.as_deref(), "a charged body"));
+        let balls = scene.charged.iter().map(|c| ChargedBall {
+            radius: c.radius,
+            charge: c.charge,
+            ..ChargedBall::default()
+        });
+        Ok(Self { joints: joints.collect::<Result<_, _>>()?, balls: balls.collect() })
+    }
+
+    /// The solid ones, in their order, for hair to collide with.
+    pub(super) fn obstacles(&self, settings: &[Charged]) -> Vec<MovingObstacle> {
+        let solid = settings.iter().filter(|c| c.solid);
+        let ball = |c: &Charged| MovingObstacle {
+            shape: Obstacle::Sphere { center: Vec3::ZERO, radius: c.radius },
+            start: Rigid::default(),
+            end: Rigid::default(),
+        };
+        solid.map(ball).collect()
+    }
+
+    /// A new frame begins where the last one ended.
+    pub(super) fn rest(&mut self) {
+        for ball in &mut self.balls {
+            ball.centers[0] = ball.centers[1];
+        }
+    }
+
+    /// Puts them, and the `obstacles` of the solid ones, where they are at the end of a frame, at `time` [s]; `carried` tells where a joint has taken what
+    /// it carries.
+    pub(super) fn advance(
+        &mut self,
+        settings: &[Charged],
+        time: f32,
+        carried: impl Fn(Option<usize>) -> Rigid,
+        obstacles: &mut [MovingObstacle],
+    ) {
+        let mut obstacles = obstacles.iter_mut();
+        for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
+            let pose = carried(*joint);
+            ball.centers[1] = pose.point(charged.center(time));
+            if charged.solid
+                && let Some(obstacle) = obstacles.next()
+            {
+                obstacle.end = Rigid { translation: ball.centers[1], ..pose };
+            }
+        }
+    }
+
+    /// All of them, from the start to the end of the last frame.
+    pub(super) fn balls(&self) -> &[ChargedBall] {
+        &self.balls
+    }
+}

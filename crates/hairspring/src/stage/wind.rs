@@ -1,0 +1,34 @@
+//! The scene's sources of wind, where they are now.
+
+use super::{
+    StageError,
+    body::{StagedBody, joint_of},
+};
+use crate::{air::Source, scene::Scene};
+
+/// Sources of wind in motion.
+pub(super) struct StagedWind {
+    /// The joint that carries each; `None`: fixed.
+    joints: Vec<Option<usize>>,
+    sources: Vec<Source>,
+}
+
+impl StagedWind {
+    pub(super) fn new(scene: &Scene) -> Result<Self, StageError> {
+        let joints =
+            scene.wind_sources.iter().map(|s| joint_of(scene, s.joint.as_deref(), "a source of wind"));
+        Ok(Self { joints: joints.collect::<Result<_, _>>()?, sources: Vec::new() })
+    }
+
+    /// Puts them where the body is, blowing as at `time` [s].
+    pub(super) fn advance(&mut self, scene: &Scene, time: f32, body: &StagedBody) {
+        self.sources.clear();
+        let all = scene.wind_sources.iter().zip(&self.joints).enumerate();
+        self.sources.extend(all.map(|(k, (source, joint))| source.at(k, body.carried(*joint), time)));
+    }
+
+    /// As they blow in the last frame that was begun.
+    pub(super) fn sources(&self) -> &[Source] {
+        &self.sources
+    }
+}

@@ -1,0 +1,156 @@
+//! Promise: charged bodies move charged hair by Coulomb's law, charged hair drives itself apart, and neither turns to NaN anywhere.
+//!
+//! A limp charged strand beside a far charge hangs as a pendulum does in gravity and an even field: at the angle whose tangent is λE over the weight of
+//! a length. Hair charged as its head is stands on end, and without the head's charge its own spreads it.
+
+use glam::{Quat, Vec3};
+use hairspring::{
+    around::charge::{Charged, ChargedBall, Waypoint},
+    collide::Rigid,
+    groom::Groom,
+    material::Material,
+    scene::Solver,
+    simulation::{Air, Drive, Simulation},
+};
+use std::{f32::consts::PI, sync::Arc};
+
+const COULOMB: f32 = 8.99e9;
+const RADIUS: f32 = 4e-5;
+
+/// A ball that rests.
+fn resting(center: Vec3, radius: f32, charge: f32) -> ChargedBall {
+    ChargedBall { centers: [center; 2], radius, charge }
+}
+
+/// Strands of hair with `charge` [C/m], which no fibre holds, after `frames` beside charged balls.
+fn charged(
+    strands: &[Vec<Vec3>],
+    charge: f32,
+    gravity: Vec3,
+    balls: &[ChargedBall],
+    frames: u32,
+) -> Vec<Vec3> {
+    let groom = Arc::new(Groom::from_strands(strands, RADIUS));
+    let all: Vec<u32> = (0..strands.len() as u32).collect();
+    let material = Material { bend: 0.01, drag: 4.0, charge, ..Material::default() };
+    let solver = Solver { sag_free: false, ..Solver::default() };
+    let mut simulation = Simulation::new(groom, &all, &[material], solver, gravity, Rigid::default(), &[]);
+    let roots: Vec<Rigid> =
+        strands.iter().map(|s| Rigid { translation: s[0], rotation: Quat::IDENTITY }).collect();
+    simulation.set_charged(balls.iter().copied());
+    for _ in 0..frames {
+        let report = simulation.step(&Drive {
+            dt: 1.0 / 60.0,
+            anchor: Rigid::default(),
+            roots: &roots,
+            obstacles: &[],
+            air: Air::default(),
+        });
+        assert_eq!(report.reset_strands, 0);
+    }
+    let mut points = vec![Vec3::ZERO; simulation.point_count()];
+    simulation.write_points(&mut points);
+    points
+}
+
+/// A strand of 20 cm from `root` along `way`.
+fn strand(root: Vec3, way: Vec3) -> Vec<Vec3> {
+    (0..32).map(|i| root + way * (0.2 * i as f32 / 31.0)).collect()
+}
+
+#[test]
+fn a_charged_strand_hangs_as_a_charged_pendulum() {
+    let weight = Material::default().density * PI * RADIUS * RADIUS * 9.81;
+    // Two metres away, so that the field is even to a few hundredths over the strand's swing.
+    let distance = 2.0_f32;
+    for tangent in [0.3_f32, 1.0] {
+        let (charge, field) = (1e-9_f32, tangent * weight / 1e-9);
+        // One body pulls and another pushes: twice as even, and both laws are held.
+        let body = 0.5 * field * distance * distance / COULOMB;
+        let balls = [resting(Vec3::X * distance, 0.5, -body), resting(Vec3::X * -distance, 0.5, body)];
+        let points = charged(&[strand(Vec3::ZERO, Vec3::NEG_Y)], charge, Vec3::NEG_Y * 9.81, &balls, 900);
+        let way = points[31] - points[12];
+        let angle = (way.x / -way.y).atan();
+        println!("{} degrees, {} by the closed form", angle.to_degrees(), tangent.atan().to_degrees());
+        assert!((angle / tangent.atan() - 1.0).abs() < 0.02, "{} for {} rad", angle, tangent.atan());
+        assert!(way.z.abs() < 1e-3, "{way}");
+    }
+}
+
+#[test]
+fn hair_charged_as_its_head_stands_on_end() {
+    let ways = (0..200).map(|k| {
+        // Evenly over a ball (a spiral of golden angles).
+        let y = 1.0 - (k as f32 + 0.5) / 100.0;
+        let around = 2.399_963 * k as f32;
+        Vec3::new(around.cos(), 0.0, around.sin()) * (1.0 - y * y).sqrt() + Vec3::Y * y
+    });
+    let ways: Vec<Vec3> = ways.filter(|way| way.y > -0.3).collect();
+    let strands: Vec<Vec<Vec3>> = ways.iter().map(|way| strand(*way * 0.1, *way)).collect();
+    // How far from the middle tips are, in the mean, and how high.
+    let tips = |charge: f32, balls: &[ChargedBall]| {
+        let points = charged(&strands, charge, Vec3::NEG_Y * 9.81, balls, 240);
+        let tips = || points.chunks(32).map(|s| s[31]);
+        (
+            tips().map(|p| p.length()).sum::<f32>() / ways.len() as f32,
+            tips().map(|p| p.y).sum::<f32>() / ways.len() as f32,
+        )
+    };
+    let head = [resting(Vec3::ZERO, 0.1, 1e-6)];
+    let (_, fallen) = tips(0.0, &head);
+    // Ten times its weight where it begins, five times at its end.
+    let (out, height) = tips(3e-9, &head);
+    let (apart, _) = tips(3e-9, &[]);
+    let (together, _) = tips(0.0, &[]);
+    println!(
+        "tips at {fallen} m, charged at {height} m and {out} m out; by the hair's own charge {apart} m, without {together} m"
+    );
+    assert!(out > 0.29 && height > fallen + 0.2, "tips {out} m out, at a height of {height} m");
+    assert!(apart > together + 0.03, "hair charged alike: {apart} m, without charge {together} m");
+}
+
+#[test]
+fn nothing_breaks_at_the_middle_of_a_charge_however_strong() {
+    for body in [-1e-3, 1e-3] {
+        for charge in [1e-9, 1e-6] {
+            let through = strand(Vec3::new(0.0, 0.1, 0.0), Vec3::NEG_Y);
+            let centers = [through[15], Vec3::ZERO, through[31]];
+            let balls = centers.map(|center| resting(center, 0.01, body));
+            let points = charged(&[through.clone(), through], charge, Vec3::NEG_Y * 9.81, &balls, 120);
+            assert!(points.iter().all(|p| p.is_finite() && p.length() < 0.35), "{body} C, {charge} C/m");
+        }
+    }
+}
+
+#[test]
+fn threads_do_not_show_in_charged_hair() {
+    let strands: Vec<Vec<Vec3>> = (0..600)
+        .map(|k| strand(Vec3::new((k % 20) as f32, 0.0, (k / 20) as f32) * 0.01, Vec3::NEG_Y))
+        .collect();
+    let play = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            charged(&strands, 1e-9, Vec3::NEG_Y * 9.81, &[resting(Vec3::Z * 0.5, 0.1, -1e-7)], 20)
+        })
+    };
+    let one = play(1);
+    assert!(one == play(2), "two threads give other bits than one");
+    assert!(one == play(7), "seven threads give other bits than one");
+}
+
+#[test]
+fn a_path_is_walked_in_its_time() {
+    let path = vec![
+        Waypoint { time: 1.0, center: Vec3::X },
+        Waypoint { time: 3.0, center: Vec3::new(1.0, 2.0, 0.0) },
+    ];
+    let balloon = Charged { joint: None, center: Vec3::ZERO, radius: 0.1, charge: 1e-7, solid: true, path };
+    for (time, center) in [
+        (0.0, Vec3::ZERO),
+        (0.5, Vec3::X * 0.5),
+        (2.0, Vec3::new(1.0, 1.0, 0.0)),
+        (9.0, Vec3::new(1.0, 2.0, 0.0)),
+    ] {
+        assert_eq!(balloon.center(time), center);
+    }
+}
