@@ -9,8 +9,8 @@ mod motion;
 mod sentence;
 
 use crate::{
-    Error, Format, Loaded, Problem, ReadOptions, Result, load, read_bones, read_groom, text::as_text,
-    tfxbone::RootBones,
+    Error, Format, Loaded, Problem, ReadOptions, Result, load, read_body, read_bones, read_groom,
+    text::as_text, tfxbone::RootBones,
 };
 use file::{FileName, GroomFile, OneOrMore, SceneFile};
 use glam::Affine3A;
@@ -18,7 +18,7 @@ use hairspring::{
     body::Body,
     groom::{Groom, Repairs, bind_roots_where, thicken},
     material::{self, Material},
-    scene::{Scene, SceneGroom},
+    scene::{Collider, Scene, SceneGroom, SceneSheet, Shape},
 };
 use sentence::{line_at, line_of_key, problem, problem_in_table, unknown};
 use std::path::{Path, PathBuf};
@@ -137,7 +137,6 @@ impl Reader<'_> {
         let mut scene = Scene {
             name: file.name.clone().unwrap_or_else(|| stem(self.path)),
             grooms: base.grooms,
-            colliders: file.collider.clone(),
             wind: file.wind,
             gravity: file.gravity,
             solver: file.solver,
@@ -158,8 +157,14 @@ impl Reader<'_> {
             (Some(collision), Some(body), Some(named)) => Some(self.carried(collision, body, named)?),
             (collision, ..) => collision,
         };
+        for sheet in &file.sheet {
+            let open = self.body(sheet, "sheet")?.body;
+            let body = body.as_ref().map_or(Ok(open.clone()), |body| self.carried(open, body, sheet))?;
+            let thickness = sheet.thickness.unwrap_or(SceneSheet::THICKNESS);
+            scene.sheets.push(SceneSheet { body, thickness });
+        }
         (scene.body, scene.clip) = (body, clip);
-        self.colliders(&scene)?;
+        scene.colliders = self.colliders(&file.collider, scene.body.as_ref())?;
         Ok(Loaded {
             value: scene,
             format: Format::Scene,
@@ -291,19 +296,36 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Checks that the joints of colliders are there.
-    fn colliders(&self, scene: &Scene) -> Result<()> {
-        for collider in &scene.colliders {
-            let Some(name) = &collider.joint else {
-                continue;
-            };
-            let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
-            if !joints.iter().any(|j| j.name.eq_ignore_ascii_case(name)) {
+    /// The colliders, whose joints are there, with the points of hulls from their files.
+    fn colliders(&mut self, named: &[Collider], body: Option<&Body>) -> Result<Vec<Collider>> {
+        let near = self.text.find("[[collider]]").unwrap_or(0);
+        let mut colliders = Vec::with_capacity(named.len());
+        for collider in named {
+            let joints = body.map_or(&[][..], |b| &b.joints);
+            if let Some(name) = &collider.joint
+                && !joints.iter().any(|j| j.name.eq_ignore_ascii_case(name))
+            {
                 let text = format!("the joint {}", unknown(name, joints.iter().map(|j| j.name.as_str())));
-                return Err(self.wrong(self.text.find("[[collider]]").unwrap_or(0), "joint", text));
+                return Err(self.wrong(near, "joint", text));
             }
+            colliders.push(Collider { shape: self.shape(&collider.shape, near)?, ..collider.clone() });
         }
-        Ok(())
+        Ok(colliders)
+    }
+
+    /// A shape that is named near byte `near`, with the points of a hull from its file.
+    fn shape(&mut self, named: &Shape, near: usize) -> Result<Shape> {
+        let Shape::Hull { file: Some(file), scale, .. } = named else { return Ok(named.clone()) };
+        let file = toml::Spanned::new(near..near, file.clone());
+        let path = self.resolve(&file);
+        let loaded = self.named(read_body(&path, &ReadOptions { scale: *scale, up: None }), &file, "hull")?;
+        self.note(&path, loaded.notes);
+        let shape = Shape::Hull { points: loaded.value.body.mesh.positions, file: None, scale: None };
+        if shape.obstacle().is_none() {
+            let text = format!("the vertices of {} span no volume", path.display());
+            return Err(self.wrong(near, "shape", text));
+        }
+        Ok(shape)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod body;
 mod hair;
+mod surface;
 
 use crate::{
     groom::{Groom, bind_roots},
