@@ -235,8 +235,8 @@ mod tests {
     #[test]
     fn what_is_skipped_changes_no_bit() {
         let strands = (0..24).map(|s| {
-            let root = Vec3::new(0.02 + 0.003 * s as f32, 0.16, 0.05);
-            (0..20).map(move |i| root + Vec3::Y * (0.008 * i as f32)).collect::<Vec<_>>()
+            let root = Vec3::new(0.0, 0.2, 0.004 * s as f32);
+            (0..20).map(move |i| root - Vec3::Y * (0.012 * i as f32)).collect::<Vec<_>>()
         });
         let groom = Arc::new(Groom::from_strands(strands, 40e-6));
         let all: Vec<u32> = (0..24).collect();
@@ -255,7 +255,8 @@ mod tests {
             let mut points = vec![Vec3::ZERO; simulation.point_count()];
             let mut touched = 0;
             for frame in 0..40 {
-                let at = |frame: u32| Rigid { translation: Vec3::X * (0.002 * frame as f32), ..anchor };
+                let at =
+                    |frame: u32| Rigid { translation: Vec3::X * (0.008 * frame as f32 - 0.25), ..anchor };
                 let obstacles =
                     [MovingObstacle { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
                 let air = Air::default();

@@ -136,7 +136,7 @@ impl Sheet {
     }
 
     /// Whether it moved in its own space.
-    pub(crate) fn deforms(&self) -> bool {
+    pub fn deforms(&self) -> bool {
         !self.moved.is_empty()
     }
 
@@ -182,7 +182,7 @@ impl Sheet {
     }
 
     /// How far the triangle nearest to `p` [m] moved there in the last interval [m]; 0 out of reach, or where it is rigid.
-    pub(super) fn displacement(&self, p: Vec3) -> Vec3 {
+    pub fn displacement(&self, p: Vec3) -> Vec3 {
         let (_, cell, _) = self.lattice.locate(p);
         match self.nearest(self.lattice.index(cell), p) {
             Some((_, t, at)) if self.deforms() => {

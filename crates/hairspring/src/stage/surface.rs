@@ -108,3 +108,45 @@ impl Surface {
         self.making.make(shape, &mut self.voxelizer, (&self.now, before), &body.mesh.triangles, within);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Joint, Mesh, Skin, Trs};
+
+    #[test]
+    fn a_skinned_sheet_is_where_its_joints_are_and_knows_how_it_moved() {
+        let positions: Vec<Vec3> =
+            [(0.0, 0.0), (0.0, 0.1), (0.3, 0.0), (0.3, 0.1)].map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec();
+        let mesh = Mesh { positions, triangles: vec![[0, 1, 2], [2, 1, 3]], ..Mesh::default() };
+        let joint = |name: &str| Joint { name: name.into(), parent: None, rest: Trs::default() };
+        let skin = Skin {
+            joints: vec![[0; 4], [0; 4], [1; 4], [1; 4]],
+            weights: vec![[1.0, 0.0, 0.0, 0.0]; 4],
+            inverse_bind: vec![Affine3A::IDENTITY; 2],
+        };
+        let body = Body { mesh, joints: vec![joint("near"), joint("far")], skin: Some(skin) };
+        let world = |up: f32| [Affine3A::IDENTITY, Affine3A::from_translation(Vec3::Y * up)];
+        let making = Making::Sheet(0.002);
+        let (mut surface, mut shape) = (Surface::new(making), making.nothing());
+        let mut play = |up: f32, fresh: bool| {
+            surface.update(&mut shape, (&body, &world(up)), Rigid::default(), None, fresh);
+            let Obstacle::Sheet(sheet) = &shape else { unreachable!("a sheet is made") };
+            let at = |x: f32| {
+                let p = Vec3::new(x, up * x / 0.3, 0.05);
+                (sheet.distance_and_normal(p).0, sheet.displacement(p).y)
+            };
+            ([at(0.01), at(0.29)], sheet.deforms())
+        };
+        let (rest, deforms) = play(0.0, true);
+        assert!(
+            !deforms && rest.iter().all(|(d, moved)| (d + 0.002).abs() < 1e-7 && *moved == 0.0),
+            "{rest:?}"
+        );
+        let ([near, far], deforms) = play(0.03, false);
+        assert!(deforms && (near.0 + 0.002).abs() < 1e-6 && (far.0 + 0.002).abs() < 1e-6, "{near:?} {far:?}");
+        assert!((near.1 - 0.001).abs() < 1e-6 && (far.1 - 0.029).abs() < 1e-6, "{near:?} {far:?}");
+        let (still, deforms) = play(0.03, false);
+        assert!(!deforms && still.iter().all(|(_, moved)| *moved == 0.0), "{still:?}");
+    }
+}
