@@ -169,7 +169,7 @@ fn scene(scene: &Scene, repairs: &Repairs) -> Value {
         "grooms": grooms,
         "body": scene.body.as_ref().map(body),
         "motion": scene.clip.as_ref().map(clip),
-        "colliders": scene.colliders.len() + usize::from(scene.collision.is_some()),
+        "colliders": scene.colliders.len() + scene.sheets.len() + usize::from(scene.collision.is_some()),
         "substeps": scene.solver.substeps,
     })
 }

@@ -120,7 +120,7 @@ fn a_scene_is_what_its_file_describes() {
     let floor = Shape::Plane { point: Vec3::NEG_Y, normal: Vec3::Y * 2.0 };
     assert_eq!(scene.colliders[1].shape, floor);
     // Turned by 90° about Y, its 0.6 m lie along x.
-    let shelf = scene.colliders[2].shape.obstacle();
+    let shelf = scene.colliders[2].shape.obstacle().unwrap();
     for (at, distance) in [(Vec3::new(0.31, 1.0, 0.0), 0.01), (Vec3::new(0.0, 1.0, 0.09), -0.01)] {
         assert!((shelf.distance(at) - distance).abs() < 1e-6, "{} at {at}", shelf.distance(at));
     }
@@ -543,4 +543,52 @@ fn the_cmu_rig_walks() {
     }
     // It walks along +Z, as the capture does.
     assert!(last.unwrap().z > 1.0, "{}", last.unwrap());
+}
+
+#[test]
+fn hulls_and_sheets_are_read_from_meshes_or_refused() {
+    let folder = folder();
+    let stone = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0.1 0.1 0.1\nf 1 2 3\nf 1 3 4\n";
+    fs::write(folder.path().join("stone.obj"), stone).unwrap();
+    let text = "[body]\nfile = \"head.obj\"\nscale = 1\n[[groom]]\nfile = \"hair.data\"\n\
+                [[collider]]\nshape.hull = { file = \"stone.obj\", scale = 0.5 }\n\
+                [[collider]]\nshape.hull = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n\
+                [[sheet]]\nfile = \"head.obj\"\nscale = 2\nparts = [\"neck\"]\nthickness = 0.01\n\
+                [[sheet]]\nfile = \"head.obj\"\nscale = 1\n";
+    let scene = read(folder.path(), text).unwrap().value;
+    for (collider, size) in scene.colliders.iter().zip([0.5, 1.0]) {
+        let hull = collider.shape.obstacle().unwrap();
+        let (slope, corner) = (hull.distance(Vec3::splat(size)), hull.distance(Vec3::Y * (2.0 * size)));
+        assert!((slope - 2.0 * size / 3f32.sqrt()).abs() < 1e-5 && (corner - size).abs() < 1e-5);
+    }
+    assert_eq!(scene.sheets.len(), 2);
+    assert_eq!((scene.sheets[0].thickness, scene.sheets[0].body.mesh.triangles.len()), (0.01, 1));
+    assert_eq!((scene.sheets[1].thickness, scene.sheets[1].body.mesh.triangles.len()), (0.002, 2));
+
+    let wrong = |more: &str| {
+        message(&format!("[body]\nfile = \"head.obj\"\nscale = 1\n[[groom]]\nfile = \"hair.data\"\n{more}\n"))
+    };
+    for (more, says) in [
+        (
+            "[[collider]]\nshape.hull = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]] }",
+            "line 7: `shape` must be",
+        ),
+        ("[[collider]]\nshape.hull = {}", "line 7: `shape` must be"),
+        ("[[collider]]\nshape.hull = { file = \"head.obj\", scale = 1 }", "head.obj span no volume"),
+        ("[[collider]]\nshape.hull = { file = \"head.obj\", scale = 0 }", "line 7: `shape` must be"),
+        (
+            "[[collider]]\nshape.hull = { file = \"none.obj\" }",
+            "it is the hull that scene.toml, line 6, names",
+        ),
+        ("[[collider]]\nshape.hull = { point = [[0, 0, 0]] }", "did you mean `points`?"),
+        ("[[sheet]]\nfile = \"head.obj\"\nthickness = 0", "line 8: `thickness` must be above 0 [m]"),
+        (
+            "[collision]\nfile = \"head.obj\"\nthickness = 0.1",
+            "line 8: `thickness` must be left out of all but [[sheet]]",
+        ),
+        ("[[sheet]]\nfile = \"none.obj\"", "it is the sheet that scene.toml, line 7, names"),
+    ] {
+        let message = wrong(more);
+        assert!(message.contains(says), "{more}: {message}");
+    }
 }

@@ -62,6 +62,13 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     first_failure(text, 1, &[(finite(scene.gravity), "gravity", "three finite numbers [m/s²]")])?;
     for body in scene.body.iter().chain(&scene.collision) {
         body_ranges(text, body)?;
+        let bare = (body.thickness.is_none(), "thickness", "left out of all but [[sheet]]");
+        first_failure(text, line_at(text, body.file.span().start), &[bare])?;
+    }
+    for sheet in &scene.sheet {
+        body_ranges(text, sheet)?;
+        let thick = (above_0(sheet.thickness), "thickness", "above 0 [m]");
+        first_failure(text, line_at(text, sheet.file.span().start), &[thick])?;
     }
     if let Some(builtin) = &scene.builtin {
         let strands = builtin.strands.as_ref().is_none_or(|n| (1..=10_000_000).contains(n.get_ref()));
@@ -146,11 +153,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
                 (above_0(Some(growth.length)), "length", "above 0 [m]"),
                 ((0.0..=1.0).contains(&growth.spread), "spread", "0 to 1"),
                 ((0.0..=1.0).contains(&growth.fall), "fall", "0 to 1"),
-                (
-                    grow.get_ref().inside.as_ref().is_none_or(sound),
-                    "inside",
-                    "finite, with a radius or edges above 0 [m] or a normal that is not 0",
-                ),
+                (grow.get_ref().inside.as_ref().is_none_or(sound), "inside", SOUND),
             ];
             first_failure(text, line_at(text, grow.span().start), &grown)?;
         }
@@ -160,15 +163,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         }
     }
     for collider in &scene.collider {
-        first_failure(
-            text,
-            section("[[collider]]"),
-            &[(
-                sound(&collider.shape),
-                "shape",
-                "finite, with a radius or edges above 0 [m] or a normal that is not 0",
-            )],
-        )?;
+        first_failure(text, section("[[collider]]"), &[(sound(&collider.shape), "shape", SOUND)])?;
     }
     air::ranges(text, scene)?;
     let solver = &scene.solver;
@@ -206,9 +201,16 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     Ok(())
 }
 
+/// What is expected of a shape.
+const SOUND: &str = "finite, with a radius or edges above 0 [m], a normal that is not 0, or `points` that span a volume or a `file` of them";
+
 /// Whether a shape is finite (its own extent, not the half of space that a plane bounds) and has an inside.
 fn sound(shape: &Shape) -> bool {
     match *shape {
+        Shape::Hull { ref points, ref file, scale } => {
+            let given = if file.is_some() { points.is_empty() } else { shape.obstacle().is_some() };
+            given && points.iter().copied().all(finite) && above_0(scale)
+        }
         Shape::Sphere { center, radius } => finite(center) && above_0(Some(radius)),
         Shape::Capsule { a, b, radius } => finite(a) && finite(b) && above_0(Some(radius)),
         Shape::Box { center, size, rotation } => {

@@ -32,6 +32,9 @@ pub(super) struct SceneFile {
     pub body: Option<BodyFile>,
     /// A closed mesh that hair collides with instead of the body's own.
     pub collision: Option<BodyFile>,
+    /// Open meshes that hair collides with on both sides.
+    #[serde(default)]
+    pub sheet: Vec<BodyFile>,
     /// Further simple shapes that hair collides with.
     #[serde(default)]
     pub collider: Vec<Collider>,
@@ -88,7 +91,7 @@ pub(super) struct BuiltinFile {
     pub motion: Option<bool>,
 }
 
-/// `[body]` and `[collision]`.
+/// `[body]`, `[collision]` and `[[sheet]]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyFile {
@@ -108,12 +111,14 @@ pub(super) struct BodyFile {
     pub color: Option<Vec3>,
     /// 0 (glossy) to 1 (matt), of the whole surface. Default: the file's.
     pub roughness: Option<f32>,
-    /// `[collision]` and `more` only: the body's joint that carries a mesh without joints of its own. Default: the body's
+    /// `[collision]`, `[[sheet]]` and `more` only: the body's joint that carries a mesh without joints of its own. Default: the body's
     /// first.
     pub joint: Option<String>,
     /// Further files of the same body: eyes, clothes, hands. They move with it, by the joints of the same names or `joint`.
     #[serde(default)]
     pub more: Vec<BodyFile>,
+    /// `[[sheet]]` only: how far hair stays from the mesh, on both sides [m]. Default 0.002.
+    pub thickness: Option<f32>,
 }
 
 /// `[clip]`.

@@ -11,7 +11,7 @@ use toml::Spanned;
 
 impl Reader<'_> {
     /// The hair that `named` describes.
-    pub(super) fn grown(&self, named: &Spanned<GrowFile>, body: Option<&Body>) -> Result<Groom> {
+    pub(super) fn grown(&mut self, named: &Spanned<GrowFile>, body: Option<&Body>) -> Result<Groom> {
         let near = named.span().start;
         let file = named.get_ref();
         let Some(body) = body else {
@@ -38,9 +38,10 @@ impl Reader<'_> {
             }
         }
         if let Some(shape) = &file.inside {
-            let shape = shape.obstacle();
+            let shape = self.shape(shape, near)?.obstacle();
+            let inside = |p: Vec3| shape.as_ref().is_some_and(|s| s.distance(p) < 0.0);
             for (t, allowed) in allowed.iter_mut().enumerate() {
-                *allowed &= shape.distance(mesh.corners(t).iter().sum::<Vec3>() / 3.0) < 0.0;
+                *allowed &= inside(mesh.corners(t).iter().sum::<Vec3>() / 3.0);
             }
         }
         let groom = grow(mesh, &file.growth(), |t| allowed[t]);

@@ -10,8 +10,8 @@ mod motion;
 mod sentence;
 
 use crate::{
-    Error, Format, Loaded, Problem, ReadOptions, Result, load, read_bones, read_groom, text::as_text,
-    tfxbone::RootBones,
+    Error, Format, Loaded, Problem, ReadOptions, Result, load, read_body, read_bones, read_groom,
+    text::as_text, tfxbone::RootBones,
 };
 use file::{FileName, GroomFile, OneOrMore, SceneFile};
 use glam::Affine3A;
@@ -19,7 +19,7 @@ use hairspring::{
     body::Body,
     groom::{Groom, Repairs, bind_roots_where, thicken},
     material::{self, Material},
-    scene::{Scene, SceneGroom},
+    scene::{Collider, Scene, SceneGroom, SceneSheet, Shape},
 };
 use sentence::{line_at, line_of_key, problem, problem_in_table, unknown};
 use std::path::{Path, PathBuf};
@@ -138,7 +138,6 @@ impl Reader<'_> {
         let mut scene = Scene {
             name: file.name.clone().unwrap_or_else(|| stem(self.path)),
             grooms: base.grooms,
-            colliders: file.collider.clone(),
             wind: file.wind,
             wind_sources: file.wind_source.clone(),
             turbulence: file.turbulence,
@@ -164,8 +163,15 @@ impl Reader<'_> {
             (Some(collision), Some(body), Some(named)) => Some(self.carried(collision, body, named)?),
             (collision, ..) => collision,
         };
+        for sheet in &file.sheet {
+            let open = self.body(sheet, "sheet")?.body;
+            let body = body.as_ref().map_or(Ok(open.clone()), |body| self.carried(open, body, sheet))?;
+            let thickness = sheet.thickness.unwrap_or(SceneSheet::THICKNESS);
+            scene.sheets.push(SceneSheet { body, thickness });
+        }
         (scene.body, scene.clip) = (body, clip);
-        self.joints(&scene)?;
+        self.joints(&file, &scene)?;
+        scene.colliders = self.colliders(&file.collider)?;
         Ok(Loaded {
             value: scene,
             format: Format::Scene,
@@ -298,20 +304,14 @@ impl Reader<'_> {
     }
 
     /// Checks that the joints that things follow are there.
-    fn joints(&self, scene: &Scene) -> Result<()> {
+    fn joints(&self, file: &SceneFile, scene: &Scene) -> Result<()> {
         let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
         let known = |name: &str| joints.iter().any(|j| j.name.eq_ignore_ascii_case(name));
+        let colliders = file.collider.iter().map(|c| ("[[collider]]", &c.joint));
         let sources = scene.wind_sources.iter().map(|s| ("[[wind_source]]", &s.joint));
         let charged = scene.charged.iter().map(|c| ("[[charged]]", &c.joint));
         let hands = scene.hands.iter().map(|h| ("[[hand]]", &h.joint));
-        let followed = scene
-            .colliders
-            .iter()
-            .map(|c| ("[[collider]]", &c.joint))
-            .chain(sources)
-            .chain(charged)
-            .chain(hands);
-        for (section, joint) in followed {
+        for (section, joint) in colliders.chain(sources).chain(charged).chain(hands) {
             let Some(name) = joint.as_ref().filter(|name| !known(name)) else {
                 continue;
             };
@@ -319,6 +319,31 @@ impl Reader<'_> {
             return Err(self.wrong(self.text.find(section).unwrap_or(0), "joint", text));
         }
         Ok(())
+    }
+
+    /// The colliders, with the points of hulls from their files.
+    fn colliders(&mut self, named: &[Collider]) -> Result<Vec<Collider>> {
+        let near = self.text.find("[[collider]]").unwrap_or(0);
+        let mut colliders = Vec::with_capacity(named.len());
+        for collider in named {
+            colliders.push(Collider { shape: self.shape(&collider.shape, near)?, ..collider.clone() });
+        }
+        Ok(colliders)
+    }
+
+    /// A shape that is named near byte `near`, with the points of a hull from its file.
+    fn shape(&mut self, named: &Shape, near: usize) -> Result<Shape> {
+        let Shape::Hull { file: Some(file), scale, .. } = named else { return Ok(named.clone()) };
+        let file = toml::Spanned::new(near..near, file.clone());
+        let path = self.resolve(&file);
+        let loaded = self.named(read_body(&path, &ReadOptions { scale: *scale, up: None }), &file, "hull")?;
+        self.note(&path, loaded.notes);
+        let shape = Shape::Hull { points: loaded.value.body.mesh.positions, file: None, scale: None };
+        if shape.obstacle().is_none() {
+            let text = format!("the vertices of {} span no volume", path.display());
+            return Err(self.wrong(near, "shape", text));
+        }
+        Ok(shape)
     }
 }
 

@@ -1,8 +1,10 @@
 //! A signed distance field on a regular grid.
 
+use super::lattice::Lattice;
 use crate::strand::lanes::{F, LANES, Row, V3, load};
-use fearless_simd::prelude::*;
+use fearless_simd::{mask32x8, prelude::*};
 use glam::{UVec3, Vec3};
+use rayon::prelude::*;
 
 /// Signed distances at the nodes of a regular grid, negative inside; trilinear between them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -11,19 +13,26 @@ pub struct Grid {
     pub origin: Vec3,
     /// Distance between neighbouring nodes [m].
     pub cell: f32,
-    /// Nodes along each axis, each 2 or more.
+    /// Nodes along each axis, each 2 or more; 2²³ in all at most.
     pub size: UVec3,
     /// Distance at each node [m], x fastest; shape `[size.z][size.y][size.x]`.
     pub distances: Vec<f32>,
     /// How far the nearest surface moved during the last interval, in the field's space [m]; the shape of `distances`,
     /// or empty: the surface is rigid.
     pub displacements: Vec<Vec3>,
+    /// A bit for each cell that holds a place inside, at the index of its lower node; empty: any may.
+    inside: Vec<u32>,
 }
 
 impl Grid {
     /// Whether the surface moved in the field's own space.
     pub fn deforms(&self) -> bool {
         !self.displacements.is_empty()
+    }
+
+    /// The surface is where it was an interval ago.
+    pub(crate) fn hold_still(&mut self) {
+        self.displacements.clear();
     }
 
     /// The ball around the whole grid, outside of which nothing is inside: its middle and radius [m].
@@ -34,54 +43,81 @@ impl Grid {
 
     /// Distance [m] and outward unit normal at `p` [m]; outside the grid, the distance to the grid is added.
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
-        let top = (self.size - UVec3::ONE).as_vec3();
-        let g = (p - self.origin) / self.cell;
-        // `max` first: a NaN becomes 0.
-        let c = g.max(Vec3::ZERO).min(top - Vec3::splat(1e-3));
-        let (c00, fx, fy, fz) = (self.corners(c), c.x.fract(), c.y.fract(), c.z.fract());
+        let (out, cell, along) = self.lattice().locate(p);
+        let c00 = self.corners(self.lattice().index(cell));
+        let [fx, fy, fz] = along.to_array();
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
         let x = [0, 2, 4, 6].map(|k| mix(c00[k], c00[k + 1], fx));
         let y = [mix(x[0], x[1], fy), mix(x[2], x[3], fy)];
         let gx =
             mix(mix(c00[1] - c00[0], c00[3] - c00[2], fy), mix(c00[5] - c00[4], c00[7] - c00[6], fy), fz);
         let gradient = Vec3::new(gx, mix(x[1] - x[0], x[3] - x[2], fz), y[1] - y[0]);
-        (mix(y[0], y[1], fz) + (g - c).length() * self.cell, gradient.normalize_or(Vec3::Y))
+        (mix(y[0], y[1], fz) + out.length() * self.cell, gradient.normalize_or(Vec3::Y))
     }
 
     /// How far the surface nearest to `p` [m] moved in the last interval [m]; 0 for a rigid one.
     pub fn displacement(&self, p: Vec3) -> Vec3 {
         let top = (self.size - UVec3::ONE).as_vec3();
         let c = ((p - self.origin) / self.cell).max(Vec3::ZERO).min(top);
-        self.displacements.get(self.index(c.round().as_uvec3())).copied().unwrap_or_default()
+        self.displacements.get(self.lattice().index(c.round().as_uvec3())).copied().unwrap_or_default()
     }
 
-    fn index(&self, at: UVec3) -> usize {
-        ((at.z * self.size.y + at.y) * self.size.x + at.x) as usize
+    fn lattice(&self) -> Lattice {
+        Lattice { origin: self.origin, cell: self.cell, size: self.size }
     }
 
-    /// The eight distances around grid position `c` (inside the grid): x fastest, then y, then z.
+    /// The eight distances around the cell with lower node `i`: x fastest, then y, then z.
     #[inline(always)]
-    fn corners(&self, c: Vec3) -> [f32; 8] {
-        let i = self.index(c.as_uvec3());
+    fn corners(&self, i: usize) -> [f32; 8] {
         let (dy, dz) = (self.size.x as usize, (self.size.x * self.size.y) as usize);
         let d = &self.distances[i..i + dz + dy + 2];
         [d[0], d[1], d[dy], d[dy + 1], d[dz], d[dz + 1], d[dz + dy], d[dz + dy + 1]]
     }
 
+    /// Notes which cells hold a place inside: those with a corner that does, as distances are linear between corners.
+    /// To be called when `distances` have changed.
+    pub(super) fn mark_inside(&mut self) {
+        self.distances
+            .par_chunks(u32::BITS as usize)
+            .with_min_len(1024)
+            .map(|nodes| {
+                // A NaN counts as inside: what is not known is looked at.
+                let outside = nodes.iter().rev().fold(0, |bits, d| bits << 1 | u32::from(*d > 0.0));
+                !outside
+            })
+            .collect_into_vec(&mut self.inside);
+        // A cell reaches one node on along each axis. From the first word on: what is read is not yet written.
+        let (count, slab) = (self.inside.len(), self.size.x * self.size.y);
+        for step in [1, self.size.x, slab] {
+            let (words, bits) = ((step / u32::BITS) as usize, step % u32::BITS);
+            for w in 0..count {
+                let next = |k: usize| u64::from(self.inside.get(w + words + k).copied().unwrap_or(0));
+                self.inside[w] |= ((next(1) << u32::BITS | next(0)) >> bits) as u32;
+            }
+        }
+    }
+
+    /// Of eight points, those in a cell that holds a place inside; the others are outside.
+    #[inline(always)]
+    pub(crate) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
+        let mut may = Row([1.0; LANES]);
+        if !self.inside.is_empty() {
+            let (_, index, _) = self.lattice().locate_lanes(simd, p);
+            for (may, index) in may.0.iter_mut().zip(index) {
+                let bits = self.inside[index / u32::BITS as usize] >> (index as u32 % u32::BITS);
+                *may = (bits & 1) as f32;
+            }
+        }
+        load(simd, &may).simd_gt(0.0)
+    }
+
     /// [`Grid::distance_and_normal`] of eight points.
     #[inline(always)]
     pub(crate) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
-        let top = (self.size - UVec3::ONE).as_vec3() - Vec3::splat(1e-3);
-        let g = (p - V3::splat(simd, self.origin)) * F::splat(simd, 1.0 / self.cell);
-        let c = V3 {
-            x: g.x.max_precise(0.0).min(top.x),
-            y: g.y.max_precise(0.0).min(top.y),
-            z: g.z.max_precise(0.0).min(top.z),
-        };
+        let (out, index, along) = self.lattice().locate_lanes(simd, p);
         let mut k = [Row::default(); 8];
-        for lane in 0..LANES {
-            let corners = self.corners(Vec3::new(c.x[lane], c.y[lane], c.z[lane]));
-            for (row, corner) in k.iter_mut().zip(corners) {
+        for (lane, index) in index.into_iter().enumerate() {
+            for (row, corner) in k.iter_mut().zip(self.corners(index)) {
                 row.0[lane] = corner;
             }
         }
@@ -96,7 +132,7 @@ impl Grid {
             load(simd, &k6),
             load(simd, &k7),
         ];
-        let (fx, fy, fz) = (c.x - c.x.floor(), c.y - c.y.floor(), c.z - c.z.floor());
+        let V3 { x: fx, y: fy, z: fz } = along;
         let x = [mix(k[0], k[1], fx), mix(k[2], k[3], fx), mix(k[4], k[5], fx), mix(k[6], k[7], fx)];
         let y = [mix(x[0], x[1], fy), mix(x[2], x[3], fy)];
         let gradient = V3 {
@@ -104,7 +140,6 @@ impl Grid {
             y: mix(x[1] - x[0], x[3] - x[2], fz),
             z: y[1] - y[0],
         };
-        let out = g - c;
         let beyond = out.dot(out).sqrt() * self.cell;
         (mix(y[0], y[1], fz) + beyond, gradient.length_and_unit().1)
     }
@@ -114,4 +149,125 @@ impl Grid {
 #[inline(always)]
 fn mix<S: Simd>(a: F<S>, b: F<S>, t: F<S>) -> F<S> {
     (b - a).mul_add(t, a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        collide::{Obstacle, Rigid, Voxelizer, voxelize},
+        groom::Groom,
+        material::Material,
+        scene::{
+            Solver,
+            builtin::{self, BuiltinOptions},
+        },
+        simulation::{Air, Drive, MovingObstacle, Simulation},
+    };
+    use glam::Quat;
+    use std::sync::Arc;
+
+    /// Balls of many triangles, turned and overlapping; `whole`: without holes.
+    fn balls(seed: u32, whole: bool) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+        let hash = |k: u32| ((seed * 977 + k).wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32;
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for ball in 0..3 {
+            let at = Vec3::new(hash(ball), hash(ball + 10), hash(ball + 20)) * 0.1;
+            let turn = Quat::from_scaled_axis(at * 60.0);
+            let first = positions.len() as u32;
+            let (rows, columns) = (9, 14);
+            for r in 0..=rows {
+                for c in 0..columns {
+                    let (s, y) = (r as f32 * std::f32::consts::PI / rows as f32).sin_cos();
+                    let (z, x) = (c as f32 * std::f32::consts::TAU / columns as f32).sin_cos();
+                    positions.push(at + turn * Vec3::new(s * x, y, s * z) * (0.02 + 0.04 * hash(ball + 30)));
+                }
+            }
+            for r in 0..rows {
+                for c in 0..columns {
+                    let i = |r: u32, c: u32| first + r * columns + c % columns;
+                    let [a, b, d, e] = [i(r, c), i(r, c + 1), i(r + 1, c), i(r + 1, c + 1)];
+                    if whole || hash(r * 31 + c + 40) > 0.1 {
+                        triangles.extend([[a, b, e], [a, e, d]]);
+                    }
+                }
+            }
+        }
+        (positions, triangles)
+    }
+
+    fn assert_marked(grid: &Grid, what: &str) {
+        let lattice = grid.lattice();
+        let mut marked = 0;
+        for z in 0..grid.size.z - 1 {
+            for y in 0..grid.size.y - 1 {
+                for x in 0..grid.size.x - 1 {
+                    let i = lattice.index(UVec3::new(x, y, z));
+                    let mark = grid.inside[i / 32] >> (i % 32) & 1 == 1;
+                    let holds = grid.corners(i).iter().any(|d| *d <= 0.0);
+                    assert_eq!(mark, holds, "{what}: cell {x}, {y}, {z} of {}", grid.size);
+                    marked += u32::from(mark);
+                }
+            }
+        }
+        assert!(marked > 100, "{what}: {marked} cells with an inside");
+    }
+
+    #[test]
+    fn cells_are_marked_that_hold_a_place_inside_and_no_others() {
+        for seed in 0..12 {
+            for whole in [true, false] {
+                let (positions, triangles) = balls(seed, whole);
+                let mut grid = voxelize(&positions, &triangles, 0.003 + 0.0003 * seed as f32);
+                assert_marked(&grid, &format!("balls {seed}, whole: {whole}"));
+                // One that deforms, in a box that cuts through it.
+                let now: Vec<Vec3> = positions.iter().map(|p| *p * (1.0 + 3.0 * p.y)).collect();
+                let within = Some((Vec3::splat(-0.01), Vec3::new(0.06, 0.2, 0.07)));
+                Voxelizer::default().update(&mut grid, &now, Some(&positions), &triangles, within, 0.003);
+                assert_marked(&grid, &format!("deforming balls {seed}, whole: {whole}"));
+            }
+        }
+        let head =
+            builtin::scene(&BuiltinOptions { strands: 3, ..Default::default() }).collision.unwrap().mesh;
+        assert_marked(&voxelize(&head.positions, &head.triangles, 0.004), "the built-in head");
+    }
+
+    #[test]
+    fn what_is_skipped_changes_no_bit() {
+        let strands = (0..24).map(|s| {
+            let root = Vec3::new(0.0, 0.2, 0.004 * s as f32);
+            (0..20).map(move |i| root - Vec3::Y * (0.012 * i as f32)).collect::<Vec<_>>()
+        });
+        let groom = Arc::new(Groom::from_strands(strands, 40e-6));
+        let all: Vec<u32> = (0..24).collect();
+        let roots: Vec<Rigid> =
+            (0..24).map(|s| Rigid { translation: groom.strand(s)[0], rotation: Quat::IDENTITY }).collect();
+        let (positions, triangles) = balls(3, true);
+        let grid = voxelize(&positions, &triangles, 0.004);
+        let all_cells = Grid { inside: Vec::new(), ..grid.clone() };
+        let [skipped, looked_at] = [grid, all_cells].map(|grid| {
+            let shape = Obstacle::Field(Arc::new(grid));
+            let gravity = Vec3::new(0.0, -9.81, 0.0);
+            let (material, solver) = (Material::default(), Solver { sag_free: false, ..Solver::default() });
+            let anchor = Rigid::default();
+            let mut simulation =
+                Simulation::new(groom.clone(), &all, &[material], solver, gravity, anchor, &[]);
+            let mut points = vec![Vec3::ZERO; simulation.point_count()];
+            let mut touched = 0;
+            for frame in 0..40 {
+                let at =
+                    |frame: u32| Rigid { translation: Vec3::X * (0.008 * frame as f32 - 0.25), ..anchor };
+                let obstacles =
+                    [MovingObstacle { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
+                let air = Air::default();
+                simulation.step(&Drive { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &obstacles, air });
+                simulation.write_points(&mut points);
+                let distance = |p: &&Vec3| shape.distance(obstacles[0].end.inverse_point(**p)).abs();
+                touched += points.iter().filter(|p| distance(p) < 1e-4).count();
+            }
+            assert!(touched > 100, "{touched} points in contact");
+            points
+        });
+        assert_eq!(skipped, looked_at);
+    }
 }

@@ -1,10 +1,18 @@
-//! What hair meets: spheres, capsules and the signed distance field of a closed mesh, each moving as a rigid piece.
+//! What hair meets: spheres, capsules, boxes, planes, convex hulls, open sheets and the signed distance field of a closed mesh, each moving as
+//! a rigid piece; sheets and fields may deform besides.
 
 mod grid;
+mod hull;
+mod lattice;
 mod obstacle;
+mod rigid;
+mod sheet;
 mod voxelize;
 
 pub use grid::Grid;
-pub use obstacle::{Obstacle, ObstaclePose, Rigid};
+pub use hull::Hull;
+pub use obstacle::{Obstacle, ObstaclePose};
 pub(crate) use obstacle::{contact, surface_displacement};
+pub use rigid::Rigid;
+pub use sheet::Sheet;
 pub use voxelize::{Voxelizer, voxelize};

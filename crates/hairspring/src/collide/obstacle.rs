@@ -1,73 +1,13 @@
 //! Colliders as the kernel sees them: a distance and a normal for eight points at once, in the collider's own space.
 
-use super::Grid;
+use super::{Grid, Hull, Sheet};
 use crate::strand::{
-    lanes::{F, V3, load},
+    lanes::{F, LANES, Row, V3},
     root::transform,
 };
 use fearless_simd::{mask32x8, prelude::*};
-use glam::{Affine3A, Mat3, Quat, Vec3};
+use glam::{Mat3, Vec3};
 use std::sync::Arc;
-
-/// Rotation and translation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rigid {
-    /// Unit rotation.
-    pub rotation: Quat,
-    /// Translation [m].
-    pub translation: Vec3,
-}
-
-impl Default for Rigid {
-    fn default() -> Self {
-        Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO }
-    }
-}
-
-impl Rigid {
-    /// The rotation and translation of a joint's matrix; its scale is dropped.
-    pub fn from_affine(m: &Affine3A) -> Self {
-        let (_, rotation, translation) = m.to_scale_rotation_translation();
-        Self { rotation: rotation.normalize(), translation }
-    }
-
-    /// Between `self` (`t` = 0) and `other` (`t` = 1), on the shorter arc; exactly either one at its end.
-    pub fn lerp(&self, other: &Rigid, t: f32) -> Rigid {
-        if t >= 1.0 || self == other {
-            return *other;
-        }
-        Rigid {
-            rotation: self.rotation.slerp(other.rotation, t),
-            translation: self.translation.lerp(other.translation, t),
-        }
-    }
-
-    /// As a matrix and a translation [m].
-    pub fn matrix(&self) -> (Mat3, Vec3) {
-        (Mat3::from_quat(self.rotation), self.translation)
-    }
-
-    /// `first`, then `self`.
-    pub fn after(&self, first: &Rigid) -> Rigid {
-        Rigid { rotation: self.rotation * first.rotation, translation: self.point(first.translation) }
-    }
-
-    /// What undoes it.
-    pub fn inverse(&self) -> Rigid {
-        let rotation = self.rotation.inverse();
-        Rigid { rotation, translation: -(rotation * self.translation) }
-    }
-
-    /// A point of this frame in the world [m].
-    pub fn point(&self, p: Vec3) -> Vec3 {
-        self.rotation * p + self.translation
-    }
-
-    /// A world point in this frame [m].
-    pub fn inverse_point(&self, p: Vec3) -> Vec3 {
-        self.rotation.inverse() * (p - self.translation)
-    }
-}
 
 /// One collider: a shape in its own space, and how that space moves.
 #[derive(Clone, Debug)]
@@ -106,6 +46,10 @@ pub enum Obstacle {
     },
     /// The inside of a closed mesh.
     Field(Arc<Grid>),
+    /// The convex hull of some points.
+    Hull(Arc<Hull>),
+    /// All places nearer to an open mesh than its thickness.
+    Sheet(Arc<Sheet>),
 }
 
 /// An obstacle during one substep.
@@ -135,7 +79,22 @@ impl ObstaclePose {
     #[inline(always)]
     pub(crate) fn near<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
         let d = p - V3::splat(simd, self.bounds.0);
-        d.dot(d).simd_le(F::splat(simd, self.bounds.1 * self.bounds.1))
+        let near = d.dot(d).simd_le(F::splat(simd, self.bounds.1 * self.bounds.1));
+        if !near.any_true() {
+            return near;
+        }
+        match &self.shape {
+            Obstacle::Field(grid) => near & grid.may_be_inside(simd, self.local(simd, p)),
+            Obstacle::Hull(hull) => near & hull.may_be_inside(simd, self.local(simd, p)),
+            Obstacle::Sheet(sheet) => near & sheet.may_be_inside(simd, self.local(simd, p)),
+            _ => near,
+        }
+    }
+
+    /// Eight world points in the shape's own space at the end of the substep.
+    #[inline(always)]
+    fn local<S: Simd>(&self, simd: S, p: V3<S>) -> V3<S> {
+        transform(simd, &self.end.0.transpose(), p - V3::splat(simd, self.end.1))
     }
 
     /// The distance from `p` [m] (world) to the surface at the end of the substep, negative inside; one point, for
@@ -178,6 +137,8 @@ impl Obstacle {
             }
             Obstacle::Plane { point, normal } => ((p - *point).dot(*normal), *normal),
             Obstacle::Field(grid) => grid.distance_and_normal(p),
+            Obstacle::Hull(hull) => hull.distance_and_normal(p),
+            Obstacle::Sheet(sheet) => sheet.distance_and_normal(p),
         }
     }
 
@@ -189,6 +150,8 @@ impl Obstacle {
             Obstacle::Cuboid { center, half, .. } => (*center, half.length()),
             Obstacle::Plane { .. } => (Vec3::ZERO, f32::INFINITY),
             Obstacle::Field(grid) => grid.bounds(),
+            Obstacle::Hull(hull) => hull.bounds(),
+            Obstacle::Sheet(sheet) => sheet.bounds(),
         }
     }
 
@@ -213,6 +176,8 @@ impl Obstacle {
                 ((p - V3::splat(simd, *point)).dot(normal), normal)
             }
             Obstacle::Field(grid) => grid.distance_lanes(simd, p),
+            Obstacle::Hull(hull) => hull.distance_lanes(simd, p),
+            Obstacle::Sheet(sheet) => sheet.distance_lanes(simd, p),
         }
     }
 }
@@ -220,28 +185,30 @@ impl Obstacle {
 /// World distance to the surface, and normal, of eight points at the end of a substep.
 #[inline(always)]
 pub(crate) fn contact<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>, V3<S>) {
-    let local = transform(simd, &pose.end.0.transpose(), p - V3::splat(simd, pose.end.1));
-    let (distance, normal) = pose.shape.distance_lanes(simd, local);
+    let (distance, normal) = pose.shape.distance_lanes(simd, pose.local(simd, p));
     (distance, transform(simd, &pose.end.0, normal))
 }
 
 /// How far the surface at `p` (world, end of the substep) moved in the substep [m].
 #[inline(always)]
 pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> V3<S> {
-    let local = transform(simd, &pose.end.0.transpose(), p - V3::splat(simd, pose.end.1));
+    let local = pose.local(simd, p);
     let before = transform(simd, &pose.start.0, local) + V3::splat(simd, pose.start.1);
     let rigid = p - before;
-    match &pose.shape {
-        Obstacle::Field(grid) if grid.deforms() => {
-            let mut own = [super::super::strand::lanes::Row::default(); 3];
-            for lane in 0..crate::strand::lanes::LANES {
-                let d =
-                    grid.displacement(Vec3::new(local.x[lane], local.y[lane], local.z[lane])) * pose.share;
-                let d = pose.end.0 * d;
-                (own[0].0[lane], own[1].0[lane], own[2].0[lane]) = (d.x, d.y, d.z);
+    let own = |displacement: &dyn Fn(Vec3) -> Vec3| {
+        let mut rows = [Row::default(); 3];
+        for lane in 0..LANES {
+            let at = Vec3::new(local.x[lane], local.y[lane], local.z[lane]);
+            let d = pose.end.0 * (displacement(at) * pose.share);
+            for (row, d) in rows.iter_mut().zip(d.to_array()) {
+                row.0[lane] = d;
             }
-            rigid + V3 { x: load(simd, &own[0]), y: load(simd, &own[1]), z: load(simd, &own[2]) }
         }
+        V3::load(simd, &rows)
+    };
+    match &pose.shape {
+        Obstacle::Field(grid) if grid.deforms() => rigid + own(&|at| grid.displacement(at)),
+        Obstacle::Sheet(sheet) if sheet.deforms() => rigid + own(&|at| sheet.displacement(at)),
         _ => rigid,
     }
 }
@@ -291,6 +258,7 @@ mod tests {
         #[test]
         fn a_step_along_the_normal_leads_to_the_surface(
             center in vector(0.2), half in vector(0.1), turn in vector(3.0), p in vector(0.4),
+            points in prop::collection::vec(vector(0.2), 6..20),
         ) {
             let half = half.abs() + 0.01;
             let axes = Mat3::from_quat(Quat::from_scaled_axis(turn));
@@ -300,12 +268,16 @@ mod tests {
                 Obstacle::Capsule { a: center, b: end, radius: half.y },
                 Obstacle::Cuboid { center, half, axes },
                 Obstacle::Plane { point: center, normal: axes.y_axis },
+                Obstacle::Hull(Arc::new(Hull::new(&points).unwrap())),
+                Obstacle::Sheet(Arc::new(Sheet::new(&points, &[[0, 1, 2], [3, 4, 5]], half.x))),
             ];
             for shape in shapes {
                 let (distance, normal) = shape.distance_and_normal(p);
                 prop_assert!((normal.length() - 1.0).abs() < 1e-5, "{shape:?}: {normal}");
                 let on = p - normal * distance;
-                prop_assert!(shape.distance(on).abs() < 1e-5, "{shape:?}: {} left at {on}", shape.distance(on));
+                // A sheet that is farther off than its thickness only says that it is at least as far.
+                let exact = !matches!(shape, Obstacle::Sheet(_)) || distance < 0.999 * half.x;
+                prop_assert!(!exact || shape.distance(on).abs() < 1e-5, "{shape:?}: {} left at {on}", shape.distance(on));
                 // Nothing of the surface is nearer: a ball of that size around p has no place on the other side.
                 for k in 0..64 {
                     let way = Quat::from_euler(glam::EulerRot::XYZ, k as f32, 1.7 * k as f32, 0.3) * Vec3::X;

@@ -5,16 +5,19 @@
 //! (Zhao 2005), so that a point that got there still knows the way out; far outside they stay at the band's width.
 //! The layout follows Bridson's SDFGen (*Fluid Simulation for Computer Graphics*, 2nd ed., §4).
 
-use super::Grid;
+use super::{
+    Grid,
+    lattice::{self, Lattice},
+};
 use crate::body::nearest_on_triangle;
-use glam::{DVec2, UVec3, Vec3};
+use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 /// Half-width of the band of exact distances, in cells.
 const BAND: f32 = 2.0;
 
 /// Largest number of nodes of a grid; the cell grows until it fits. 4 Mi nodes: 16 MiB.
-const MAX_NODES: f32 = 4.0 * 1024.0 * 1024.0;
+const MAX_NODES: usize = lattice::MAX_NODES / 2;
 
 /// Builds the field of a closed mesh with cells of about `cell` [m].
 pub fn voxelize(positions: &[Vec3], triangles: &[[u32; 3]], cell: f32) -> Grid {
@@ -55,18 +58,9 @@ impl Voxelizer {
         // Nothing of the mesh within: a grid of a few nodes, at a corner of the box, which then lies outside.
         let nowhere = within.map_or(Vec3::ZERO, |(a, _)| a);
         let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (nowhere, nowhere) };
-        let mut cell = cell.max(1e-6);
-        loop {
-            let nodes = (hi - lo) / cell + Vec3::splat(2.0 * BAND + 2.0);
-            if nodes.element_product() <= MAX_NODES {
-                break;
-            }
-            cell *= 1.1;
-        }
-        let margin = Vec3::splat((BAND + 0.5) * cell);
-        grid.origin = lo - margin;
-        grid.cell = cell;
-        grid.size = ((hi - lo + 2.0 * margin) / cell).ceil().as_uvec3() + UVec3::ONE;
+        let lattice = Lattice::covering(lo, hi, BAND + 0.5, cell, MAX_NODES);
+        (grid.origin, grid.cell, grid.size) = (lattice.origin, lattice.cell, lattice.size);
+        let cell = grid.cell;
         let (nx, ny, nz) = (grid.size.x as usize, grid.size.y as usize, grid.size.z as usize);
         let count = nx * ny * nz;
         grid.distances.clear();
@@ -158,6 +152,7 @@ impl Voxelizer {
                 }
             });
         sweep_inside(grid);
+        grid.mark_inside();
     }
 }
 
@@ -165,7 +160,8 @@ impl Voxelizer {
 fn sweep_inside(grid: &mut Grid) {
     let (nx, ny, nz) = (grid.size.x as usize, grid.size.y as usize, grid.size.z as usize);
     let known = -(BAND - 0.01) * grid.cell;
-    let far = -1e3_f32;
+    // Deeper than any way out of the grid.
+    let far = -((nx + ny + nz) as f32 * grid.cell);
     let inside: Vec<usize> = (0..grid.distances.len()).filter(|i| grid.distances[*i] <= known).collect();
     inside.iter().for_each(|i| grid.distances[*i] = far);
     let (sy, sz) = (nx, nx * ny);

@@ -29,6 +29,9 @@ pub(super) fn keep_out<S: Simd>(simd: S, obstacles: &[ObstaclePose], points: &mu
         let allowed = load(simd, &rows[3]);
         let mut moved = false;
         for pose in obstacles {
+            if !pose.near(simd, p).any_true() {
+                continue;
+            }
             let (distance, normal) = contact(simd, pose, p);
             let out = (allowed - distance).max(0.0);
             if out.simd_gt(0.0).any_true() {

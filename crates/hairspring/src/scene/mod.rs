@@ -39,6 +39,20 @@ pub struct SceneGroom {
     pub look: HairLook,
 }
 
+/// An open mesh that hair collides with: a cape, a leaf, a hand made of one surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneSheet {
+    /// The mesh, in the same rest pose and with the same joints as the scene's body.
+    pub body: Body,
+    /// How far hair stays from it, on both sides [m], above 0. Default of a scene file: [`SceneSheet::THICKNESS`].
+    pub thickness: f32,
+}
+
+impl SceneSheet {
+    /// 2 mm: what falls at half a metre a second moves as far in a substep at the default of four.
+    pub const THICKNESS: f32 = 0.002;
+}
+
 /// Grooms, body, motion and settings: the input of a simulation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
@@ -51,6 +65,8 @@ pub struct Scene {
     /// Closed mesh that hair collides with, in the same rest pose and with the same joints as `body`;
     /// `None`: the body's own mesh where `solver.collide_body` is on.
     pub collision: Option<Body>,
+    /// Open meshes that hair collides with on both sides.
+    pub sheets: Vec<SceneSheet>,
     /// Further simple shapes that hair collides with.
     pub colliders: Vec<Collider>,
     /// Motion of the body's joints; `None`: at rest.

@@ -1,8 +1,9 @@
 //! Settings of a scene that both code and scene files set; each field's default is the value that a file may leave out.
 
-use crate::collide::Obstacle;
+use crate::collide::{Hull, Obstacle};
 use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
+use std::{path::PathBuf, sync::Arc};
 
 /// Which strands of a groom are simulated; the others follow them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -214,7 +215,7 @@ pub struct Collider {
 }
 
 /// The shapes of a [`Collider`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Shape {
     /// A ball.
@@ -250,12 +251,24 @@ pub enum Shape {
         /// Direction out of the solid, of any length above 0.
         normal: Vec3,
     },
+    /// The convex hull of points: a shoulder, a stone, a brush.
+    Hull {
+        /// Points that span it [m], four or more. Default: the vertices of `file`.
+        #[serde(default)]
+        points: Vec<Vec3>,
+        /// A mesh file whose vertices a reader of scene files puts in place of `points`; nothing here opens it.
+        #[serde(default)]
+        file: Option<PathBuf>,
+        /// Metres in one unit of `file` [m], above 0. Default: by the format, or guessed and said.
+        #[serde(default)]
+        scale: Option<f32>,
+    },
 }
 
 impl Shape {
-    /// The collider of this shape.
-    pub fn obstacle(&self) -> Obstacle {
-        match *self {
+    /// The collider of this shape; `None` for the hull of points that span no volume.
+    pub fn obstacle(&self) -> Option<Obstacle> {
+        Some(match *self {
             Self::Sphere { center, radius } => Obstacle::Sphere { center, radius },
             Self::Capsule { a, b, radius } => Obstacle::Capsule { a, b, radius },
             Self::Box { center, size, rotation } => {
@@ -264,6 +277,7 @@ impl Shape {
                 Obstacle::Cuboid { center, half: 0.5 * size, axes }
             }
             Self::Plane { point, normal } => Obstacle::Plane { point, normal: normal.normalize_or(Vec3::Y) },
-        }
+            Self::Hull { ref points, .. } => Obstacle::Hull(Arc::new(Hull::new(points)?)),
+        })
     }
 }

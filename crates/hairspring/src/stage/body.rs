@@ -1,21 +1,21 @@
-//! The posed body and what of it hair collides with.
+//! The posed body and what hair collides with.
 
-use super::{PosedBody, StageError, charged::StagedCharged};
+use super::{
+    PosedBody, StageError,
+    charged::StagedCharged,
+    surface::{Making, Surface},
+};
 use crate::{
     around::charge::ChargedBall,
     body::{Body, Trs},
-    collide::{Grid, Obstacle, ObstaclePose, Rigid, Voxelizer},
+    collide::{Obstacle, ObstaclePose, Rigid},
     scene::Scene,
     simulation::MovingObstacle,
 };
 use glam::{Affine3A, Vec3};
-use std::sync::Arc;
 
 /// Cells along the longest side of the body's distance field, which is as much of the body as hair can reach: 4 mm for half a metre.
 const CELLS: f32 = 128.0;
-
-/// A skinned surface that moved less than this in its anchor's space is rigid for this frame [m].
-const STILL: f32 = 1e-5;
 
 /// Pose and colliders of the scene's body now.
 pub(super) struct StagedBody {
@@ -27,11 +27,48 @@ pub(super) struct StagedBody {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     obstacles: Vec<MovingObstacle>,
-    /// Joint of each obstacle; `None`: fixed.
-    joints: Vec<Option<usize>>,
-    surface: Option<Surface>,
+    /// What moves each obstacle.
+    carriers: Vec<Carrier>,
+    /// What is made anew as it deforms.
+    surfaces: Vec<Deforming>,
     reach: Reach,
     charged: StagedCharged,
+}
+
+/// What moves an obstacle.
+#[derive(Clone, Copy)]
+enum Carrier {
+    /// Nothing.
+    Fixed,
+    /// A joint; the shape is in the space of the rest pose.
+    Joint(usize),
+    /// The anchor; the shape is in its space.
+    Anchor,
+}
+
+/// A skinned mesh and the obstacle that is made of it.
+struct Deforming {
+    surface: Surface,
+    mesh: Mesh,
+    obstacle: usize,
+}
+
+/// Which of the scene's meshes.
+#[derive(Clone, Copy)]
+enum Mesh {
+    /// The closed one.
+    Closed,
+    /// A sheet.
+    Sheet(usize),
+}
+
+impl Mesh {
+    fn of(self, scene: &Scene) -> Option<&Body> {
+        match self {
+            Self::Closed => scene.collision.as_ref().or(scene.body.as_ref()),
+            Self::Sheet(k) => scene.sheets.get(k).map(|s| &s.body),
+        }
+    }
 }
 
 /// Where hair can be: no farther from a root than the longest strand is long.
@@ -70,16 +107,6 @@ impl Reach {
     }
 }
 
-/// A skinned collision surface, voxelised anew whenever it deforms; the first obstacle.
-struct Surface {
-    voxelizer: Voxelizer,
-    /// Vertices in the anchor's space, now and a frame ago.
-    now: Vec<Vec3>,
-    before: Vec<Vec3>,
-    normals: Vec<Vec3>,
-    cell: f32,
-}
-
 impl StagedBody {
     /// The body at rest.
     pub(super) fn new(scene: &Scene) -> Result<Self, StageError> {
@@ -92,8 +119,8 @@ impl StagedBody {
             positions: Vec::new(),
             normals: Vec::new(),
             obstacles: Vec::new(),
-            joints: Vec::new(),
-            surface: None,
+            carriers: Vec::new(),
+            surfaces: Vec::new(),
             reach: Reach::new(scene),
             charged: StagedCharged::default(),
         };
@@ -101,12 +128,19 @@ impl StagedBody {
             body.skinned(&staged.world, &mut staged.positions, &mut staged.normals);
         }
         staged.add_surface(scene);
+        for (k, sheet) in scene.sheets.iter().enumerate() {
+            staged.add_mesh(scene, Mesh::Sheet(k), Making::Sheet(sheet.thickness));
+        }
+        staged.rebuild_surfaces(scene, true);
         for collider in &scene.colliders {
-            let carried = joint_of(scene, collider.joint.as_deref(), "a collider")?;
-            staged.add(
-                collider.shape.obstacle(),
-                carried.or((!staged.rest.is_empty()).then_some(staged.anchor)),
-            );
+            let carrier = match joint_of(scene, collider.joint.as_deref(), "a collider")? {
+                Some(joint) => Carrier::Joint(joint),
+                None => staged.carrier(staged.anchor),
+            };
+            // Points that span no volume are nothing to collide with.
+            if let Some(shape) = collider.shape.obstacle() {
+                staged.add(shape, carrier);
+            }
         }
         staged.charged = StagedCharged::new(scene)?;
         // After all others: they move by themselves.
@@ -116,9 +150,14 @@ impl StagedBody {
         Ok(staged)
     }
 
-    fn add(&mut self, shape: Obstacle, joint: Option<usize>) {
+    fn add(&mut self, shape: Obstacle, carrier: Carrier) {
         self.obstacles.push(MovingObstacle { shape, start: Rigid::default(), end: Rigid::default() });
-        self.joints.push(joint);
+        self.carriers.push(carrier);
+    }
+
+    /// A joint of the body, if there is any.
+    fn carrier(&self, joint: usize) -> Carrier {
+        if self.rest.is_empty() { Carrier::Fixed } else { Carrier::Joint(joint) }
     }
 
     fn add_surface(&mut self, scene: &Scene) {
@@ -132,47 +171,30 @@ impl StagedBody {
         let (lo, hi) = within.map_or((lo, hi), |(a, b)| (lo.max(a), hi.min(b)));
         // Hair that cannot reach the body meets a field of one cell.
         let cell = (hi - lo).max_element().max(1e-3) / CELLS;
-        if body.skin.is_none() {
-            // Rigid: voxelised once, in the space of the rest pose.
-            let mut grid = Grid::default();
-            let (positions, triangles) = (&body.mesh.positions, &body.mesh.triangles);
-            Voxelizer::default().update(&mut grid, positions, None, triangles, within, cell);
-            self.add(Obstacle::Field(Arc::new(grid)), (!self.rest.is_empty()).then_some(0));
-            return;
-        }
-        self.surface = Some(Surface {
-            voxelizer: Voxelizer::default(),
-            now: Vec::new(),
-            before: Vec::new(),
-            normals: Vec::new(),
-            cell,
-        });
-        self.add(Obstacle::Field(Arc::new(Grid::default())), None);
-        self.rebuild_surface(body, true);
+        self.add_mesh(scene, Mesh::Closed, Making::Field(cell));
     }
 
-    /// Voxelises the skinned surface in the anchor's space.
-    fn rebuild_surface(&mut self, body: &Body, fresh: bool) {
-        let (Some(surface), Some(obstacle)) = (&mut self.surface, self.obstacles.first_mut()) else { return };
-        let anchor = Rigid::from_affine(&self.world[self.anchor]);
-        std::mem::swap(&mut surface.now, &mut surface.before);
-        body.skinned(&self.world, &mut surface.now, &mut surface.normals);
-        surface.now.iter_mut().for_each(|p| *p = anchor.inverse_point(*p));
-        let Obstacle::Field(grid) = &mut obstacle.shape else { return };
-        let moved =
-            surface.now.iter().zip(&surface.before).map(|(a, b)| a.distance_squared(*b)).fold(0.0, f32::max);
-        if !fresh && moved < STILL * STILL {
-            if grid.deforms() {
-                Arc::make_mut(grid).displacements.clear();
-            }
-            // What little it moved is not lost: it adds up against the surface that was voxelised.
-            std::mem::swap(&mut surface.now, &mut surface.before);
+    /// Adds the collider of one of the scene's meshes. What is rigid is made once, in the space of the rest pose.
+    fn add_mesh(&mut self, scene: &Scene, mesh: Mesh, making: Making) {
+        let Some(body) = mesh.of(scene) else { return };
+        if body.skin.is_none() {
+            let within = scene.body.as_ref().and_then(|b| self.reach.bounds(&b.mesh.positions, |p| p));
+            self.add(making.rigid(body, within), self.carrier(0));
             return;
         }
-        let before = (!fresh).then_some(surface.before.as_slice());
-        let triangles = &body.mesh.triangles;
+        self.surfaces.push(Deforming { surface: Surface::new(making), mesh, obstacle: self.obstacles.len() });
+        self.add(making.nothing(), Carrier::Anchor);
+    }
+
+    /// Makes the colliders of skinned meshes anew, in the anchor's space.
+    fn rebuild_surfaces(&mut self, scene: &Scene, fresh: bool) {
+        let anchor = self.anchor();
         let within = self.reach.bounds(&self.positions, |p| anchor.inverse_point(p));
-        surface.voxelizer.update(Arc::make_mut(grid), &surface.now, before, triangles, within, surface.cell);
+        for Deforming { surface, mesh, obstacle } in &mut self.surfaces {
+            let Some(body) = mesh.of(scene) else { continue };
+            let shape = &mut self.obstacles[*obstacle].shape;
+            surface.update(shape, (body, &self.world), anchor, within, fresh);
+        }
     }
 
     /// Poses the body for time `time` [s]; motion since the last pose is what colliders do in this frame.
@@ -181,9 +203,7 @@ impl StagedBody {
             obstacle.start = obstacle.end;
         }
         self.pose(scene, time);
-        if let Some(body) = scene.collision.as_ref().or(scene.body.as_ref()) {
-            self.rebuild_surface(body, false);
-        }
+        self.rebuild_surfaces(scene, false);
         self.charged.rest();
         self.repose(scene, time);
     }
@@ -191,9 +211,7 @@ impl StagedBody {
     /// Poses the body for time `time` [s] without motion.
     pub(super) fn place(&mut self, scene: &Scene, time: f32) {
         self.pose(scene, time);
-        if let Some(body) = scene.collision.as_ref().or(scene.body.as_ref()) {
-            self.rebuild_surface(body, true);
-        }
+        self.rebuild_surfaces(scene, true);
         self.repose(scene, time);
         self.charged.rest();
         for obstacle in &mut self.obstacles {
@@ -213,16 +231,17 @@ impl StagedBody {
 
     /// Where obstacles and charged bodies are in the current pose, at `time` [s].
     fn repose(&mut self, scene: &Scene, time: f32) {
-        let field_anchor = self.surface.is_some().then(|| self.anchor());
-        let Self { world, rest, obstacles, joints, charged, .. } = self;
+        let anchor = self.anchor();
+        let Self { world, rest, obstacles, carriers, charged, .. } = self;
         let carried = |joint: Option<usize>| carried(world, rest, joint);
-        for (k, (obstacle, joint)) in obstacles.iter_mut().zip(&*joints).enumerate() {
-            obstacle.end = match field_anchor {
-                Some(anchor) if k == 0 => anchor,
-                _ => carried(*joint),
+        for (obstacle, carrier) in obstacles.iter_mut().zip(&*carriers) {
+            obstacle.end = match *carrier {
+                Carrier::Fixed => Rigid::default(),
+                Carrier::Joint(j) => carried(Some(j)),
+                Carrier::Anchor => anchor,
             };
         }
-        charged.advance(&scene.charged, time, carried, &mut obstacles[joints.len()..]);
+        charged.advance(&scene.charged, time, carried, &mut obstacles[carriers.len()..]);
     }
 
     /// Where what a joint carries has gone since rest; nowhere without a joint.

@@ -4,6 +4,7 @@ mod body;
 mod charged;
 mod hair;
 mod hands;
+mod surface;
 mod wind;
 
 use crate::{

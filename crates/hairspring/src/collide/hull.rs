@@ -1,0 +1,223 @@
+//! Convex hulls: the deepest of the faces' planes inside, the nearest place of the faces outside.
+//!
+//! ```text
+//!   inside   d = max n·p − c           over the faces' planes (n, c)
+//!   outside  d = min |p − q|, q on a face that p is in front of: the nearest place lies on such a one
+//! ```
+
+use crate::{
+    body::nearest_on_triangle,
+    strand::lanes::{F, V3},
+};
+use fearless_simd::{mask32x8, prelude::*};
+use glam::Vec3;
+use parry3d::transformation::try_convex_hull;
+
+/// Share of the hull's radius within which a place counts as on its surface, and triangles as in one plane: `f32` has 24 bits.
+const TOUCH: f32 = 1e-5;
+
+/// Least volume, over the cube of the hull's radius: below, points lie in a plane for all that `f32` can tell.
+const THIN: f32 = 1e-6;
+
+/// A convex solid, by its faces. Each costs about ten instructions for eight points that touch it, so that a hundred of them are
+/// about as fast as a distance field; what has more is better given as a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hull {
+    faces: Vec<Face>,
+    /// A ball around it: middle and radius [m].
+    bounds: (Vec3, f32),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Face {
+    /// Outward unit normal.
+    normal: Vec3,
+    /// Where the plane is along it [m].
+    offset: f32,
+    /// What the face is made of, counter-clockwise seen from outside.
+    triangles: Vec<[Vec3; 3]>,
+}
+
+impl Hull {
+    /// The convex hull of points [m]; `None` where they span no volume. Points that are not finite are left out.
+    pub fn new(points: &[Vec3]) -> Option<Self> {
+        let points = || points.iter().filter(|p| p.is_finite());
+        let lo = points().fold(Vec3::INFINITY, |lo, p| lo.min(*p));
+        let hi = points().fold(Vec3::NEG_INFINITY, |hi, p| hi.max(*p));
+        let (center, radius) = (lo.midpoint(hi), 0.5 * lo.distance(hi));
+        if !(radius > 0.0 && radius.is_finite()) {
+            return None;
+        }
+        // Around the origin in units of the radius: what the library takes for flat or equal then depends on no unit.
+        let unit: Vec<_> = points().map(|p| ((*p - center) / radius).to_array().into()).collect();
+        let (corners, triangles) = try_convex_hull(&unit).ok()?;
+        let corners: Vec<Vec3> = corners.iter().map(|p| Vec3::from(p.to_array())).collect();
+        let mut hull = Self { faces: Vec::new(), bounds: (center, radius) };
+        let mut volume = 0.0;
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|i| corners[i as usize]);
+            volume += a.dot(b.cross(c)) / 6.0;
+            if let Some(normal) = (b - a).cross(c - a).try_normalize() {
+                hull.add(normal, [a, b, c]);
+            }
+        }
+        for face in &mut hull.faces {
+            face.triangles.iter_mut().flatten().for_each(|p| *p = *p * radius + center);
+            face.offset = face.offset * radius + face.normal.dot(center);
+        }
+        (volume > THIN).then_some(hull)
+    }
+
+    /// Adds a triangle, in units of the radius, to the face that it lies in.
+    fn add(&mut self, normal: Vec3, triangle: [Vec3; 3]) {
+        let lies_in = |f: &Face| {
+            f.normal.dot(normal) > 0.0 && triangle.iter().all(|p| (f.normal.dot(*p) - f.offset).abs() < TOUCH)
+        };
+        // A plane touches all corners of its triangles from outside, so that none is farther out than it.
+        let offset = triangle.iter().fold(f32::MIN, |most, p| most.max(normal.dot(*p)));
+        match self.faces.iter_mut().find(|f| lies_in(f)) {
+            Some(face) => face.triangles.push(triangle),
+            None => self.faces.push(Face { normal, offset, triangles: vec![triangle] }),
+        }
+    }
+
+    /// A ball around it: its middle and radius [m].
+    pub(super) fn bounds(&self) -> (Vec3, f32) {
+        self.bounds
+    }
+
+    /// Distance [m], negative inside, and outward unit normal at `p` [m].
+    pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
+        let depth = |f: &Face| f.normal.dot(p) - f.offset;
+        let deepest = self
+            .faces
+            .iter()
+            .fold((f32::MIN, Vec3::Y), |most, f| if depth(f) > most.0 { (depth(f), f.normal) } else { most });
+        if deepest.0 <= TOUCH * self.bounds.1 {
+            return deepest;
+        }
+        let visible = self.faces.iter().filter(|f| depth(f) > 0.0).flat_map(|f| &f.triangles);
+        let way = visible.fold(Vec3::INFINITY, |best, t| {
+            let at = nearest_on_triangle(p, *t);
+            let way = p - (t[0] * at.x + t[1] * at.y + t[2] * at.z);
+            if way.length_squared() < best.length_squared() { way } else { best }
+        });
+        (way.length(), way.normalize_or(deepest.1))
+    }
+
+    /// Of eight points, those that no face has in front of it; the others are outside.
+    #[inline(always)]
+    pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
+        let mut most = F::<S>::splat(simd, f32::MIN);
+        for face in &self.faces {
+            most = most.max(V3::splat(simd, face.normal).dot(p) - face.offset);
+            if !most.simd_le(0.0).any_true() {
+                break;
+            }
+        }
+        most.simd_le(0.0)
+    }
+
+    /// [`Hull::distance_and_normal`] of eight points.
+    #[inline(always)]
+    pub(super) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
+        let (mut most, mut normal) = (F::<S>::splat(simd, f32::MIN), V3::zero(simd));
+        for face in &self.faces {
+            let n = V3::splat(simd, face.normal);
+            let depth = n.dot(p) - face.offset;
+            normal = V3::select(depth.simd_gt(most), n, normal);
+            most = most.max(depth);
+        }
+        let outside = most.simd_gt(TOUCH * self.bounds.1);
+        if !outside.any_true() {
+            return (most, normal);
+        }
+        let (mut best, mut way) = (F::<S>::splat(simd, f32::MAX), normal);
+        for face in &self.faces {
+            let n = V3::splat(simd, face.normal);
+            let height = n.dot(p) - face.offset;
+            let visible = height.simd_gt(0.0);
+            if visible.any_true() {
+                for triangle in &face.triangles {
+                    let to = from_triangle(simd, p, triangle, (n, height));
+                    let size = to.dot(to);
+                    let nearer = visible & size.simd_lt(best);
+                    best = nearer.select(size, best);
+                    way = V3::select(nearer, to, way);
+                }
+            }
+        }
+        let (distance, out) = way.length_and_unit();
+        (outside.select(distance, most), V3::select(outside, out, normal))
+    }
+}
+
+/// From the nearest place of a triangle to eight points that are `height` in front of it along its unit normal `n`.
+#[inline(always)]
+fn from_triangle<S: Simd>(simd: S, p: V3<S>, corners: &[Vec3; 3], (n, height): (V3<S>, F<S>)) -> V3<S> {
+    let (mut best, mut way) = (F::<S>::splat(simd, f32::MAX), n * height);
+    let mut over = F::<S>::splat(simd, f32::MIN);
+    for k in 0..3 {
+        let (a, b) = (corners[k], corners[(k + 1) % 3]);
+        let edge = V3::splat(simd, b - a);
+        let from = p - V3::splat(simd, a);
+        // How far past this edge, along the face: above 0 for none of the three is over the triangle.
+        let past = from.dot(edge.cross(n));
+        over = over.max(past);
+        let t = (from.dot(edge) * (1.0 / (b - a).length_squared().max(f32::MIN_POSITIVE))).max(0.0).min(1.0);
+        let to = from - edge * t;
+        let size = to.dot(to);
+        let nearer = size.simd_lt(best);
+        best = nearer.select(size, best);
+        way = V3::select(nearer, to, way);
+    }
+    V3::select(over.simd_gt(0.0), way, n * height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collide::Obstacle;
+    use glam::Mat3;
+
+    fn corners(size: f32) -> Vec<Vec3> {
+        (0..8)
+            .map(|k| Vec3::new([-1.0, 1.0][k & 1], [-2.0, 2.0][k >> 1 & 1], [-3.0, 3.0][k >> 2]) * size)
+            .collect()
+    }
+
+    #[test]
+    fn the_hull_of_a_boxs_corners_is_the_box_at_any_scale() {
+        for size in [1e-4, 0.05, 30.0] {
+            let hull = Hull::new(&corners(size)).unwrap();
+            assert_eq!(hull.faces.len(), 6, "{size}");
+            let cuboid = Obstacle::Cuboid {
+                center: Vec3::ZERO,
+                half: Vec3::new(1.0, 2.0, 3.0) * size,
+                axes: Mat3::IDENTITY,
+            };
+            for k in 0..500 {
+                let k = k as f32;
+                let p = Vec3::new((1.3 * k).sin(), (2.1 * k).cos(), (0.7 * k).sin()) * (4.5 * size);
+                let (distance, want) = (hull.distance_and_normal(p).0, cuboid.distance(p));
+                assert!((distance - want).abs() < 1e-5 * size, "{distance} at {p}, the box {want}");
+            }
+        }
+    }
+
+    #[test]
+    fn points_that_span_no_volume_have_no_hull() {
+        let line: Vec<Vec3> = (0..9).map(|k| Vec3::new(k as f32, 2.0 * k as f32, 0.1)).collect();
+        let flat: Vec<Vec3> = corners(0.1).iter().map(|p| p.with_y(0.3 * p.x + 1.0)).collect();
+        for points in
+            [vec![], vec![Vec3::ONE; 20], line, flat, vec![Vec3::NAN; 9], vec![Vec3::MAX, Vec3::MIN]]
+        {
+            assert!(Hull::new(&points).is_none(), "{points:?}");
+        }
+        // What is not finite is left out, points twice there and within it change nothing.
+        let mut many = corners(0.1);
+        many.extend(corners(0.1));
+        many.extend([Vec3::NAN, Vec3::INFINITY, Vec3::ZERO, Vec3::splat(0.05)]);
+        assert_eq!(Hull::new(&many).unwrap().faces.len(), 6);
+    }
+}

@@ -1,0 +1,76 @@
+//! Which cell of a regular lattice a place is in, for one point and for eight.
+
+use crate::strand::lanes::{F, LANES, Row, V3, store};
+use fearless_simd::prelude::*;
+use glam::{UVec3, Vec3};
+
+/// Most nodes of a lattice: their index is worked out in `f32`, where whole numbers follow each other up to here.
+pub(super) const MAX_NODES: usize = 1 << 23;
+
+/// Nodes at equal distances; a cell goes by the index of its lower node.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Lattice {
+    /// Position of node (0, 0, 0) [m].
+    pub origin: Vec3,
+    /// Distance between neighbouring nodes [m].
+    pub cell: f32,
+    /// Nodes along each axis, each 2 or more.
+    pub size: UVec3,
+}
+
+impl Lattice {
+    /// Covers the box from `lo` to `hi` [m] and `margin` cells around it, in cells of `cell` [m], or of 1.1 to some power times that
+    /// where there would be more than `most` nodes.
+    pub fn covering(lo: Vec3, hi: Vec3, margin: f32, cell: f32, most: usize) -> Self {
+        let mut cell = cell.max(f32::MIN_POSITIVE);
+        while ((hi - lo) / cell + (2.0 * margin + 2.0)).element_product() > most as f32 {
+            cell *= 1.1;
+        }
+        let margin = Vec3::splat(margin * cell);
+        let cells = ((hi - lo + 2.0 * margin) / cell).ceil().as_uvec3();
+        Self { origin: lo - margin, cell, size: cells.max(UVec3::ONE) + UVec3::ONE }
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.size.as_usizevec3().element_product()
+    }
+
+    /// Index of a node, x fastest.
+    pub fn index(&self, at: UVec3) -> usize {
+        ((at.z * self.size.y + at.y) * self.size.x + at.x) as usize
+    }
+
+    /// How far `p` [m] is outside, the cell of the place in the lattice nearest to it, and that place from the cell's lower node; in cells.
+    pub fn locate(&self, p: Vec3) -> (Vec3, UVec3, Vec3) {
+        let g = (p - self.origin) / self.cell;
+        // `max` first: a NaN becomes 0.
+        let c = g.max(Vec3::ZERO).min(self.top());
+        let cell = c.as_uvec3().min(self.size - 2);
+        (g - c, cell, c - cell.as_vec3())
+    }
+
+    /// [`Lattice::locate`] of eight points, the cells by their index.
+    #[inline(always)]
+    pub fn locate_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (V3<S>, [usize; LANES], V3<S>) {
+        let (top, last) = (self.top(), (self.size - 2).as_vec3());
+        let g = (p - V3::splat(simd, self.origin)) * F::splat(simd, 1.0 / self.cell);
+        let c = V3 {
+            x: g.x.max_precise(0.0).min(top.x),
+            y: g.y.max_precise(0.0).min(top.y),
+            z: g.z.max_precise(0.0).min(top.z),
+        };
+        let cell = V3 { x: c.x.floor().min(last.x), y: c.y.floor().min(last.y), z: c.z.floor().min(last.z) };
+        let (nx, ny) = (self.size.x as f32, self.size.y as f32);
+        // From here on `f32` counts in ones, and the last bits of its pattern are the number: no conversion, lane by lane.
+        let index = cell.z.mul_add(ny, cell.y).mul_add(nx, cell.x) + MAX_NODES as f32;
+        let mut row = Row::default();
+        store(index, &mut row);
+        (g - c, row.0.map(|index| index.to_bits() as usize & (MAX_NODES - 1)), c - cell)
+    }
+
+    /// The largest place inside, just below the last nodes [cells].
+    fn top(&self) -> Vec3 {
+        (self.size - UVec3::ONE).as_vec3() - Vec3::splat(1e-3)
+    }
+}

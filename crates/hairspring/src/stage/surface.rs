@@ -1,0 +1,152 @@
+//! What hair collides with that is made from meshes: a distance field of a closed one, sheets of open ones. One that deforms is made anew
+//! in the anchor's space, whenever it moved there.
+
+use crate::{
+    body::Body,
+    collide::{Grid, Obstacle, Rigid, Sheet, Voxelizer},
+};
+use glam::{Affine3A, Vec3};
+use std::sync::Arc;
+
+/// A surface that moved less than this in its anchor's space is rigid for this frame, as a share of its cells or its thickness.
+const STILL: f32 = 0.0025;
+
+/// What becomes of a mesh.
+#[derive(Clone, Copy)]
+pub(super) enum Making {
+    /// A distance field with cells of this edge [m].
+    Field(f32),
+    /// A sheet of this thickness [m].
+    Sheet(f32),
+}
+
+/// Makes the collider of one skinned mesh, again and again.
+pub(super) struct Surface {
+    making: Making,
+    voxelizer: Voxelizer,
+    /// Vertices in the anchor's space, now and a frame ago.
+    now: Vec<Vec3>,
+    before: Vec<Vec3>,
+    normals: Vec<Vec3>,
+}
+
+impl Making {
+    /// A collider that is nowhere yet.
+    pub fn nothing(self) -> Obstacle {
+        match self {
+            Self::Field(_) => Obstacle::Field(Arc::default()),
+            Self::Sheet(_) => Obstacle::Sheet(Arc::default()),
+        }
+    }
+
+    /// The collider of a mesh that does not deform.
+    pub fn rigid(self, body: &Body, within: Option<(Vec3, Vec3)>) -> Obstacle {
+        let mut shape = self.nothing();
+        let (positions, triangles) = (&body.mesh.positions, &body.mesh.triangles);
+        self.make(&mut shape, &mut Voxelizer::default(), (positions, None), triangles, within);
+        shape
+    }
+
+    /// Makes `shape` the collider of a mesh with vertices `now` and, where they moved, `before` [m].
+    fn make(
+        self,
+        shape: &mut Obstacle,
+        voxelizer: &mut Voxelizer,
+        (now, before): (&[Vec3], Option<&[Vec3]>),
+        triangles: &[[u32; 3]],
+        within: Option<(Vec3, Vec3)>,
+    ) {
+        match (self, shape) {
+            (Self::Field(cell), Obstacle::Field(grid)) => {
+                voxelizer.update(Arc::make_mut(grid), now, before, triangles, within, cell);
+            }
+            (Self::Sheet(thickness), Obstacle::Sheet(sheet)) => {
+                Arc::make_mut(sheet).update(now, before, triangles, within, thickness);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Surface {
+    pub(super) fn new(making: Making) -> Self {
+        Self {
+            making,
+            voxelizer: Voxelizer::default(),
+            now: Vec::new(),
+            before: Vec::new(),
+            normals: Vec::new(),
+        }
+    }
+
+    /// Makes `shape` the collider of `body` as its joints are in `world`, in the space of the `anchor`; `fresh`: without motion since the last time.
+    pub(super) fn update(
+        &mut self,
+        shape: &mut Obstacle,
+        (body, world): (&Body, &[Affine3A]),
+        anchor: Rigid,
+        within: Option<(Vec3, Vec3)>,
+        fresh: bool,
+    ) {
+        std::mem::swap(&mut self.now, &mut self.before);
+        body.skinned(world, &mut self.now, &mut self.normals);
+        self.now.iter_mut().for_each(|p| *p = anchor.inverse_point(*p));
+        let moved =
+            self.now.iter().zip(&self.before).map(|(a, b)| a.distance_squared(*b)).fold(0.0, f32::max);
+        let (Making::Field(fine) | Making::Sheet(fine)) = self.making;
+        if !fresh && moved < (STILL * fine).powi(2) {
+            match shape {
+                Obstacle::Field(grid) if grid.deforms() => Grid::hold_still(Arc::make_mut(grid)),
+                Obstacle::Sheet(sheet) if sheet.deforms() => Sheet::hold_still(Arc::make_mut(sheet)),
+                _ => {}
+            }
+            // What little it moved is not lost: it adds up against the surface that was made.
+            std::mem::swap(&mut self.now, &mut self.before);
+            return;
+        }
+        let before = (!fresh).then_some(self.before.as_slice());
+        self.making.make(shape, &mut self.voxelizer, (&self.now, before), &body.mesh.triangles, within);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Joint, Mesh, Skin, Trs};
+
+    #[test]
+    fn a_skinned_sheet_is_where_its_joints_are_and_knows_how_it_moved() {
+        let positions: Vec<Vec3> =
+            [(0.0, 0.0), (0.0, 0.1), (0.3, 0.0), (0.3, 0.1)].map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec();
+        let mesh = Mesh { positions, triangles: vec![[0, 1, 2], [2, 1, 3]], ..Mesh::default() };
+        let joint = |name: &str| Joint { name: name.into(), parent: None, rest: Trs::default() };
+        let skin = Skin {
+            joints: vec![[0; 4], [0; 4], [1; 4], [1; 4]],
+            weights: vec![[1.0, 0.0, 0.0, 0.0]; 4],
+            inverse_bind: vec![Affine3A::IDENTITY; 2],
+        };
+        let body = Body { mesh, joints: vec![joint("near"), joint("far")], skin: Some(skin) };
+        let world = |up: f32| [Affine3A::IDENTITY, Affine3A::from_translation(Vec3::Y * up)];
+        let making = Making::Sheet(0.002);
+        let (mut surface, mut shape) = (Surface::new(making), making.nothing());
+        let mut play = |up: f32, fresh: bool| {
+            surface.update(&mut shape, (&body, &world(up)), Rigid::default(), None, fresh);
+            let Obstacle::Sheet(sheet) = &shape else { unreachable!("a sheet is made") };
+            let at = |x: f32| {
+                let p = Vec3::new(x, up * x / 0.3, 0.05);
+                (sheet.distance_and_normal(p).0, sheet.displacement(p).y)
+            };
+            ([at(0.01), at(0.29)], sheet.deforms())
+        };
+        let (rest, deforms) = play(0.0, true);
+        assert!(
+            !deforms && rest.iter().all(|(d, moved)| (d + 0.002).abs() < 1e-7 && *moved == 0.0),
+            "{rest:?}"
+        );
+        let ([near, far], deforms) = play(0.03, false);
+        assert!(deforms && (near.0 + 0.002).abs() < 1e-6 && (far.0 + 0.002).abs() < 1e-6, "{near:?} {far:?}");
+        assert!((near.1 - 0.001).abs() < 1e-6 && (far.1 - 0.029).abs() < 1e-6, "{near:?} {far:?}");
+        let (still, deforms) = play(0.03, false);
+        assert!(!deforms && still.iter().all(|(_, moved)| *moved == 0.0), "{still:?}");
+    }
+}

@@ -1,0 +1,99 @@
+//! Promise: a collider keeps hair out at a tenth and at ten times the size as it does at the size of a head.
+//!
+//! Hair falls over each shape, is carried along by it, and comes to rest. Lengths, radii and gravity are multiplied by a scale, the fibre's stiffness by
+//! its square: then motion is the same but for lengths. No point is deeper than a
+//! hundred-thousandth of the strand's length at any scale, and a second later every point is where it is at the size of a head, to half a
+//! hundredth of that length.
+
+use glam::{Mat3, Quat, Vec3};
+use hairspring::{
+    collide::{Hull, Obstacle, Rigid, Sheet, voxelize},
+    groom::Groom,
+    material::Material,
+    scene::Solver,
+    simulation::{Air, Drive, MovingObstacle, Simulation},
+};
+use std::sync::Arc;
+
+const FRAME: f32 = 1.0 / 60.0;
+const LENGTH: f32 = 0.2;
+
+/// Corners of a box around the origin, and its triangles.
+fn cuboid(half: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let corner =
+        |k: usize| Vec3::new([-1.0, 1.0][k & 1], [-1.0, 1.0][k >> 1 & 1], [-1.0, 1.0][k >> 2]) * half;
+    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    ((0..8).map(corner).collect(), triangles)
+}
+
+fn shapes(s: f32) -> [(&'static str, Obstacle); 7] {
+    let half = Vec3::new(0.08, 0.03, 0.05) * s;
+    let (corners, triangles) = cuboid(half);
+    let flat: Vec<Vec3> = corners.iter().map(|p| p.with_y(0.03 * s)).collect();
+    [
+        ("sphere", Obstacle::Sphere { center: Vec3::Y * -0.03 * s, radius: 0.06 * s }),
+        ("capsule", Obstacle::Capsule { a: Vec3::X * -0.1 * s, b: Vec3::X * 0.1 * s, radius: 0.03 * s }),
+        ("box", Obstacle::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY }),
+        ("plane", Obstacle::Plane { point: Vec3::Y * 0.03 * s, normal: Vec3::new(0.0, 0.995, 0.0999) }),
+        ("field", Obstacle::Field(Arc::new(voxelize(&corners, &triangles, 0.004 * s)))),
+        ("hull", Obstacle::Hull(Arc::new(Hull::new(&corners).unwrap()))),
+        ("sheet", Obstacle::Sheet(Arc::new(Sheet::new(&flat, &triangles[4..6], 0.004 * s)))),
+    ]
+}
+
+/// Where points are after a second, and how deep the deepest was, over the scale.
+fn fall(shape: &Obstacle, s: f32) -> (Vec<Vec3>, f32) {
+    let strands = (0..16).map(|k| {
+        let root = Vec3::new((k as f32 - 7.5) * 0.004, 0.06, 0.0) * s;
+        let way = Vec3::new(0.0, 0.3, 0.95).normalize() * (LENGTH * s / 19.0);
+        (0..20).map(move |i| root + way * i as f32).collect::<Vec<_>>()
+    });
+    let groom = Arc::new(Groom::from_strands(strands, 40e-6 * s));
+    let all: Vec<u32> = (0..16).collect();
+    let roots: Vec<Rigid> =
+        (0..16).map(|k| Rigid { translation: groom.strand(k)[0], rotation: Quat::IDENTITY }).collect();
+    let material = Material::default();
+    let material =
+        Material { young: material.young * s * s, shear: material.shear * s * s, drag: 0.0, ..material };
+    let solver = Solver { sag_free: false, ..Solver::default() };
+    let gravity = Vec3::Y * -9.81 * s;
+    let anchor = Rigid::default();
+    let mut simulation = Simulation::new(groom, &all, &[material], solver, gravity, anchor, &[]);
+    let mut deepest = 0.0f32;
+    for frame in 0..60 {
+        let at = |frame: u32| {
+            let phase = 0.1 * frame as f32;
+            Rigid { translation: Vec3::Z * (0.01 * s * (1.0 - phase.cos())), ..anchor }
+        };
+        let obstacles = [MovingObstacle { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
+        simulation.step(&Drive {
+            dt: FRAME,
+            anchor,
+            roots: &roots,
+            obstacles: &obstacles,
+            air: Air::default(),
+        });
+        let measure = simulation.measure(&obstacles);
+        assert_eq!(measure.non_finite, 0);
+        deepest = deepest.max(measure.max_depth as f32);
+    }
+    let mut points = vec![Vec3::ZERO; simulation.point_count()];
+    simulation.write_points(&mut points);
+    (points.iter().map(|p| *p / s).collect(), deepest / s)
+}
+
+#[test]
+fn hair_falls_over_every_shape_at_a_tenth_and_at_ten_times() {
+    for (k, (name, shape)) in shapes(1.0).into_iter().enumerate() {
+        let (usual, depth) = fall(&shape, 1.0);
+        assert!(depth < 1e-5 * LENGTH, "{name}: {depth} m deep");
+        for s in [0.1, 10.0] {
+            let (points, depth) = fall(&shapes(s)[k].1, s);
+            let off = points.iter().zip(&usual).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+            println!("{name} at {s}: {depth} deep, {off} off");
+            assert!(depth < 1e-5 * LENGTH, "{name} at {s}: {depth} deep");
+            assert!(off < 0.005 * LENGTH, "{name} at {s}: {off} off");
+        }
+    }
+}
