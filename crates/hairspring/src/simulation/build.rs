@@ -122,7 +122,7 @@ impl Simulation {
         };
         simulation.fill(materials, obstacles);
         let springs = simulation.tiles.iter().any(|tile| tile.model == Elastic::Springs);
-        let rows = |at: usize| simulation.state.iter().map(|rows| rows[at].clone()).collect();
+        let rows = |at: usize| simulation.state.iter().map(|rows| rows[at]).collect();
         simulation.tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
         simulation
     }
