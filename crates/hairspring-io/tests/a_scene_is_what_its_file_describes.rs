@@ -329,7 +329,7 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
             "[[collider]]\nshape.hull = { file = \"none.obj\" }",
             "it is the hull that scene.toml, line 6, names",
         ),
-        ("[[collider]]\nshape.hull = { point = [[0, 0, 0]] }", "did you mean `points`?"),
+        ("[[collider]]\nshape.hull = { point = [[0, 0, 0]] }", "available keys: points, file, scale"),
         ("[[sheet]]\nfile = \"head.obj\"\nthickness = 0", "line 8: `thickness` must be above 0 [m]"),
         (
             "[collision]\nfile = \"head.obj\"\nthickness = 0.1",

@@ -206,6 +206,24 @@ mod tests {
     }
 
     #[test]
+    fn random_points_have_a_hull_that_holds_them() {
+        // Xorshift (Marsaglia 2003).
+        let mut state = 1u64;
+        let mut next = || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 40) as f32 / (1 << 24) as f32 - 0.5
+        };
+        for set in 0..2000 {
+            let points: Vec<Vec3> = (0..6 + set % 30).map(|_| Vec3::new(next(), next(), next())).collect();
+            let hull = Hull::new(&points).unwrap();
+            let out = points.iter().map(|p| hull.distance_and_normal(*p).0).fold(f32::MIN, f32::max);
+            assert!(out.abs() < 1e-5, "the farthest of {} points is {out} m out", points.len());
+        }
+    }
+
+    #[test]
     fn points_that_span_no_volume_have_no_hull() {
         let line: Vec<Vec3> = (0..9).map(|k| Vec3::new(k as f32, 2.0 * k as f32, 0.1)).collect();
         let flat: Vec<Vec3> = corners(0.1).iter().map(|p| p.with_y(0.3 * p.x + 1.0)).collect();

@@ -30,7 +30,8 @@ const MAX_NODES: usize = 1 << 22;
 /// A mesh that need not be closed, with a thickness.
 ///
 /// # Missing
-/// A point that moves by more than the thickness in a substep may come out on the other side: nothing here knows where it was.
+/// - A point that moves by more than the thickness in a substep may come out on the other side: nothing here knows where it was.
+/// - Between two layers nearer to each other than twice the thickness there is no room, and a point there is pushed from one to the other.
 #[derive(Clone, Debug, Default)]
 pub struct Sheet {
     /// How far it reaches from its triangles, on both sides [m].
