@@ -1,6 +1,7 @@
 //! Every developer command, the same ones that CI runs: `cargo xtask NAME`.
 
 mod fuzz;
+mod gallery;
 mod run;
 mod test;
 
@@ -10,6 +11,7 @@ const HELP: &str = "cargo xtask NAME
   lint           formatting, clippy with warnings refused, the docs, and where all dependencies come from and under which licence
   fuzz [SECONDS] every fuzz target, so long each (default 60), two at a time
   golden         writes the golden pictures anew (look at them before you commit)
+  gallery        draws the pictures of docs/gallery.md anew (look at them too)
   ci             lint, fuzz, test: what CI runs";
 
 fn main() {
@@ -26,6 +28,7 @@ fn main() {
         ["golden"] => {
             run::cargo(&["test", "--release", "-p", "hairspring-view"], &[("HAIRSPRING_GOLDEN", "write")])
         }
+        ["gallery"] => gallery::draw(),
         ["ci"] => lint().and_then(|()| fuzz::all(60, fuzz::ALWAYS_THE_SAME)).and_then(|()| test::all()),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
