@@ -1,6 +1,7 @@
 //! What hair meets: spheres, capsules, boxes, planes, convex hulls, open sheets and the signed distance field of a closed mesh, each moving as
 //! a rigid piece; sheets and fields may deform besides.
 
+mod along;
 mod grid;
 mod hull;
 mod lattice;

@@ -96,6 +96,7 @@ impl Simulation {
             strand: vec![[Row::default(); strand::ROWS]; tiles.len()],
             rest: vec![[Row::default(); rest::ROWS]; first as usize],
             state: vec![[Row::default(); state::ROWS]; first as usize],
+            sunk: Vec::new(),
             history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],
             holds: Vec::new(),
             around: Around::default(),
@@ -124,7 +125,31 @@ impl Simulation {
         let springs = simulation.tiles.iter().any(|tile| tile.model == Elastic::Springs);
         let rows = |at: usize| simulation.state.iter().map(|rows| rows[at]).collect();
         simulation.tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
+        simulation.sunk = simulation.authored_depths(obstacles);
         simulation
+    }
+
+    /// How deep the segment to each point is at rest, see `sunk`.
+    fn authored_depths(&self, obstacles: &[ObstaclePose]) -> Vec<Row> {
+        let tiles: Vec<Vec<Row>> = self
+            .tiles
+            .par_iter()
+            .zip(self.lanes.par_chunks(LANES))
+            .map(|(tile, lanes)| {
+                let mut sunk = vec![Row::default(); tile.points as usize];
+                for (lane, s) in lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+                    let points = simulated_points(tile.model, self.groom.strand(*s as usize));
+                    let stride = tile.model.stride();
+                    for i in (2 * stride..points.len()).step_by(stride) {
+                        let depth = obstacles.iter().map(|o| o.least_distance(points[i - stride], points[i]));
+                        sunk[i].0[lane] = depth.fold(0.0, f32::min);
+                    }
+                }
+                sunk
+            })
+            .collect();
+        let none = tiles.iter().flatten().all(|row| row.0 == [0.0; LANES]);
+        if none { Vec::new() } else { tiles.concat() }
     }
 
     fn fill(&mut self, materials: &[Material], obstacles: &[ObstaclePose]) {

@@ -52,6 +52,9 @@ pub struct Simulation {
     strand: Vec<StrandRows>,
     rest: Vec<RestRows>,
     state: Vec<StateRows>,
+    /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]; as long as `state`, or empty where
+    /// none was.
+    sunk: Vec<Row>,
     /// As long as `state` for the integrator of second order, else empty.
     history: Vec<HistoryRows>,
     /// What holds points from outside, for each tile; empty where nothing does.
@@ -122,6 +125,7 @@ impl Simulation {
         size_of_val(&self.strand[..])
             + size_of_val(&self.rest[..])
             + size_of_val(&self.state[..])
+            + size_of_val(&self.sunk[..])
             + size_of_val(&self.history[..])
             + self.around.bytes()
             + self.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
@@ -205,6 +209,12 @@ impl Simulation {
     fn rest(&self, place: usize, i: usize, component: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
         self.rest[self.tiles[tile].first as usize + i][component].0[lane]
+    }
+
+    /// How deep the segment to point `i` was authored, 0 or less [m].
+    fn sunk(&self, place: usize, i: usize) -> f32 {
+        let (tile, lane) = (place / LANES, place % LANES);
+        self.sunk.get(self.tiles[tile].first as usize + i).map_or(0.0, |row| row.0[lane])
     }
 
     /// World position of a root at the end of the last step.

@@ -1,0 +1,120 @@
+//! Promise: a measure tells what is inside of a collider between points too: how many segments, how many of them deeper than a millimetre, and
+//! how deep the deepest is, below where it was authored.
+//!
+//! The strand is straight and has segments of 2 cm along X, and shapes are put at the middle of one of them: their depth there is known.
+
+use glam::{Mat3, Quat, Vec3};
+use hairspring::{
+    collide::{Obstacle, ObstaclePose, Rigid},
+    groom::Groom,
+    material::{Material, Model},
+    scene::Solver,
+    simulation::{Measure, MovingObstacle, Simulation},
+};
+use proptest::prelude::*;
+use std::sync::Arc;
+
+const SEGMENT: f32 = 0.02;
+
+/// The middle of the fifth segment.
+const MIDDLE: Vec3 = Vec3::new(4.5 * SEGMENT, 0.0, 0.0);
+
+/// Measures the strand as it is authored against `shape`, which it was told of at rest or not.
+fn measure(model: Model, shape: &Obstacle, told: bool) -> Measure {
+    let points = (0..12).map(|i| Vec3::X * (SEGMENT * i as f32));
+    let groom = Arc::new(Groom::from_strands([points.collect::<Vec<_>>()], 40e-6));
+    let still = Rigid::default();
+    let rest = ObstaclePose::new(shape.clone(), still.matrix(), still.matrix(), 1.0);
+    let simulation = Simulation::new(
+        groom,
+        &[0],
+        &[Material { model, ..Material::default() }],
+        Solver::default(),
+        Vec3::NEG_Y * 9.81,
+        still,
+        if told { std::slice::from_ref(&rest) } else { &[] },
+    );
+    simulation.measure(&[MovingObstacle { shape: shape.clone(), start: still, end: still }])
+}
+
+/// Shapes that reach `depth` [m] over the middle of the fifth segment from below, and over nothing else.
+fn shapes(depth: f32) -> [(&'static str, Obstacle); 3] {
+    let top = MIDDLE + Vec3::Y * depth;
+    let radius = 0.008;
+    let below = top - Vec3::Y * radius;
+    // A box on its edge: a place on the way down from the edge is 1/√2 as far from both faces.
+    let (half, edge) = (0.05, MIDDLE + Vec3::Y * (depth * 2f32.sqrt()));
+    [
+        ("ball", Obstacle::Sphere { center: below, radius }),
+        ("rod", Obstacle::Capsule { a: below - Vec3::Z, b: below + Vec3::Z, radius }),
+        (
+            "edge",
+            Obstacle::Cuboid {
+                center: edge - Vec3::Y * (half * 2f32.sqrt()),
+                half: Vec3::splat(half),
+                axes: Mat3::from_quat(Quat::from_rotation_z(std::f32::consts::FRAC_PI_4)),
+            },
+        ),
+    ]
+}
+
+#[test]
+fn a_segment_is_as_deep_as_its_middle() {
+    for model in Model::ALL {
+        for (depth, deep) in [(4e-4, 0), (1.5e-3, 1), (3e-3, 1)] {
+            for (name, shape) in shapes(depth) {
+                let found = measure(model, &shape, false);
+                assert_eq!(found.inside_points, 0, "{name}, {model:?}: {found:?}");
+                let counts = (found.inside_segments, found.deep_segments);
+                assert_eq!(counts, (1, deep), "{name}, {model:?}, {depth} m: {found:?}");
+                let off = (found.segment_depth - f64::from(depth)).abs();
+                assert!(off < 2e-7, "{name}, {model:?}: {} m, not {depth}", found.segment_depth);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_was_authored_inside_is_not_counted() {
+    for model in Model::ALL {
+        for (name, shape) in shapes(3e-3) {
+            let found = measure(model, &shape, true);
+            let counts = (found.inside_segments, found.deep_segments, found.segment_depth);
+            assert_eq!(counts, (0, 0, 0.0), "{name}, {model:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_clear_is_not_counted() {
+    for (name, shape) in shapes(-1e-4) {
+        let found = measure(Model::Auto, &shape, false);
+        assert_eq!((found.inside_segments, found.segment_depth), (0, 0.0), "{name}");
+    }
+}
+
+proptest! {
+    /// Of a ball the nearest place of a segment is known: what is found there is no deeper, by an eighth of the segment less deep at most,
+    /// and on the right side of the surface where the whole segment is outside.
+    #[test]
+    fn a_ball_is_found_wherever_it_is_met(ends in prop::array::uniform6(-1.0f32..1.0), radius in 0.01f32..0.8) {
+        let [a, b] = [Vec3::from_slice(&ends[..3]), Vec3::from_slice(&ends[3..])];
+        let e = b - a;
+        let at = (-a.dot(e) / e.length_squared().max(1e-12)).clamp(0.0, 1.0);
+        let exact = a.lerp(b, at).length() - radius;
+        let found = Obstacle::Sphere { center: Vec3::ZERO, radius }.least_distance(a, b);
+        prop_assert!(found > exact - 1e-6, "{found} is less than {exact}");
+        prop_assert!(exact > 0.0 || found < exact + e.length() / 8.0 + 1e-6, "{found}, and it is {exact}");
+    }
+}
+
+#[test]
+fn a_corner_is_cut_by_half_of_what_is_left_of_it() {
+    // From one face of a box to the other across its edge: the middle is as deep as either end is far from the edge, halved.
+    let shape = Obstacle::Cuboid { center: Vec3::ZERO, half: Vec3::splat(0.1), axes: Mat3::IDENTITY };
+    for cut in [0.001f32, 0.01, 0.05] {
+        let [a, b] = [Vec3::new(0.1 - 2.0 * cut, 0.1, 0.02), Vec3::new(0.1, 0.1 - 2.0 * cut, 0.02)];
+        let found = shape.least_distance(a, b);
+        assert!((found + cut).abs() < 1e-6, "{found}, and the corner is cut by {cut}");
+    }
+}
