@@ -205,7 +205,7 @@ fn a_reset_is_the_start_again() {
         let solver = Solver { integrator, ..Solver::default() };
         let mut head = Head::new(model, solver, volume);
         let (anchor, roots) = (Rigid::default(), head.roots(&Rigid::default()));
-        let mut run = |head: &mut Head| {
+        let run = |head: &mut Head| {
             head.simulation.place(anchor, &roots);
             head.pose = anchor;
             (1..30).for_each(|frame| head.step(sway(frame)));
