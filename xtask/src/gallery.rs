@@ -3,10 +3,9 @@
 use crate::run;
 
 /// Each scene of `examples/scenes` and the frame that shows it, at 30 frames a second.
-const SCENES: [(&str, u32); 8] = [
+const SCENES: [(&str, u32); 7] = [
     ("head-turns", 66),
-    ("ponytail-jumps", 36),
-    ("stroked", 40),
+    ("ponytail-jumps", 60),
     ("fan", 90),
     ("balloon", 90),
     ("on-end", 90),
