@@ -63,6 +63,11 @@ fn a_groom_alone_is_a_still() {
     let image = read_png(&folder.path().join("a.png")).unwrap();
     assert_eq!((image.width, image.height), (160, 96));
     assert!(drawn_pixels(&image) > 300, "{} pixels of hair", drawn_pixels(&image));
+    // The same picture for a page: its size is in the frame's header, and it is no copy of the PNG.
+    succeed(folder.path(), &[&["render", "groom.hair", "-o", "a.jpg"], &SIZE[..]].concat());
+    let jpeg = std::fs::read(folder.path().join("a.jpg")).unwrap();
+    let header = jpeg.windows(2).position(|w| w == [0xFF, 0xC0]).unwrap();
+    assert_eq!((&jpeg[..2], &jpeg[header + 5..header + 9]), (&[0xFF, 0xD8][..], &[0, 96, 0, 160][..]));
     // Nothing moves a groom alone.
     succeed(folder.path(), &[&["render", "groom.hair", "-o", "b.png", "--frames", "20"], &SIZE[..]].concat());
     let later = read_png(&folder.path().join("b.png")).unwrap();
