@@ -172,6 +172,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     let mut times = Times(Vec::with_capacity(frames as usize));
     let (mut stretch_ever, mut depth_ever, mut reset) = (0f64, 0f64, 0);
+    let mut segment_ever = 0f64;
     let mut measure = bench.measure();
     let mut progress = console.progress("simulating", frames);
     for frame in 1..=frames {
@@ -183,6 +184,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         measure = bench.measure();
         stretch_ever = stretch_ever.max(measure.stretch_max);
         depth_ever = depth_ever.max(measure.max_depth);
+        segment_ever = segment_ever.max(measure.segment_depth);
         progress.step(|| {
             format!(
                 "frame {frame}: {:.2} ms, stretch {:.4} % mean, {:.3} % worst, {} points inside",
@@ -229,6 +231,10 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "ms_per_frame_fastest": fastest,
             "head": options.head,
             "wind_m_s": options.wind,
+            "inside_segments": measure.inside_segments,
+            "deep_segments": measure.deep_segments,
+            "segment_depth_m": measure.segment_depth,
+            "segment_depth_m_ever": segment_ever,
             "volume": simulation.volume().map(|v| json!({
                 "method": method.name(),
                 "cell_m": v.cell,
@@ -258,6 +264,13 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         measure.inside_points,
         measure.max_depth * 1e3,
         depth_ever * 1e3
+    ));
+    say(format_args!(
+        "         {} segments inside at the end, {} of them deeper than 1 mm, {:.4} mm the deepest; {:.4} mm ever",
+        measure.inside_segments,
+        measure.deep_segments,
+        measure.segment_depth * 1e3,
+        segment_ever * 1e3
     ));
     if let Some(volume) = simulation.volume() {
         say(format_args!(

@@ -123,6 +123,14 @@ impl Totals {
         }
         let stages: Vec<String> = self.stages().iter().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
         say(format_args!("ms/frame {}", stages.join(", ")));
+        let contact = stage.measure();
+        say(format_args!(
+            "contact  {} points inside at the end, {:.3} mm the deepest; {} segments deeper than 1 mm, {:.3} mm the deepest",
+            grouped(contact.inside_points),
+            contact.max_depth * 1e3,
+            grouped(contact.deep_segments),
+            contact.segment_depth * 1e3
+        ));
         if self.reset_strands > 0 {
             say(format_args!(
                 "reset    {} strands turned non-finite and were put back to rest",
@@ -138,6 +146,7 @@ impl Totals {
         let (guide_points, points) = stage.simulated_points();
         let stages: Map<String, Value> =
             self.stages().into_iter().map(|(name, ms)| (name.into(), json!(ms))).collect();
+        let contact = stage.measure();
         let Value::Object(mut all) = extra else { return extra };
         let Value::Object(rest) = json!({
             "scene": stage.scene().name,
@@ -151,6 +160,11 @@ impl Totals {
             "threads": rayon::current_num_threads(),
             "simd": stage.instruction_set(),
             "reset_strands": self.reset_strands,
+            "inside_points": contact.inside_points,
+            "max_depth_m": contact.max_depth,
+            "inside_segments": contact.inside_segments,
+            "deep_segments": contact.deep_segments,
+            "segment_depth_m": contact.segment_depth,
             "ms_per_frame": stages,
             "seconds": self.began.elapsed().as_secs_f64(),
         }) else {

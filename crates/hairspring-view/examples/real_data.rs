@@ -3,7 +3,10 @@
 //! ```sh
 //! cargo run --release -p hairspring-view --example real_data -- examples/scenes/*.toml
 //! cargo run --release -p hairspring-view --example real_data -- --pictures DIR --size 640x480 SCENE.toml …
+//! cargo run --release -p hairspring-view --example real_data -- --contact examples/scenes/*.toml
 //! ```
+//!
+//! With `--contact` it is the table of `docs/contact.md` instead: what is inside of colliders.
 //!
 //! A scene plays to the end of its motion, but at most 10 s (2 s without one). Pictures are taken at the start, halfway and at
 //! the moment when hair is fastest.
@@ -31,7 +34,14 @@ struct Arguments {
     scenes: Vec<PathBuf>,
     pictures: Option<PathBuf>,
     size: [u32; 2],
+    /// Whether what is inside of colliders is asked for, and nothing else.
+    contact: bool,
 }
+
+/// Head of the table of `docs/contact.md`.
+const CONTACT: &str = "\
+| scene | substeps | frames | points that may meet | points inside | deepest point [mm] | segments inside | segments deeper than 1 mm | in so many frames | deepest segment [mm] | ms a frame, strands |
+| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = arguments()?;
@@ -39,6 +49,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{} threads; a frame is 1/60 s; depth is below where a point was authored.\n",
         rayon::current_num_threads()
     );
+    if arguments.contact {
+        println!("{CONTACT}");
+        for path in &arguments.scenes {
+            let scene = read_scene(path)?.value;
+            let name = scene.name.clone();
+            let (played, stage) = play(scene)?;
+            println!("| {name} | {} |", played.contact(&stage));
+        }
+        return Ok(());
+    }
     println!(
         "| scene | strands | points | simulated strands | time played [s] | ms a frame | of it body, strands, follow hairs | worst stretch [%] | points inside | worst depth [mm] | non-finite | moved in 1 s at rest, mean [mm] |"
     );
@@ -60,11 +80,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn arguments() -> Result<Arguments, String> {
-    let mut out = Arguments { scenes: Vec::new(), pictures: None, size: [960, 720] };
+    let mut out = Arguments { scenes: Vec::new(), pictures: None, size: [960, 720], contact: false };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         match word.as_str() {
             "--pictures" => out.pictures = Some(words.next().ok_or("--pictures needs a folder")?.into()),
+            "--contact" => out.contact = true,
             "--size" => {
                 let size = words.next().unwrap_or_default();
                 let sides = size.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
@@ -86,22 +107,42 @@ struct Played {
     worst: Measure,
     /// When hair was fastest [s].
     fastest: f32,
+    /// Frames in which a segment was deeper than 1 mm.
+    deep_frames: usize,
 }
 
 impl Played {
+    /// Of the frames' times [ms].
+    fn median(&self, of: impl Fn(&[f64; 3]) -> f64) -> f64 {
+        let mut all: Vec<f64> = self.frames.iter().map(of).collect();
+        all.sort_by(f64::total_cmp);
+        all[all.len() / 2]
+    }
+
+    /// Cells of the table of `docs/contact.md`, but the first.
+    fn contact(&self, stage: &Stage) -> String {
+        let Measure { inside_points, max_depth, inside_segments, deep_segments, segment_depth, .. } =
+            self.worst;
+        format!(
+            "{} | {} | {} | {inside_points} | {:.3} | {inside_segments} | {deep_segments} | {} | {:.3} | {:.1}",
+            stage.scene().solver.substeps,
+            self.frames.len(),
+            stage.simulated_points().0,
+            max_depth * 1e3,
+            self.deep_frames,
+            segment_depth * 1e3,
+            self.median(|f| f[1]),
+        )
+    }
+
     /// Cells of the table, from the strands to the depth.
     fn row(&self, stage: &Stage) -> String {
         let ((simulated, strands), (_, points)) = (stage.simulated_strands(), stage.simulated_points());
-        let median = |of: &dyn Fn(&[f64; 3]) -> f64| {
-            let mut all: Vec<f64> = self.frames.iter().map(of).collect();
-            all.sort_by(f64::total_cmp);
-            all[all.len() / 2]
-        };
-        let parts = [0, 1, 2].map(|k| format!("{:.1}", median(&|f| f[k])));
+        let parts = [0, 1, 2].map(|k| format!("{:.1}", self.median(|f| f[k])));
         format!(
             "{strands} | {points} | {simulated} | {:.1} | {:.1} | {} | {:.2} | {} | {:.3} | {}",
             self.duration,
-            median(&|f| f.iter().sum()),
+            self.median(|f| f.iter().sum()),
             parts.join(", "),
             self.worst.stretch_max * 100.0,
             self.worst.inside_points,
@@ -121,12 +162,16 @@ fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
         if measure.speed_max > played.worst.speed_max {
             played.fastest = stage.time();
         }
+        played.deep_frames += usize::from(measure.deep_segments > 0);
         let worst = &mut played.worst;
         *worst = Measure {
             stretch_mean: worst.stretch_mean.max(measure.stretch_mean),
             stretch_max: worst.stretch_max.max(measure.stretch_max),
             inside_points: worst.inside_points.max(measure.inside_points),
             max_depth: worst.max_depth.max(measure.max_depth),
+            inside_segments: worst.inside_segments.max(measure.inside_segments),
+            deep_segments: worst.deep_segments.max(measure.deep_segments),
+            segment_depth: worst.segment_depth.max(measure.segment_depth),
             non_finite: worst.non_finite + measure.non_finite + report.step.reset_strands,
             speed_max: worst.speed_max.max(measure.speed_max),
         };

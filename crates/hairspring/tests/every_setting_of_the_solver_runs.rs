@@ -1,15 +1,15 @@
-//! Promise: every integrator runs with every model and either quality, and what comes out is hair.
+//! Promise: every integrator runs with every model, either quality and every response of colliders, and what comes out is hair.
 //!
 //! A small groom, straight and curled, is shaken for half a second. Integrators that are shown as they are (see `compare`) may stretch it;
 //! none may lose a point to what is not a number, but those that say so: explicit ones, at a step that they do not bear.
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::{Obstacle, Rigid},
     groom::Groom,
     material::{Material, Model},
-    scene::{Integrator, Quality, Solver},
-    simulation::{Air, Drive, Simulation},
+    scene::{Contact, Integrator, Quality, Solver},
+    simulation::{Air, Drive, MovingObstacle, Simulation},
 };
 use std::sync::Arc;
 
@@ -62,6 +62,59 @@ fn with_every_model_and_quality() {
                         m.stretch_max < 0.011,
                         "{integrator:?}, {quality:?}, {model:?}: stretch {}",
                         m.stretch_max
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn with_every_response_of_colliders() {
+    let groom = Arc::new(Groom::from_strands([strand(0.0), strand(0.01)], 40e-6));
+    let ball = Obstacle::Sphere { center: Vec3::new(0.0, -0.1, 0.0), radius: 0.03 };
+    for integrator in Integrator::ALL {
+        for contact in Contact::ALL {
+            for model in Model::ALL {
+                let explicit = matches!(integrator, Integrator::ExplicitEuler | Integrator::Verlet);
+                let substeps = if explicit { 400 } else { 4 };
+                let solver = Solver { integrator, contact, substeps, ..Solver::default() };
+                let material = Material { model, ..Material::default() };
+                let gravity = Vec3::NEG_Y * 9.81;
+                let mut simulation = Simulation::new(
+                    groom.clone(),
+                    &[0, 1],
+                    &[material],
+                    solver,
+                    gravity,
+                    Rigid::default(),
+                    &[],
+                );
+                // A ball comes in from the side at 0.5 m/s and stays.
+                let at = |frame: i32| Rigid {
+                    translation: Vec3::Z * (0.12 - frame as f32 / 120.0).max(0.0),
+                    ..Rigid::default()
+                };
+                for frame in 0..60 {
+                    let obstacle =
+                        MovingObstacle { shape: ball.clone(), start: at(frame), end: at(frame + 1) };
+                    simulation.step(&Drive {
+                        dt: 1.0 / 60.0,
+                        anchor: Rigid::default(),
+                        roots: &[Rigid::default(); 2],
+                        obstacles: &[obstacle],
+                        air: Air::default(),
+                    });
+                }
+                let m =
+                    simulation.measure(&[MovingObstacle { shape: ball.clone(), start: at(60), end: at(60) }]);
+                println!("{integrator:?}, {contact:?}, {model:?}: {m:?}");
+                assert_eq!(m.non_finite, 0, "{integrator:?}, {contact:?}, {model:?}");
+                if matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2) {
+                    assert!(
+                        m.max_depth < 1e-3,
+                        "{integrator:?}, {contact:?}, {model:?}: {} m deep",
+                        m.max_depth
                     );
                 }
             }

@@ -158,15 +158,18 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         }
     }
     for collider in &scene.collider {
-        first_failure(
-            text,
-            section("[[collider]]"),
-            &[(
+        let path = &collider.path;
+        let ordered = path.windows(2).all(|w| w[0].time < w[1].time);
+        let finite_path = path.iter().all(|p| from_0(p.time) && finite(p.position));
+        let checks = [
+            (
                 sound(&collider.shape),
                 "shape",
                 "finite, with a radius or edges above 0 [m] or a normal that is not 0",
-            )],
-        )?;
+            ),
+            (ordered && finite_path, "path", "of finite places, in order of `time`, from 0 on [s]"),
+        ];
+        first_failure(text, section("[[collider]]"), &checks)?;
     }
     let (wind, solver) = (&scene.wind, &scene.solver);
     let winds = [

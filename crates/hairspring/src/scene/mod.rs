@@ -10,7 +10,8 @@ pub mod swing;
 pub use camera::Camera;
 pub use look::{HairColor, HairLook};
 pub use settings::{
-    Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
+    Collider, Contact, Effects, Guides, Integrator, Quality, Shape, Solver, Volume, VolumeMethod, Waypoint,
+    Wind,
 };
 
 use crate::{

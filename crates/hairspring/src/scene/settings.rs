@@ -72,6 +72,29 @@ pub struct Solver {
     pub jump: f32,
     /// Whether materials' ghost rest shapes pull. Default true; no material has one by default.
     pub ghost: bool,
+    /// How colliders answer hair that comes in. Default `both`.
+    pub contact: Contact,
+}
+
+/// How colliders answer hair that comes in (proposal §3.3). What a fast body sweeps over is carried along by all of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Contact {
+    /// A force in the solve, and at the end of a substep the nearest free position for what the solve could not know: what lands is out at
+    /// once, and what rests is in balance with tension and weight. The default.
+    #[default]
+    Both,
+    /// A repulsive force alone, implicit in the solve: it grows with the depth and from substep to substep, so that hair gives way a little where it
+    /// lands. For the implicit integrators; with the others as `projection`.
+    Penalty,
+    /// The nearest free position alone, the motion inward stopped (Liu 2013): hair under load sinks in and is pushed out again in every
+    /// substep.
+    Projection,
+}
+
+impl Contact {
+    /// All of them.
+    pub const ALL: [Contact; 3] = [Self::Both, Self::Penalty, Self::Projection];
 }
 
 /// How positions and velocities come out of a substep (DESIGN §4); all on the same strands, to be compared.
@@ -144,6 +167,7 @@ impl Default for Solver {
             inertia: 1.0,
             jump: 1.0,
             ghost: true,
+            contact: Contact::default(),
         }
     }
 }
@@ -211,6 +235,35 @@ pub struct Collider {
     pub joint: Option<String>,
     /// The shape, in the space of the body's rest pose [m].
     pub shape: Shape,
+    /// How it moves besides: a hand that strokes, a rod that is swung. Places in order of time, with an even speed between them; it stays at the
+    /// last, and is at the first before that. Default: none.
+    #[serde(default)]
+    pub path: Vec<Waypoint>,
+}
+
+impl Collider {
+    /// How far it is from where its joint has it, `time` [s] after the start [m].
+    pub fn offset(&self, time: f32) -> Vec3 {
+        let next = self.path.partition_point(|place| place.time <= time);
+        let (Some(from), Some(to)) =
+            (self.path.get(next.saturating_sub(1)), self.path.get(next).or(self.path.last()))
+        else {
+            return Vec3::ZERO;
+        };
+        let span = to.time - from.time;
+        let t = if span > 0.0 { ((time - from.time) / span).clamp(0.0, 1.0) } else { 0.0 };
+        from.position.lerp(to.position, t)
+    }
+}
+
+/// Where a collider is at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Waypoint {
+    /// When, since the start [s]; after that of the place before.
+    pub time: f32,
+    /// How far from its shape's own place [m], in the space of the body's rest pose.
+    pub position: Vec3,
 }
 
 /// The shapes of a [`Collider`].

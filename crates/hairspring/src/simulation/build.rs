@@ -95,6 +95,7 @@ impl Simulation {
             strand: vec![[Row::default(); strand::ROWS]; tiles.len()],
             rest: vec![[Row::default(); rest::ROWS]; first as usize],
             state: vec![[Row::default(); state::ROWS]; first as usize],
+            sunk: Vec::new(),
             history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],
             holds: Vec::new(),
             around: Around::default(),
@@ -116,6 +117,7 @@ impl Simulation {
         let springs = simulation.tiles.iter().any(|tile| tile.model == Elastic::Springs);
         let rows = |at: usize| simulation.state.iter().map(|rows| rows[at].clone()).collect();
         simulation.tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
+        simulation.sunk = simulation.authored_depths(obstacles);
         simulation
     }
 
@@ -189,6 +191,24 @@ impl Simulation {
                 start
             })
             .sum();
+    }
+}
+
+impl Simulation {
+    /// How deep the segment to each point is at rest, see `sunk`.
+    fn authored_depths(&self, obstacles: &[ObstaclePose]) -> Vec<Row> {
+        let mut sunk = vec![Row::default(); self.state.len()];
+        for &place in &self.places {
+            let place = place as usize;
+            let (tile, lane) = (self.tiles[place / LANES], place % LANES);
+            let points = simulated_points(tile.model, self.groom.strand(self.lanes[place] as usize));
+            let stride = tile.model.stride();
+            for i in (2 * stride..points.len()).step_by(stride) {
+                let depth = obstacles.iter().map(|o| o.least_distance(points[i - stride], points[i]));
+                sunk[tile.first as usize + i].0[lane] = depth.fold(0.0, f32::min);
+            }
+        }
+        if sunk.iter().all(|row| row.0 == [0.0; LANES]) { Vec::new() } else { sunk }
     }
 }
 

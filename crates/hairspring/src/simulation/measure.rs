@@ -18,6 +18,13 @@ pub struct Measure {
     pub inside_points: usize,
     /// Depth of the deepest of them [m].
     pub max_depth: f64,
+    /// Segments of which some place is more than a micrometre deeper inside a collider than any place of them was authored; looked at at
+    /// each eighth of their length.
+    pub inside_segments: usize,
+    /// Those of them that are more than a millimetre deeper.
+    pub deep_segments: usize,
+    /// Depth of the deepest of them [m].
+    pub segment_depth: f64,
     /// Numbers of state that are NaN or infinite.
     pub non_finite: usize,
     /// Fastest point [m/s].
@@ -37,6 +44,9 @@ impl Simulation {
                         stretch_max: a.stretch_max.max(b.stretch_max),
                         inside_points: a.inside_points + b.inside_points,
                         max_depth: a.max_depth.max(b.max_depth),
+                        inside_segments: a.inside_segments + b.inside_segments,
+                        deep_segments: a.deep_segments + b.deep_segments,
+                        segment_depth: a.segment_depth.max(b.segment_depth),
                         non_finite: a.non_finite + b.non_finite,
                         speed_max: a.speed_max.max(b.speed_max),
                     };
@@ -56,6 +66,7 @@ impl Simulation {
         let root = self.root_position(place);
         let n = self.simulated_points(place);
         let stride = self.tiles[place / LANES].model.stride();
+        let mut before = glam::Vec3::ZERO;
         for (i, x) in self.particles(place).enumerate() {
             let v = self.vector(place, i, state::V);
             out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
@@ -77,6 +88,20 @@ impl Simulation {
                     .fold(0.0, f32::max) as f64;
                 out.max_depth = out.max_depth.max(depth);
                 out.inside_points += (depth > 1e-6) as usize;
+                let sunk = self.sunk(place, i);
+                let [a, b] = [root + before, root + x];
+                let depth = poses
+                    .iter()
+                    .map(|(o, pose)| {
+                        sunk - o.shape.least_distance(pose.inverse_point(a), pose.inverse_point(b))
+                    })
+                    .fold(0.0, f32::max) as f64;
+                out.segment_depth = out.segment_depth.max(depth);
+                out.inside_segments += (depth > 1e-6) as usize;
+                out.deep_segments += (depth > 1e-3) as usize;
+            }
+            if i % stride == 0 {
+                before = x;
             }
         }
         (sum, segments, out)

@@ -39,7 +39,7 @@ use std::sync::Arc;
 /// same bits for any number of threads. Strands meet the body, the air, and each other as a volume (see [`Simulation::set_volume`]).
 ///
 /// # Missing
-/// Hair against hair as strands, contact between points (a segment may cut a corner that its ends stay out of), wind sheltered by the body, cutting and wetting: each is an issue of its own.
+/// Hair against hair as strands, wind sheltered by the body, cutting and wetting: each is an issue of its own.
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
@@ -48,6 +48,9 @@ pub struct Simulation {
     strand: Vec<StrandRows>,
     rest: Vec<RestRows>,
     state: Vec<StateRows>,
+    /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]; as long as `state`, or empty where
+    /// none was.
+    sunk: Vec<Row>,
     /// As long as `state` for the integrator of second order, else empty.
     history: Vec<HistoryRows>,
     /// What holds points from outside, for each tile; empty where nothing does.
@@ -108,6 +111,7 @@ impl Simulation {
             + size_of_val(&self.rest[..])
             + size_of_val(&self.state[..])
             + size_of_val(&self.history[..])
+            + size_of_val(&self.sunk[..])
             + self.around.bytes()
             + self.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
             + self.volume.as_ref().map_or(0, |volume| volume.bytes())
@@ -184,6 +188,12 @@ impl Simulation {
     fn rest(&self, place: usize, i: usize, component: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
         self.rest[self.tiles[tile].first as usize + i][component].0[lane]
+    }
+
+    /// How deep the segment to point `i` was authored, 0 or less [m].
+    fn sunk(&self, place: usize, i: usize) -> f32 {
+        let (tile, lane) = (place / LANES, place % LANES);
+        self.sunk.get(self.tiles[tile].first as usize + i).map_or(0.0, |row| row.0[lane])
     }
 
     /// World position of a root at the end of the last step.

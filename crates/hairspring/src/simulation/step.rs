@@ -136,6 +136,7 @@ impl Simulation {
                 push: &self.around.push,
                 grip: &self.around.grip,
                 air: &self.around.air,
+                sunk: &self.sunk,
                 holds: &self.holds,
             },
         );
@@ -163,6 +164,7 @@ impl Simulation {
         };
         interval.continues = (interval.h / self.last_h - 1.0).abs() < 1e-3;
         interval.projections = solver.projections;
+        interval.contact = solver.contact;
         interval.gravity = self.settings.gravity;
         interval.anchor = from.matrix();
         interval.substeps.resize_with(count as usize, Substep::default);
@@ -213,6 +215,7 @@ struct Piece<'a> {
     push: &'a [[Row; 3]],
     grip: &'a [[Row; grip::ROWS]],
     air: &'a [[Row; 3]],
+    sunk: &'a [Row],
     holds: &'a [Vec<HoldRows>],
 }
 
@@ -228,9 +231,10 @@ impl<'a> Piece<'a> {
         let (push, more_push) = self.push.split_at(points.min(self.push.len()));
         let (grip, more_grip) = self.grip.split_at(points.min(self.grip.len()));
         let (air, more_air) = self.air.split_at(points.min(self.air.len()));
+        let (sunk, more_sunk) = self.sunk.split_at(points.min(self.sunk.len()));
         let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
         (
-            Piece { tiles, strand, rest, state, history, push, grip, air, holds },
+            Piece { tiles, strand, rest, state, history, push, grip, air, sunk, holds },
             Piece {
                 tiles: more_tiles,
                 strand: more_strand,
@@ -240,6 +244,7 @@ impl<'a> Piece<'a> {
                 push: more_push,
                 grip: more_grip,
                 air: more_air,
+                sunk: more_sunk,
                 holds: more_holds,
             },
         )
@@ -258,7 +263,8 @@ impl<'a> Piece<'a> {
             history: if self.history.is_empty() { &mut [] } else { &mut self.history[points.clone()] },
             push: if self.push.is_empty() { &[] } else { &self.push[points.clone()] },
             grip: if self.grip.is_empty() { &[] } else { &self.grip[points.clone()] },
-            air: if self.air.is_empty() { &[] } else { &self.air[points] },
+            air: if self.air.is_empty() { &[] } else { &self.air[points.clone()] },
+            sunk: if self.sunk.is_empty() { &[] } else { &self.sunk[points] },
             holds: self.holds.get(k).map_or(&[], |holds| holds),
         }
     }

@@ -108,7 +108,7 @@ impl StagedBody {
             };
             staged.add(collider.shape.obstacle(), joint);
         }
-        staged.repose();
+        staged.repose(scene, 0.0);
         Ok(staged)
     }
 
@@ -180,7 +180,7 @@ impl StagedBody {
         if let Some(body) = scene.collision.as_ref().or(scene.body.as_ref()) {
             self.rebuild_surface(body, false);
         }
-        self.repose();
+        self.repose(scene, time);
     }
 
     /// Poses the body for time `time` [s] without motion.
@@ -189,7 +189,7 @@ impl StagedBody {
         if let Some(body) = scene.collision.as_ref().or(scene.body.as_ref()) {
             self.rebuild_surface(body, true);
         }
-        self.repose();
+        self.repose(scene, time);
         for obstacle in &mut self.obstacles {
             obstacle.start = obstacle.end;
         }
@@ -205,8 +205,8 @@ impl StagedBody {
         }
     }
 
-    /// Where obstacles are in the current pose.
-    fn repose(&mut self) {
+    /// Where obstacles are in the current pose, at time `time` [s].
+    fn repose(&mut self, scene: &Scene, time: f32) {
         let field_anchor = self.surface.is_some().then(|| self.anchor());
         for (k, (obstacle, joint)) in self.obstacles.iter_mut().zip(&self.joints).enumerate() {
             obstacle.end = match (joint, field_anchor) {
@@ -214,6 +214,10 @@ impl StagedBody {
                 (Some(j), _) => Rigid::from_affine(&(self.world[*j] * self.rest[*j].inverse())),
                 (None, _) => Rigid::default(),
             };
+        }
+        // The scene's colliders are the last.
+        for (obstacle, collider) in self.obstacles.iter_mut().rev().zip(scene.colliders.iter().rev()) {
+            obstacle.end.translation = obstacle.end.point(collider.offset(time));
         }
     }
 

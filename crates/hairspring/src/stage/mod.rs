@@ -193,6 +193,9 @@ impl Stage {
             stretch_max: sum.stretch_max.max(m.stretch_max),
             inside_points: sum.inside_points + m.inside_points,
             max_depth: sum.max_depth.max(m.max_depth),
+            inside_segments: sum.inside_segments + m.inside_segments,
+            deep_segments: sum.deep_segments + m.deep_segments,
+            segment_depth: sum.segment_depth.max(m.segment_depth),
             non_finite: sum.non_finite + m.non_finite,
             speed_max: sum.speed_max.max(m.speed_max),
         })

@@ -26,6 +26,7 @@ use super::{
     press::{press, relieve},
     root::Root,
     scratch::Scratch,
+    span::{press_segment, relieve_segment},
     tile::{Tile, grip, history, hold, rest, state, strand},
 };
 use crate::collide::ObstaclePose;
@@ -264,6 +265,9 @@ fn add_point<S, M, const B: usize, const N: usize>(
     if on_strand {
         let work = &mut scratch.contacts[i + 1];
         press(simd, step, tile, (i + 1, x, drift(), way()), band, work);
+        if i + 1 + M::STRIDE < tile.rest.len() {
+            press_segment(simd, (sweep, step), tile, (i + 1, x, drift(), way()), band, scratch);
+        }
     }
 }
 
@@ -304,6 +308,11 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
             if i.is_multiple_of(M::STRIDE) {
                 relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
             }
+        }
+        if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
+            // Of the point after this one, and of the one after that.
+            let outer = solved.moved[M::STRIDE - 1];
+            relieve_segment(simd, step, tile, (i, [delta, outer]), &scratch.contacts[i]);
         }
         solved.i = i;
         let fixed = &scratch.fixed[i - i % M::STRIDE];

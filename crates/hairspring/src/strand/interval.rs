@@ -1,6 +1,9 @@
 //! What every tile is told about an exchange interval: the substeps, and where root anchor, colliders and air are in each.
 
-use crate::{collide::ObstaclePose, scene::Integrator};
+use crate::{
+    collide::ObstaclePose,
+    scene::{Contact, Integrator},
+};
 use glam::{Mat3, Vec3};
 
 /// The substeps of one exchange interval (a frame), shared by all tiles.
@@ -16,6 +19,8 @@ pub struct Interval {
     pub continues: bool,
     /// Iterations of fast projection a substep.
     pub projections: u32,
+    /// How colliders answer.
+    pub contact: Contact,
     /// Gravity [m/s²].
     pub gravity: Vec3,
     /// Anchor pose at the start of the interval.

@@ -1,4 +1,4 @@
-//! The last word on a substep: no segment longer or shorter than ±1 %, no point inside a collider, and then the velocities.
+//! The last word on a substep: no segment longer or shorter than ±1 %, no point and no segment inside a collider, and then the velocities.
 //!
 //! One sweep from root to tip. Each segment is clamped to its rest length ± [`LIMIT`] by moving the outer point (follow the
 //! leader, Müller 2012, but only past the limit); a point inside a collider moves to the nearest free position with
@@ -10,6 +10,7 @@ use super::{
     lanes::{F, V3, load, store},
     root::Root,
     scratch::Scratch,
+    segment::clear_segment,
     tile::{Tile, history, rest, state},
     truss::beside,
 };
@@ -22,6 +23,8 @@ pub struct Finish {
     pub limit: f32,
     /// Force over mass that a push into the next solve is worth, over its length [1/s²]; 0 where contact is not in the solve.
     pub press: f32,
+    /// Whether what is inside a collider is moved out of it, and not only pressed.
+    pub moves: bool,
     /// Whether `scratch.kick` is added to the velocities.
     pub kicks: bool,
 }
@@ -68,7 +71,7 @@ pub fn limit<S: Simd>(
         let near = step.obstacles.iter().any(|pose| pose.near(simd, world).any_true());
         if near || tether.wrong(e).any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
-            e = V3::select(free, place(simd, finish, step, tile, (i, stride, e), (&at, &tether)), e);
+            e = V3::select(free, place(simd, finish, step, tile, scratch, (i, stride, e), (&at, &tether)), e);
             shift = e - solved;
             let press = &mut tile.state[i][state::PRESS];
             store(free.select(load(simd, press), F::splat(simd, 0.0)), press);
@@ -96,6 +99,7 @@ fn place<S: Simd>(
     finish: &Finish,
     step: &Step<S>,
     tile: &mut Tile,
+    scratch: &Scratch,
     (i, stride, e): (usize, usize, V3<S>),
     (at, tether): (&Particle<S>, &Tether<S>),
 ) -> V3<S> {
@@ -105,7 +109,6 @@ fn place<S: Simd>(
     if stride == 2 {
         old += V3::load(simd, &tile.state[i - 1][state::EDGE..]);
     }
-    let mut press = load(simd, &tile.state[i][state::PRESS]);
     let mut e = tether.clamp(e);
     // Summed from the root, like in `press`: far from the world's origin a sum there would lose digits at every point.
     let in_world = |e: V3<S>| step.root.position + (at.x + e);
@@ -124,8 +127,10 @@ fn place<S: Simd>(
             // What of the push did not stop an approach presses on in the next solve (see `press`).
             let v = V3::load(simd, &tile.state[i][state::V..]);
             let approach = normal.dot(carried - v * F::splat(simd, step.h)).max(0.0);
+            let approach = if finish.moves { approach } else { F::splat(simd, 0.0) };
             let mass = load(simd, &tile.rest[i][rest::MASS]);
-            press += mass * finish.press * (depth - approach).max(0.0);
+            let press = &mut tile.state[i][state::PRESS];
+            store(load(simd, press) + mass * finish.press * (depth - approach).max(0.0), press);
             // The limit again, then out: both hold where they can, and where a strand is caught (behind an
             // ear) its length goes before its depth, so that it slips free in time.
             let mut q = tether.clamp(held);
@@ -133,19 +138,21 @@ fn place<S: Simd>(
                 let (distance, normal) = contact(simd, pose, in_world(q));
                 q = tether.clamp(tether.swing_out(q, normal, (clearance - distance).max(0.0)));
             }
-            e = V3::select(depth.simd_gt(0.0), q, e);
+            if finish.moves {
+                e = V3::select(depth.simd_gt(0.0), q, e);
+            }
         }
+        e = clear_segment(simd, (step, pose, finish), tile, scratch, (i, old, e), (at, tether));
     }
-    store(press, &mut tile.state[i][state::PRESS]);
     e
 }
 
 /// A particle on the walk from root to tip.
-struct Particle<S: Simd> {
+pub struct Particle<S: Simd> {
     /// Where it is, from the root [m].
-    x: V3<S>,
+    pub x: V3<S>,
     /// How far it went in the substep [m].
-    way: V3<S>,
+    pub way: V3<S>,
 }
 
 impl<S: Simd> Particle<S> {
@@ -188,11 +195,11 @@ fn write<S: Simd>(
 }
 
 /// What holds a point to the one before it, from which it is at `e`.
-struct Tether<S: Simd> {
+pub struct Tether<S: Simd> {
     /// Rest length of the segment [m].
-    length: F<S>,
+    pub length: F<S>,
     /// Largest relative change of it.
-    limit: f32,
+    pub limit: f32,
 }
 
 impl<S: Simd> Tether<S> {
@@ -206,7 +213,7 @@ impl<S: Simd> Tether<S> {
 
     /// The point moved along the segment until its length is within the limit.
     #[inline(always)]
-    fn clamp(&self, e: V3<S>) -> V3<S> {
+    pub fn clamp(&self, e: V3<S>) -> V3<S> {
         let (l, u) = e.length_and_unit();
         let l = l.min(self.length * (1.0 + self.limit)).max(self.length * (1.0 - self.limit));
         V3::select(self.wrong(e), u * l, e)
@@ -216,7 +223,7 @@ impl<S: Simd> Tether<S> {
     /// hold at once. (Out and back in turn hardly moves a tip that meets the surface head on.) Where the point before is deeper than the
     /// segment is long, it points straight out.
     #[inline(always)]
-    fn swing_out(&self, e: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
+    pub fn swing_out(&self, e: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
         let (l, _) = e.length_and_unit();
         let along = e.dot(normal);
         let (_, side) = (e - normal * along).length_and_unit();

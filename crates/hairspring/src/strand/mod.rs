@@ -19,6 +19,9 @@ pub(crate) mod project;
 pub(crate) mod rest_shape;
 pub(crate) mod root;
 pub(crate) mod scratch;
+mod segment;
+mod span;
+mod sweep;
 pub(crate) mod tile;
 pub(crate) mod truss;
 

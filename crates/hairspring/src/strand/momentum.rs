@@ -53,6 +53,7 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         push: &[],
         grip: &[],
         air: &[],
+        sunk: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => match model {

@@ -14,7 +14,7 @@
 //! pulled harder than μN gathers speed. The secant is no stiffer than k: a strand at rest creeps by up to μN/k a substep (μ times
 //! 0.1 mm/s under its own weight, at four substeps), which is as little as positions in f32 can tell.
 //!
-//! Only points with N > 0 take part. It begins in `limit`, with the push that a point needed.
+//! Only points with N > 0 take part. It begins in `limit`, with the push that a point needed. Of segments: `span`.
 
 use super::{
     assemble::Step,
@@ -33,8 +33,14 @@ pub mod scratch {
     pub const NORMAL: usize = 0;
     /// Gap before the solve, negative inside [m].
     pub const GAP: usize = 3;
+    /// Of the segment from the point: its normal, 3 rows.
+    pub const SPAN_NORMAL: usize = 4;
+    /// Its gap before the solve, where it is least [m].
+    pub const SPAN_GAP: usize = 7;
+    /// Where that is: 0 at this point, 1 at the next.
+    pub const SPAN_AT: usize = 8;
     /// Rows a point.
-    pub const ROWS: usize = 4;
+    pub const ROWS: usize = 9;
 }
 
 /// Adds contact to point `i`, the second of the band's window, which is at `x` from the root, drifts by

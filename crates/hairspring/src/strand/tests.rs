@@ -308,6 +308,7 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
         push: &[],
         grip: &[],
         air: &[],
+        sunk: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => {

@@ -19,8 +19,10 @@ pub mod state {
     pub const NORMAL: usize = 7;
     /// Force with which a collider holds this point out, found by the last substep; 0 without contact [N].
     pub const PRESS: usize = 10;
+    /// Force with which a collider holds the segment from this point to the strand's next out, found by the last substep; 0 without contact [N].
+    pub const SPAN: usize = 11;
     /// Rows a point.
-    pub const ROWS: usize = 11;
+    pub const ROWS: usize = 12;
 }
 
 /// Rows of the rest shape a point.
@@ -175,6 +177,9 @@ pub struct Tile<'a> {
     pub grip: &'a [[Row; grip::ROWS]],
     /// Velocity of the air besides the wind of all points, frozen for the interval [m/s]: shape `[points]`, empty where there is none.
     pub air: &'a [[Row; 3]],
+    /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]: shape `[points]`, empty where none
+    /// was.
+    pub sunk: &'a [Row],
     /// What holds or pulls points, sorted by point.
     pub holds: &'a [HoldRows],
 }
@@ -192,6 +197,7 @@ impl Tile<'_> {
             push: &self.push[..all_or_none(self.push.is_empty())],
             grip: &self.grip[..all_or_none(self.grip.is_empty())],
             air: &self.air[..all_or_none(self.air.is_empty())],
+            sunk: &self.sunk[..all_or_none(self.sunk.is_empty())],
             ..*self
         }
     }

@@ -1,6 +1,7 @@
 //! One tile through one exchange interval, every substep while its points are in the first-level caches; one file an integrator.
 //!
-//! A substep is: root driven → the integrator's new positions → strain limit and contact, root to tip → velocities.
+//! A substep is: root driven → the integrator's new positions → what fast bodies carried along → strain limit and contact, root to tip →
+//! velocities.
 
 mod explicit;
 mod ftl;
@@ -16,9 +17,10 @@ use super::{
     model::{Model, Stretching},
     root::Root,
     scratch::Memory,
+    sweep::sweep,
     tile::{Tile, grip, rest, state},
 };
-use crate::scene::Integrator;
+use crate::scene::{Contact, Integrator};
 use fearless_simd::prelude::*;
 
 /// All substeps of `interval` for one tile.
@@ -78,11 +80,14 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
             second_order,
             obstacles: &substep.obstacles,
         };
-        let mut finish = Finish { limit: LIMIT, press: 0.0, kicks: false };
+        let mut finish = Finish { limit: LIMIT, press: 0.0, moves: true, kicks: false };
         match interval.integrator {
             Integrator::BackwardEuler | Integrator::Bdf2 => {
                 implicit::advance::<S, M, B, N>(simd, interval, &step, tile, scratch);
-                finish.press = step.inertia() / (step.h * step.h);
+                finish.moves = interval.contact != Contact::Penalty;
+                if interval.contact != Contact::Projection {
+                    finish.press = step.inertia() / (step.h * step.h);
+                }
             }
             Integrator::ExplicitEuler | Integrator::Verlet => {
                 finish.limit = f32::INFINITY;
@@ -99,6 +104,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
                 finish.kicks = true;
             }
         }
+        sweep(simd, M::STRIDE, &step, tile, scratch);
         limit(simd, M::STRIDE, &finish, &step, tile, scratch);
         continues = true;
     }
