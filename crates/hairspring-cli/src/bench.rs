@@ -12,8 +12,9 @@ use clap::Parser;
 use glam::Vec3;
 use hairspring::{
     material::{Material, Model},
+    neighbours::Neighbours,
     scene::{
-        Integrator, Quality, Solver, Volume, VolumeMethod, Wind,
+        self, Integrator, Quality, Solver, Volume, VolumeMethod, Wind,
         bench::{Bench, Head},
     },
     simulation::Simulation,
@@ -73,7 +74,7 @@ pub struct Options {
     #[arg(long, value_name = "NAME", default_value = DEVICES[0])]
     device: String,
 
-    /// Let hair meet hair as a volume: off, density, incompressible [default: off; density where no method is named]
+    /// Let hair meet hair: off; as a volume: density, incompressible; strand by strand: strands [default: off; density where no method is named]
     #[arg(long, value_name = "METHOD", num_args = 0..=1, default_value = VolumeMethod::Off.name(), default_missing_value = VolumeMethod::Density.name(), hide_default_value = true)]
     hair_hair: String,
 
@@ -97,6 +98,9 @@ pub struct Options {
     #[arg(long)]
     json: bool,
 }
+
+/// Hair on hair, strand by strand.
+const STRANDS: &str = "strands";
 
 const DEVICES: [&str; 1] = ["cpu"];
 
@@ -140,7 +144,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let quality = if options.high_quality { Quality::High } else { Quality::Normal };
     known("head", &options.head, &Head::ALL.map(Head::name))?;
     let head = Head::ALL.into_iter().find(|h| h.name() == options.head).unwrap_or_default();
-    known("method of hair on hair", &options.hair_hair, &VolumeMethod::ALL.map(VolumeMethod::name))?;
+    let methods = [&VolumeMethod::ALL.map(VolumeMethod::name)[..], &[STRANDS]].concat();
+    known("method of hair on hair", &options.hair_hair, &methods)?;
     let method = VolumeMethod::ALL.into_iter().find(|m| m.name() == options.hair_hair).unwrap_or_default();
     known("device", &options.device, &DEVICES)?;
     let benches = if options.table { table::cells().len() } else { 1 };
@@ -164,6 +169,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     );
     bench.wind = Wind { velocity: Vec3::Z * options.wind, gust: 0.5, gust_rate: 1.0 };
     bench.simulation.set_volume(&Volume { method, ..Volume::default() });
+    let strands_meet = scene::Neighbours { on: options.hair_hair == STRANDS, ..scene::Neighbours::default() };
+    bench.neighbours = Neighbours::new(&strands_meet, &[&bench.simulation]);
     if let Some(name) = &options.simd
         && !bench.simulation.use_instruction_set(name)
     {
@@ -210,7 +217,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "substeps": substeps,
             "frames": frames,
             "integrator": options.integrator,
-            "hair_hair": method != VolumeMethod::Off,
+            "hair_hair": options.hair_hair != VolumeMethod::Off.name(),
             "ms_per_frame_median": median,
             "ms_per_frame_p95": p95,
             "ns_per_point_substep": ns,
@@ -234,6 +241,13 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
                 "cell_m": v.cell,
                 "nodes": v.nodes,
                 "share": v.share,
+            })),
+            "neighbours": bench.neighbours.as_ref().map(|n| json!({
+                "thickness_m": n.report().thickness,
+                "near": n.report().near,
+                "contacts": n.report().contacts,
+                "bonds": n.report().bonds,
+                "bytes_per_point": n.bytes() as f64 / simulation.point_count() as f64,
             })),
         }));
         return Ok(());
@@ -266,6 +280,16 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             volume.cell * 1e3,
             grouped(volume.nodes),
             volume.share * 1e2
+        ));
+    }
+    if let Some(neighbours) = &bench.neighbours {
+        let met = neighbours.report();
+        say(format_args!(
+            "strands  {:.1} mm thick at most, {} pairs near, {} touch; {:.0} bytes a point more",
+            met.thickness * 1e3,
+            grouped(met.near),
+            grouped(met.contacts),
+            neighbours.bytes() as f64 / simulation.point_count() as f64
         ));
     }
     say(format_args!("memory   {bytes:.1} bytes a point"));

@@ -81,6 +81,9 @@ fn hair_meets_hair_when_asked() {
         assert!(found["volume"]["cell_m"].as_f64().unwrap() > 0.0, "{found}");
         assert!((0.1..1.1).contains(&found["volume"]["share"].as_f64().unwrap()), "{found}");
     }
+    let found = bench(&["--hair-hair", "strands"]);
+    assert!(found["hair_hair"] == true && found["volume"].is_null(), "{found}");
+    assert!(found["neighbours"]["contacts"].as_u64().unwrap() > 0, "{found}");
 }
 
 /// Everything on: the head as a field, wind, and hair on hair.

@@ -11,7 +11,7 @@ use glam::Vec3;
 use hairspring::{
     body::{Body, Clip},
     groom::Groom,
-    scene::{Guides, Scene, Shape, Volume, VolumeMethod},
+    scene::{Guides, Neighbours, Scene, Shape, Volume, VolumeMethod},
 };
 use hairspring_io::{Error, ErrorKind, Loaded, read_scene, scene::check_text, write_groom};
 use std::{fs, path::Path};
@@ -76,6 +76,10 @@ fn a_scene_is_what_its_file_describes() {
         [volume]
         method = "incompressible"
         cell = 0.02
+        [neighbours]
+        on = true
+        thickness = 0.004
+        stiction = 2e-6
     "#;
     let Loaded { value: scene, notes, .. } = read(folder.path(), text).unwrap();
     assert_eq!((scene.name.as_str(), scene.gravity), ("scene", Vec3::new(0.0, -1.6, 0.0)));
@@ -106,6 +110,8 @@ fn a_scene_is_what_its_file_describes() {
     assert_eq!(scene.solver, Default::default());
     let volume = Volume { method: VolumeMethod::Incompressible, cell: Some(0.02), ..Volume::default() };
     assert_eq!(scene.volume, volume);
+    let neighbours = Neighbours { on: true, thickness: Some(0.004), stiction: 2e-6, ..Neighbours::default() };
+    assert_eq!(scene.neighbours, neighbours);
 }
 
 #[test]
@@ -134,6 +140,10 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
         (format!("{GROOM}[volume]\nmethod = \"densty\"\n"), &["line 4", "did you mean `density`?"]),
         (format!("{GROOM}[volume]\ncell = 0\n"), &["line 4", "`cell` must be above 0 [m]"]),
         (format!("{GROOM}[volume]\nfriction = -1\n"), &["line 4", "`friction` must be 0 or more [1/s]"]),
+        (format!("{GROOM}[neighbours]\nthickness = 0\n"), &["line 4", "`thickness` must be above 0 [m]"]),
+        (format!("{GROOM}[neighbours]\nregain = -1\n"), &["line 4", "`regain` must be 0 or more [1/s]"]),
+        (format!("{GROOM}[neighbours]\nfriction = 2\n"), &["line 4", "`friction` must be 0 to 1"]),
+        (format!("{GROOM}[neighbours]\nstiction = -1\n"), &["line 4", "`stiction` must be 0 or more [N]"]),
         (
             format!("{GROOM}[material.a]\npreset = \"wavvy\"\n")
                 .replace("data\"\n", "data\"\nmaterial = \"a\"\n"),
@@ -285,12 +295,14 @@ fn the_page_leaves_no_setting_out() {
     let page = include_str!("../../../docs/scene.md");
     let material = hairspring::material::Material { radius: Some(1.0), ..Default::default() };
     let volume = hairspring::scene::Volume { cell: Some(1.0), ..Default::default() };
+    let neighbours = hairspring::scene::Neighbours { thickness: Some(1.0), ..Default::default() };
     for (name, fields) in [
         ("look", toml::Table::try_from(hairspring::scene::HairLook::default())),
         ("effects", toml::Table::try_from(hairspring::scene::Effects::default())),
         ("wind", toml::Table::try_from(hairspring::scene::Wind::default())),
         ("solver", toml::Table::try_from(hairspring::scene::Solver::default())),
         ("volume", toml::Table::try_from(volume)),
+        ("neighbours", toml::Table::try_from(neighbours)),
         ("camera", toml::Table::try_from(hairspring::scene::Camera::default())),
         ("material", toml::Table::try_from(material)),
     ] {

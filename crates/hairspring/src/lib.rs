@@ -9,6 +9,7 @@ pub mod collide;
 pub mod follow;
 pub mod groom;
 pub mod material;
+pub mod neighbours;
 pub mod scene;
 pub mod simulation;
 pub mod stage;

@@ -2,7 +2,10 @@
 //!
 //! A counting allocator around the system's; one thread, because a thread pool's own queues are not the simulation's.
 
-use hairspring::scene::{Solver, Volume, VolumeMethod, bench::Bench};
+use hairspring::{
+    neighbours::Neighbours,
+    scene::{self, Solver, Volume, VolumeMethod, bench::Bench},
+};
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     sync::atomic::{AtomicUsize, Ordering},
@@ -32,10 +35,13 @@ static ALLOCATOR: Counting = Counting;
 #[test]
 fn after_the_first_step_none_allocates() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    for method in VolumeMethod::ALL {
+    let volumes = VolumeMethod::ALL.map(|method| (method, false));
+    for (method, on) in volumes.into_iter().chain([(VolumeMethod::Off, true)]) {
         let counted = pool.install(|| {
             let mut bench = Bench::new(200, 16, Solver::default());
             bench.simulation.set_volume(&Volume { method, ..Volume::default() });
+            let meet = scene::Neighbours { on, ..scene::Neighbours::default() };
+            bench.neighbours = Neighbours::new(&meet, &[&bench.simulation]);
             bench.step();
             let before = COUNT.load(Ordering::Relaxed);
             for _ in 0..20 {
@@ -43,6 +49,11 @@ fn after_the_first_step_none_allocates() {
             }
             COUNT.load(Ordering::Relaxed) - before
         });
-        assert_eq!(counted, 0, "{counted} allocations in 20 steps, hair on hair {}", method.name());
+        assert_eq!(
+            counted,
+            0,
+            "{counted} allocations in 20 steps, hair on hair {}, strand by strand {on}",
+            method.name()
+        );
     }
 }

@@ -161,6 +161,14 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         (from_0(volume.regain), "regain", "0 or more [1/s]"),
     ];
     first_failure(text, section("[volume]"), &volumes)?;
+    let neighbours = &scene.neighbours;
+    let strands = [
+        (above_0(neighbours.thickness), "thickness", "above 0 [m]"),
+        (from_0(neighbours.regain), "regain", "0 or more [1/s]"),
+        ((0.0..=1.0).contains(&neighbours.friction), "friction", "0 to 1"),
+        (from_0(neighbours.stiction), "stiction", "0 or more [N]"),
+    ];
+    first_failure(text, section("[neighbours]"), &strands)?;
     if let Some(camera) = &scene.camera {
         let cameras = [
             (finite(camera.position), "position", "three finite numbers [m]"),

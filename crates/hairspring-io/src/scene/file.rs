@@ -4,7 +4,7 @@ use glam::Vec3;
 use hairspring::{
     body::Travel,
     groom::{Growth, Thicken},
-    scene::{Camera, Collider, Effects, Guides, HairLook, Shape, Solver, Volume, Wind},
+    scene::{Camera, Collider, Effects, Guides, HairLook, Neighbours, Shape, Solver, Volume, Wind},
 };
 use serde::{Deserialize, Deserializer, de};
 use std::{collections::BTreeMap, path::PathBuf};
@@ -48,6 +48,9 @@ pub(super) struct SceneFile {
     /// How hair meets hair.
     #[serde(default)]
     pub volume: Volume,
+    /// How strands meet each other one by one.
+    #[serde(default)]
+    pub neighbours: Neighbours,
     /// Where the scene is seen from. Default: framed automatically.
     pub camera: Option<Camera>,
 }

@@ -119,6 +119,7 @@ impl Reader<'_> {
             gravity: file.gravity,
             solver: file.solver,
             volume: file.volume,
+            neighbours: file.neighbours,
             camera: file.camera,
             ..Scene::default()
         };

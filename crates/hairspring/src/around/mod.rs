@@ -17,7 +17,7 @@ use crate::{
     simulation::TilePlace,
     strand::{
         lanes::{LANES, Row},
-        tile::{StateRows, StrandRows, grip},
+        tile::{StateRows, StrandRows, damp, grip},
     },
 };
 
@@ -28,6 +28,8 @@ pub(crate) struct Around {
     pub push: Vec<[Row; 3]>,
     /// See `Tile::grip`.
     pub grip: Vec<[Row; grip::ROWS]>,
+    /// See `Tile::damp`.
+    pub damp: Vec<[Row; damp::ROWS]>,
     /// See `Tile::air`.
     pub air: Vec<[Row; 3]>,
 }
@@ -39,6 +41,8 @@ pub(crate) struct Kinds {
     pub push: bool,
     /// Pulls to a place or to a velocity; with them, accelerations.
     pub grip: bool,
+    /// Brakes by direction; with them, accelerations.
+    pub damp: bool,
     /// Air that moves otherwise than the wind of all points.
     pub air: bool,
 }
@@ -47,19 +51,24 @@ impl Around {
     /// Room for what acts on `points`. Nothing does, but for pushes where they are `kept`: whoever goes first writes them all.
     pub fn prepare(&mut self, points: usize, kinds: Kinds, kept: bool) {
         let size = |on: bool| if on { points } else { 0 };
-        self.push.resize(size(kinds.push || kinds.grip), [Row::default(); 3]);
+        self.push.resize(size(kinds.push || kinds.grip || kinds.damp), [Row::default(); 3]);
         self.grip.resize(size(kinds.grip), [Row::default(); grip::ROWS]);
+        self.damp.resize(size(kinds.damp), [Row::default(); damp::ROWS]);
         self.air.resize(size(kinds.air), [Row::default(); 3]);
         if !kept {
             self.push.fill([Row::default(); 3]);
         }
         self.grip.fill([Row::default(); grip::ROWS]);
+        self.damp.fill([Row::default(); damp::ROWS]);
         self.air.fill([Row::default(); 3]);
     }
 
     /// Bytes that it holds.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.push[..]) + size_of_val(&self.grip[..]) + size_of_val(&self.air[..])
+        size_of_val(&self.push[..])
+            + size_of_val(&self.grip[..])
+            + size_of_val(&self.damp[..])
+            + size_of_val(&self.air[..])
     }
 }
 
@@ -72,6 +81,7 @@ pub(crate) struct Strands<'a> {
     pub state: &'a [StateRows],
     pub push: &'a mut [[Row; 3]],
     pub grip: &'a mut [[Row; grip::ROWS]],
+    pub damp: &'a mut [[Row; damp::ROWS]],
     pub air: &'a mut [[Row; 3]],
 }
 
@@ -103,7 +113,8 @@ impl Strands<'_> {
                 if strand == u32::MAX {
                     continue;
                 }
-                let (push, grip, air) = (all(self.push.len()), all(self.grip.len()), all(self.air.len()));
+                let (push, grip) = (all(self.push.len()), all(self.grip.len()));
+                let (damp, air) = (all(self.damp.len()), all(self.air.len()));
                 act(&mut Surrounded {
                     strand: strand as usize,
                     frame,
@@ -113,6 +124,7 @@ impl Strands<'_> {
                     state: &self.state[points.clone()],
                     push: &mut self.push[push],
                     grip: &mut self.grip[grip],
+                    damp: &mut self.damp[damp],
                     air: &mut self.air[air],
                 });
             }
@@ -128,9 +140,10 @@ impl Strands<'_> {
         let (state, more_state) = self.state.split_at(points);
         let (push, more_push) = self.push.split_at_mut(points.min(self.push.len()));
         let (grip, more_grip) = self.grip.split_at_mut(points.min(self.grip.len()));
+        let (damp, more_damp) = self.damp.split_at_mut(points.min(self.damp.len()));
         let (air, more_air) = self.air.split_at_mut(points.min(self.air.len()));
         (
-            Strands { tiles, lanes, strand, state, push, grip, air },
+            Strands { tiles, lanes, strand, state, push, grip, damp, air },
             Strands {
                 tiles: more_tiles,
                 lanes: more_lanes,
@@ -138,6 +151,7 @@ impl Strands<'_> {
                 state: more_state,
                 push: more_push,
                 grip: more_grip,
+                damp: more_damp,
                 air: more_air,
             },
         )

@@ -5,7 +5,7 @@ use crate::{
     collide::Rigid,
     strand::{
         lanes::Row,
-        tile::{StateRows, StrandRows, grip, state, strand},
+        tile::{StateRows, StrandRows, damp, grip, state, strand},
     },
 };
 use glam::{Quat, Vec3};
@@ -22,6 +22,7 @@ pub(crate) struct Surrounded<'a> {
     pub(super) state: &'a [StateRows],
     pub(super) push: &'a mut [[Row; 3]],
     pub(super) grip: &'a mut [[Row; grip::ROWS]],
+    pub(super) damp: &'a mut [[Row; damp::ROWS]],
     pub(super) air: &'a mut [[Row; 3]],
 }
 
@@ -66,6 +67,13 @@ impl Surrounded<'_> {
     pub fn carry(&mut self, i: usize, velocity: Vec3, rate: f32) {
         self.grip[i * self.stride][grip::BRAKE].0[self.lane] += rate;
         self.push(i, velocity * rate);
+    }
+
+    /// Brakes point `i` by `rates` over its mass, a symmetric matrix by its entries xx, xy, xz, yy, yz, zz [1/s].
+    pub fn damp(&mut self, i: usize, rates: &[f32; damp::ROWS]) {
+        for (row, rate) in self.damp[i * self.stride].iter_mut().zip(rates) {
+            row.0[self.lane] += rate;
+        }
     }
 
     /// Moves the air at point `i` by `velocity` [m/s], on top of the wind of all points.

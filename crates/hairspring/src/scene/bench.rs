@@ -8,6 +8,7 @@ use crate::{
     collide::{Obstacle, ObstaclePose, Rigid, voxelize},
     groom::Groom,
     material::Material,
+    neighbours::{Member, Neighbours},
     simulation::{Air, Drive, Measure, MovingObstacle, Simulation, StepReport},
 };
 use glam::{Mat3, Vec3};
@@ -88,6 +89,8 @@ fn ball() -> (Vec<Vec3>, Vec<[u32; 3]>) {
 pub struct Bench {
     /// The strands.
     pub simulation: Simulation,
+    /// How strands meet each other one by one. Default: not.
+    pub neighbours: Option<Neighbours>,
     /// The air. Default: still.
     pub wind: Wind,
     roots: Vec<Vec3>,
@@ -144,6 +147,7 @@ impl Bench {
         );
         Self {
             simulation,
+            neighbours: None,
             wind: Wind::default(),
             poses: roots.iter().map(|p| Rigid { translation: *p, ..Rigid::default() }).collect(),
             roots,
@@ -164,13 +168,17 @@ impl Bench {
             pose.translation = end.point(*root);
         }
         self.obstacle = MovingObstacle { start, end, ..self.obstacle.clone() };
-        self.simulation.step(&Drive {
+        let drive = Drive {
             dt: FRAME,
             anchor: end,
             roots: &self.poses,
             obstacles: std::slice::from_ref(&self.obstacle),
             air: Air { wind: self.wind, time: (self.frame - 1) as f32 * FRAME },
-        })
+        };
+        let Some(neighbours) = &mut self.neighbours else { return self.simulation.step(&drive) };
+        let mut member = Member { simulation: &mut self.simulation, drive, report: StepReport::default() };
+        neighbours.step(std::slice::from_mut(&mut member));
+        member.report
     }
 
     /// Figures at the end of the last frame.

@@ -10,7 +10,7 @@ pub mod swing;
 pub use camera::Camera;
 pub use look::{HairColor, HairLook};
 pub use settings::{
-    Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
+    Collider, Effects, Guides, Integrator, Neighbours, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
 };
 
 use crate::{
@@ -59,6 +59,8 @@ pub struct Scene {
     pub solver: Solver,
     /// How hair meets hair.
     pub volume: Volume,
+    /// How strands meet each other one by one.
+    pub neighbours: Neighbours,
     /// Where it is seen from; `None`: framed automatically.
     pub camera: Option<Camera>,
 }

@@ -195,6 +195,34 @@ impl VolumeMethod {
     }
 }
 
+/// How strands meet each other one by one (DESIGN §5): all simulated strands of a scene, of whatever groom. For guides and small scenes: it
+/// costs a search for each segment, and a second run of every frame in which any strands touch.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Neighbours {
+    /// Whether they meet at all. Default false.
+    pub on: bool,
+    /// How near two strands come, axis to axis [m], above 0: for guides, the width of the wisp that each stands for. Strands that were authored
+    /// nearer come no nearer than that. `None`, the default: the mean distance of the roots to the next strand, so that wisps
+    /// fill the scalp.
+    pub thickness: Option<f32>,
+    /// How fast strands that are too near part: the share of what is missing, a second [1/s], 0 or more, and at most all of it in a frame.
+    /// Default 30: hair that was pressed together opens in a few frames, without a jerk.
+    pub regain: f32,
+    /// Coulomb friction between strands, 0 to 1. Default 0.3, of hair on hair (Robbins 2012, *Chemical and Physical Behavior of Human Hair*,
+    /// gives 0.1 to 0.4 by direction).
+    pub friction: f32,
+    /// What a bond bears [N], 0 or more: segments that came to rest against each other hold together until they are pulled harder. Default 0:
+    /// none hold. The weight of a centimetre of one hair is 5e-7 N.
+    pub stiction: f32,
+}
+
+impl Default for Neighbours {
+    fn default() -> Self {
+        Self { on: false, thickness: None, regain: 30.0, friction: 0.3, stiction: 0.0 }
+    }
+}
+
 /// A simple shape that hair collides with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

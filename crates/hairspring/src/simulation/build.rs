@@ -100,6 +100,7 @@ impl Simulation {
             around: Around::default(),
             ghosts: materials.iter().map(|m| m.ghost).collect(),
             volume: None,
+            before: Default::default(),
             last_h: 0.0,
             groom,
             lanes,

@@ -5,6 +5,7 @@ mod crowd;
 mod energy;
 mod hold;
 mod measure;
+mod meet;
 mod place;
 mod reset;
 mod step;
@@ -15,6 +16,7 @@ pub use crate::volume::VolumeReport;
 pub use energy::Energy;
 pub use hold::Hold;
 pub use measure::Measure;
+pub(crate) use meet::Met;
 pub use step::{Air, Drive, MovingObstacle, StepReport};
 
 use crate::{
@@ -35,10 +37,11 @@ use std::sync::Arc;
 /// Simulated strands: mass-spring chains stepped by backward Euler with a direct banded solver.
 ///
 /// Settings come in by [`Simulation::new`] and never change; state is positions, velocities and tensions. A step gives the
-/// same bits for any number of threads. Strands meet the body, the air, and each other as a volume (see [`Simulation::set_volume`]).
+/// same bits for any number of threads. Strands meet the body, the air, and each other as a volume (see [`Simulation::set_volume`]) or one by one
+/// (see [`crate::neighbours::Neighbours`]).
 ///
 /// # Missing
-/// Hair against hair as strands, contact between points (a segment may cut a corner that its ends stay out of), wind sheltered by the body, cutting and wetting: each is an issue of its own.
+/// Contact between points (a segment may cut a corner that its ends stay out of), wind sheltered by the body, cutting and wetting: each is an issue of its own.
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
@@ -57,6 +60,8 @@ pub struct Simulation {
     ghosts: Vec<Ghost>,
     /// Hair on hair; `None`: strands pass through each other.
     volume: Option<Box<Volume>>,
+    /// State and history at the start of a frame that may be run again; empty where none is.
+    before: (Vec<StateRows>, Vec<HistoryRows>),
     /// Length of the last substep [s].
     last_h: f32,
     settings: build::Settings,

@@ -9,7 +9,7 @@ use crate::{
         lanes::{LANES, Row},
         model::{curvature, rod, springs, straight},
         scratch::Memory,
-        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, grip, strand},
+        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, damp, grip, strand},
     },
 };
 use fearless_simd::Level;
@@ -102,6 +102,13 @@ impl Simulation {
     /// # Panics
     /// If `drive.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
     pub fn step(&mut self, drive: &Drive) -> StepReport {
+        self.begin(drive, false);
+        let broken = self.run();
+        self.finish(drive, broken)
+    }
+
+    /// Takes in a frame: what is outside of the strands, all but each other as strands. Where they `meet`, there is room for that.
+    pub(crate) fn begin(&mut self, drive: &Drive, meet: bool) {
         assert_eq!(drive.roots.len(), self.places.len(), "one root pose for each simulated strand");
         assert!(drive.dt > 0.0, "a step takes time");
         let solver = self.settings.solver;
@@ -109,10 +116,15 @@ impl Simulation {
             ((drive.dt / substep_length(&solver) as f32 - 1e-3).ceil() as u32).clamp(1, MAX_SUBSTEPS);
         let mut interval = std::mem::take(&mut self.interval);
         self.fill_interval(drive, substeps, &mut interval);
-        self.exchange(drive);
-        let reset = run(
+        self.interval = interval;
+        self.exchange(drive, meet);
+    }
+
+    /// Runs all substeps of the frame; true if any point turned non-finite.
+    pub(crate) fn run(&mut self) -> bool {
+        run(
             self.level,
-            &interval,
+            &self.interval,
             Piece {
                 tiles: &self.tiles,
                 strand: &self.strand,
@@ -121,18 +133,22 @@ impl Simulation {
                 history: &mut self.history,
                 push: &self.around.push,
                 grip: &self.around.grip,
+                damp: &self.around.damp,
                 air: &self.around.air,
                 holds: &self.holds,
             },
-        );
+        )
+    }
+
+    /// Ends the frame, in which points are `broken` or not.
+    pub(crate) fn finish(&mut self, drive: &Drive, broken: bool) -> StepReport {
         self.rest_holds();
-        self.last_h = interval.h;
+        self.last_h = self.interval.h;
         // The colliders' shapes are the caller's again.
-        interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
-        self.interval = interval;
+        self.interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
         self.settings.anchor = drive.anchor;
-        let reset_strands = if reset { self.reset_non_finite() } else { 0 };
-        StepReport { substeps, reset_strands }
+        let reset_strands = if broken { self.reset_non_finite() } else { 0 };
+        StepReport { substeps: self.interval.substeps.len() as u32, reset_strands }
     }
 
     /// Fills `interval` for a frame; its memory is used again.
@@ -197,6 +213,7 @@ struct Piece<'a> {
     history: &'a mut [HistoryRows],
     push: &'a [[Row; 3]],
     grip: &'a [[Row; grip::ROWS]],
+    damp: &'a [[Row; damp::ROWS]],
     air: &'a [[Row; 3]],
     holds: &'a [Vec<HoldRows>],
 }
@@ -212,10 +229,11 @@ impl<'a> Piece<'a> {
         let (history, more_history) = self.history.split_at_mut(points.min(self.history.len()));
         let (push, more_push) = self.push.split_at(points.min(self.push.len()));
         let (grip, more_grip) = self.grip.split_at(points.min(self.grip.len()));
+        let (damp, more_damp) = self.damp.split_at(points.min(self.damp.len()));
         let (air, more_air) = self.air.split_at(points.min(self.air.len()));
         let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
         (
-            Piece { tiles, strand, rest, state, history, push, grip, air, holds },
+            Piece { tiles, strand, rest, state, history, push, grip, damp, air, holds },
             Piece {
                 tiles: more_tiles,
                 strand: more_strand,
@@ -224,6 +242,7 @@ impl<'a> Piece<'a> {
                 history: more_history,
                 push: more_push,
                 grip: more_grip,
+                damp: more_damp,
                 air: more_air,
                 holds: more_holds,
             },
@@ -243,6 +262,7 @@ impl<'a> Piece<'a> {
             history: if self.history.is_empty() { &mut [] } else { &mut self.history[points.clone()] },
             push: if self.push.is_empty() { &[] } else { &self.push[points.clone()] },
             grip: if self.grip.is_empty() { &[] } else { &self.grip[points.clone()] },
+            damp: if self.damp.is_empty() { &[] } else { &self.damp[points.clone()] },
             air: if self.air.is_empty() { &[] } else { &self.air[points] },
             holds: self.holds.get(k).map_or(&[], |holds| holds),
         }

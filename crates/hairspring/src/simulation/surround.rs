@@ -1,13 +1,16 @@
 //! What acts on points from outside in a frame: the hair volume first, then each effect.
 
 use super::{Drive, Simulation};
-use crate::around::{Frame, Kinds, Strands, Surrounded};
+use crate::{
+    around::{Frame, Kinds, Strands, Surrounded},
+    collide::Rigid,
+};
 
 impl Simulation {
-    /// Finds what acts on all points in the frame; roots have not moved yet.
-    pub(super) fn exchange(&mut self, drive: &Drive) {
+    /// Finds what acts on all points in the frame; roots have not moved yet. With room for what strands do to each other where they `meet`.
+    pub(super) fn exchange(&mut self, drive: &Drive, meet: bool) {
         let ghosts = self.settings.solver.ghost && self.ghosts.iter().any(|ghost| ghost.is_on());
-        let kinds = Kinds { push: self.volume.is_some(), grip: ghosts, air: false };
+        let kinds = Kinds { push: self.volume.is_some(), grip: ghosts, damp: meet, air: false };
         self.around.prepare(self.state.len(), kinds, self.volume.is_some());
         if let Some(volume) = &mut self.volume {
             let anchor = self.settings.anchor;
@@ -18,14 +21,20 @@ impl Simulation {
         if !ghosts {
             return;
         }
-        let (groom, materials) = (&self.groom, &self.ghosts);
+        let (groom, materials) = (self.groom.clone(), std::mem::take(&mut self.ghosts));
         let act = |strand: &mut Surrounded| {
             let s = strand.strand;
             if let Some(ghost) = materials.get(groom.group(s) as usize).or(materials.last()) {
                 ghost.add(groom.scale(s).ghost, groom.strand(s), strand);
             }
         };
-        let frame = Frame { anchor: [self.settings.anchor, drive.anchor], dt: drive.dt };
+        self.surround((drive.anchor, drive.dt), &act);
+        self.ghosts = materials;
+    }
+
+    /// Lets `act` add to what acts on every strand in a frame of `dt` [s] that takes the anchor to `anchor`.
+    pub(super) fn surround(&mut self, (anchor, dt): (Rigid, f32), act: &(impl Fn(&mut Surrounded) + Sync)) {
+        let frame = Frame { anchor: [self.settings.anchor, anchor], dt };
         let strands = Strands {
             tiles: &self.tiles,
             lanes: &self.lanes,
@@ -33,8 +42,9 @@ impl Simulation {
             state: &self.state,
             push: &mut self.around.push,
             grip: &mut self.around.grip,
+            damp: &mut self.around.damp,
             air: &mut self.around.air,
         };
-        strands.each(&frame, &act);
+        strands.each(&frame, act);
     }
 }

@@ -1,15 +1,16 @@
 //! One groom of the scene: its simulated strands and the hairs that follow them.
 
-use super::{FrameReport, Strands, body::StagedBody};
+use super::{Strands, body::StagedBody};
 use crate::{
     collide::Rigid,
     follow::{Follow, assign_guides, choose_guides},
     groom::Groom,
+    neighbours::Member,
     scene::{Guides, HairLook, Scene, SceneGroom},
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Drive, Simulation, StepReport},
 };
 use glam::{Quat, Vec3};
-use std::{sync::Arc, time::Instant};
+use std::sync::Arc;
 
 /// Guides of a groom that names none and a scene that asks for no number.
 const DEFAULT_GUIDES: usize = 2_000;
@@ -97,27 +98,15 @@ impl StagedHair {
         self.show(body);
     }
 
-    /// Plays one frame of `dt` [s].
-    pub(super) fn step(&mut self, dt: f32, body: &StagedBody, air: Air, report: &mut FrameReport) {
-        let began = Instant::now();
+    /// Its part in a frame of `dt` [s].
+    pub(super) fn member<'a>(&'a mut self, dt: f32, body: &'a StagedBody, air: Air) -> Member<'a> {
         self.pose_roots(body);
-        let step = self.simulation.step(&Drive {
-            dt,
-            anchor: body.anchor(),
-            roots: &self.roots,
-            obstacles: body.obstacles(),
-            air,
-        });
-        report.step.substeps = report.step.substeps.max(step.substeps);
-        report.step.reset_strands += step.reset_strands;
-        let stepped = Instant::now();
-        report.simulate += stepped - began;
-        self.show(body);
-        report.follow += stepped.elapsed();
+        let drive = Drive { dt, anchor: body.anchor(), roots: &self.roots, obstacles: body.obstacles(), air };
+        Member { simulation: &mut self.simulation, drive, report: StepReport::default() }
     }
 
     /// Brings the points of all strands up to date.
-    fn show(&mut self, body: &StagedBody) {
+    pub(super) fn show(&mut self, body: &StagedBody) {
         let Some(follow) = &mut self.follow else {
             self.simulation.write_points(&mut self.points);
             return;

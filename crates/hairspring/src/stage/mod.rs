@@ -5,8 +5,9 @@ mod hair;
 
 use crate::{
     groom::{Groom, bind_roots},
+    neighbours::{Member, Neighbours, NeighboursReport},
     scene::{HairLook, Scene},
-    simulation::{Air, Measure, Start, StepReport, VolumeReport},
+    simulation::{Air, Measure, Simulation, Start, StepReport, VolumeReport},
 };
 use body::StagedBody;
 use glam::Vec3;
@@ -91,6 +92,8 @@ pub struct Stage {
     scene: Scene,
     body: StagedBody,
     hair: Vec<StagedHair>,
+    /// `None`: strands do not meet each other one by one.
+    neighbours: Option<Neighbours>,
     time: f32,
 }
 
@@ -105,8 +108,11 @@ impl Stage {
         let body = StagedBody::new(&scene)?;
         let grooms = std::mem::take(&mut scene.grooms);
         let hair = grooms.into_iter().map(|groom| StagedHair::new(groom, &scene, &body)).collect();
-        let mut stage = Self { body, hair, time: 0.0, scene };
+        let mut stage = Self { body, hair, neighbours: None, time: 0.0, scene };
         stage.reset();
+        // As hair lies in the first pose is how near strands may be.
+        let simulations: Vec<&Simulation> = stage.hair.iter().map(StagedHair::simulation).collect();
+        stage.neighbours = Neighbours::new(&stage.scene.neighbours, &simulations);
         Ok(stage)
     }
 
@@ -117,6 +123,9 @@ impl Stage {
         for hair in &mut self.hair {
             hair.place(&self.body);
         }
+        if let Some(neighbours) = &mut self.neighbours {
+            neighbours.reset();
+        }
     }
 
     /// Plays `dt` [s] (above 0) of the scene.
@@ -126,9 +135,21 @@ impl Stage {
         self.body.advance(&self.scene, self.time + dt);
         report.body = began.elapsed();
         let air = Air { wind: self.scene.wind, time: self.time };
-        for hair in &mut self.hair {
-            hair.step(dt, &self.body, air, &mut report);
+        let began = Instant::now();
+        let mut members: Vec<Member> =
+            self.hair.iter_mut().map(|hair| hair.member(dt, &self.body, air)).collect();
+        match &mut self.neighbours {
+            Some(neighbours) => neighbours.step(&mut members),
+            None => members.iter_mut().for_each(|m| m.report = m.simulation.step(&m.drive)),
         }
+        for step in members.iter().map(|m| m.report) {
+            report.step.substeps = report.step.substeps.max(step.substeps);
+            report.step.reset_strands += step.reset_strands;
+        }
+        let stepped = Instant::now();
+        report.simulate = stepped - began;
+        self.hair.iter_mut().for_each(|hair| hair.show(&self.body));
+        report.follow = stepped.elapsed();
         self.time += dt;
         report
     }
@@ -173,6 +194,11 @@ impl Stage {
     /// What is known of the volume of each groom's hair; `None` where its strands pass through each other.
     pub fn volumes(&self) -> impl ExactSizeIterator<Item = Option<VolumeReport>> {
         self.hair.iter().map(|h| h.simulation().volume())
+    }
+
+    /// What is known of the strands that meet each other one by one; `None` where none do.
+    pub fn neighbours(&self) -> Option<NeighboursReport> {
+        self.neighbours.as_ref().map(Neighbours::report)
     }
 
     /// Name of the instruction set that strands are simulated with.

@@ -226,6 +226,11 @@ fn add_point<S, M, const B: usize, const N: usize>(
         p = p - (x + drift()) * stiffness - (way() + step.moved) * brake;
         band.add_identity(1, mass * (stiffness + brake));
     }
+    if let Some(rows) = tile.damp.get(i + 1) {
+        let damp = Sym3::load(simd, rows) * F::splat(simd, inv_h);
+        p = p - damp * (way() + step.moved);
+        band.add_diagonal(1, damp * mass);
+    }
     let mut right = p * mass;
     band.add_identity(1, m_h2);
     let on_strand = phase + 1 == M::STRIDE;

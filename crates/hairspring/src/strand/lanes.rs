@@ -182,6 +182,13 @@ pub struct Sym3<S: Simd> {
 }
 
 impl<S: Simd> Sym3<S> {
+    /// Six rows that follow each other: xx, xy, xz, yy, yz, zz.
+    #[inline(always)]
+    pub fn load(simd: S, rows: &[Row; 6]) -> Self {
+        let [xx, xy, xz, yy, yz, zz] = rows.each_ref().map(|row| load(simd, row));
+        Self { xx, xy, xz, yy, yz, zz }
+    }
+
     /// `s` times the identity.
     #[inline(always)]
     pub fn scaled_identity(s: F<S>) -> Self {

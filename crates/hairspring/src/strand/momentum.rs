@@ -52,6 +52,7 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         history: &mut [],
         push: &[],
         grip: &[],
+        damp: &[],
         air: &[],
         holds: &[],
     };

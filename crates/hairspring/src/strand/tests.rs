@@ -307,6 +307,7 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
         history: &mut [],
         push: &[],
         grip: &[],
+        damp: &[],
         air: &[],
         holds: &[],
     };

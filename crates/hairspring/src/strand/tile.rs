@@ -137,6 +137,12 @@ pub mod grip {
     pub const ROWS: usize = 2;
 }
 
+/// Rows of what brakes a point along some directions more than along others: a symmetric matrix over its mass [1/s].
+pub mod damp {
+    /// xx, xy, xz, yy, yz, zz. Rows a point.
+    pub const ROWS: usize = 6;
+}
+
 /// What holds or pulls one point of eight strands from outside.
 #[derive(Clone)]
 pub struct HoldRows {
@@ -173,6 +179,9 @@ pub struct Tile<'a> {
     pub push: &'a [[Row; 3]],
     /// How points are gripped, frozen for the interval, see `grip`: shape `[points]`, empty where none is.
     pub grip: &'a [[Row; grip::ROWS]],
+    /// What brakes points by direction, frozen for the interval, see `damp`: shape `[points]`, empty where nothing does. The velocity that a
+    /// point takes on by it is part of `push`, times this.
+    pub damp: &'a [[Row; damp::ROWS]],
     /// Velocity of the air besides the wind of all points, frozen for the interval [m/s]: shape `[points]`, empty where there is none.
     pub air: &'a [[Row; 3]],
     /// What holds or pulls points, sorted by point.
@@ -191,6 +200,7 @@ impl Tile<'_> {
             history: &mut self.history[..history],
             push: &self.push[..all_or_none(self.push.is_empty())],
             grip: &self.grip[..all_or_none(self.grip.is_empty())],
+            damp: &self.damp[..all_or_none(self.damp.is_empty())],
             air: &self.air[..all_or_none(self.air.is_empty())],
             ..*self
         }

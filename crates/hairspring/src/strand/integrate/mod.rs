@@ -11,7 +11,7 @@ use super::{
     assemble::Step,
     fixed::fix,
     interval::Interval,
-    lanes::{F, V3, load},
+    lanes::{F, Sym3, V3, load},
     limit::{Finish, LIMIT, limit},
     model::{Model, Stretching},
     root::Root,
@@ -123,5 +123,6 @@ fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, [u, x]: [V3<
         .grip
         .get(i)
         .map_or(nothing, |rows| x * load(simd, &rows[grip::STIFFNESS]) + v * load(simd, &rows[grip::BRAKE]));
-    slip.mul_add(drag, V3::splat(simd, step.gravity) + (push - gripped))
+    let damped = tile.damp.get(i).map_or(nothing, |rows| Sym3::load(simd, rows) * v);
+    slip.mul_add(drag, V3::splat(simd, step.gravity) + (push - gripped - damped))
 }
