@@ -49,6 +49,7 @@ impl Bond {
 }
 
 /// Bonds, sorted by strand and point.
+#[derive(Clone)]
 pub(crate) struct Bonds(pub Vec<Bond>);
 
 impl Bonds {

@@ -24,6 +24,7 @@ pub enum Tool {
 }
 
 /// A tool in use.
+#[derive(Clone)]
 pub(crate) struct Used {
     /// Who it is.
     pub number: u32,

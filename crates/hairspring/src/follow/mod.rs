@@ -93,6 +93,11 @@ impl Follow {
         }
     }
 
+    /// Lays other effects over the follow hairs from the next [`Follow::place`] on; whether they are other ones.
+    pub fn set_effects(&mut self, effects: Effects) -> bool {
+        std::mem::replace(&mut self.effects, effects) != effects
+    }
+
     /// Places all strands: guides as they are, follow hairs carried by them and kept out of the colliders.
     ///
     /// - `guide_points`: points of all guides now [m], as `Simulation::write_points` gives them.

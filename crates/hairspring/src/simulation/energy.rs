@@ -102,7 +102,7 @@ impl Simulation {
     }
 
     /// Points of the strand in a lane.
-    fn points(&self, place: usize) -> usize {
+    pub(super) fn points(&self, place: usize) -> usize {
         self.groom.range(self.lanes[place] as usize).len()
     }
 

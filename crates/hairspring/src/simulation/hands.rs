@@ -83,6 +83,15 @@ impl Simulation {
         self.tools = tools;
     }
 
+    /// Goes on with the tools of `old`, whose strand in lane `p` is here in lane `lanes[p]`.
+    pub(super) fn take_over_tools(&mut self, old: &Self, lanes: &[u32]) {
+        self.tools.taken = old.tools.taken;
+        self.tools.used.clone_from(&old.tools.used);
+        for bond in self.tools.used.iter_mut().flat_map(|used| &mut used.bonds.0) {
+            bond.place = lanes[bond.place as usize];
+        }
+    }
+
     /// Tools are where they were to go.
     pub(super) fn rest_tools(&mut self, dt: f32) {
         for used in &mut self.tools.used {

@@ -11,6 +11,7 @@ mod place;
 mod reset;
 mod step;
 mod surround;
+mod take_over;
 
 pub use crate::air::Air;
 pub use crate::strand::rest_shape::Start;

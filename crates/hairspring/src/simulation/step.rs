@@ -42,6 +42,11 @@ pub struct MovingObstacle {
 }
 
 impl MovingObstacle {
+    /// A shape that stays at `pose`.
+    pub fn at_rest(shape: Obstacle, pose: Rigid) -> Self {
+        Self { shape, start: pose, end: pose }
+    }
+
     /// Its start for hair that was carried along by `by` before the frame: the obstacle was too, or it was not, whichever leaves it less far to go.
     pub(crate) fn start(&self, by: Option<&Rigid>) -> Rigid {
         let Some(by) = by else { return self.start };

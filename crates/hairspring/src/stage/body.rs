@@ -1,15 +1,16 @@
 //! The posed body and what hair collides with.
 
 use super::{
-    PosedBody, StageError,
+    PosedBody,
     charged::StagedCharged,
+    joints::Joints,
     surface::{Making, Surface},
 };
 use crate::{
     around::charge::ChargedBall,
     body::{Body, Trs},
     collide::{Obstacle, ObstaclePose, Rigid},
-    scene::Scene,
+    scene::{Collider, Scene},
     simulation::MovingObstacle,
 };
 use glam::{Affine3A, Vec3};
@@ -22,17 +23,24 @@ pub(super) struct StagedBody {
     /// Model-space matrix of each joint, at rest and now.
     rest: Vec<Affine3A>,
     world: Vec<Affine3A>,
+    /// Where all of it is carried besides its clip.
+    moved: Rigid,
     /// The joint that most of the head moves with: hair and fields are kept in its space.
     anchor: usize,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
+    /// Those made of meshes, the scene's colliders, its charged bodies, the app's ball.
     obstacles: Vec<MovingObstacle>,
-    /// What moves each obstacle.
+    /// What moves each obstacle of the first two kinds.
     carriers: Vec<Carrier>,
+    /// How many there are of the first kind.
+    meshes: usize,
     /// What is made anew as it deforms.
     surfaces: Vec<Deforming>,
     reach: Reach,
     charged: StagedCharged,
+    /// Where the app's ball goes next [m]; `None`: there is none.
+    ball: Option<Vec3>,
 }
 
 /// What moves an obstacle.
@@ -108,21 +116,24 @@ impl Reach {
 }
 
 impl StagedBody {
-    /// The body at rest.
-    pub(super) fn new(scene: &Scene) -> Result<Self, StageError> {
+    /// The body at rest, and what follows the joints that were found.
+    pub(super) fn new(scene: &Scene, joints: &Joints) -> Self {
         let rest = scene.body.as_ref().map(|b| b.world(&b.rest_pose())).unwrap_or_default();
         let anchor = scene.body.as_ref().map_or(0, |b| anchor_joint(b, scene));
         let mut staged = Self {
             world: rest.clone(),
             rest,
+            moved: Rigid::default(),
             anchor,
             positions: Vec::new(),
             normals: Vec::new(),
             obstacles: Vec::new(),
             carriers: Vec::new(),
+            meshes: 0,
             surfaces: Vec::new(),
             reach: Reach::new(scene),
             charged: StagedCharged::default(),
+            ball: None,
         };
         if let Some(body) = &scene.body {
             body.skinned(&staged.world, &mut staged.positions, &mut staged.normals);
@@ -131,28 +142,68 @@ impl StagedBody {
         for (k, sheet) in scene.sheets.iter().enumerate() {
             staged.add_mesh(scene, Mesh::Sheet(k), Making::Sheet(sheet.thickness));
         }
+        staged.meshes = staged.obstacles.len();
         staged.rebuild_surfaces(scene, true);
-        for collider in &scene.colliders {
-            let carrier = match joint_of(scene, collider.joint.as_deref(), "a collider")? {
-                Some(joint) => Carrier::Joint(joint),
-                None => staged.carrier(staged.anchor),
-            };
-            // Points that span no volume are nothing to collide with.
-            if let Some(shape) = collider.shape.obstacle() {
-                staged.add(shape, carrier);
-            }
-        }
-        staged.charged = StagedCharged::new(scene)?;
-        // After all others: they move by themselves.
-        let balls = staged.charged.obstacles(&scene.charged);
-        staged.obstacles.extend(balls);
+        staged.add_colliders(&scene.colliders, joints);
+        staged.add_charged(scene, joints);
         staged.repose(scene, 0.0);
-        Ok(staged)
+        staged
     }
 
     fn add(&mut self, shape: Obstacle, carrier: Carrier) {
-        self.obstacles.push(MovingObstacle { shape, start: Rigid::default(), end: Rigid::default() });
+        self.obstacles.push(MovingObstacle::at_rest(shape, Rigid::default()));
         self.carriers.push(carrier);
+    }
+
+    /// After what is made of meshes.
+    fn add_colliders(&mut self, colliders: &[Collider], joints: &Joints) {
+        for (collider, joint) in colliders.iter().zip(&joints.colliders) {
+            let carrier = joint.map_or(self.carrier(self.anchor), Carrier::Joint);
+            // Points that span no volume are nothing to collide with.
+            if let Some(shape) = collider.shape.obstacle() {
+                self.add(shape, carrier);
+            }
+        }
+    }
+
+    /// After all others but the app's ball: they move by themselves.
+    fn add_charged(&mut self, scene: &Scene, joints: &Joints) {
+        self.charged = StagedCharged::new(&scene.charged, joints.charged.clone());
+        self.obstacles.extend(self.charged.obstacles(&scene.charged));
+    }
+
+    /// Takes up other colliders and charged bodies in the midst of the play, at `time` [s]: where they are now, without motion.
+    pub(super) fn retune(&mut self, scene: &Scene, joints: &Joints, time: f32) {
+        let ball = self.ball.and_then(|_| self.obstacles.pop());
+        self.obstacles.truncate(self.meshes);
+        self.carriers.truncate(self.meshes);
+        self.add_colliders(&scene.colliders, joints);
+        self.add_charged(scene, joints);
+        self.repose(scene, time);
+        self.charged.rest();
+        for obstacle in &mut self.obstacles[self.meshes..] {
+            obstacle.start = obstacle.end;
+        }
+        self.obstacles.extend(ball);
+    }
+
+    /// See [`super::Stage::move_body`].
+    pub(super) fn move_to(&mut self, by: Rigid) {
+        self.moved = by;
+    }
+
+    /// See [`super::Stage::set_ball`].
+    pub(super) fn set_ball(&mut self, ball: Option<(Vec3, f32)>) {
+        let before = self.ball.and_then(|_| self.obstacles.pop());
+        self.ball = ball.map(|(center, _)| center);
+        self.obstacles.extend(ball.map(|(center, radius)| {
+            let shape = Obstacle::Sphere { center: Vec3::ZERO, radius };
+            let here = Rigid { translation: center, ..Rigid::default() };
+            before.map_or(MovingObstacle::at_rest(shape.clone(), here), |before| MovingObstacle {
+                shape,
+                ..before
+            })
+        }));
     }
 
     /// A joint of the body, if there is any.
@@ -210,6 +261,7 @@ impl StagedBody {
 
     /// Poses the body for time `time` [s] without motion.
     pub(super) fn place(&mut self, scene: &Scene, time: f32) {
+        self.moved = Rigid::default();
         self.pose(scene, time);
         self.rebuild_surfaces(scene, true);
         self.repose(scene, time);
@@ -223,13 +275,19 @@ impl StagedBody {
         if let (Some(body), Some(clip)) = (&scene.body, &scene.clip) {
             let pose: Vec<Trs> = clip.sample(time);
             self.world = body.world(&pose);
+        } else {
+            self.world.clone_from(&self.rest);
+        }
+        if self.moved != Rigid::default() {
+            let moved = Affine3A::from_rotation_translation(self.moved.rotation, self.moved.translation);
+            self.world.iter_mut().for_each(|joint| *joint = moved * *joint);
         }
         if let Some(body) = &scene.body {
             body.skinned(&self.world, &mut self.positions, &mut self.normals);
         }
     }
 
-    /// Where obstacles and charged bodies are in the current pose, at `time` [s].
+    /// Where obstacles and charged bodies are in the current pose, at `time` [s], and the ball where it goes.
     fn repose(&mut self, scene: &Scene, time: f32) {
         let anchor = self.anchor();
         let Self { world, rest, obstacles, carriers, charged, .. } = self;
@@ -242,6 +300,9 @@ impl StagedBody {
             };
         }
         charged.advance(&scene.charged, time, carried, &mut obstacles[carriers.len()..]);
+        if let (Some(center), Some(ball)) = (self.ball, self.obstacles.last_mut()) {
+            ball.end.translation = center;
+        }
     }
 
     /// Where what a joint carries has gone since rest; nowhere without a joint.
@@ -257,6 +318,11 @@ impl StagedBody {
     /// The frame that roots move with.
     pub(super) fn anchor(&self) -> Rigid {
         self.world.get(self.anchor).map_or(Rigid::default(), Rigid::from_affine)
+    }
+
+    /// The same at rest.
+    pub(super) fn rest_anchor(&self) -> Rigid {
+        self.rest.get(self.anchor).map_or(Rigid::default(), Rigid::from_affine)
     }
 
     /// The colliders and how they moved in the last frame.
@@ -281,17 +347,6 @@ impl StagedBody {
         let mesh = &scene.body.as_ref()?.mesh;
         Some(PosedBody { mesh, positions: &self.positions, normals: &self.normals })
     }
-}
-
-/// The joint of the scene's body of this name, if any is named; `what` is to follow it.
-pub(super) fn joint_of(
-    scene: &Scene,
-    name: Option<&str>,
-    what: &'static str,
-) -> Result<Option<usize>, StageError> {
-    let Some(name) = name else { return Ok(None) };
-    let joint = scene.body.as_ref().and_then(|body| body.joint(name));
-    joint.map(Some).ok_or_else(|| StageError::NoSuchJoint { what, joint: name.into() })
 }
 
 /// Where what a joint carries has gone since `rest`, now that joints are at `world`; nowhere without a joint.

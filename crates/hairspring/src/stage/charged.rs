@@ -1,10 +1,8 @@
 //! The scene's charged bodies, where they are now.
 
-use super::{StageError, body::joint_of};
 use crate::{
     around::charge::{Charged, ChargedBall},
     collide::{Obstacle, Rigid},
-    scene::Scene,
     simulation::MovingObstacle,
 };
 use glam::Vec3;
@@ -18,23 +16,22 @@ pub(super) struct StagedCharged {
 }
 
 impl StagedCharged {
-    pub(super) fn new(scene: &Scene) -> Result<Self, StageError> {
-        let joints = scene.charged.iter().map(|c| joint_of(scene, c.joint.as_deref(), "a charged body"));
-        let balls = scene.charged.iter().map(|c| ChargedBall {
+    /// At rest, each carried by one of `joints`.
+    pub(super) fn new(settings: &[Charged], joints: Vec<Option<usize>>) -> Self {
+        let balls = settings.iter().map(|c| ChargedBall {
             radius: c.radius,
             charge: c.charge,
             ..ChargedBall::default()
         });
-        Ok(Self { joints: joints.collect::<Result<_, _>>()?, balls: balls.collect() })
+        Self { joints, balls: balls.collect() }
     }
 
     /// The solid ones, in their order, for hair to collide with.
     pub(super) fn obstacles(&self, settings: &[Charged]) -> Vec<MovingObstacle> {
         let solid = settings.iter().filter(|c| c.solid);
-        let ball = |c: &Charged| MovingObstacle {
-            shape: Obstacle::Sphere { center: Vec3::ZERO, radius: c.radius },
-            start: Rigid::default(),
-            end: Rigid::default(),
+        let ball = |c: &Charged| {
+            let shape = Obstacle::Sphere { center: Vec3::ZERO, radius: c.radius };
+            MovingObstacle::at_rest(shape, Rigid::default())
         };
         solid.map(ball).collect()
     }

@@ -3,9 +3,10 @@
 use super::{FrameReport, Strands, body::StagedBody};
 use crate::{
     around::Tool,
-    collide::Rigid,
+    collide::{ObstaclePose, Rigid},
     follow::{Follow, assign_guides, choose_guides},
     groom::Groom,
+    material::Material,
     scene::{Guides, HairLook, Scene, SceneGroom},
     simulation::{Air, Drive, Simulation, ToolId},
 };
@@ -17,6 +18,7 @@ const DEFAULT_GUIDES: usize = 2_000;
 
 pub(super) struct StagedHair {
     groom: Arc<Groom>,
+    materials: Vec<Material>,
     look: HairLook,
     simulation: Simulation,
     /// `None` where every strand is simulated.
@@ -36,17 +38,7 @@ impl StagedHair {
         let groom = Arc::new(groom);
         let (simulated, weights) = roles(&groom, guides);
         let obstacles = body.poses();
-        let mut simulation = Simulation::new(
-            groom.clone(),
-            &simulated,
-            &materials,
-            scene.solver,
-            scene.gravity,
-            body.anchor(),
-            &obstacles,
-        );
-        simulation.set_volume(&scene.volume);
-        simulation.set_shelter(&scene.shelter);
+        let simulation = simulation(&groom, &simulated, &materials, scene, body.anchor(), &obstacles);
         let follow = weights.map(|w| Follow::new(groom.clone(), &simulated, &w, effects, &obstacles));
         let mesh = scene.body.as_ref().map(|b| &b.mesh).filter(|_| !groom.roots.is_empty());
         let rest_frames = mesh.map_or(Vec::new(), |mesh| {
@@ -68,12 +60,31 @@ impl StagedHair {
             guide_points: vec![Vec3::ZERO; simulation.point_count()],
             points: groom.points.clone(),
             groom,
+            materials,
             look,
             simulation,
             follow,
             rest_frames,
             triangles,
             roots,
+        }
+    }
+
+    /// Takes up other settings in the midst of the play; `fresh`: the scene's own are others than before.
+    pub(super) fn retune(&mut self, settings: SceneGroom, scene: &Scene, body: &StagedBody, fresh: bool) {
+        self.look = settings.look;
+        if fresh || settings.materials != self.materials {
+            let strands: Vec<u32> = self.simulation.strands().collect();
+            let mut new =
+                simulation(&self.groom, &strands, &settings.materials, scene, body.rest_anchor(), &[]);
+            new.take_over(&self.simulation);
+            self.simulation = new;
+            self.materials = settings.materials;
+        }
+        if let Some(follow) = &mut self.follow
+            && follow.set_effects(settings.effects)
+        {
+            self.show(body);
         }
     }
 
@@ -159,6 +170,22 @@ impl StagedHair {
     pub(super) fn simulation(&self) -> &Simulation {
         &self.simulation
     }
+}
+
+/// The `simulated` strands of a groom at rest, where the anchor is at `anchor` and colliders are as `obstacles`.
+fn simulation(
+    groom: &Arc<Groom>,
+    simulated: &[u32],
+    materials: &[Material],
+    scene: &Scene,
+    anchor: Rigid,
+    obstacles: &[ObstaclePose],
+) -> Simulation {
+    let mut simulation =
+        Simulation::new(groom.clone(), simulated, materials, scene.solver, scene.gravity, anchor, obstacles);
+    simulation.set_volume(&scene.volume);
+    simulation.set_shelter(&scene.shelter);
+    simulation
 }
 
 /// Which strands are simulated, and what the others follow (`None`: there are no others).

@@ -1,15 +1,7 @@
 //! The scene's hands at work: each takes hold, moves and lets go when its settings say so, at the start of a frame.
 
-use super::{
-    StageError,
-    body::{StagedBody, joint_of},
-    hair::StagedHair,
-};
-use crate::{
-    collide::Rigid,
-    scene::{Hand, Scene},
-    simulation::ToolId,
-};
+use super::{body::StagedBody, hair::StagedHair};
+use crate::{collide::Rigid, scene::Hand, simulation::ToolId};
 
 /// Where a hand is in its work.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -28,9 +20,31 @@ pub(super) struct StagedHands {
 }
 
 impl StagedHands {
-    pub(super) fn new(scene: &Scene) -> Result<Self, StageError> {
-        let joints = scene.hands.iter().map(|h| joint_of(scene, h.joint.as_deref(), "a hand"));
-        Ok(Self { work: vec![Work::Before; scene.hands.len()], joints: joints.collect::<Result<_, _>>()? })
+    /// One for each of `joints`, before they begin.
+    pub(super) fn new(joints: Vec<Option<usize>>) -> Self {
+        Self { work: vec![Work::Before; joints.len()], joints }
+    }
+
+    /// Takes up the hands `now` in place of those `before`: a hand of the same settings goes on with its work, all others let go, and new ones are
+    /// yet to begin.
+    pub(super) fn retune(
+        &mut self,
+        (before, now): (&[Hand], &[Hand]),
+        joints: Vec<Option<usize>>,
+        hair: &mut [StagedHair],
+    ) {
+        let mut old: Vec<(&Hand, Work)> = before.iter().zip(self.work.drain(..)).collect();
+        let going_on = |hand: &Hand| {
+            let same = old.iter().position(|(before, _)| *before == hand);
+            same.map_or(Work::Before, |k| old.remove(k).1)
+        };
+        self.work = now.iter().map(going_on).collect();
+        self.joints = joints;
+        for (_, work) in old {
+            if let Work::Now(id) = work {
+                hair.iter_mut().for_each(|hair| hair.let_go(id));
+            }
+        }
     }
 
     /// Back to before they began.

@@ -4,6 +4,8 @@ mod body;
 mod charged;
 mod hair;
 mod hands;
+mod joints;
+mod retune;
 mod surface;
 mod wind;
 
@@ -12,12 +14,13 @@ use crate::{
     collide::Rigid,
     groom::{Groom, bind_roots},
     scene::{HairLook, Scene},
-    simulation::{Air, Measure, Start, StepReport, ToolId, VolumeReport},
+    simulation::{Air, Measure, MovingObstacle, Start, StepReport, ToolId, VolumeReport},
 };
 use body::StagedBody;
 use glam::Vec3;
 use hair::StagedHair;
 use hands::StagedHands;
+use joints::Joints;
 use std::time::{Duration, Instant};
 use wind::StagedWind;
 
@@ -50,6 +53,16 @@ pub enum StageError {
         clip_joints: usize,
         /// Joints of the body.
         body_joints: usize,
+    },
+    /// Settings for another number of grooms than are on the stage.
+    #[error(
+        "there are settings for {settings} grooms, and {grooms} are on the stage: their hair needs a stage of its own"
+    )]
+    GroomCount {
+        /// Grooms of the settings.
+        settings: usize,
+        /// Grooms on the stage.
+        grooms: usize,
     },
     /// Something is to follow a joint that is not there.
     #[error("{what} follows the joint '{joint}', and the body has none of that name")]
@@ -114,17 +127,17 @@ impl Stage {
         if let Some(body) = &scene.body {
             scene.grooms.iter_mut().for_each(|g| bind_roots(&mut g.groom, &body.mesh));
         }
-        let body = StagedBody::new(&scene)?;
-        let hands = StagedHands::new(&scene)?;
+        let joints = Joints::new(&scene, scene.body.as_ref())?;
+        let body = StagedBody::new(&scene, &joints);
         let grooms = std::mem::take(&mut scene.grooms);
         let hair = grooms.into_iter().map(|groom| StagedHair::new(groom, &scene, &body)).collect();
-        let wind = StagedWind::new(&scene)?;
+        let (wind, hands) = (StagedWind::new(joints.wind), StagedHands::new(joints.hands));
         let mut stage = Self { body, wind, hair, hands, time: 0.0, scene };
         stage.reset();
         Ok(stage)
     }
 
-    /// Back to time 0; no tool is in use.
+    /// Back to time 0; no tool is in use, and the body goes by its clip alone. The ball of [`Stage::set_ball`] stays where it is.
     pub fn reset(&mut self) {
         self.time = 0.0;
         self.body.place(&self.scene, 0.0);
@@ -150,6 +163,32 @@ impl Stage {
     /// Lets go of a tool, and of what it holds.
     pub fn let_go(&mut self, id: ToolId) {
         self.hair.iter_mut().for_each(|hair| hair.let_go(id));
+    }
+
+    /// Carries the whole body by `by` besides its clip, from the next step on: a rotation about the world's origin, then a translation [m]. The last
+    /// call counts, from where the clip has the body and not from the call before. What moves farther than `Solver::jump` in a step takes its hair along as
+    /// it is. Hair without a body stays.
+    pub fn move_body(&mut self, by: Rigid) {
+        self.body.move_to(by);
+    }
+
+    /// A ball in the world (middle, radius above 0 [m]) that an app moves: a collider of all hair, drawn by nobody here. It goes from where it was to its
+    /// middle in the next step and passes on that velocity; it has none where it appears. `None`, or what is not finite: there is no ball.
+    pub fn set_ball(&mut self, ball: Option<(Vec3, f32)>) {
+        self.body.set_ball(
+            ball.filter(|(center, radius)| center.is_finite() && *radius > 0.0 && radius.is_finite()),
+        );
+    }
+
+    /// The colliders as they are now, and how they moved in the last step.
+    pub fn obstacles(&self) -> &[MovingObstacle] {
+        self.body.obstacles()
+    }
+
+    /// Where the frame is now that roots and fields move with: the joint that carries most of the skin around the roots (the head); the identity without a
+    /// body.
+    pub fn body_anchor(&self) -> Rigid {
+        self.body.anchor()
     }
 
     /// Plays `dt` [s] (above 0) of the scene.

@@ -1,9 +1,6 @@
 //! The scene's sources of wind, where they are now.
 
-use super::{
-    StageError,
-    body::{StagedBody, joint_of},
-};
+use super::body::StagedBody;
 use crate::{air::Source, scene::Scene};
 
 /// Sources of wind in motion.
@@ -14,10 +11,9 @@ pub(super) struct StagedWind {
 }
 
 impl StagedWind {
-    pub(super) fn new(scene: &Scene) -> Result<Self, StageError> {
-        let joints =
-            scene.wind_sources.iter().map(|s| joint_of(scene, s.joint.as_deref(), "a source of wind"));
-        Ok(Self { joints: joints.collect::<Result<_, _>>()?, sources: Vec::new() })
+    /// Each carried by one of `joints`.
+    pub(super) fn new(joints: Vec<Option<usize>>) -> Self {
+        Self { joints, sources: Vec::new() }
     }
 
     /// Puts them where the body is, blowing as at `time` [s].

@@ -67,13 +67,22 @@ pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
             (normal - (before + t) * scale).normalize_or(normal)
         };
         before = t;
-        let binormal = t.cross(normal);
-        let aside = if k % 2 == 0 { normal } else { binormal } * SIDES[k % 8];
+        let aside = side(k, t, normal);
         out.push(w[0]);
         out.push((0.5 * (a + b) + aside * (ASIDE * a.distance(b))).as_vec3());
     }
     out.extend(points.last());
     out
+}
+
+/// Which way from segment `k`, that runs along the unit vector `t`, its extra particle is, where the frame has this `normal`.
+pub fn side(k: usize, t: DVec3, normal: DVec3) -> DVec3 {
+    SIDES[k % 8] * if k.is_multiple_of(2) { normal } else { t.cross(normal) }
+}
+
+/// The frame's normal on segment `k` along `t`, whose extra particle is on this `side`.
+pub fn normal_of(k: usize, t: DVec3, side: DVec3) -> DVec3 {
+    SIDES[k % 8] * if k.is_multiple_of(2) { side } else { side.cross(t) }
 }
 
 /// The rest shape of the truss through `particles` [m] with the fibre's radii at the strand's points, in balance under `gravity` [m/s²]

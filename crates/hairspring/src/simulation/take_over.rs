@@ -1,0 +1,179 @@
+//! Going on from another simulation of the same strands: other settings, the same places and motion.
+//!
+//! Where a strand's elastic model is another one than before, what both know of is carried over:
+//!
+//! ```text
+//! edges, velocities, contact, depths     as they are, of the strand's own points
+//! frames                                 the rod's are stored; the truss's are where its extra particles are; those of the others are carried from the root
+//! extra particles                        beside their segments, on the frame's side, turning with them
+//! tensions                               as they are between models with the same segments; between those and the truss, those of the rest shape
+//! ```
+
+use super::Simulation;
+use crate::{
+    scene::Integrator,
+    strand::{
+        lanes::{LANES, Row},
+        tile::{Elastic, history, rest, springs, state, strand},
+        truss::{ASIDE, normal_of, side},
+    },
+};
+use glam::{DVec3, Quat, Vec3};
+
+impl Simulation {
+    /// Goes on from where `old` is, with the settings of `self`, which has just been made: every strand is where it was and moves as it did, and may be as
+    /// deep in colliders as it was authored there. Tools go on as well; what [`Simulation::set_holds`] holds is let go of.
+    ///
+    /// # Panics
+    /// If the two do not simulate the same strands in the same order.
+    pub fn take_over(&mut self, old: &Simulation) {
+        assert!(self.strands().eq(old.strands()), "the same strands in the same order");
+        self.level = old.level;
+        self.settings.anchor = old.settings.anchor;
+        self.motion = old.motion;
+        self.last_h = old.last_h;
+        self.charged.clone_from(&old.charged);
+        self.sunk = if old.sunk.is_empty() { Vec::new() } else { vec![Row::default(); self.state.len()] };
+        let mut lanes = vec![u32::MAX; old.lanes.len()];
+        for k in 0..self.places.len() {
+            let (place, from) = (self.places[k] as usize, old.places[k] as usize);
+            lanes[from] = place as u32;
+            let rows = &mut self.strand[place / LANES];
+            for (row, was) in rows[..strand::FIRST].iter_mut().zip(&old.strand[from / LANES]) {
+                row.0[place % LANES] = was.0[from % LANES];
+            }
+            if self.tiles[place / LANES].model == old.tiles[from / LANES].model {
+                self.take_rows(place, old, from);
+            } else {
+                self.take_points(place, old, from);
+            }
+        }
+        self.take_over_tools(old, &lanes);
+    }
+
+    /// Whether tensions and contact are found anew in every substep and carried to the next; other integrators leave them as they are.
+    fn carries_forces(&self) -> bool {
+        matches!(self.settings.solver.integrator, Integrator::BackwardEuler | Integrator::Bdf2)
+    }
+
+    /// Takes a strand of the same model, row by row.
+    fn take_rows(&mut self, place: usize, old: &Simulation, from: usize) {
+        let model = self.tiles[place / LANES].model;
+        let forces = self.carries_forces() && old.carries_forces();
+        let tensions = [Some(state::TENSION), (model == Elastic::Springs).then_some(springs::SIDE)];
+        let kept = |at: usize| !forces && (tensions.contains(&Some(at)) || at == state::PRESS);
+        let (tile, was) = (self.tiles[place / LANES], old.tiles[from / LANES]);
+        let (lane, from_lane) = (place % LANES, from % LANES);
+        for i in 0..tile.points.min(was.points) {
+            let (to, from) = ((tile.first + i) as usize, (was.first + i) as usize);
+            for at in (0..state::ROWS).filter(|at| !kept(*at)) {
+                self.state[to][at].0[lane] = old.state[from][at].0[from_lane];
+            }
+            self.rest[to][rest::CLEARANCE].0[lane] = old.rest[from][rest::CLEARANCE].0[from_lane];
+            if let Some(sunk) = self.sunk.get_mut(to) {
+                sunk.0[lane] = old.sunk[from].0[from_lane];
+            }
+            if let (Some(history), Some(was)) = (self.history.get_mut(to), old.history.get(from)) {
+                history.iter_mut().zip(was).for_each(|(row, was)| row.0[lane] = was.0[from_lane]);
+            }
+        }
+        if old.history.is_empty() {
+            self.begin_history(place);
+        }
+    }
+
+    /// Takes a strand of another model, point by point.
+    fn take_points(&mut self, place: usize, old: &Simulation, from: usize) {
+        let [stride, was] =
+            [self.tiles[place / LANES].model, old.tiles[from / LANES].model].map(Elastic::stride);
+        let forces = self.carries_forces() && old.carries_forces();
+        let edge = |j: usize| (1..=was).map(|k| old.vector(from, j * was + k, state::EDGE)).sum::<Vec3>();
+        let velocity = |j: usize| old.vector(from, j * was, state::V);
+        for j in 0..self.points(place) {
+            let (i, i_was) = (j * stride, j * was);
+            self.set_vector(place, i, state::V, velocity(j));
+            let at = self.tiles[place / LANES].first as usize + i;
+            self.rest[at][rest::CLEARANCE].0[place % LANES] = old.rest(from, i_was, rest::CLEARANCE);
+            if let Some(sunk) = self.sunk.get_mut(at) {
+                sunk.0[place % LANES] = old.sunk(from, i_was);
+            }
+            if forces {
+                let rows = &mut self.state[at];
+                let was_at = &old.state[old.tiles[from / LANES].first as usize + i_was];
+                rows[state::PRESS].0[place % LANES] = was_at[state::PRESS].0[from % LANES];
+                if stride == was {
+                    rows[state::TENSION].0[place % LANES] = was_at[state::TENSION].0[from % LANES];
+                }
+            }
+        }
+        for (j, normal) in old.frames(from).into_iter().enumerate() {
+            let i = j * stride;
+            if stride == 1 {
+                self.set_vector(place, i + 1, state::EDGE, edge(j));
+                self.set_vector(place, i, state::NORMAL, normal.as_vec3());
+                continue;
+            }
+            // The triangle over the segment, turning with it.
+            let (e, [a, b]) = (edge(j).as_dvec3(), [velocity(j), velocity(j + 1)].map(Vec3::as_dvec3));
+            let length = f64::from(self.rest(place, i, rest::LENGTH));
+            let aside = side(j, e.normalize_or(DVec3::Y), normal) * (ASIDE * length);
+            let spin = e.cross(b - a) / e.length_squared().max(1e-24);
+            self.set_vector(place, i + 1, state::EDGE, (0.5 * e + aside).as_vec3());
+            self.set_vector(place, i + 2, state::EDGE, (0.5 * e - aside).as_vec3());
+            self.set_vector(place, i + 1, state::V, (0.5 * (a + b) + spin.cross(aside)).as_vec3());
+        }
+        self.begin_history(place);
+    }
+
+    /// Lets the integrator of second order remember that a strand has moved as it does now.
+    fn begin_history(&mut self, place: usize) {
+        let (tile, lane) = (self.tiles[place / LANES], place % LANES);
+        let points = tile.first as usize..(tile.first + tile.points) as usize;
+        for (history, state) in self.history.iter_mut().zip(&self.state).take(points.end).skip(points.start) {
+            for k in 0..3 {
+                let v = state[state::V + k].0[lane];
+                history[history::V + k].0[lane] = v;
+                history[history::WAY + k].0[lane] = v * self.last_h;
+            }
+        }
+    }
+
+    /// The frame's normal on each segment of the strand in a lane; shape `[points − 1]`.
+    fn frames(&self, place: usize) -> Vec<DVec3> {
+        let (tile, lane) = (place / LANES, place % LANES);
+        let (model, rows) = (self.tiles[tile].model, &self.strand[tile]);
+        let turn = Quat::from_array([0, 1, 2, 3].map(|k| rows[strand::TURN_END + k].0[lane]));
+        let normal = Vec3::from_array([0, 1, 2].map(|k| rows[strand::NORMAL + k].0[lane]));
+        let mut normal = (self.settings.anchor.rotation * turn * normal).as_dvec3();
+        let stride = model.stride();
+        let mut before = None;
+        (0..self.points(place) - 1)
+            .map(|j| {
+                let e: DVec3 =
+                    (1..=stride).map(|k| self.vector(place, j * stride + k, state::EDGE).as_dvec3()).sum();
+                let t = e.normalize_or(before.unwrap_or(DVec3::Y));
+                if let Some(before) = before {
+                    let scale = normal.dot(t) / (1.0 + t.dot(before)).max(1e-3);
+                    normal = (normal - (before + t) * scale).normalize_or(normal);
+                }
+                let own = match model {
+                    Elastic::Rod if j > 0 => self.vector(place, j, state::NORMAL).as_dvec3(),
+                    Elastic::Springs => {
+                        let extra = self.vector(place, 2 * j + 1, state::EDGE).as_dvec3() - 0.5 * e;
+                        normal_of(j, t, extra.reject_from_normalized(t).normalize_or_zero())
+                    }
+                    _ => DVec3::ZERO,
+                };
+                normal = own.reject_from_normalized(t).normalize_or(normal);
+                before = Some(t);
+                normal
+            })
+            .collect()
+    }
+
+    fn set_vector(&mut self, place: usize, i: usize, component: usize, v: Vec3) {
+        let (tile, lane) = (place / LANES, place % LANES);
+        let rows = &mut self.state[self.tiles[tile].first as usize + i][component..];
+        (rows[0].0[lane], rows[1].0[lane], rows[2].0[lane]) = (v.x, v.y, v.z);
+    }
+}

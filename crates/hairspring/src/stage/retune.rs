@@ -1,0 +1,52 @@
+//! Other settings in the midst of the play.
+
+use super::{Stage, StageError, joints::Joints, wind::StagedWind};
+use crate::scene::{Scene, Solver};
+
+impl Stage {
+    /// Takes up the settings of `settings` in the midst of the play: hair stays where it is and goes on moving as it does, and from the next step on
+    /// everything is as in a scene of these settings.
+    ///
+    /// Geometry stays and is not looked at: `grooms[k].groom`, `grooms[k].guides`, `body`, `collision`, `sheets`, `clip` and `solver.collide_body`. All else
+    /// is taken up. A material's `radius` is that of the simulated fibre alone: what is drawn has the groom's.
+    ///
+    /// - Where materials, gravity, solver, volume or shelter change, rest shapes are found anew: with `solver.sag_free`, the groom is in balance under the
+    ///   new gravity, as it would be from the start. What did not change costs nothing.
+    /// - How deep hair may be in a collider is what it was authored with: a collider that is new pushes out all hair.
+    /// - Tools of [`Stage::take`] go on. So does a hand of the scene whose settings are still there; others let go, and new ones begin.
+    ///
+    /// # Errors
+    /// [`StageError::GroomCount`] where there are more or fewer grooms, [`StageError::NoSuchJoint`]; nothing changes then.
+    pub fn retune(&mut self, settings: Scene) -> Result<(), StageError> {
+        if settings.grooms.len() != self.hair.len() {
+            return Err(StageError::GroomCount { settings: settings.grooms.len(), grooms: self.hair.len() });
+        }
+        let joints = Joints::new(&settings, self.scene.body.as_ref())?;
+        let before = std::mem::take(&mut self.scene);
+        self.scene = Scene {
+            body: before.body,
+            collision: before.collision,
+            sheets: before.sheets,
+            clip: before.clip,
+            solver: Solver { collide_body: before.solver.collide_body, ..settings.solver },
+            ..settings
+        };
+        let grooms = std::mem::take(&mut self.scene.grooms);
+        let scene = &self.scene;
+        if (&before.colliders, &before.charged) != (&scene.colliders, &scene.charged) {
+            self.body.retune(scene, &joints, self.time);
+        }
+        if before.wind_sources != scene.wind_sources {
+            self.wind = StagedWind::new(joints.wind);
+        }
+        if before.hands != scene.hands {
+            self.hands.retune((&before.hands, &scene.hands), joints.hands, &mut self.hair);
+        }
+        let rests = |scene: &Scene| (scene.gravity, scene.solver, scene.volume, scene.shelter);
+        let fresh = (before.gravity, before.solver, before.volume, before.shelter) != rests(scene);
+        for (hair, groom) in self.hair.iter_mut().zip(grooms) {
+            hair.retune(groom, scene, &self.body, fresh);
+        }
+        Ok(())
+    }
+}
