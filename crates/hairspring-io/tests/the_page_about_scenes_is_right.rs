@@ -21,7 +21,16 @@ fn the_page_that_documents_scenes_is_right() {
         };
         keys.iter().map(|k| format!("{}\n", line(k))).collect()
     };
-    let builtin = said(&["[builtin]", "style =", "strands =", "guides =", "material =", "motion ="]);
+    let builtin = said(&[
+        "[builtin]",
+        "style =",
+        "strands =",
+        "guides =",
+        "material =",
+        "motion =",
+        "look =",
+        "effects =",
+    ]);
     check_text(&format!("{builtin}[clip]\n{}", said(&["keys ="]))).unwrap();
 }
 

@@ -1,38 +1,62 @@
 //! `[builtin]`: the scene that is made by code.
 
-use super::{Reader, file::BuiltinFile, sentence::unknown};
-use crate::{Character, Result};
+use super::{
+    Reader, check,
+    file::{BuiltinFile, SceneFile},
+    material::{named, over},
+    sentence::{line_at, line_of_key, unknown},
+};
+use crate::Problem;
 use hairspring::{
-    material::{self, Material},
+    material,
     scene::{
         Scene,
         builtin::{self, BuiltinOptions, Style},
     },
 };
 
+/// What is to be built.
+pub(super) fn options(text: &str, file: &BuiltinFile) -> Result<BuiltinOptions, Problem> {
+    let style = match &file.style {
+        None => Style::default(),
+        Some(name) => Style::from_name(name.get_ref()).ok_or_else(|| {
+            let from = line_at(text, name.span().start);
+            let line = line_of_key(text, from, "style").unwrap_or(from);
+            Problem::line(line, format!("the style {}", unknown(name.get_ref(), material::PRESETS)))
+        })?,
+    };
+    let base = BuiltinOptions::new(style);
+    let strands = file.strands.as_ref().map_or(base.strands, |n| *n.get_ref());
+    let guides = file.guides.unwrap_or(base.guides);
+    Ok(BuiltinOptions { strands, guides, ..base })
+}
+
+/// Its settings: those of the style, with what `file` says over them.
+pub(super) fn settings(text: &str, scene: &SceneFile, file: &BuiltinFile) -> Result<Scene, Problem> {
+    let mut made = builtin::settings(&options(text, file)?);
+    let start = text.find("[builtin]").unwrap_or(0);
+    let hair = &mut made.grooms[0];
+    let materials = named(text, scene, file.material.as_ref(), start)?;
+    if !materials.is_empty() {
+        hair.materials = materials;
+    }
+    if let Some(look) = &file.look {
+        let start = look.span().start;
+        hair.look = over(text, start, &hair.look, look.get_ref().clone())?;
+        check::look(text, line_at(text, start), &hair.look)?;
+    }
+    hair.effects = file.effects;
+    check::effects(text, line_at(text, start), &hair.effects)?;
+    Ok(made)
+}
+
 impl Reader<'_> {
-    /// The scene, and its body with its motion.
-    pub(super) fn builtin(
-        &self,
-        named: &BuiltinFile,
-        materials: Vec<Material>,
-    ) -> Result<(Scene, Option<Character>)> {
-        let style = match &named.style {
-            None => Style::default(),
-            Some(name) => Style::from_name(name.get_ref()).ok_or_else(|| {
-                let text = format!("the style {}", unknown(name.get_ref(), material::PRESETS));
-                self.wrong(name.span().start, "style", text)
-            })?,
-        };
-        let base = BuiltinOptions::new(style);
-        let strands = named.strands.as_ref().map_or(base.strands, |n| *n.get_ref());
-        let guides = named.guides.unwrap_or(base.guides);
-        let mut scene = builtin::scene(&BuiltinOptions { strands, guides, ..base });
-        if !materials.is_empty() {
-            scene.grooms[0].materials = materials;
+    /// The scene as it is built.
+    pub(super) fn builtin(&self, file: &BuiltinFile) -> crate::Result<Scene> {
+        let mut made = builtin::scene(&options(self.text, file).map_err(|p| p.in_file(self.path))?);
+        if file.motion == Some(false) {
+            made.clip = None;
         }
-        let clips = scene.clip.take().filter(|_| named.motion != Some(false)).into_iter().collect();
-        let character = scene.body.take().map(|body| Character { body, clips });
-        Ok((scene, character))
+        Ok(made)
     }
 }

@@ -10,7 +10,7 @@ use glam::Vec3;
 use hairspring::{
     around::{Tool, ghost::Ghost},
     material::Material,
-    scene::{Guides, Hand, Shape},
+    scene::{Effects, Guides, HairLook, Hand, Shape},
 };
 
 /// One check: whether it holds, the key it is about, what is expected.
@@ -117,27 +117,16 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     }
     for groom in &scene.groom {
         let t = &groom.transform;
-        let (effects, look) = (&groom.effects, &groom.look);
         let checks = [
             (above_0(groom.scale), "scale", "above 0 [m a unit]"),
             (finite(t.position), "position", "three finite numbers [m]"),
             (finite(t.rotation), "rotation", "three finite numbers [degrees]"),
             (finite(t.scale) && t.scale.abs().min_element() > 0.0, "scale", "finite and not 0"),
-            (color(look.root_color), "root_color", "three numbers from 0 to 1"),
-            (color(look.tip_color), "tip_color", "three numbers from 0 to 1"),
-            ((0.0..=1.0).contains(&look.variation), "variation", "0 to 1"),
-            ((0.1..=1.0).contains(&look.roughness), "roughness", "0.1 to 1"),
-            ((0.0..=10.0).contains(&look.cuticle), "cuticle", "0 to 10 [degrees]"),
-            ((0.0..=4.0).contains(&look.specular), "specular", "0 to 4"),
-            ((0.0..=4.0).contains(&look.backlight), "backlight", "0 to 4"),
-            ((0.0..=4.0).contains(&look.scatter), "scatter", "0 to 4"),
-            ((0.0..=4.0).contains(&look.shadow), "shadow", "0 to 4"),
-            ((0.0..=1.0).contains(&effects.clump), "clump", "0 to 1"),
-            (from_0(effects.curl_radius), "curl_radius", "0 or more [m]"),
-            (above_0(Some(effects.curl_length)), "curl_length", "above 0 [m]"),
-            (from_0(effects.noise), "noise", "0 or more [m]"),
         ];
-        first_failure(text, line_at(text, groom.start()), &checks)?;
+        let from = line_at(text, groom.start());
+        first_failure(text, from, &checks)?;
+        look(text, from, &groom.look)?;
+        effects(text, from, &groom.effects)?;
         let thicken = &groom.thicken;
         let thickened = [
             (thicken.copies <= 1_000, "copies", "0 to 1000"),
@@ -266,6 +255,33 @@ fn tool_checks(tool: &Tool) -> Vec<Check> {
             damping(t.damping),
         ],
     }
+}
+
+/// Checks how a groom is drawn, from line `from` on.
+pub(super) fn look(text: &str, from: usize, look: &HairLook) -> Result<(), Problem> {
+    let checks = [
+        (color(look.root_color), "root_color", "three numbers from 0 to 1"),
+        (color(look.tip_color), "tip_color", "three numbers from 0 to 1"),
+        ((0.0..=1.0).contains(&look.variation), "variation", "0 to 1"),
+        ((0.1..=1.0).contains(&look.roughness), "roughness", "0.1 to 1"),
+        ((0.0..=10.0).contains(&look.cuticle), "cuticle", "0 to 10 [degrees]"),
+        ((0.0..=4.0).contains(&look.specular), "specular", "0 to 4"),
+        ((0.0..=4.0).contains(&look.backlight), "backlight", "0 to 4"),
+        ((0.0..=4.0).contains(&look.scatter), "scatter", "0 to 4"),
+        ((0.0..=4.0).contains(&look.shadow), "shadow", "0 to 4"),
+    ];
+    first_failure(text, from, &checks)
+}
+
+/// Checks what is laid over follow hairs, from line `from` on.
+pub(super) fn effects(text: &str, from: usize, effects: &Effects) -> Result<(), Problem> {
+    let checks = [
+        ((0.0..=1.0).contains(&effects.clump), "clump", "0 to 1"),
+        (from_0(effects.curl_radius), "curl_radius", "0 or more [m]"),
+        (above_0(Some(effects.curl_length)), "curl_length", "above 0 [m]"),
+        (from_0(effects.noise), "noise", "0 or more [m]"),
+    ];
+    first_failure(text, from, &checks)
 }
 
 /// Checks a material whose table begins in line `from`.

@@ -89,10 +89,15 @@ pub(super) struct BuiltinFile {
     pub material: Option<OneOrMore>,
     /// Whether it nods, turns and shakes where there is no `[clip]`. Default true.
     pub motion: Option<bool>,
+    /// How the head of hair is drawn: any field of a look. Default: the style's.
+    pub look: Option<Spanned<toml::Table>>,
+    /// What is laid over its follow hairs.
+    #[serde(default)]
+    pub effects: Effects,
 }
 
 /// `[body]`, `[collision]` and `[[sheet]]`.
-#[derive(Deserialize)]
+#[derive(PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyFile {
     /// `.glb`, `.gltf`, `.obj` or `.tfxmesh`; needed.
@@ -122,7 +127,7 @@ pub(super) struct BodyFile {
 }
 
 /// `[clip]`.
-#[derive(Deserialize)]
+#[derive(PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ClipFile {
     /// `.bvh`, `.glb` or `.gltf`. Default: the body's own motions.
@@ -154,7 +159,7 @@ pub(super) struct ClipFile {
 }
 
 /// A key of `[clip]`.
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct KeyFile {
     /// When [s]; needed, and after that of the key before.
@@ -181,7 +186,7 @@ pub(super) fn turn(degrees: Vec3) -> Quat {
 }
 
 /// [`Travel`] as a scene file names it.
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum TravelName {
     Keep,
@@ -232,7 +237,30 @@ pub(super) struct GroomFile {
     pub bones: Option<FileName>,
 }
 
+/// What a groom's strands are made from.
+#[derive(PartialEq)]
+pub(super) struct GroomGeometry<'a> {
+    files: [&'a Option<FileName>; 2],
+    grow: &'a Option<Spanned<GrowFile>>,
+    thicken: Thicken,
+    units: (Option<f32>, Option<Axis>),
+    transform: Placement,
+    guides: Guides,
+}
+
 impl GroomFile {
+    /// What its strands are made from.
+    pub(super) fn geometry(&self) -> GroomGeometry<'_> {
+        GroomGeometry {
+            files: [&self.file, &self.bones],
+            grow: &self.grow,
+            thicken: self.thicken,
+            units: (self.scale, self.up),
+            transform: self.transform,
+            guides: self.guides,
+        }
+    }
+
     /// The byte where the groom says what it is, for messages.
     pub(super) fn start(&self) -> usize {
         let grow = self.grow.as_ref().map(|g| g.span().start);
@@ -241,7 +269,7 @@ impl GroomFile {
 }
 
 /// `grow` of a groom: where hair grows, and how.
-#[derive(Deserialize)]
+#[derive(PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GrowFile {
     /// Names of the parts of the body that it grows on. Default: all.
@@ -277,7 +305,7 @@ impl GrowFile {
 }
 
 /// `transform` of a groom: scaled, then turned about X, Y and Z in this order, then moved.
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct Placement {
     /// Where its origin goes [m]. Default 0.

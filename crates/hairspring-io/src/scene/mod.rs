@@ -5,23 +5,21 @@ mod body;
 mod builtin;
 mod check;
 mod file;
+mod geometry;
+mod groom;
 mod grow;
+mod material;
 mod motion;
 mod sentence;
+mod settings;
 
-use crate::{
-    Error, Format, Loaded, Problem, ReadOptions, Result, load, read_body, read_bones, read_groom,
-    text::as_text, tfxbone::RootBones,
-};
-use file::{FileName, GroomFile, OneOrMore, SceneFile};
-use glam::Affine3A;
+use crate::{Error, Format, Loaded, Problem, ReadOptions, Result, load, read_body, text::as_text};
+use file::{FileName, SceneFile};
 use hairspring::{
-    body::Body,
-    groom::{Groom, Repairs, bind_roots_where, thicken},
-    material::{self, Material},
-    scene::{Collider, Scene, SceneGroom, SceneSheet, Shape},
+    groom::Repairs,
+    scene::{Scene, Shape},
 };
-use sentence::{line_at, line_of_key, problem, problem_in_table, unknown};
+use sentence::{line_at, line_of_key, problem};
 use std::path::{Path, PathBuf};
 
 /// Reads a scene file and all files that it names, relative to its own folder.
@@ -35,9 +33,44 @@ pub fn read_scene(path: &Path) -> Result<Loaded<Scene>> {
         return Err(Error::Unsupported { path: path.to_owned(), reason });
     }
     let data = load::bytes_of(path)?;
-    let text = as_text(&data);
-    let file = parse(&text).map_err(|p| p.in_file(path))?;
-    Reader { path, text: &text, notes: Vec::new(), repairs: Repairs::default() }.scene(file)
+    read_scene_text(path, &as_text(&data))
+}
+
+/// Reads the text of a scene file that need not be saved, as if it were in `path`: files are named relative to its folder.
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
+    let file = parse(text).map_err(|p| p.in_file(path))?;
+    let mut reader = Reader::new(path, text);
+    let mut scene = reader.settings(&file)?;
+    reader.geometry(&file, &mut scene)?;
+    let Reader { repairs, notes, .. } = reader;
+    Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs, notes })
+}
+
+/// Reads the settings of such a text, at once: the scene of [`read_scene_text`] without its geometry, for `Stage::retune`. Grooms are there, with their
+/// materials, guides, effects and look, and have no strands; there is no body, collision mesh, sheet or clip. No file is opened but those of
+/// colliders' hulls.
+///
+/// # Errors
+/// As [`read_scene`], but for what concerns other files and the body's joints.
+pub fn read_settings(path: &Path, text: &str) -> Result<Scene> {
+    let file = parse(text).map_err(|p| p.in_file(path))?;
+    Reader::new(path, text).settings(&file)
+}
+
+/// Whether two texts of scene files that can both be read differ in nothing but what `Stage::retune` takes up: the hair, the body and its motion are the
+/// same. False where one is no scene file.
+///
+/// Beside the files, a material's `radius` is geometry, because hair is drawn by it, and so are `guides` and `solver.collide_body`. A hull's file is a
+/// setting.
+pub fn same_geometry(a: &str, b: &str) -> bool {
+    let (Ok(a_file), Ok(b_file)) = (parse(a), parse(b)) else { return false };
+    match (geometry::asked(a, &a_file), geometry::asked(b, &b_file)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
 }
 
 /// Reads the text of a scene file without the files that it names: whether all fields are known and in range.
@@ -51,65 +84,13 @@ pub fn check_text(text: &str) -> std::result::Result<(), Problem> {
 fn parse(text: &str) -> std::result::Result<SceneFile, Problem> {
     let file: SceneFile = toml::from_str(text).map_err(|e| problem(text, &e))?;
     check::ranges(text, &file)?;
+    if let Some(named) = &file.builtin {
+        builtin::settings(text, &file, named)?;
+    }
     for groom in &file.groom {
-        materials(text, &file, groom)?;
+        material::of_groom(text, &file, groom)?;
     }
     Ok(file)
-}
-
-/// The materials of a groom, one a group.
-fn materials(
-    text: &str,
-    scene: &SceneFile,
-    groom: &GroomFile,
-) -> std::result::Result<Vec<Material>, Problem> {
-    named_materials(text, scene, groom.material.as_ref(), groom.start())
-}
-
-/// The materials of these names, which the table that begins at byte `start` gives.
-fn named_materials(
-    text: &str,
-    scene: &SceneFile,
-    named: Option<&OneOrMore>,
-    start: usize,
-) -> std::result::Result<Vec<Material>, Problem> {
-    let names: &[String] = match named {
-        None => &[],
-        Some(OneOrMore::One(name)) => std::slice::from_ref(name),
-        Some(OneOrMore::More(names)) => names,
-    };
-    let known = || scene.material.keys().map(String::as_str).chain(material::PRESETS);
-    names
-        .iter()
-        .map(|name| match (scene.material.get(name), material::preset(name)) {
-            (Some(table), _) => overlaid(text, table),
-            (None, Some(preset)) => Ok(preset),
-            (None, None) => {
-                let line = line_of_key(text, line_at(text, start), "material").unwrap_or(1);
-                Err(Problem::line(line, format!("the material {}", unknown(name, known()))))
-            }
-        })
-        .collect()
-}
-
-/// A `[material.NAME]`: its preset with the given fields over it.
-fn overlaid(text: &str, table: &toml::Spanned<toml::Table>) -> std::result::Result<Material, Problem> {
-    let start = table.span().start;
-    let mut fields = table.get_ref().clone();
-    let base = match fields.remove("preset") {
-        None => Material::default(),
-        Some(value) => value.as_str().and_then(material::preset).ok_or_else(|| {
-            let line = line_of_key(text, line_at(text, start), "preset").unwrap_or(1);
-            let name = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-            Problem::line(line, format!("the preset {}", unknown(&name, material::PRESETS)))
-        })?,
-    };
-    let in_table = |e: &toml::de::Error| problem_in_table(text, start, e);
-    let mut all = toml::Table::try_from(&base).map_err(|e| Problem::whole(e.to_string()))?;
-    all.extend(fields);
-    let material: Material = all.try_into().map_err(|e| in_table(&e))?;
-    check::material(text, line_at(text, start), &material)?;
-    Ok(material)
 }
 
 /// Follows a scene file's names to their files.
@@ -120,65 +101,9 @@ struct Reader<'a> {
     repairs: Repairs,
 }
 
-impl Reader<'_> {
-    fn scene(mut self, file: SceneFile) -> Result<Loaded<Scene>> {
-        let (base, character) = match (&file.builtin, &file.body) {
-            (Some(named), _) => {
-                let materials = named_materials(
-                    self.text,
-                    &file,
-                    named.material.as_ref(),
-                    self.text.find("[builtin]").unwrap_or(0),
-                );
-                self.builtin(named, materials.map_err(|p| p.in_file(self.path))?)?
-            }
-            (None, body) => (Scene::default(), body.as_ref().map(|b| self.body(b, "body")).transpose()?),
-        };
-        let collision = file.collision.as_ref().map(|b| self.body(b, "collision mesh")).transpose()?;
-        let mut scene = Scene {
-            name: file.name.clone().unwrap_or_else(|| stem(self.path)),
-            grooms: base.grooms,
-            wind: file.wind,
-            wind_sources: file.wind_source.clone(),
-            turbulence: file.turbulence,
-            shelter: file.shelter,
-            charged: file.charged.clone(),
-            gravity: file.gravity,
-            solver: file.solver,
-            volume: file.volume,
-            camera: file.camera.or(base.camera),
-            hands: file.hand.clone(),
-            ..Scene::default()
-        };
-        for groom in &file.groom {
-            let materials = materials(self.text, &file, groom).map_err(|p| p.in_file(self.path))?;
-            scene.grooms.push(self.groom(groom, materials, character.as_ref().map(|c| &c.body))?);
-        }
-        let (body, clip) = self.motion(file.clip.as_ref(), character, file.builtin.is_some())?;
-        // The built-in collision mesh has the joints of the built-in body, as long as that has them.
-        let one_piece = body.as_ref().is_some_and(|b| b.joints.len() == 1);
-        let made = base.collision.map(|c| if one_piece { body::rigid(c) } else { c });
-        let collision = collision.map(|c| c.body).or(made);
-        scene.collision = match (collision, &body, &file.collision) {
-            (Some(collision), Some(body), Some(named)) => Some(self.carried(collision, body, named)?),
-            (collision, ..) => collision,
-        };
-        for sheet in &file.sheet {
-            let open = self.body(sheet, "sheet")?.body;
-            let body = body.as_ref().map_or(Ok(open.clone()), |body| self.carried(open, body, sheet))?;
-            let thickness = sheet.thickness.unwrap_or(SceneSheet::THICKNESS);
-            scene.sheets.push(SceneSheet { body, thickness });
-        }
-        (scene.body, scene.clip) = (body, clip);
-        self.joints(&file, &scene)?;
-        scene.colliders = self.colliders(&file.collider)?;
-        Ok(Loaded {
-            value: scene,
-            format: Format::Scene,
-            scale: 1.0,
-            repairs: self.repairs,
-            notes: self.notes,
-        })
+impl<'a> Reader<'a> {
+    fn new(path: &'a Path, text: &'a str) -> Self {
+        Self { path, text, notes: Vec::new(), repairs: Repairs::default() }
     }
 
     /// The path of a file that the scene names.
@@ -209,128 +134,6 @@ impl Reader<'_> {
         Problem::line(line_of_key(self.text, from, key).unwrap_or(from), text).in_file(self.path)
     }
 
-    fn groom(
-        &mut self,
-        named: &GroomFile,
-        materials: Vec<Material>,
-        body: Option<&Body>,
-    ) -> Result<SceneGroom> {
-        let mut groom = match (&named.file, &named.grow) {
-            (Some(file), _) => self.read_strands(named, file)?,
-            (None, Some(grow)) => self.grown(grow, body)?,
-            // Refused when the text was checked.
-            (None, None) => Groom::default(),
-        };
-        let t = named.transform;
-        let place = Affine3A::from_scale_rotation_translation(t.scale, file::turn(t.rotation), t.position);
-        if place != Affine3A::IDENTITY {
-            groom.points.iter_mut().for_each(|p| *p = place.transform_point3(*p));
-        }
-        if !groom.roots.is_empty() && place != Affine3A::IDENTITY {
-            groom.roots.clear();
-        }
-        if named.thicken.copies > 0 {
-            groom.roots.clear();
-            thicken(&mut groom, &named.thicken, body.map(|b| &b.mesh));
-        }
-        if let Some(bones) = &named.bones {
-            let read = self.named(read_bones(&self.resolve(bones)), bones, "bone file")?;
-            self.bind_by_bones(&mut groom, &read, body, named.thicken.copies)
-                .map_err(|text| self.wrong(bones.span().start, "bones", text))?;
-        }
-        // A material's radius is the groom's from here on: hair is drawn as thick as it is simulated.
-        for s in 0..groom.strand_count() {
-            let material = materials.get(groom.group(s) as usize).or(materials.last());
-            if let Some(radius) = material.and_then(|m| m.radius) {
-                let points = groom.range(s);
-                groom.radii[points].fill(radius);
-            }
-        }
-        Ok(SceneGroom {
-            groom,
-            materials,
-            guides: named.guides,
-            effects: named.effects,
-            look: named.look.clone(),
-        })
-    }
-
-    /// The strands of a groom's file.
-    fn read_strands(&mut self, named: &GroomFile, file: &FileName) -> Result<Groom> {
-        let path = self.resolve(file);
-        let options = ReadOptions { scale: named.scale, up: named.up };
-        let loaded = self.named(read_groom(&path, &options), file, "groom")?;
-        self.note(&path, loaded.notes);
-        let r = loaded.repairs;
-        self.repairs.non_finite_points += r.non_finite_points;
-        self.repairs.zero_segments += r.zero_segments;
-        self.repairs.short_strands += r.short_strands;
-        self.repairs.bad_radii += r.bad_radii;
-        Ok(loaded.value)
-    }
-
-    /// Binds each root to skin that follows one of its bones. Copies of strands have the bones of the strand that they follow.
-    fn bind_by_bones(
-        &self,
-        groom: &mut Groom,
-        bones: &RootBones,
-        body: Option<&Body>,
-        copies: u32,
-    ) -> std::result::Result<(), String> {
-        let Some((body, skin)) = body.and_then(|b| b.skin.as_ref().map(|s| (b, s))) else {
-            return Err("bones of roots need a [body] that is skinned".into());
-        };
-        let copies = 1 + copies as usize;
-        if bones.bones.len() * copies != groom.strand_count() {
-            let (n, strands) = (bones.bones.len(), groom.strand_count() / copies);
-            return Err(format!(
-                "the file holds the bones of {n} roots, but the groom has {strands} strands"
-            ));
-        }
-        let joint: Vec<Option<u16>> = bones.names.iter().map(|n| body.joint(n).map(|j| j as u16)).collect();
-        let of_root = |s: usize| {
-            let s = s % bones.bones.len();
-            let pairs = bones.bones[s].iter().zip(bones.weights[s]);
-            pairs.filter(|(_, w)| *w > 0.0).filter_map(|(b, _)| joint[*b as usize])
-        };
-        let follows = |t: usize, j: u16| {
-            let corners = body.mesh.triangles[t].iter().map(|v| *v as usize);
-            corners
-                .flat_map(|v| skin.joints[v].into_iter().zip(skin.weights[v]))
-                .any(|(k, w)| k == j && w > 0.0)
-        };
-        bind_roots_where(groom, &body.mesh, |s, t| of_root(s).any(|j| follows(t, j)));
-        Ok(())
-    }
-
-    /// Checks that the joints that things follow are there.
-    fn joints(&self, file: &SceneFile, scene: &Scene) -> Result<()> {
-        let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
-        let known = |name: &str| joints.iter().any(|j| j.name.eq_ignore_ascii_case(name));
-        let colliders = file.collider.iter().map(|c| ("[[collider]]", &c.joint));
-        let sources = scene.wind_sources.iter().map(|s| ("[[wind_source]]", &s.joint));
-        let charged = scene.charged.iter().map(|c| ("[[charged]]", &c.joint));
-        let hands = scene.hands.iter().map(|h| ("[[hand]]", &h.joint));
-        for (section, joint) in colliders.chain(sources).chain(charged).chain(hands) {
-            let Some(name) = joint.as_ref().filter(|name| !known(name)) else {
-                continue;
-            };
-            let text = format!("the joint {}", unknown(name, joints.iter().map(|j| j.name.as_str())));
-            return Err(self.wrong(self.text.find(section).unwrap_or(0), "joint", text));
-        }
-        Ok(())
-    }
-
-    /// The colliders, with the points of hulls from their files.
-    fn colliders(&mut self, named: &[Collider]) -> Result<Vec<Collider>> {
-        let near = self.text.find("[[collider]]").unwrap_or(0);
-        let mut colliders = Vec::with_capacity(named.len());
-        for collider in named {
-            colliders.push(Collider { shape: self.shape(&collider.shape, near)?, ..collider.clone() });
-        }
-        Ok(colliders)
-    }
-
     /// A shape that is named near byte `near`, with the points of a hull from its file.
     fn shape(&mut self, named: &Shape, near: usize) -> Result<Shape> {
         let Shape::Hull { file: Some(file), scale, .. } = named else { return Ok(named.clone()) };
@@ -345,9 +148,4 @@ impl Reader<'_> {
         }
         Ok(shape)
     }
-}
-
-/// A file's name without folder and extension.
-fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }

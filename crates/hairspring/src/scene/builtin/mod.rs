@@ -52,16 +52,23 @@ impl Default for BuiltinOptions {
 pub fn scene(options: &BuiltinOptions) -> Scene {
     let (body, collision) = rayon::join(bust::drawn, bust::collision);
     let (strands, points) = (options.strands as usize, options.points.max(3) as usize);
-    let groom = groom::groom(&body.mesh, &options.style.cut(), strands, points, options.seed);
+    let mut scene = settings(options);
+    scene.grooms[0].groom = groom::groom(&body.mesh, &options.style.cut(), strands, points, options.seed);
+    scene.grooms[1].groom = brows::groom(options.seed);
+    scene.clip = Some(motion::clip(&body));
+    (scene.body, scene.collision) = (Some(body), Some(collision));
+    scene
+}
+
+/// The scene without its geometry, at once: its grooms, the head of hair and the brows and lashes, have no strands, and there is no body.
+pub fn settings(options: &BuiltinOptions) -> Scene {
     let hair = SceneGroom {
-        groom,
         materials: vec![options.style.material()],
         guides: options.guides,
         look: options.style.look(),
         ..SceneGroom::default()
     };
     let face_hair = SceneGroom {
-        groom: brows::groom(options.seed),
         materials: vec![Material::default()],
         guides: Guides::All,
         look: HairLook {
@@ -74,9 +81,6 @@ pub fn scene(options: &BuiltinOptions) -> Scene {
     Scene {
         name: format!("built-in, {}", options.style.name()),
         grooms: vec![hair, face_hair],
-        clip: Some(motion::clip(&body)),
-        body: Some(body),
-        collision: Some(collision),
         gravity: vec3(0.0, -9.81, 0.0),
         camera: Some(camera(options.style)),
         ..Scene::default()

@@ -1,0 +1,120 @@
+//! What hair, body and motion are made of: all that `Stage::retune` leaves as it is.
+
+use super::{
+    Reader, body, builtin,
+    file::{BodyFile, ClipFile, GroomGeometry, SceneFile},
+    material,
+    sentence::unknown,
+};
+use crate::{Character, Problem, Result};
+use hairspring::{
+    material::Material,
+    scene::{Scene, SceneSheet, builtin::BuiltinOptions},
+};
+
+/// What a scene file asks for of geometry.
+#[derive(PartialEq)]
+pub(super) struct Asked<'a> {
+    /// The built-in scene, and whether it moves by itself.
+    builtin: Option<(BuiltinOptions, bool)>,
+    body: &'a Option<BodyFile>,
+    collision: &'a Option<BodyFile>,
+    sheets: &'a [BodyFile],
+    clip: &'a Option<ClipFile>,
+    collide_body: bool,
+    grooms: Vec<GroomGeometry<'a>>,
+    /// Radii that the materials of each groom set [m].
+    radii: Vec<Vec<Option<f32>>>,
+}
+
+/// What `file`, read from `text`, asks for.
+pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<Asked<'a>, Problem> {
+    let mut radii = Vec::new();
+    let mut made = None;
+    if let Some(named) = &file.builtin {
+        let settings = builtin::settings(text, file, named)?;
+        radii.extend(settings.grooms.iter().map(|groom| radii_of(&groom.materials)));
+        made = Some((builtin::options(text, named)?, named.motion != Some(false)));
+    }
+    for groom in &file.groom {
+        radii.push(radii_of(&material::of_groom(text, file, groom)?));
+    }
+    Ok(Asked {
+        builtin: made,
+        body: &file.body,
+        collision: &file.collision,
+        sheets: &file.sheet,
+        clip: &file.clip,
+        collide_body: file.solver.collide_body,
+        grooms: file.groom.iter().map(|groom| groom.geometry()).collect(),
+        radii,
+    })
+}
+
+/// The radii that these materials set; a group past the end has the last.
+fn radii_of(materials: &[Material]) -> Vec<Option<f32>> {
+    let mut radii: Vec<_> = materials.iter().map(|m| m.radius).collect();
+    while radii.len() > 1 && radii[radii.len() - 2] == radii[radii.len() - 1] {
+        radii.pop();
+    }
+    if radii == [None] { Vec::new() } else { radii }
+}
+
+impl Reader<'_> {
+    /// Adds strands, body, motion and what hair collides with as a mesh to a scene with its settings.
+    pub(super) fn geometry(&mut self, file: &SceneFile, scene: &mut Scene) -> Result<()> {
+        let mut made = match &file.builtin {
+            Some(named) => self.builtin(named)?,
+            None => Scene::default(),
+        };
+        let character = match (&file.body, made.body.take()) {
+            (Some(named), _) => Some(self.body(named, "body")?),
+            (None, body) => {
+                body.map(|body| Character { body, clips: made.clip.take().into_iter().collect() })
+            }
+        };
+        let collision = file.collision.as_ref().map(|b| self.body(b, "collision mesh")).transpose()?;
+        let grown = made.grooms.len();
+        for (groom, made) in scene.grooms.iter_mut().zip(made.grooms) {
+            groom.groom = made.groom;
+        }
+        for (groom, named) in scene.grooms[grown..].iter_mut().zip(&file.groom) {
+            groom.groom = self.groom(named, &groom.materials, character.as_ref().map(|c| &c.body))?;
+        }
+        let (body, clip) = self.motion(file.clip.as_ref(), character, file.builtin.is_some())?;
+        // The built-in collision mesh has the joints of the built-in body, as long as that has them.
+        let one_piece = body.as_ref().is_some_and(|b| b.joints.len() == 1);
+        let made = made.collision.map(|c| if one_piece { body::rigid(c) } else { c });
+        let collision = collision.map(|c| c.body).or(made);
+        scene.collision = match (collision, &body, &file.collision) {
+            (Some(collision), Some(body), Some(named)) => Some(self.carried(collision, body, named)?),
+            (collision, ..) => collision,
+        };
+        for sheet in &file.sheet {
+            let open = self.body(sheet, "sheet")?.body;
+            let body = body.as_ref().map_or(Ok(open.clone()), |body| self.carried(open, body, sheet))?;
+            let thickness = sheet.thickness.unwrap_or(SceneSheet::THICKNESS);
+            scene.sheets.push(SceneSheet { body, thickness });
+        }
+        (scene.body, scene.clip) = (body, clip);
+        self.joints(scene)
+    }
+
+    /// Checks that the joints that things follow are there.
+    fn joints(&self, scene: &Scene) -> Result<()> {
+        let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
+        let known = |name: &str| joints.iter().any(|j| j.name.eq_ignore_ascii_case(name));
+        let colliders = scene.colliders.iter().map(|c| ("[[collider]]", &c.joint));
+        let sources = scene.wind_sources.iter().map(|s| ("[[wind_source]]", &s.joint));
+        let charged = scene.charged.iter().map(|c| ("[[charged]]", &c.joint));
+        let hands = scene.hands.iter().map(|h| ("[[hand]]", &h.joint));
+        for (section, joint) in colliders.chain(sources).chain(charged).chain(hands) {
+            let Some(name) = joint.as_ref().filter(|name| !known(name)) else {
+                continue;
+            };
+            let text = format!("the joint {}", unknown(name, joints.iter().map(|j| j.name.as_str())));
+            return Err(self.wrong(self.text.find(section).unwrap_or(0), "joint", text));
+        }
+        Ok(())
+    }
+}

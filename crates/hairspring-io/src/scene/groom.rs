@@ -1,0 +1,104 @@
+//! The strands of a `[[groom]]`: read or grown, placed, thickened, bound.
+
+use super::{
+    Reader,
+    file::{self, FileName, GroomFile},
+};
+use crate::{ReadOptions, Result, read_bones, read_groom, tfxbone::RootBones};
+use glam::Affine3A;
+use hairspring::{
+    body::Body,
+    groom::{Groom, bind_roots_where, thicken},
+    material::Material,
+};
+
+impl Reader<'_> {
+    /// The strands of a `[[groom]]`, as they stand on the `body`.
+    pub(super) fn groom(
+        &mut self,
+        named: &GroomFile,
+        materials: &[Material],
+        body: Option<&Body>,
+    ) -> Result<Groom> {
+        let mut groom = match (&named.file, &named.grow) {
+            (Some(file), _) => self.read_strands(named, file)?,
+            (None, Some(grow)) => self.grown(grow, body)?,
+            // Refused when the text was checked.
+            (None, None) => Groom::default(),
+        };
+        let t = named.transform;
+        let place = Affine3A::from_scale_rotation_translation(t.scale, file::turn(t.rotation), t.position);
+        if place != Affine3A::IDENTITY {
+            groom.points.iter_mut().for_each(|p| *p = place.transform_point3(*p));
+        }
+        if !groom.roots.is_empty() && place != Affine3A::IDENTITY {
+            groom.roots.clear();
+        }
+        if named.thicken.copies > 0 {
+            groom.roots.clear();
+            thicken(&mut groom, &named.thicken, body.map(|b| &b.mesh));
+        }
+        if let Some(bones) = &named.bones {
+            let read = self.named(read_bones(&self.resolve(bones)), bones, "bone file")?;
+            self.bind_by_bones(&mut groom, &read, body, named.thicken.copies)
+                .map_err(|text| self.wrong(bones.span().start, "bones", text))?;
+        }
+        // A material's radius is the groom's from here on: hair is drawn as thick as it is simulated.
+        for s in 0..groom.strand_count() {
+            let material = materials.get(groom.group(s) as usize).or(materials.last());
+            if let Some(radius) = material.and_then(|m| m.radius) {
+                let points = groom.range(s);
+                groom.radii[points].fill(radius);
+            }
+        }
+        Ok(groom)
+    }
+
+    /// The strands of a groom's file.
+    fn read_strands(&mut self, named: &GroomFile, file: &FileName) -> Result<Groom> {
+        let path = self.resolve(file);
+        let options = ReadOptions { scale: named.scale, up: named.up };
+        let loaded = self.named(read_groom(&path, &options), file, "groom")?;
+        self.note(&path, loaded.notes);
+        let r = loaded.repairs;
+        self.repairs.non_finite_points += r.non_finite_points;
+        self.repairs.zero_segments += r.zero_segments;
+        self.repairs.short_strands += r.short_strands;
+        self.repairs.bad_radii += r.bad_radii;
+        Ok(loaded.value)
+    }
+
+    /// Binds each root to skin that follows one of its bones. Copies of strands have the bones of the strand that they follow.
+    fn bind_by_bones(
+        &self,
+        groom: &mut Groom,
+        bones: &RootBones,
+        body: Option<&Body>,
+        copies: u32,
+    ) -> std::result::Result<(), String> {
+        let Some((body, skin)) = body.and_then(|b| b.skin.as_ref().map(|s| (b, s))) else {
+            return Err("bones of roots need a [body] that is skinned".into());
+        };
+        let copies = 1 + copies as usize;
+        if bones.bones.len() * copies != groom.strand_count() {
+            let (n, strands) = (bones.bones.len(), groom.strand_count() / copies);
+            return Err(format!(
+                "the file holds the bones of {n} roots, but the groom has {strands} strands"
+            ));
+        }
+        let joint: Vec<Option<u16>> = bones.names.iter().map(|n| body.joint(n).map(|j| j as u16)).collect();
+        let of_root = |s: usize| {
+            let s = s % bones.bones.len();
+            let pairs = bones.bones[s].iter().zip(bones.weights[s]);
+            pairs.filter(|(_, w)| *w > 0.0).filter_map(|(b, _)| joint[*b as usize])
+        };
+        let follows = |t: usize, j: u16| {
+            let corners = body.mesh.triangles[t].iter().map(|v| *v as usize);
+            corners
+                .flat_map(|v| skin.joints[v].into_iter().zip(skin.weights[v]))
+                .any(|(k, w)| k == j && w > 0.0)
+        };
+        bind_roots_where(groom, &body.mesh, |s, t| of_root(s).any(|j| follows(t, j)));
+        Ok(())
+    }
+}

@@ -1,0 +1,71 @@
+//! Materials by their names, and tables that say what differs from a base.
+
+use super::{
+    check,
+    file::{GroomFile, OneOrMore, SceneFile},
+    sentence::{line_at, line_of_key, problem_in_table, unknown},
+};
+use crate::Problem;
+use hairspring::material::{self, Material};
+use serde::{Serialize, de::DeserializeOwned};
+use toml::Spanned;
+
+/// The materials of a groom, one a group.
+pub(super) fn of_groom(text: &str, scene: &SceneFile, groom: &GroomFile) -> Result<Vec<Material>, Problem> {
+    named(text, scene, groom.material.as_ref(), groom.start())
+}
+
+/// The materials of these names, which the table that begins at byte `start` gives.
+pub(super) fn named(
+    text: &str,
+    scene: &SceneFile,
+    named: Option<&OneOrMore>,
+    start: usize,
+) -> Result<Vec<Material>, Problem> {
+    let names: &[String] = match named {
+        None => &[],
+        Some(OneOrMore::One(name)) => std::slice::from_ref(name),
+        Some(OneOrMore::More(names)) => names,
+    };
+    let known = || scene.material.keys().map(String::as_str).chain(material::PRESETS);
+    names
+        .iter()
+        .map(|name| match (scene.material.get(name), material::preset(name)) {
+            (Some(table), _) => overlaid(text, table),
+            (None, Some(preset)) => Ok(preset),
+            (None, None) => {
+                let line = line_of_key(text, line_at(text, start), "material").unwrap_or(1);
+                Err(Problem::line(line, format!("the material {}", unknown(name, known()))))
+            }
+        })
+        .collect()
+}
+
+/// A `[material.NAME]`: its preset with the given fields over it.
+fn overlaid(text: &str, table: &Spanned<toml::Table>) -> Result<Material, Problem> {
+    let start = table.span().start;
+    let mut fields = table.get_ref().clone();
+    let base = match fields.remove("preset") {
+        None => Material::default(),
+        Some(value) => value.as_str().and_then(material::preset).ok_or_else(|| {
+            let line = line_of_key(text, line_at(text, start), "preset").unwrap_or(1);
+            let name = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+            Problem::line(line, format!("the preset {}", unknown(&name, material::PRESETS)))
+        })?,
+    };
+    let material: Material = over(text, start, &base, fields)?;
+    check::material(text, line_at(text, start), &material)?;
+    Ok(material)
+}
+
+/// `base` with the given fields of the table that begins at byte `start` over its own.
+pub(super) fn over<T: Serialize + DeserializeOwned>(
+    text: &str,
+    start: usize,
+    base: &T,
+    fields: toml::Table,
+) -> Result<T, Problem> {
+    let mut all = toml::Table::try_from(base).map_err(|e| Problem::whole(e.to_string()))?;
+    all.extend(fields);
+    all.try_into().map_err(|e: toml::de::Error| problem_in_table(text, start, &e))
+}
