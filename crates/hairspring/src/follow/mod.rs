@@ -145,6 +145,36 @@ impl Follow {
         });
     }
 
+    /// Place of a strand among the guides, if it is one.
+    pub(crate) fn guide(&self, strand: usize) -> Option<usize> {
+        Some(self.guide_of[strand]).filter(|guide| *guide != u32::MAX).map(|guide| guide as usize)
+    }
+
+    /// Place among the guides of the first that a strand follows; its own where it is one.
+    pub(crate) fn first_guide(&self, strand: usize) -> usize {
+        self.guide(strand).unwrap_or(self.weights[strand].guides[0] as usize)
+    }
+
+    /// Writes one number a point of all strands, given those of all guides' points: guides have their own, follow hairs those of their first guide where
+    /// they ride on it.
+    pub(crate) fn spread(&self, of_guides: &[f32], out: &mut [f32]) {
+        let strands = split_by(out, &self.groom.offsets);
+        strands.into_par_iter().enumerate().with_min_len(64).for_each(|(s, out)| {
+            let guide = self.first_guide(s);
+            let lead = &of_guides[self.guide_offsets[guide] as usize..self.guide_offsets[guide + 1] as usize];
+            if self.guide(s).is_some() {
+                out.copy_from_slice(lead);
+                return;
+            }
+            let last = lead.len() - 1;
+            for (value, ride) in out.iter_mut().zip(&self.ride[self.groom.range(s)]) {
+                let at = f32::from(ride[0]) * (last as f32 / f32::from(u16::MAX));
+                let i = (at as usize).min(last - 1);
+                *value = lead[i] + (lead[i + 1] - lead[i]) * (at - i as f32);
+            }
+        });
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.weights[..])

@@ -107,7 +107,7 @@ impl Simulation {
     }
 
     /// What holds a segment at its length [N].
-    fn tension(&self, place: usize, i: usize) -> f32 {
+    pub(super) fn tension(&self, place: usize, i: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
         self.state[self.tiles[tile].first as usize + i][state::TENSION].0[lane]
     }

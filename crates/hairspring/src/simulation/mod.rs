@@ -12,6 +12,7 @@ mod reset;
 mod step;
 mod surround;
 mod take_over;
+mod values;
 
 pub use crate::air::Air;
 pub use crate::strand::rest_shape::Start;

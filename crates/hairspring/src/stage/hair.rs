@@ -4,13 +4,14 @@ use super::{FrameReport, Strands, body::StagedBody};
 use crate::{
     around::Tool,
     collide::{ObstaclePose, Rigid},
-    follow::{Follow, assign_guides, choose_guides},
+    follow::{Follow, assign_guides, choose_guides, split_by},
     groom::Groom,
     material::Material,
     scene::{Guides, HairLook, Scene, SceneGroom},
     simulation::{Air, Drive, Simulation, ToolId},
 };
 use glam::{Quat, Vec3};
+use rayon::prelude::*;
 use std::{sync::Arc, time::Instant};
 
 /// Guides of a groom that names none and a scene that asks for no number.
@@ -161,6 +162,51 @@ impl StagedHair {
     /// See [`Simulation::let_go_all`].
     pub(super) fn let_go_all(&mut self) {
         self.simulation.let_go_all();
+    }
+
+    /// The place of a strand among the simulated ones, if it is one.
+    pub(super) fn simulated(&self, strand: usize) -> Option<usize> {
+        self.follow.as_ref().map_or(Some(strand), |follow| follow.guide(strand))
+    }
+
+    /// The same of the first guide that a strand follows; its own where it is simulated.
+    pub(super) fn first_guide(&self, strand: usize) -> usize {
+        self.follow.as_ref().map_or(strand, |follow| follow.first_guide(strand))
+    }
+
+    /// Writes one number a point of all strands: what `of_guide` writes for each simulated strand (its place among them, its number in the groom), and
+    /// follow hairs by their first guide.
+    pub(super) fn values(&self, of_guide: impl Fn(usize, usize, &mut [f32]) + Sync, out: &mut Vec<f32>) {
+        let strands: Vec<usize> = self.simulation.strands().map(|s| s as usize).collect();
+        let mut offsets = vec![0];
+        for s in &strands {
+            offsets.push(offsets[offsets.len() - 1] + self.groom.range(*s).len() as u32);
+        }
+        let mut of_guides = vec![0.0; self.simulation.point_count()];
+        let pieces = split_by(&mut of_guides, &offsets).into_par_iter().zip(&strands).enumerate();
+        pieces.with_min_len(16).for_each(|(k, (piece, s))| of_guide(k, *s, piece));
+        match &self.follow {
+            None => *out = of_guides,
+            Some(follow) => {
+                out.resize(self.groom.point_count(), 0.0);
+                follow.spread(&of_guides, out);
+            }
+        }
+    }
+
+    /// How far each joint of a simulated strand (its place among them, its number in the groom) is turned from the groom's, carried along by the root [rad].
+    pub(super) fn turns(&self, k: usize, strand: usize, out: &mut [f32]) {
+        let (rest, now) = (self.groom.strand(strand), &self.points[self.groom.range(strand)]);
+        let mut turn = self.roots[k].rotation;
+        out.fill(0.0);
+        for (i, angle) in out.iter_mut().enumerate().take(rest.len() - 1) {
+            let was = (turn * (rest[i + 1] - rest[i])).try_normalize();
+            if let (Some(was), Some(is)) = (was, (now[i + 1] - now[i]).try_normalize()) {
+                // The first segment has no joint: the root turns it.
+                *angle = if i == 0 { 0.0 } else { was.cross(is).length().atan2(was.dot(is)) };
+                turn = (Quat::from_rotation_arc(was, is) * turn).normalize();
+            }
+        }
     }
 
     pub(super) fn strands(&self) -> Strands<'_> {

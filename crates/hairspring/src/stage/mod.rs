@@ -7,7 +7,10 @@ mod hands;
 mod joints;
 mod retune;
 mod surface;
+mod values;
 mod wind;
+
+pub use values::{Picked, StrandFigures, Value};
 
 use crate::{
     around::Tool,
