@@ -1,0 +1,128 @@
+//! Promise: what an app moves, hair feels: the body as a whole, and a ball.
+//!
+//! Roots stay on a body that is carried through the world besides its clip. A ball keeps all hair out, follow hairs too, passes on its velocity, and has none
+//! where it appears.
+
+use glam::{Quat, Vec3};
+use hairspring::{
+    collide::{Obstacle, Rigid},
+    groom::Groom,
+    material::Material,
+    scene::{
+        Guides, Scene, SceneGroom,
+        builtin::{self, BuiltinOptions},
+    },
+    stage::Stage,
+};
+
+const FRAME: f32 = 1.0 / 60.0;
+
+#[test]
+fn roots_stay_on_a_body_that_is_carried() {
+    let options = BuiltinOptions { strands: 200, guides: Guides::Count(40), ..BuiltinOptions::default() };
+    let scene = builtin::scene(&options);
+    let [mut here, mut carried] = [0; 2].map(|_| Stage::new(scene.clone()).unwrap());
+    let way = |frame: u32| Rigid {
+        rotation: Quat::from_rotation_y(0.02 * frame as f32),
+        translation: Vec3::new(0.01 * frame as f32, 0.0, -0.005 * frame as f32),
+    };
+    let roots = |stage: &Stage| -> Vec<Vec3> {
+        stage
+            .strands()
+            .flat_map(|s| {
+                (0..s.groom.strand_count()).map(|k| s.points[s.groom.range(k).start]).collect::<Vec<_>>()
+            })
+            .collect()
+    };
+    for frame in 1..30 {
+        carried.move_body(way(frame));
+        here.step(FRAME);
+        carried.step(FRAME);
+        let off = roots(&here).iter().zip(roots(&carried)).map(|(a, b)| way(frame).point(*a).distance(b));
+        let off = off.fold(0.0, f32::max);
+        assert!(off < 2e-6, "frame {frame}: a root is {off} m off the body");
+        let anchor = way(frame).after(&here.body_anchor());
+        assert!(anchor.translation.distance(carried.body_anchor().translation) < 1e-6);
+        // The head's field goes along.
+        let end = carried.obstacles()[0].end;
+        assert!(end.translation.distance(carried.body_anchor().translation) < 1e-6);
+    }
+    // It is felt: hair lags.
+    let tips = |stage: &Stage| stage.strands().next().unwrap().points[31];
+    let lag = way(29).point(tips(&here)).distance(tips(&carried));
+    assert!(lag > 1e-3, "{lag} m");
+    carried.reset();
+    here.reset();
+    assert_eq!(carried.body_anchor(), here.body_anchor());
+    here.step(FRAME);
+    carried.step(FRAME);
+    assert_eq!(carried.strands().next().unwrap().points, here.strands().next().unwrap().points);
+}
+
+/// A curtain of strands that hang from a rail along X, a sixth of them simulated.
+fn curtain() -> Stage {
+    let strands = (0..48).map(|s| {
+        let x = (s as f32 - 23.5) * 0.004;
+        (0..32).map(move |i| Vec3::new(x, -0.5 * i as f32 / 31.0, 0.0)).collect::<Vec<_>>()
+    });
+    let groom = SceneGroom {
+        groom: Groom::from_strands(strands, 40e-6),
+        materials: vec![Material::default()],
+        guides: Guides::Count(8),
+        ..SceneGroom::default()
+    };
+    Stage::new(Scene { grooms: vec![groom], gravity: Vec3::NEG_Y * 9.81, ..Scene::default() }).unwrap()
+}
+
+#[test]
+fn a_ball_takes_hair_along_and_none_is_in_it() {
+    let mut stage = curtain();
+    let radius = 0.05;
+    let ball = |frame: u32| Vec3::new(0.0, -0.35, 0.15 - (frame as f32 * FRAME).min(0.3));
+    for frame in 0..40 {
+        stage.set_ball(Some((ball(frame), radius)));
+        stage.step(FRAME);
+        let obstacle = stage.obstacles().last().unwrap();
+        assert!(matches!(obstacle.shape, Obstacle::Sphere { radius: r, .. } if r == radius));
+        assert_eq!(obstacle.end.translation, ball(frame));
+        let from = if frame == 0 { ball(0) } else { ball(frame - 1) };
+        assert_eq!(obstacle.start.translation, from, "frame {frame}");
+        let points = stage.strands().next().unwrap().points.to_vec();
+        let depth = points.iter().map(|p| radius - p.distance(ball(frame))).fold(0.0, f32::max);
+        assert!(depth < 1e-4, "frame {frame}: {depth} m inside");
+        let measured = stage.measure();
+        assert_eq!(measured.non_finite, 0);
+    }
+    let pushed = stage.strands().next().unwrap().points.iter().map(|p| -p.z).fold(0.0, f32::max);
+    assert!(pushed > 0.1, "{pushed} m: the ball takes hair along");
+    stage.set_ball(None);
+    assert!(stage.obstacles().is_empty());
+    for wrong in [f32::NAN, 0.0, -1.0] {
+        stage.set_ball(Some((Vec3::ZERO, wrong)));
+        assert!(stage.obstacles().is_empty(), "a radius of {wrong}");
+    }
+    (0..300).for_each(|_| _ = stage.step(FRAME));
+    let left = stage.strands().next().unwrap().points.iter().map(|p| p.z.abs()).fold(0.0, f32::max);
+    assert!(left < 0.01, "{left} m off after it has gone");
+}
+
+#[test]
+fn a_ball_stays_where_other_settings_come() {
+    let mut stage = curtain();
+    let center = Vec3::new(0.0, -0.35, 0.03);
+    stage.set_ball(Some((center, 0.05)));
+    let sphere = hairspring::scene::Shape::Sphere { center: Vec3::X, radius: 0.1 };
+    let colliders = vec![hairspring::scene::Collider { joint: None, shape: sphere }];
+    let grooms = vec![SceneGroom { materials: vec![Material::default()], ..SceneGroom::default() }];
+    let settings = Scene { colliders, grooms, ..stage.scene().clone() };
+    stage.retune(settings).unwrap();
+    assert_eq!(stage.obstacles().len(), 2);
+    assert_eq!(stage.obstacles()[1].end.translation, center);
+    (0..60).for_each(|_| _ = stage.step(FRAME));
+    let strands = stage.strands().next().unwrap();
+    let depth = strands.points.iter().map(|p| 0.05 - p.distance(center)).fold(0.0, f32::max);
+    assert!(depth < 1e-4, "{depth} m inside");
+    stage.reset();
+    assert_eq!(stage.obstacles()[1].start, stage.obstacles()[1].end);
+    assert_eq!(stage.obstacles()[1].end.translation, center);
+}
