@@ -10,6 +10,7 @@ const HELP: &str = "cargo xtask NAME
   test           all tests, in release; closes on one line with the sum
   lint           formatting, clippy with warnings refused, the docs, and where all dependencies come from and under which licence
   fuzz [SECONDS] every fuzz target, so long each (default 60), two at a time
+  monkey [MINUTES] random presses in the window, so long (default 10)
   golden         writes the golden pictures anew (look at them before you commit)
   gallery        draws the pictures of docs/gallery.md anew (look at them too)
   ci             lint, fuzz, test: what CI runs";
@@ -25,6 +26,8 @@ fn main() {
             Ok(seconds) => fuzz::all(seconds, None),
             Err(_) => Err(format!("'{seconds}' is not a number of seconds")),
         },
+        ["monkey"] => monkey("10"),
+        ["monkey", minutes] => monkey(minutes),
         ["golden"] => {
             run::cargo(&["test", "--release", "-p", "hairspring-view"], &[("HAIRSPRING_GOLDEN", "write")])
         }
@@ -40,6 +43,14 @@ fn main() {
         eprintln!("xtask: {why}");
         std::process::exit(1);
     }
+}
+
+/// Lets a random hand play with the window's controls.
+fn monkey(minutes: &str) -> Result<(), String> {
+    let minutes: f64 = minutes.parse().map_err(|_| format!("'{minutes}' is not a number of minutes"))?;
+    let seconds = format!("{}", (minutes * 60.0).round() as u64);
+    let test = ["test", "--release", "-p", "hairspring-app", "--test", "a_monkey_at_the_controls_breaks_nothing"];
+    run::cargo(&[&test[..], &["--", "--nocapture"]].concat(), &[("HAIRSPRING_MONKEY", &seconds)])
 }
 
 fn lint() -> Result<(), String> {

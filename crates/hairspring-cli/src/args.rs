@@ -1,6 +1,6 @@
 //! The command line as a whole; each command's options are beside the command.
 
-use crate::{bake, bench, compare, convert, demo, info, render, validate};
+use crate::{bake, bench, compare, convert, demo, info, live, render, validate};
 use clap::{Parser, Subcommand};
 
 const AFTER_HELP: &str = "\
@@ -27,6 +27,7 @@ Exit codes:
   4    a file's content is wrong
   5    a file could not be written
   6    the scene cannot be simulated
+  7    the machine lacks what was asked for: a desktop, a GPU
   70   an error of the program itself
   130  interrupted (Ctrl-C): the frame in hand was completed, nothing is half-written";
 
@@ -35,7 +36,7 @@ const EVERYWHERE: &str = "With every command";
 
 /// Real-time strand hair: simulate it, draw it, convert it, bake it, measure it.
 ///
-/// Without a command, simulates five seconds of a moving head with 100,000 hairs and writes a clip and a still.
+/// Without a command, opens the window on a moving head of hair; without a desktop, writes a clip and a still of it (`hairspring demo`).
 #[derive(Parser)]
 #[command(name = "hairspring", version, after_help = AFTER_HELP, max_term_width = 110)]
 pub struct Cli {
@@ -59,6 +60,7 @@ pub struct Cli {
 /// The commands; what each is for stands with its options.
 #[derive(Subcommand)]
 pub enum Command {
+    Live(live::Options),
     Demo(demo::Options),
     Render(render::Options),
     Bake(bake::Options),

@@ -21,6 +21,8 @@ pub enum Fault {
     Unwritable(String),
     /// The scene cannot be simulated.
     Scene(String),
+    /// The machine lacks what was asked for: a desktop, a GPU.
+    Lacking(String),
     /// The simulation does not agree with a closed form.
     Invalid(String),
     /// The user stopped it.
@@ -37,6 +39,7 @@ impl Fault {
             Self::Content(_) => 4,
             Self::Unwritable(_) => 5,
             Self::Scene(_) => 6,
+            Self::Lacking(_) => 7,
             Self::Interrupted(_) => 130,
         }
     }
@@ -80,6 +83,7 @@ impl fmt::Display for Fault {
         | Self::Content(s)
         | Self::Unwritable(s)
         | Self::Scene(s)
+        | Self::Lacking(s)
         | Self::Invalid(s)
         | Self::Interrupted(s)) = self;
         f.write_str(s)

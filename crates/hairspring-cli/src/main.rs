@@ -13,6 +13,7 @@ mod frames;
 mod info;
 mod input;
 mod interrupt;
+mod live;
 mod output;
 mod picture;
 mod play;
@@ -50,7 +51,8 @@ fn run(cli: Cli) -> Result<(), Fault> {
     }
     let console = Console::new(cli.quiet, cli.verbose);
     match cli.command {
-        None => demo::run(&demo::Options::parse_from(["demo"]), console),
+        None => live::run_or_demo(console),
+        Some(Command::Live(options)) => live::run(&options),
         Some(Command::Demo(options)) => demo::run(&options, console),
         Some(Command::Render(options)) => render::run(&options, console),
         Some(Command::Bake(options)) => bake::run(&options, console),

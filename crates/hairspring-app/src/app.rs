@@ -1,0 +1,568 @@
+//! The window: panels around the picture, keys, files that are dropped, and what a script does.
+
+use crate::{
+    AppError,
+    document::{Document, builtin_text},
+    finger::Finger,
+    overlay,
+    painter::{Drawn, Painter},
+    panel::{
+        files::{Decision, Files, For},
+        help, inspect, parameters,
+        presets::Presets,
+        transport,
+    },
+    record::{Kind, Recorder, Wish},
+    script::Line,
+    session::{Action, Session},
+    snapshot::Snapshot,
+    view::{Hand, View},
+};
+use eframe::egui::{self, Color32, Key, Modifiers, RichText, Sense, Ui};
+use hairspring::stage::Value;
+use std::{
+    collections::VecDeque,
+    sync::{
+        Arc,
+        mpsc::{Receiver, channel},
+    },
+    time::{Duration, Instant},
+};
+
+/// How long a message stays [s].
+const MESSAGE: Duration = Duration::from_secs(8);
+
+/// Which panels are open.
+struct Open {
+    panels: bool,
+    graphs: bool,
+    presets: bool,
+    help: bool,
+}
+
+/// How the window opens.
+#[derive(Default)]
+pub struct Options {
+    /// The scene; `None`: the built-in head.
+    pub document: Option<Document>,
+    /// What is done without a person.
+    pub script: VecDeque<Line>,
+    /// Who draws the hair.
+    pub drawn: Drawn,
+}
+
+/// The window's state.
+pub struct App {
+    session: Session,
+    view: View,
+    painters: Vec<Painter>,
+    history: inspect::History,
+    files: Files,
+    presets: Presets,
+    filter: String,
+    open: Open,
+    recorder: Option<Recorder>,
+    message: Option<(String, bool, Instant)>,
+    script: VecDeque<Line>,
+    /// The step that the script waits for.
+    waits: u64,
+    finger: Finger,
+    /// Where the picture was drawn last.
+    rect: egui::Rect,
+    /// A picture of the window that is being made: what writing it came to.
+    shot: Option<Receiver<Result<(), AppError>>>,
+    /// Hairs and guides of new scenes: as many as this machine draws.
+    hairs: (u32, u32),
+    drawn: Option<Instant>,
+}
+
+impl App {
+    /// The window on a scene: this document's, or the built-in head with as many hairs as the machine draws well.
+    pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> Result<Self, AppError> {
+        let Options { document, script, drawn } = options;
+        let ctx = creation.egui_ctx.clone();
+        let painters = vec![Painter::new(creation, drawn)];
+        let hairs = if painters[0].is_gpu() { (100_000, 2_000) } else { (16_000, 800) };
+        let document = match document {
+            Some(document) => document,
+            None => Document::new("scene.toml".as_ref(), builtin_text("wavy", hairs.0, hairs.1))?,
+        };
+        let wake = ctx.clone();
+        let session = Session::new(document, move || wake.request_repaint())?;
+        ctx.set_theme(egui::Theme::Dark);
+        Ok(Self {
+            session,
+            view: View::default(),
+            painters,
+            history: inspect::History::default(),
+            files: Files::default(),
+            presets: Presets::default(),
+            filter: String::new(),
+            open: Open { panels: true, graphs: false, presets: false, help: false },
+            recorder: None,
+            message: None,
+            script,
+            waits: 0,
+            finger: Finger::new(&ctx),
+            rect: egui::Rect::NOTHING,
+            shot: None,
+            hairs,
+            drawn: None,
+        })
+    }
+
+    /// What it works on.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// Whether the script is done, and what it began.
+    pub fn is_idle(&self) -> bool {
+        self.script.is_empty() && self.recorder.is_none() && self.finger.rests() && self.shot.is_none() && self.waits == 0
+    }
+
+    /// What was last said, and whether it was an error.
+    pub fn message(&self) -> Option<(&str, bool)> {
+        self.message.as_ref().map(|(text, wrong, _)| (text.as_str(), *wrong))
+    }
+
+    fn say(&mut self, text: impl Into<String>, wrong: bool) {
+        self.message = Some((text.into(), wrong, Instant::now()));
+    }
+
+    fn act(&mut self, action: Action) {
+        let another = matches!(action, Action::New(_) | Action::Open(_));
+        match self.session.act(action) {
+            Ok(()) => self.view.forget |= another,
+            Err(why) => self.say(why.to_string(), true),
+        }
+    }
+
+    fn record(&mut self, ctx: &egui::Context, wish: Wish) {
+        let Some(snapshot) = self.session.latest() else { return };
+        let wake = ctx.clone();
+        match Recorder::new(wish, &mut self.session, &snapshot, move || wake.request_repaint()) {
+            Ok(recorder) => self.recorder = Some(recorder),
+            Err(why) => self.say(why.to_string(), true),
+        }
+    }
+
+    /// Keys that are not a widget's.
+    fn keys(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        if ctx.egui_wants_keyboard_input() {
+            return;
+        }
+        let pressed = |m: Modifiers, k: Key| ctx.input_mut(|i| i.consume_key(m, k));
+        if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
+            actions.push(Action::Redo);
+        } else if pressed(Modifiers::COMMAND, Key::Z) {
+            actions.push(Action::Undo);
+        }
+        if pressed(Modifiers::COMMAND, Key::O) {
+            self.files.ask(For::Open, None);
+        }
+        if pressed(Modifiers::COMMAND, Key::S) {
+            self.save(actions);
+        }
+        if pressed(Modifiers::NONE, Key::Space) {
+            actions.push(Action::Play(!self.session.playing()));
+        }
+        if pressed(Modifiers::NONE, Key::ArrowRight) && !self.session.playing() {
+            actions.push(Action::Step);
+        }
+        if pressed(Modifiers::NONE, Key::R) {
+            actions.push(Action::Reset);
+        }
+        if pressed(Modifiers::NONE, Key::C) {
+            actions.push(Action::Compare(self.session.second().is_none()));
+        }
+        if pressed(Modifiers::NONE, Key::Home) {
+            actions.push(Action::Head(glam::Vec3::ZERO));
+        }
+        if pressed(Modifiers::NONE, Key::F12) {
+            self.files.ask(For::Record(Kind::Still), None);
+        }
+        if pressed(Modifiers::NONE, Key::F) {
+            self.view.orbit = None;
+        }
+        for (key, open) in [
+            (Key::G, &mut self.open.graphs),
+            (Key::P, &mut self.open.presets),
+            (Key::Tab, &mut self.open.panels),
+            (Key::Questionmark, &mut self.open.help),
+        ] {
+            *open ^= pressed(Modifiers::NONE, key);
+        }
+        // On many keyboards the question mark is on a shifted key.
+        self.open.help ^= pressed(Modifiers::SHIFT, Key::Questionmark) || pressed(Modifiers::SHIFT, Key::Slash);
+        for (hand, _, key, _) in Hand::ALL {
+            if pressed(Modifiers::NONE, key) {
+                self.view.hand = hand;
+            }
+        }
+        if pressed(Modifiers::NONE, Key::Escape) {
+            (self.open.help, self.open.presets) = (false, false);
+            self.files.close();
+            actions.push(Action::Unpick);
+        }
+    }
+
+    fn save(&mut self, actions: &mut Vec<Action>) {
+        match self.session.document().file() {
+            Some(_) => actions.push(Action::Save(None)),
+            None => self.files.ask(For::Save, None),
+        }
+    }
+
+    /// The bar at the top.
+    fn menu(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        egui::MenuBar::new().ui(ui, |ui| {
+            ui.menu_button("File", |ui| {
+                if ui.button("Presets…").clicked() {
+                    self.open.presets = true;
+                }
+                if ui.button("Open…").clicked() {
+                    self.files.ask(For::Open, None);
+                }
+                if ui.button("Save").clicked() {
+                    self.save(actions);
+                }
+                if ui.button("Save as…").clicked() {
+                    self.files.ask(For::Save, self.session.document().file());
+                }
+                ui.separator();
+                if ui.button("Quit").clicked() {
+                    ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+                }
+            });
+            ui.menu_button("Record", |ui| {
+                for kind in Kind::ALL {
+                    if ui.button(format!("{}…", kind.title())).clicked() {
+                        self.files.ask(For::Record(kind), None);
+                    }
+                }
+            });
+            let (back, forth) = self.session.edited().history();
+            if ui.add_enabled(back, egui::Button::new("Undo")).clicked() {
+                actions.push(Action::Undo);
+            }
+            if ui.add_enabled(forth, egui::Button::new("Redo")).clicked() {
+                actions.push(Action::Redo);
+            }
+            ui.toggle_value(&mut self.open.graphs, "Graphs");
+            ui.toggle_value(&mut self.open.help, "?");
+            let document = self.session.document();
+            let star = if document.is_changed() { " *" } else { "" };
+            let file = document.file().map_or("not saved".into(), |p| p.display().to_string());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.label(RichText::new(format!("{}{star}", document.settings().name)).strong());
+                ui.weak(file);
+            });
+        });
+    }
+
+    /// The picture, or two side by side, with what is laid over them.
+    fn picture(&mut self, ui: &mut Ui, snapshot: Option<&Arc<Snapshot>>, actions: &mut Vec<Action>) {
+        let whole = ui.available_rect_before_wrap();
+        let Some(snapshot) = snapshot else {
+            ui.centered_and_justified(|ui| ui.spinner());
+            return;
+        };
+        let count = snapshot.stages.len().max(1);
+        while self.painters.len() < count {
+            let another = self.painters[0].another(ui.ctx());
+            self.painters.push(another);
+        }
+        self.painters.truncate(count);
+        let width = whole.width() / count as f32;
+        let aspect = width / whole.height().max(1.0);
+        self.view.meet(&self.session, snapshot, aspect);
+        if self.view.orbit.is_none() {
+            self.view.frame(&self.session, snapshot, aspect);
+        }
+        let guides = self.session.shown() == Some(Value::Guide);
+        for (k, scenery) in snapshot.stages.iter().enumerate() {
+            let left = whole.left() + width * k as f32;
+            let rect = egui::Rect::from_min_size(egui::pos2(left, whole.top()), egui::vec2(width, whole.height()));
+            let response = ui.interact(rect, ui.scope_id().with(("picture", k)), Sense::click_and_drag());
+            if k == 0 {
+                self.rect = rect;
+                self.view.follow_range(scenery, guides);
+            }
+            self.view.touch(ui, &response, snapshot, actions);
+            let Some(sight) = self.view.sight(scenery) else { continue };
+            let pixels = ui.ctx().pixels_per_point();
+            let size = [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(16, 8192));
+            let painter = ui.painter_at(rect);
+            if let Some(texture) = self.painters[k].draw(ui.ctx(), snapshot, k, &sight, size) {
+                let all = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+                painter.image(texture, rect, all, Color32::WHITE);
+            }
+            overlay::draw(&painter, rect, scenery, &self.view, &sight);
+            if count > 1 {
+                painter.text(
+                    rect.left_top() + egui::vec2(10.0, 8.0),
+                    egui::Align2::LEFT_TOP,
+                    if k == 0 { "Left" } else { "Right" },
+                    egui::FontId::proportional(16.0),
+                    Color32::from_white_alpha(200),
+                );
+            }
+            if let Some(value) = self.session.shown() {
+                legend(&painter, rect, value, self.view.range);
+            }
+        }
+    }
+
+    fn windows(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        match self.files.show(ctx) {
+            Some(Decision::Do(action)) => {
+                let saved = matches!(action, Action::Save(_));
+                self.act(action);
+                if saved && self.message.as_ref().is_none_or(|m| !m.1) {
+                    let file = self.session.document().file().map(|p| p.display().to_string());
+                    self.say(format!("saved {}", file.unwrap_or_default()), false);
+                }
+            }
+            Some(Decision::Record(wish)) => self.record(ctx, wish),
+            None => {}
+        }
+        help::show(ctx, &mut self.open.help);
+        let mut open = self.open.presets;
+        self.presets.show(ctx, &mut open, self.hairs, actions);
+        self.open.presets = open;
+        let dropped = ctx.input(|i| i.raw.dropped_files.clone());
+        actions.extend(dropped.into_iter().map(|f| Action::Open(f.path().into())));
+    }
+
+    /// Does the next lines of the script that can be done now.
+    fn follow_script(&mut self, ctx: &egui::Context, snapshot: Option<&Arc<Snapshot>>) {
+        let Some(snapshot) = snapshot else { return };
+        if self.recorder.is_some() || !self.finger.rests() || self.shot.is_some() {
+            return;
+        }
+        if snapshot.scene < self.session.begun() || snapshot.step < self.waits {
+            return;
+        }
+        self.waits = 0;
+        let Some(line) = self.script.pop_front() else { return };
+        match line {
+            Line::Wait(steps) => {
+                self.waits = snapshot.step + steps;
+                if !self.session.playing() {
+                    (0..steps).for_each(|_| self.act(Action::Step));
+                }
+            }
+            Line::Play(on) => self.act(Action::Play(on)),
+            Line::Step => self.act(Action::Step),
+            Line::Reset => self.act(Action::Reset),
+            Line::Speed(speed) => self.act(Action::Speed(speed)),
+            Line::Set(key, value) => {
+                self.act(Action::Set(key, value));
+                self.act(Action::Rest);
+            }
+            Line::Undo => self.act(Action::Undo),
+            Line::Redo => self.act(Action::Redo),
+            Line::New(style) => self.act(Action::New(builtin_text(&style, self.hairs.0, self.hairs.1))),
+            Line::Open(path) => self.act(Action::Open(path)),
+            Line::Save(path) => self.act(Action::Save(Some(path))),
+            Line::Hand(hand) => self.view.hand = hand,
+            Line::Drag(from, to, frames) => {
+                let place = |v: glam::Vec2| self.rect.min + egui::vec2(v.x, v.y) * self.rect.size();
+                self.finger.drag(place(from), place(to), frames);
+            }
+            Line::Show(value) => self.act(Action::Show(value)),
+            Line::Switch(name, on) => self.switch(&name, on),
+            Line::Record(kind, path, seconds) => self.record(ctx, Wish { kind, path, seconds }),
+            Line::Shot(path) => {
+                let (send, receive) = channel();
+                self.shot = Some(receive);
+                let wake = ctx.clone();
+                ctx.request_screenshot(move |image| {
+                    // The window may have closed meanwhile.
+                    let _ = send.send(crate::record::write(&path, &picture_of(&image)));
+                    wake.request_repaint();
+                });
+            }
+            Line::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+        }
+        ctx.request_repaint();
+    }
+
+    fn switch(&mut self, name: &str, on: bool) {
+        let overlays = &mut self.view.overlays;
+        let place = match name {
+            "compare" => return self.act(Action::Compare(on)),
+            "second" => return self.act(Action::Second(on)),
+            "graphs" => &mut self.open.graphs,
+            "presets" => &mut self.open.presets,
+            "help" => &mut self.open.help,
+            "panels" => &mut self.open.panels,
+            "hair" => &mut overlays.hair,
+            "body" => &mut overlays.body,
+            "colliders" => &mut overlays.colliders,
+            "slice" => &mut overlays.slice,
+            "volume" => &mut overlays.volume,
+            "frames" => &mut overlays.frames,
+            "roots" => &mut overlays.roots,
+            // The script's reader knows no other.
+            _ => return,
+        };
+        *place = on;
+    }
+
+    /// Hears of a picture of the window that was asked for.
+    fn hear_of_shot(&mut self) {
+        let Some(outcome) = self.shot.as_ref().and_then(|shot| shot.try_recv().ok()) else { return };
+        self.shot = None;
+        if let Err(why) = outcome {
+            self.say(why.to_string(), true);
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let ctx = &ui.ctx().clone();
+        let _ = frame;
+        let snapshot = self.session.latest();
+        let mut actions = Vec::new();
+        self.keys(ctx, &mut actions);
+        self.hear_of_shot();
+        self.follow_script(ctx, snapshot.as_ref());
+        if let Some(why) = self.session.error() {
+            self.say(why.to_string(), true);
+        }
+        if self.session.is_dead() && self.message.is_none() {
+            self.say("the simulation ended by an error of its own; save, and open the scene anew", true);
+        }
+        if let Some(snapshot) = &snapshot {
+            self.history.keep(snapshot);
+        }
+        egui::Panel::top("menu").show(ui, |ui| self.menu(ui, &mut actions));
+        if self.open.panels {
+            egui::Panel::bottom("transport").show(ui, |ui| {
+                ui.add_space(2.0);
+                transport::tools(ui, &self.session, &mut self.view, &mut actions);
+                transport::show(ui, &self.session, snapshot.as_deref(), &mut actions);
+                ui.add_space(2.0);
+            });
+            if self.open.graphs {
+                egui::Panel::bottom("graphs").show(ui, |ui| self.history.show(ui));
+            }
+            egui::Panel::right("parameters").default_size(360.0).show(ui, |ui| {
+                parameters::show(ui, &self.session, &mut self.filter, &mut actions);
+            });
+        }
+        let notes: Vec<String> = self.painters.iter().map(Painter::note).collect();
+        egui::CentralPanel::no_frame().show(ui, |ui| {
+            self.picture(ui, snapshot.as_ref(), &mut actions);
+        });
+        if let Some(snapshot) = snapshot.as_deref().filter(|_| self.open.panels) {
+            corner(ctx, self.rect, |ui| {
+                inspect::figures(ui, &self.session, snapshot, &notes.join("; "));
+                inspect::picked(ui, snapshot, &mut actions);
+            });
+        }
+        self.windows(ctx, &mut actions);
+        self.tell(ctx);
+        if ctx.input(|i| i.pointer.any_released()) {
+            actions.push(Action::Rest);
+        }
+        let now = Instant::now();
+        let dt = self.drawn.replace(now).map_or(0.0, |before| (now - before).as_secs_f32().min(0.1));
+        if self.view.settle(dt, &mut actions) {
+            ctx.request_repaint();
+        }
+        for action in actions {
+            self.act(action);
+        }
+        if let (Some(mut recorder), Some(snapshot)) = (self.recorder.take(), &snapshot) {
+            let sight = snapshot.stages.first().and_then(|s| self.view.sight(s));
+            let ended = sight.and_then(|sight| recorder.advance(&mut self.session, snapshot, &sight));
+            match ended {
+                Some(Ok(said)) => self.say(said, false),
+                Some(Err(why)) => self.say(why.to_string(), true),
+                None => self.recorder = Some(recorder),
+            }
+        }
+        if !self.is_idle() {
+            ctx.request_repaint_after(Duration::from_millis(15));
+        }
+    }
+}
+
+impl App {
+    /// Progress of a record, and the last message.
+    fn tell(&mut self, ctx: &egui::Context) {
+        if let Some(recorder) = &self.recorder {
+            let (done, all) = recorder.progress();
+            egui::Window::new("Recording").collapsible(false).resizable(false).show(ctx, |ui| {
+                ui.add(egui::ProgressBar::new(done as f32 / all as f32).text(format!("{done} of {all} frames")));
+                if ui.button("Stop").clicked() {
+                    self.message = Some(("stopped: a clip that is not complete is not kept".into(), false, Instant::now()));
+                }
+            });
+            if self.message.as_ref().is_some_and(|m| m.0.starts_with("stopped")) {
+                self.recorder = None;
+            }
+        }
+        let Some((text, wrong, since)) = &self.message else { return };
+        if since.elapsed() > MESSAGE {
+            self.message = None;
+            return;
+        }
+        let color = if *wrong { ctx.global_style().visuals.error_fg_color } else { Color32::LIGHT_GREEN };
+        egui::Area::new(egui::Id::unique("message"))
+            .anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0))
+            .interactable(false)
+            .show(ctx, |ui| {
+                egui::Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.set_max_width(640.0);
+                    ui.colored_label(color, text);
+                });
+            });
+        ctx.request_repaint_after(MESSAGE);
+    }
+}
+
+/// A picture of the window as a picture.
+fn picture_of(image: &egui::ColorImage) -> hairspring_view::Image {
+    let mut out = hairspring_view::Image::new(image.size[0] as u32, image.size[1] as u32);
+    for (to, from) in out.rgb.chunks_exact_mut(3).zip(&image.pixels) {
+        to.copy_from_slice(&from.to_array()[..3]);
+    }
+    out
+}
+
+/// Text in the lower left corner of the picture.
+fn corner(ctx: &egui::Context, rect: egui::Rect, show: impl FnOnce(&mut Ui)) {
+    egui::Area::new(egui::Id::unique("figures"))
+        .fixed_pos(rect.left_bottom() + egui::vec2(10.0, -10.0))
+        .pivot(egui::Align2::LEFT_BOTTOM)
+        .show(ctx, |ui| {
+            ui.style_mut().interaction.selectable_labels = false;
+            egui::Frame::new().fill(Color32::from_black_alpha(90)).corner_radius(4.0).inner_margin(6.0).show(ui, show);
+        });
+}
+
+/// What colours stand for.
+fn legend(painter: &egui::Painter, rect: egui::Rect, value: Value, range: [f32; 2]) {
+    let at = rect.right_top() + egui::vec2(-190.0, 14.0);
+    let text = |place: egui::Pos2, align, text: String| {
+        painter.text(place, align, text, egui::FontId::proportional(13.0), Color32::from_white_alpha(220));
+    };
+    text(at, egui::Align2::LEFT_TOP, format!("{} [{}]", value.name(), value.unit()));
+    if value == Value::Guide {
+        return;
+    }
+    let (bar, height) = (egui::Rect::from_min_size(at + egui::vec2(0.0, 20.0), egui::vec2(170.0, 10.0)), 10.0);
+    for k in 0..34 {
+        let share = k as f32 / 33.0;
+        let c = crate::ramp::color(share, [0.0, 1.0]).to_array().map(|x| (x.powf(1.0 / 2.2) * 255.0) as u8);
+        let piece = egui::Rect::from_min_size(bar.min + egui::vec2(5.0 * k as f32, 0.0), egui::vec2(5.0, height));
+        painter.rect_filled(piece, 0.0, Color32::from_rgb(c[0], c[1], c[2]));
+    }
+    text(bar.left_bottom(), egui::Align2::LEFT_TOP, "0".into());
+    text(bar.right_bottom(), egui::Align2::RIGHT_TOP, format!("{:.3e}", range[1]));
+}

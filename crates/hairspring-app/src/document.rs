@@ -1,0 +1,408 @@
+//! The scene that is open: the text of its file, edited in place, with every earlier text to go back to.
+//!
+//! The text is the only copy: sliders write into it, undo puts an older one back, save writes it out. What it comes to is read by `hairspring-io`, as for every other command, so that the window can
+//! do nothing that a scene file cannot, and a value that the reader refuses is refused here with the same sentence.
+
+use crate::{error::AppError, key::Key};
+use hairspring::{
+    material::PRESETS,
+    scene::{Scene, SceneGroom, builtin::Style},
+};
+use hairspring_io::{Loaded, read_scene_text, read_settings, same_geometry};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
+
+/// Most texts that are kept to go back to: at some kilobytes each, well under a megabyte.
+const MOST_STEPS: usize = 200;
+
+/// The text of the scene that the window opens with: the built-in head, with so many hairs.
+pub fn builtin_text(style: &str, strands: u32, guides: u32) -> String {
+    format!("name = \"Built-in head\"\n\n[builtin]\nstyle = \"{style}\"\nstrands = {strands}\nguides = {guides}\n")
+}
+
+/// A scene file being edited.
+pub struct Document {
+    /// Where it is saved; files that it names are relative to its folder.
+    path: PathBuf,
+    /// Whether there is such a file.
+    on_disk: bool,
+    text: String,
+    saved: String,
+    undo: Vec<String>,
+    redo: Vec<String>,
+    /// What is being dragged: its values are one step to go back.
+    dragged: Option<Key>,
+    settings: Scene,
+    effective: toml::Table,
+}
+
+/// What an edit asks of what is playing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// Nothing.
+    None,
+    /// Settings only: it plays on.
+    Settings,
+    /// Other hair, another body or another motion: it begins anew.
+    Geometry,
+}
+
+impl Document {
+    /// A scene with this text that is not saved yet; what it names is relative to `path`'s folder.
+    pub fn new(path: &Path, text: String) -> Result<Self, AppError> {
+        let settings = read_settings(path, &text)?;
+        Ok(Self {
+            path: path.to_owned(),
+            on_disk: false,
+            saved: text.clone(),
+            text,
+            undo: Vec::new(),
+            redo: Vec::new(),
+            dragged: None,
+            effective: effective(&settings),
+            settings,
+        })
+    }
+
+    /// Opens a scene file.
+    pub fn open(path: &Path) -> Result<Self, AppError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|why| AppError::new(format!("{} could not be read: {why}", path.display())))?;
+        Ok(Self { on_disk: true, ..Self::new(path, text)? })
+    }
+
+    /// Reads the scene with all its files.
+    pub fn load(&self) -> Result<Loaded<Scene>, AppError> {
+        Ok(read_scene_text(&self.path, &self.text)?)
+    }
+
+    /// Its settings; grooms are without strands.
+    pub fn settings(&self) -> &Scene {
+        &self.settings
+    }
+
+    /// Every value that counts, whether the text says it or its default does, by the names of a scene file; but that `groom` lists all grooms, the built-in
+    /// scene's among them, and that a groom's `material` is the list of its materials.
+    pub fn effective(&self) -> &toml::Table {
+        &self.effective
+    }
+
+    /// The text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Where it is saved, if it ever was.
+    pub fn file(&self) -> Option<&Path> {
+        self.on_disk.then_some(&*self.path)
+    }
+
+    /// Whether the text differs from the file's.
+    pub fn is_changed(&self) -> bool {
+        self.text != self.saved
+    }
+
+    /// Whether there is a text to go back to, and one to go forth to.
+    pub fn history(&self) -> (bool, bool) {
+        (!self.undo.is_empty(), !self.redo.is_empty())
+    }
+
+    /// Writes a value, or takes it away so that its default counts. While a value is dragged, what is written to it is one step to go back: until [`Document::rest`].
+    pub fn set(&mut self, key: &Key, value: Option<Value>) -> Result<Change, AppError> {
+        let mut edited = self.parsed()?;
+        if !key.write(edited.as_table_mut(), value) {
+            return Err(AppError::new(format!("the scene has no {key}")));
+        }
+        let again = self.dragged.as_ref() == Some(key);
+        let change = self.take(edited.to_string(), !again)?;
+        self.dragged = Some(key.clone());
+        Ok(change)
+    }
+
+    /// What was dragged is let go of: the next value is a step of its own.
+    pub fn rest(&mut self) {
+        self.dragged = None;
+    }
+
+    /// Adds an entry, given as the text of its fields, to a list such as `collider`.
+    pub fn add(&mut self, list: &str, fields: &str) -> Result<Change, AppError> {
+        let mut edited = self.parsed()?;
+        let fields: DocumentMut = fields.parse().map_err(|why| AppError::new(format!("{why}")))?;
+        let item = edited.entry(list).or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+        let Some(tables) = item.as_array_of_tables_mut() else {
+            return Err(AppError::new(format!("`{list}` is not written as [[{list}]] tables in this scene")));
+        };
+        let mut table = Table::new();
+        table.extend(fields.as_table().iter().map(|(k, v)| (k.to_owned(), v.clone())));
+        tables.push(table);
+        self.take(edited.to_string(), true)
+    }
+
+    /// The text with another body, at rest; what belonged to the old one goes.
+    pub fn with_body(&self, file: &str) -> Result<String, AppError> {
+        let mut edited = self.parsed()?;
+        for gone in ["builtin", "body", "collision", "clip"] {
+            edited.remove(gone);
+        }
+        Ok(format!("{}\n[body]\nfile = {file}\n", edited.to_string().trim_end()))
+    }
+
+    /// The text with another motion, which drives the body by the joints of the same names.
+    pub fn with_motion(&self, file: &str) -> Result<String, AppError> {
+        let mut edited = self.parsed()?;
+        edited.remove("clip");
+        Ok(format!("{}\n\n[clip]\nfile = {file}\n", edited.to_string().trim_end()))
+    }
+
+    /// Takes entry `place` out of a list.
+    pub fn remove(&mut self, list: &str, place: usize) -> Result<Change, AppError> {
+        let mut edited = self.parsed()?;
+        if let Some(tables) = edited.get_mut(list).and_then(Item::as_array_of_tables_mut)
+            && place < tables.len()
+        {
+            tables.remove(place);
+            if tables.is_empty() {
+                edited.remove(list);
+            }
+        }
+        self.take(edited.to_string(), true)
+    }
+
+    /// Goes one step back.
+    pub fn undo(&mut self) -> Result<Change, AppError> {
+        let Some(text) = self.undo.pop() else { return Ok(Change::None) };
+        self.redo.push(self.text.clone());
+        self.rest();
+        self.put(text)
+    }
+
+    /// Goes one step forth again.
+    pub fn redo(&mut self) -> Result<Change, AppError> {
+        let Some(text) = self.redo.pop() else { return Ok(Change::None) };
+        self.undo.push(self.text.clone());
+        self.rest();
+        self.put(text)
+    }
+
+    /// Writes the text to a file, whole or not at all. Saved to another folder, the files that it names are named from there.
+    pub fn save(&mut self, path: &Path) -> Result<(), AppError> {
+        let failed = |why: std::io::Error| AppError::new(format!("{} could not be written: {why}", path.display()));
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let text = self.moved_to(folder)?;
+        let mut file = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
+        file.write_all(text.as_bytes()).map_err(failed)?;
+        file.persist(path).map_err(|why| failed(why.error))?;
+        self.text.clone_from(&text);
+        (self.path, self.saved, self.on_disk) = (path.to_owned(), text, true);
+        Ok(())
+    }
+
+    /// The text with its files named from `folder`.
+    fn moved_to(&self, folder: &Path) -> Result<String, AppError> {
+        let from = self.path.parent().unwrap_or(Path::new(""));
+        let whole = |p: &Path| std::path::absolute(p).unwrap_or_else(|_| p.to_owned());
+        let (from, to) = (whole(from), whole(folder));
+        if from == to {
+            return Ok(self.text.clone());
+        }
+        let mut edited = self.parsed()?;
+        rename_files(edited.as_table_mut(), &|name| {
+            let path = whole(&from.join(name));
+            path.strip_prefix(&to).map(Path::to_owned).unwrap_or(path)
+        });
+        Ok(edited.to_string())
+    }
+
+    /// Where to write `field` of a material of its own that group `group` of groom `groom` has. It is made if there is none, and is one step to go back
+    /// with the value that is written to it next.
+    pub fn own_material(&mut self, groom: usize, group: usize, field: &str) -> Result<Key, AppError> {
+        let key = |name: &str| Key::top("material").entry(name).field(field);
+        let mut edited = self.parsed()?;
+        let Some(place) = self.groom_key(groom).map(|key| key.field("material")) else {
+            return Err(AppError::new(format!("the scene says nothing of groom {groom}")));
+        };
+        let text: toml::Table = self.text.parse().map_err(|why| AppError::new(format!("{why}")))?;
+        let named = place.look_up(&text);
+        let list: Vec<String> = match named {
+            Some(toml::Value::String(name)) => vec![name.clone()],
+            Some(toml::Value::Array(names)) => names.iter().filter_map(|n| n.as_str().map(str::to_owned)).collect(),
+            _ => Vec::new(),
+        };
+        let at = group.min(list.len().saturating_sub(1));
+        let known = |name: &str| text.get("material").is_some_and(|m| m.get(name).is_some());
+        if let Some(name) = list.get(at).filter(|name| known(name)) {
+            return Ok(key(name));
+        }
+        // A preset, the built-in style's or the default: a material of its own begins from it.
+        let style = text.get("builtin").filter(|_| groom == 0).map(|b| {
+            b.get("style").and_then(toml::Value::as_str).unwrap_or("wavy").to_owned()
+        });
+        let base = list.get(at).cloned().or(style);
+        let name = (1..).map(|k| if k == 1 { "hair".into() } else { format!("hair-{k}") }).find(|n: &String| !known(n));
+        let name = name.unwrap_or_default();
+        let materials = edited.entry("material").or_insert(Item::Table(implicit()));
+        if let Some(materials) = materials.as_table_like_mut() {
+            let mut table = Table::new();
+            if let Some(base) = base {
+                table.insert("preset", Item::Value(base.into()));
+            }
+            materials.insert(&name, Item::Table(table));
+        }
+        let value: Value = if list.len() > 1 {
+            let mut names = list;
+            names[at].clone_from(&name);
+            Value::from_iter(names)
+        } else {
+            name.clone().into()
+        };
+        if !place.write(edited.as_table_mut(), Some(value)) {
+            return Err(AppError::new(format!("the scene has no {place}")));
+        }
+        self.take(edited.to_string(), true)?;
+        self.dragged = Some(key(&name));
+        Ok(key(&name))
+    }
+
+    /// Where the text says what groom `groom` is; `None` for the built-in head's brows, of which it says nothing.
+    pub fn groom_key(&self, groom: usize) -> Option<Key> {
+        let made = self.settings.grooms.len().saturating_sub(self.listed_grooms());
+        match (groom, groom.checked_sub(made)) {
+            (_, Some(place)) => Some(Key::top("groom").place(place)),
+            (0, None) => Some(Key::top("builtin")),
+            _ => None,
+        }
+    }
+
+    /// Grooms that the text says something of.
+    pub fn grooms(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.settings.grooms.len()).filter(|g| self.groom_key(*g).is_some())
+    }
+
+    /// Name of the preset that the first material of groom `groom` begins from, if any.
+    pub fn preset_of(&self, groom: usize) -> Option<&'static str> {
+        let text: toml::Table = self.text.parse().ok()?;
+        let key = self.groom_key(groom)?;
+        let named = match key.field("material").look_up(&text) {
+            Some(toml::Value::Array(names)) => names.first().and_then(toml::Value::as_str),
+            Some(name) => name.as_str(),
+            None if groom == 0 => text.get("builtin").map(|b| {
+                b.get("style").and_then(toml::Value::as_str).unwrap_or(Style::default().name())
+            }),
+            None => None,
+        }?;
+        let own = text.get("material").and_then(|m| m.get(named));
+        let name = own.map_or(Some(named), |own| own.get("preset").and_then(toml::Value::as_str))?;
+        PRESETS.into_iter().find(|preset| *preset == name)
+    }
+
+    fn listed_grooms(&self) -> usize {
+        self.parsed().ok().and_then(|d| Some(d.get("groom")?.as_array_of_tables()?.len())).unwrap_or(0)
+    }
+
+    fn parsed(&self) -> Result<DocumentMut, AppError> {
+        self.text.parse().map_err(|why| AppError::new(format!("{why}")))
+    }
+
+    /// Takes up a new text if it can be read; `step`: as a step to go back.
+    fn take(&mut self, text: String, step: bool) -> Result<Change, AppError> {
+        if text == self.text {
+            return Ok(Change::None);
+        }
+        let old = self.text.clone();
+        let change = self.put(text)?;
+        if step {
+            self.undo.push(old);
+            let many = self.undo.len().saturating_sub(MOST_STEPS);
+            self.undo.drain(..many);
+        }
+        self.redo.clear();
+        self.dragged = None;
+        Ok(change)
+    }
+
+    fn put(&mut self, text: String) -> Result<Change, AppError> {
+        let settings = read_settings(&self.path, &text)?;
+        let same = same_geometry(&self.text, &text);
+        self.effective = effective(&settings);
+        (self.settings, self.text) = (settings, text);
+        Ok(if same { Change::Settings } else { Change::Geometry })
+    }
+}
+
+/// A table that is written only by what is in it.
+fn implicit() -> Table {
+    let mut table = Table::new();
+    table.set_implicit(true);
+    table
+}
+
+/// Renames every file that a scene names: the values of `file`, `rig`, `weights` and `bones`.
+fn rename_files(table: &mut dyn toml_edit::TableLike, rename: &dyn Fn(&str) -> PathBuf) {
+    for (key, item) in table.iter_mut() {
+        let names_file = ["file", "rig", "weights", "bones"].contains(&key.get());
+        match item {
+            Item::Value(Value::String(name)) if names_file => {
+                let new = rename(name.value()).to_string_lossy().into_owned();
+                let decor = name.decor().clone();
+                let mut new = Value::from(new);
+                *new.decor_mut() = decor;
+                *item = Item::Value(new);
+            }
+            Item::ArrayOfTables(list) => list.iter_mut().for_each(|t| rename_files(t, rename)),
+            Item::Value(Value::Array(list)) => {
+                list.iter_mut().filter_map(Value::as_inline_table_mut).for_each(|t| rename_files(t, rename));
+            }
+            item => {
+                if let Some(table) = item.as_table_like_mut() {
+                    rename_files(table, rename);
+                }
+            }
+        }
+    }
+}
+
+/// What counts in a scene with one groom that says nothing.
+pub fn defaults() -> toml::Table {
+    let gravity = glam::Vec3::new(0.0, -9.81, 0.0);
+    effective(&Scene { grooms: vec![SceneGroom::default()], gravity, ..Scene::default() })
+}
+
+/// See [`Document::effective`].
+fn effective(scene: &Scene) -> toml::Table {
+    fn value(of: &impl serde::Serialize) -> toml::Value {
+        toml::Value::try_from(of).unwrap_or_else(|why| unreachable!("settings are plain data: {why}"))
+    }
+    let grooms = scene.grooms.iter().map(|groom| {
+        let mut table = toml::Table::new();
+        table.insert("look".into(), value(&groom.look));
+        table.insert("effects".into(), value(&groom.effects));
+        let default = [hairspring::material::Material::default()];
+        let materials = if groom.materials.is_empty() { &default[..] } else { &groom.materials };
+        table.insert("material".into(), value(&materials));
+        toml::Value::Table(table)
+    });
+    let mut all = toml::Table::new();
+    all.insert("groom".into(), toml::Value::Array(grooms.collect()));
+    for (name, value) in [
+        ("name", value(&scene.name)),
+        ("gravity", value(&scene.gravity)),
+        ("collider", value(&scene.colliders)),
+        ("wind", value(&scene.wind)),
+        ("wind_source", value(&scene.wind_sources)),
+        ("turbulence", value(&scene.turbulence)),
+        ("shelter", value(&scene.shelter)),
+        ("charged", value(&scene.charged)),
+        ("solver", value(&scene.solver)),
+        ("volume", value(&scene.volume)),
+        ("hand", value(&scene.hands)),
+    ] {
+        all.insert(name.into(), value);
+    }
+    if let Some(camera) = &scene.camera {
+        all.insert("camera".into(), value(camera));
+    }
+    all
+}

@@ -1,0 +1,34 @@
+//! Why the window cannot do what it was asked to.
+
+use hairspring::stage::StageError;
+use hairspring_view::OutputError;
+
+/// One sentence for the person at the window.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct AppError(String);
+
+impl AppError {
+    /// An error that says this.
+    pub fn new(sentence: impl Into<String>) -> Self {
+        Self(sentence.into())
+    }
+}
+
+impl From<hairspring_io::Error> for AppError {
+    fn from(error: hairspring_io::Error) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<StageError> for AppError {
+    fn from(error: StageError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<OutputError> for AppError {
+    fn from(error: OutputError) -> Self {
+        Self(error.to_string())
+    }
+}

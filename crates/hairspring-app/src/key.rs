@@ -1,0 +1,181 @@
+//! Names of values in a scene file, such as `groom[0].look.roughness`, and writing at them without touching the rest of the text.
+
+use std::{fmt, str::FromStr};
+use toml_edit::{Item, Table, TableLike, Value};
+
+/// A step into a scene file.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+enum Step {
+    /// Into a table's field.
+    Field(String),
+    /// Into a list.
+    Place(usize),
+}
+
+/// The way to a value of a scene file, from its top; by default, the top itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Key(Vec<Step>);
+
+impl Key {
+    /// A field at the top of the file.
+    pub fn top(name: &str) -> Self {
+        Self(vec![Step::Field(name.into())])
+    }
+
+    /// The field `name` of what this key names.
+    pub fn field(&self, name: &str) -> Self {
+        let mut steps = self.0.clone();
+        steps.extend(name.split('.').map(|n| Step::Field(n.into())));
+        Self(steps)
+    }
+
+    /// The entry of a table by its name, whatever letters that has.
+    pub fn entry(&self, name: &str) -> Self {
+        let mut steps = self.0.clone();
+        steps.push(Step::Field(name.into()));
+        Self(steps)
+    }
+
+    /// The entry `place` of the list that this key names.
+    pub fn place(&self, place: usize) -> Self {
+        let mut steps = self.0.clone();
+        steps.push(Step::Place(place));
+        Self(steps)
+    }
+
+    /// What a table of effective values says here.
+    pub fn look_up<'a>(&self, table: &'a toml::Table) -> Option<&'a toml::Value> {
+        let Some((Step::Field(first), rest)) = self.0.split_first() else { return None };
+        rest.iter().try_fold(table.get(first)?, |value, step| match step {
+            Step::Field(name) => value.get(name.as_str()),
+            Step::Place(place) => value.get(*place),
+        })
+    }
+
+    /// Writes `value` here, or takes the field away so that its default counts; tables on the way are made. False, and nothing is written, where the
+    /// way does not exist and cannot be made.
+    pub(crate) fn write(&self, table: &mut dyn TableLike, value: Option<Value>) -> bool {
+        write(table, &self.0, value)
+    }
+}
+
+fn write(table: &mut dyn TableLike, steps: &[Step], value: Option<Value>) -> bool {
+    match steps {
+        [Step::Field(name)] => {
+            match (value, table.get_mut(name)) {
+                (Some(mut value), Some(Item::Value(old))) => {
+                    // A comment behind the value stays behind it.
+                    *value.decor_mut() = old.decor().clone();
+                    *old = value;
+                }
+                (Some(value), _) => drop(table.insert(name, Item::Value(value))),
+                (None, _) => drop(table.remove(name)),
+            }
+            true
+        }
+        [Step::Field(name), Step::Place(place), rest @ ..] => match table.get_mut(name) {
+            Some(Item::ArrayOfTables(list)) => {
+                list.get_mut(*place).is_some_and(|table| write(table, rest, value))
+            }
+            Some(Item::Value(Value::Array(list))) => match (list.get_mut(*place), rest, value) {
+                (Some(Value::InlineTable(table)), [_, ..], value) => write(table, rest, value),
+                (Some(old), [], Some(value)) => {
+                    *old = value;
+                    true
+                }
+                _ => false,
+            },
+            _ => false,
+        },
+        [Step::Field(name), rest @ ..] => {
+            if table.get(name).is_none() {
+                if value.is_none() {
+                    return true;
+                }
+                table.insert(name, Item::Table(Table::new()));
+            }
+            table.get_mut(name).and_then(Item::as_table_like_mut).is_some_and(|t| write(t, rest, value))
+        }
+        _ => false,
+    }
+}
+
+impl FromStr for Key {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut steps = Vec::new();
+        for word in text.split('.') {
+            let (name, place) = word.split_once('[').map_or((word, None), |(n, p)| (n, Some(p)));
+            if name.is_empty() {
+                return Err(format!("'{text}' names no value; expected names such as groom[0].look.roughness"));
+            }
+            steps.push(Step::Field(name.into()));
+            if let Some(place) = place {
+                let place = place.strip_suffix(']').and_then(|p| p.parse().ok());
+                steps.push(Step::Place(place.ok_or_else(|| format!("'{word}' is no entry of a list, such as groom[0]"))?));
+            }
+        }
+        Ok(Self(steps))
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, step) in self.0.iter().enumerate() {
+            match step {
+                Step::Field(name) if k == 0 => write!(f, "{name}")?,
+                Step::Field(name) => write!(f, ".{name}")?,
+                Step::Place(place) => write!(f, "[{place}]")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toml_edit::DocumentMut;
+
+    fn written(text: &str, key: &str, value: Option<Value>) -> Option<String> {
+        let mut document: DocumentMut = text.parse().unwrap();
+        let done = key.parse::<Key>().unwrap().write(document.as_table_mut(), value);
+        done.then(|| document.to_string())
+    }
+
+    #[test]
+    fn a_value_is_written_and_the_rest_of_the_text_stays() {
+        let text = "# mine\n[solver]\nsubsteps = 4 # enough\njump = 1.0\n";
+        let after = written(text, "solver.substeps", Some(8.into())).unwrap();
+        assert_eq!(after, text.replace('4', "8"));
+        assert_eq!(written(text, "solver.jump", None).unwrap(), "# mine\n[solver]\nsubsteps = 4 # enough\n");
+        assert_eq!(written(text, "wind.gust", None).unwrap(), text);
+    }
+
+    #[test]
+    fn tables_on_the_way_are_made() {
+        let after = written("[[groom]]\nfile = \"a.hair\"\n", "groom[0].look.roughness", Some(0.5.into())).unwrap();
+        assert_eq!(after, "[[groom]]\nfile = \"a.hair\"\n\n[groom.look]\nroughness = 0.5\n");
+        let after = written("", "wind.velocity", Some(Value::from_iter([1.0, 0.0, 0.0]))).unwrap();
+        assert_eq!(after, "[wind]\nvelocity = [1.0, 0.0, 0.0]\n");
+    }
+
+    #[test]
+    fn lists_and_tables_in_a_line_are_walked() {
+        let text = "[[hand]]\ntool.grab = { center = [0.0, 0.0, 0.0], radius = 0.02 }\n";
+        let after = written(text, "hand[0].tool.grab.radius", Some(0.05.into())).unwrap();
+        assert_eq!(after, text.replace("0.02", "0.05"));
+        let after = written(text, "hand[0].tool.grab.center[1]", Some(1.5.into())).unwrap();
+        assert!(after.contains("[0.0,1.5, 0.0]") || after.contains("[0.0, 1.5, 0.0]"), "{after}");
+        assert_eq!(written(text, "hand[3].from", Some(1.0.into())), None);
+    }
+
+    #[test]
+    fn keys_read_as_they_are_written() {
+        for text in ["solver.substeps", "groom[2].look.root_color", "charged[0].path[1].time"] {
+            assert_eq!(text.parse::<Key>().unwrap().to_string(), text);
+        }
+        assert!(["", "a..b", "a[", "a[x]"].iter().all(|t| t.parse::<Key>().is_err()));
+    }
+}

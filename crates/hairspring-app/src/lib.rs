@@ -1,0 +1,70 @@
+//! The live window: hair simulated while it is looked at, touched and tuned.
+//!
+//! | file | what is in it |
+//! | --- | --- |
+//! | `document` | the scene's text, edited in place; undo, save |
+//! | `key`, `parameter` | names of its values; every parameter with its unit, range and what it does |
+//! | `player`, `snapshot` | the simulation on a thread of its own, and what that shows of a moment |
+//! | `session` | document and player together: whatever is done to them is an action |
+//! | `view`, `orbit`, `overlay`, `ramp` | camera and tools, and what is laid over the picture |
+//! | `painter` | who draws the hair |
+//! | `panel` | what stands around the picture |
+//! | `record`, `script` | files of what is seen; a session line by line |
+//! | `app` | all of it in a window |
+//!
+//! Data goes one way: panels read the session and say actions, the session edits the document and tells the player, the player shows snapshots, a painter draws them.
+//!
+//! # Missing
+//! Paths of hands and charged bodies, and keys of a motion, are edited in the file. A thumbnail shows no motion.
+
+mod app;
+mod document;
+mod error;
+mod finger;
+mod key;
+mod orbit;
+mod overlay;
+mod painter;
+mod panel;
+mod parameter;
+mod player;
+mod ramp;
+mod record;
+mod script;
+mod session;
+mod snapshot;
+mod view;
+
+pub use app::{App, Options};
+pub use painter::Drawn;
+pub use document::Document;
+pub use error::AppError;
+pub use script::parse as read_script;
+pub use script::Line;
+pub use session::{Action, Session};
+
+use eframe::egui;
+
+/// Size of the window when it opens [points].
+const SIZE: [f32; 2] = [1360.0, 860.0];
+
+/// Opens the window and stays until it is closed.
+///
+/// # Errors
+/// If there is no desktop to open a window on, or a library of it is missing: what, and what to do.
+pub fn run(options: Options) -> Result<(), AppError> {
+    let native = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Hairspring")
+            .with_app_id("hairspring")
+            .with_inner_size(SIZE)
+            .with_drag_and_drop(true),
+        ..Default::default()
+    };
+    let opened = eframe::run_native(
+        "Hairspring",
+        native,
+        Box::new(move |creation| Ok(Box::new(App::new(creation, options)?))),
+    );
+    opened.map_err(|why| AppError::new(format!("no window could be opened: {why}")))
+}

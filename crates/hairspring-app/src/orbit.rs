@@ -1,0 +1,139 @@
+//! The camera of the window: turned about what it looks at, moved across, brought nearer.
+
+use glam::{Vec2, Vec3};
+use hairspring::scene::Camera;
+
+/// Nearest that it comes to what it looks at [m].
+const NEAREST: f32 = 0.02;
+/// Farthest [m].
+const FARTHEST: f32 = 100.0;
+/// Steepest look from above or below [rad]: straight down has no way up.
+const STEEPEST: f32 = 1.5;
+
+/// A camera about a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    /// What it looks at [m].
+    pub target: Vec3,
+    /// About the vertical, from +Z to +X [rad].
+    pub turn: f32,
+    /// Above the horizon [rad].
+    pub rise: f32,
+    /// How far off [m].
+    pub distance: f32,
+    /// Vertical field of view [degrees].
+    pub fov: f32,
+}
+
+impl Orbit {
+    /// The orbit on which this camera stands.
+    pub fn new(camera: &Camera) -> Self {
+        let back = camera.position - camera.target;
+        let distance = back.length().clamp(NEAREST, FARTHEST);
+        let rise = (back.y / distance).clamp(-1.0, 1.0).asin().clamp(-STEEPEST, STEEPEST);
+        Self { target: camera.target, turn: back.x.atan2(back.z), rise, distance, fov: camera.fov }
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> Camera {
+        let (sin, cos) = self.rise.sin_cos();
+        let back = Vec3::new(self.turn.sin() * cos, sin, self.turn.cos() * cos);
+        Camera { position: self.target + back * self.distance, target: self.target, fov: self.fov }
+    }
+
+    /// Turns by a drag of so many parts of the picture's height.
+    pub fn drag(&mut self, by: Vec2) {
+        self.turn -= by.x * 3.0;
+        self.rise = (self.rise + by.y * 3.0).clamp(-STEEPEST, STEEPEST);
+    }
+
+    /// Moves across, so that the target stays under the pointer; `by` in parts of the picture's height.
+    pub fn pan(&mut self, by: Vec2) {
+        let lens = Lens::new(&self.camera(), 1.0);
+        let size = 2.0 * self.distance * lens.slope;
+        self.target += (lens.up * by.y - lens.right * by.x) * size;
+    }
+
+    /// Comes nearer (above 1) or goes away.
+    pub fn zoom(&mut self, factor: f32) {
+        if factor.is_finite() && factor > 0.0 {
+            self.distance = (self.distance / factor).clamp(NEAREST, FARTHEST);
+        }
+    }
+}
+
+/// From places to the picture and back. Picture coordinates: (0, 0) the top left corner, (1, 1) the bottom right.
+#[derive(Clone, Copy, Debug)]
+pub struct Lens {
+    eye: Vec3,
+    right: Vec3,
+    up: Vec3,
+    forward: Vec3,
+    /// Slope at the picture's upper edge.
+    slope: f32,
+    aspect: f32,
+}
+
+impl Lens {
+    /// Of a camera and a picture so many times as wide as high.
+    pub fn new(camera: &Camera, aspect: f32) -> Self {
+        let forward = (camera.target - camera.position).try_normalize().unwrap_or(Vec3::NEG_Z);
+        let side = if forward.y.abs() > 0.9999 { Vec3::Z } else { Vec3::Y };
+        let right = forward.cross(side).normalize_or(Vec3::X);
+        let slope = (0.5 * camera.fov.to_radians()).tan();
+        Self { eye: camera.position, right, up: right.cross(forward), forward, slope, aspect }
+    }
+
+    /// Where a place is in the picture, and how deep [m]; `None` behind the camera.
+    pub fn project(&self, p: Vec3) -> Option<(Vec2, f32)> {
+        let d = p - self.eye;
+        let depth = d.dot(self.forward);
+        if !(depth > 1e-3) {
+            return None;
+        }
+        let scale = 0.5 / (depth * self.slope);
+        let at = Vec2::new(0.5 + d.dot(self.right) * scale / self.aspect, 0.5 - d.dot(self.up) * scale);
+        Some((at, depth))
+    }
+
+    /// The ray through a place of the picture: from where, and its direction with length 1 along the axis.
+    pub fn ray(&self, at: Vec2) -> (Vec3, Vec3) {
+        let [x, y] = [(at.x - 0.5) * 2.0 * self.slope * self.aspect, (0.5 - at.y) * 2.0 * self.slope];
+        (self.eye, self.forward + self.right * x + self.up * y)
+    }
+
+    /// Pixels to a metre at `depth` [m] in a picture so many pixels high.
+    pub fn scale(&self, depth: f32, height: f32) -> f32 {
+        0.5 * height / (depth * self.slope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_orbit_is_the_camera_it_was_made_of() {
+        let camera = Camera::default();
+        let back = Orbit::new(&camera).camera();
+        assert!(back.position.distance(camera.position) < 1e-5 && back.target == camera.target);
+    }
+
+    #[test]
+    fn a_ray_goes_through_what_is_seen_there() {
+        let lens = Lens::new(&Camera::default(), 1.6);
+        let p = Camera::default().target + Vec3::new(0.07, -0.04, 0.05);
+        let (at, depth) = lens.project(p).unwrap();
+        let (from, way) = lens.ray(at);
+        assert!((from + way * depth).distance(p) < 1e-5);
+    }
+
+    #[test]
+    fn what_is_panned_stays_under_the_pointer() {
+        let mut orbit = Orbit::new(&Camera::default());
+        let p = orbit.target;
+        orbit.pan(Vec2::new(0.2, 0.1));
+        let (at, _) = Lens::new(&orbit.camera(), 1.0).project(p).unwrap();
+        assert!(at.distance(Vec2::new(0.7, 0.6)) < 1e-3, "{at}");
+    }
+}

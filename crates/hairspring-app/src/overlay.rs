@@ -1,0 +1,207 @@
+//! What is drawn over the picture to see inside: outlines of colliders, a slice through their distance, cells of the hair's volume, frames and roots.
+
+use crate::{
+    orbit::Lens,
+    ramp,
+    snapshot::{Scenery, Sight},
+    view::View,
+};
+use eframe::egui::{self, Color32, Pos2, Stroke};
+use glam::{Mat3, Vec2, Vec3};
+use hairspring::{collide::Obstacle, collide::ObstaclePose};
+use std::collections::HashMap;
+
+/// Pieces of a circle.
+const PIECES: usize = 32;
+/// Squares along a side of the slice.
+const SQUARES: usize = 48;
+/// Most cells of the volume that are drawn: more would be a wall.
+const CELLS: usize = 6000;
+
+/// A painter of lines in space.
+struct Pen<'a> {
+    painter: &'a egui::Painter,
+    lens: Lens,
+    rect: egui::Rect,
+}
+
+impl Pen<'_> {
+    fn at(&self, p: Vec3) -> Option<Pos2> {
+        let (at, _) = self.lens.project(p)?;
+        Some(self.place(at))
+    }
+
+    fn place(&self, at: Vec2) -> Pos2 {
+        self.rect.min + egui::vec2(at.x * self.rect.width(), at.y * self.rect.height())
+    }
+
+    fn line(&self, a: Vec3, b: Vec3, stroke: Stroke) {
+        if let (Some(a), Some(b)) = (self.at(a), self.at(b)) {
+            self.painter.line_segment([a, b], stroke);
+        }
+    }
+
+    fn circle(&self, center: Vec3, x: Vec3, y: Vec3, stroke: Stroke) {
+        let on = |k: usize| {
+            let (sin, cos) = (k as f32 / PIECES as f32 * std::f32::consts::TAU).sin_cos();
+            center + x * cos + y * sin
+        };
+        (0..PIECES).for_each(|k| self.line(on(k), on(k + 1), stroke));
+    }
+
+    fn ball(&self, center: Vec3, radius: f32, stroke: Stroke) {
+        let [x, y, z] = [Vec3::X * radius, Vec3::Y * radius, Vec3::Z * radius];
+        self.circle(center, x, y, stroke);
+        self.circle(center, y, z, stroke);
+        self.circle(center, z, x, stroke);
+    }
+}
+
+/// Draws what is switched on over the picture at `rect`.
+pub fn draw(painter: &egui::Painter, rect: egui::Rect, scenery: &Scenery, view: &View, sight: &Sight) {
+    let lens = Lens::new(&sight.camera, rect.width() / rect.height().max(1.0));
+    let painter = &painter.with_clip_rect(rect);
+    let pen = Pen { painter, lens, rect };
+    let overlays = view.overlays;
+    if overlays.slice {
+        slice(&pen, scenery, view.slice);
+    }
+    if overlays.volume {
+        volume(&pen, scenery);
+    }
+    if overlays.colliders {
+        let stroke = Stroke::new(1.0, Color32::from_rgb(90, 200, 255));
+        scenery.obstacles.iter().for_each(|o| collider(&pen, o, stroke));
+    }
+    if overlays.roots {
+        for (still, points) in scenery.still.grooms.iter().zip(&scenery.points) {
+            for root in still.roots().step_by(1 + still.strands() / 4000) {
+                if let Some(at) = points.get(root).and_then(|p| pen.at(*p)) {
+                    painter.circle_filled(at, 1.2, Color32::from_rgb(255, 200, 60));
+                }
+            }
+        }
+    }
+    if overlays.frames {
+        let (m, at) = scenery.anchor.matrix();
+        for (axis, color) in [(m.x_axis, Color32::RED), (m.y_axis, Color32::GREEN), (m.z_axis, Color32::LIGHT_BLUE)] {
+            pen.line(at, at + Vec3::from(axis) * 0.15, Stroke::new(2.0, color));
+        }
+    }
+    if let Some((center, radius)) = view.ball() {
+        pen.ball(center, radius, Stroke::new(1.5, Color32::from_white_alpha(170)));
+    }
+}
+
+/// The outline of a collider.
+fn collider(pen: &Pen, obstacle: &hairspring::simulation::MovingObstacle, stroke: Stroke) {
+    let pose = obstacle.end;
+    let (m, _) = pose.matrix();
+    let turned = |axes: Mat3| Mat3::from(m) * axes;
+    match &obstacle.shape {
+        Obstacle::Sphere { center, radius } => pen.ball(pose.point(*center), *radius, stroke),
+        Obstacle::Capsule { a, b, radius } => {
+            let (a, b) = (pose.point(*a), pose.point(*b));
+            let axis = (b - a).normalize_or(Vec3::Y);
+            let x = axis.any_orthonormal_vector() * *radius;
+            let y = axis.cross(x);
+            pen.circle(a, x, y, stroke);
+            pen.circle(b, x, y, stroke);
+            for side in [x, y, -x, -y] {
+                pen.line(a + side, b + side, stroke);
+            }
+        }
+        Obstacle::Cuboid { center, half, axes } => {
+            let axes = turned(*axes);
+            let corner = |k: usize| {
+                let sign = |bit: usize| if k & bit > 0 { 1.0 } else { -1.0 };
+                pose.point(*center) + axes * (*half * Vec3::new(sign(1), sign(2), sign(4)))
+            };
+            for k in 0..8 {
+                for bit in [1, 2, 4] {
+                    if k & bit == 0 {
+                        pen.line(corner(k), corner(k | bit), stroke);
+                    }
+                }
+            }
+        }
+        Obstacle::Plane { point, normal } => {
+            let normal = Mat3::from(m) * *normal;
+            let x = normal.any_orthonormal_vector();
+            let (at, y) = (pose.point(*point), normal.cross(x));
+            for k in -5..=5 {
+                let step = k as f32 * 0.1;
+                pen.line(at + x * step - y * 0.5, at + x * step + y * 0.5, stroke);
+                pen.line(at + y * step - x * 0.5, at + y * step + x * 0.5, stroke);
+            }
+        }
+        // Fields, hulls and sheets are seen by their slice.
+        _ => {}
+    }
+}
+
+/// A horizontal slice through the distance to all colliders: blue inside, the surface white, red as far as 5 cm outside.
+fn slice(pen: &Pen, scenery: &Scenery, height: f32) {
+    let Some((low, high)) = scenery.bounds() else { return };
+    let poses: Vec<ObstaclePose> = scenery
+        .obstacles
+        .iter()
+        .map(|o| ObstaclePose::new(o.shape.clone(), o.end.matrix(), o.end.matrix(), 1.0))
+        .collect();
+    if poses.is_empty() {
+        return;
+    }
+    let y = low.y + (high.y - low.y) * height;
+    let on = |i: usize, k: usize| {
+        let part = |i: usize| i as f32 / SQUARES as f32;
+        Vec3::new(low.x + (high.x - low.x) * part(i), y, low.z + (high.z - low.z) * part(k))
+    };
+    let mut mesh = egui::Mesh::default();
+    for i in 0..=SQUARES {
+        for k in 0..=SQUARES {
+            let p = on(i, k);
+            let distance = poses.iter().map(|o| o.distance(p)).fold(f32::MAX, f32::min);
+            let color = if distance.abs() < 1e-3 {
+                Color32::from_white_alpha(220)
+            } else if distance < 0.0 {
+                Color32::from_rgba_unmultiplied(40, 90, 255, 150)
+            } else {
+                let share = (1.0 - distance / 0.05).clamp(0.0, 1.0);
+                Color32::from_rgba_unmultiplied(255, 70, 40, (130.0 * share) as u8)
+            };
+            mesh.colored_vertex(pen.at(p).unwrap_or(pen.rect.min), color);
+        }
+    }
+    let index = |i: usize, k: usize| (i * (SQUARES + 1) + k) as u32;
+    for i in 0..SQUARES {
+        for k in 0..SQUARES {
+            mesh.add_triangle(index(i, k), index(i + 1, k), index(i, k + 1));
+            mesh.add_triangle(index(i + 1, k), index(i + 1, k + 1), index(i, k + 1));
+        }
+    }
+    pen.painter.add(mesh);
+}
+
+/// Cells of the volume's lattice with hair in them, the fuller the warmer.
+fn volume(pen: &Pen, scenery: &Scenery) {
+    let cell = scenery.volumes.iter().flatten().map(|v| v.cell).next().unwrap_or(0.015);
+    let anchor = scenery.anchor;
+    let mut cells: HashMap<[i32; 3], u32> = HashMap::new();
+    for p in scenery.points.iter().flatten().filter(|p| p.is_finite()) {
+        let own = (anchor.inverse_point(*p) / cell).floor();
+        *cells.entry([own.x as i32, own.y as i32, own.z as i32]).or_default() += 1;
+    }
+    let most = cells.values().copied().max().unwrap_or(1) as f32;
+    let mut places: Vec<_> = cells.into_iter().collect();
+    places.sort_unstable();
+    for (place, count) in places.iter().step_by(1 + places.len() / CELLS) {
+        let middle = (Vec3::from(place.map(|c| c as f32)) + 0.5) * cell;
+        let Some((at, depth)) = pen.lens.project(anchor.point(middle)) else { continue };
+        let side = (0.4 * cell * pen.lens.scale(depth, pen.rect.height())).max(1.0);
+        let c = ramp::color((*count as f32 / most).sqrt(), [0.0, 1.0]);
+        let byte = |x: f32| (x.powf(1.0 / 2.2) * 255.0) as u8;
+        let color = Color32::from_rgba_unmultiplied(byte(c.x), byte(c.y), byte(c.z), 60);
+        let square = egui::Rect::from_center_size(pen.place(at), egui::Vec2::splat(2.0 * side));
+        pen.painter.rect_filled(square, 0.0, color);
+    }
+}

@@ -1,0 +1,40 @@
+//! The keys, on `?`.
+
+use crate::view::Hand;
+use eframe::egui;
+
+/// Keys and what they do.
+const KEYS: [(&str, &str); 14] = [
+    ("Space", "play or pause"),
+    ("→", "a step, while paused"),
+    ("R", "reset to time 0"),
+    ("F", "look at all hair"),
+    ("C", "compare two settings on the same motion"),
+    ("G", "graphs"),
+    ("P", "presets"),
+    ("Tab", "hide the panels, or show them"),
+    ("Ctrl Z, Ctrl Shift Z", "undo, redo"),
+    ("Ctrl O, Ctrl S", "open, save"),
+    ("F12", "a still of what is seen"),
+    ("Home", "the head back to where it was"),
+    ("?", "this page"),
+    ("Esc", "close what is open; forget the picked strand"),
+];
+
+/// Shows the page.
+pub fn show(ctx: &egui::Context, open: &mut bool) {
+    egui::Window::new("Keys").open(open).resizable(false).collapsible(false).show(ctx, |ui| {
+        egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+            for (key, what) in KEYS {
+                ui.monospace(key);
+                ui.label(what);
+                ui.end_row();
+            }
+            for (_, name, key, tip) in Hand::ALL {
+                ui.monospace(key.name());
+                ui.label(format!("{name}: {tip}"));
+                ui.end_row();
+            }
+        });
+    });
+}

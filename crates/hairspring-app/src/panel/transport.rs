@@ -1,0 +1,109 @@
+//! Play, pause, step, reset, slow motion; tools; what colours show.
+
+use crate::{
+    session::{Action, Session},
+    snapshot::Snapshot,
+    view::{Hand, View},
+};
+use eframe::egui::{self, Ui};
+use hairspring::stage::Value;
+
+/// The bar under the picture.
+pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        let playing = session.playing();
+        let name = if playing { "Pause" } else { "Play" };
+        if ui.button(name).on_hover_text("Space").clicked() {
+            actions.push(Action::Play(!playing));
+        }
+        if ui.add_enabled(!playing, egui::Button::new("Step")).on_hover_text("→: a sixtieth of a second").clicked() {
+            actions.push(Action::Step);
+        }
+        if ui.button("Reset").on_hover_text("R: back to time 0").clicked() {
+            actions.push(Action::Reset);
+        }
+        ui.separator();
+        let mut speed = session.speed();
+        let slider = egui::Slider::new(&mut speed, 0.05..=2.0).logarithmic(true).suffix(" ×").max_decimals(2);
+        if ui.add(slider.text("Speed")).on_hover_text("Seconds of the scene in a second: slow motion").changed() {
+            actions.push(Action::Speed(speed));
+        }
+        if session.length().is_some() {
+            let mut repeat = session.repeats();
+            if ui.checkbox(&mut repeat, "Repeat").on_hover_text("Begin anew at the motion's end").changed() {
+                actions.push(Action::Repeat(repeat));
+            }
+        }
+        ui.separator();
+        if let Some(snapshot) = snapshot {
+            let real = (crate::player::STEP * session.speed()).max(1e-6);
+            let took = snapshot.took.as_secs_f32();
+            // What a step may take and the play keeps its speed.
+            let share = (crate::player::STEP / session.speed()) / took.max(1e-6);
+            ui.monospace(format!("{:6.2} s", snapshot.time));
+            let pace = if playing && share < 1.0 {
+                format!("step {:.1} ms: {:.0} % of {real:.3} s", 1e3 * took, 100.0 * share)
+            } else {
+                format!("step {:.1} ms", 1e3 * took)
+            };
+            ui.weak(pace).on_hover_text("How long a step of 1/60 s takes. Where it takes longer, time runs slower; nothing is left out.");
+        }
+    });
+}
+
+/// Tools, colours, what is laid over.
+pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        for (hand, name, _, tip) in Hand::ALL {
+            if ui.selectable_label(view.hand == hand, name).on_hover_text(tip).clicked() {
+                view.hand = hand;
+            }
+        }
+        if matches!(view.hand, Hand::Ball | Hand::Grab) {
+            ui.add(egui::Slider::new(&mut view.reach, 0.002..=0.2).logarithmic(true).suffix(" m").text("Radius"));
+        }
+        ui.separator();
+        let shown = session.shown();
+        let name = shown.map_or("Natural", Value::name);
+        egui::ComboBox::from_label("Colour").selected_text(name).show_ui(ui, |ui| {
+            if ui.selectable_label(shown.is_none(), "Natural").clicked() {
+                actions.push(Action::Show(None));
+            }
+            for value in Value::ALL {
+                if ui.selectable_label(shown == Some(value), value.name()).clicked() {
+                    actions.push(Action::Show(Some(value)));
+                }
+            }
+        });
+        ui.menu_button("Overlays", |ui| {
+            let o = &mut view.overlays;
+            for (on, name) in [
+                (&mut o.hair, "Hair"),
+                (&mut o.body, "Body"),
+                (&mut o.colliders, "Colliders"),
+                (&mut o.slice, "Slice of distance"),
+                (&mut o.volume, "Volume grid"),
+                (&mut o.frames, "Frame of the head"),
+                (&mut o.roots, "Roots"),
+            ] {
+                ui.checkbox(on, name);
+            }
+            ui.add_enabled(o.slice, egui::Slider::new(&mut view.slice, 0.0..=1.0).text("Slice height"));
+            ui.separator();
+            ui.add(egui::Slider::new(&mut view.exposure, -3.0..=3.0).text("Exposure").suffix(" stops"));
+            let mut own = view.width.is_some();
+            ui.horizontal(|ui| {
+                if ui.checkbox(&mut own, "Hair width").changed() {
+                    view.width = own.then_some(1.0);
+                }
+                if let Some(width) = &mut view.width {
+                    ui.add(egui::Slider::new(width, 0.5..=20.0).logarithmic(true).suffix(" ×"));
+                }
+            });
+        });
+        let mut compare = session.second().is_some();
+        if ui.checkbox(&mut compare, "Compare").on_hover_text("C: a second scene beside it, on the same motion").changed() {
+            actions.push(Action::Compare(compare));
+        }
+    });
+}

@@ -1,0 +1,236 @@
+//! Every parameter of a scene file that is one number, switch, choice, colour or direction, as an artist looks for it: what it is called, its unit, its range, what it does. Their defaults are the
+//! library's; entries of lists (colliders, hands, sources of wind, charged bodies) are shown by `panel::list`.
+
+use crate::{document::Document, key::Key};
+
+/// What an artist thinks of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Group {
+    /// What is laid over the groom.
+    Style,
+    /// How hair holds its shape.
+    Stiffness,
+    /// How heavy it is.
+    Weight,
+    /// What blows.
+    Air,
+    /// Bodies.
+    Collision,
+    /// Hair on hair.
+    Volume,
+    /// Colour and gloss.
+    Look,
+    /// How time is cut.
+    Solver,
+}
+
+impl Group {
+    /// All of them, in the order of the panel.
+    pub const ALL: [Self; 8] = [
+        Self::Style,
+        Self::Stiffness,
+        Self::Weight,
+        Self::Air,
+        Self::Collision,
+        Self::Volume,
+        Self::Look,
+        Self::Solver,
+    ];
+
+    /// Its heading.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Style => "Style",
+            Self::Stiffness => "Stiffness",
+            Self::Weight => "Weight",
+            Self::Air => "Air",
+            Self::Collision => "Collision",
+            Self::Volume => "Volume",
+            Self::Look => "Look",
+            Self::Solver => "Solver",
+        }
+    }
+}
+
+/// What a parameter is a setting of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    /// The scene.
+    Scene,
+    /// The chosen groom.
+    Groom,
+    /// The material of the chosen group of it.
+    Material,
+}
+
+/// What values it takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A number; the range of its slider, which is not always all that the file takes.
+    Number {
+        /// Least.
+        min: f64,
+        /// Most.
+        max: f64,
+        /// Whether equal ways of the slider are equal factors.
+        log: bool,
+    },
+    /// A number that may be left out, with what to begin from.
+    Maybe {
+        /// Least.
+        min: f64,
+        /// Most.
+        max: f64,
+        /// Where it starts when it is switched on.
+        from: f64,
+    },
+    /// A whole number.
+    Count {
+        /// Least.
+        min: i64,
+        /// Most.
+        max: i64,
+    },
+    /// On or off.
+    Switch,
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    /// Linear red, green, blue.
+    Color,
+    /// Three numbers.
+    Vector {
+        /// Farthest from 0 of each.
+        reach: f64,
+    },
+    /// Numbers from root to tip.
+    Profile,
+}
+
+/// A parameter of the scene file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Where it stands.
+    pub group: Group,
+    /// What it is a setting of.
+    pub of: Of,
+    /// Its name there.
+    pub name: &'static str,
+    /// What it is called.
+    pub label: &'static str,
+    /// Its unit, empty for plain numbers.
+    pub unit: &'static str,
+    /// Values.
+    pub kind: Kind,
+    /// What it does.
+    pub tip: &'static str,
+}
+
+const fn number(min: f64, max: f64) -> Kind {
+    Kind::Number { min, max, log: false }
+}
+
+const fn scale(min: f64, max: f64) -> Kind {
+    Kind::Number { min, max, log: true }
+}
+
+macro_rules! parameters {
+    ($($group:ident { $($of:ident $name:literal, $label:literal, $unit:literal, $kind:expr, $tip:literal;)* })*) => {
+        &[$($(Parameter { group: Group::$group, of: Of::$of, name: $name, label: $label, unit: $unit, kind: $kind, tip: $tip },)*)*]
+    };
+}
+
+/// All of them.
+pub const ALL: &[Parameter] = parameters! {
+    Style {
+        Material "ghost.pull", "Keep the style", "Hz", number(0.0, 20.0), "Pull to the groomed shape, carried by the head: how fast a lone point would swing about its place. 0: none; from 1 a style lasts, from 4 hair is set.";
+        Material "ghost.tip", "… at the tip", "×", number(0.0, 2.0), "That pull at the tip, over that at the root.";
+        Material "ghost.damping", "… damping", "", number(0.0, 4.0), "Damping of that pull over the critical: 1 does not swing.";
+        Groom "effects.clump", "Clump", "", number(0.0, 1.0), "How far the tips of follow hairs are drawn to their guide.";
+        Groom "effects.curl_radius", "Curl radius", "m", number(0.0, 0.02), "Radius of the curls laid over follow hairs.";
+        Groom "effects.curl_length", "Curl length", "m", scale(0.002, 0.2), "Length of hair in one turn of those curls.";
+        Groom "effects.noise", "Flyaway", "m", number(0.0, 0.02), "How far the tips of follow hairs stray.";
+    }
+    Stiffness {
+        Material "model", "Model", "", Kind::Choice(&["auto", "springs", "curvature", "rod"]), "What holds a strand's shape. auto: the rod, or curvature where it comes to the same.";
+        Material "bend", "Bending", "×", scale(0.01, 1000.0), "Stiffness against bending and twisting, over that of a single hair. A head of hair is held by its neighbours, so styles use more than 1.";
+        Material "bend_tip", "… at the tip", "×", number(0.0, 2.0), "Bending stiffness at the tip over that at the root.";
+        Material "damping", "Damping", "s", number(0.0, 0.2), "Relaxation time of bending: more stops the hair's own swinging sooner.";
+        Material "flatness", "Flatness", "", number(0.05, 1.0), "Short over long axis of the fibre's section. 1: round. For the rod.";
+        Material "young", "Young's modulus", "Pa", scale(1e8, 1e11), "Stiffness of the fibre's substance along it. Human hair: 3.9e9.";
+        Material "shear", "Shear modulus", "Pa", scale(1e7, 1e11), "Stiffness of the substance against twisting. Human hair: 0.89e9.";
+    }
+    Weight {
+        Scene "gravity", "Gravity", "m/s²", Kind::Vector { reach: 30.0 }, "Which way things fall, and how fast.";
+        Material "density", "Density", "kg/m³", number(100.0, 5000.0), "Of the fibre. Dry human hair: 1310.";
+        Material "mass_profile", "Mass along it", "", Kind::Profile, "Weights from root to tip, linear in between; only their ratios count: 1, 3 is three times as heavy at the tip.";
+        Material "radius", "Fibre radius", "m", Kind::Maybe { min: 1e-5, max: 2e-4, from: 3.5e-5 }, "Of the fibre, in place of the groom's own. Human hair: 25e-6 to 50e-6. It begins the scene anew.";
+        Scene "solver.inertia", "Inertia of the head", "×", number(0.0, 1.0), "How much of the head's motion hair feels: 0, and it moves as if the head stood still.";
+    }
+    Air {
+        Scene "wind.velocity", "Wind", "m/s", Kind::Vector { reach: 20.0 }, "Mean velocity of the air, everywhere.";
+        Scene "wind.gust", "Gusts", "", number(0.0, 1.0), "How much gusts add and take, as a share of the wind.";
+        Scene "wind.gust_rate", "Gusts a second", "Hz", number(0.0, 5.0), "How often they come.";
+        Scene "turbulence.strength", "Turbulence", "m/s", number(0.0, 5.0), "Speed of eddies that the wind carries along.";
+        Scene "turbulence.size", "Largest eddy", "m", scale(0.01, 2.0), "Its size.";
+        Scene "turbulence.octaves", "Sizes of eddies", "", Kind::Count { min: 1, max: 6 }, "How many, each half as large as the one before.";
+        Scene "shelter.body", "Shelter by bodies", "1/m", number(0.0, 300.0), "How fast wind falls off inside a body. 100: to a third in a centimetre.";
+        Scene "shelter.hair", "Shelter by hair", "1/m", number(0.0, 300.0), "How fast wind falls off inside hair.";
+        Scene "shelter.reach", "Lee", "m", number(0.05, 3.0), "How far behind them the wind is whole again.";
+        Material "drag", "Drag", "×", number(0.0, 5.0), "Of the air on a hair, over that on a lone one.";
+        Material "charge", "Static charge", "C/m", number(-1e-8, 1e-8), "Of a length of hair: it is pushed and pulled by charged bodies. 5e-10 rises in the field of a rubbed balloon.";
+    }
+    Collision {
+        Scene "solver.collide_body", "Meets the body", "", Kind::Switch, "Whether hair collides with the body's mesh. It begins the scene anew.";
+        Material "friction", "Friction", "", number(0.0, 1.0), "Coulomb friction on bodies. Hair on skin: 0.1 to 0.3.";
+        Scene "solver.jump", "A jump is", "m", scale(0.05, 10.0), "A head that moves farther in a frame, over how it moved before, has jumped, and hair goes with it as it is.";
+    }
+    Volume {
+        Scene "volume.method", "Hair on hair", "", Kind::Choice(&["off", "density", "incompressible"]), "off: strands pass through each other. density: pressure where hair is denser than at rest. incompressible: firm.";
+        Scene "volume.friction", "Friction in hair", "1/s", number(0.0, 30.0), "How fast hair takes on the velocity of the hair around it.";
+        Scene "volume.pressure", "Pressure", "m/s", number(0.0, 3.0), "density: speed with which a crowd spreads.";
+        Scene "volume.regain", "Regain", "1/s", number(0.0, 100.0), "incompressible: share of lost volume that is regained a second.";
+        Scene "volume.cell", "Cell", "m", Kind::Maybe { min: 0.002, max: 0.1, from: 0.015 }, "Edge of a cell of the lattice; left out, the smallest that holds eight points at rest.";
+    }
+    Look {
+        Groom "look.root_color", "Root", "", Kind::Color, "What a thick lock of it looks like at the root.";
+        Groom "look.tip_color", "Tip", "", Kind::Color, "And at the tip.";
+        Groom "look.variation", "Variation", "", number(0.0, 1.0), "How much pigment differs from strand to strand.";
+        Groom "look.roughness", "Roughness", "", number(0.1, 1.0), "Spread of the highlights: oiled to matt.";
+        Groom "look.cuticle", "Cuticle", "°", number(0.0, 10.0), "Tilt of the scales, which parts the white highlight from the coloured one.";
+        Groom "look.specular", "Highlights", "×", number(0.0, 4.0), "Their strength.";
+        Groom "look.backlight", "Backlight", "×", number(0.0, 4.0), "Strength of light that shines through from behind.";
+        Groom "look.scatter", "Scatter", "×", number(0.0, 4.0), "Strength of light from strand to strand.";
+        Groom "look.shadow", "Shadow", "×", number(0.0, 4.0), "How strongly strands shade what is behind them.";
+    }
+    Solver {
+        Scene "solver.integrator", "Integrator", "", Kind::Choice(&["backward-euler", "bdf2", "explicit-euler", "verlet", "local-global", "ftl", "dftl"]), "How a substep is made. The explicit ones blow up: they are there to be compared.";
+        Scene "solver.substeps", "Substeps", "", Kind::Count { min: 1, max: 64 }, "In a frame of 1/60 s.";
+        Scene "solver.projections", "Projections", "", Kind::Count { min: 0, max: 20 }, "Iterations a substep that keep hair at its length.";
+        Scene "solver.quality", "Quality", "", Kind::Choice(&["normal", "high"]), "normal: one linear solve a substep. high: Newton to the end.";
+        Scene "solver.sag_free", "Starts in balance", "", Kind::Switch, "Whether rest shapes are solved so that the groom hangs as it was made.";
+        Scene "solver.ghost", "Ghost shapes", "", Kind::Switch, "Whether styles are kept by their materials' pull.";
+    }
+};
+
+impl Parameter {
+    /// Where its effective value stands, for this groom and group.
+    pub fn key(&self, groom: usize, group: usize) -> Key {
+        match self.of {
+            Of::Scene => Key::default().field(self.name),
+            Of::Groom => Key::top("groom").place(groom).field(self.name),
+            Of::Material => Key::top("groom").place(groom).field("material").place(group).field(self.name),
+        }
+    }
+
+    /// Where the text says it; a material of its own is made for the group where it has none.
+    pub fn place(&self, document: &mut Document, groom: usize, group: usize) -> Result<Key, crate::AppError> {
+        match self.of {
+            Of::Scene => Ok(self.key(0, 0)),
+            Of::Groom => document
+                .groom_key(groom)
+                .map(|key| key.field(self.name))
+                .ok_or_else(|| crate::AppError::new(format!("the scene says nothing of groom {groom}"))),
+            Of::Material => document.own_material(groom, group, self.name),
+        }
+    }
+}

@@ -1,0 +1,346 @@
+//! The simulation on a thread of its own, at a fixed step: the picture never waits for it, and what hair does depends on no frame rate.
+
+use crate::{
+    error::AppError,
+    snapshot::{Scenery, Snapshot, Still},
+};
+use glam::Vec3;
+use hairspring::{
+    around::Tool,
+    collide::Rigid,
+    scene::Scene,
+    simulation::ToolId,
+    stage::{FrameReport, Picked, Stage, Value},
+};
+use std::{
+    sync::{
+        Arc, Mutex, PoisonError,
+        mpsc::{Receiver, RecvTimeoutError, Sender, channel},
+    },
+    thread::JoinHandle,
+    time::{Duration, Instant},
+};
+
+/// Length of a step [s]: what a frame of most screens takes.
+pub const STEP: f32 = 1.0 / 60.0;
+
+/// What the thread is told.
+pub enum Order {
+    /// Opens a scene and, to compare, a second one beside it, at time 0.
+    Open(Box<Scene>, Option<Box<Scene>>),
+    /// Takes up settings in the midst of the play.
+    Retune(Box<Scene>, Option<Box<Scene>>),
+    /// Plays or pauses.
+    Play(bool),
+    /// Steps once.
+    Step,
+    /// Back to time 0.
+    Reset,
+    /// Seconds of the scene in a second, above 0.
+    Speed(f32),
+    /// Begins anew after so many seconds; `None`: plays on.
+    Loop(Option<f32>),
+    /// Takes a tool, which moves at once with every `Carry`.
+    Take(Tool, Rigid),
+    /// Moves it.
+    Carry(Rigid),
+    /// Lets go.
+    LetGo,
+    /// The ball in the world, its middle and radius [m].
+    Ball(Option<(Vec3, f32)>),
+    /// Where the body is carried besides its motion.
+    Body(Rigid),
+    /// Which number of each point is wanted.
+    Show(Option<Value>),
+    /// Picks the strand on a ray; `None`: none.
+    Pick(Option<(Vec3, Vec3)>),
+}
+
+/// What the window and the thread share.
+#[derive(Default)]
+struct Shared {
+    latest: Mutex<Option<Arc<Snapshot>>>,
+    error: Mutex<Option<AppError>>,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    // What is behind it is replaced as a whole: a thread that panicked left nothing half done.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The window's hold on the thread. Dropped, it ends it.
+pub struct Player {
+    orders: Option<Sender<Order>>,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Player {
+    /// A thread that calls `wake` whenever there is something new to see.
+    pub fn new(wake: impl Fn() + Send + 'static) -> Self {
+        let (orders, inbox) = channel();
+        let shared = Arc::new(Shared::default());
+        let own = shared.clone();
+        let thread = std::thread::Builder::new().name("simulation".into()).spawn(move || {
+            Work { inbox, shared: own, wake: Box::new(wake), ..Work::new() }.run();
+        });
+        Self { orders: Some(orders), shared, thread: thread.ok() }
+    }
+
+    /// Tells it something. Nothing where it has ended.
+    pub fn tell(&self, order: Order) {
+        if let Some(orders) = &self.orders {
+            // It ended by a panic, which was reported.
+            let _ = orders.send(order);
+        }
+    }
+
+    /// The last moment.
+    pub fn latest(&self) -> Option<Arc<Snapshot>> {
+        lock(&self.shared.latest).clone()
+    }
+
+    /// Why the last order could not be done, once.
+    pub fn error(&self) -> Option<AppError> {
+        lock(&self.shared.error).take()
+    }
+
+    /// Whether the thread ended by itself.
+    pub fn is_dead(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+}
+
+impl Drop for Player {
+    fn drop(&mut self) {
+        self.orders = None;
+        if let Some(thread) = self.thread.take() {
+            // Its panic was reported when it happened.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// What the thread works with.
+struct Work {
+    inbox: Receiver<Order>,
+    shared: Arc<Shared>,
+    wake: Box<dyn Fn()>,
+    stages: Vec<(Stage, Arc<Still>)>,
+    playing: bool,
+    speed: f32,
+    end: Option<f32>,
+    tool: Option<Vec<Option<ToolId>>>,
+    show: Option<Value>,
+    picked: Option<Picked>,
+    scene: u64,
+    step: u64,
+    reset_strands: usize,
+    report: FrameReport,
+    took: Duration,
+    /// When the next step is due.
+    due: Instant,
+    /// Snapshots whose memory is used again once the window has left them.
+    pool: Vec<Arc<Snapshot>>,
+}
+
+impl Work {
+    fn new() -> Self {
+        Self {
+            inbox: channel().1,
+            shared: Arc::default(),
+            wake: Box::new(|| ()),
+            stages: Vec::new(),
+            playing: false,
+            speed: 1.0,
+            end: None,
+            tool: None,
+            show: None,
+            picked: None,
+            scene: 0,
+            step: 0,
+            reset_strands: 0,
+            report: FrameReport::default(),
+            took: Duration::ZERO,
+            due: Instant::now(),
+            pool: Vec::new(),
+        }
+    }
+
+    fn run(&mut self) {
+        loop {
+            let idle = !self.playing || self.stages.is_empty();
+            let wait = if idle { Duration::from_secs(3600) } else { self.due.saturating_duration_since(Instant::now()) };
+            match self.inbox.recv_timeout(wait) {
+                Ok(order) => {
+                    let mut news = self.obey(order);
+                    // What has come in meanwhile belongs to the same moment.
+                    while let Ok(order) = self.inbox.try_recv() {
+                        news |= self.obey(order);
+                    }
+                    if news {
+                        self.publish();
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) if !idle => {
+                    self.advance();
+                    self.publish();
+                    let frame = Duration::from_secs_f32(STEP / self.speed);
+                    // A step that took too long is not made up for: time runs slower.
+                    self.due = (self.due + frame).max(Instant::now());
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+        }
+    }
+
+    /// Does what it is told; whether there is something new to see.
+    fn obey(&mut self, order: Order) -> bool {
+        match order {
+            Order::Open(scene, other) => {
+                let stages: Result<Vec<_>, _> = [Some(scene), other].into_iter().flatten().map(|s| open(*s)).collect();
+                match stages {
+                    Ok(stages) => {
+                        self.stages = stages;
+                        (self.step, self.reset_strands) = (0, 0);
+                        (self.tool, self.picked) = (None, None);
+                        self.due = Instant::now();
+                    }
+                    Err(why) => *lock(&self.shared.error) = Some(why),
+                }
+                self.scene += 1;
+            }
+            Order::Retune(scene, other) => {
+                for ((stage, _), scene) in self.stages.iter_mut().zip([Some(scene), other].into_iter().flatten()) {
+                    if let Err(why) = stage.retune(*scene) {
+                        *lock(&self.shared.error) = Some(why.into());
+                    }
+                }
+            }
+            Order::Play(playing) => {
+                self.playing = playing;
+                self.due = Instant::now();
+                return false;
+            }
+            Order::Step => self.advance(),
+            Order::Reset => self.reset(),
+            Order::Speed(speed) => {
+                self.speed = speed.clamp(0.01, 10.0);
+                return false;
+            }
+            Order::Loop(end) => {
+                self.end = end;
+                return false;
+            }
+            Order::Take(tool, pose) => {
+                self.let_go();
+                let mut taken = Vec::with_capacity(self.stages.len());
+                for (stage, _) in &mut self.stages {
+                    taken.push(stage.take(tool, pose));
+                }
+                self.tool = Some(taken);
+                return false;
+            }
+            Order::Carry(pose) => {
+                for ((stage, _), id) in self.stages.iter_mut().zip(self.tool.iter().flatten()) {
+                    id.inspect(|id| stage.carry(*id, pose));
+                }
+                return false;
+            }
+            Order::LetGo => {
+                self.let_go();
+                return false;
+            }
+            Order::Ball(ball) => self.stages.iter_mut().for_each(|(stage, _)| stage.set_ball(ball)),
+            Order::Body(by) => {
+                self.stages.iter_mut().for_each(|(stage, _)| stage.move_body(by));
+                return false;
+            }
+            Order::Show(value) => self.show = value,
+            Order::Pick(ray) => {
+                self.picked = ray.and_then(|(from, way)| self.stages.first()?.0.nearest_strand(from, way));
+            }
+        }
+        true
+    }
+
+    fn let_go(&mut self) {
+        for ((stage, _), id) in self.stages.iter_mut().zip(self.tool.take().into_iter().flatten()) {
+            id.inspect(|id| stage.let_go(*id));
+        }
+    }
+
+    fn reset(&mut self) {
+        self.stages.iter_mut().for_each(|(stage, _)| stage.reset());
+        self.tool = None;
+        self.due = Instant::now();
+    }
+
+    fn advance(&mut self) {
+        if self.end.is_some_and(|end| self.stages.first().is_some_and(|(s, _)| s.time() + 0.5 * STEP > end)) {
+            self.reset();
+            return;
+        }
+        let began = Instant::now();
+        for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
+            let report = stage.step(STEP);
+            self.reset_strands += report.step.reset_strands;
+            if k == 0 {
+                self.report = report;
+            }
+        }
+        self.took = began.elapsed();
+        self.step += 1;
+    }
+
+    /// Shows the stages as they are.
+    fn publish(&mut self) {
+        if self.stages.is_empty() {
+            return;
+        }
+        let mut next = self.spare();
+        // Nobody else has it: `spare` saw to that.
+        let (Some(snapshot), Some((first, _))) = (Arc::get_mut(&mut next), self.stages.first()) else { return };
+        let fresh = |(_, still): &(Stage, Arc<Still>)| Scenery::new(still.clone());
+        if snapshot.scene != self.scene || snapshot.stages.len() != self.stages.len() {
+            snapshot.stages = self.stages.iter().map(fresh).collect();
+        }
+        for (scenery, (stage, still)) in snapshot.stages.iter_mut().zip(&self.stages) {
+            scenery.fill(stage, still, self.show);
+        }
+        let picked = self.picked;
+        snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));
+        (snapshot.step, snapshot.scene, snapshot.time) = (self.step, self.scene, first.time());
+        (snapshot.report, snapshot.took, snapshot.reset_strands) = (self.report, self.took, self.reset_strands);
+        if let Some(old) = lock(&self.shared.latest).replace(next) {
+            self.pool.push(old);
+        }
+        (self.wake)();
+    }
+
+    /// A snapshot that nobody looks at.
+    fn spare(&mut self) -> Arc<Snapshot> {
+        // The window holds one or two: more would be a leak.
+        self.pool.truncate(8);
+        let free = self.pool.iter_mut().position(|s| Arc::get_mut(s).is_some());
+        free.map(|k| self.pool.swap_remove(k)).unwrap_or_else(|| {
+            Arc::new(Snapshot {
+                step: 0,
+                scene: 0,
+                time: 0.0,
+                stages: Vec::new(),
+                report: FrameReport::default(),
+                took: Duration::ZERO,
+                reset_strands: 0,
+                picked: None,
+            })
+        })
+    }
+}
+
+fn open(scene: Scene) -> Result<(Stage, Arc<Still>), AppError> {
+    let stage = Stage::new(scene)?;
+    let still = Arc::new(Still::new(&stage));
+    Ok((stage, still))
+}

@@ -1,0 +1,169 @@
+//! A session by a script: what a person would do, line by line, for tests, pictures and demonstrations.
+//!
+//! ```text
+//! # from the picture's top left corner (0, 0) to its bottom right (1, 1)
+//! wait 30                          steps of the simulation
+//! set groom[0].look.roughness 0.5  a value by its key; `unset KEY` takes it away
+//! hand grab                        look, grab, ball, head, pick
+//! drag 0.4 0.6 0.7 0.5 30          presses, moves in so many frames of the window, releases
+//! shot window.png                  the window as it is
+//! ```
+//!
+//! Further: `play`, `pause`, `step`, `reset`, `speed X`, `undo`, `redo`, `new STYLE`, `open FILE`, `save FILE`, `show VALUE` (or `natural`), `overlay NAME on|off`,
+//! `compare on|off`, `second on|off`, `graphs on|off`, `presets on|off`, `help on|off`, `panels on|off`, `still FILE`, `clip FILE SECONDS`, `pictures FILE SECONDS`, `turntable FILE SECONDS`, `quit`.
+
+use crate::{AppError, key::Key, record::Kind, view::Hand};
+use glam::Vec2;
+use hairspring::stage::Value;
+use std::{collections::VecDeque, path::PathBuf};
+
+/// A line of a script.
+#[derive(Clone, Debug)]
+pub enum Line {
+    /// Waits so many steps.
+    Wait(u64),
+    /// Plays or pauses.
+    Play(bool),
+    /// Steps.
+    Step,
+    /// Resets.
+    Reset,
+    /// Seconds of the scene in a second.
+    Speed(f32),
+    /// Writes a value.
+    Set(Key, Option<toml_edit::Value>),
+    /// Goes a step back.
+    Undo,
+    /// Goes a step forth.
+    Redo,
+    /// The built-in head in a style.
+    New(String),
+    /// Opens a file.
+    Open(PathBuf),
+    /// Saves the scene.
+    Save(PathBuf),
+    /// Takes a tool.
+    Hand(Hand),
+    /// Drags from a place of the picture to another in so many frames.
+    Drag(Vec2, Vec2, u32),
+    /// What colours show.
+    Show(Option<Value>),
+    /// Switches something on or off, by its name.
+    Switch(String, bool),
+    /// Records for so many seconds.
+    Record(Kind, PathBuf, f32),
+    /// Writes the window as a picture.
+    Shot(PathBuf),
+    /// Closes the window.
+    Quit,
+}
+
+/// Names of what [`Line::Switch`] switches.
+pub const SWITCHES: [&str; 13] = [
+    "compare", "second", "graphs", "presets", "help", "panels", "hair", "body", "colliders", "slice", "volume", "frames", "roots",
+];
+
+/// Reads a script.
+pub fn parse(text: &str) -> Result<VecDeque<Line>, AppError> {
+    let mut lines = VecDeque::new();
+    for (number, line) in text.lines().enumerate() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let read = read(line).map_err(|why| AppError::new(format!("the script, line {}: {why}", number + 1)))?;
+        lines.push_back(read);
+    }
+    Ok(lines)
+}
+
+fn read(line: &str) -> Result<Line, String> {
+    let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let rest = rest.trim();
+    let numbers = || -> Result<Vec<f32>, String> {
+        let read = rest.split_whitespace().map(|n| n.parse::<f32>().ok().filter(|n| n.is_finite()));
+        read.collect::<Option<_>>().ok_or_else(|| format!("'{rest}' are not numbers"))
+    };
+    let one = || numbers()?.first().copied().ok_or_else(|| format!("`{word}` needs a number"));
+    let path = || match rest {
+        "" => Err(format!("`{word}` needs a file")),
+        name => Ok(PathBuf::from(name)),
+    };
+    let on = |state: &str| match state {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        other => Err(format!("'{other}' is neither on nor off")),
+    };
+    let record = |kind: Kind| -> Result<Line, String> {
+        let (file, seconds) = rest.rsplit_once(char::is_whitespace).ok_or_else(|| format!("`{word}` needs a file and seconds"))?;
+        let seconds = seconds.parse().map_err(|_| format!("'{seconds}' is no number of seconds"))?;
+        Ok(Line::Record(kind, file.trim().into(), seconds))
+    };
+    Ok(match word {
+        "wait" => Line::Wait(one()?.max(0.0) as u64),
+        "play" => Line::Play(true),
+        "pause" => Line::Play(false),
+        "step" => Line::Step,
+        "reset" => Line::Reset,
+        "speed" => Line::Speed(one()?),
+        "set" => {
+            let (key, value) = rest.split_once(char::is_whitespace).ok_or("`set` needs a key and a value")?;
+            let value = value.trim().parse().map_err(|_| format!("'{value}' is no value as a scene file has them"))?;
+            Line::Set(key.parse()?, Some(value))
+        }
+        "unset" => Line::Set(rest.parse()?, None),
+        "undo" => Line::Undo,
+        "redo" => Line::Redo,
+        "new" => Line::New(rest.to_owned()),
+        "open" => Line::Open(path()?),
+        "save" => Line::Save(path()?),
+        "hand" => {
+            let known = Hand::ALL.iter().find(|h| h.1.eq_ignore_ascii_case(rest));
+            Line::Hand(known.ok_or_else(|| format!("'{rest}' is no tool: look, grab, ball, head, pick"))?.0)
+        }
+        "drag" => match numbers()?[..] {
+            [a, b, c, d, frames] => Line::Drag(Vec2::new(a, b), Vec2::new(c, d), frames.max(1.0) as u32),
+            _ => return Err("`drag` needs five numbers: from x y, to x y, frames".into()),
+        },
+        "show" if rest == "natural" => Line::Show(None),
+        "show" => {
+            let known = Value::ALL.into_iter().find(|v| v.name().eq_ignore_ascii_case(rest));
+            Line::Show(Some(known.ok_or_else(|| format!("'{rest}' is nothing that colours show"))?))
+        }
+        "overlay" => {
+            let (name, state) = rest.split_once(char::is_whitespace).ok_or("`overlay` needs a name and on or off")?;
+            switch(name, on(state.trim())?)?
+        }
+        "still" => Line::Record(Kind::Still, path()?, 0.0),
+        "clip" => record(Kind::Clip)?,
+        "pictures" => record(Kind::Pictures)?,
+        "turntable" => record(Kind::Turntable)?,
+        "shot" => Line::Shot(path()?),
+        "quit" => Line::Quit,
+        name => switch(name, on(rest)?)?,
+    })
+}
+
+fn switch(name: &str, on: bool) -> Result<Line, String> {
+    if SWITCHES.contains(&name) {
+        Ok(Line::Switch(name.to_owned(), on))
+    } else {
+        Err(format!("'{name}' is nothing that a script can do"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_of_the_help_is_read_and_others_are_refused_by_their_number() {
+        let text = "wait 30\nset groom[0].look.roughness 0.5\nunset wind.gust\nhand grab\ndrag 0.4 0.6 0.7 0.5 30\n# no\n\nshot a b.png\n\
+                    overlay slice on\ncompare off\nshow natural\nshow speed\nclip x.mp4 2\nquit";
+        assert_eq!(parse(text).unwrap().len(), 12);
+        for wrong in ["fly", "set a", "set a [", "drag 1 2 3", "hand foot", "show nothing", "compare maybe", "wait x", "clip a.mp4"] {
+            let error = parse(&format!("play\n{wrong}")).unwrap_err().to_string();
+            assert!(error.contains("line 2"), "{wrong}: {error}");
+        }
+    }
+}

@@ -1,0 +1,374 @@
+//! What the window works on, without the window: the scene, the one beside it, and the simulation. Whatever a person, a script or a monkey does comes in as an [`Action`].
+
+use crate::{
+    AppError,
+    document::{Change, Document},
+    key::Key,
+    parameter::Parameter,
+    player::{Order, Player, STEP},
+    snapshot::Snapshot,
+};
+use glam::Vec3;
+use hairspring::{
+    around::{Tool, grab::Grab},
+    collide::Rigid,
+    stage::Value,
+};
+use std::{path::PathBuf, sync::Arc};
+use toml_edit::Value as Toml;
+
+/// What can be done.
+#[derive(Clone, Debug)]
+pub enum Action {
+    /// Plays or pauses.
+    Play(bool),
+    /// Steps once.
+    Step,
+    /// Back to time 0.
+    Reset,
+    /// Seconds of the scene in a second.
+    Speed(f32),
+    /// Whether the motion begins anew at its end.
+    Repeat(bool),
+    /// Writes a parameter; `None`: its default counts.
+    Parameter(&'static Parameter, Option<Toml>),
+    /// Writes a value by its key.
+    Set(Key, Option<Toml>),
+    /// What was dragged is let go of.
+    Rest,
+    /// Adds an entry to a list, by the text of its fields.
+    Add(&'static str, String),
+    /// Takes one out.
+    Remove(&'static str, usize),
+    /// A step back.
+    Undo,
+    /// A step forth.
+    Redo,
+    /// Another groom and group of it are shown and changed.
+    Choose(usize, usize),
+    /// A scene that is not saved yet.
+    New(String),
+    /// A scene, groom or body file.
+    Open(PathBuf),
+    /// Saves the scene; `None`: where it was opened.
+    Save(Option<PathBuf>),
+    /// Opens a second scene beside it, which starts out the same, or closes it.
+    Compare(bool),
+    /// Whether parameters are those of the second.
+    Second(bool),
+    /// What colours show.
+    Show(Option<Value>),
+    /// Picks the strand on a ray.
+    Pick(Vec3, Vec3),
+    /// Forgets what was picked.
+    Unpick,
+    /// Takes hold of the hair in a ball.
+    Grab(Vec3, f32),
+    /// Moves what took hold, or the ball's.
+    Carry(Vec3),
+    /// Lets go.
+    LetGo,
+    /// Where the ball is, if there is one.
+    Ball(Option<(Vec3, f32)>),
+    /// How far the head is carried from where its motion takes it.
+    Head(Vec3),
+}
+
+/// The scene, the one beside it and the simulation.
+pub struct Session {
+    document: Document,
+    /// What it is compared with.
+    second: Option<Document>,
+    /// Whether parameters are those of the second.
+    on_second: bool,
+    player: Player,
+    playing: bool,
+    speed: f32,
+    repeat: bool,
+    show: Option<Value>,
+    chosen: (usize, usize),
+    held: bool,
+    /// What was said of the last scene as it was read.
+    notes: Vec<String>,
+    /// Length of the scene's motion [s].
+    length: Option<f32>,
+    /// Scenes that were begun: a snapshot of an earlier one is not news.
+    begun: u64,
+}
+
+impl Session {
+    /// Opens a document; `wake` is called whenever there is something new to see.
+    pub fn new(document: Document, wake: impl Fn() + Send + 'static) -> Result<Self, AppError> {
+        let mut session = Self {
+            document,
+            second: None,
+            on_second: false,
+            player: Player::new(wake),
+            playing: true,
+            speed: 1.0,
+            repeat: true,
+            show: None,
+            chosen: (0, 0),
+            held: false,
+            notes: Vec::new(),
+            length: None,
+            begun: 0,
+        };
+        session.begin()?;
+        session.player.tell(Order::Play(true));
+        Ok(session)
+    }
+
+    /// Does it.
+    pub fn act(&mut self, action: Action) -> Result<(), AppError> {
+        match action {
+            Action::Play(playing) => {
+                self.playing = playing;
+                self.player.tell(Order::Play(playing));
+            }
+            Action::Step => self.player.tell(Order::Step),
+            Action::Reset => {
+                self.held = false;
+                self.player.tell(Order::Reset);
+            }
+            Action::Speed(speed) => {
+                self.speed = speed.clamp(0.05, 4.0);
+                self.player.tell(Order::Speed(self.speed));
+            }
+            Action::Repeat(repeat) => {
+                self.repeat = repeat;
+                self.tell_length();
+            }
+            Action::Parameter(parameter, value) => {
+                let (groom, group) = self.chosen;
+                let document = self.edited_mut();
+                // A default is taken away from where it is written; it needs no material of its own.
+                let key = parameter.place(document, groom, group)?;
+                let change = document.set(&key, value)?;
+                self.follow(change)?;
+            }
+            Action::Set(key, value) => {
+                let change = self.edited_mut().set(&key, value)?;
+                self.follow(change)?;
+            }
+            Action::Rest => self.edited_mut().rest(),
+            Action::Add(list, fields) => {
+                let change = self.edited_mut().add(list, &fields)?;
+                self.follow(change)?;
+            }
+            Action::Remove(list, place) => {
+                let change = self.edited_mut().remove(list, place)?;
+                self.follow(change)?;
+            }
+            Action::Undo => {
+                let change = self.edited_mut().undo()?;
+                self.follow(change)?;
+            }
+            Action::Redo => {
+                let change = self.edited_mut().redo()?;
+                self.follow(change)?;
+            }
+            Action::Choose(groom, group) => self.chosen = (groom, group),
+            Action::New(text) => self.take(Document::new(&folder().join("scene.toml"), text)?)?,
+            Action::Open(path) => self.open(&path)?,
+            Action::Save(path) => {
+                let known = self.document.file().map(PathBuf::from);
+                let path = path.or(known).ok_or_else(|| {
+                    AppError::new("the scene has no file yet: choose one, such as scene.toml")
+                })?;
+                self.document.save(&path)?;
+            }
+            Action::Compare(on) => {
+                self.second = on.then(|| Document::new(&self.base(), self.document.text().to_owned())).transpose()?;
+                self.on_second = on;
+                self.begin()?;
+            }
+            Action::Second(on) => self.on_second = on && self.second.is_some(),
+            Action::Show(value) => {
+                self.show = value;
+                self.player.tell(Order::Show(value));
+            }
+            Action::Pick(from, way) => self.player.tell(Order::Pick(Some((from, way)))),
+            Action::Unpick => self.player.tell(Order::Pick(None)),
+            Action::Grab(center, radius) => {
+                // In the tool's own space the ball is where it took hold: it is carried by how far it has gone since.
+                let grab = Grab { center: Vec3::ZERO, radius, pull: 60.0, damping: 1.0 };
+                self.player.tell(Order::Take(Tool::Grab(grab), at(center)));
+                self.held = true;
+            }
+            Action::Carry(center) => self.player.tell(Order::Carry(at(center))),
+            Action::LetGo => {
+                self.held = false;
+                self.player.tell(Order::LetGo);
+            }
+            Action::Ball(ball) => self.player.tell(Order::Ball(ball)),
+            Action::Head(by) => self.player.tell(Order::Body(at(by))),
+        }
+        Ok(())
+    }
+
+    /// Opens a file: a scene; or a groom or a body, which are put in a scene of their own, or in place of the open one's.
+    fn open(&mut self, path: &std::path::Path) -> Result<(), AppError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let name = toml::Value::String(whole.to_string_lossy().into_owned());
+        let document = match extension.as_str() {
+            "toml" => Document::open(&whole)?,
+            "hair" | "tfx" | "data" => {
+                let text = format!("[[groom]]\nfile = {name}\nmaterial = \"wavy\"\n");
+                Document::new(&folder().join("scene.toml"), text)?
+            }
+            "obj" | "glb" | "gltf" | "tfxmesh" => {
+                let text = self.document.with_body(&name.to_string())?;
+                Document::new(&self.base(), text)?
+            }
+            "bvh" => {
+                let text = self.document.with_motion(&name.to_string())?;
+                Document::new(&self.base(), text)?
+            }
+            _ => {
+                return Err(AppError::new(format!(
+                    "{} is no scene (.toml), groom (.hair, .tfx, .data), body (.glb, .gltf, .obj, .tfxmesh) or motion (.bvh)",
+                    path.display()
+                )));
+            }
+        };
+        self.take(document)
+    }
+
+    /// Goes over to another document, if its scene can be read.
+    fn take(&mut self, document: Document) -> Result<(), AppError> {
+        let old = std::mem::replace(&mut self.document, document);
+        let second = self.second.take();
+        if let Err(why) = self.begin() {
+            (self.document, self.second) = (old, second);
+            return Err(why);
+        }
+        self.on_second = false;
+        self.chosen = (0, 0);
+        Ok(())
+    }
+
+    /// Where files are named from.
+    fn base(&self) -> PathBuf {
+        self.document.file().map_or_else(|| folder().join("scene.toml"), PathBuf::from)
+    }
+
+    /// Reads the scene, and the second, and begins at time 0.
+    fn begin(&mut self) -> Result<(), AppError> {
+        let loaded = self.document.load()?;
+        let second = self.second.as_ref().map(Document::load).transpose()?;
+        self.length = loaded.value.clip.as_ref().map(|clip| clip.duration()).filter(|d| *d > STEP);
+        self.notes = loaded.notes;
+        self.held = false;
+        self.begun += 1;
+        self.player.tell(Order::Open(Box::new(loaded.value), second.map(|s| Box::new(s.value))));
+        self.tell_length();
+        Ok(())
+    }
+
+    fn tell_length(&self) {
+        self.player.tell(Order::Loop(self.length.filter(|_| self.repeat)));
+    }
+
+    /// Brings the simulation up to an edit.
+    fn follow(&mut self, change: Change) -> Result<(), AppError> {
+        match change {
+            Change::None => Ok(()),
+            Change::Geometry => self.begin(),
+            Change::Settings => {
+                let settings = |document: &Document| Box::new(document.settings().clone());
+                self.player.tell(Order::Retune(settings(&self.document), self.second.as_ref().map(settings)));
+                Ok(())
+            }
+        }
+    }
+
+    /// The document whose parameters are shown.
+    pub fn edited(&self) -> &Document {
+        self.second.as_ref().filter(|_| self.on_second).unwrap_or(&self.document)
+    }
+
+    fn edited_mut(&mut self) -> &mut Document {
+        self.second.as_mut().filter(|_| self.on_second).unwrap_or(&mut self.document)
+    }
+
+    /// The document that is saved.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// What it is compared with.
+    pub fn second(&self) -> Option<&Document> {
+        self.second.as_ref()
+    }
+
+    /// Whether parameters are those of the second.
+    pub fn on_second(&self) -> bool {
+        self.on_second
+    }
+
+    /// The last moment.
+    pub fn latest(&self) -> Option<Arc<Snapshot>> {
+        self.player.latest()
+    }
+
+    /// Why the simulation could not do what it was told, once.
+    pub fn error(&self) -> Option<AppError> {
+        self.player.error()
+    }
+
+    /// Whether the simulation has ended by itself.
+    pub fn is_dead(&self) -> bool {
+        self.player.is_dead()
+    }
+
+    /// Scenes that were begun: the number of the newest snapshot, once it is there.
+    pub fn begun(&self) -> u64 {
+        self.begun
+    }
+
+    /// Whether it plays.
+    pub fn playing(&self) -> bool {
+        self.playing
+    }
+
+    /// Seconds of the scene in a second.
+    pub fn speed(&self) -> f32 {
+        self.speed
+    }
+
+    /// Whether the motion begins anew at its end.
+    pub fn repeats(&self) -> bool {
+        self.repeat
+    }
+
+    /// Length of the scene's motion [s], if it has one.
+    pub fn length(&self) -> Option<f32> {
+        self.length
+    }
+
+    /// What colours show.
+    pub fn shown(&self) -> Option<Value> {
+        self.show
+    }
+
+    /// The groom and the group whose parameters are shown.
+    pub fn chosen(&self) -> (usize, usize) {
+        self.chosen
+    }
+
+    /// What was said of the scene's files as they were read.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+}
+
+fn at(place: Vec3) -> Rigid {
+    Rigid { translation: place, ..Rigid::default() }
+}
+
+/// The folder that scenes without a file are in.
+fn folder() -> PathBuf {
+    std::env::current_dir().unwrap_or_default()
+}

@@ -1,0 +1,269 @@
+//! What the simulation's thread shows of a moment: enough to draw it and to say how it is.
+
+use glam::Vec3;
+use hairspring::{
+    body::{Mesh, Part},
+    collide::Rigid,
+    scene::HairLook,
+    simulation::{Measure, MovingObstacle, VolumeReport},
+    stage::{FrameReport, Picked, Stage, StrandFigures, Value},
+};
+use hairspring_view::{Background, Frame, HairDraw, Lighting, MeshDraw, Quality};
+use std::{sync::Arc, time::Duration};
+
+/// What does not move: made once a scene.
+pub struct Still {
+    /// Offsets, radii and colours of each groom's strands.
+    pub grooms: Vec<StillGroom>,
+    /// Triangles and parts of the body.
+    pub body: Option<(Vec<[u32; 3]>, Vec<Part>)>,
+    /// Simulated strands and all, simulated points and all.
+    pub counts: [usize; 4],
+    /// Name of the instruction set.
+    pub instruction_set: String,
+}
+
+/// What does not move of one groom.
+pub struct StillGroom {
+    offsets: Vec<u32>,
+    radii: Vec<f32>,
+    colors: Vec<Vec3>,
+}
+
+impl StillGroom {
+    /// Number of strands.
+    pub fn strands(&self) -> usize {
+        self.offsets.len().saturating_sub(1)
+    }
+
+    /// Index of each strand's first point.
+    pub fn roots(&self) -> impl Iterator<Item = usize> + '_ {
+        self.offsets.iter().take(self.strands()).map(|o| *o as usize)
+    }
+}
+
+impl Still {
+    /// Of this stage.
+    pub fn new(stage: &Stage) -> Self {
+        let grooms = stage.strands().map(|s| StillGroom {
+            offsets: s.groom.offsets.clone(),
+            radii: s.groom.radii.clone(),
+            colors: s.groom.colors.clone(),
+        });
+        let mesh = |m: &Mesh| (m.triangles.clone(), m.parts.clone());
+        let ((simulated, strands), (points, all)) = (stage.simulated_strands(), stage.simulated_points());
+        Self {
+            grooms: grooms.collect(),
+            body: stage.body().map(|b| mesh(b.mesh)),
+            counts: [simulated, strands, points, all],
+            instruction_set: stage.instruction_set(),
+        }
+    }
+}
+
+/// A stage at one moment.
+pub struct Scenery {
+    /// What does not move.
+    pub still: Arc<Still>,
+    /// How each groom is drawn.
+    pub looks: Vec<HairLook>,
+    /// Points of each groom [m].
+    pub points: Vec<Vec<Vec3>>,
+    /// One number a point of each groom, where a value is shown; else empty.
+    pub values: Vec<Vec<f32>>,
+    /// Vertices and normals of the body.
+    pub positions: Vec<Vec3>,
+    /// See `positions`.
+    pub normals: Vec<Vec3>,
+    /// Colliders.
+    pub obstacles: Vec<MovingObstacle>,
+    /// The frame that roots move with.
+    pub anchor: Rigid,
+    /// Stretch, depth, speed.
+    pub measure: Measure,
+    /// Volume of each groom's hair.
+    pub volumes: Vec<Option<VolumeReport>>,
+}
+
+impl Scenery {
+    /// Memory for a stage's moments.
+    pub fn new(still: Arc<Still>) -> Self {
+        Self {
+            still,
+            looks: Vec::new(),
+            points: Vec::new(),
+            values: Vec::new(),
+            positions: Vec::new(),
+            normals: Vec::new(),
+            obstacles: Vec::new(),
+            anchor: Rigid::default(),
+            measure: Measure::default(),
+            volumes: Vec::new(),
+        }
+    }
+
+    /// Copies a stage as it is now, into the memory that is there.
+    pub fn fill(&mut self, stage: &Stage, still: &Arc<Still>, value: Option<Value>) {
+        self.still = still.clone();
+        let grooms = stage.strands().len();
+        self.points.resize_with(grooms, Vec::new);
+        self.looks.clear();
+        for (strands, points) in stage.strands().zip(&mut self.points) {
+            points.clear();
+            points.extend_from_slice(strands.points);
+            self.looks.push(strands.look.clone());
+        }
+        self.values.resize_with(if value.is_some() { grooms } else { 0 }, Vec::new);
+        for (groom, values) in self.values.iter_mut().enumerate() {
+            let Some(value) = value else { continue };
+            stage.values(value, groom, values);
+            if value == Value::Guide {
+                values.iter_mut().for_each(|v| *v = crate::ramp::scattered(*v as u32));
+            }
+        }
+        self.positions.clear();
+        self.normals.clear();
+        if let Some(body) = stage.body() {
+            self.positions.extend_from_slice(body.positions);
+            self.normals.extend_from_slice(body.normals);
+        }
+        self.obstacles.clear();
+        self.obstacles.extend_from_slice(stage.obstacles());
+        self.anchor = stage.body_anchor();
+        self.measure = stage.measure();
+        self.volumes.clear();
+        self.volumes.extend(stage.volumes());
+    }
+
+    /// The box (min, max) of all hair [m]; `None` where no point is finite.
+    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        let points = self.points.iter().flatten().filter(|p| p.is_finite());
+        points.fold(None, |b, p| {
+            let (low, high): (Vec3, Vec3) = b.unwrap_or((*p, *p));
+            Some((low.min(*p), high.max(*p)))
+        })
+    }
+
+    /// Draws by `draw` what is seen by this camera: every `every`-th hair, those that are drawn being wider by as much.
+    pub fn draw<R>(&self, sight: &Sight, draw: impl FnOnce(&Frame) -> R) -> R {
+        let every = sight.every.max(1);
+        let thinned: Vec<Thin> = match every {
+            1 => Vec::new(),
+            every => self.still.grooms.iter().zip(&self.points).map(|(g, p)| Thin::new(g, p, every)).collect(),
+        };
+        let colors: Vec<Vec<Vec3>> = self.values.iter().map(|v| crate::ramp::colors(v, sight.range)).collect();
+        let thin_colors: Vec<Vec<Vec3>> = match every {
+            1 => Vec::new(),
+            _ => thinned.iter().zip(&colors).map(|(thin, colors)| thin.pick(colors)).collect(),
+        };
+        let hair: Vec<HairDraw> = (0..self.points.len())
+            .map(|g| {
+                let still = &self.still.grooms[g];
+                match thinned.get(g) {
+                    Some(thin) => HairDraw {
+                        points: &thin.points,
+                        offsets: &thin.offsets,
+                        radii: &thin.radii,
+                        colors: thin_colors.get(g).unwrap_or(&thin.colors),
+                        look: &self.looks[g],
+                        width_scale: sight.width * every as f32,
+                    },
+                    None => HairDraw {
+                        points: &self.points[g],
+                        offsets: &still.offsets,
+                        radii: &still.radii,
+                        colors: colors.get(g).unwrap_or(&still.colors),
+                        look: &self.looks[g],
+                        width_scale: sight.width,
+                    },
+                }
+            })
+            .collect();
+        let body = self.still.body.as_ref().filter(|_| sight.body).map(|(triangles, parts)| MeshDraw {
+            positions: &self.positions,
+            normals: &self.normals,
+            triangles,
+            parts,
+        });
+        draw(&Frame {
+            hair: if sight.hair { &hair } else { &[] },
+            bodies: body.as_slice(),
+            camera: sight.camera,
+            lighting: Lighting { exposure: sight.exposure, ..Lighting::facing(&sight.lit_for) },
+            background: Background::default(),
+            quality: sight.quality,
+        })
+    }
+}
+
+/// Every so-manieth strand of a groom.
+struct Thin {
+    strands: Vec<std::ops::Range<usize>>,
+    points: Vec<Vec3>,
+    offsets: Vec<u32>,
+    radii: Vec<f32>,
+    colors: Vec<Vec3>,
+}
+
+impl Thin {
+    fn new(still: &StillGroom, points: &[Vec3], every: usize) -> Self {
+        let strands: Vec<_> =
+            still.offsets.windows(2).step_by(every).map(|w| w[0] as usize..w[1] as usize).collect();
+        let mut thin =
+            Self { strands, points: Vec::new(), offsets: vec![0], radii: Vec::new(), colors: Vec::new() };
+        for strand in thin.strands.clone() {
+            thin.points.extend_from_slice(&points[strand.clone()]);
+            thin.radii.extend_from_slice(&still.radii[strand.clone()]);
+            thin.colors.extend_from_slice(still.colors.get(strand).unwrap_or(&[]));
+            thin.offsets.push(thin.points.len() as u32);
+        }
+        thin
+    }
+
+    fn pick(&self, colors: &[Vec3]) -> Vec<Vec3> {
+        self.strands.iter().flat_map(|s| colors[s.clone()].iter().copied()).collect()
+    }
+}
+
+/// How a moment is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// From where.
+    pub camera: hairspring::scene::Camera,
+    /// The camera that the lamps stand by: it does not turn with the view, so that light stays on the head as one walks around it.
+    pub lit_for: hairspring::scene::Camera,
+    /// Brightness [stops].
+    pub exposure: f32,
+    /// How much wider than they are hairs are drawn.
+    pub width: f32,
+    /// Every so-manieth hair is drawn, 1 or more.
+    pub every: usize,
+    /// Values of colours at the two ends of the ramp.
+    pub range: [f32; 2],
+    /// Whether hair is drawn.
+    pub hair: bool,
+    /// Whether the body is drawn.
+    pub body: bool,
+    /// Work to spend.
+    pub quality: Quality,
+}
+
+/// Everything that the window knows of a moment.
+pub struct Snapshot {
+    /// Steps since the scene was opened; goes up by one each.
+    pub step: u64,
+    /// Counts scenes: another number, another scene.
+    pub scene: u64,
+    /// Time in the scene [s].
+    pub time: f32,
+    /// The scene, and beside it the one that it is compared with.
+    pub stages: Vec<Scenery>,
+    /// Where the step's time went.
+    pub report: FrameReport,
+    /// How long the step took, all of it.
+    pub took: Duration,
+    /// Strands put back to rest since the scene was opened.
+    pub reset_strands: usize,
+    /// The strand that was picked, as it is now.
+    pub picked: Option<(Picked, StrandFigures)>,
+}

@@ -1,0 +1,297 @@
+//! What is seen and by which hand it is touched: the camera, the tools, what is laid over the picture.
+
+use crate::{
+    orbit::{Lens, Orbit},
+    session::{Action, Session},
+    snapshot::{Scenery, Sight, Snapshot},
+};
+use eframe::egui;
+use glam::{Vec2, Vec3};
+use hairspring_view::{Quality, frame_camera};
+use std::path::PathBuf;
+
+/// Hairs on a human head.
+const HEAD: f32 = 100_000.0;
+/// Widest that a hair is drawn by default, times its own width.
+const WIDEST: f32 = 10.0;
+
+/// What the left button does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Hand {
+    /// Turns the view.
+    #[default]
+    Look,
+    /// Takes hold of a lock and pulls.
+    Grab,
+    /// Pushes a ball through the hair.
+    Ball,
+    /// Drags the head.
+    Head,
+    /// Picks a strand.
+    Pick,
+}
+
+impl Hand {
+    /// All of them, with their names, keys and what they do.
+    pub const ALL: [(Self, &'static str, egui::Key, &'static str); 5] = [
+        (Self::Look, "Look", egui::Key::Num1, "Drag to turn; with Shift or the middle button to move; wheel to come nearer. The right button turns with every tool."),
+        (Self::Grab, "Grab", egui::Key::Num2, "Press on hair to take hold of a lock, drag to pull, release to let go."),
+        (Self::Ball, "Ball", egui::Key::Num3, "Drag to push a ball through the hair; it is as large as its slider says."),
+        (Self::Head, "Head", egui::Key::Num4, "Drag the head; it comes back when it is let go of."),
+        (Self::Pick, "Pick", egui::Key::Num5, "Press on a strand to see its numbers."),
+    ];
+}
+
+/// What is laid over the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overlays {
+    /// Outlines of colliders.
+    pub colliders: bool,
+    /// A slice through all colliders' distance.
+    pub slice: bool,
+    /// Cells of the hair's volume.
+    pub volume: bool,
+    /// The frame that roots move with.
+    pub frames: bool,
+    /// Where strands begin.
+    pub roots: bool,
+    /// Whether hair is drawn.
+    pub hair: bool,
+    /// Whether the body is drawn.
+    pub body: bool,
+}
+
+impl Default for Overlays {
+    fn default() -> Self {
+        Self { colliders: false, slice: false, volume: false, frames: false, roots: false, hair: true, body: true }
+    }
+}
+
+/// The view's own state.
+pub struct View {
+    /// Camera; `None` until there is something to look at.
+    pub orbit: Option<Orbit>,
+    /// Tool.
+    pub hand: Hand,
+    /// Radius of the ball and of a grab [m].
+    pub reach: f32,
+    /// What is laid over.
+    pub overlays: Overlays,
+    /// How much wider than they are hairs are drawn; `None`: by their number.
+    pub width: Option<f32>,
+    /// Brightness [stops].
+    pub exposure: f32,
+    /// Height of the slice, over the hair's box [1].
+    pub slice: f32,
+    /// Range of colours, and the scene and value that it was found for.
+    pub range: [f32; 2],
+    /// What is being dragged: how deep it is, where it began and where it is [m].
+    drag: Option<Drag>,
+    /// How far the head is from where it should be, and how fast it goes back [m], [m/s].
+    head: (Vec3, Vec3),
+    /// Number of the scene that the camera was set for, and its file.
+    framed: u64,
+    file: Option<PathBuf>,
+    /// Whether the next scene is another one, to be looked at anew.
+    pub forget: bool,
+}
+
+struct Drag {
+    depth: f32,
+    from: Vec3,
+    at: Vec3,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            orbit: None,
+            hand: Hand::default(),
+            reach: 0.02,
+            overlays: Overlays::default(),
+            width: None,
+            exposure: 0.0,
+            slice: 0.5,
+            range: [0.0, 1.0],
+            drag: None,
+            head: (Vec3::ZERO, Vec3::ZERO),
+            framed: 0,
+            file: None,
+            forget: false,
+        }
+    }
+}
+
+impl View {
+    /// How the scene is looked at.
+    pub fn sight(&self, scenery: &Scenery) -> Option<Sight> {
+        let orbit = self.orbit?;
+        let camera = orbit.camera();
+        let strands = scenery.still.counts[1] as f32;
+        Some(Sight {
+            camera,
+            lit_for: Orbit { turn: 0.3, ..orbit }.camera(),
+            exposure: self.exposure,
+            width: self.width.unwrap_or((HEAD / strands.max(1.0)).clamp(1.0, WIDEST)),
+            every: 1,
+            range: self.range,
+            hair: self.overlays.hair,
+            body: self.overlays.body,
+            quality: Quality::default(),
+        })
+    }
+
+    /// Sets the camera where a scene has just been opened: as its file says, else where all hair is seen.
+    pub fn meet(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
+        if self.framed != snapshot.scene {
+            self.framed = snapshot.scene;
+            let file = session.document().file().map(Into::into);
+            // An edit that begins the same scene anew leaves the camera where it is.
+            if self.orbit.is_none() || self.file != file || self.forget {
+                self.frame(session, snapshot, aspect);
+            }
+            (self.file, self.forget) = (file, false);
+        }
+    }
+
+    /// Looks at all hair.
+    pub fn frame(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
+        let own = session.document().settings().camera;
+        let bounds = snapshot.stages.first().and_then(Scenery::bounds).unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+        let room = Vec3::splat(0.06 * (bounds.1 - bounds.0).length());
+        let camera = own.unwrap_or_else(|| frame_camera((bounds.0 - room, bounds.1 + room), aspect));
+        self.orbit = Some(Orbit::new(&camera));
+    }
+
+    /// What the pointer does in the picture that lies at `rect`.
+    pub fn touch(
+        &mut self,
+        ui: &egui::Ui,
+        response: &egui::Response,
+        snapshot: &Snapshot,
+        actions: &mut Vec<Action>,
+    ) {
+        let rect = response.rect;
+        let Some(orbit) = &mut self.orbit else { return };
+        let part = |v: egui::Vec2| Vec2::new(v.x, v.y) / rect.height().max(1.0);
+        let place = |p: egui::Pos2| Vec2::new((p.x - rect.left()) / rect.width(), (p.y - rect.top()) / rect.height());
+        let (shift, scroll, zoom) =
+            ui.input(|i| (i.modifiers.shift, i.smooth_scroll_delta().y, i.zoom_delta()));
+        if response.hovered() {
+            orbit.zoom((scroll * 0.003).exp() * zoom);
+        }
+        use egui::PointerButton::{Middle, Primary, Secondary};
+        let moved = part(response.drag_delta());
+        let look = self.hand == Hand::Look || self.hand == Hand::Pick;
+        if response.dragged_by(Middle) || (look && shift && response.dragged_by(Primary)) {
+            orbit.pan(moved);
+        } else if response.dragged_by(Secondary) || (look && response.dragged_by(Primary)) {
+            orbit.drag(moved);
+        }
+        let lens = Lens::new(&orbit.camera(), rect.width() / rect.height().max(1.0));
+        let pointer = response.interact_pointer_pos().map(place);
+        if self.hand == Hand::Pick
+            && response.clicked()
+            && let Some(at) = pointer
+        {
+            let (from, way) = lens.ray(at);
+            actions.push(Action::Pick(from, way));
+        }
+        if look {
+            return;
+        }
+        let Some(at) = pointer else { return };
+        let (from, way) = lens.ray(at);
+        if response.drag_started_by(Primary) {
+            let depth = depth_of_hair(snapshot, &lens, at).unwrap_or(orbit.distance);
+            let place = from + way * depth;
+            self.drag = Some(Drag { depth, from: place, at: place });
+            match self.hand {
+                Hand::Grab => actions.push(Action::Grab(place, self.reach)),
+                Hand::Ball => actions.push(Action::Ball(Some((place, self.reach)))),
+                _ => {}
+            }
+        } else if let Some(drag) = &mut self.drag
+            && response.dragged_by(Primary)
+        {
+            drag.at = from + way * drag.depth;
+            match self.hand {
+                Hand::Grab => actions.push(Action::Carry(drag.at)),
+                Hand::Ball => actions.push(Action::Ball(Some((drag.at, self.reach)))),
+                Hand::Head => {
+                    // Farther than an arm, the head would leave the picture.
+                    self.head = ((drag.at - drag.from).clamp_length_max(0.5), Vec3::ZERO);
+                    actions.push(Action::Head(self.head.0));
+                }
+                Hand::Look | Hand::Pick => {}
+            }
+        }
+        if response.drag_stopped() && self.drag.take().is_some() {
+            match self.hand {
+                Hand::Grab => actions.push(Action::LetGo),
+                Hand::Ball => actions.push(Action::Ball(None)),
+                _ => {}
+            }
+        }
+    }
+
+    /// The head goes back where it was dragged from, as on a spring that does not swing; called once a frame of `dt` [s].
+    pub fn settle(&mut self, dt: f32, actions: &mut Vec<Action>) -> bool {
+        let (place, speed) = self.head;
+        if self.drag.is_some() || (place == Vec3::ZERO && speed == Vec3::ZERO) {
+            return false;
+        }
+        // Critically damped, 3 times a second: exact for any dt.
+        let w = 18.0;
+        let decay = (-w * dt).exp();
+        let slope = speed + place * w;
+        self.head = ((place + slope * dt) * decay, (speed - slope * w * dt) * decay);
+        if self.head.0.length() < 1e-5 {
+            self.head = (Vec3::ZERO, Vec3::ZERO);
+        }
+        actions.push(Action::Head(self.head.0));
+        true
+    }
+
+    /// Finds the range of the colours that are shown: from 0 to what a fiftieth of points exceeds, followed smoothly.
+    pub fn follow_range(&mut self, scenery: &Scenery, guides: bool) {
+        if guides || scenery.values.is_empty() {
+            self.range = [0.0, 1.0];
+            return;
+        }
+        let total: usize = scenery.values.iter().map(Vec::len).sum();
+        let every = (total / 4096).max(1);
+        let mut some: Vec<f32> =
+            scenery.values.iter().flatten().step_by(every).copied().filter(|v| v.is_finite()).collect();
+        if some.is_empty() {
+            return;
+        }
+        let place = some.len() * 49 / 50;
+        let (_, high, _) = some.select_nth_unstable_by(place, f32::total_cmp);
+        let high = high.max(1e-12);
+        // A range of another value's size is left at once.
+        let far = self.range[1] > 20.0 * high || self.range[1] < 0.05 * high;
+        self.range = [0.0, if far { high } else { self.range[1] + 0.1 * (high - self.range[1]) }];
+    }
+
+    /// The ball, while it is dragged: its middle and radius [m].
+    pub fn ball(&self) -> Option<(Vec3, f32)> {
+        let drag = self.drag.as_ref().filter(|_| matches!(self.hand, Hand::Ball | Hand::Grab))?;
+        Some((drag.at, self.reach))
+    }
+}
+
+/// Depth of the hair that is nearest to a place of the picture [m]; `None` where there is none close by.
+fn depth_of_hair(snapshot: &Snapshot, lens: &Lens, at: Vec2) -> Option<f32> {
+    let scenery = snapshot.stages.first()?;
+    let mut best: Option<(f32, f32)> = None;
+    for p in scenery.points.iter().flat_map(|p| p.iter().step_by(1 + p.len() / 200_000)) {
+        let Some((place, depth)) = lens.project(*p) else { continue };
+        let off = place.distance(at);
+        // Of hair within a hundredth of the picture, that in front.
+        if off < 0.01 && best.is_none_or(|(_, d)| depth < d) {
+            best = Some((off, depth));
+        }
+    }
+    best.map(|(_, depth)| depth)
+}

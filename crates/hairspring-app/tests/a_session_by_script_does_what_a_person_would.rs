@@ -1,0 +1,96 @@
+//! A person opens the window, plays, changes parameters, throws the ball, grabs a lock, records, saves and opens again. Here a script does so, and what comes out is looked at: the file says what was
+//! changed and nothing else, the record plays, undo leads back, and no line was refused.
+
+mod support;
+
+use hairspring_app::{Document, Session};
+use support::{SMALL, sound, until, window};
+
+#[test]
+fn a_session_opens_plays_changes_records_saves_and_opens_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let script = format!(
+        "wait 5\npause\n\
+         set wind.velocity [2.0, 0.0, -1.0]\nset wind.gust 0.5\nset wind.gust_rate 0.7\nset turbulence.strength 0.4\n\
+         set solver.substeps 3\nset solver.projections 2\nset volume.method \"density\"\nset volume.friction 5.0\n\
+         set builtin.look.roughness 0.5\nset gravity [0.0, -5.0, 0.0]\nwait 10\n\
+         set solver.inertia 0.5\nundo\nredo\nundo\n\
+         hand ball\ndrag 0.2 0.5 0.7 0.5 12\nhand grab\ndrag 0.5 0.5 0.7 0.7 12\nhand head\ndrag 0.5 0.4 0.6 0.4 8\nhand look\ndrag 0.5 0.5 0.6 0.5 4\n\
+         show tension\nslice on\nvolume on\ncolliders on\nroots on\nframes on\nwait 3\nshow natural\n\
+         still {still}\nclip {clip} 0.5\nturntable {turn} 0.3\npictures {pictures} 0.1\n\
+         save {saved}\nnew curly\nwait 2\nopen {saved}\nwait 3\n",
+        still = file("still.png").display(),
+        clip = file("clip.mp4").display(),
+        turn = file("turn.mp4").display(),
+        pictures = file("p.##.png").display(),
+        saved = file("saved.toml").display(),
+    );
+    let mut window = window(folder.path(), SMALL, &script);
+    assert!(until(&mut window, |app| app.is_idle()), "the script came to its end");
+    let app = window.state();
+    let wrong = app.message().filter(|(_, wrong)| *wrong);
+    assert_eq!(wrong, None, "no line was refused");
+    assert!(sound(app));
+    let text = std::fs::read_to_string(file("saved.toml")).unwrap();
+    assert_eq!(app.session().document().text(), text, "what was saved is open");
+    for line in ["gust = 0.5", "substeps = 3", "method = \"density\"", "roughness = 0.5", "strands = 400"] {
+        assert!(text.contains(line), "{line} is in the file:\n{text}");
+    }
+    assert!(!text.contains("inertia"), "what was undone is not in it:\n{text}");
+    assert!(Document::open(&file("saved.toml")).is_ok());
+    let still = hairspring_view::read_png(&file("still.png")).unwrap();
+    assert_eq!((still.width, still.height), (1280, 720));
+    let dark = still.rgb.iter().filter(|b| **b < 8).count();
+    assert!(dark < still.rgb.len() / 2, "something is seen");
+    for clip in ["clip.mp4", "turn.mp4"] {
+        assert!(std::fs::metadata(file(clip)).unwrap().len() > 2000, "{clip}");
+    }
+    for k in 1..=3 {
+        assert!(file(&format!("p.{k:02}.png")).exists());
+    }
+}
+
+#[test]
+fn what_cannot_be_done_is_said_and_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window(folder.path(), SMALL, "pause\nset solver.substeps 0\nwait 1");
+    assert!(until(&mut window, |app| app.is_idle()));
+    let (said, wrong) = window.state().message().expect("something is said");
+    assert!(wrong && said.contains("substeps"), "{said}");
+    assert_eq!(window.state().session().document().text(), SMALL);
+    for (line, word) in [
+        ("open nowhere.toml", "nowhere.toml"),
+        ("open picture.gif", "picture.gif"),
+        ("set no.such 1", "no"),
+        ("still hair.txt", "png"),
+        ("clip hair.png 1", "mp4"),
+    ] {
+        let mut window = self::window(folder.path(), SMALL, &format!("pause\n{line}"));
+        assert!(until(&mut window, |app| app.is_idle()));
+        let said = window.state().message().map(|(text, _)| text.to_owned()).unwrap_or_default();
+        assert!(said.contains(word), "{line}: {said:?}");
+        assert_eq!(window.state().session().document().text(), SMALL, "{line}");
+    }
+}
+
+#[test]
+fn settings_change_while_hair_moves_and_the_play_goes_on() {
+    let document = Document::new("scene.toml".as_ref(), SMALL.into()).unwrap();
+    let mut session = Session::new(document, || ()).unwrap();
+    let wait = |session: &Session, step: u64| {
+        for _ in 0..6000 {
+            if let Some(snapshot) = session.latest().filter(|s| s.scene == session.begun() && s.step >= step) {
+                return snapshot;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        panic!("step {step} was not reached");
+    };
+    let before = wait(&session, 5);
+    let key = "wind.velocity".parse().unwrap();
+    session.act(hairspring_app::Action::Set(key, Some(toml_edit::Value::from_iter([5.0, 0.0, 0.0])))).unwrap();
+    let after = wait(&session, before.step + 30);
+    assert_eq!(after.scene, before.scene, "a setting does not begin the scene anew");
+    assert!(after.time > before.time);
+}

@@ -1,0 +1,46 @@
+//! The window without a desktop: its frames run one after the other, its picture comes from the CPU.
+#![allow(dead_code)] // Each test uses a part of it.
+
+use egui_kittest::Harness;
+use hairspring_app::{App, Document, Drawn, Options, read_script};
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+/// A head that is quick to simulate and to draw.
+pub const SMALL: &str = "name = \"Small\"\n\n[builtin]\nstrands = 400\nguides = 60\n";
+
+/// The window on this scene, in a folder, with a script.
+pub fn window(folder: &Path, scene: &str, script: &str) -> Harness<'static, App> {
+    let document = Document::new(&folder.join("scene.toml"), scene.into()).expect("the scene can be read");
+    let options = Options {
+        document: Some(document),
+        script: read_script(script).expect("the script can be read"),
+        drawn: Drawn::Cpu,
+    };
+    Harness::builder()
+        .with_size([960.0, 640.0])
+        .build_eframe(|creation| App::new(creation, options).expect("the window opens"))
+}
+
+/// Runs frames until `done` or a minute has passed; whether it was done.
+pub fn until(window: &mut Harness<'static, App>, done: impl Fn(&App) -> bool) -> bool {
+    let began = Instant::now();
+    while began.elapsed() < Duration::from_secs(120) {
+        window.step();
+        if done(window.state()) {
+            return true;
+        }
+        // The simulation and the picture are made by other threads.
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    false
+}
+
+/// Whether all that is simulated is finite.
+pub fn sound(app: &App) -> bool {
+    app.session().latest().is_none_or(|snapshot| {
+        snapshot.stages.iter().all(|s| s.points.iter().flatten().all(|p| p.is_finite()))
+    })
+}
