@@ -26,6 +26,7 @@
 mod body;
 mod camera;
 mod frame;
+pub mod gpu;
 mod hair;
 mod image;
 mod lighting;

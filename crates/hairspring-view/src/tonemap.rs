@@ -2,20 +2,24 @@
 
 use glam::{Mat3, Vec3};
 
+/// From linear sRGB to the space of the filmic curve.
+pub(crate) const FILM_IN: Mat3 =
+    Mat3::from_cols_array(&[0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777]);
+/// And back.
+pub(crate) const FILM_OUT: Mat3 = Mat3::from_cols_array(&[
+    1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602,
+]);
+/// The curve: (v (v + a) - b) / (v (c v + d) + e).
+pub(crate) const FILM: [f32; 5] = [0.0245786, 0.000090537, 0.983729, 0.432_951, 0.238081];
+
 /// The filmic curve of the Academy Color Encoding System (reference rendering and sRGB output transforms), as fitted by Stephen Hill in
 /// "BakingLab" (2016): highlights lose their colour on the way to white, as on film.
 #[inline(always)]
 pub(crate) fn filmic(light: Vec3) -> Vec3 {
-    const IN: Mat3 = Mat3::from_cols_array(&[
-        0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777,
-    ]);
-    const OUT: Mat3 = Mat3::from_cols_array(&[
-        1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602,
-    ]);
-    let v = IN * light;
-    let curve = (v * (v + Vec3::splat(0.0245786)) - Vec3::splat(0.000090537))
-        / (v * (v * 0.983729 + Vec3::splat(0.432_951)) + Vec3::splat(0.238081));
-    (OUT * curve).clamp(Vec3::ZERO, Vec3::ONE)
+    let v = FILM_IN * light;
+    let [a, b, c, d, e] = FILM;
+    let curve = (v * (v + Vec3::splat(a)) - Vec3::splat(b)) / (v * (v * c + Vec3::splat(d)) + Vec3::splat(e));
+    (FILM_OUT * curve).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
 /// Table from linear to sRGB (IEC 61966-2-1), in 255ths, over the square root of the linear value.

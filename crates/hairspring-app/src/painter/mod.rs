@@ -1,10 +1,12 @@
 //! Who draws the hair: a GPU where there is one, else the CPU rasteriser.
 
 mod cpu;
+mod gpu;
 
 use crate::snapshot::{Sight, Snapshot};
 use cpu::CpuPainter;
 use eframe::{egui, wgpu::DeviceType};
+use gpu::GpuPainter;
 use std::sync::Arc;
 
 /// Who draws the hair.
@@ -22,7 +24,7 @@ pub enum Drawn {
 /// Draws one view of the window.
 pub enum Painter {
     /// On the window's device.
-    Gpu(Box<CpuPainter>),
+    Gpu(Box<GpuPainter>),
     /// On threads of the processor.
     Cpu(Box<CpuPainter>),
 }
@@ -38,7 +40,7 @@ impl Painter {
             Drawn::Cpu => false,
         });
         match state {
-            Some(_) => Self::Cpu(Box::new(CpuPainter::new(&creation.egui_ctx))),
+            Some(state) => Self::Gpu(Box::new(GpuPainter::new(state))),
             None => Self::Cpu(Box::new(CpuPainter::new(&creation.egui_ctx))),
         }
     }
@@ -46,7 +48,7 @@ impl Painter {
     /// Another of the same kind, for a second view.
     pub fn another(&self, ctx: &egui::Context) -> Self {
         match self {
-            Self::Gpu(_) => Self::Cpu(Box::new(CpuPainter::new(ctx))),
+            Self::Gpu(painter) => Self::Gpu(Box::new(painter.another())),
             Self::Cpu(_) => Self::Cpu(Box::new(CpuPainter::new(ctx))),
         }
     }
@@ -66,7 +68,7 @@ impl Painter {
         size: [u32; 2],
     ) -> Option<egui::TextureId> {
         match self {
-            Self::Gpu(painter) => painter.draw(ctx, snapshot, stage, sight, size),
+            Self::Gpu(painter) => painter.draw(snapshot, stage, sight, size),
             Self::Cpu(painter) => painter.draw(ctx, snapshot, stage, sight, size),
         }
     }

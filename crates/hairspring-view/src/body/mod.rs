@@ -1,7 +1,7 @@
 //! Bodies: which surface each pixel sees, and its colour.
 
 pub(crate) mod raster;
-mod skin;
+pub(crate) mod skin;
 
 use crate::{
     camera::{NEAR, View},

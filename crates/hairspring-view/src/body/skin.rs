@@ -6,17 +6,24 @@ use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
 /// Sky light that reaches skin under hair on its way between hair, neck and shoulders [1]: without it the throat is a hole.
-const BOUNCE: f32 = 0.3;
+pub(crate) const BOUNCE: f32 = 0.3;
 /// The same of the key lamp's light, from the lit skin and cloth around [1].
-const KEY_BOUNCE: f32 = 0.03;
+pub(crate) const KEY_BOUNCE: f32 = 0.03;
 
 /// Base colour and roughness of triangles that belong to no part: light skin.
-const SKIN: (Vec3, f32) = (Vec3::new(0.62, 0.38, 0.28), 0.5);
+pub(crate) const SKIN: (Vec3, f32) = (Vec3::new(0.62, 0.38, 0.28), 0.5);
 /// Light bleeds into the shadow side of skin, red farthest: how far the lit half is wrapped past the terminator
 /// (d'Eon & Luebke 2007 give the scattering distances 3.7, 1.4, 0.7 mm for red, green, blue; the ratio is kept).
-const WRAP: Vec3 = Vec3::new(0.32, 0.16, 0.10);
+pub(crate) const WRAP: Vec3 = Vec3::new(0.32, 0.16, 0.10);
 /// How fast hair takes the key lamp's light from skin: strands pass on part of it.
-const HAIR_SHADE: f32 = 0.75;
+pub(crate) const HAIR_SHADE: f32 = 0.75;
+
+/// Reflectance of skin at right angles (d'Eon & Luebke 2007).
+pub(crate) const REFLECTANCE: f32 = 0.028;
+/// Of the two lobes of its gloss, the share of the wide one, and how much sharper the other is.
+pub(crate) const LOBES: (f32, f32) = (0.75, 0.6);
+/// Strength of the sheen at grazing angles.
+pub(crate) const SHEEN: f32 = 0.25;
 
 /// Light leaving triangle `t` of `body` towards the camera, at the pixel position `at`.
 pub(super) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
@@ -59,13 +66,13 @@ pub(super) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
     let open_sky = BOUNCE + (1.0 - BOUNCE) * depth.w;
     let sky = lamps.ground.lerp(lamps.sky, 0.5 + 0.5 * n.y) * open_sky + lamps.key.color * KEY_BOUNCE;
     // A grazing sheen, from peach fuzz and the oil on skin.
-    let sheen = 0.25 * (1.0 - nv).powi(4) * depth.w;
+    let sheen = SHEEN * (1.0 - nv).powi(4) * depth.w;
     let lit = base * (diffuse + sky) + gloss + lamps.sky * sheen;
     if lit.is_finite() { lit } else { Vec3::ZERO }
 }
 
 /// The part of `body` that triangle `t` belongs to, as an index; `None`: to none.
-pub(super) fn part(body: &MeshDraw, t: usize) -> Option<usize> {
+pub(crate) fn part(body: &MeshDraw, t: usize) -> Option<usize> {
     body.parts.iter().position(|p| p.triangles.contains(&(t as u32)))
 }
 
@@ -81,8 +88,8 @@ fn specular(n: Vec3, v: Vec3, l: Vec3, roughness: f32, nv: f32) -> f32 {
         // Lamps are in units of a white card: π leaves the lobe's 1/π.
         a2 / (d * d) / (4.0 * visible)
     };
-    let fresnel = 0.028 + 0.972 * (1.0 - v.dot(h).max(0.0)).powi(5);
-    fresnel * (0.75 * lobe(roughness) + 0.25 * lobe(0.6 * roughness)).min(4.0 * PI)
+    let fresnel = REFLECTANCE + (1.0 - REFLECTANCE) * (1.0 - v.dot(h).max(0.0)).powi(5);
+    fresnel * (LOBES.0 * lobe(roughness) + (1.0 - LOBES.0) * lobe(LOBES.1 * roughness)).min(4.0 * PI)
 }
 
 /// Where the ray meets the triangle's plane, and the corners' weights there, kept inside the triangle.

@@ -109,7 +109,7 @@ fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
     }
 
     // More or less of the same pigment: lighter strands are also less saturated.
-    let amount = 1.0 + look.variation.clamp(0.0, 1.0) * shade::random(owner.strand) * 0.6;
+    let amount = 1.0 + look.variation.clamp(0.0, 1.0) * shade::random(owner.strand) * shade::VARIES;
     if hair.colors.len() < range.end {
         let [root, tip] = setup.pigments[owner.hair as usize].map(|p| p.to_array());
         let lane = f32x8::simd_from(simd, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);

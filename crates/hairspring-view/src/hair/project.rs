@@ -6,11 +6,11 @@ use fearless_simd::{f32x8, prelude::*};
 use glam::{Vec2, Vec3};
 
 /// Greatest width of a strand on the screen [pixels].
-const MAX_WIDTH: f32 = 512.0;
+pub(crate) const MAX_WIDTH: f32 = 512.0;
 /// Distance that hair is moved towards the camera against bodies [m]: roots lie on the skin, and must not flicker in it.
-const ROOT_BIAS: f32 = 1e-3;
+pub(crate) const ROOT_BIAS: f32 = 1e-3;
 /// Farthest place from the picture's corner at which a point is drawn [pixels].
-const MAX_PLACE: f32 = 1e6;
+pub(crate) const MAX_PLACE: f32 = 1e6;
 
 /// The points of one strand on the screen, a row for each of their numbers. Point `i` has place `i + 1`: one place before the strand's first point
 /// and some after its last hold points that are not there, so that a row can be read from any point and its neighbours.

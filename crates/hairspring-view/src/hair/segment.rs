@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec4};
 
 /// Most pieces that one segment is smoothed into.
-const MAX_PIECES: f32 = 16.0;
+pub(crate) const MAX_PIECES: f32 = 16.0;
 
 /// A point of a strand on the screen.
 #[derive(Clone, Copy, Debug)]

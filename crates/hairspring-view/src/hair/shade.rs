@@ -48,12 +48,12 @@ pub(crate) struct Shader {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fibre {
     /// Shift of the highlights [rad], this strand's own part included.
-    tilt: f32,
+    pub tilt: f32,
     /// Spread of R, TT and TRT [rad].
-    spread: [f32; 3],
-    specular: f32,
-    backlight: f32,
-    scatter: f32,
+    pub spread: [f32; 3],
+    pub specular: f32,
+    pub backlight: f32,
+    pub scatter: f32,
 }
 
 impl Fibre {
@@ -61,7 +61,7 @@ impl Fibre {
     pub fn new(look: &HairLook, random: f32) -> Self {
         let rough = look.roughness.clamp(0.1, 1.0).powi(2);
         Self {
-            tilt: (look.cuticle.clamp(0.0, 10.0) + 1.2 * random).to_radians(),
+            tilt: (look.cuticle.clamp(0.0, 10.0) + TILTS * random).to_radians(),
             // Karis 2016, slide 18: β, β/2 and 2β.
             spread: [rough, 0.5 * rough, 2.0 * rough].map(|b| b + 0.02),
             specular: look.specular.max(0.0),
@@ -71,11 +71,31 @@ impl Fibre {
     }
 }
 
+// What the model is made of. The shaders of the `gpu` room are given the same numbers.
+
+/// How far strands differ in the tilt of their cuticles [degrees].
+pub(crate) const TILTS: f32 = 1.2;
+/// How much pigment differs from strand to strand, at a look's variation of 1.
+pub(crate) const VARIES: f32 = 0.6;
 /// Light lost by the straight beam per optical depth. Below 1: much of what hits a strand goes on forward.
-const BEAM: f32 = 0.62;
+pub(crate) const BEAM: f32 = 0.62;
 /// Light lost per optical depth by what went on from strand to strand, per channel: a floor, and a part that grows
 /// with pigment (the forward attenuation of dual scattering, Zinke et al. 2008).
-const SCATTERED: (f32, f32) = (0.07, 0.075);
+pub(crate) const SCATTERED: (f32, f32) = (0.07, 0.075);
+/// Optical depth that a body in the key lamp's way counts as, for light that comes from strand to strand.
+pub(crate) const BEHIND_BODY: f32 = 12.0;
+/// Reflectance at right angles of keratin, whose index is 1.55.
+pub(crate) const REFLECTANCE: f32 = 0.0465;
+/// Strengths of R and TRT against TT, and the least spread of R [rad].
+pub(crate) const R: (f32, f32) = (0.45, 0.03);
+/// Of TT: slope and offset of the exponent over the cosine of the azimuth (Karis 2016, slide 24).
+pub(crate) const TT: (f32, f32) = (-3.65, -3.98);
+/// How refraction bends TT's way: over and times the half angle's cosine (slide 24), and the slope and offset of where it enters.
+pub(crate) const BENT: ([f32; 2], [f32; 2]) = ([1.19, 0.36], [-0.8, 0.6]);
+/// Of TRT: slope and offset of the exponent (slide 29), strength, and length of the way through pigment.
+pub(crate) const TRT: ([f32; 2], f32, f32) = ([17.0, -16.78], 1.5, 0.8);
+/// Light from strand to strand: the share that faces the lamp, and the share from all round.
+pub(crate) const MULTIPLE: (f32, f32) = (0.7, 0.35);
 
 impl Shader {
     pub fn new(lighting: &Lighting, eye: Vec3) -> Self {
@@ -138,12 +158,12 @@ fn gauss<S: Simd>(x: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
     exp2(u * u * -0.721_347_5) * 0.398_942_3 / b
 }
 
-/// Schlick's Fresnel at keratin's index of 1.55.
+/// Schlick's Fresnel.
 #[inline(always)]
 fn fresnel<S: Simd>(cos: f32x8<S>) -> f32x8<S> {
     let m = (-cos + 1.0).max(0.0);
     let m2 = m * m;
-    m2 * m2 * m * 0.9535 + 0.0465
+    m2 * m2 * m * (1.0 - REFLECTANCE) + REFLECTANCE
 }
 
 #[inline(always)]
@@ -194,16 +214,16 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         // R: white, towards the root. The lobes lie at −α, α/2 and 3α/2 (Marschner et al. 2003, table 1); sines add up both angles.
         let m = gauss(
             sines + cos_half * cos_v * (2.0 * fibre.tilt),
-            cos_half * (std::f32::consts::SQRT_2 * fibre.spread[0]) + 0.03,
+            cos_half * (std::f32::consts::SQRT_2 * fibre.spread[0]) + R.1,
         );
-        let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (0.45 * fibre.specular);
+        let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (R.0 * fibre.specular);
 
         // TT: through the fibre, once.
         let m = gauss(sines - fibre.tilt, zero + fibre.spread[1]);
-        let a = f32x8::splat(simd, 1.0) / (f32x8::splat(simd, 1.19) / cos_d + cos_d * 0.36);
-        let h = saturate(cos_half * (a * (-cos_phi * 0.8 + 0.6) + 1.0));
+        let a = f32x8::splat(simd, 1.0) / (f32x8::splat(simd, BENT.0[0]) / cos_d + cos_d * BENT.0[1]);
+        let h = saturate(cos_half * (a * (cos_phi * BENT.1[0] + BENT.1[1]) + 1.0));
         let pass = -fresnel(cos_d * (-(h * h) + 1.0).max(0.0).sqrt()) + 1.0;
-        let n = exp2((cos_phi * -3.65 - 3.98) * std::f32::consts::LOG2_E);
+        let n = exp2((cos_phi * TT.0 + TT.1) * std::f32::consts::LOG2_E);
         let tt = m * n * pass * pass * fibre.backlight;
         let ha = h * a;
         let tt_path = (-(ha * ha) + 1.0).max(0.0).sqrt() * 0.5 / cos_d;
@@ -212,21 +232,22 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let m = gauss(sines - 3.0 * fibre.tilt, zero + fibre.spread[2]);
         let f = fresnel(cos_d * 0.5);
         let pass = -f + 1.0;
-        let n = exp2((cos_phi * 17.0 - 16.78) * std::f32::consts::LOG2_E);
-        let trt = m * n * pass * pass * f * (1.5 * fibre.specular);
-        let trt_path = f32x8::splat(simd, 0.8) / cos_d;
+        let n = exp2((cos_phi * TRT.0[0] + TRT.0[1]) * std::f32::consts::LOG2_E);
+        let trt = m * n * pass * pass * f * (TRT.1 * fibre.specular);
+        let trt_path = f32x8::splat(simd, TRT.2) / cos_d;
 
         // Strand to strand: as from a matt surface across the fibre, wrapped all round, its colour deepening with the way through the hair.
         let facing = ((across.dot3(l) + 1.0) * 0.25).max(0.0) * fibre.scatter;
-        let flat = cos_l * 0.35 * fibre.scatter;
+        let flat = cos_l * MULTIPLE.1 * fibre.scatter;
         let color = lamp.to_array();
         for i in 0..3 {
             let c = pigment.0[i];
             let single =
                 (r + tt * exp2(c * tt_path) + trt * exp2(c * trt_path)) * beam * std::f32::consts::PI;
-            let lost =
-                (c * SCATTERED.1 - SCATTERED.0) * (depth + (-body + 1.0) * 12.0) * std::f32::consts::LOG2_E;
-            let multiple = soft[i] * exp2(c * 0.5 + lost) * (facing * 0.7 + flat);
+            let lost = (c * SCATTERED.1 - SCATTERED.0)
+                * (depth + (-body + 1.0) * BEHIND_BODY)
+                * std::f32::consts::LOG2_E;
+            let multiple = soft[i] * exp2(c * 0.5 + lost) * (facing * MULTIPLE.0 + flat);
             sum[i] += (single * cos_l + multiple) * color[i];
         }
     }

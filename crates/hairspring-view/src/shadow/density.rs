@@ -35,7 +35,7 @@ pub(crate) struct Cell {
 /// Voxels around the hair that blur and lookups may touch.
 const PAD: usize = 4;
 /// Optical depth of a closed body's wall: nothing passes.
-const WALL: f32 = 8.0;
+pub(crate) const WALL: f32 = 8.0;
 
 impl Grid {
     pub fn len(&self) -> usize {

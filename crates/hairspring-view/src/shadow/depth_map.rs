@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 /// Texels to each side over which shadow on skin is softened.
-const RADIUS: usize = 4;
+pub(crate) const RADIUS: usize = 4;
 /// Rows that are drawn by one thread.
 const BAND: usize = SIDE;
 
@@ -153,7 +153,7 @@ impl DepthMap {
 }
 
 /// How fast light is lost under what lies above [1/m]: over half a millimetre, not at once, or slopes would show stair steps.
-const SLOPE: f32 = 2e3;
+pub(crate) const SLOPE: f32 = 2e3;
 
 #[inline(always)]
 fn dot<S: Simd>([x, y, z]: [f32x8<S>; 3], d: Vec3) -> f32x8<S> {

@@ -1,9 +1,9 @@
 //! Shadow: how much of each lamp reaches a place.
 
-mod density;
-mod depth_map;
-mod splat;
-mod sweep;
+pub(crate) mod density;
+pub(crate) mod depth_map;
+pub(crate) mod splat;
+pub(crate) mod sweep;
 
 use crate::{
     frame::Frame,
@@ -34,7 +34,7 @@ pub(crate) struct Shadow {
 }
 
 /// Directions over which the sky is averaged: up, and four slanting ones, none of them most along x: those sweeps take longest.
-const SKY: [Vec3; 5] = [
+pub(crate) const SKY: [Vec3; 5] = [
     Vec3::Y,
     Vec3::new(0.55, 0.45, 0.65),
     Vec3::new(-0.55, 0.45, 0.65),
@@ -49,13 +49,16 @@ const CLEAR: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
 const LAMPS: usize = 3;
 
 /// How deep hair may lie under bodies before it is in their shadow [m]: roots stand in the skin.
-const HAIR_BIAS: f32 = 3e-3;
+pub(crate) const HAIR_BIAS: f32 = 3e-3;
 /// The same of bodies, whose map is not exact.
-const SKIN_BIAS: f32 = 8e-4;
+pub(crate) const SKIN_BIAS: f32 = 8e-4;
+
+/// How fast the sky's light is lost (see [`sky_open`]).
+pub(crate) const SKY_LAW: f32 = 0.8;
 
 /// Share of light from one part of the sky that passes an optical depth. It comes around strands: a gentler law than the straight beam's.
 fn sky_open(depth: f32) -> f32 {
-    1.0 / (1.0 + 0.8 * depth)
+    1.0 / (1.0 + SKY_LAW * depth)
 }
 
 /// Mixes the values of a cell's eight corners.

@@ -6,11 +6,11 @@ use fearless_simd::{f32x8, i32x8, prelude::*, u32x8};
 use glam::Vec3;
 
 /// Fixed-point units of one optical depth.
-pub(super) const UNIT: f32 = 65536.0;
+pub(crate) const UNIT: f32 = 65536.0;
 /// Greatest distance between two places at which a segment is counted [voxels]. The blur that follows spreads each over two voxels.
-const SPACING: f32 = 1.5;
+pub(crate) const SPACING: f32 = 1.5;
 /// Longest segment that is counted [voxels]; longer ones have come apart.
-const LONGEST: f32 = 64.0;
+pub(crate) const LONGEST: f32 = 64.0;
 
 /// Adds strands to `sum` at evenly spaced places, in units of 1 / [`UNIT`]. Call it inside a `dispatch!`.
 #[inline(always)]

@@ -9,44 +9,80 @@ use super::density::Grid;
 use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
 
+/// How one direction is swept through a grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sweep {
+    /// Of the four voxels before: the first, the next in the row, in the next row, and in both.
+    pub weights: [f32; 4],
+    /// Way to the first of them, in voxels of memory.
+    pub offset: isize,
+    /// Steps in memory: along a row, to the next row, to the next slice.
+    pub side: usize,
+    pub across: usize,
+    pub along: usize,
+    /// First and past-last voxel of a row, and row of a slice: those whose four neighbours lie in the grid. The rest is padding and stays clear.
+    pub row: [usize; 2],
+    pub rows: [usize; 2],
+    /// Slices, and whether they are walked from the last.
+    pub slices: usize,
+    pub down: bool,
+    /// Way of a ray from slice to slice [voxels].
+    pub length: f32,
+}
+
+impl Sweep {
+    /// Towards `direction`, which has no length where the lamp has none: then there is nothing to sweep.
+    pub fn new(grid: &Grid, direction: Vec3) -> Option<Self> {
+        let unit = direction.try_normalize()?;
+        let strides = [1, grid.size[0], grid.size[0] * grid.size[1]];
+        let d = unit.to_array();
+        let axis = (0..3).max_by(|a, b| d[*a].abs().total_cmp(&d[*b].abs())).unwrap_or(0);
+        let (u, v) = if axis == 0 {
+            (1, 2)
+        } else if axis == 1 {
+            (0, 2)
+        } else {
+            (0, 1)
+        };
+        // One slice towards the lamp, the ray moves by (du, dv) voxels and covers `length` voxels.
+        let length = 1.0 / d[axis].abs();
+        let (du, dv) = (d[u] * length, d[v] * length);
+        let (iu, iv) = (du.floor(), dv.floor());
+        let (fu, fv) = (du - iu, dv - iv);
+        let (su, sv) = (strides[u] as isize, strides[v] as isize);
+        let toward = if d[axis] > 0.0 { strides[axis] as isize } else { -(strides[axis] as isize) };
+        let inside = |n: usize, i: f32| {
+            [(-i).max(0.0) as usize, (n as isize - 1 - i.max(0.0) as isize - 1).max(0) as usize]
+        };
+        Some(Self {
+            weights: [(1.0 - fu) * (1.0 - fv), fu * (1.0 - fv), (1.0 - fu) * fv, fu * fv],
+            offset: toward + iu as isize * su + iv as isize * sv,
+            side: strides[u],
+            across: strides[v],
+            along: strides[axis],
+            row: inside(grid.size[u], iu),
+            rows: inside(grid.size[v], iv),
+            slices: grid.size[axis],
+            down: d[axis] > 0.0,
+            length,
+        })
+    }
+}
+
 /// Fills `depth` with the optical depth from each voxel's middle towards `direction`. Call it inside a `dispatch!`.
 #[inline(always)]
 pub(crate) fn sweep<S: Simd>(simd: S, grid: &Grid, density: &[f32], direction: Vec3, depth: &mut Vec<f32>) {
     depth.clear();
     depth.resize(density.len(), 0.0);
-    let Some(unit) = direction.try_normalize() else {
+    let Some(sweep) = Sweep::new(grid, direction) else {
         return;
     };
-    let strides = [1, grid.size[0], grid.size[0] * grid.size[1]];
-    let d = unit.to_array();
-    let axis = (0..3).max_by(|a, b| d[*a].abs().total_cmp(&d[*b].abs())).unwrap_or(0);
-    let (u, v) = if axis == 0 {
-        (1, 2)
-    } else if axis == 1 {
-        (0, 2)
-    } else {
-        (0, 1)
-    };
-    // One slice towards the lamp, the ray moves by (du, dv) voxels and covers `length` voxels.
-    let length = 1.0 / d[axis].abs();
-    let (du, dv) = (d[u] * length, d[v] * length);
-    let (iu, iv) = (du.floor(), dv.floor());
-    let (fu, fv) = (du - iu, dv - iv);
-    let weights = [(1.0 - fu) * (1.0 - fv), fu * (1.0 - fv), (1.0 - fu) * fv, fu * fv];
-    let [nu, nv, n] = [grid.size[u], grid.size[v], grid.size[axis]];
-    let (su, sv) = (strides[u] as isize, strides[v] as isize);
-    let toward = if d[axis] > 0.0 { strides[axis] as isize } else { -(strides[axis] as isize) };
-    let offset = toward + iu as isize * su + iv as isize * sv;
-    // Voxels whose four neighbours lie in the grid; the rest is padding and stays clear.
-    let inside = |n: usize, i: f32| {
-        ((-i).max(0.0) as usize, (n as isize - 1 - i.max(0.0) as isize - 1).max(0) as usize)
-    };
-    let ((u0, u1), (v0, v1)) = (inside(nu, iu), inside(nv, iv));
-    let (side, across) = (strides[u], strides[v]);
+    let Sweep { weights, offset, side, across, length, .. } = sweep;
+    let ([u0, u1], [v0, v1], n) = (sweep.row, sweep.rows, sweep.slices);
     for k in 1..n {
-        let slice = if d[axis] > 0.0 { n - 1 - k } else { k };
+        let slice = if sweep.down { n - 1 - k } else { k };
         for j in v0..v1 {
-            let row = slice * strides[axis] + j * across;
+            let row = slice * sweep.along + j * across;
             let mut i = u0;
             // Voxels that lie side by side in memory, unless the light falls along x: eight at a time. The row they read is another.
             while side == 1 && i + 8 <= u1 {

@@ -1,0 +1,79 @@
+//! The picture by the GPU that also draws the window: strands are uploaded, drawn, and shown without coming back.
+
+use crate::snapshot::{Sight, Snapshot};
+use eframe::{
+    egui::{self, TextureId},
+    egui_wgpu::RenderState,
+    wgpu::FilterMode,
+};
+use hairspring_view::gpu::{Gpu, GpuRenderer};
+
+/// Draws one view.
+pub struct GpuPainter {
+    state: RenderState,
+    renderer: GpuRenderer,
+    texture: Option<(TextureId, [u32; 2])>,
+    shown: Option<(u64, u64, Sight, [u32; 2])>,
+    took: f32,
+    /// Whether colours of the last picture were values.
+    valued: bool,
+}
+
+impl GpuPainter {
+    /// On the window's device.
+    pub fn new(state: &RenderState) -> Self {
+        let gpu = Gpu::from_parts(state.device.clone(), state.queue.clone());
+        Self { state: state.clone(), renderer: GpuRenderer::new(&gpu), texture: None, shown: None, took: 0.0, valued: false }
+    }
+
+    /// Another on the same device.
+    pub fn another(&self) -> Self {
+        Self::new(&self.state)
+    }
+
+    /// Draws what has changed.
+    pub fn draw(&mut self, snapshot: &Snapshot, stage: usize, sight: &Sight, size: [u32; 2]) -> Option<TextureId> {
+        let scenery = snapshot.stages.get(stage)?;
+        let wanted = (snapshot.scene, snapshot.step, *sight, size);
+        if self.shown != Some(wanted) {
+            // Colours of values change in place, and another scene may lie where the last one lay.
+            let another = self.shown.is_none_or(|shown| shown.0 != snapshot.scene);
+            if another || self.valued || !scenery.values.is_empty() {
+                self.renderer.forget();
+            }
+            self.valued = !scenery.values.is_empty();
+            let began = std::time::Instant::now();
+            scenery.draw(sight, |frame| drop(self.renderer.draw(frame, size[0], size[1])));
+            self.took = began.elapsed().as_secs_f32();
+            self.shown = Some(wanted);
+        }
+        let view = self.renderer.view();
+        let mut painter = self.state.renderer.write();
+        match &mut self.texture {
+            Some((_, shown)) if *shown == size => {}
+            Some((id, shown)) => {
+                painter.update_egui_texture_from_wgpu_texture(&self.state.device, view, FilterMode::Linear, *id);
+                *shown = size;
+            }
+            None => {
+                let id = painter.register_native_texture(&self.state.device, view, FilterMode::Linear);
+                self.texture = Some((id, size));
+            }
+        }
+        self.texture.map(|(id, _)| id)
+    }
+
+    /// Who draws, and how long handing it over took.
+    pub fn note(&self) -> String {
+        let name = self.state.adapter.get_info().name;
+        format!("GPU: {name}, {:.1} ms to hand over", 1e3 * self.took)
+    }
+}
+
+impl Drop for GpuPainter {
+    fn drop(&mut self) {
+        if let Some((id, _)) = self.texture {
+            self.state.renderer.write().free_texture(&id);
+        }
+    }
+}

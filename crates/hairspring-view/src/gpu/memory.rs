@@ -1,0 +1,145 @@
+//! Memory of the card: buffers that grow, and what binds them to a shader.
+
+use super::Gpu;
+use bytemuck::Pod;
+use wgpu::{BindGroup, BindGroupLayout, BindingResource, Buffer, BufferUsages};
+
+/// Counts how often anything was allocated: what is bound must then be bound anew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Generation(u64);
+
+impl Generation {
+    pub fn next(&mut self) {
+        self.0 += 1;
+    }
+}
+
+/// A buffer that grows to what it must hold, and never shrinks.
+pub(super) struct Store {
+    label: &'static str,
+    usage: BufferUsages,
+    buffer: Buffer,
+}
+
+impl Store {
+    /// A small one.
+    pub fn new(gpu: &Gpu, label: &'static str, usage: BufferUsages) -> Self {
+        let usage = usage | BufferUsages::COPY_DST;
+        Self { label, usage, buffer: buffer(gpu, label, 256, usage) }
+    }
+
+    /// Makes room for some bytes; what it held is lost if it grew.
+    pub fn fit(&mut self, gpu: &Gpu, bytes: usize, generation: &mut Generation) {
+        if bytes as u64 > self.buffer.size() {
+            // A quarter more, so that hair that is cut and grows again does not allocate every time; but never more than can be bound.
+            let most = gpu.device.limits().max_storage_buffer_binding_size;
+            let size = (bytes as u64 + bytes as u64 / 4).min(most).max(bytes as u64).next_multiple_of(256);
+            self.buffer = buffer(gpu, self.label, size, self.usage);
+            generation.next();
+        }
+    }
+
+    /// Writes values at an offset [bytes]; there must be room.
+    pub fn write<T: Pod>(&self, gpu: &Gpu, offset: usize, values: &[T]) {
+        if !values.is_empty() {
+            gpu.queue.write_buffer(&self.buffer, offset as u64, bytemuck::cast_slice(values));
+        }
+    }
+
+    /// Makes room for values and writes them.
+    pub fn fill<T: Pod>(&mut self, gpu: &Gpu, values: &[T], generation: &mut Generation) {
+        self.fit(gpu, size_of_val(values), generation);
+        self.write(gpu, 0, values);
+    }
+
+    pub fn buffer(&self) -> &Buffer {
+        &self.buffer
+    }
+
+    pub fn all(&self) -> BindingResource<'_> {
+        self.buffer.as_entire_binding()
+    }
+}
+
+fn buffer(gpu: &Gpu, label: &str, size: u64, usage: BufferUsages) -> Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage,
+        mapped_at_creation: false,
+    })
+}
+
+/// What a pipeline is given to read and write; bound anew when memory was allocated.
+#[derive(Default)]
+pub(super) struct Bound {
+    group: Option<(Generation, BindGroup)>,
+}
+
+impl Bound {
+    pub fn group(
+        &mut self,
+        gpu: &Gpu,
+        generation: Generation,
+        layout: BindGroupLayout,
+        entries: &[(u32, BindingResource)],
+    ) -> &BindGroup {
+        if self.group.as_ref().is_none_or(|(then, _)| *then != generation) {
+            self.group = Some((generation, bind(gpu, &layout, entries)));
+        }
+        &self.group.as_ref().expect("it was just made").1
+    }
+}
+
+/// Binds resources to the numbers of a shader.
+pub(super) fn bind(gpu: &Gpu, layout: &BindGroupLayout, entries: &[(u32, BindingResource)]) -> BindGroup {
+    let entries: Vec<_> = entries
+        .iter()
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}
+
+/// A compute shader and what it works on.
+pub(super) struct Kernel {
+    pub pipeline: wgpu::ComputePipeline,
+    bound: Bound,
+}
+
+impl Kernel {
+    /// `module`'s function `entry`.
+    pub fn new(gpu: &Gpu, module: &wgpu::ShaderModule, entry: &str) -> Self {
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: None,
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        Self { pipeline, bound: Bound::default() }
+    }
+
+    /// Runs over groups of invocations.
+    pub fn run(
+        &mut self,
+        gpu: &Gpu,
+        generation: Generation,
+        pass: &mut wgpu::ComputePass,
+        entries: &[(u32, BindingResource)],
+        [x, y, z]: [u32; 3],
+    ) {
+        let group = self.bound.group(gpu, generation, self.pipeline.get_bind_group_layout(0), entries);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups(x, y, z);
+    }
+}
+
+/// Groups of `size` invocations for `n`, in rows where one row would have more than WebGPU allows.
+pub(super) fn groups(n: usize, size: usize) -> [u32; 3] {
+    const ROW: usize = 65_535;
+    let groups = n.div_ceil(size).max(1);
+    let rows = groups.div_ceil(ROW);
+    [groups.div_ceil(rows) as u32, rows as u32, 1]
+}

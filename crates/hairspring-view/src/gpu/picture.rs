@@ -1,0 +1,214 @@
+//! The textures that a picture of one size is drawn in, its development, and the way back to the CPU.
+
+use super::{
+    Gpu, GpuError,
+    constants::{DEVELOP, SAMPLES},
+    memory::{Bound, Generation, Store},
+};
+use crate::image::Image;
+use wgpu::{BindingResource, Extent3d, TextureFormat, TextureUsages, TextureView};
+
+/// Linear light, and covering.
+pub(super) const LIGHT: TextureFormat = TextureFormat::Rgba16Float;
+/// Share of the depth range, and covering.
+pub(super) const PLACE: TextureFormat = TextureFormat::Rg32Float;
+/// The finished picture: sRGB codes, as they are.
+const CODES: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Bytes that rows of a buffer must be a multiple of to take a texture.
+const ROW: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
+
+/// The textures.
+pub(super) struct Targets {
+    pub size: [u32; 2],
+    /// Hair before the body, and behind it: linear RGB times covering, covering.
+    pub before: TextureView,
+    pub behind: TextureView,
+    /// The body's light, by samples and settled, times covering; covering.
+    pub samples: TextureView,
+    pub body: TextureView,
+    /// Nearness of the body, by samples; greater is nearer.
+    pub nearness: TextureView,
+    /// Where the body lies.
+    pub place: TextureView,
+    finished: wgpu::Texture,
+    pub picture: TextureView,
+}
+
+impl Targets {
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+        let texture = |label, format, samples, usage| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: samples,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: usage | TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            })
+        };
+        let view = |label, format, samples| {
+            texture(label, format, samples, TextureUsages::TEXTURE_BINDING).create_view(&Default::default())
+        };
+        let shown = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+        let finished = texture("picture", CODES, 1, shown);
+        Self {
+            size,
+            before: view("hair before", LIGHT, 1),
+            behind: view("hair behind", LIGHT, 1),
+            samples: view("body samples", LIGHT, SAMPLES),
+            body: view("body", LIGHT, 1),
+            nearness: view("nearness", TextureFormat::Depth32Float, SAMPLES),
+            place: view("place", PLACE, 1),
+            picture: finished.create_view(&Default::default()),
+            finished,
+        }
+    }
+}
+
+/// A pass over every pixel, or the drawing of triangles: what most pipelines here have in common.
+pub(super) fn pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    [vertex, fragment]: [&str; 2],
+    targets: &[Option<wgpu::ColorTargetState>],
+    depth: Option<wgpu::DepthStencilState>,
+    samples: u32,
+) -> wgpu::RenderPipeline {
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(vertex),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(vertex),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: depth,
+        multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+        // A pass that only wants depth has no fragments to shade.
+        fragment: (!targets.is_empty()).then_some(wgpu::FragmentState {
+            module,
+            entry_point: Some(fragment),
+            compilation_options: Default::default(),
+            targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// A target that is cleared, and kept.
+pub(super) fn clear(view: &TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+            store: wgpu::StoreOp::Store,
+        },
+    })
+}
+
+/// Puts the parts of a picture together.
+pub(super) struct Develop {
+    pipeline: wgpu::RenderPipeline,
+    bound: Bound,
+}
+
+impl Develop {
+    pub fn new(gpu: &Gpu) -> Self {
+        let module = DEVELOP.module(gpu);
+        let targets = [Some(CODES.into())];
+        let pipeline = pipeline(gpu, &module, ["everywhere", "develop"], &targets, None, 1);
+        Self { pipeline, bound: Bound::default() }
+    }
+
+    pub fn record(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        generation: Generation,
+        uniforms: &Store,
+        targets: &Targets,
+    ) {
+        let entries = [
+            (0, uniforms.all()),
+            (1, BindingResource::TextureView(&targets.before)),
+            (2, BindingResource::TextureView(&targets.behind)),
+            (3, BindingResource::TextureView(&targets.body)),
+        ];
+        let group = self.bound.group(gpu, generation, self.pipeline.get_bind_group_layout(0), &entries);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("develop"),
+            color_attachments: &[clear(&targets.picture)],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+/// Brings pictures back to the CPU.
+#[derive(Default)]
+pub(super) struct Reader {
+    buffer: Option<wgpu::Buffer>,
+}
+
+impl Reader {
+    /// Waits for the picture.
+    pub fn read(&mut self, gpu: &Gpu, targets: &Targets) -> Result<Image, GpuError> {
+        let [width, height] = targets.size;
+        let row = (4 * width).next_multiple_of(ROW);
+        let size = u64::from(row) * u64::from(height);
+        let buffer = match self.buffer.take() {
+            Some(buffer) if buffer.size() == size => buffer,
+            _ => gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("picture"),
+                size,
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            }),
+        };
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(
+            targets.finished.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row),
+                    rows_per_image: None,
+                },
+            },
+            Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        gpu.queue.submit([encoder.finish()]);
+        let failed = |e: String| GpuError::Failed(e);
+        let (tell, told) = std::sync::mpsc::channel();
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // Nobody listens any more only where waiting has failed already.
+            let _ = tell.send(result);
+        });
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| failed(e.to_string()))?;
+        gpu.check()?;
+        told.recv().map_err(|e| failed(e.to_string()))?.map_err(|e| failed(e.to_string()))?;
+        let mut image = Image::new(width, height);
+        {
+            let bytes = buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))?;
+            let rows = bytes.chunks_exact(row as usize).zip(image.rgb.chunks_exact_mut(3 * width as usize));
+            for (from, to) in rows {
+                for (from, to) in from.chunks_exact(4).zip(to.chunks_exact_mut(3)) {
+                    to.copy_from_slice(&from[..3]);
+                }
+            }
+        }
+        buffer.unmap();
+        self.buffer = Some(buffer);
+        Ok(image)
+    }
+}

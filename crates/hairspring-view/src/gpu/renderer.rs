@@ -1,0 +1,168 @@
+//! One picture, from borrowed arrays to a texture.
+
+use super::{
+    Gpu, GpuError,
+    memory::{Generation, Store},
+    meshes::Meshes,
+    picture::{Develop, Reader, Targets},
+    ribbons::{Ribbons, most_pieces},
+    strands::Strands,
+    surfaces::Surfaces,
+    uniforms::{Map, Style, Uniforms},
+    volume::{Volume, grid},
+};
+use crate::{camera::View, frame::Frame, image::Image, shadow};
+use std::time::{Duration, Instant};
+
+/// Draws frames on a graphics card; keeps its memory between them, and allocates none for a frame that is no larger than those before.
+///
+/// The picture is that of the CPU [`Renderer`](crate::Renderer), up to rounding. Radii, colours, offsets and triangles are sent to the card when
+/// they change; that is seen by where an array lies, its length, and 512 of its values. Call [`GpuRenderer::forget`] after changing some in
+/// place.
+pub struct GpuRenderer {
+    gpu: Gpu,
+    generation: Generation,
+    uniforms: Store,
+    strands: Strands,
+    meshes: Meshes,
+    volume: Volume,
+    surfaces: Surfaces,
+    ribbons: Ribbons,
+    develop: Develop,
+    targets: Targets,
+    reader: Reader,
+    timings: GpuTimings,
+}
+
+/// Where the CPU's part of the last frame went; the card works on after it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GpuTimings {
+    /// The hair's bounds, and copying arrays to where the card takes them from.
+    pub send: Duration,
+    /// Recording what the card shall do.
+    pub record: Duration,
+}
+
+impl GpuRenderer {
+    /// A renderer on a card. Compiling its shaders takes a moment.
+    pub fn new(gpu: &Gpu) -> Self {
+        let mut uniforms = Store::new(gpu, "frame", wgpu::BufferUsages::UNIFORM);
+        uniforms.fit(gpu, size_of::<Uniforms>(), &mut Generation::default());
+        Self {
+            gpu: gpu.clone(),
+            generation: Generation::default(),
+            uniforms,
+            strands: Strands::new(gpu),
+            meshes: Meshes::new(gpu),
+            volume: Volume::new(gpu),
+            surfaces: Surfaces::new(gpu),
+            ribbons: Ribbons::new(gpu),
+            develop: Develop::new(gpu),
+            targets: Targets::new(gpu, [1, 1]),
+            reader: Reader::default(),
+            timings: GpuTimings::default(),
+        }
+    }
+
+    /// Draws a frame of `width` × `height` pixels, each 1 to the card's greatest texture, 8192 by WebGPU's default (other sizes are brought into
+    /// that range), and returns it: RGBA, 8 bits, sRGB codes as they are, ready to be shown by egui. It does not wait for the card.
+    ///
+    /// The same frame gives the same picture. Whatever the arrays hold, a picture comes out.
+    pub fn draw(&mut self, frame: &Frame, width: u32, height: u32) -> &wgpu::TextureView {
+        let start = Instant::now();
+        let gpu = &self.gpu;
+        let most = gpu.device.limits().max_texture_dimension_2d;
+        let size = [width.clamp(1, most), height.clamp(1, most)];
+        if self.targets.size != size {
+            self.targets = Targets::new(gpu, size);
+            self.generation.next();
+        }
+        let view = View::new(&frame.camera, size[0], size[1]);
+        let bounds = shadow::bounds(frame.hair);
+        let grid = bounds.map(|bounds| grid(frame, bounds));
+        let map = Map::new(frame, most);
+        self.strands.send(gpu, frame.hair, &mut self.generation);
+        self.meshes.send(gpu, frame.bodies, &mut self.generation);
+        let slots = if grid.is_some() { self.strands.slots } else { 0 };
+        self.ribbons.fit(gpu, slots, &mut self.generation);
+        self.surfaces.fit(gpu, map.side, &mut self.generation);
+        let voxel = grid.map_or(1.0, |g| g.voxel);
+        let styles: Vec<Style> = frame.hair.iter().map(|h| Style::new(h, view.focal, voxel)).collect();
+        self.strands.styles.fill(gpu, &styles, &mut self.generation);
+        if let Some(grid) = &grid {
+            self.volume.fit(gpu, frame, grid, &mut self.generation);
+        }
+        // As in `Renderer::draw`.
+        let (low, high) = bounds.unwrap_or_default();
+        let middle = (0.5 * (low + high) - view.eye).dot(view.forward);
+        let reach = 0.5 * (high - low).dot(view.forward.abs()) + 1e-3;
+        let depths = [(middle - reach).max(0.0), middle.max(0.0) + reach];
+        let uniforms = Uniforms::new(
+            frame,
+            &view,
+            size,
+            depths,
+            grid.as_ref(),
+            &map,
+            slots,
+            self.meshes.count,
+            most_pieces(slots),
+        );
+        self.uniforms.write(gpu, 0, &[uniforms]);
+        let sent = Instant::now();
+
+        let (generation, uniforms, targets) = (self.generation, &self.uniforms, &self.targets);
+        let (strands, meshes) = (&self.strands, &self.meshes);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.surfaces.record_map(gpu, &mut encoder, generation, uniforms, meshes);
+        if slots > 0 {
+            self.volume.record(gpu, &mut encoder, generation, uniforms, strands, meshes);
+        }
+        let (volume, surfaces) = (&self.volume, &mut self.surfaces);
+        surfaces.record(gpu, &mut encoder, generation, uniforms, meshes, volume, targets);
+        if slots > 0 {
+            self.ribbons.record_sort(gpu, &mut encoder, generation, uniforms, strands, volume, surfaces);
+            self.ribbons.record(gpu, &mut encoder, generation, uniforms, targets);
+        } else {
+            Ribbons::record_none(&mut encoder, targets);
+        }
+        self.develop.record(gpu, &mut encoder, generation, uniforms, targets);
+        gpu.queue.submit([encoder.finish()]);
+        self.timings = GpuTimings { send: sent - start, record: sent.elapsed() };
+        &self.targets.picture
+    }
+
+    /// Waits for the last picture and brings it back; one black pixel before the first.
+    ///
+    /// # Errors
+    /// [`GpuError::Failed`] if the card refused something or was lost.
+    pub fn read(&mut self) -> Result<Image, GpuError> {
+        self.reader.read(&self.gpu, &self.targets)
+    }
+
+    /// The last picture, as [`GpuRenderer::draw`] returned it.
+    pub fn view(&self) -> &wgpu::TextureView {
+        &self.targets.picture
+    }
+
+    /// The card it draws on.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Forgets what was sent to the card: call it after changing radii, colours, offsets or triangles in place.
+    pub fn forget(&mut self) {
+        self.strands.forget();
+        self.meshes.forget();
+    }
+
+    /// Strands that the last frame has more than fit the card.
+    pub fn left_out(&self) -> usize {
+        self.strands.left_out
+    }
+
+    /// Where the CPU's part of the last frame went.
+    pub fn timings(&self) -> GpuTimings {
+        self.timings
+    }
+}

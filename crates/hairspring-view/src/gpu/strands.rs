@@ -1,0 +1,153 @@
+//! The frame's strands on the card: what moves is sent every frame, what does not when it changed.
+
+use super::{
+    Gpu,
+    memory::{Generation, Store},
+};
+use crate::frame::HairDraw;
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use wgpu::BufferUsages;
+
+/// `Strand` of the shaders.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Strand {
+    first: u32,
+    slot: u32,
+    count: u32,
+    number: u32,
+    style: u32,
+    colored: u32,
+}
+
+/// Which array something came from: where it lies, how long it is, and some of what is in it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Print {
+    place: usize,
+    len: usize,
+    some: u64,
+}
+
+impl Print {
+    /// Looks at 512 values, evenly spread: enough to tell another array in the same place, not to find one value that changed.
+    pub fn of<T: Pod>(values: &[T]) -> Self {
+        let mut some = 0xcbf2_9ce4_8422_2325u64;
+        for value in values.iter().step_by(values.len() / 512 + 1).chain(values.last()) {
+            for byte in bytemuck::bytes_of(value) {
+                some = (some ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3);
+            }
+        }
+        Self { place: values.as_ptr() as usize, len: values.len(), some }
+    }
+}
+
+/// The strands of a frame.
+pub(super) struct Strands {
+    pub strands: Store,
+    /// Strand of each slot. Every strand has a slot for each of its points.
+    pub owners: Store,
+    pub points: Store,
+    pub radii: Store,
+    pub colors: Store,
+    pub styles: Store,
+    /// Number of slots.
+    pub slots: usize,
+    /// Strands that found no room.
+    pub left_out: usize,
+    /// What was sent last: offsets, radii and colours of each style, and its number of points.
+    sent: Vec<(Print, Print, Print, usize)>,
+}
+
+impl Strands {
+    pub fn new(gpu: &Gpu) -> Self {
+        let store = |label| Store::new(gpu, label, BufferUsages::STORAGE);
+        Self {
+            strands: store("strands"),
+            owners: store("owners"),
+            points: store("points"),
+            radii: store("radii"),
+            colors: store("colors"),
+            styles: store("styles"),
+            slots: 0,
+            left_out: 0,
+            sent: Vec::new(),
+        }
+    }
+
+    /// Forgets what was sent, so that all is sent again.
+    pub fn forget(&mut self) {
+        self.sent.clear();
+    }
+
+    /// Sends a frame's strands.
+    pub fn send(&mut self, gpu: &Gpu, hair: &[HairDraw], generation: &mut Generation) {
+        let print =
+            |h: &HairDraw| (Print::of(h.offsets), Print::of(h.radii), Print::of(h.colors), h.points.len());
+        let now: Vec<_> = hair.iter().map(print).collect();
+        if now != self.sent {
+            self.send_what_stays(gpu, hair, generation);
+            self.sent = now;
+        }
+        let mut first = 0;
+        for h in self.fitting(gpu, hair) {
+            self.points.write(gpu, size_of::<Vec3>() * first, h.points);
+            first += h.points.len();
+        }
+    }
+
+    /// The styles whose points all find room.
+    fn fitting<'a>(
+        &self,
+        gpu: &Gpu,
+        hair: &'a [HairDraw<'a>],
+    ) -> impl Iterator<Item = &'a HairDraw<'a>> + use<'a> {
+        let mut room = gpu.most_points();
+        hair.iter().take_while(move |h| {
+            let fits = h.points.len() <= room;
+            room -= h.points.len().min(room);
+            fits
+        })
+    }
+
+    fn send_what_stays(&mut self, gpu: &Gpu, hair: &[HairDraw], generation: &mut Generation) {
+        let most = gpu.most_points();
+        let (mut strands, mut owners) = (Vec::new(), Vec::new());
+        let (mut radii, mut colors) = (Vec::new(), Vec::new());
+        let colored = hair.iter().any(|h| !h.colors.is_empty());
+        let mut first = 0;
+        for (style, h) in self.fitting(gpu, hair).enumerate() {
+            for s in 0..h.strand_count() {
+                let range = h.range(s);
+                if range.is_empty() || owners.len() + range.len() > most {
+                    continue;
+                }
+                owners.resize(owners.len() + range.len(), strands.len() as u32);
+                strands.push(Strand {
+                    first: (first + range.start) as u32,
+                    slot: (owners.len() - range.len()) as u32,
+                    count: range.len() as u32,
+                    number: s as u32,
+                    style: style as u32,
+                    colored: (h.colors.len() >= range.end) as u32,
+                });
+            }
+            first += h.points.len();
+            radii.extend_from_slice(&h.radii[..h.radii.len().min(h.points.len())]);
+            radii.resize(first, 0.0);
+            if colored {
+                colors.extend_from_slice(&h.colors[..h.colors.len().min(h.points.len())]);
+                colors.resize(first, Vec3::ZERO);
+            }
+        }
+        let all: usize =
+            hair.iter().map(|h| (0..h.strand_count()).filter(|s| !h.range(*s).is_empty()).count()).sum();
+        self.left_out = all - strands.len();
+        self.slots = owners.len();
+        self.strands.fill(gpu, &strands, generation);
+        self.owners.fill(gpu, &owners, generation);
+        self.radii.fill(gpu, &radii, generation);
+        self.colors.fill(gpu, &colors, generation);
+        self.points.fit(gpu, size_of::<Vec3>() * first, generation);
+    }
+}

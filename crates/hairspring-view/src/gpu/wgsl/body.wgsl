@@ -1,0 +1,122 @@
+// Bodies: the counterpart of `body/mod.rs` and `body/skin.rs`. Four samples a pixel tell what is covered; each surface is lit once a pixel.
+
+/// Three numbers a vertex [m].
+@group(0) @binding(1) var<storage, read> positions: array<f32>;
+/// Three numbers a vertex.
+@group(0) @binding(2) var<storage, read> normals: array<f32>;
+/// Three vertices, and in the last number the cloth, and above it a bit: has smooth normals.
+@group(0) @binding(3) var<storage, read> triangles: array<vec4u>;
+/// Linear RGB and roughness of each cloth.
+@group(0) @binding(4) var<storage, read> cloths: array<vec4f>;
+
+const SMOOTH: u32 = 0x80000000u;
+
+struct Vertex {
+    @builtin(position) at: vec4f,
+    @location(0) @interpolate(perspective, centroid) p: vec3f,
+    @location(1) @interpolate(perspective, centroid) normal: vec3f,
+    @location(2) @interpolate(flat) face: vec3f,
+    @location(3) @interpolate(flat) cloth: vec4f,
+}
+
+fn position(i: u32) -> vec3f {
+    return vec3f(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
+}
+
+fn known(p: vec3f) -> bool {
+    return finite(p.x) && finite(p.y) && finite(p.z);
+}
+
+@vertex
+fn surface(@builtin(vertex_index) vertex: u32) -> Vertex {
+    var out: Vertex;
+    out.at = vec4f(-2.0, -2.0, 0.0, 1.0);
+    let triangle = triangles[vertex / 3u];
+    let a = position(triangle.x);
+    let b = position(triangle.y);
+    let c = position(triangle.z);
+    if !(known(a) && known(b) && known(c)) {
+        return out;
+    }
+    let i = triangle[vertex % 3u];
+    out.p = position(i);
+    let d = out.p - frame.eye;
+    let slope = vec2f(dot(d, frame.right), dot(d, frame.up)) * frame.focal;
+    // Depth is nearness: NEAR / distance.
+    out.at = vec4f(slope / (0.5 * frame.size), NEAR, dot(d, frame.forward));
+    let face = cross(b - a, c - a);
+    let length2 = dot(face, face);
+    out.face = select(vec3f(0.0, 1.0, 0.0), face * inverseSqrt(length2), length2 > 0.0);
+    out.normal = out.face;
+    if (triangle.w & SMOOTH) != 0u {
+        out.normal = vec3f(normals[3u * i], normals[3u * i + 1u], normals[3u * i + 2u]);
+    }
+    out.cloth = cloths[triangle.w & ~SMOOTH];
+    return out;
+}
+
+/// One lobe of `skin::specular`.
+fn lobe(roughness: f32, nh: f32, nl: f32, nv: f32) -> f32 {
+    let a2 = roughness * roughness * roughness * roughness;
+    let d = nh * nh * (a2 - 1.0) + 1.0;
+    let k = 0.5 * roughness * roughness;
+    let visible = (nl * (1.0 - k) + k) * (nv * (1.0 - k) + k);
+    return a2 / (d * d) / (4.0 * visible);
+}
+
+/// `skin::specular`.
+fn specular(n: vec3f, v: vec3f, l: vec3f, roughness: f32, nv: f32) -> f32 {
+    let sum = v + l;
+    let length2 = dot(sum, sum);
+    let h = select(n, sum * inverseSqrt(length2), length2 > 1e-30);
+    let nh = max(dot(n, h), 0.0);
+    let nl = max(dot(n, l), 1e-3);
+    let grazing = 1.0 - max(dot(v, h), 0.0);
+    let grazing2 = grazing * grazing;
+    let reflected = SKIN_REFLECTANCE + (1.0 - SKIN_REFLECTANCE) * grazing2 * grazing2 * grazing;
+    return reflected * min(SKIN_LOBE * lobe(roughness, nh, nl, nv) + (1.0 - SKIN_LOBE) * lobe(SKIN_SHARP * roughness, nh, nl, nv), 12.5663706);
+}
+
+/// `skin::light`.
+@fragment
+fn light(in: Vertex) -> @location(0) vec4f {
+    let eye = normalize(frame.eye - in.p);
+    let length2 = dot(in.normal, in.normal);
+    let turned = dot(in.face, eye) < 0.0 && dot(in.normal, eye) < 0.0;
+    let n = select(in.face, in.normal * inverseSqrt(length2), length2 > 1e-30) * select(1.0, -1.0, turned);
+    let depth = shadow_around(in.p + n * (2.5 * frame.voxel));
+    let thinned = exp(-HAIR_SHADE * depth.xyz);
+    // Key, rim and fill.
+    let open = vec3f(soft_body_light(in.p + n * 5e-4) * thinned.x, thinned.yz);
+    let nv = max(dot(n, eye), 1e-3);
+    var diffuse = vec3f(0.0);
+    var gloss = vec3f(0.0);
+    for (var k = 0; k < 3; k++) {
+        let l = frame.lamps[k].direction;
+        let nl = dot(n, l);
+        let wrapped = max((nl + WRAP) / (1.0 + WRAP), vec3f(0.0)) / (1.0 + WRAP);
+        let tinted = vec3f(pow(open[k], 0.75), open[k], pow(open[k], 1.1));
+        diffuse += frame.lamps[k].color * wrapped * tinted;
+        gloss += frame.lamps[k].color * (specular(n, eye, l, in.cloth.w, nv) * max(nl, 0.0) * open[k]);
+    }
+    let open_sky = BOUNCE + (1.0 - BOUNCE) * depth.w;
+    let sky = mix(frame.ground, frame.sky, 0.5 + 0.5 * n.y) * open_sky + frame.lamps[0].color * KEY_BOUNCE;
+    let grazing = (1.0 - nv) * (1.0 - nv);
+    let sheen = SHEEN * grazing * grazing * depth.w;
+    let lit = in.cloth.xyz * (diffuse + sky) + gloss + frame.sky * sheen;
+    return vec4f(select(vec3f(0.0), lit, known(lit)), 1.0);
+}
+
+/// The bodies from the key lamp: `DepthMap::fill`.
+@vertex
+fn from_lamp(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
+    let triangle = triangles[vertex / 3u];
+    let p = position(triangle[vertex % 3u]);
+    if !(known(position(triangle.x)) && known(position(triangle.y)) && known(position(triangle.z))) {
+        return vec4f(-2.0, -2.0, 0.0, 1.0);
+    }
+    let right = dot(p, frame.map_right) * frame.map_scale + frame.map_left;
+    let up = dot(p, frame.map_up) * frame.map_scale + frame.map_top;
+    let at = vec2f(right, up) / frame.map_side * 2.0 - 1.0;
+    return vec4f(at.x, -at.y, (dot(p, frame.map_toward) - frame.map_low) / frame.map_range, 1.0);
+}

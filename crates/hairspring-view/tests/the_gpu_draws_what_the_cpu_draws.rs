@@ -1,0 +1,304 @@
+//! The picture of record is the CPU's; the graphics card draws the same one.
+//!
+//! Scenes are drawn by both and compared: structure by similarity of luminance (Wang et al. 2004), brightness by the mean of every channel. What may
+//! differ is rounding: light is kept in 16-bit floating point on the card, hair is laid over hair from behind instead of from the front, the outlines
+//! of bodies have four samples instead of eight, and the CPU lets some strands stand for others where much is covered. Where there is no card, nor a
+//! driver that draws in software (Mesa's will do), the tests say so and pass.
+
+mod support;
+
+use glam::Vec3;
+use hairspring::{
+    scene::{
+        Camera, HairColor, HairLook,
+        builtin::{BuiltinOptions, scene},
+    },
+    stage::Stage,
+};
+use hairspring_view::{
+    Frame, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer,
+    gpu::{Gpu, GpuError, GpuRenderer},
+    write_png,
+};
+use image_compare::{Algorithm, gray_similarity_structure};
+
+/// Least similarity of structure; 1 is equal.
+const ALIKE: f64 = 0.97;
+/// Greatest difference of a channel's mean [codes of 255].
+const BRIGHTNESS: f64 = 1.0;
+
+/// A renderer on the card there is, if there is one.
+fn renderer() -> Option<GpuRenderer> {
+    match Gpu::open() {
+        Ok(gpu) => Some(GpuRenderer::new(&gpu)),
+        Err(error @ GpuError::Missing(_)) => {
+            eprintln!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn luma(image: &Image) -> image_compare::prelude::GrayImage {
+    let grey = |p: &[u8]| (0.2126 * p[0] as f32 + 0.7152 * p[1] as f32 + 0.0722 * p[2] as f32).round() as u8;
+    let grey = image.rgb.chunks(3).map(grey).collect();
+    image_compare::prelude::GrayImage::from_raw(image.width, image.height, grey).unwrap()
+}
+
+/// Means of red, green and blue.
+fn mean(image: &Image) -> [f64; 3] {
+    let n = (image.rgb.len() / 3) as f64;
+    [0, 1, 2].map(|c| image.rgb.iter().skip(c).step_by(3).map(|v| *v as f64).sum::<f64>() / n)
+}
+
+/// Draws by both and compares.
+fn compare(gpu: &mut GpuRenderer, name: &str, frame: &Frame, width: u32, height: u32) {
+    let cpu = Renderer::new(width, height).draw(frame).clone();
+    gpu.draw(frame, width, height);
+    let card = gpu.read().unwrap();
+    assert_eq!((card.width, card.height), (width, height));
+    let score = gray_similarity_structure(&Algorithm::MSSIMSimple, &luma(&cpu), &luma(&card)).unwrap().score;
+    let apart = mean(&cpu).into_iter().zip(mean(&card)).map(|(a, b)| b - a);
+    let apart: Vec<f64> = apart.collect();
+    println!("{name}: {score:.4} alike, means {apart:.2?} apart");
+    if std::env::var_os("HAIRSPRING_KEEP").is_some()
+        || score < ALIKE
+        || apart.iter().any(|a| a.abs() > BRIGHTNESS)
+    {
+        let mut both = Image::new(2 * width, height);
+        let rows = cpu.rgb.chunks(3 * width as usize).zip(card.rgb.chunks(3 * width as usize));
+        for (to, (a, b)) in both.rgb.chunks_mut(6 * width as usize).zip(rows) {
+            to[..a.len()].copy_from_slice(a);
+            to[a.len()..].copy_from_slice(b);
+        }
+        let seen = std::env::temp_dir().join(format!("hairspring-gpu-{name}.png"));
+        write_png(&seen, &both).unwrap();
+        println!("{name}: the CPU's picture and the card's: {}", seen.display());
+    }
+    assert!(score >= ALIKE, "{name} is {score:.4} alike, {ALIKE} is needed");
+    assert!(apart.iter().all(|a| a.abs() <= BRIGHTNESS), "{name}: means {apart:?} apart");
+}
+
+/// Strands of some points in a row.
+struct Few {
+    points: Vec<Vec3>,
+    offsets: Vec<u32>,
+    radii: Vec<f32>,
+    colors: Vec<Vec3>,
+    look: HairLook,
+}
+
+impl Few {
+    fn new(strands: &[Vec<Vec3>], radius: f32) -> Self {
+        let points = strands.concat();
+        let ends = strands.iter().scan(0, |n, s| {
+            *n += s.len() as u32;
+            Some(*n)
+        });
+        let offsets = std::iter::once(0).chain(ends).collect();
+        let radii = vec![radius; points.len()];
+        Self { points, offsets, radii, colors: Vec::new(), look: HairLook::from(HairColor::Blonde) }
+    }
+
+    fn draw(&self) -> HairDraw<'_> {
+        HairDraw {
+            points: &self.points,
+            offsets: &self.offsets,
+            radii: &self.radii,
+            colors: &self.colors,
+            look: &self.look,
+            width_scale: 1.0,
+        }
+    }
+}
+
+/// A strand that winds from `from` to `to`.
+fn strand(from: Vec3, to: Vec3, wave: f32) -> Vec<Vec3> {
+    (0..12)
+        .map(|i| {
+            let s = i as f32 / 11.0;
+            from.lerp(to, s) + Vec3::new(0.0, wave * (9.0 * s).sin(), 0.5 * wave * (7.0 * s).cos())
+        })
+        .collect()
+}
+
+fn close(hair: &[HairDraw<'static>]) -> Frame<'static> {
+    let hair: &'static [HairDraw<'static>] = Box::leak(hair.to_vec().into_boxed_slice());
+    let camera = Camera { position: Vec3::new(0.0, 0.0, 0.5), target: Vec3::ZERO, fov: 26.0 };
+    Frame { camera, ..support::frame(hair, &[]) }
+}
+
+fn leak(few: Few) -> &'static Few {
+    Box::leak(Box::new(few))
+}
+
+#[test]
+fn a_strand_is_where_it_is_and_as_wide_as_it_is() {
+    let Some(mut gpu) = renderer() else { return };
+    let (a, b) = (Vec3::new(-0.09, -0.04, 0.0), Vec3::new(0.08, 0.05, 0.03));
+    for (name, radius) in [("wide", 2e-3), ("pixel", 4e-4), ("thin", 6e-5)] {
+        let few = leak(Few::new(&[strand(a, b, 0.02), strand(b * 0.7, -b, 0.01)], radius));
+        compare(&mut gpu, name, &close(&[few.draw()]), 160, 120);
+    }
+}
+
+#[test]
+fn what_is_nearer_hides_what_is_farther() {
+    let Some(mut gpu) = renderer() else { return };
+    let mut far = Few::new(&[strand(Vec3::new(-0.1, -0.06, -0.02), Vec3::new(0.1, 0.06, -0.02), 0.0)], 5e-3);
+    far.look = HairLook::from(HairColor::Black);
+    let near = Few::new(&[strand(Vec3::new(-0.1, 0.06, 0.02), Vec3::new(0.1, -0.06, 0.02), 0.0)], 5e-3);
+    let (far, near) = (leak(far), leak(near));
+    compare(&mut gpu, "crossing", &close(&[far.draw(), near.draw()]), 160, 120);
+    compare(&mut gpu, "crossing-back", &close(&[near.draw(), far.draw()]), 160, 120);
+}
+
+#[test]
+fn points_have_their_own_colours() {
+    let Some(mut gpu) = renderer() else { return };
+    let mut few = Few::new(&[strand(Vec3::NEG_X * 0.1, Vec3::X * 0.1, 0.03)], 4e-3);
+    few.colors = (0..12).map(|i| [Vec3::X, Vec3::Y, Vec3::Z][i / 4] * 0.7 + 0.05).collect();
+    compare(&mut gpu, "coloured", &close(&[leak(few).draw()]), 160, 120);
+}
+
+#[test]
+fn hair_on_a_body_is_lit_and_shaded_alike() {
+    let Some(mut gpu) = renderer() else { return };
+    let ball = support::ball();
+    for (name, style, color) in
+        [("straight", support::STRAIGHT, HairColor::Brown), ("wavy", support::WAVY, HairColor::Blonde)]
+    {
+        let groom = support::groom(support::Style { strands: 8000, points: 20, ..style });
+        let look = HairLook::from(color);
+        let hair = [HairDraw { width_scale: 4.0, ..support::hair(&groom, &look) }];
+        let bodies = [support::body(&ball)];
+        compare(&mut gpu, name, &support::frame(&hair, &bodies), 200, 150);
+    }
+}
+
+#[test]
+fn a_head_looks_alike() {
+    let Some(mut gpu) = renderer() else { return };
+    let options = BuiltinOptions { strands: 4000, ..BuiltinOptions::default() };
+    let stage = Stage::new(scene(&options)).unwrap();
+    let hair: Vec<HairDraw> = stage
+        .strands()
+        .map(|s| HairDraw {
+            points: s.points,
+            offsets: &s.groom.offsets,
+            radii: &s.groom.radii,
+            colors: &s.groom.colors,
+            look: s.look,
+            width_scale: 5.0,
+        })
+        .collect();
+    let body = stage.body().map(|b| MeshDraw {
+        positions: b.positions,
+        normals: b.normals,
+        triangles: &b.mesh.triangles,
+        parts: &b.mesh.parts,
+    });
+    let camera = stage.scene().camera.unwrap();
+    let lighting = Lighting::facing(&camera);
+    let frame = Frame { camera, lighting, ..support::frame(&hair, body.as_slice()) };
+    compare(&mut gpu, "head", &frame, 320, 240);
+}
+
+#[test]
+fn a_frame_drawn_twice_is_the_same_picture_at_any_size() {
+    let Some(mut gpu) = renderer() else { return };
+    let groom = support::groom(support::Style { strands: 3000, points: 16, ..support::WAVY });
+    let (look, ball) = (HairLook::default(), support::ball());
+    let (hair, bodies) = ([support::hair(&groom, &look)], [support::body(&ball)]);
+    let frame = support::frame(&hair, &bodies);
+    let mut draw = |width, height| {
+        gpu.draw(&frame, width, height);
+        gpu.read().unwrap()
+    };
+    let first = draw(120, 90);
+    assert!(draw(120, 90) == first);
+    assert_eq!(draw(61, 47).rgb.len(), 61 * 47 * 3);
+    assert_eq!(draw(300, 1).rgb.len(), 900);
+    assert!(draw(120, 90) == first);
+}
+
+#[test]
+fn what_changed_is_sent_again() {
+    let Some(mut gpu) = renderer() else { return };
+    let mut few = Few::new(&[strand(Vec3::NEG_X * 0.1, Vec3::X * 0.1, 0.03)], 4e-3);
+    let close = |few: &Few, gpu: &mut GpuRenderer| {
+        let hair = [few.draw()];
+        let camera = Camera { position: Vec3::new(0.0, 0.0, 0.5), target: Vec3::ZERO, fov: 26.0 };
+        gpu.draw(&Frame { camera, ..support::frame(&hair, &[]) }, 80, 60);
+        gpu.read().unwrap()
+    };
+    let first = close(&few, &mut gpu);
+    few.radii.fill(1e-3);
+    assert!(close(&few, &mut gpu) != first);
+    few.radii.fill(4e-3);
+    assert!(close(&few, &mut gpu) == first);
+    few.colors = vec![Vec3::new(0.9, 0.1, 0.1); 12];
+    assert!(close(&few, &mut gpu) != first);
+    few.points[5].y += 0.02;
+    few.colors.clear();
+    assert!(close(&few, &mut gpu) != first);
+}
+
+#[test]
+fn an_empty_scene_is_the_backdrop() {
+    let Some(mut gpu) = renderer() else { return };
+    let look = HairLook::default();
+    let nothing =
+        HairDraw { points: &[], offsets: &[], radii: &[], colors: &[], look: &look, width_scale: 1.0 };
+    let body = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
+    compare(&mut gpu, "empty", &support::frame(&[], &[]), 64, 36);
+    compare(
+        &mut gpu,
+        "nothing",
+        &support::frame(&[nothing, HairDraw { offsets: &[0], ..nothing }], &[body]),
+        64,
+        36,
+    );
+}
+
+#[test]
+fn broken_input_is_drawn_around() {
+    let Some(mut gpu) = renderer() else { return };
+    let mut groom = support::groom(support::Style { strands: 2000, points: 12, ..support::STRAIGHT });
+    let look = HairLook::default();
+    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, 1e8].into_iter().enumerate() {
+        groom.points[12 * 100 * (i + 1) + i] = Vec3::new(bad, 0.1, bad);
+    }
+    groom.radii[7] = f32::NAN;
+    groom.radii[80] = -1.0;
+    let hair = [HairDraw { width_scale: 3.0, ..support::hair(&groom, &look) }];
+    compare(&mut gpu, "broken", &support::frame(&hair, &[]), 160, 90);
+
+    let points = [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2];
+    let look = HairLook { root_color: Vec3::NAN, roughness: f32::NAN, ..HairLook::default() };
+    let short = HairDraw {
+        points: &points,
+        offsets: &[0, 3, 900, 2, u32::MAX],
+        radii: &[1e-3; 2],
+        colors: &[Vec3::NAN],
+        look: &look,
+        width_scale: 1.0,
+    };
+    let hair = [short, HairDraw { offsets: &[0, 3], radii: &[1e-3; 3], width_scale: f32::INFINITY, ..short }];
+    let bodies = [MeshDraw {
+        positions: &[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NAN],
+        normals: &[Vec3::Z],
+        triangles: &[[0, 1, 2], [0, 1, 3], [0, 1, 77], [1, 1, 1]],
+        parts: &[],
+    }];
+    for camera in [
+        Camera::default(),
+        Camera { position: Vec3::ZERO, target: Vec3::ZERO, fov: f32::NAN },
+        Camera { position: Vec3::NAN, target: Vec3::INFINITY, fov: -3.0 },
+        Camera { position: Vec3::Y * 0.1001, target: Vec3::ZERO, fov: 170.0 },
+    ] {
+        let quality = Quality { shadow_voxels: 0, shadow_texels: 0, smoothness: f32::NAN };
+        gpu.draw(&Frame { camera, quality, ..support::frame(&hair, &bodies) }, 70, 40);
+        gpu.read().unwrap();
+    }
+}
