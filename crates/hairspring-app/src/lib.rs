@@ -44,6 +44,7 @@ pub use script::Line;
 pub use session::{Action, Session};
 
 use eframe::egui;
+use std::sync::Arc;
 
 /// Size of the window when it opens [points].
 const SIZE: [f32; 2] = [1360.0, 860.0];
@@ -61,10 +62,53 @@ pub fn run(options: Options) -> Result<(), AppError> {
             .with_drag_and_drop(true),
         ..Default::default()
     };
-    let opened = eframe::run_native(
-        "Hairspring",
-        native,
-        Box::new(move |creation| Ok(Box::new(App::new(creation, options)?))),
-    );
-    opened.map_err(|why| AppError::new(format!("no window could be opened: {why}")))
+    let open = || {
+        eframe::run_native(
+            "Hairspring",
+            native,
+            Box::new(move |creation| Ok(Box::new(App::new(creation, options)?))),
+        )
+    };
+    match without_library(open) {
+        Ok(opened) => opened.map_err(|why| {
+            AppError::new(format!(
+                "no window could be opened: {why} (on Linux it takes libvulkan1 and a driver such as mesa-vulkan-drivers, libxcursor1, libxi6, \
+                 libx11-xcb1 and libxkbcommon-x11-0)"
+            ))
+        }),
+        Err(library) => Err(AppError::new(format!(
+            "no window could be opened: {library} (on Debian: apt install libxkbcommon-x11-0 libxkbcommon0 libx11-xcb1)"
+        ))),
+    }
+}
+
+/// Runs `open`; an error where a library of the desktop is missing, which the window's library says by a panic. Other panics go on.
+fn without_library<R>(open: impl FnOnce() -> R) -> Result<R, String> {
+    const SIGN: &str = "could not be loaded";
+    let usual: Arc<dyn Fn(&std::panic::PanicHookInfo<'_>) + Send + Sync> = Arc::from(std::panic::take_hook());
+    let other = usual.clone();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !panic.payload_as_str().is_some_and(|what| what.contains(SIGN)) {
+            other(panic);
+        }
+    }));
+    let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(open));
+    std::panic::set_hook(Box::new(move |panic| usual(panic)));
+    outcome.map_err(|panic| {
+        let what = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        match what.filter(|what| what.contains(SIGN)) {
+            Some(what) => what.trim_end_matches('.').to_owned(),
+            None => std::panic::resume_unwind(panic),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_missing_library_is_a_sentence() {
+        let missing = super::without_library(|| panic!("Library libxkbcommon-x11.so could not be loaded."));
+        assert_eq!(missing, Err::<(), _>("Library libxkbcommon-x11.so could not be loaded".into()));
+        assert_eq!(super::without_library(|| 3), Ok(3));
+    }
 }

@@ -5,7 +5,8 @@ use clap::{Parser, Subcommand};
 
 const AFTER_HELP: &str = "\
 Examples:
-  hairspring                                             a head of 100,000 hairs, moving, as a clip and a still
+  hairspring                                             the window, on a moving head of hair
+  hairspring live shot.toml                              a scene in it
   hairspring demo --style curly --seconds 2              the same in curls
   hairspring info ponytail.tfx                           what a file holds
   hairspring convert head.hair head.tfx                  one groom format to another
