@@ -1,11 +1,11 @@
-//! The pictures of the book, drawn by the program from the table `docs/pictures.toml`: the gallery, and each parameter of a scene at a
-//! low and at a high value.
+//! The pictures of the book, drawn by the program from the table `docs/pictures.toml`: scenes as they are, and each parameter of a scene at
+//! a low and at a high value.
 //!
 //! ```text
-//! [[gallery]]                          [[parameter]]
-//! scene = "fan"                        name = "material.bend"           where the change goes, see `set`
-//! frame = 90                           scene = "rail"                   of docs/parameters/scenes
-//!                                      frame = 30                       at 30 frames a second
+//! [[scene]]                             [[parameter]]
+//! file = "examples/scenes/fan.toml"    name = "material.bend"           where the change goes, see `set`
+//! picture = "gallery/fan"              scene = "rail"                   of docs/parameters/scenes
+//! frame = 90                           frame = 30                       at 30 frames a second
 //!                                      low = 0.5                        any value of TOML
 //!                                      high = 8.0
 //!                                      with = { "wind.gust" = 1.0 }     what is changed in both, if anything
@@ -28,15 +28,11 @@ const CHANGED: &str = "out/pictures/scenes";
 pub fn draw(part: &str) -> Result<(), String> {
     let table = read(Path::new(TABLE))?;
     let program = program()?;
-    for folder in [CHANGED, "docs/pictures/gallery", "docs/pictures/parameters"] {
-        fs::create_dir_all(folder).map_err(|why| format!("{folder}: {why}"))?;
-    }
-    for entry in entries(&table, "gallery") {
-        let scene = word(entry, "scene")?;
-        if scene.contains(part) {
-            let from = PathBuf::from(format!("examples/scenes/{scene}.toml"));
-            let to = format!("docs/pictures/gallery/{scene}.jpg");
-            render(&program, &from, &to, frame(entry)?, "640x480")?;
+    fs::create_dir_all(CHANGED).map_err(|why| format!("{CHANGED}: {why}"))?;
+    for entry in entries(&table, "scene") {
+        let (file, picture) = (word(entry, "file")?, word(entry, "picture")?);
+        if picture.contains(part) {
+            render(&program, Path::new(file), picture, frame(entry)?, "640x480")?;
         }
     }
     for entry in entries(&table, "parameter") {
@@ -54,8 +50,7 @@ pub fn draw(part: &str) -> Result<(), String> {
             set(&mut changed, name, value)?;
             let from = Path::new(CHANGED).join(format!("{name}-{side}.toml"));
             fs::write(&from, changed.to_string()).map_err(|why| format!("{}: {why}", from.display()))?;
-            let to = format!("docs/pictures/parameters/{name}-{side}.jpg");
-            render(&program, &from, &to, frame(entry)?, "320x240")?;
+            render(&program, &from, &format!("parameters/{name}-{side}"), frame(entry)?, "320x240")?;
         }
     }
     Ok(())
@@ -71,18 +66,22 @@ fn program() -> Result<PathBuf, String> {
     Ok(target.join("release").join(format!("hairspring{}", std::env::consts::EXE_SUFFIX)))
 }
 
-/// Draws one frame of a scene.
-fn render(program: &Path, scene: &Path, to: &str, frame: i64, size: &str) -> Result<(), String> {
+/// Draws one frame of a scene as a picture of the book.
+fn render(program: &Path, scene: &Path, picture: &str, frame: i64, size: &str) -> Result<(), String> {
+    let to = PathBuf::from(format!("docs/pictures/{picture}.jpg"));
+    let folder = to.parent().unwrap_or(Path::new(""));
+    fs::create_dir_all(folder).map_err(|why| format!("{}: {why}", folder.display()))?;
     let status = Command::new(program)
-        .args(["--quiet", "render", "--size", size, "--frames", &frame.to_string(), "-o", to])
+        .args(["--quiet", "render", "--size", size, "--frames", &frame.to_string(), "-o"])
+        .arg(&to)
         .arg(scene)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .status();
     match status {
         Ok(status) if status.success() => {
-            let bytes = fs::metadata(to).map_err(|why| format!("{to}: {why}"))?.len();
-            println!("{to}: {:.1} kB", bytes as f64 / 1e3);
+            let bytes = fs::metadata(&to).map_err(|why| format!("{}: {why}", to.display()))?.len();
+            println!("{}: {:.1} kB", to.display(), bytes as f64 / 1e3);
             Ok(())
         }
         Ok(status) => Err(format!("{}: the program ended with {status}", scene.display())),
