@@ -1,7 +1,7 @@
 //! Every developer command, the same ones that CI runs: `cargo xtask NAME`.
 
 mod fuzz;
-mod gallery;
+mod pictures;
 mod run;
 mod test;
 
@@ -12,7 +12,8 @@ const HELP: &str = "cargo xtask NAME
   fuzz [SECONDS] every fuzz target, so long each (default 60), two at a time
   monkey [MINUTES] random presses in the window, so long (default 10)
   golden         writes the golden pictures anew (look at them before you commit)
-  gallery        draws the pictures of docs/gallery.md anew (look at them too)
+  pictures [NAME] draws the pictures of the book anew, all or those whose name contains NAME (look at them too); needs no build where
+                 HAIRSPRING names the program
   ci             lint, fuzz, test: what CI runs";
 
 fn main() {
@@ -31,7 +32,8 @@ fn main() {
         ["golden"] => {
             run::cargo(&["test", "--release", "-p", "hairspring-view"], &[("HAIRSPRING_GOLDEN", "write")])
         }
-        ["gallery"] => gallery::draw(),
+        ["pictures"] => pictures::draw(""),
+        ["pictures", part] => pictures::draw(part),
         ["ci"] => lint().and_then(|()| fuzz::all(60, fuzz::ALWAYS_THE_SAME)).and_then(|()| test::all()),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
