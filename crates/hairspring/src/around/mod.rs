@@ -6,6 +6,7 @@
 //! | effect | |
 //! | --- | --- |
 //! | [`ghost`] | a weak pull to the rest shape |
+//! | [`tether`] | a firm pull back to as far from the root as at rest |
 //! | [`grab`] | a hand holds what is in a ball |
 //! | [`comb`] | tines take hair along across itself |
 //! | [`tie`] | a ring gathers strands |
@@ -19,6 +20,7 @@ pub mod ghost;
 pub mod grab;
 mod hair_field;
 mod strand;
+pub(crate) mod tether;
 pub mod tie;
 mod tool;
 mod wind;

@@ -3,7 +3,7 @@
 use super::{Drive, Simulation};
 use crate::{
     air::Bodies,
-    around::{Blow, Charges, Frame, Kinds, Strands, Surrounded},
+    around::{Blow, Charges, Frame, Kinds, Strands, Surrounded, tether},
     collide::Rigid,
 };
 
@@ -14,7 +14,8 @@ impl Simulation {
         let charged = self.charges.iter().any(|charge| *charge != 0.0);
         let pressed = self.volume.as_ref().is_some_and(|volume| volume.acts());
         let sheltered = self.shelter.is_on() && drive.air.moves();
-        let gripped = ghosts || charged || !self.tools.used.is_empty();
+        let tethered = self.tethers.iter().any(Option::is_some);
+        let gripped = ghosts || tethered || charged || !self.tools.used.is_empty();
         let tines = self.tools.used.iter().any(|used| !used.tool.binds());
         let blown = sheltered || drive.air.varies();
         let kinds = Kinds { push: pressed, grip: gripped, tines, air: blown };
@@ -47,12 +48,16 @@ impl Simulation {
         let blow = Blow { air, shade };
         let charges = Charges { balls: &self.charged, hair: &self.hair_field };
         let (groom, ghost_of, charge_of) = (&self.groom, &self.ghosts, &self.charges);
+        let tether_of = &self.tethers;
         let tools = &self.tools.used;
         let act = |strand: &mut Surrounded| {
             let s = strand.strand;
             let group = groom.group(s) as usize;
             if let Some(ghost) = of_group(ghost_of, group).filter(|_| ghosts) {
                 ghost.add(groom.scale(s).ghost, groom.strand(s), strand);
+            }
+            if let Some(reach) = of_group(tether_of, group).copied().flatten() {
+                tether::hold(reach, groom.strand(s), strand);
             }
             if let Some(charge) = of_group(charge_of, group).filter(|_| charged) {
                 charges.add(*charge, strand);
