@@ -27,6 +27,7 @@ Exit codes:
   4    a file's content is wrong
   5    a file could not be written
   6    the scene cannot be simulated
+  7    there is no graphics card that can be used, or it gave up
   70   an error of the program itself
   130  interrupted (Ctrl-C): the frame in hand was completed, nothing is half-written";
 

@@ -2,7 +2,7 @@
 
 use hairspring::stage::StageError;
 use hairspring_io::Error as FileError;
-use hairspring_view::OutputError;
+use hairspring_view::{OutputError, gpu::GpuError};
 use std::{fmt, path::Path};
 
 /// Exit code of an error of the program itself (EX_SOFTWARE of sysexits.h).
@@ -21,6 +21,8 @@ pub enum Fault {
     Unwritable(String),
     /// The scene cannot be simulated.
     Scene(String),
+    /// The machine lacks what was asked for: a graphics card.
+    Lacking(String),
     /// The simulation does not agree with a closed form.
     Invalid(String),
     /// The user stopped it.
@@ -37,6 +39,7 @@ impl Fault {
             Self::Content(_) => 4,
             Self::Unwritable(_) => 5,
             Self::Scene(_) => 6,
+            Self::Lacking(_) => 7,
             Self::Interrupted(_) => 130,
         }
     }
@@ -67,6 +70,12 @@ impl From<OutputError> for Fault {
     }
 }
 
+impl From<GpuError> for Fault {
+    fn from(error: GpuError) -> Self {
+        Self::Lacking(error.to_string())
+    }
+}
+
 impl From<StageError> for Fault {
     fn from(error: StageError) -> Self {
         Self::Scene(error.to_string())
@@ -80,6 +89,7 @@ impl fmt::Display for Fault {
         | Self::Content(s)
         | Self::Unwritable(s)
         | Self::Scene(s)
+        | Self::Lacking(s)
         | Self::Invalid(s)
         | Self::Interrupted(s)) = self;
         f.write_str(s)
