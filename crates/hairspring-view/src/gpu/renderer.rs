@@ -83,7 +83,7 @@ impl GpuRenderer {
         let map = Map::new(frame, most);
         self.strands.send(gpu, frame.hair, &mut self.generation);
         self.meshes.send(gpu, frame.bodies, &mut self.generation);
-        let slots = if grid.is_some() { self.strands.slots } else { 0 };
+        let slots = self.strands.slots;
         self.ribbons.fit(gpu, slots, &mut self.generation);
         self.surfaces.fit(gpu, map.side, &mut self.generation);
         let voxel = grid.map_or(1.0, |g| g.voxel);
