@@ -23,9 +23,9 @@ use hairspring_view::{
 use image_compare::{Algorithm, gray_similarity_structure};
 
 /// Least similarity of structure; 1 is equal.
-const ALIKE: f64 = 0.97;
+const ALIKE: f64 = 0.99;
 /// Greatest difference of a channel's mean [codes of 255].
-const BRIGHTNESS: f64 = 1.0;
+const BRIGHTNESS: f64 = 0.5;
 
 /// A renderer on the card there is, if there is one.
 fn renderer() -> Option<GpuRenderer> {
