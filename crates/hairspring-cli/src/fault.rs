@@ -2,7 +2,7 @@
 
 use hairspring::stage::StageError;
 use hairspring_io::Error as FileError;
-use hairspring_view::OutputError;
+use hairspring_view::{OutputError, gpu::GpuError};
 use std::{fmt, path::Path};
 
 /// Exit code of an error of the program itself (EX_SOFTWARE of sysexits.h).
@@ -67,6 +67,12 @@ impl Fault {
 impl From<OutputError> for Fault {
     fn from(error: OutputError) -> Self {
         Self::Unwritable(error.to_string())
+    }
+}
+
+impl From<GpuError> for Fault {
+    fn from(error: GpuError) -> Self {
+        Self::Lacking(error.to_string())
     }
 }
 

@@ -6,7 +6,9 @@ use glam::Vec3;
 use hairspring::{scene::Camera, stage::Stage};
 use hairspring_view::{
     Background, Frame, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, Timings, frame_camera,
+    gpu::{Gpu, GpuRenderer},
 };
+use std::time::Instant;
 
 /// How pictures are taken.
 #[derive(Args)]
@@ -30,6 +32,10 @@ pub struct View {
     /// Multiplies the width of drawn hairs [default: 1 for 100,000 hairs and more; up to 10 where fewer stand for a head]
     #[arg(long, value_name = "FACTOR", value_parser = frames::positive)]
     pub hair_width: Option<f32>,
+
+    /// Draw on the graphics card [default: on the processor, whose picture is the one of record]
+    #[arg(long)]
+    pub gpu: bool,
 }
 
 /// Hairs on a human head.
@@ -38,9 +44,22 @@ const HEAD: f32 = 100_000.0;
 /// Widest that a hair is drawn by default, times its own width: 0.7 mm, a thin lock.
 const WIDEST: f32 = 10.0;
 
+/// What draws.
+enum Painter {
+    Cpu(Box<Renderer>),
+    Gpu(Box<Card>),
+}
+
+/// A graphics card, and the last picture that came back from it.
+struct Card {
+    renderer: GpuRenderer,
+    size: (u32, u32),
+    image: Image,
+}
+
 /// A camera, its lamps and a renderer.
 pub struct Studio {
-    renderer: Renderer,
+    painter: Painter,
     camera: Camera,
     width_scale: f32,
 }
@@ -60,7 +79,19 @@ impl Studio {
         }
         let strands = stage.simulated_strands().1 as f32;
         let width_scale = view.hair_width.unwrap_or((HEAD / strands).clamp(1.0, WIDEST));
-        Ok(Self { renderer: Renderer::new(width, height), camera, width_scale })
+        let painter = match view.gpu {
+            false => Painter::Cpu(Box::new(Renderer::new(width, height))),
+            true => Painter::Gpu(Box::new(Card::new(view.size)?)),
+        };
+        Ok(Self { painter, camera, width_scale })
+    }
+
+    /// The graphics card that draws, if one does.
+    pub fn card(&self) -> Option<&str> {
+        match &self.painter {
+            Painter::Cpu(_) => None,
+            Painter::Gpu(card) => Some(card.renderer.gpu().name()),
+        }
     }
 
     /// How much wider than they are hairs are drawn.
@@ -69,7 +100,7 @@ impl Studio {
     }
 
     /// Draws the stage as it is now.
-    pub fn draw(&mut self, stage: &Stage) -> (&Image, Timings) {
+    pub fn draw(&mut self, stage: &Stage) -> Result<(&Image, Timings), Fault> {
         let hair: Vec<HairDraw> = stage
             .strands()
             .map(|s| HairDraw {
@@ -87,15 +118,46 @@ impl Studio {
             triangles: &b.mesh.triangles,
             parts: &b.mesh.parts,
         });
-        self.renderer.draw(&Frame {
+        let frame = Frame {
             hair: &hair,
             bodies: body.as_slice(),
             camera: self.camera,
             lighting: Lighting::facing(&self.camera),
             background: Background::default(),
             quality: Quality::default(),
-        });
-        (self.renderer.image(), self.renderer.timings())
+        };
+        match &mut self.painter {
+            Painter::Cpu(renderer) => {
+                renderer.draw(&frame);
+                Ok((renderer.image(), renderer.timings()))
+            }
+            Painter::Gpu(card) => card.draw(&frame),
+        }
+    }
+}
+
+impl Card {
+    fn new(size: (u32, u32)) -> Result<Self, Fault> {
+        let gpu = Gpu::open()?;
+        let most = gpu.most_pixels();
+        if size.0.max(size.1) > most {
+            let text = format!(
+                "the graphics card draws no picture of {}x{}: {most} pixels a side is its most; draw it without --gpu",
+                size.0, size.1
+            );
+            return Err(Fault::Usage(text));
+        }
+        Ok(Self { renderer: GpuRenderer::new(&gpu), size, image: Image::default() })
+    }
+
+    /// Sending and recording count as work on strands, everything that the card does then as work on tiles.
+    fn draw(&mut self, frame: &Frame) -> Result<(&Image, Timings), Fault> {
+        let start = Instant::now();
+        self.renderer.draw(frame, self.size.0, self.size.1);
+        let recorded = start.elapsed();
+        self.image = self.renderer.read()?;
+        let timings = Timings { strands: recorded, tiles: start.elapsed() - recorded, ..Timings::default() };
+        Ok((&self.image, timings))
     }
 }
 

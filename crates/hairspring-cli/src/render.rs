@@ -139,6 +139,9 @@ pub fn shoot(
             studio.width_scale()
         ));
     }
+    if let Some(card) = studio.card() {
+        console.note(format_args!("drawing on {card}"));
+    }
     let mut film = Film::new(sinks);
     let mut totals = Totals::new();
     let last = wanted.last().copied().unwrap_or(0);
@@ -147,7 +150,7 @@ pub fn shoot(
         totals.stepped(frame, report);
         let mut timings = None;
         if wanted.binary_search(&frame).is_ok() {
-            let (image, times) = studio.draw(stage);
+            let (image, times) = studio.draw(stage)?;
             totals.drawn(times);
             timings = Some(times);
             film.show(frame, image)?;

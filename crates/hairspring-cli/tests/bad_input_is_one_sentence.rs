@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{contents, groom, run, succeed, write_groom};
+use common::{contents, groom, program, run, succeed, write_groom};
 use glam::Vec3;
 use std::path::Path;
 
@@ -39,6 +39,26 @@ fn files_that_are_not_there_or_not_known() {
     refuse(f, &["convert", "groom.hair", "groom.abc"], 2, &["groom.abc", ".tfx"]);
     refuse(f, &["render", "groom.hair", "-o", "x.gif"], 2, &["x.gif", ".png"]);
     refuse(f, &["bake", "groom.hair", "-o", "x.#.png"], 2, &["x.#.png", ".hair"]);
+}
+
+#[test]
+fn a_machine_without_a_graphics_card() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    let before = contents(f);
+    // Of all graphics cards, those that no machine which runs this test has: Windows' on the others, Apple's on Windows.
+    let none = if cfg!(windows) { "metal" } else { "dx12" };
+    let arguments = ["render", "groom.hair", "-o", "x.png", "--gpu", "--size", "64x36"];
+    let output = program(f, &arguments).env("WGPU_BACKEND", none).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(7), "{told}");
+    let errors: Vec<&str> = told.lines().filter(|l| !l.starts_with("note: ")).collect();
+    assert!(
+        errors.len() == 1 && errors[0].contains("graphics card") && errors[0].contains("install"),
+        "{told}"
+    );
+    assert!(contents(f) == before);
 }
 
 #[test]

@@ -55,6 +55,27 @@ fn play(path: &Path) -> (u32, (u16, u16)) {
     (shown, size)
 }
 
+/// The same still on the graphics card, where the machine has one or a driver in its place.
+#[test]
+fn a_still_is_drawn_on_the_graphics_card() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 400);
+    let still = |name, more: &[&str]| {
+        let arguments = [&["render", "groom.hair", "-o", name], &SIZE[..], more].concat();
+        common::run(f, &arguments)
+    };
+    let drawn = still("card.png", &["--gpu"]);
+    if drawn.status.code() == Some(7) {
+        return eprintln!("skipped: {}", String::from_utf8_lossy(&drawn.stderr));
+    }
+    assert!(drawn.status.success() && still("cpu.png", &[]).status.success());
+    let [card, cpu] = ["card.png", "cpu.png"].map(|name| read_png(&f.join(name)).unwrap());
+    assert_eq!((card.width, card.height), (160, 96));
+    let apart = card.rgb.iter().zip(&cpu.rgb).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+    assert!(drawn_pixels(&card) > 100 && apart < card.rgb.len() / 100, "{apart} values are apart");
+}
+
 #[test]
 fn a_groom_alone_is_a_still() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,8 @@
 //! One frame of a full head: 100,000 strands of 32 points, 1280 × 720, light and shadow included, on one thread and on two. The built-in
-//! head at rest, brows and body included, and straight and wavy hair on a ball. Prints where the time went and how much was done.
+//! head at rest, brows and body included, and straight and wavy hair on a ball. Prints where the time went and how much was done. Beside
+//! it, the same frames on the graphics card, from arrays to the finished texture, where there is one; its name is printed.
+//!
+//! The argument is the number of threads; 0 stands for the card.
 //!
 //! `cargo bench -p hairspring-view --bench frame`
 
@@ -14,14 +17,23 @@ use hairspring::{
     },
     stage::Stage,
 };
-use hairspring_view::{Frame, HairDraw, Lighting, MeshDraw, Renderer};
+use hairspring_view::{
+    Frame, HairDraw, Lighting, MeshDraw, Renderer,
+    gpu::{Gpu, GpuRenderer},
+};
 use std::sync::LazyLock;
 
 fn main() {
     divan::main();
 }
 
+/// Threads that stand for the graphics card.
+const CARD: usize = 0;
+
 fn bench(bencher: Bencher, frame: &Frame, threads: usize) {
+    if threads == CARD {
+        return on_card(bencher, frame);
+    }
     let mut renderer = Renderer::new(1280, 720);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| renderer.draw(frame).rgb[0]);
@@ -29,10 +41,26 @@ fn bench(bencher: Bencher, frame: &Frame, threads: usize) {
     eprintln!("{:?}\n{:?}", renderer.timings(), renderer.work());
 }
 
+/// Draws and waits for the card.
+fn on_card(bencher: Bencher, frame: &Frame) {
+    let gpu = match Gpu::open() {
+        Ok(gpu) => gpu,
+        Err(error) => return eprintln!("skipped: {error}"),
+    };
+    let mut renderer = GpuRenderer::new(&gpu);
+    let mut draw = || {
+        renderer.draw(frame, 1280, 720);
+        gpu.wait().unwrap();
+    };
+    draw();
+    bencher.bench_local(draw);
+    eprintln!("{}: {:?}", gpu.name(), renderer.timings());
+}
+
 /// Takes seconds to grow.
 static HEAD: LazyLock<Stage> = LazyLock::new(|| Stage::new(scene(&BuiltinOptions::default())).unwrap());
 
-#[divan::bench(sample_count = 20, sample_size = 1, args = [1, 2])]
+#[divan::bench(sample_count = 20, sample_size = 1, args = [1, 2, CARD])]
 fn head(bencher: Bencher, threads: usize) {
     let draw = |s: hairspring::stage::Strands<'static>| HairDraw {
         points: s.points,
@@ -63,12 +91,12 @@ fn ball(bencher: Bencher, style: support::Style, color: HairColor, threads: usiz
     bench(bencher, &support::frame(&hair, &bodies), threads);
 }
 
-#[divan::bench(sample_count = 20, sample_size = 1, args = [1, 2])]
+#[divan::bench(sample_count = 20, sample_size = 1, args = [1, 2, CARD])]
 fn straight(bencher: Bencher, threads: usize) {
     ball(bencher, support::STRAIGHT, HairColor::Brown, threads);
 }
 
-#[divan::bench(sample_count = 20, sample_size = 1, args = [1, 2])]
+#[divan::bench(sample_count = 20, sample_size = 1, args = [1, 2, CARD])]
 fn wavy(bencher: Bencher, threads: usize) {
     ball(bencher, support::WAVY, HairColor::Blonde, threads);
 }

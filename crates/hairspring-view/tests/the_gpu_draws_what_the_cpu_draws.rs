@@ -23,9 +23,9 @@ use hairspring_view::{
 use image_compare::{Algorithm, gray_similarity_structure};
 
 /// Least similarity of structure; 1 is equal.
-const ALIKE: f64 = 0.97;
+const ALIKE: f64 = 0.99;
 /// Greatest difference of a channel's mean [codes of 255].
-const BRIGHTNESS: f64 = 1.0;
+const BRIGHTNESS: f64 = 0.5;
 
 /// A renderer on the card there is, if there is one.
 fn renderer() -> Option<GpuRenderer> {
@@ -266,13 +266,21 @@ fn broken_input_is_drawn_around() {
     let Some(mut gpu) = renderer() else { return };
     let mut groom = support::groom(support::Style { strands: 2000, points: 12, ..support::STRAIGHT });
     let look = HairLook::default();
-    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, 1e8].into_iter().enumerate() {
+    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30].into_iter().enumerate() {
         groom.points[12 * 100 * (i + 1) + i] = Vec3::new(bad, 0.1, bad);
     }
     groom.radii[7] = f32::NAN;
     groom.radii[80] = -1.0;
     let hair = [HairDraw { width_scale: 3.0, ..support::hair(&groom, &look) }];
     compare(&mut gpu, "broken", &support::frame(&hair, &[]), 160, 90);
+    // Too far apart for a shadow: the hair is drawn all the same.
+    groom.points[700].x = 1e8;
+    let hair = [HairDraw { width_scale: 3.0, ..support::hair(&groom, &look) }];
+    let seen = |gpu: &mut GpuRenderer, hair: &[HairDraw]| {
+        gpu.draw(&support::frame(hair, &[]), 160, 90);
+        mean(&gpu.read().unwrap())
+    };
+    assert!(seen(&mut gpu, &hair)[0] > seen(&mut gpu, &[])[0] + 2.0);
 
     let points = [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2];
     let look = HairLook { root_color: Vec3::NAN, roughness: f32::NAN, ..HairLook::default() };

@@ -44,7 +44,7 @@ pub struct Shot {
 
 /// Plays so many frames of 1/60 s; with pictures if `draw`.
 pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) -> Result<Played, Fault> {
-    let view = View { size: SIZE, camera: None, target: None, fov: None, hair_width: None };
+    let view = View { size: SIZE, camera: None, target: None, fov: None, hair_width: None, gpu: false };
     let mut studio = if draw { Some(Studio::new(&view, &stage)?) } else { None };
     let mut times = Vec::with_capacity(frames as usize);
     let (mut reset_strands, mut sum, mut worst) = (0, 0.0, 0.0f64);
@@ -71,7 +71,7 @@ pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) 
         let moments = |f: u32| u64::from(f) * u64::from(MOMENTS) / u64::from(frames);
         if let Some(studio) = studio.as_mut().filter(|_| moments(frame) > moments(frame - 1)) {
             let mut png = Vec::new();
-            encode_png(&mut png, studio.draw(&stage).0)
+            encode_png(&mut png, studio.draw(&stage)?.0)
                 .map_err(|e| Fault::Unwritable(format!("a picture could not be encoded: {e}")))?;
             shots.push(Shot { time, png, reset_strands: report.step.reset_strands });
         }

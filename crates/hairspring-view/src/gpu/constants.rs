@@ -146,3 +146,30 @@ fn matrix(m: &Mat3) -> String {
 
 /// Most pieces of one segment (see [`segment::MAX_PIECES`]): four bits of a piece hold its number.
 pub(super) const MAX_PIECES: f32 = segment::MAX_PIECES;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+    /// Without a card, by the compiler alone; nothing is asked for but what every WebGPU device can do.
+    #[test]
+    fn every_shader_is_valid() {
+        for source in [DENSITY, WALLS, SWEEP, BODY, SETTLE, POINTS, SORT, RIBBON, DEVELOP] {
+            let text = source.text();
+            let module = naga::front::wgsl::parse_str(&text)
+                .unwrap_or_else(|e| panic!("{}: {}", source.name, e.emit_to_string(&text)));
+            Validator::new(ValidationFlags::all(), Capabilities::empty())
+                .validate(&module)
+                .unwrap_or_else(|e| panic!("{}: {}", source.name, e.emit_to_string(&text)));
+        }
+    }
+
+    #[test]
+    fn numbers_are_written_as_they_are() {
+        let text = constants();
+        assert!(
+            text.contains("const BEAM: f32 = 6.2e-1f;") && text.contains("const CHANNEL_BLUE: u32 = 22u;")
+        );
+    }
+}

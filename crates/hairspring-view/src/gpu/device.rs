@@ -86,6 +86,21 @@ impl Gpu {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
+    /// Greatest width and height of a picture [pixels]: 8192 by WebGPU's default.
+    pub fn most_pixels(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
+    }
+
+    /// Waits until the card has done all that it was given.
+    ///
+    /// # Errors
+    /// [`GpuError::Failed`] if it was lost, or refused something before.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
+        waited.map_err(|e| GpuError::Failed(one_line(&e.to_string())))?;
+        self.check()
+    }
+
     /// What went wrong on the card since this was last asked, if anything did.
     ///
     /// # Errors

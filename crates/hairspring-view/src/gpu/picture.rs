@@ -194,8 +194,7 @@ impl Reader {
             // Nobody listens any more only where waiting has failed already.
             let _ = tell.send(result);
         });
-        gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| failed(e.to_string()))?;
-        gpu.check()?;
+        gpu.wait()?;
         told.recv().map_err(|e| failed(e.to_string()))?.map_err(|e| failed(e.to_string()))?;
         let mut image = Image::new(width, height);
         {

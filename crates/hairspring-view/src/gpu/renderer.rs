@@ -71,7 +71,7 @@ impl GpuRenderer {
     pub fn draw(&mut self, frame: &Frame, width: u32, height: u32) -> &wgpu::TextureView {
         let start = Instant::now();
         let gpu = &self.gpu;
-        let most = gpu.device.limits().max_texture_dimension_2d;
+        let most = gpu.most_pixels();
         let size = [width.clamp(1, most), height.clamp(1, most)];
         if self.targets.size != size {
             self.targets = Targets::new(gpu, size);
@@ -83,7 +83,7 @@ impl GpuRenderer {
         let map = Map::new(frame, most);
         self.strands.send(gpu, frame.hair, &mut self.generation);
         self.meshes.send(gpu, frame.bodies, &mut self.generation);
-        let slots = if grid.is_some() { self.strands.slots } else { 0 };
+        let slots = self.strands.slots;
         self.ribbons.fit(gpu, slots, &mut self.generation);
         self.surfaces.fit(gpu, map.side, &mut self.generation);
         let voxel = grid.map_or(1.0, |g| g.voxel);
@@ -115,7 +115,7 @@ impl GpuRenderer {
         let (strands, meshes) = (&self.strands, &self.meshes);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.surfaces.record_map(gpu, &mut encoder, generation, uniforms, meshes);
-        if slots > 0 {
+        if grid.is_some() {
             self.volume.record(gpu, &mut encoder, generation, uniforms, strands, meshes);
         }
         let (volume, surfaces) = (&self.volume, &mut self.surfaces);

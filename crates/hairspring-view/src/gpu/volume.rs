@@ -121,7 +121,9 @@ impl Volume {
             (5, strands.styles.all()),
             (7, self.sums.all()),
         ];
-        self.splat.run(gpu, generation, &mut pass, &entries, groups(strands.slots, 256));
+        if strands.slots > 0 {
+            self.splat.run(gpu, generation, &mut pass, &entries, groups(strands.slots, 256));
+        }
         if meshes.count > 0 {
             let entries = [
                 frame.clone(),

@@ -37,7 +37,7 @@ fn place(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     let i = strand.first + k;
     var here = dot_of(i, style.width);
     if here.w < 0.0 {
-        dots[slot] = vec4f(0.0, 0.0, 0.0, -0.0);
+        dots[slot] = vec4f(0.0, 0.0, 0.0, -1.0);
         lights[slot] = 0u;
         return;
     }

@@ -45,7 +45,7 @@ fn ribbon(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance:
     let slot = piece >> 8u;
     let k = f32((piece >> 4u) & 15u);
     let n = f32((piece & 15u) + 1u);
-    let none = vec4f(0.0, 0.0, 0.0, -0.0);
+    let none = vec4f(0.0, 0.0, 0.0, -1.0);
     var z = none;
     if slot > 0u {
         z = dots[slot - 1u];

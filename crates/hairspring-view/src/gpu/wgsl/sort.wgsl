@@ -25,7 +25,7 @@ fn count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     if slot + 1u >= frame.slots || !linked(a) {
         return;
     }
-    let none = vec4f(0.0, 0.0, 0.0, -0.0);
+    let none = vec4f(0.0, 0.0, 0.0, -1.0);
     var z = none;
     if slot > 0u {
         z = dots[slot - 1u];
