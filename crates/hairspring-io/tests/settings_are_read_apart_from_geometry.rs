@@ -12,7 +12,7 @@ use hairspring::{
     scene::{Effects, HairLook, Scene, SceneGroom, Shape, builtin},
 };
 use hairspring_io::{Error, read_scene_text, read_settings, same_geometry};
-use scenes::{folder, read};
+use scenes::{folder, message, read};
 use std::path::Path;
 
 /// A scene without its geometry.
@@ -107,9 +107,8 @@ fn the_builtin_hair_takes_a_look_and_effects() {
     assert_eq!(hair.look, HairLook { variation: 0.9, ..style.look });
     assert_eq!(hair.effects, Effects { clump: 0.4, ..Effects::default() });
     assert_eq!(settings("[builtin]\nlook = {}").grooms[1], builtin::settings(&Default::default()).grooms[1]);
-    let wrong = |text: &str| read_settings(Path::new("x.toml"), text).unwrap_err().to_string();
     for (text, said) in [
-        ("[builtin]\n[builtin.look]\nvariation = 2", "x.toml, line 3: `variation` must be 0 to 1"),
+        ("[builtin]\n[builtin.look]\nvariation = 2", "scene.toml, line 3: `variation` must be 0 to 1"),
         (
             "[builtin]\n[builtin.look]\nvarition = 0",
             "line 3: `varition` is not known here; did you mean `variation`?",
@@ -117,7 +116,8 @@ fn the_builtin_hair_takes_a_look_and_effects() {
         ("[builtin]\n[builtin.effects]\nclump = -1", "line 3: `clump` must be 0 to 1"),
         ("[builtin]\nstyle = \"wvy\"", "line 2: the style `wvy` is not known here; did you mean `wavy`?"),
     ] {
-        assert!(wrong(text).contains(said), "{}", wrong(text));
+        assert!(message(text).contains(said), "{}", message(text));
+        assert!(read_settings(Path::new("x.toml"), text).is_err());
     }
 }
 

@@ -241,7 +241,7 @@ pub(super) struct GroomFile {
 #[derive(PartialEq)]
 pub(super) struct GroomGeometry<'a> {
     files: [&'a Option<FileName>; 2],
-    grow: &'a Option<Spanned<GrowFile>>,
+    grow: Option<Grown<'a>>,
     thicken: Thicken,
     units: (Option<f32>, Option<Axis>),
     transform: Placement,
@@ -253,7 +253,7 @@ impl GroomFile {
     pub(super) fn geometry(&self) -> GroomGeometry<'_> {
         GroomGeometry {
             files: [&self.file, &self.bones],
-            grow: &self.grow,
+            grow: self.grow.as_ref().map(|grow| grow.get_ref().geometry()),
             thicken: self.thicken,
             units: (self.scale, self.up),
             transform: self.transform,
@@ -269,7 +269,7 @@ impl GroomFile {
 }
 
 /// `grow` of a groom: where hair grows, and how.
-#[derive(PartialEq, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GrowFile {
     /// Names of the parts of the body that it grows on. Default: all.
@@ -290,7 +290,15 @@ pub(super) struct GrowFile {
     pub fall: Option<f32>,
 }
 
+/// Where hair grows (parts, joint, shape), and how.
+type Grown<'a> = (&'a Option<Vec<String>>, &'a Option<String>, &'a Option<Shape>, Growth);
+
 impl GrowFile {
+    /// All that it says.
+    fn geometry(&self) -> Grown<'_> {
+        (&self.parts, &self.joint, &self.inside, self.growth())
+    }
+
     /// Its settings with the defaults for what is left out.
     pub(super) fn growth(&self) -> Growth {
         let base = Growth::default();
