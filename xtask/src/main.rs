@@ -53,7 +53,8 @@ fn main() {
 fn monkey(minutes: &str) -> Result<(), String> {
     let minutes: f64 = minutes.parse().map_err(|_| format!("'{minutes}' is not a number of minutes"))?;
     let seconds = format!("{}", (minutes * 60.0).round() as u64);
-    let test = ["test", "--release", "-p", "hairspring-app", "--test", "a_monkey_at_the_controls_breaks_nothing"];
+    let test =
+        ["test", "--release", "-p", "hairspring-app", "--test", "a_monkey_at_the_controls_breaks_nothing"];
     run::cargo(&[&test[..], &["--", "--nocapture"]].concat(), &[("HAIRSPRING_MONKEY", &seconds)])
 }
 

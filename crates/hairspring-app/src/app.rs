@@ -118,7 +118,11 @@ impl App {
 
     /// Whether the script is done, and what it began.
     pub fn is_idle(&self) -> bool {
-        self.script.is_empty() && self.recorder.is_none() && self.finger.rests() && self.shot.is_none() && self.waits == 0
+        self.script.is_empty()
+            && self.recorder.is_none()
+            && self.finger.rests()
+            && self.shot.is_none()
+            && self.waits == 0
     }
 
     /// What was last said, and whether it was an error.
@@ -194,7 +198,8 @@ impl App {
             *open ^= pressed(Modifiers::NONE, key);
         }
         // On many keyboards the question mark is on a shifted key.
-        self.open.help ^= pressed(Modifiers::SHIFT, Key::Questionmark) || pressed(Modifiers::SHIFT, Key::Slash);
+        self.open.help ^=
+            pressed(Modifiers::SHIFT, Key::Questionmark) || pressed(Modifiers::SHIFT, Key::Slash);
         for (hand, _, key, _) in Hand::ALL {
             if pressed(Modifiers::NONE, key) {
                 self.view.hand = hand;
@@ -283,7 +288,8 @@ impl App {
         let guides = self.session.shown() == Some(Value::Guide);
         for (k, scenery) in snapshot.stages.iter().enumerate() {
             let left = whole.left() + width * k as f32;
-            let rect = egui::Rect::from_min_size(egui::pos2(left, whole.top()), egui::vec2(width, whole.height()));
+            let rect =
+                egui::Rect::from_min_size(egui::pos2(left, whole.top()), egui::vec2(width, whole.height()));
             let response = ui.interact(rect, ui.scope_id().with(("picture", k)), Sense::click_and_drag());
             if k == 0 {
                 self.rect = rect;
@@ -498,9 +504,15 @@ impl App {
         if let Some(recorder) = &self.recorder {
             let (done, all) = recorder.progress();
             egui::Window::new("Recording").collapsible(false).resizable(false).show(ctx, |ui| {
-                ui.add(egui::ProgressBar::new(done as f32 / all as f32).text(format!("{done} of {all} frames")));
+                ui.add(
+                    egui::ProgressBar::new(done as f32 / all as f32).text(format!("{done} of {all} frames")),
+                );
                 if ui.button("Stop").clicked() {
-                    self.message = Some(("stopped: a clip that is not complete is not kept".into(), false, Instant::now()));
+                    self.message = Some((
+                        "stopped: a clip that is not complete is not kept".into(),
+                        false,
+                        Instant::now(),
+                    ));
                 }
             });
             if self.message.as_ref().is_some_and(|m| m.0.starts_with("stopped")) {
@@ -542,7 +554,11 @@ fn corner(ctx: &egui::Context, rect: egui::Rect, show: impl FnOnce(&mut Ui)) {
         .pivot(egui::Align2::LEFT_BOTTOM)
         .show(ctx, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
-            egui::Frame::new().fill(Color32::from_black_alpha(90)).corner_radius(4.0).inner_margin(6.0).show(ui, show);
+            egui::Frame::new()
+                .fill(Color32::from_black_alpha(90))
+                .corner_radius(4.0)
+                .inner_margin(6.0)
+                .show(ui, show);
         });
 }
 
@@ -556,11 +572,13 @@ fn legend(painter: &egui::Painter, rect: egui::Rect, value: Value, range: [f32; 
     if value == Value::Guide {
         return;
     }
-    let (bar, height) = (egui::Rect::from_min_size(at + egui::vec2(0.0, 20.0), egui::vec2(170.0, 10.0)), 10.0);
+    let (bar, height) =
+        (egui::Rect::from_min_size(at + egui::vec2(0.0, 20.0), egui::vec2(170.0, 10.0)), 10.0);
     for k in 0..34 {
         let share = k as f32 / 33.0;
         let c = crate::ramp::color(share, [0.0, 1.0]).to_array().map(|x| (x.powf(1.0 / 2.2) * 255.0) as u8);
-        let piece = egui::Rect::from_min_size(bar.min + egui::vec2(5.0 * k as f32, 0.0), egui::vec2(5.0, height));
+        let piece =
+            egui::Rect::from_min_size(bar.min + egui::vec2(5.0 * k as f32, 0.0), egui::vec2(5.0, height));
         painter.rect_filled(piece, 0.0, Color32::from_rgb(c[0], c[1], c[2]));
     }
     text(bar.left_bottom(), egui::Align2::LEFT_TOP, "0".into());

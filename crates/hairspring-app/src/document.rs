@@ -20,7 +20,9 @@ const MOST_STEPS: usize = 200;
 
 /// The text of the scene that the window opens with: the built-in head, with so many hairs.
 pub fn builtin_text(style: &str, strands: u32, guides: u32) -> String {
-    format!("name = \"Built-in head\"\n\n[builtin]\nstyle = \"{style}\"\nstrands = {strands}\nguides = {guides}\n")
+    format!(
+        "name = \"Built-in head\"\n\n[builtin]\nstyle = \"{style}\"\nstrands = {strands}\nguides = {guides}\n"
+    )
 }
 
 /// A scene file being edited.
@@ -189,7 +191,8 @@ impl Document {
 
     /// Writes the text to a file, whole or not at all. Saved to another folder, the files that it names are named from there.
     pub fn save(&mut self, path: &Path) -> Result<(), AppError> {
-        let failed = |why: std::io::Error| AppError::new(format!("{} could not be written: {why}", path.display()));
+        let failed =
+            |why: std::io::Error| AppError::new(format!("{} could not be written: {why}", path.display()));
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let text = self.moved_to(folder)?;
         let mut file = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
@@ -228,7 +231,9 @@ impl Document {
         let named = place.look_up(&text);
         let list: Vec<String> = match named {
             Some(toml::Value::String(name)) => vec![name.clone()],
-            Some(toml::Value::Array(names)) => names.iter().filter_map(|n| n.as_str().map(str::to_owned)).collect(),
+            Some(toml::Value::Array(names)) => {
+                names.iter().filter_map(|n| n.as_str().map(str::to_owned)).collect()
+            }
             _ => Vec::new(),
         };
         let at = group.min(list.len().saturating_sub(1));
@@ -237,11 +242,14 @@ impl Document {
             return Ok(key(name));
         }
         // A preset, the built-in style's or the default: a material of its own begins from it.
-        let style = text.get("builtin").filter(|_| groom == 0).map(|b| {
-            b.get("style").and_then(toml::Value::as_str).unwrap_or("wavy").to_owned()
-        });
+        let style = text
+            .get("builtin")
+            .filter(|_| groom == 0)
+            .map(|b| b.get("style").and_then(toml::Value::as_str).unwrap_or("wavy").to_owned());
         let base = list.get(at).cloned().or(style);
-        let name = (1..).map(|k| if k == 1 { "hair".into() } else { format!("hair-{k}") }).find(|n: &String| !known(n));
+        let name = (1..)
+            .map(|k| if k == 1 { "hair".into() } else { format!("hair-{k}") })
+            .find(|n: &String| !known(n));
         let name = name.unwrap_or_default();
         let materials = edited.entry("material").or_insert(Item::Table(implicit()));
         if let Some(materials) = materials.as_table_like_mut() {
@@ -288,9 +296,9 @@ impl Document {
         let named = match key.field("material").look_up(&text) {
             Some(toml::Value::Array(names)) => names.first().and_then(toml::Value::as_str),
             Some(name) => name.as_str(),
-            None if groom == 0 => text.get("builtin").map(|b| {
-                b.get("style").and_then(toml::Value::as_str).unwrap_or(Style::default().name())
-            }),
+            None if groom == 0 => text
+                .get("builtin")
+                .map(|b| b.get("style").and_then(toml::Value::as_str).unwrap_or(Style::default().name())),
             None => None,
         }?;
         let own = text.get("material").and_then(|m| m.get(named));

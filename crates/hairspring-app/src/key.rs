@@ -108,12 +108,16 @@ impl FromStr for Key {
         for word in text.split('.') {
             let (name, place) = word.split_once('[').map_or((word, None), |(n, p)| (n, Some(p)));
             if name.is_empty() {
-                return Err(format!("'{text}' names no value; expected names such as groom[0].look.roughness"));
+                return Err(format!(
+                    "'{text}' names no value; expected names such as groom[0].look.roughness"
+                ));
             }
             steps.push(Step::Field(name.into()));
             if let Some(place) = place {
                 let place = place.strip_suffix(']').and_then(|p| p.parse().ok());
-                steps.push(Step::Place(place.ok_or_else(|| format!("'{word}' is no entry of a list, such as groom[0]"))?));
+                steps.push(Step::Place(
+                    place.ok_or_else(|| format!("'{word}' is no entry of a list, such as groom[0]"))?,
+                ));
             }
         }
         Ok(Self(steps))
@@ -155,7 +159,8 @@ mod tests {
 
     #[test]
     fn tables_on_the_way_are_made() {
-        let after = written("[[groom]]\nfile = \"a.hair\"\n", "groom[0].look.roughness", Some(0.5.into())).unwrap();
+        let after =
+            written("[[groom]]\nfile = \"a.hair\"\n", "groom[0].look.roughness", Some(0.5.into())).unwrap();
         assert_eq!(after, "[[groom]]\nfile = \"a.hair\"\n\n[groom.look]\nroughness = 0.5\n");
         let after = written("", "wind.velocity", Some(Value::from_iter([1.0, 0.0, 0.0]))).unwrap();
         assert_eq!(after, "[wind]\nvelocity = [1.0, 0.0, 0.0]\n");

@@ -36,11 +36,11 @@ mod snapshot;
 mod view;
 
 pub use app::{App, Options};
-pub use painter::Drawn;
 pub use document::Document;
 pub use error::AppError;
-pub use script::parse as read_script;
+pub use painter::Drawn;
 pub use script::Line;
+pub use script::parse as read_script;
 pub use session::{Action, Session};
 
 use eframe::egui;
@@ -95,7 +95,8 @@ fn without_library<R>(open: impl FnOnce() -> R) -> Result<R, String> {
     let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(open));
     std::panic::set_hook(Box::new(move |panic| usual(panic)));
     outcome.map_err(|panic| {
-        let what = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        let what =
+            panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
         match what.filter(|what| what.contains(SIGN)) {
             Some(what) => what.trim_end_matches('.').to_owned(),
             None => std::panic::resume_unwind(panic),

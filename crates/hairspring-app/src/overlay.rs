@@ -84,7 +84,9 @@ pub fn draw(painter: &egui::Painter, rect: egui::Rect, scenery: &Scenery, view: 
     }
     if overlays.frames {
         let (m, at) = scenery.anchor.matrix();
-        for (axis, color) in [(m.x_axis, Color32::RED), (m.y_axis, Color32::GREEN), (m.z_axis, Color32::LIGHT_BLUE)] {
+        for (axis, color) in
+            [(m.x_axis, Color32::RED), (m.y_axis, Color32::GREEN), (m.z_axis, Color32::LIGHT_BLUE)]
+        {
             pen.line(at, at + Vec3::from(axis) * 0.15, Stroke::new(2.0, color));
         }
     }

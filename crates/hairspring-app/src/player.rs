@@ -170,7 +170,11 @@ impl Work {
     fn run(&mut self) {
         loop {
             let idle = !self.playing || self.stages.is_empty();
-            let wait = if idle { Duration::from_secs(3600) } else { self.due.saturating_duration_since(Instant::now()) };
+            let wait = if idle {
+                Duration::from_secs(3600)
+            } else {
+                self.due.saturating_duration_since(Instant::now())
+            };
             match self.inbox.recv_timeout(wait) {
                 Ok(order) => {
                     let mut news = self.obey(order);
@@ -199,7 +203,8 @@ impl Work {
     fn obey(&mut self, order: Order) -> bool {
         match order {
             Order::Open(scene, other) => {
-                let stages: Result<Vec<_>, _> = [Some(scene), other].into_iter().flatten().map(|s| open(*s)).collect();
+                let stages: Result<Vec<_>, _> =
+                    [Some(scene), other].into_iter().flatten().map(|s| open(*s)).collect();
                 match stages {
                     Ok(stages) => {
                         self.stages = stages;
@@ -212,7 +217,9 @@ impl Work {
                 self.scene += 1;
             }
             Order::Retune(scene, other) => {
-                for ((stage, _), scene) in self.stages.iter_mut().zip([Some(scene), other].into_iter().flatten()) {
+                for ((stage, _), scene) in
+                    self.stages.iter_mut().zip([Some(scene), other].into_iter().flatten())
+                {
                     if let Err(why) = stage.retune(*scene) {
                         *lock(&self.shared.error) = Some(why.into());
                     }
@@ -301,7 +308,9 @@ impl Work {
         }
         let mut next = self.spare();
         // Nobody else has it: `spare` saw to that.
-        let (Some(snapshot), Some((first, _))) = (Arc::get_mut(&mut next), self.stages.first()) else { return };
+        let (Some(snapshot), Some((first, _))) = (Arc::get_mut(&mut next), self.stages.first()) else {
+            return;
+        };
         let fresh = |(_, still): &(Stage, Arc<Still>)| Scenery::new(still.clone());
         if snapshot.scene != self.scene || snapshot.stages.len() != self.stages.len() {
             snapshot.stages = self.stages.iter().map(fresh).collect();
@@ -312,7 +321,8 @@ impl Work {
         let picked = self.picked;
         snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));
         (snapshot.step, snapshot.scene, snapshot.time) = (self.step, self.scene, first.time());
-        (snapshot.report, snapshot.took, snapshot.reset_strands) = (self.report, self.took, self.reset_strands);
+        (snapshot.report, snapshot.took, snapshot.reset_strands) =
+            (self.report, self.took, self.reset_strands);
         if let Some(old) = lock(&self.shared.latest).replace(next) {
             self.pool.push(old);
         }

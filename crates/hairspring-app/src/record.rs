@@ -94,7 +94,12 @@ pub struct Recorder {
 
 impl Recorder {
     /// Begins; the play is paused and goes on by what is recorded.
-    pub fn new(wish: Wish, session: &mut Session, snapshot: &Snapshot, wake: impl Fn() + Send + 'static) -> Result<Self, AppError> {
+    pub fn new(
+        wish: Wish,
+        session: &mut Session,
+        snapshot: &Snapshot,
+        wake: impl Fn() + Send + 'static,
+    ) -> Result<Self, AppError> {
         let sink = Sink::new(&wish)?;
         let frames = match wish.kind {
             Kind::Still => 1,
@@ -115,7 +120,12 @@ impl Recorder {
     }
 
     /// Goes on as far as there is something to do; `Some` when it ended, with what to say.
-    pub fn advance(&mut self, session: &mut Session, snapshot: &Arc<Snapshot>, sight: &Sight) -> Option<Result<String, AppError>> {
+    pub fn advance(
+        &mut self,
+        session: &mut Session,
+        snapshot: &Arc<Snapshot>,
+        sight: &Sight,
+    ) -> Option<Result<String, AppError>> {
         while let Ok(outcome) = self.done.try_recv() {
             if let Err(why) = outcome {
                 return Some(self.end(session, Err(why)));
@@ -192,7 +202,9 @@ impl Sink {
             (Kind::Still, "png" | "jpg") => None,
             (Kind::Still, _) => return wrong("a .png or .jpg"),
             (Kind::Pictures, "png") if sequence_path(&path, 1).is_some() => None,
-            (Kind::Pictures, _) => return wrong("a .png with # for the frame's number, such as hair.####.png"),
+            (Kind::Pictures, _) => {
+                return wrong("a .png with # for the frame's number, such as hair.####.png");
+            }
             (_, "mp4") => Some(ClipWriter::create(&path, SIZE[0], SIZE[1], f64::from(RATE))?),
             _ => return wrong("a .mp4"),
         };

@@ -60,7 +60,19 @@ pub enum Line {
 
 /// Names of what [`Line::Switch`] switches.
 pub const SWITCHES: [&str; 13] = [
-    "compare", "second", "graphs", "presets", "help", "panels", "hair", "body", "colliders", "slice", "volume", "frames", "roots",
+    "compare",
+    "second",
+    "graphs",
+    "presets",
+    "help",
+    "panels",
+    "hair",
+    "body",
+    "colliders",
+    "slice",
+    "volume",
+    "frames",
+    "roots",
 ];
 
 /// Reads a script.
@@ -71,7 +83,8 @@ pub fn parse(text: &str) -> Result<VecDeque<Line>, AppError> {
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
-        let read = read(line).map_err(|why| AppError::new(format!("the script, line {}: {why}", number + 1)))?;
+        let read =
+            read(line).map_err(|why| AppError::new(format!("the script, line {}: {why}", number + 1)))?;
         lines.push_back(read);
     }
     Ok(lines)
@@ -95,7 +108,9 @@ fn read(line: &str) -> Result<Line, String> {
         other => Err(format!("'{other}' is neither on nor off")),
     };
     let record = |kind: Kind| -> Result<Line, String> {
-        let (file, seconds) = rest.rsplit_once(char::is_whitespace).ok_or_else(|| format!("`{word}` needs a file and seconds"))?;
+        let (file, seconds) = rest
+            .rsplit_once(char::is_whitespace)
+            .ok_or_else(|| format!("`{word}` needs a file and seconds"))?;
         let seconds = seconds.parse().map_err(|_| format!("'{seconds}' is no number of seconds"))?;
         Ok(Line::Record(kind, file.trim().into(), seconds))
     };
@@ -108,7 +123,10 @@ fn read(line: &str) -> Result<Line, String> {
         "speed" => Line::Speed(one()?),
         "set" => {
             let (key, value) = rest.split_once(char::is_whitespace).ok_or("`set` needs a key and a value")?;
-            let value = value.trim().parse().map_err(|_| format!("'{value}' is no value as a scene file has them"))?;
+            let value = value
+                .trim()
+                .parse()
+                .map_err(|_| format!("'{value}' is no value as a scene file has them"))?;
             Line::Set(key.parse()?, Some(value))
         }
         "unset" => Line::Set(rest.parse()?, None),
@@ -131,7 +149,8 @@ fn read(line: &str) -> Result<Line, String> {
             Line::Show(Some(known.ok_or_else(|| format!("'{rest}' is nothing that colours show"))?))
         }
         "overlay" => {
-            let (name, state) = rest.split_once(char::is_whitespace).ok_or("`overlay` needs a name and on or off")?;
+            let (name, state) =
+                rest.split_once(char::is_whitespace).ok_or("`overlay` needs a name and on or off")?;
             switch(name, on(state.trim())?)?
         }
         "still" => Line::Record(Kind::Still, path()?, 0.0),
@@ -161,7 +180,17 @@ mod tests {
         let text = "wait 30\nset groom[0].look.roughness 0.5\nunset wind.gust\nhand grab\ndrag 0.4 0.6 0.7 0.5 30\n# no\n\nshot a b.png\n\
                     overlay slice on\ncompare off\nshow natural\nshow speed\nclip x.mp4 2\nquit";
         assert_eq!(parse(text).unwrap().len(), 12);
-        for wrong in ["fly", "set a", "set a [", "drag 1 2 3", "hand foot", "show nothing", "compare maybe", "wait x", "clip a.mp4"] {
+        for wrong in [
+            "fly",
+            "set a",
+            "set a [",
+            "drag 1 2 3",
+            "hand foot",
+            "show nothing",
+            "compare maybe",
+            "wait x",
+            "clip a.mp4",
+        ] {
             let error = parse(&format!("play\n{wrong}")).unwrap_err().to_string();
             assert!(error.contains("line 2"), "{wrong}: {error}");
         }

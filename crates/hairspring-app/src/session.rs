@@ -179,7 +179,8 @@ impl Session {
                 self.document.save(&path)?;
             }
             Action::Compare(on) => {
-                self.second = on.then(|| Document::new(&self.base(), self.document.text().to_owned())).transpose()?;
+                self.second =
+                    on.then(|| Document::new(&self.base(), self.document.text().to_owned())).transpose()?;
                 self.on_second = on;
                 self.begin()?;
             }

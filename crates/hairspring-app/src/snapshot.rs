@@ -146,27 +146,32 @@ impl Scenery {
 
     /// Draws by `draw` what is seen by this camera: every `every`-th hair, those that are drawn being wider by as much.
     pub fn draw<R>(&self, sight: &Sight, draw: impl FnOnce(&Frame) -> R) -> R {
-        let every = sight.every.max(1);
-        let thinned: Vec<Thin> = match every {
-            1 => Vec::new(),
-            every => self.still.grooms.iter().zip(&self.points).map(|(g, p)| Thin::new(g, p, every)).collect(),
-        };
-        let colors: Vec<Vec<Vec3>> = self.values.iter().map(|v| crate::ramp::colors(v, sight.range)).collect();
-        let thin_colors: Vec<Vec<Vec3>> = match every {
-            1 => Vec::new(),
-            _ => thinned.iter().zip(&colors).map(|(thin, colors)| thin.pick(colors)).collect(),
-        };
+        let thinned: Vec<Option<Thin>> = self
+            .still
+            .grooms
+            .iter()
+            .zip(&self.points)
+            .map(|(groom, points)| {
+                // Brows are few, and stay.
+                let every = sight.every.min(groom.strands() / FEW).max(1);
+                (every > 1).then(|| Thin::new(groom, points, every))
+            })
+            .collect();
+        let colors: Vec<Vec<Vec3>> =
+            self.values.iter().map(|v| crate::ramp::colors(v, sight.range)).collect();
+        let picked: Vec<Option<Vec<Vec3>>> =
+            thinned.iter().enumerate().map(|(g, thin)| Some(thin.as_ref()?.pick(colors.get(g)?))).collect();
         let hair: Vec<HairDraw> = (0..self.points.len())
             .map(|g| {
                 let still = &self.still.grooms[g];
-                match thinned.get(g) {
+                match &thinned[g] {
                     Some(thin) => HairDraw {
                         points: &thin.points,
                         offsets: &thin.offsets,
                         radii: &thin.radii,
-                        colors: thin_colors.get(g).unwrap_or(&thin.colors),
+                        colors: picked[g].as_ref().unwrap_or(&thin.colors),
                         look: &self.looks[g],
-                        width_scale: sight.width * every as f32,
+                        width_scale: sight.width * thin.every as f32,
                     },
                     None => HairDraw {
                         points: &self.points[g],
@@ -196,8 +201,12 @@ impl Scenery {
     }
 }
 
+/// Strands of a groom that are few: brows, a test.
+const FEW: usize = 500;
+
 /// Every so-manieth strand of a groom.
 struct Thin {
+    every: usize,
     strands: Vec<std::ops::Range<usize>>,
     points: Vec<Vec3>,
     offsets: Vec<u32>,
@@ -209,8 +218,14 @@ impl Thin {
     fn new(still: &StillGroom, points: &[Vec3], every: usize) -> Self {
         let strands: Vec<_> =
             still.offsets.windows(2).step_by(every).map(|w| w[0] as usize..w[1] as usize).collect();
-        let mut thin =
-            Self { strands, points: Vec::new(), offsets: vec![0], radii: Vec::new(), colors: Vec::new() };
+        let mut thin = Self {
+            every,
+            strands,
+            points: Vec::new(),
+            offsets: vec![0],
+            radii: Vec::new(),
+            colors: Vec::new(),
+        };
         for strand in thin.strands.clone() {
             thin.points.extend_from_slice(&points[strand.clone()]);
             thin.radii.extend_from_slice(&still.radii[strand.clone()]);

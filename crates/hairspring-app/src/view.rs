@@ -34,9 +34,24 @@ pub enum Hand {
 impl Hand {
     /// All of them, with their names, keys and what they do.
     pub const ALL: [(Self, &'static str, egui::Key, &'static str); 5] = [
-        (Self::Look, "Look", egui::Key::Num1, "Drag to turn; with Shift or the middle button to move; wheel to come nearer. The right button turns with every tool."),
-        (Self::Grab, "Grab", egui::Key::Num2, "Press on hair to take hold of a lock, drag to pull, release to let go."),
-        (Self::Ball, "Ball", egui::Key::Num3, "Drag to push a ball through the hair; it is as large as its slider says."),
+        (
+            Self::Look,
+            "Look",
+            egui::Key::Num1,
+            "Drag to turn; with Shift or the middle button to move; wheel to come nearer. The right button turns with every tool.",
+        ),
+        (
+            Self::Grab,
+            "Grab",
+            egui::Key::Num2,
+            "Press on hair to take hold of a lock, drag to pull, release to let go.",
+        ),
+        (
+            Self::Ball,
+            "Ball",
+            egui::Key::Num3,
+            "Drag to push a ball through the hair; it is as large as its slider says.",
+        ),
         (Self::Head, "Head", egui::Key::Num4, "Drag the head; it comes back when it is let go of."),
         (Self::Pick, "Pick", egui::Key::Num5, "Press on a strand to see its numbers."),
     ];
@@ -63,7 +78,15 @@ pub struct Overlays {
 
 impl Default for Overlays {
     fn default() -> Self {
-        Self { colliders: false, slice: false, volume: false, frames: false, roots: false, hair: true, body: true }
+        Self {
+            colliders: false,
+            slice: false,
+            volume: false,
+            frames: false,
+            roots: false,
+            hair: true,
+            body: true,
+        }
     }
 }
 
@@ -174,7 +197,8 @@ impl View {
         let rect = response.rect;
         let Some(orbit) = &mut self.orbit else { return };
         let part = |v: egui::Vec2| Vec2::new(v.x, v.y) / rect.height().max(1.0);
-        let place = |p: egui::Pos2| Vec2::new((p.x - rect.left()) / rect.width(), (p.y - rect.top()) / rect.height());
+        let place =
+            |p: egui::Pos2| Vec2::new((p.x - rect.left()) / rect.width(), (p.y - rect.top()) / rect.height());
         let (shift, scroll, zoom) =
             ui.input(|i| (i.modifiers.shift, i.smooth_scroll_delta().y, i.zoom_delta()));
         if response.hovered() {

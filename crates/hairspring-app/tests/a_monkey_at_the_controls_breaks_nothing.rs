@@ -32,7 +32,8 @@ impl Monkey {
     fn act(&mut self, window: &mut Harness<'static, App>) {
         use egui::{Event, Key, Modifiers, PointerButton};
         let at = self.place();
-        let button = [PointerButton::Primary, PointerButton::Secondary, PointerButton::Middle][self.below(3) as usize];
+        let button =
+            [PointerButton::Primary, PointerButton::Secondary, PointerButton::Middle][self.below(3) as usize];
         let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
         match self.below(10) {
             0..=3 => {
@@ -61,7 +62,23 @@ impl Monkey {
                 });
             }
             8 => {
-                let keys = [Key::Space, Key::R, Key::F, Key::C, Key::G, Key::P, Key::Tab, Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Escape, Key::ArrowRight, Key::Home];
+                let keys = [
+                    Key::Space,
+                    Key::R,
+                    Key::F,
+                    Key::C,
+                    Key::G,
+                    Key::P,
+                    Key::Tab,
+                    Key::Num1,
+                    Key::Num2,
+                    Key::Num3,
+                    Key::Num4,
+                    Key::Num5,
+                    Key::Escape,
+                    Key::ArrowRight,
+                    Key::Home,
+                ];
                 window.key_press(keys[self.below(keys.len() as u64) as usize]);
             }
             _ => {

@@ -80,7 +80,8 @@ fn settings_change_while_hair_moves_and_the_play_goes_on() {
     let mut session = Session::new(document, || ()).unwrap();
     let wait = |session: &Session, step: u64| {
         for _ in 0..6000 {
-            if let Some(snapshot) = session.latest().filter(|s| s.scene == session.begun() && s.step >= step) {
+            if let Some(snapshot) = session.latest().filter(|s| s.scene == session.begun() && s.step >= step)
+            {
                 return snapshot;
             }
             std::thread::sleep(std::time::Duration::from_millis(5));
@@ -89,7 +90,9 @@ fn settings_change_while_hair_moves_and_the_play_goes_on() {
     };
     let before = wait(&session, 5);
     let key = "wind.velocity".parse().unwrap();
-    session.act(hairspring_app::Action::Set(key, Some(toml_edit::Value::from_iter([5.0, 0.0, 0.0])))).unwrap();
+    session
+        .act(hairspring_app::Action::Set(key, Some(toml_edit::Value::from_iter([5.0, 0.0, 0.0]))))
+        .unwrap();
     let after = wait(&session, before.step + 30);
     assert_eq!(after.scene, before.scene, "a setting does not begin the scene anew");
     assert!(after.time > before.time);

@@ -2,7 +2,7 @@
 //! hair is held by its length alone, which no point of it ever leaves.
 //!
 //! Curls of 40 cm of hair hang 15 cm long. A root that jerks up and down by 10 cm pulls them open: a tether of 1.2 lets them go to 18 cm and the little that
-//! its spring gives way.
+//! it gives way.
 
 use glam::Vec3;
 use hairspring::{

@@ -14,18 +14,9 @@ use std::{
 /// Longest that a picture of moving hair should take [s]: 20 a second, of which the window's own work leaves 15.
 const BUDGET: f32 = 0.05;
 
-/// Parts of the full size, and every how-manieth hair, from the finest to the coarsest: each takes about two thirds of the time of the one before.
-const LEVELS: [(f32, usize); 9] = [
-    (1.0, 1),
-    (0.75, 1),
-    (0.75, 2),
-    (0.5, 2),
-    (0.5, 4),
-    (0.5, 8),
-    (0.4, 12),
-    (0.33, 16),
-    (0.25, 32),
-];
+/// Parts of the full size, and every how-manieth hair, from the finest to the coarsest. Fewer hairs than the last are no picture of a head of hair.
+const LEVELS: [(f32, usize); 8] =
+    [(1.0, 1), (0.75, 1), (0.75, 2), (0.5, 2), (0.5, 4), (0.4, 4), (0.33, 8), (0.25, 8)];
 
 struct Job {
     snapshot: Arc<Snapshot>,
@@ -63,6 +54,8 @@ impl CpuPainter {
         let (finished, done) = channel();
         let ctx = ctx.clone();
         std::thread::spawn(move || {
+            // Threads of its own: in one pool, a step of the simulation would wait behind a whole picture.
+            let Ok(pool) = rayon::ThreadPoolBuilder::new().build() else { return };
             let mut renderer: Option<(Renderer, [u32; 2])> = None;
             for job in todo {
                 let began = Instant::now();
@@ -71,7 +64,7 @@ impl CpuPainter {
                 }
                 let Some((renderer, _)) = &mut renderer else { continue };
                 let Some(scenery) = job.snapshot.stages.get(job.stage) else { continue };
-                let image = scenery.draw(&job.sight, |frame| renderer.draw(frame).clone());
+                let image = pool.install(|| scenery.draw(&job.sight, |frame| renderer.draw(frame).clone()));
                 drop(job.snapshot);
                 let took = began.elapsed().as_secs_f32();
                 if finished.send(Done { image, took, level: job.level }).is_err() {
@@ -87,8 +80,8 @@ impl CpuPainter {
             texture: None,
             shown: None,
             // From where a slow machine is quick; a fast one is finer within a second.
-            level: 4,
-            seen: 4,
+            level: 3,
+            seen: 3,
             took: 0.0,
             moved: Instant::now(),
         }

@@ -1,11 +1,7 @@
 //! The picture by the GPU that also draws the window: strands are uploaded, drawn, and shown without coming back.
 
 use crate::snapshot::{Sight, Snapshot};
-use eframe::{
-    egui::{self, TextureId},
-    egui_wgpu::RenderState,
-    wgpu::FilterMode,
-};
+use eframe::{egui::TextureId, egui_wgpu::RenderState, wgpu::FilterMode};
 use hairspring_view::gpu::{Gpu, GpuRenderer};
 
 /// Draws one view.
@@ -23,7 +19,14 @@ impl GpuPainter {
     /// On the window's device.
     pub fn new(state: &RenderState) -> Self {
         let gpu = Gpu::from_parts(state.device.clone(), state.queue.clone());
-        Self { state: state.clone(), renderer: GpuRenderer::new(&gpu), texture: None, shown: None, took: 0.0, valued: false }
+        Self {
+            state: state.clone(),
+            renderer: GpuRenderer::new(&gpu),
+            texture: None,
+            shown: None,
+            took: 0.0,
+            valued: false,
+        }
     }
 
     /// Another on the same device.
@@ -32,7 +35,13 @@ impl GpuPainter {
     }
 
     /// Draws what has changed.
-    pub fn draw(&mut self, snapshot: &Snapshot, stage: usize, sight: &Sight, size: [u32; 2]) -> Option<TextureId> {
+    pub fn draw(
+        &mut self,
+        snapshot: &Snapshot,
+        stage: usize,
+        sight: &Sight,
+        size: [u32; 2],
+    ) -> Option<TextureId> {
         let scenery = snapshot.stages.get(stage)?;
         let wanted = (snapshot.scene, snapshot.step, *sight, size);
         if self.shown != Some(wanted) {
@@ -52,7 +61,12 @@ impl GpuPainter {
         match &mut self.texture {
             Some((_, shown)) if *shown == size => {}
             Some((id, shown)) => {
-                painter.update_egui_texture_from_wgpu_texture(&self.state.device, view, FilterMode::Linear, *id);
+                painter.update_egui_texture_from_wgpu_texture(
+                    &self.state.device,
+                    view,
+                    FilterMode::Linear,
+                    *id,
+                );
                 *shown = size;
             }
             None => {

@@ -75,7 +75,8 @@ impl Files {
         let mut stays = true;
         let mut decision = None;
         egui::Window::new(title).open(&mut stays).collapsible(false).resizable(false).show(ctx, |ui| {
-            let field = egui::TextEdit::singleline(&mut self.path).hint_text("path of the file").desired_width(360.0);
+            let field =
+                egui::TextEdit::singleline(&mut self.path).hint_text("path of the file").desired_width(360.0);
             let typed = ui.add(field);
             let entered = typed.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             if let For::Record(Kind::Clip | Kind::Pictures | Kind::Turntable) = what {

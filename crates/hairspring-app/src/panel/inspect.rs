@@ -80,11 +80,7 @@ impl History {
                 });
             };
             let took = ["body", "simulation", "follow", "step"];
-            plot(
-                ui,
-                "Time of a step [ms]",
-                (0..4).map(|k| self.line(took[k], move |m| m.took[k])).collect(),
-            );
+            plot(ui, "Time of a step [ms]", (0..4).map(|k| self.line(took[k], move |m| m.took[k])).collect());
             plot(
                 ui,
                 "Stretch [%]",
@@ -104,7 +100,10 @@ impl History {
 pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) {
     let Some(scenery) = snapshot.stages.first() else { return };
     let [guides, strands, points, all] = scenery.still.counts;
-    ui.label(format!("{strands} hairs of {all} points; {guides} simulated with {points} points; {}", scenery.still.instruction_set));
+    ui.label(format!(
+        "{strands} hairs of {all} points; {guides} simulated with {points} points; {}",
+        scenery.still.instruction_set
+    ));
     for (k, scenery) in snapshot.stages.iter().enumerate() {
         let m = &scenery.measure;
         let side = match snapshot.stages.len() {
@@ -112,7 +111,8 @@ pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) 
             _ if k == 0 => "left: ",
             _ => "right: ",
         };
-        let volume = scenery.volumes.iter().flatten().map(|v| format!(", volume {:.0} %", 100.0 * v.share)).next();
+        let volume =
+            scenery.volumes.iter().flatten().map(|v| format!(", volume {:.0} %", 100.0 * v.share)).next();
         ui.label(format!(
             "{side}stretch {:.2} % mean, {:.2} % worst; {} points and {} segments inside{}",
             100.0 * m.stretch_mean,
@@ -147,7 +147,10 @@ pub fn picked(ui: &mut Ui, snapshot: &Snapshot, actions: &mut Vec<Action>) {
             ui.monospace(value);
             ui.end_row();
         };
-        row("simulated", if figures.simulated { "yes".into() } else { format!("follows strand {}", figures.guide) });
+        row(
+            "simulated",
+            if figures.simulated { "yes".into() } else { format!("follows strand {}", figures.guide) },
+        );
         row("points", figures.points.to_string());
         row("length", format!("{:.1} mm", 1e3 * figures.length));
         row("worst stretch", format!("{:.3} %", 100.0 * figures.stretch_max));

@@ -21,9 +21,15 @@ pub const AIR: [List; 2] = [
         name: "wind_source",
         label: "Sources of wind",
         kinds: &[
-            ("Fan", "shape.fan = { center = [0.0, 1.55, 0.8], axis = [0.0, 0.0, -1.0], radius = 0.15, speed = 4.0 }"),
+            (
+                "Fan",
+                "shape.fan = { center = [0.0, 1.55, 0.8], axis = [0.0, 0.0, -1.0], radius = 0.15, speed = 4.0 }",
+            ),
             ("Point", "shape.point = { center = [0.3, 1.5, 0.0], radius = 0.05, speed = 2.0 }"),
-            ("Vortex", "shape.vortex = { center = [0.0, 1.5, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.2, speed = 2.0 }"),
+            (
+                "Vortex",
+                "shape.vortex = { center = [0.0, 1.5, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.2, speed = 2.0 }",
+            ),
         ],
     },
     List {
@@ -51,7 +57,10 @@ pub const COLLISION: [List; 2] = [
         kinds: &[
             ("Grab", "tool.grab = { center = [0.1, 1.35, 0.1], radius = 0.02 }"),
             ("Comb", "tool.comb = { a = [-0.1, 1.6, 0.15], b = [0.1, 1.6, 0.15], radius = 0.02 }"),
-            ("Tie", "tool.tie = { center = [0.0, 1.5, -0.13], axis = [0.0, -0.3, -1.0], radius = 0.015, reach = 0.1 }"),
+            (
+                "Tie",
+                "tool.tie = { center = [0.0, 1.5, -0.13], axis = [0.0, -0.3, -1.0], radius = 0.015, reach = 0.1 }",
+            ),
         ],
     },
 ];
@@ -146,6 +155,10 @@ fn number(ui: &mut Ui, x: f64) -> Option<f64> {
     // A hundredth of the number a point, or a centimetre's hundredth near 0.
     let speed = (x.abs() * 0.01).max(if x == 0.0 || x.abs() > 1e-4 { 1e-3 } else { 0.0 });
     let drag = DragValue::new(&mut new).speed(speed);
-    let drag = if x != 0.0 && x.abs() < 1e-3 { drag.custom_formatter(|x, _| format!("{x:.2e}")) } else { drag.max_decimals(3) };
+    let drag = if x != 0.0 && x.abs() < 1e-3 {
+        drag.custom_formatter(|x, _| format!("{x:.2e}"))
+    } else {
+        drag.max_decimals(3)
+    };
     ui.add(drag).changed().then_some(new)
 }

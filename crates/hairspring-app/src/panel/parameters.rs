@@ -9,6 +9,9 @@ use eframe::egui::{self, DragValue, RichText, Slider, Ui};
 use std::sync::LazyLock;
 use toml_edit::Value;
 
+/// Width of names [points].
+const LABEL: f32 = 116.0;
+
 /// Effective values of a scene that says nothing, by the names of [`crate::document::Document::effective`].
 static DEFAULTS: LazyLock<toml::Table> = LazyLock::new(crate::document::defaults);
 
@@ -21,9 +24,11 @@ pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, actions: &mut V
         for group in Group::ALL {
             let sought = filter.trim().to_lowercase();
             let found = |p: &&Parameter| {
-                sought.is_empty() || [p.label, p.name, p.tip].iter().any(|t| t.to_lowercase().contains(&sought))
+                sought.is_empty()
+                    || [p.label, p.name, p.tip].iter().any(|t| t.to_lowercase().contains(&sought))
             };
-            let parameters: Vec<_> = parameter::ALL.iter().filter(|p| p.group == group).filter(found).collect();
+            let parameters: Vec<_> =
+                parameter::ALL.iter().filter(|p| p.group == group).filter(found).collect();
             if parameters.is_empty() {
                 continue;
             }
@@ -94,7 +99,11 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
             } else {
                 format!("{} [{}]\n\n{}", parameter.tip, parameter.unit, parameter.name)
             };
-            ui.add_sized([104.0, 18.0], egui::Label::new(name).truncate().halign(egui::Align::Min)).on_hover_text(&tip);
+            let left = egui::Layout::left_to_right(egui::Align::Center);
+            ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
+                ui.set_min_width(LABEL);
+                ui.add(egui::Label::new(name).truncate()).on_hover_text(&tip);
+            });
             let response = control(ui, parameter, now, &mut edit);
             if let Some(response) = response {
                 response.on_hover_text(&tip);
@@ -177,13 +186,14 @@ fn control(
         }
         Kind::Choice(words) => {
             let chosen = now.and_then(toml::Value::as_str).unwrap_or(words[0]);
-            let combo = egui::ComboBox::from_id_salt(parameter.name).selected_text(chosen).show_ui(ui, |ui| {
-                for word in words {
-                    if ui.selectable_label(*word == chosen, *word).clicked() && *word != chosen {
-                        edit(Some((*word).into()));
+            let combo =
+                egui::ComboBox::from_id_salt(parameter.name).selected_text(chosen).show_ui(ui, |ui| {
+                    for word in words {
+                        if ui.selectable_label(*word == chosen, *word).clicked() && *word != chosen {
+                            edit(Some((*word).into()));
+                        }
                     }
-                }
-            });
+                });
             Some(combo.response)
         }
         Kind::Color => {
@@ -237,7 +247,9 @@ fn control(
 fn written<'a>(slider: Slider<'a>, parameter: &Parameter) -> Slider<'a> {
     let unit = parameter.unit;
     let far = match parameter.kind {
-        Kind::Number { min, max, .. } | Kind::Maybe { min, max, .. } => max >= 1e5 || max.abs().max(min.abs()) < 1e-2,
+        Kind::Number { min, max, .. } | Kind::Maybe { min, max, .. } => {
+            max >= 1e5 || max.abs().max(min.abs()) < 1e-2
+        }
         _ => false,
     };
     let slider = if far { slider.custom_formatter(|x, _| format!("{x:.2e}")) } else { slider };

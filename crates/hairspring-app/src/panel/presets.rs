@@ -18,7 +18,11 @@ const PRESETS: [(&str, &str, &str); 8] = [
     ("Curly", "curly", ""),
     ("Coily", "coily", ""),
     ("Short fur", "short-fur", ""),
-    ("In the wind", "straight", "\n[wind]\nvelocity = [3.0, 0.0, -1.0]\ngust = 0.6\ngust_rate = 0.7\n\n[turbulence]\nstrength = 0.8\n"),
+    (
+        "In the wind",
+        "straight",
+        "\n[wind]\nvelocity = [3.0, 0.0, -1.0]\ngust = 0.6\ngust_rate = 0.7\n\n[turbulence]\nstrength = 0.8\n",
+    ),
     ("Full and firm", "wavy", "\n[volume]\nmethod = \"incompressible\"\n"),
     (
         "On end",
@@ -43,7 +47,13 @@ pub struct Presets {
 
 impl Presets {
     /// Shows them; `hairs`: how many this machine draws well, and how many guides of them.
-    pub fn show(&mut self, ctx: &egui::Context, open: &mut bool, hairs: (u32, u32), actions: &mut Vec<Action>) {
+    pub fn show(
+        &mut self,
+        ctx: &egui::Context,
+        open: &mut bool,
+        hairs: (u32, u32),
+        actions: &mut Vec<Action>,
+    ) {
         if !*open {
             return;
         }

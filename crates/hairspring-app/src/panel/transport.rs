@@ -60,7 +60,9 @@ pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<
             }
         }
         if matches!(view.hand, Hand::Ball | Hand::Grab) {
-            ui.add(egui::Slider::new(&mut view.reach, 0.002..=0.2).logarithmic(true).suffix(" m").text("Radius"));
+            ui.add(
+                egui::Slider::new(&mut view.reach, 0.002..=0.2).logarithmic(true).suffix(" m").text("Radius"),
+            );
         }
         ui.separator();
         let shown = session.shown();
@@ -102,7 +104,11 @@ pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<
             });
         });
         let mut compare = session.second().is_some();
-        if ui.checkbox(&mut compare, "Compare").on_hover_text("C: a second scene beside it, on the same motion").changed() {
+        if ui
+            .checkbox(&mut compare, "Compare")
+            .on_hover_text("C: a second scene beside it, on the same motion")
+            .changed()
+        {
             actions.push(Action::Compare(compare));
         }
     });

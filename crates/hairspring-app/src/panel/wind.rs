@@ -32,7 +32,8 @@ pub fn pad(ui: &mut Ui, wind: &mut [f32; 3], reach: f32) -> bool {
         let tip = middle + way / speed * (speed / reach).sqrt().min(1.0) * RADIUS;
         arrow(painter, middle, tip);
     }
-    response.on_hover_text("Wind from above: drag the arrow; the head looks down the rose. The middle is calm.");
+    response
+        .on_hover_text("Wind from above: drag the arrow; the head looks down the rose. The middle is calm.");
     changed
 }
 

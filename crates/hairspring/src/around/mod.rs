@@ -6,7 +6,7 @@
 //! | effect | |
 //! | --- | --- |
 //! | [`ghost`] | a weak pull to the rest shape |
-//! | [`tether`] | a firm pull back to as far from the root as at rest |
+//! | [`tether`] | nothing goes farther from its root than it may |
 //! | [`grab`] | a hand holds what is in a ball |
 //! | [`comb`] | tines take hair along across itself |
 //! | [`tie`] | a ring gathers strands |

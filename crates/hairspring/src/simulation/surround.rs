@@ -15,10 +15,10 @@ impl Simulation {
         let pressed = self.volume.as_ref().is_some_and(|volume| volume.acts());
         let sheltered = self.shelter.is_on() && drive.air.moves();
         let tethered = self.tethers.iter().any(Option::is_some);
-        let gripped = ghosts || tethered || charged || !self.tools.used.is_empty();
+        let gripped = ghosts || charged || !self.tools.used.is_empty();
         let tines = self.tools.used.iter().any(|used| !used.tool.binds());
         let blown = sheltered || drive.air.varies();
-        let kinds = Kinds { push: pressed, grip: gripped, tines, air: blown };
+        let kinds = Kinds { push: pressed || tethered, grip: gripped, tines, air: blown };
         self.around.prepare(self.state.len(), kinds, pressed);
         let anchor = self.settings.anchor;
         let obstacles = (drive.obstacles, carried);
@@ -30,7 +30,7 @@ impl Simulation {
             }
         }
         self.move_roots(drive);
-        if !gripped && !blown {
+        if !gripped && !tethered && !blown {
             return;
         }
         let frame = Frame { anchor: [anchor, drive.anchor], dt: drive.dt };
