@@ -5,7 +5,7 @@ use super::{
     memory::{Generation, Store},
     meshes::Meshes,
     picture::{Develop, Reader, Targets},
-    ribbons::{Ribbons, most_pieces},
+    ribbons::Ribbons,
     strands::Strands,
     surfaces::Surfaces,
     uniforms::{Map, Style, Uniforms},
@@ -97,17 +97,8 @@ impl GpuRenderer {
         let middle = (0.5 * (low + high) - view.eye).dot(view.forward);
         let reach = 0.5 * (high - low).dot(view.forward.abs()) + 1e-3;
         let depths = [(middle - reach).max(0.0), middle.max(0.0) + reach];
-        let uniforms = Uniforms::new(
-            frame,
-            &view,
-            size,
-            depths,
-            grid.as_ref(),
-            &map,
-            slots,
-            self.meshes.count,
-            most_pieces(slots),
-        );
+        let (grid_there, triangles) = (grid.as_ref(), self.meshes.count);
+        let uniforms = Uniforms::new(frame, &view, depths, grid_there, &map, slots, triangles);
         self.uniforms.write(gpu, 0, &[uniforms]);
         let sent = Instant::now();
 
