@@ -5,17 +5,15 @@ use super::Gpu;
 use crate::{
     body::skin,
     camera,
-    hair::{blend, color, project, ribbon, segment, shade},
+    hair::{color, project, ribbon, segment, shade},
     shadow::{self, density, depth_map, splat},
-    tile, tonemap,
+    tonemap,
 };
 use glam::{Mat3, Vec3};
 use std::fmt::Write;
 
 /// Pieces that one instance of the indexed draw holds: its 4 × BATCH vertices are numbered in 16 bits.
 pub(super) const BATCH: u32 = 1024;
-/// Phases in which pieces are drawn.
-pub(super) const PHASES: u32 = 6;
 /// Most pieces of one depth that are brought into order.
 const TIDY: u32 = 1024;
 /// Samples of a pixel for the outlines of bodies.
@@ -43,7 +41,6 @@ pub(super) const BODY: Source = source!("body": "frame", "light", "body");
 pub(super) const SETTLE: Source = source!("settle": "frame", "settle");
 pub(super) const POINTS: Source = source!("points": "frame", "light", "fibre", "strands", "points");
 pub(super) const SORT: Source = source!("sort": "frame", "curve", "sort");
-pub(super) const SURVEY: Source = source!("survey": "frame", "survey");
 pub(super) const RIBBON: Source = source!("ribbon": "frame", "fibre", "curve", "ribbon");
 pub(super) const DEVELOP: Source = source!("develop": "frame", "develop");
 
@@ -92,7 +89,6 @@ fn constants() -> String {
         ("MULTIPLE_FACING", shade::MULTIPLE.0),
         ("MULTIPLE_ROUND", shade::MULTIPLE.1),
         ("MAX_LIGHT", color::MAX_LIGHT),
-        ("CLOSED", blend::CLOSED),
         ("UNIT", splat::UNIT),
         ("SPACING", splat::SPACING),
         ("LONGEST", splat::LONGEST),
@@ -123,8 +119,6 @@ fn constants() -> String {
         ("CHANNEL_GREEN", color::CHANNELS[1].1),
         ("CHANNEL_BLUE", color::CHANNELS[2].1),
         ("BATCH", BATCH),
-        ("PHASES", PHASES),
-        ("PATCH", tile::PATCH as u32),
         ("TIDY", TIDY),
         ("DIRECTIONS", DIRECTIONS as u32),
     ] {
@@ -161,7 +155,7 @@ mod tests {
     /// Without a card, by the compiler alone; nothing is asked for but what every WebGPU device can do.
     #[test]
     fn every_shader_is_valid() {
-        for source in [DENSITY, WALLS, SWEEP, BODY, SETTLE, POINTS, SORT, SURVEY, RIBBON, DEVELOP] {
+        for source in [DENSITY, WALLS, SWEEP, BODY, SETTLE, POINTS, SORT, RIBBON, DEVELOP] {
             let text = source.text();
             let module = naga::front::wgsl::parse_str(&text)
                 .unwrap_or_else(|e| panic!("{}: {}", source.name, e.emit_to_string(&text)));

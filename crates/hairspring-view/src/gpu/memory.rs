@@ -100,30 +100,6 @@ pub(super) fn bind(gpu: &Gpu, layout: &BindGroupLayout, entries: &[(u32, Binding
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }
 
-/// Where in a buffer of [`Numbers`] each stands [bytes]: what WebGPU asks of offsets.
-const STEP: usize = 256;
-
-/// The numbers 0, 1, 2 and so on, for shaders that run many times and must know which time it is.
-pub(super) struct Numbers(Store);
-
-impl Numbers {
-    pub fn new(gpu: &Gpu, count: u32) -> Self {
-        let mut store = Store::new(gpu, "numbers", BufferUsages::UNIFORM);
-        let number = |k| std::array::from_fn(|i| if i == 0 { k } else { 0 });
-        let numbers: Vec<[u32; STEP / 4]> = (0..count).map(number).collect();
-        store.fill(gpu, &numbers, &mut Generation::default());
-        Self(store)
-    }
-
-    pub fn get(&self, k: u32) -> BindingResource<'_> {
-        BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: self.0.buffer(),
-            offset: u64::from(k) * STEP as u64,
-            size: wgpu::BufferSize::new(4),
-        })
-    }
-}
-
 /// A compute shader and what it works on.
 pub(super) struct Kernel {
     pub pipeline: wgpu::ComputePipeline,

@@ -21,7 +21,7 @@ const ROW: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 /// The textures.
 pub(super) struct Targets {
     pub size: [u32; 2],
-    /// Hair before the body, and behind it: linear RGB times covering, and what still shows through.
+    /// Hair before the body, and behind it: linear RGB times covering, covering.
     pub before: TextureView,
     pub behind: TextureView,
     /// The body's light, by samples and settled, times covering; covering.

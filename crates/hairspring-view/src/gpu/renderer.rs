@@ -96,7 +96,7 @@ impl GpuRenderer {
         self.strands.send(gpu, frame.hair, &mut self.generation);
         self.meshes.send(gpu, frame.bodies, &mut self.generation);
         let slots = self.strands.slots;
-        self.ribbons.fit(gpu, slots, size, &mut self.generation);
+        self.ribbons.fit(gpu, slots, &mut self.generation);
         self.surfaces.fit(gpu, map.side, &mut self.generation);
         let voxel = grid.map_or(1.0, |g| g.voxel);
         let styles: Vec<Style> = frame.hair.iter().map(|h| Style::new(h, view.focal, voxel)).collect();

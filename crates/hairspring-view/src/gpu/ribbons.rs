@@ -2,17 +2,15 @@
 
 use super::{
     Gpu,
-    constants::{BATCH, MAX_PIECES, PHASES, POINTS, RIBBON, SORT, SURVEY},
-    memory::{Bound, Generation, Kernel, Numbers, Store, groups},
-    picture::{LIGHT, pipeline},
+    constants::{BATCH, MAX_PIECES, POINTS, RIBBON, SORT},
+    memory::{Bound, Generation, Kernel, Store, groups},
+    picture::{LIGHT, clear, pipeline},
     renderer::Job,
     surfaces::Surfaces,
     volume::Volume,
 };
-use crate::{hair::ribbon::DEPTHS, tile::PATCH};
-use wgpu::{
-    BindingResource, BlendComponent, BlendFactor, BlendOperation, BlendState, BufferUsages, TextureView,
-};
+use crate::hair::ribbon::DEPTHS;
+use wgpu::{BindingResource, BlendComponent, BlendFactor, BlendOperation, BlendState, BufferUsages};
 
 /// Most pieces of a frame: 64 MiB of them, and what the numbers of slots leave room for.
 const MOST: usize = 1 << 24;
@@ -27,10 +25,7 @@ pub(super) struct Ribbons {
     scatter: Kernel,
     tidy: Kernel,
     draw: wgpu::RenderPipeline,
-    survey: Kernel,
-    bound: Vec<Bound>,
-    numbers: Numbers,
-    patches: Store,
+    bound: Bound,
     dots: Store,
     lights: Store,
     plans: Store,
@@ -54,19 +49,15 @@ impl Ribbons {
         let mut corners = store("corners", BufferUsages::INDEX);
         let quads = (0..BATCH as u16).flat_map(|k| [0, 1, 2, 2, 1, 3].map(|i| 4 * k + i));
         corners.fill(gpu, &quads.collect::<Vec<u16>>(), &mut Generation::default());
-        // Under what lies there: as much is added as still shows through.
-        let part = |src_factor, dst_factor| BlendComponent {
-            src_factor,
-            dst_factor,
+        // Over what lies there.
+        let over = BlendComponent {
+            src_factor: BlendFactor::One,
+            dst_factor: BlendFactor::OneMinusSrcAlpha,
             operation: BlendOperation::Add,
-        };
-        let under = BlendState {
-            color: part(BlendFactor::DstAlpha, BlendFactor::One),
-            alpha: part(BlendFactor::Zero, BlendFactor::OneMinusSrcAlpha),
         };
         let target = Some(wgpu::ColorTargetState {
             format: LIGHT,
-            blend: Some(under),
+            blend: Some(BlendState { color: over, alpha: over }),
             write_mask: wgpu::ColorWrites::ALL,
         });
         let targets = [target.clone(), target];
@@ -81,10 +72,7 @@ impl Ribbons {
             scatter: Kernel::new(gpu, &sort, "scatter"),
             tidy: Kernel::new(gpu, &sort, "tidy"),
             draw: pipeline(gpu, &ribbon, ["ribbon", "cover"], &targets, None, 1),
-            survey: Kernel::new(gpu, &SURVEY.module(gpu), "survey"),
-            bound: (0..PHASES).map(|_| Bound::default()).collect(),
-            numbers: Numbers::new(gpu, PHASES),
-            patches: store("patches", BufferUsages::STORAGE),
+            bound: Bound::default(),
             dots: store("dots", BufferUsages::STORAGE),
             lights: store("lights", BufferUsages::STORAGE),
             plans: store("plans", BufferUsages::STORAGE),
@@ -96,10 +84,8 @@ impl Ribbons {
         }
     }
 
-    /// Makes room for points, and for a picture of some size [pixels].
-    pub fn fit(&mut self, gpu: &Gpu, slots: usize, size: [u32; 2], generation: &mut Generation) {
-        let [across, down] = size.map(|n| (n as usize).div_ceil(PATCH));
-        self.patches.fit(gpu, 8 * across * down, generation);
+    /// Makes room for points.
+    pub fn fit(&mut self, gpu: &Gpu, slots: usize, generation: &mut Generation) {
         self.dots.fit(gpu, 16 * slots, generation);
         self.lights.fit(gpu, 4 * slots, generation);
         self.plans.fit(gpu, 4 * slots, generation);
@@ -150,65 +136,33 @@ impl Ribbons {
     /// Draws.
     pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
         let Job { gpu, generation, uniforms, targets, .. } = *job;
-        let [across, down] = targets.size.map(|n| n.div_ceil(PATCH as u32).div_ceil(8));
-        Self::record_none(job, encoder);
-        for phase in 0..PHASES {
-            let entries = [
-                (0, uniforms.all()),
-                (1, BindingResource::TextureView(&targets.before)),
-                (2, BindingResource::TextureView(&targets.place)),
-                (3, self.patches.all()),
-            ];
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            self.survey.run(gpu, generation, &mut pass, &entries, [across, down, 1]);
-            drop(pass);
-            let entries = [
-                (0, uniforms.all()),
-                (1, self.dots.all()),
-                (2, self.lights.all()),
-                (3, self.pieces.all()),
-                (4, self.starts.all()),
-                (5, BindingResource::TextureView(&targets.place)),
-                (6, self.patches.all()),
-                (7, self.numbers.get(phase)),
-            ];
-            let layout = self.draw.get_bind_group_layout(0);
-            let group = self.bound[phase as usize].group(gpu, generation, layout, &entries);
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("ribbons"),
-                color_attachments: &[keep(&targets.before), keep(&targets.behind)],
-                ..Default::default()
-            });
-            pass.set_pipeline(&self.draw);
-            pass.set_bind_group(0, group, &[]);
-            pass.set_index_buffer(self.corners.buffer().slice(..), wgpu::IndexFormat::Uint16);
-            pass.draw_indexed_indirect(self.drawing.buffer(), 0);
-        }
+        let entries = [
+            (0, uniforms.all()),
+            (1, self.dots.all()),
+            (2, self.lights.all()),
+            (3, self.pieces.all()),
+            (4, self.starts.all()),
+            (5, BindingResource::TextureView(&targets.place)),
+        ];
+        let group = self.bound.group(gpu, generation, self.draw.get_bind_group_layout(0), &entries);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("ribbons"),
+            color_attachments: &[clear(&targets.before), clear(&targets.behind)],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.draw);
+        pass.set_bind_group(0, group, &[]);
+        pass.set_index_buffer(self.corners.buffer().slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed_indirect(self.drawing.buffer(), 0);
     }
 
-    /// Leaves the picture without hair: everything shows through.
+    /// Leaves the picture without hair.
     pub fn record_none(job: &Job, encoder: &mut wgpu::CommandEncoder) {
-        let clear = |view| {
-            let mut target = keep(view);
-            if let Some(target) = &mut target {
-                target.ops.load = wgpu::LoadOp::Clear(wgpu::Color { a: 1.0, ..wgpu::Color::TRANSPARENT });
-            }
-            target
-        };
+        let targets = job.targets;
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("no ribbons"),
-            color_attachments: &[clear(&job.targets.before), clear(&job.targets.behind)],
+            color_attachments: &[clear(&targets.before), clear(&targets.behind)],
             ..Default::default()
         });
     }
-}
-
-/// A target that is drawn on.
-fn keep(view: &TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
-    Some(wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-    })
 }

@@ -3,7 +3,7 @@
 use super::{
     Gpu,
     constants::{DENSITY, DIRECTIONS, SWEEP, WALLS},
-    memory::{Bound, Generation, Kernel, Numbers, Store, groups},
+    memory::{Bound, Generation, Kernel, Store, groups},
     renderer::Job,
     uniforms::sweeps,
 };
@@ -13,8 +13,10 @@ use wgpu::{BindingResource, BufferUsages, Extent3d, TextureFormat, TextureUsages
 
 /// Most voxels: the swept depths of eight directions then fit WebGPU's default binding of 128 MiB.
 const MOST: usize = 1 << 22;
+/// Where in a buffer the number of each slice stands [bytes]: what WebGPU asks of offsets.
+const STEP: usize = 256;
 /// Most slices of a grid: 256 voxels, their padding, and some to spare.
-const SLICES: u32 = 300;
+const SLICES: usize = 300;
 
 /// The shadow's memory and shaders.
 pub(super) struct Volume {
@@ -29,7 +31,7 @@ pub(super) struct Volume {
     density: Store,
     depths: Store,
     sweeps: Store,
-    numbers: Numbers,
+    numbers: Store,
     size: [usize; 3],
     /// Optical depth towards key, rim and fill, and the share of the sky seen.
     pub light: TextureView,
@@ -53,6 +55,11 @@ impl Volume {
     pub fn new(gpu: &Gpu) -> Self {
         let (density, walls, sweep) = (DENSITY.module(gpu), WALLS.module(gpu), SWEEP.module(gpu));
         let store = |label, usage| Store::new(gpu, label, usage);
+        let mut numbers = store("slices", BufferUsages::UNIFORM);
+        numbers.fit(gpu, SLICES * STEP, &mut Generation::default());
+        let slices: Vec<[u32; STEP / 4]> =
+            (0..SLICES as u32).map(|k| std::array::from_fn(|i| if i == 0 { k } else { 0 })).collect();
+        numbers.write(gpu, 0, &slices);
         let size = [1; 3];
         let [light, slants] = textures(gpu, size);
         Self {
@@ -67,7 +74,7 @@ impl Volume {
             density: store("density", BufferUsages::STORAGE),
             depths: store("depths", BufferUsages::STORAGE),
             sweeps: store("sweeps", BufferUsages::UNIFORM),
-            numbers: Numbers::new(gpu, SLICES),
+            numbers,
             size,
             light,
             slants,
@@ -126,12 +133,17 @@ impl Volume {
         self.slices.resize_with(self.slices.len().max(longest as usize), Bound::default);
         pass.set_pipeline(&self.sweep);
         for k in 1..longest {
+            let number = BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: self.numbers.buffer(),
+                offset: u64::from(k) * STEP as u64,
+                size: wgpu::BufferSize::new(4),
+            });
             let entries = [
                 frame.clone(),
                 (3, self.density.all()),
                 (4, self.depths.all()),
                 (5, self.sweeps.all()),
-                (6, self.numbers.get(k)),
+                (6, number),
             ];
             let layout = self.sweep.get_bind_group_layout(0);
             pass.set_bind_group(0, self.slices[k as usize].group(gpu, generation, layout, &entries), &[]);

@@ -35,10 +35,3 @@ fn curve(z: vec4f, a: vec4f, b: vec4f, c: vec4f) -> Curve {
     out.count = clamp(ceil(sqrt(bend / frame.tolerance)), 1.0, frame.pieces);
     return out;
 }
-
-/// How far from its chord a segment may touch pixels: half its width, a pixel, and the way its curve may leave it (see `Chunk::file`; here
-/// directions differ by their distance).
-fn reach(a: vec4f, b: vec4f, curve: Curve) -> f32 {
-    let turns = turn(curve.before, curve.here) + turn(curve.next, curve.here);
-    return max(abs(a.w), abs(b.w)) * 0.5 + 1.0 + curve.length * 0.105 * turns;
-}

@@ -1,6 +1,5 @@
 // Hair before the body, body, hair behind it, backdrop; exposure, tone curve, 8 bits: `Brush::develop` and `tonemap.rs`.
 
-/// Light of hair, and what still shows through.
 @group(0) @binding(1) var before: texture_2d<f32>;
 @group(0) @binding(2) var behind: texture_2d<f32>;
 /// Light of the body times covering, covering.
@@ -32,9 +31,9 @@ fn develop(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let back = textureLoad(behind, pixel, 0);
     let place = corner / frame.size - vec2f(0.5, 0.42);
     let wall = mix(frame.edge, frame.center, exp(-3.2 * place.x * place.x) * exp(-3.2 * place.y * place.y));
-    var light = back.xyz + wall * back.w;
+    var light = back.xyz + wall * (1.0 - back.w);
     light = surface.xyz + light * (1.0 - surface.w);
-    light = front.xyz + light * front.w;
+    light = front.xyz + light * (1.0 - front.w);
     // `Encoder::encode`.
     let noise = fract(52.98292 * fract(0.06711056 * corner.x + 0.00583715 * corner.y));
     return vec4f(floor(255.0 * encode(filmic(light * frame.gain)) + noise) / 255.0, 1.0);

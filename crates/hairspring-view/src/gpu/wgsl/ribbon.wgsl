@@ -7,10 +7,6 @@
 @group(0) @binding(4) var<storage, read> starts: array<u32>;
 /// Share of the depth range at which the body lies, and the share of the pixel that it covers.
 @group(0) @binding(5) var body: texture_2d<f32>;
-/// The most that shows through in a pixel of each patch, and the depth behind which its body hides all.
-@group(0) @binding(6) var<storage, read> patches: array<vec2f>;
-/// Pieces are drawn in phases, nearest first; between them it is seen which patches are closed.
-@group(0) @binding(7) var<uniform> phase: u32;
 
 struct Ribbon {
     @builtin(position) at: vec4f,
@@ -37,36 +33,12 @@ fn halved(a: vec2f, b: vec2f, here: vec2f) -> vec2f {
     return select(here, sum * inverseSqrt(length2), length2 > 1e-30);
 }
 
-/// Whether nothing of a segment can be seen any more.
-fn hidden(a: vec4f, b: vec4f, curve: Curve) -> bool {
-    let far = reach(a, b, curve) + 1.0;
-    let low = vec2u(max(min(a.xy, b.xy) - far, vec2f(0.0))) / PATCH;
-    let high = vec2u(clamp(max(a.xy, b.xy) + far, vec2f(0.0), frame.size - 1.0)) / PATCH;
-    // Long segments, of which there are few, are drawn.
-    if any(high > low + 2u) {
-        return false;
-    }
-    let across = (u32(frame.size.x) + PATCH - 1u) / PATCH;
-    let nearest = min(a.z, b.z);
-    for (var y = low.y; y <= high.y; y++) {
-        for (var x = low.x; x <= high.x; x++) {
-            let at = patches[y * across + x];
-            if at.x > CLOSED && nearest <= at.y {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
 @vertex
 fn ribbon(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Ribbon {
     var out: Ribbon;
     out.at = vec4f(-2.0, -2.0, 0.0, 1.0);
-    let total = starts[u32(DEPTHS) + 1u];
-    let batches = (total + BATCH * PHASES - 1u) / (BATCH * PHASES);
-    let number = (phase * batches + instance) * BATCH + vertex / 4u;
-    if number >= total {
+    let number = instance * BATCH + vertex / 4u;
+    if number >= starts[u32(DEPTHS) + 1u] {
         return out;
     }
     let piece = pieces[number];
@@ -85,9 +57,6 @@ fn ribbon(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance:
         c = dots[slot + 2u];
     }
     let curve = curve(z, a, b, c);
-    if hidden(a, b, curve) {
-        return out;
-    }
     let ta = halved(curve.before, curve.here, curve.here) * curve.length;
     let tb = halved(curve.here, curve.next, curve.here) * curve.length;
     var u = vec2f(k / n, (k + 1.0) / n);
@@ -138,7 +107,7 @@ fn ribbon(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance:
 }
 
 struct Seen {
-    /// Hair before the body, and behind it: linear RGB times covering, covering. Blending turns the last into what still shows through.
+    /// Hair before the body, and behind it: linear RGB times covering, covering.
     @location(0) before: vec4f,
     @location(1) behind: vec4f,
 }
@@ -153,10 +122,10 @@ fn cover(in: Ribbon) -> Seen {
     let ends = saturate(in.place.z + 0.5) * saturate(in.place.w + 0.5);
     let share = saturate((high - low) * half / reach * ends);
     let wall = textureLoad(body, vec2i(in.at.xy), 0).xy;
-    let behind = wall.y > 0.0 && in.color.w > wall.x;
-    if share <= 0.0 || (behind && wall.y >= 1.0) {
+    let hidden = wall.y > 0.0 && in.color.w > wall.x;
+    if share <= 0.0 || (hidden && wall.y >= 1.0) {
         discard;
     }
     let seen = vec4f(max(in.color.xyz, vec3f(0.0)), 1.0) * share;
-    return Seen(select(seen, vec4f(0.0), behind), select(vec4f(0.0), seen, behind));
+    return Seen(select(seen, vec4f(0.0), hidden), select(vec4f(0.0), seen, hidden));
 }

@@ -1,4 +1,4 @@
-// Depth order, nearest first: a count of pieces for each depth, where each depth's pieces begin, and the pieces into their places.
+// Depth order, farthest first: a count of pieces for each depth, where each depth's pieces begin, and the pieces into their places.
 
 /// Four numbers a slot: see `points.wgsl`.
 @group(0) @binding(1) var<storage, read> dots: array<vec4f>;
@@ -10,7 +10,7 @@
 @group(0) @binding(4) var<storage, read_write> starts: array<u32>;
 /// A piece: slot, 24 bits; piece of the segment, 4 bits; one less than the segment's pieces, 4 bits.
 @group(0) @binding(5) var<storage, read_write> pieces: array<u32>;
-/// Arguments of the indirect draws, one for each phase and all alike.
+/// Arguments of the indirect draw.
 @group(0) @binding(6) var<storage, read_write> drawing: array<u32, 5>;
 
 /// As `Chunk::file`: whether a segment is seen, and how it is cut.
@@ -37,12 +37,14 @@ fn count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     }
     let curve = curve(z, a, b, c);
     let widest = max(abs(a.w), abs(b.w));
-    let low = min(a.xy, b.xy) - reach(a, b, curve);
-    let high = max(a.xy, b.xy) + reach(a, b, curve);
+    let turns = turn(curve.before, curve.here) + turn(curve.next, curve.here);
+    let reach = widest * 0.5 + 1.0 + curve.length * 0.105 * turns;
+    let low = min(a.xy, b.xy) - reach;
+    let high = max(a.xy, b.xy) + reach;
     if widest < 1e-4 || any(low >= frame.size) || any(high <= vec2f(0.0)) {
         return;
     }
-    let key = u32(0.5 * (a.z + b.z) * DEPTHS + 0.5);
+    let key = u32((1.0 - 0.5 * (a.z + b.z)) * DEPTHS + 0.5);
     let n = u32(curve.count);
     plans[slot] = (key << 16u) | n;
     atomicAdd(&counts[key], n);
@@ -77,7 +79,7 @@ fn scan(@builtin(local_invocation_index) k: u32) {
     if k == 255u {
         starts[KEYS] = at;
         drawing[0] = 6u * BATCH;
-        drawing[1] = (at + BATCH * PHASES - 1u) / (BATCH * PHASES);
+        drawing[1] = (at + BATCH - 1u) / BATCH;
         drawing[2] = 0u;
         drawing[3] = 0u;
         drawing[4] = 0u;
