@@ -1,4 +1,5 @@
-//! Pictures of hair, without a GPU: the project's picture of record, which any other renderer is compared with.
+//! Pictures of hair: by the CPU, without a driver, which is the project's picture of record, and by a graphics card ([`gpu`]), whose picture is
+//! compared with it.
 //!
 //! A [`Frame`] borrows strands and bodies and holds the settings; a [`Renderer`] keeps only memory. One frame goes through four rooms:
 //!

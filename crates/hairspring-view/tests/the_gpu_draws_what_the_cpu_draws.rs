@@ -142,6 +142,20 @@ fn a_strand_is_where_it_is_and_as_wide_as_it_is() {
     }
 }
 
+/// The CPU's hair does not flicker when it moves by parts of a pixel (`hair_covers_its_true_area.rs`), so neither does the card's.
+#[test]
+fn a_moving_hair_is_the_same_hair() {
+    let Some(mut gpu) = renderer() else { return };
+    for step in 0..6 {
+        let moved = Vec3::new(0.000_23, 0.000_31, 0.0) * step as f32;
+        let few = leak(Few::new(
+            &[strand(Vec3::new(-0.09, -0.03, 0.0) + moved, Vec3::new(0.09, 0.04, 0.0) + moved, 0.01)],
+            5e-5,
+        ));
+        compare(&mut gpu, "moved", &close(&[few.draw()]), 160, 120);
+    }
+}
+
 #[test]
 fn what_is_nearer_hides_what_is_farther() {
     let Some(mut gpu) = renderer() else { return };

@@ -3,7 +3,8 @@
 use super::{
     Gpu, GpuError,
     constants::{DEVELOP, SAMPLES},
-    memory::{Bound, Generation, Store},
+    memory::Bound,
+    renderer::Job,
 };
 use crate::image::Image;
 use wgpu::{BindingResource, Extent3d, TextureFormat, TextureUsages, TextureView};
@@ -127,14 +128,8 @@ impl Develop {
         Self { pipeline, bound: Bound::default() }
     }
 
-    pub fn record(
-        &mut self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        generation: Generation,
-        uniforms: &Store,
-        targets: &Targets,
-    ) {
+    pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
+        let Job { gpu, generation, uniforms, targets, .. } = *job;
         let entries = [
             (0, uniforms.all()),
             (1, BindingResource::TextureView(&targets.before)),

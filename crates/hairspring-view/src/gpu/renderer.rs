@@ -5,7 +5,7 @@ use super::{
     memory::{Generation, Store},
     meshes::Meshes,
     picture::{Develop, Reader, Targets},
-    ribbons::{Ribbons, most_pieces},
+    ribbons::Ribbons,
     strands::Strands,
     surfaces::Surfaces,
     uniforms::{Map, Style, Uniforms},
@@ -32,6 +32,18 @@ pub struct GpuRenderer {
     targets: Targets,
     reader: Reader,
     timings: GpuTimings,
+}
+
+/// What every step of a frame is given.
+#[derive(Clone, Copy)]
+pub(super) struct Job<'a> {
+    pub gpu: &'a Gpu,
+    pub generation: Generation,
+    /// [`Uniforms`] of the frame.
+    pub uniforms: &'a Store,
+    pub strands: &'a Strands,
+    pub meshes: &'a Meshes,
+    pub targets: &'a Targets,
 }
 
 /// Where the CPU's part of the last frame went; the card works on after it.
@@ -97,36 +109,32 @@ impl GpuRenderer {
         let middle = (0.5 * (low + high) - view.eye).dot(view.forward);
         let reach = 0.5 * (high - low).dot(view.forward.abs()) + 1e-3;
         let depths = [(middle - reach).max(0.0), middle.max(0.0) + reach];
-        let uniforms = Uniforms::new(
-            frame,
-            &view,
-            size,
-            depths,
-            grid.as_ref(),
-            &map,
-            slots,
-            self.meshes.count,
-            most_pieces(slots),
-        );
+        let (grid_there, triangles) = (grid.as_ref(), self.meshes.count);
+        let uniforms = Uniforms::new(frame, &view, depths, grid_there, &map, slots, triangles);
         self.uniforms.write(gpu, 0, &[uniforms]);
         let sent = Instant::now();
 
-        let (generation, uniforms, targets) = (self.generation, &self.uniforms, &self.targets);
-        let (strands, meshes) = (&self.strands, &self.meshes);
+        let job = Job {
+            gpu,
+            generation: self.generation,
+            uniforms: &self.uniforms,
+            strands: &self.strands,
+            meshes: &self.meshes,
+            targets: &self.targets,
+        };
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.surfaces.record_map(gpu, &mut encoder, generation, uniforms, meshes);
+        self.surfaces.record_map(&job, &mut encoder);
         if grid.is_some() {
-            self.volume.record(gpu, &mut encoder, generation, uniforms, strands, meshes);
+            self.volume.record(&job, &mut encoder);
         }
-        let (volume, surfaces) = (&self.volume, &mut self.surfaces);
-        surfaces.record(gpu, &mut encoder, generation, uniforms, meshes, volume, targets);
+        self.surfaces.record(&job, &mut encoder, &self.volume);
         if slots > 0 {
-            self.ribbons.record_sort(gpu, &mut encoder, generation, uniforms, strands, volume, surfaces);
-            self.ribbons.record(gpu, &mut encoder, generation, uniforms, targets);
+            self.ribbons.record_sort(&job, &mut encoder, &self.volume, &self.surfaces);
+            self.ribbons.record(&job, &mut encoder);
         } else {
-            Ribbons::record_none(&mut encoder, targets);
+            Ribbons::record_none(&job, &mut encoder);
         }
-        self.develop.record(gpu, &mut encoder, generation, uniforms, targets);
+        self.develop.record(&job, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
         self.timings = GpuTimings { send: sent - start, record: sent.elapsed() };
         &self.targets.picture

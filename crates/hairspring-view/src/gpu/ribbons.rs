@@ -4,8 +4,8 @@ use super::{
     Gpu,
     constants::{BATCH, MAX_PIECES, POINTS, RIBBON, SORT},
     memory::{Bound, Generation, Kernel, Store, groups},
-    picture::{LIGHT, Targets, clear, pipeline},
-    strands::Strands,
+    picture::{LIGHT, clear, pipeline},
+    renderer::Job,
     surfaces::Surfaces,
     volume::Volume,
 };
@@ -93,17 +93,14 @@ impl Ribbons {
     }
 
     /// Places, lights and sorts.
-    #[allow(clippy::too_many_arguments)] // What the passes read, each once.
     pub fn record_sort(
         &mut self,
-        gpu: &Gpu,
+        job: &Job,
         encoder: &mut wgpu::CommandEncoder,
-        generation: Generation,
-        uniforms: &Store,
-        strands: &Strands,
         volume: &Volume,
         surfaces: &Surfaces,
     ) {
+        let Job { gpu, generation, uniforms, strands, .. } = *job;
         encoder.clear_buffer(self.counts.buffer(), 0, None);
         let mut pass = encoder.begin_compute_pass(&Default::default());
         let all = groups(strands.slots, 256);
@@ -137,14 +134,8 @@ impl Ribbons {
     }
 
     /// Draws.
-    pub fn record(
-        &mut self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        generation: Generation,
-        uniforms: &Store,
-        targets: &Targets,
-    ) {
+    pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
+        let Job { gpu, generation, uniforms, targets, .. } = *job;
         let entries = [
             (0, uniforms.all()),
             (1, self.dots.all()),
@@ -166,7 +157,8 @@ impl Ribbons {
     }
 
     /// Leaves the picture without hair.
-    pub fn record_none(encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
+    pub fn record_none(job: &Job, encoder: &mut wgpu::CommandEncoder) {
+        let targets = job.targets;
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("no ribbons"),
             color_attachments: &[clear(&targets.before), clear(&targets.behind)],

@@ -3,9 +3,9 @@
 use super::{
     Gpu,
     constants::{BODY, SAMPLES, SETTLE},
-    memory::{Bound, Generation, Store},
-    meshes::Meshes,
-    picture::{LIGHT, PLACE, Targets, clear, pipeline},
+    memory::{Bound, Generation},
+    picture::{LIGHT, PLACE, clear, pipeline},
+    renderer::Job,
     volume::Volume,
 };
 use wgpu::{BindingResource, TextureFormat, TextureUsages, TextureView};
@@ -62,14 +62,8 @@ impl Surfaces {
     }
 
     /// Draws the depth map.
-    pub fn record_map(
-        &mut self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        generation: Generation,
-        uniforms: &Store,
-        meshes: &Meshes,
-    ) {
+    pub fn record_map(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
+        let Job { gpu, generation, uniforms, meshes, .. } = *job;
         let entries = [(0, uniforms.all()), (1, meshes.positions.all()), (3, meshes.triangles.all())];
         let layout = self.from_lamp.get_bind_group_layout(0);
         let group = self.bound[0].group(gpu, generation, layout, &entries);
@@ -84,17 +78,8 @@ impl Surfaces {
     }
 
     /// Draws what the camera sees, in the shadow of `volume`.
-    #[allow(clippy::too_many_arguments)] // What a pass reads and writes, each once.
-    pub fn record(
-        &mut self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        generation: Generation,
-        uniforms: &Store,
-        meshes: &Meshes,
-        volume: &Volume,
-        targets: &Targets,
-    ) {
+    pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder, volume: &Volume) {
+        let Job { gpu, generation, uniforms, meshes, targets, .. } = *job;
         let entries = [
             (0, uniforms.all()),
             (1, meshes.positions.all()),

@@ -1,6 +1,6 @@
 //! What every shader of a frame knows; the layouts are those of `wgsl/frame.wgsl`, `wgsl/fibre.wgsl` and `wgsl/sweep.wgsl`.
 
-use super::constants::{DIRECTIONS, MAX_PIECES};
+use super::{constants::DIRECTIONS, ribbons::most_pieces};
 use crate::{
     camera::View,
     frame::{Frame, HairDraw, MeshDraw},
@@ -93,18 +93,16 @@ impl Map {
 }
 
 impl Uniforms {
-    /// `depths`: nearest and farthest depth of hair [m]; `grid`: of its shadow, if there is hair; `slots`: points of strands; `pieces`: most
-    /// that a segment may be drawn as.
+    /// `depths`: nearest and farthest depth of hair [m]; `grid`: of its shadow, if there is hair; `slots`: points of strands; `triangles`: of
+    /// bodies.
     pub fn new(
         frame: &Frame,
         view: &View,
-        size: [u32; 2],
         depths: [f32; 2],
         grid: Option<&Grid>,
         map: &Map,
         slots: usize,
         triangles: u32,
-        pieces: f32,
     ) -> Self {
         // What is no number gives no light, and not a picture of none.
         let finite = |v: Vec3| if v.is_finite() { v.to_array() } else { [0.0; 3] };
@@ -123,8 +121,8 @@ impl Uniforms {
             up: view.up.to_array(),
             tolerance: if tolerance.is_nan() { f32::MAX } else { tolerance },
             forward: view.forward.to_array(),
-            pieces: pieces.min(MAX_PIECES),
-            size: size.map(|n| n as f32),
+            pieces: most_pieces(slots),
+            size: view.center.map(|n| 2.0 * n),
             depths,
             lamps: [lamp(&lighting.key), lamp(&lighting.rim), lamp(&lighting.fill)],
             sky: finite(lighting.sky),

@@ -4,8 +4,7 @@ use super::{
     Gpu,
     constants::{DENSITY, DIRECTIONS, SWEEP, WALLS},
     memory::{Bound, Generation, Kernel, Store, groups},
-    meshes::Meshes,
-    strands::Strands,
+    renderer::Job,
     uniforms::sweeps,
 };
 use crate::{frame::Frame, shadow::density::Grid};
@@ -97,16 +96,9 @@ impl Volume {
         }
     }
 
-    /// Works out the shadow; `uniforms` is bound as the frame's.
-    pub fn record(
-        &mut self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        generation: Generation,
-        uniforms: &Store,
-        strands: &Strands,
-        meshes: &Meshes,
-    ) {
+    /// Works out the shadow.
+    pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
+        let Job { gpu, generation, uniforms, strands, meshes, .. } = *job;
         for store in [&self.sums, &self.walls, &self.depths] {
             encoder.clear_buffer(store.buffer(), 0, None);
         }
