@@ -145,7 +145,6 @@ pub const ALL: &[Parameter] = parameters! {
         Material "ghost.pull", "Keep the style", "Hz", number(0.0, 20.0), "Pull to the groomed shape, carried by the head: how fast a lone point would swing about its place. 0: none; from 1 a style lasts, from 4 hair is set.";
         Material "ghost.tip", "… at the tip", "×", number(0.0, 2.0), "That pull at the tip, over that at the root.";
         Material "ghost.damping", "… damping", "", number(0.0, 4.0), "Damping of that pull over the critical: 1 does not swing.";
-        Material "tether", "Tether", "×", Kind::Maybe { min: 1.0, max: 3.0, from: 1.1 }, "How far a point may be from its root, over how far it is at rest: keeps curls from being pulled straight.";
         Groom "effects.clump", "Clump", "", number(0.0, 1.0), "How far the tips of follow hairs are drawn to their guide.";
         Groom "effects.curl_radius", "Curl radius", "m", number(0.0, 0.02), "Radius of the curls laid over follow hairs.";
         Groom "effects.curl_length", "Curl length", "m", scale(0.002, 0.2), "Length of hair in one turn of those curls.";

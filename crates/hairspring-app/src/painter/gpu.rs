@@ -3,6 +3,7 @@
 use crate::snapshot::{Sight, Snapshot};
 use eframe::{egui::TextureId, egui_wgpu::RenderState, wgpu::FilterMode};
 use hairspring_view::gpu::{Gpu, GpuRenderer};
+use std::sync::Arc;
 
 /// Draws one view.
 pub struct GpuPainter {
@@ -18,6 +19,10 @@ pub struct GpuPainter {
 impl GpuPainter {
     /// On the window's device.
     pub fn new(state: &RenderState) -> Self {
+        // Without a handler, what goes wrong on the card would close the window.
+        state
+            .device
+            .on_uncaptured_error(Arc::new(|error| eprintln!("hairspring: on the graphics card: {error}")));
         let gpu = Gpu::from_parts(state.device.clone(), state.queue.clone());
         Self {
             state: state.clone(),

@@ -6,7 +6,6 @@
 //! | effect | |
 //! | --- | --- |
 //! | [`ghost`] | a weak pull to the rest shape |
-//! | [`tether`] | nothing goes farther from its root than it may |
 //! | [`grab`] | a hand holds what is in a ball |
 //! | [`comb`] | tines take hair along across itself |
 //! | [`tie`] | a ring gathers strands |
@@ -20,7 +19,6 @@ pub mod ghost;
 pub mod grab;
 mod hair_field;
 mod strand;
-pub(crate) mod tether;
 pub mod tie;
 mod tool;
 mod wind;

@@ -46,9 +46,6 @@ pub struct Material {
     pub friction: f32,
     /// Pull to the rest shape, carried by the root; switched by `Solver::ghost`. Default: none.
     pub ghost: Ghost,
-    /// How far a point may be from its root, over how far it is at rest, 1 to 100; `None`, the default: as far as its hair is long. It keeps curls from being
-    /// pulled straight (long range attachments, Kim 2012).
-    pub tether: Option<f32>,
     /// Static charge of a length of hair [C/m], −1e-6 to 1e-6. Default 0. Hair of 35 µm holds 6e-9 at most, where air breaks down at its surface; a
     /// field of 100 kV/m lifts it against gravity from 5e-10 on.
     pub charge: f32,
@@ -100,7 +97,6 @@ impl Default for Material {
             drag: 0.5,
             friction: 0.3,
             ghost: Ghost::default(),
-            tether: None,
             charge: 0.0,
         }
     }

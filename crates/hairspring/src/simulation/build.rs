@@ -101,7 +101,6 @@ impl Simulation {
             holds: Vec::new(),
             around: Around::default(),
             ghosts: materials.iter().map(|m| m.ghost).collect(),
-            tethers: materials.iter().map(|m| m.tether).collect(),
             tools: super::hands::Tools::default(),
             charges: materials.iter().map(|m| m.charge).collect(),
             charged: Vec::new(),

@@ -65,8 +65,6 @@ pub struct Simulation {
     around: Around,
     /// Pull of each material to the rest shape; a group past the end uses the last.
     ghosts: Vec<Ghost>,
-    /// How far each material lets its points from their roots; a group past the end uses the last.
-    tethers: Vec<Option<f32>>,
     /// What hands hold to the hair.
     tools: hands::Tools,
     /// Charge of each material's hair [C/m]; a group past the end uses the last.

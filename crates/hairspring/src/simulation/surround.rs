@@ -3,7 +3,7 @@
 use super::{Drive, Simulation};
 use crate::{
     air::Bodies,
-    around::{Blow, Charges, Frame, Kinds, Strands, Surrounded, tether},
+    around::{Blow, Charges, Frame, Kinds, Strands, Surrounded},
     collide::Rigid,
 };
 
@@ -14,11 +14,10 @@ impl Simulation {
         let charged = self.charges.iter().any(|charge| *charge != 0.0);
         let pressed = self.volume.as_ref().is_some_and(|volume| volume.acts());
         let sheltered = self.shelter.is_on() && drive.air.moves();
-        let tethered = self.tethers.iter().any(Option::is_some);
         let gripped = ghosts || charged || !self.tools.used.is_empty();
         let tines = self.tools.used.iter().any(|used| !used.tool.binds());
         let blown = sheltered || drive.air.varies();
-        let kinds = Kinds { push: pressed || tethered, grip: gripped, tines, air: blown };
+        let kinds = Kinds { push: pressed, grip: gripped, tines, air: blown };
         self.around.prepare(self.state.len(), kinds, pressed);
         let anchor = self.settings.anchor;
         let obstacles = (drive.obstacles, carried);
@@ -30,7 +29,7 @@ impl Simulation {
             }
         }
         self.move_roots(drive);
-        if !gripped && !tethered && !blown {
+        if !gripped && !blown {
             return;
         }
         let frame = Frame { anchor: [anchor, drive.anchor], dt: drive.dt };
@@ -48,16 +47,12 @@ impl Simulation {
         let blow = Blow { air, shade };
         let charges = Charges { balls: &self.charged, hair: &self.hair_field };
         let (groom, ghost_of, charge_of) = (&self.groom, &self.ghosts, &self.charges);
-        let tether_of = &self.tethers;
         let tools = &self.tools.used;
         let act = |strand: &mut Surrounded| {
             let s = strand.strand;
             let group = groom.group(s) as usize;
             if let Some(ghost) = of_group(ghost_of, group).filter(|_| ghosts) {
                 ghost.add(groom.scale(s).ghost, groom.strand(s), strand);
-            }
-            if let Some(reach) = of_group(tether_of, group).copied().flatten() {
-                tether::hold(reach, groom.strand(s), strand);
             }
             if let Some(charge) = of_group(charge_of, group).filter(|_| charged) {
                 charges.add(*charge, strand);
