@@ -91,6 +91,29 @@ impl ObstaclePose {
         }
     }
 
+    /// Which of eight segments that end at `p` (world) and are `e` long may have a place inside at the end of the substep; the others have none
+    /// that counts.
+    #[inline(always)]
+    pub(crate) fn near_segment<S: Simd>(&self, simd: S, p: V3<S>, e: V3<S>, length: F<S>) -> mask32x8<S> {
+        let half = F::splat(simd, -0.5);
+        let d = e.mul_add(half, p) - V3::splat(simd, self.bounds.0);
+        let reach = length.mul_add(0.505, F::splat(simd, self.bounds.1));
+        let near = d.dot(d).simd_le(reach * reach);
+        if !near.any_true() {
+            return near;
+        }
+        let places = |may: &dyn Fn(V3<S>) -> mask32x8<S>| {
+            let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
+            let at = |s: f32| may(e.mul_add(F::splat(simd, s), p));
+            near & (at(0.0) | at(-0.25) | at(-0.5) | at(-0.75))
+        };
+        match &self.shape {
+            Obstacle::Field(grid) => places(&|p| grid.may_be_inside(simd, p)),
+            Obstacle::Sheet(sheet) => places(&|p| sheet.may_be_inside(simd, p)),
+            _ => near,
+        }
+    }
+
     /// Eight world points in the shape's own space at the end of the substep.
     #[inline(always)]
     fn local<S: Simd>(&self, simd: S, p: V3<S>) -> V3<S> {
