@@ -1,8 +1,9 @@
 //! Promise: segments stay outside of colliders, not only points: a strand that falls over an edge does not cut the corner, one that falls on
 //! a ball or a rod smaller than its segments rests on it, and hair that lies so comes to rest and stays.
 //!
-//! Segments of 2 cm may be inside by 1 % of their length: those on a large round body always are. At rest they are by no more than 0.3 mm, and by
-//! 1 mm while they land. Where nothing is near, none of it shows.
+//! Segments may be inside by 0.2 mm: those on a large round body always are. At rest they are by no more than 0.3 mm, and by 1 mm while they
+//! land. What lies so moves by less than 0.1 mm in a second (springs, which tremble on an edge, by 5 mm). Where nothing is near, none of it
+//! shows.
 
 use glam::{Mat3, Vec3};
 use hairspring::{
@@ -123,7 +124,7 @@ fn hair_falls_over_edges_and_lies_on_them() {
             check(landing.max_depth < 1e-4, "a point is deep");
             check(landing.stretch_max < 0.011, "a segment is too long");
             check(lowest < -0.1, "nothing hangs over");
-            check(crept < 5e-4, "hair at rest creeps");
+            check(crept < if model == Model::Springs { 5e-3 } else { 1e-4 }, "hair at rest creeps");
         }
     }
     assert!(failures.is_empty(), "{failures:#?}");
@@ -140,7 +141,8 @@ fn what_was_authored_across_a_shape_stays_as_it_is() {
         let obstacles = still(&shape);
         step(&mut simulation, &roots, &obstacles);
         step(&mut free, &roots, &[]);
-        let moved = points(&simulation).iter().zip(points(&free)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
+        let moved =
+            points(&simulation).iter().zip(points(&free)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
         assert!(moved < 1e-3, "{model:?}: thrown {moved} m by what it was authored across");
     }
 }

@@ -68,35 +68,39 @@ pub(crate) fn deepest<S: Simd>(
     within: F<S>,
 ) -> Option<Deepest<S>> {
     let splat = |x: f32| F::<S>::splat(simd, x);
-    let look = |at: F<S>| {
-        let (distance, normal) = contact(simd, pose, e.mul_add(at, a));
-        Look { at, distance, normal, slope: normal.dot(e) }
-    };
-    let middle = look(splat(0.5));
     let (l, u) = e.length_and_unit();
-    let bump = match &pose.shape {
-        Obstacle::Field(grid) => (l - grid.cell).max(0.0) * BUMP,
-        // What is farther off than the sheet is thick is not told how far.
-        Obstacle::Sheet(_) => splat(f32::INFINITY),
-        _ => splat(0.0),
-    };
-    let found = (middle.distance - bump.max(middle.slope.abs() * 0.5)).simd_lt(within);
-    if !found.any_true() {
-        return None;
+    let nothing = Look { at: splat(0.0), distance: splat(0.0), normal: V3::zero(simd), slope: splat(0.0) };
+    // The first quarter, the middle and the last; the deepest of them and of what is beside it.
+    let (mut seen, mut best, mut found) = ([nothing; 3], nothing, mask32x8::splat(simd, false));
+    // In a loop, so that the code that looks is there once.
+    for k in 0..4 {
+        let at = match k {
+            0 => splat(0.5),
+            1 => splat(0.25),
+            2 => splat(0.75),
+            _ => beside(simd, &seen, &best),
+        };
+        let (distance, normal) = contact(simd, pose, e.mul_add(at, a));
+        let here = Look { at, distance, normal, slope: normal.dot(e) };
+        if k == 0 {
+            let bump = match &pose.shape {
+                Obstacle::Field(grid) => (l - grid.cell).max(0.0) * BUMP,
+                // What is farther off than the sheet is thick is not told how far.
+                Obstacle::Sheet(_) => splat(f32::INFINITY),
+                _ => splat(0.0),
+            };
+            found = (distance - bump.max(here.slope.abs() * 0.5)).simd_lt(within);
+            if !found.any_true() {
+                return None;
+            }
+            (seen, best) = ([here; 3], here);
+        } else {
+            if k < 3 {
+                seen[2 * (k - 1)] = here;
+            }
+            best = here.nearer(best);
+        }
     }
-    let quarters = [look(splat(0.25)), look(splat(0.75))];
-    let best = quarters[0].nearer(quarters[1].nearer(middle));
-    // From there it falls toward the place beside it, which is one of the others or an end.
-    let toward = best.slope.simd_lt(0.0).select(splat(0.25), splat(-0.25));
-    let beside = Look::select(toward.simd_gt(0.0), quarters[1], quarters[0]);
-    let beside = Look::select(best.at.simd_eq(0.5), beside, middle);
-    // Where its tangent there crosses this one; halfway where that place is not known, or it falls on beyond it.
-    let (f, f_beside) = (best.slope * toward, beside.slope * toward);
-    let known = (best.at + toward - beside.at).abs().simd_lt(0.1) & f_beside.simd_gt(0.0);
-    let cross = (f_beside + best.distance - beside.distance) / (f_beside - f).max(1e-30);
-    let cross = known.select(cross.max(0.0).min(1.0), splat(0.5));
-    let last = look(cross.mul_add(toward, best.at));
-    let best = last.nearer(best);
     let (slope, across) = (best.normal - u * best.normal.dot(u)).length_and_unit();
     let steep = slope.simd_lt(STEEP);
     Some(Deepest {
@@ -105,6 +109,20 @@ pub(crate) fn deepest<S: Simd>(
         normal: V3::select(steep, best.normal, across),
         at: best.at,
     })
+}
+
+/// Where the segment may be deeper than at `best`, the deepest of three places: between that and the place beside it toward which it falls, where their
+/// tangents cross; halfway where that place is not known, or it falls on beyond it.
+#[inline(always)]
+fn beside<S: Simd>(simd: S, seen: &[Look<S>; 3], best: &Look<S>) -> F<S> {
+    let splat = |x: f32| F::<S>::splat(simd, x);
+    let toward = best.slope.simd_lt(0.0).select(splat(0.25), splat(-0.25));
+    let next = Look::select(toward.simd_gt(0.0), seen[2], seen[0]);
+    let next = Look::select(best.at.simd_eq(0.5), next, seen[1]);
+    let (f, f_next) = (best.slope * toward, next.slope * toward);
+    let known = (best.at + toward - next.at).abs().simd_lt(0.1) & f_next.simd_gt(0.0);
+    let cross = (f_next + best.distance - next.distance) / (f_next - f).max(1e-30);
+    known.select(cross.max(0.0).min(1.0), splat(0.5)).mul_add(toward, best.at)
 }
 
 /// What is seen at a place of eight segments.

@@ -1,4 +1,5 @@
-//! The last word on a substep: no segment longer or shorter than ±1 %, no point inside a collider, and then the velocities.
+//! The last word on a substep: no segment longer or shorter than ±1 %, no point inside a collider and no segment (`segment`), and then the
+//! velocities.
 //!
 //! One sweep from root to tip. Each segment is clamped to its rest length ± [`LIMIT`] by moving the outer point (follow the
 //! leader, Müller 2012, but only past the limit); a point inside a collider moves to the nearest free position with
@@ -66,7 +67,7 @@ pub fn limit<S: Simd>(
         shift = V3::zero(simd);
         // A branch, so that a segment waits for the one before it only where something is to be done.
         let world = step.root.position + (at.x + e);
-        let near = step.obstacles.iter().any(|pose| pose.near_segment(simd, world, e, length).any_true());
+        let near = step.obstacles.iter().any(|pose| pose.near_segment(simd, world, e).any_true());
         if near || tether.wrong(e).any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             e = V3::select(free, place(simd, finish, step, tile, (i, stride, e), (&at, &tether)), e);
@@ -112,7 +113,7 @@ fn place<S: Simd>(
     let in_world = |e: V3<S>| step.root.position + (at.x + e);
     for pose in step.obstacles {
         let world = in_world(e);
-        let near = pose.near_segment(simd, world, e, tether.length);
+        let near = pose.near_segment(simd, world, e);
         if !near.any_true() {
             continue;
         }

@@ -1,8 +1,12 @@
-//! Contact inside the solve: a point that a collider holds out is pressed there, and rubs, while the strand moves as a whole.
+//! Contact inside the solve: a segment that a collider holds out is pressed there, and rubs, while the strand moves as a whole.
 //!
 //! ```text
-//!   N ← max(0, N − k (g + n·δ))       g the gap [m], n the normal, δ what the solve moves the point by, k = STRETCH m/h²
+//!   N ← max(0, N − k (g + n·δ))       g the gap [m], n the normal, k = STRETCH m/h²
+//!   δ = (1 − s) δ_a + s δ_b           what the solve moves the place s of the segment by, the one that is deepest: mostly its outer end b
 //! ```
+//!
+//! Both ends share what presses between them: the matrix gets k n nᵀ times the squares of the shares on the diagonal and their product between the
+//! two, where stretch is as well.
 //!
 //! The normal force N is carried from substep to substep like a segment's tension (an augmented Lagrangian, Alart & Curnier 1991, *A
 //! Mixed Formulation for Frictional Contact Problems*), so that tension, weight and N are in balance in one solve. Were contact
@@ -14,7 +18,7 @@
 //! pulled harder than μN gathers speed. The secant is no stiffer than k: a strand at rest creeps by up to μN/k a substep (μ times
 //! 0.1 mm/s under its own weight, at four substeps), which is as little as positions in f32 can tell.
 //!
-//! Only points with N > 0 take part. It begins in `limit`, with the push that a point needed.
+//! Only segments with N > 0 take part, each with one N. It begins in `limit` and `segment`, with the push that was needed there.
 
 use super::{
     assemble::{Step, Sweep},
@@ -78,7 +82,8 @@ pub fn press<S: Simd, const B: usize, const N: usize>(
     for pose in step.obstacles {
         let (distance, n) = contact(simd, pose, world);
         let mut place = (distance - load(simd, &tile.rest[outer][rest::CLEARANCE]), n, one);
-        if let Some(between) = deepest(simd, pose, (inner, e), clear + reach) {
+        // Only what is nearer than the end counts.
+        if let Some(between) = deepest(simd, pose, (inner, e), clear + reach.min(place.0)) {
             let gap = between.distance - clear;
             let deeper = between.found & gap.simd_lt(place.0);
             place.0 = deeper.select(gap, place.0);
