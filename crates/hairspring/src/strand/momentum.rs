@@ -54,6 +54,7 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         grip: &[],
         tines: &[],
         air: &[],
+        sunk: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => match model {
