@@ -57,7 +57,9 @@ impl GpuPainter {
             }
             self.valued = !scenery.values.is_empty();
             let began = std::time::Instant::now();
-            scenery.draw(sight, |frame| drop(self.renderer.draw(frame, size[0], size[1])));
+            scenery.draw(sight, |frame| {
+                self.renderer.draw(frame, size[0], size[1]);
+            });
             self.took = began.elapsed().as_secs_f32();
             self.shown = Some(wanted);
         }
