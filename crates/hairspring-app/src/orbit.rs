@@ -88,7 +88,8 @@ impl Lens {
     pub fn project(&self, p: Vec3) -> Option<(Vec2, f32)> {
         let d = p - self.eye;
         let depth = d.dot(self.forward);
-        if !(depth > 1e-3) {
+        // What is not a number is nowhere either.
+        if depth.is_nan() || depth <= 1e-3 {
             return None;
         }
         let scale = 0.5 / (depth * self.slope);

@@ -87,7 +87,7 @@ pub fn draw(painter: &egui::Painter, rect: egui::Rect, scenery: &Scenery, view: 
         for (axis, color) in
             [(m.x_axis, Color32::RED), (m.y_axis, Color32::GREEN), (m.z_axis, Color32::LIGHT_BLUE)]
         {
-            pen.line(at, at + Vec3::from(axis) * 0.15, Stroke::new(2.0, color));
+            pen.line(at, at + axis * 0.15, Stroke::new(2.0, color));
         }
     }
     if let Some((center, radius)) = view.ball() {
@@ -99,7 +99,7 @@ pub fn draw(painter: &egui::Painter, rect: egui::Rect, scenery: &Scenery, view: 
 fn collider(pen: &Pen, obstacle: &hairspring::simulation::MovingObstacle, stroke: Stroke) {
     let pose = obstacle.end;
     let (m, _) = pose.matrix();
-    let turned = |axes: Mat3| Mat3::from(m) * axes;
+    let turned = |axes: Mat3| m * axes;
     match &obstacle.shape {
         Obstacle::Sphere { center, radius } => pen.ball(pose.point(*center), *radius, stroke),
         Obstacle::Capsule { a, b, radius } => {
@@ -128,7 +128,7 @@ fn collider(pen: &Pen, obstacle: &hairspring::simulation::MovingObstacle, stroke
             }
         }
         Obstacle::Plane { point, normal } => {
-            let normal = Mat3::from(m) * *normal;
+            let normal = m * *normal;
             let x = normal.any_orthonormal_vector();
             let (at, y) = (pose.point(*point), normal.cross(x));
             for k in -5..=5 {

@@ -246,5 +246,6 @@ impl Sink {
 /// Writes a picture by its file's extension.
 pub fn write(path: &Path, image: &hairspring_view::Image) -> Result<(), AppError> {
     let jpeg = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("jpg"));
-    Ok(if jpeg { write_jpeg(path, image)? } else { write_png(path, image)? })
+    let written = if jpeg { write_jpeg(path, image) } else { write_png(path, image) };
+    Ok(written?)
 }

@@ -103,11 +103,11 @@ fn draw(ctx: &egui::Context) -> Receiver<(usize, hairspring_view::Image)> {
     let ctx = ctx.clone();
     std::thread::spawn(move || {
         let mut renderer = Renderer::new(SIZE[0], SIZE[1]);
-        for k in 0..PRESETS.len() {
+        for (k, (_, _, more)) in PRESETS.iter().enumerate() {
             let scene = hairspring_io::read_scene_text("scene.toml".as_ref(), &text(k, HAIRS, 300));
             let Some(mut stage) = scene.ok().and_then(|s| Stage::new(s.value).ok()) else { continue };
             // What moves is seen moved.
-            if PRESETS[k].2.contains("wind") || PRESETS[k].2.contains("charge") {
+            if more.contains("wind") || more.contains("charge") {
                 for _ in 0..45 {
                     stage.step(crate::player::STEP);
                 }
