@@ -76,13 +76,19 @@ pub struct Player {
 }
 
 impl Player {
-    /// A thread that calls `wake` whenever there is something new to see.
-    pub fn new(wake: impl Fn() + Send + 'static) -> Self {
+    /// A thread that calls `wake` whenever there is something new to see, and steps on so many threads: fewer than processors where another pool draws,
+    /// for a step would wait at each of its ends for a thread that is not given a processor.
+    pub fn new(threads: usize, wake: impl Fn() + Send + 'static) -> Self {
         let (orders, inbox) = channel();
         let shared = Arc::new(Shared::default());
         let own = shared.clone();
         let thread = std::thread::Builder::new().name("simulation".into()).spawn(move || {
-            Work { inbox, shared: own, wake: Box::new(wake), ..Work::new() }.run();
+            let mut work = Work { inbox, shared: own, wake: Box::new(wake), ..Work::new() };
+            match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+                Ok(pool) => pool.install(|| work.run()),
+                // The pool of all is there in any case.
+                Err(_) => work.run(),
+            }
         });
         Self { orders: Some(orders), shared, thread: thread.ok() }
     }
@@ -125,7 +131,7 @@ impl Drop for Player {
 struct Work {
     inbox: Receiver<Order>,
     shared: Arc<Shared>,
-    wake: Box<dyn Fn()>,
+    wake: Box<dyn Fn() + Send>,
     stages: Vec<(Stage, Arc<Still>)>,
     playing: bool,
     speed: f32,

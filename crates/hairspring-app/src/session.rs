@@ -97,13 +97,17 @@ pub struct Session {
 }
 
 impl Session {
-    /// Opens a document; `wake` is called whenever there is something new to see.
-    pub fn new(document: Document, wake: impl Fn() + Send + 'static) -> Result<Self, AppError> {
+    /// Opens a document, to be simulated on so many threads; `wake` is called whenever there is something new to see.
+    pub fn new(
+        document: Document,
+        threads: usize,
+        wake: impl Fn() + Send + 'static,
+    ) -> Result<Self, AppError> {
         let mut session = Self {
             document,
             second: None,
             on_second: false,
-            player: Player::new(wake),
+            player: Player::new(threads, wake),
             playing: true,
             speed: 1.0,
             repeat: true,

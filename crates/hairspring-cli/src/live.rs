@@ -40,6 +40,10 @@ enum Draw {
 
 /// Runs the command.
 pub fn run(options: &Options) -> Result<(), Fault> {
+    if !has_desktop() {
+        let text = "there is no desktop to open a window on: neither WAYLAND_DISPLAY nor DISPLAY is set";
+        return Err(Fault::Lacking(text.into()));
+    }
     let document = options.scene.as_ref().map(|path| Document::open(path)).transpose();
     let document = document.map_err(|why| Fault::Content(why.to_string()))?;
     let script = match &options.script {
@@ -61,13 +65,9 @@ pub fn run(options: &Options) -> Result<(), Fault> {
 
 /// What runs without a command: the window where there can be one, else the clip, with one sentence.
 pub fn run_or_demo(console: Console) -> Result<(), Fault> {
-    let why = if has_desktop() {
-        match run(&Options::default()) {
-            Err(Fault::Lacking(why)) => why,
-            other => return other,
-        }
-    } else {
-        "there is no desktop to open a window on".into()
+    let why = match run(&Options::default()) {
+        Err(Fault::Lacking(why)) => why,
+        other => return other,
     };
     console.doing(format_args!("{why}; writing a clip instead (`hairspring demo`)"));
     demo::run(&demo::Options::parse_from(["demo"]), console)

@@ -48,14 +48,14 @@ pub struct CpuPainter {
 }
 
 impl CpuPainter {
-    /// Starts the thread; it wakes the window when a picture is there.
-    pub fn new(ctx: &egui::Context) -> Self {
+    /// Starts the thread, which draws on so many others; it wakes the window when a picture is there.
+    pub fn new(ctx: &egui::Context, threads: usize) -> Self {
         let (jobs, todo) = channel::<Job>();
         let (finished, done) = channel();
         let ctx = ctx.clone();
         std::thread::spawn(move || {
             // Threads of its own: in one pool, a step of the simulation would wait behind a whole picture.
-            let Ok(pool) = rayon::ThreadPoolBuilder::new().build() else { return };
+            let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { return };
             let mut renderer: Option<(Renderer, [u32; 2])> = None;
             for job in todo {
                 let began = Instant::now();

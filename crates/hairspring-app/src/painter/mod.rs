@@ -41,7 +41,7 @@ impl Painter {
         });
         match state {
             Some(state) => Self::Gpu(Box::new(GpuPainter::new(state))),
-            None => Self::Cpu(Box::new(CpuPainter::new(&creation.egui_ctx))),
+            None => Self::Cpu(Box::new(CpuPainter::new(&creation.egui_ctx, half()))),
         }
     }
 
@@ -49,7 +49,15 @@ impl Painter {
     pub fn another(&self, ctx: &egui::Context) -> Self {
         match self {
             Self::Gpu(painter) => Self::Gpu(Box::new(painter.another())),
-            Self::Cpu(_) => Self::Cpu(Box::new(CpuPainter::new(ctx))),
+            Self::Cpu(_) => Self::Cpu(Box::new(CpuPainter::new(ctx, half()))),
+        }
+    }
+
+    /// Threads that are left for the simulation.
+    pub fn spared(&self) -> usize {
+        match self {
+            Self::Gpu(_) => processors(),
+            Self::Cpu(_) => half(),
         }
     }
 
@@ -80,4 +88,13 @@ impl Painter {
             Self::Cpu(painter) => painter.note(),
         }
     }
+}
+
+fn processors() -> usize {
+    rayon::current_num_threads()
+}
+
+/// Simulation and painter have half of the processors each.
+fn half() -> usize {
+    (processors() / 2).max(1)
 }
