@@ -10,7 +10,6 @@ mod rigid;
 mod sheet;
 mod voxelize;
 
-pub(crate) use along::deepest;
 pub use grid::Grid;
 pub use hull::Hull;
 pub use obstacle::{Obstacle, ObstaclePose};

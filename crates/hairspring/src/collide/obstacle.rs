@@ -85,39 +85,10 @@ impl ObstaclePose {
         }
         match &self.shape {
             Obstacle::Field(grid) => near & grid.may_be_inside(simd, self.local(simd, p)),
-            Obstacle::Hull(hull) => near & hull.may_be_inside(simd, self.local(simd, p), V3::zero(simd)),
+            Obstacle::Hull(hull) => near & hull.may_be_inside(simd, self.local(simd, p)),
             Obstacle::Sheet(sheet) => near & sheet.may_be_inside(simd, self.local(simd, p)),
             _ => near,
         }
-    }
-
-    /// Which of eight segments that end at `p` (world) and are `e` long may have a place inside at the end of the substep; the others have none
-    /// that counts.
-    #[inline(always)]
-    pub(crate) fn near_segment<S: Simd>(&self, simd: S, p: V3<S>, e: V3<S>) -> mask32x8<S> {
-        let half = F::splat(simd, -0.5);
-        let d = e.mul_add(half, p) - V3::splat(simd, self.bounds.0);
-        // A little over half of its length.
-        let reach = e.dot(e).sqrt().mul_add(0.5001, F::splat(simd, self.bounds.1));
-        let near = d.dot(d).simd_le(reach * reach);
-        if !near.any_true() {
-            return near;
-        }
-        if !matches!(self.shape, Obstacle::Field(_) | Obstacle::Sheet(_) | Obstacle::Hull(_)) {
-            return near;
-        }
-        let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
-        let mut may = mask32x8::splat(simd, false);
-        for s in [0.0, -0.25, -0.5, -0.75] {
-            let at = e.mul_add(F::splat(simd, s), p);
-            may |= match &self.shape {
-                Obstacle::Field(grid) => grid.may_be_inside(simd, at),
-                Obstacle::Sheet(sheet) => sheet.may_be_inside(simd, at),
-                Obstacle::Hull(hull) => return near & hull.may_be_inside(simd, p, e),
-                _ => near,
-            };
-        }
-        near & may
     }
 
     /// Eight world points in the shape's own space at the end of the substep.

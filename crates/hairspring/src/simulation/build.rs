@@ -141,8 +141,7 @@ impl Simulation {
                     let points = simulated_points(tile.model, self.groom.strand(*s as usize));
                     let stride = tile.model.stride();
                     for i in (2 * stride..points.len()).step_by(stride) {
-                        let [a, b] = [points[i - stride], points[i]];
-                        let depth = obstacles.iter().map(|o| o.least_distance(a, b).min(o.distance(a)));
+                        let depth = obstacles.iter().map(|o| o.least_distance(points[i - stride], points[i]));
                         sunk[i].0[lane] = depth.fold(0.0, f32::min);
                     }
                 }

@@ -45,7 +45,7 @@ use std::sync::Arc;
 /// same bits for any number of threads. Strands meet the body, the air, and each other as a volume (see [`Simulation::set_volume`]).
 ///
 /// # Missing
-/// Hair against hair as strands, a sweep for bodies that move by more than their thickness in a substep, cutting and wetting: each is an issue of its own.
+/// Hair against hair as strands, contact between points (a segment may cut a corner that its ends stay out of), cutting and wetting: each is an issue of its own.
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.

@@ -125,7 +125,6 @@ impl Simulation {
                 grip: &self.around.grip,
                 tines: &self.around.tines,
                 air: &self.around.air,
-                sunk: &self.sunk,
                 holds: &self.holds,
             },
         );
@@ -205,7 +204,6 @@ struct Piece<'a> {
     grip: &'a [[Row; grip::ROWS]],
     tines: &'a [[Row; tines::ROWS]],
     air: &'a [[Row; 3]],
-    sunk: &'a [Row],
     holds: &'a [Vec<HoldRows>],
 }
 
@@ -222,10 +220,9 @@ impl<'a> Piece<'a> {
         let (grip, more_grip) = self.grip.split_at(points.min(self.grip.len()));
         let (tines, more_tines) = self.tines.split_at(points.min(self.tines.len()));
         let (air, more_air) = self.air.split_at(points.min(self.air.len()));
-        let (sunk, more_sunk) = self.sunk.split_at(points.min(self.sunk.len()));
         let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
         (
-            Piece { tiles, strand, rest, state, history, push, grip, tines, air, sunk, holds },
+            Piece { tiles, strand, rest, state, history, push, grip, tines, air, holds },
             Piece {
                 tiles: more_tiles,
                 strand: more_strand,
@@ -236,7 +233,6 @@ impl<'a> Piece<'a> {
                 grip: more_grip,
                 tines: more_tines,
                 air: more_air,
-                sunk: more_sunk,
                 holds: more_holds,
             },
         )
@@ -256,8 +252,7 @@ impl<'a> Piece<'a> {
             push: if self.push.is_empty() { &[] } else { &self.push[points.clone()] },
             grip: if self.grip.is_empty() { &[] } else { &self.grip[points.clone()] },
             tines: if self.tines.is_empty() { &[] } else { &self.tines[points.clone()] },
-            air: if self.air.is_empty() { &[] } else { &self.air[points.clone()] },
-            sunk: if self.sunk.is_empty() { &[] } else { &self.sunk[points] },
+            air: if self.air.is_empty() { &[] } else { &self.air[points] },
             holds: self.holds.get(k).map_or(&[], |holds| holds),
         }
     }

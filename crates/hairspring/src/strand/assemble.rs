@@ -269,8 +269,9 @@ fn add_point<S, M, const B: usize, const N: usize>(
         }
         *held += 1;
     }
-    if on_strand && i + 1 + M::STRIDE < tile.rest.len() {
-        press(simd, (sweep, step), tile, (i + 1, x, drift(), way()), band, scratch);
+    if on_strand {
+        let work = &mut scratch.contacts[i + 1];
+        press(simd, step, tile, (i + 1, x, drift(), way()), band, work);
     }
 }
 
@@ -308,10 +309,9 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
             let drift = V3::load(simd, &tile.state[i][state::V..]) - root_velocity;
             delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
             delta = drift.mul_add(F::splat(simd, sweep.drift(step.h)), delta);
-        }
-        if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
-            // Before this point's is added: those of the points after it.
-            relieve(simd, step, tile, (i, [delta, solved.moved[M::STRIDE - 1]]), scratch.contacts);
+            if i.is_multiple_of(M::STRIDE) {
+                relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
+            }
         }
         solved.i = i;
         let fixed = &scratch.fixed[i - i % M::STRIDE];

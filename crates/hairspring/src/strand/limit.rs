@@ -1,5 +1,4 @@
-//! The last word on a substep: no segment longer or shorter than ±1 %, no point inside a collider and no segment (`segment`), and then the
-//! velocities.
+//! The last word on a substep: no segment longer or shorter than ±1 %, no point inside a collider, and then the velocities.
 //!
 //! One sweep from root to tip. Each segment is clamped to its rest length ± [`LIMIT`] by moving the outer point (follow the
 //! leader, Müller 2012, but only past the limit); a point inside a collider moves to the nearest free position with
@@ -11,7 +10,6 @@ use super::{
     lanes::{F, V3, load, store},
     root::Root,
     scratch::Scratch,
-    segment::clear,
     tile::{Tile, history, rest, state},
     truss::beside,
 };
@@ -67,7 +65,7 @@ pub fn limit<S: Simd>(
         shift = V3::zero(simd);
         // A branch, so that a segment waits for the one before it only where something is to be done.
         let world = step.root.position + (at.x + e);
-        let near = step.obstacles.iter().any(|pose| pose.near_segment(simd, world, e).any_true());
+        let near = step.obstacles.iter().any(|pose| pose.near(simd, world).any_true());
         if near || tether.wrong(e).any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             e = V3::select(free, place(simd, finish, step, tile, (i, stride, e), (&at, &tether)), e);
@@ -113,10 +111,6 @@ fn place<S: Simd>(
     let in_world = |e: V3<S>| step.root.position + (at.x + e);
     for pose in step.obstacles {
         let world = in_world(e);
-        let near = pose.near_segment(simd, world, e);
-        if !near.any_true() {
-            continue;
-        }
         let (distance, normal) = contact(simd, pose, world);
         let depth = (clearance - distance).max(0.0);
         if depth.simd_gt(0.0).any_true() {
@@ -141,20 +135,17 @@ fn place<S: Simd>(
             }
             e = V3::select(depth.simd_gt(0.0), q, e);
         }
-        let between = clear(simd, (finish, step, pose), tile, (i, old, e), (at, tether, near));
-        press += between.1;
-        e = between.0;
     }
     store(press, &mut tile.state[i][state::PRESS]);
     e
 }
 
 /// A particle on the walk from root to tip.
-pub struct Particle<S: Simd> {
+struct Particle<S: Simd> {
     /// Where it is, from the root [m].
-    pub x: V3<S>,
+    x: V3<S>,
     /// How far it went in the substep [m].
-    pub way: V3<S>,
+    way: V3<S>,
 }
 
 impl<S: Simd> Particle<S> {
@@ -197,9 +188,9 @@ fn write<S: Simd>(
 }
 
 /// What holds a point to the one before it, from which it is at `e`.
-pub struct Tether<S: Simd> {
+struct Tether<S: Simd> {
     /// Rest length of the segment [m].
-    pub length: F<S>,
+    length: F<S>,
     /// Largest relative change of it.
     limit: f32,
 }
@@ -215,7 +206,7 @@ impl<S: Simd> Tether<S> {
 
     /// The point moved along the segment until its length is within the limit.
     #[inline(always)]
-    pub fn clamp(&self, e: V3<S>) -> V3<S> {
+    fn clamp(&self, e: V3<S>) -> V3<S> {
         let (l, u) = e.length_and_unit();
         let l = l.min(self.length * (1.0 + self.limit)).max(self.length * (1.0 - self.limit));
         V3::select(self.wrong(e), u * l, e)
@@ -225,7 +216,7 @@ impl<S: Simd> Tether<S> {
     /// hold at once. (Out and back in turn hardly moves a tip that meets the surface head on.) Where the point before is deeper than the
     /// segment is long, it points straight out.
     #[inline(always)]
-    pub fn swing_out(&self, e: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
+    fn swing_out(&self, e: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
         let (l, _) = e.length_and_unit();
         let along = e.dot(normal);
         let (_, side) = (e - normal * along).length_and_unit();

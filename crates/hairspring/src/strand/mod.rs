@@ -19,7 +19,6 @@ pub(crate) mod project;
 pub(crate) mod rest_shape;
 pub(crate) mod root;
 pub(crate) mod scratch;
-pub(crate) mod segment;
 pub(crate) mod tile;
 pub(crate) mod truss;
 

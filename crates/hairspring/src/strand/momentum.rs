@@ -54,7 +54,6 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         grip: &[],
         tines: &[],
         air: &[],
-        sunk: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => match model {

@@ -309,7 +309,6 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
         grip: &[],
         tines: &[],
         air: &[],
-        sunk: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => {

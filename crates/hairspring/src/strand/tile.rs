@@ -17,7 +17,7 @@ pub mod state {
     pub const TENSION: usize = 6;
     /// The frame's normal on the segment from this point to the next, 3 rows.
     pub const NORMAL: usize = 7;
-    /// Force with which a collider holds this point out, or the segment to it, found by the last substep; 0 without contact [N].
+    /// Force with which a collider holds this point out, found by the last substep; 0 without contact [N].
     pub const PRESS: usize = 10;
     /// Rows a point.
     pub const ROWS: usize = 11;
@@ -189,9 +189,6 @@ pub struct Tile<'a> {
     pub tines: &'a [[Row; tines::ROWS]],
     /// Velocity of the air besides the wind of all points, frozen for the interval [m/s]: shape `[points]`, empty where there is none.
     pub air: &'a [[Row; 3]],
-    /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]: shape `[points]`, empty where none
-    /// was.
-    pub sunk: &'a [Row],
     /// What holds or pulls points, sorted by point.
     pub holds: &'a [HoldRows],
 }
@@ -210,7 +207,6 @@ impl Tile<'_> {
             grip: &self.grip[..all_or_none(self.grip.is_empty())],
             tines: &self.tines[..all_or_none(self.tines.is_empty())],
             air: &self.air[..all_or_none(self.air.is_empty())],
-            sunk: &self.sunk[..all_or_none(self.sunk.is_empty())],
             ..*self
         }
     }
