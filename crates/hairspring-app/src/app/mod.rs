@@ -1,5 +1,8 @@
 //! The window: panels around the picture, keys, files that are dropped, and what a script does.
 
+mod scripted;
+mod told;
+
 use crate::{
     AppError,
     document::{Document, builtin_text},
@@ -22,10 +25,7 @@ use eframe::egui::{self, Color32, Key, Modifiers, RichText, Sense, Ui};
 use hairspring::stage::Value;
 use std::{
     collections::VecDeque,
-    sync::{
-        Arc,
-        mpsc::{Receiver, channel},
-    },
+    sync::{Arc, mpsc::Receiver},
     time::{Duration, Instant},
 };
 
@@ -315,7 +315,7 @@ impl App {
                 );
             }
             if let Some(value) = self.session.shown() {
-                legend(&painter, rect, value, self.view.range);
+                told::legend(&painter, rect, value, self.view.range);
             }
         }
     }
@@ -339,91 +339,6 @@ impl App {
         self.open.presets = open;
         let dropped = ctx.input(|i| i.raw.dropped_files.clone());
         actions.extend(dropped.into_iter().map(|f| Action::Open(f.path().into())));
-    }
-
-    /// Does the next lines of the script that can be done now.
-    fn follow_script(&mut self, ctx: &egui::Context, snapshot: Option<&Arc<Snapshot>>) {
-        let Some(snapshot) = snapshot else { return };
-        if self.recorder.is_some() || !self.finger.rests() || self.shot.is_some() {
-            return;
-        }
-        if snapshot.scene < self.session.begun() || snapshot.step < self.waits {
-            return;
-        }
-        self.waits = 0;
-        let Some(line) = self.script.pop_front() else { return };
-        match line {
-            Line::Wait(steps) => {
-                self.waits = snapshot.step + steps;
-                if !self.session.playing() {
-                    (0..steps).for_each(|_| self.act(Action::Step));
-                }
-            }
-            Line::Play(on) => self.act(Action::Play(on)),
-            Line::Step => self.act(Action::Step),
-            Line::Reset => self.act(Action::Reset),
-            Line::Speed(speed) => self.act(Action::Speed(speed)),
-            Line::Set(key, value) => {
-                self.act(Action::Set(key, value));
-                self.act(Action::Rest);
-            }
-            Line::Undo => self.act(Action::Undo),
-            Line::Redo => self.act(Action::Redo),
-            Line::New(style) => self.act(Action::New(builtin_text(&style, self.hairs.0, self.hairs.1))),
-            Line::Open(path) => self.act(Action::Open(path)),
-            Line::Save(path) => self.act(Action::Save(Some(path))),
-            Line::Hand(hand) => self.view.hand = hand,
-            Line::Drag(from, to, frames) => {
-                let place = |v: glam::Vec2| self.rect.min + egui::vec2(v.x, v.y) * self.rect.size();
-                self.finger.drag(place(from), place(to), frames);
-            }
-            Line::Show(value) => self.act(Action::Show(value)),
-            Line::Switch(name, on) => self.switch(&name, on),
-            Line::Record(kind, path, seconds) => self.record(ctx, Wish { kind, path, seconds }),
-            Line::Shot(path) => {
-                let (send, receive) = channel();
-                self.shot = Some(receive);
-                let wake = ctx.clone();
-                ctx.request_screenshot(move |image| {
-                    // The window may have closed meanwhile.
-                    let _ = send.send(crate::record::write(&path, &picture_of(&image)));
-                    wake.request_repaint();
-                });
-            }
-            Line::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-        }
-        ctx.request_repaint();
-    }
-
-    fn switch(&mut self, name: &str, on: bool) {
-        let overlays = &mut self.view.overlays;
-        let place = match name {
-            "compare" => return self.act(Action::Compare(on)),
-            "second" => return self.act(Action::Second(on)),
-            "graphs" => &mut self.open.graphs,
-            "presets" => &mut self.open.presets,
-            "help" => &mut self.open.help,
-            "panels" => &mut self.open.panels,
-            "hair" => &mut overlays.hair,
-            "body" => &mut overlays.body,
-            "colliders" => &mut overlays.colliders,
-            "slice" => &mut overlays.slice,
-            "volume" => &mut overlays.volume,
-            "frames" => &mut overlays.frames,
-            "roots" => &mut overlays.roots,
-            // The script's reader knows no other.
-            _ => return,
-        };
-        *place = on;
-    }
-
-    /// Hears of a picture of the window that was asked for.
-    fn hear_of_shot(&mut self) {
-        let Some(outcome) = self.shot.as_ref().and_then(|shot| shot.try_recv().ok()) else { return };
-        self.shot = None;
-        if let Err(why) = outcome {
-            self.say(why.to_string(), true);
-        }
     }
 }
 
@@ -465,7 +380,7 @@ impl eframe::App for App {
             self.picture(ui, snapshot.as_ref(), &mut actions);
         });
         if let Some(snapshot) = snapshot.as_deref().filter(|_| self.open.panels) {
-            corner(ctx, self.rect, |ui| {
+            told::corner(ctx, self.rect, |ui| {
                 inspect::figures(ui, &self.session, snapshot, &notes.join("; "));
                 inspect::picked(ui, snapshot, &mut actions);
             });
@@ -496,91 +411,4 @@ impl eframe::App for App {
             ctx.request_repaint_after(Duration::from_millis(15));
         }
     }
-}
-
-impl App {
-    /// Progress of a record, and the last message.
-    fn tell(&mut self, ctx: &egui::Context) {
-        if let Some(recorder) = &self.recorder {
-            let (done, all) = recorder.progress();
-            egui::Window::new("Recording").collapsible(false).resizable(false).show(ctx, |ui| {
-                ui.add(
-                    egui::ProgressBar::new(done as f32 / all as f32).text(format!("{done} of {all} frames")),
-                );
-                if ui.button("Stop").clicked() {
-                    self.message = Some((
-                        "stopped: a clip that is not complete is not kept".into(),
-                        false,
-                        Instant::now(),
-                    ));
-                }
-            });
-            if self.message.as_ref().is_some_and(|m| m.0.starts_with("stopped")) {
-                self.recorder = None;
-            }
-        }
-        let Some((text, wrong, since)) = &self.message else { return };
-        if since.elapsed() > MESSAGE {
-            self.message = None;
-            return;
-        }
-        let color = if *wrong { ctx.global_style().visuals.error_fg_color } else { Color32::LIGHT_GREEN };
-        egui::Area::new(egui::Id::unique("message"))
-            .anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0))
-            .interactable(false)
-            .show(ctx, |ui| {
-                egui::Frame::popup(ui.style()).show(ui, |ui| {
-                    ui.set_max_width(640.0);
-                    ui.colored_label(color, text);
-                });
-            });
-        ctx.request_repaint_after(MESSAGE);
-    }
-}
-
-/// A picture of the window as a picture.
-fn picture_of(image: &egui::ColorImage) -> hairspring_view::Image {
-    let mut out = hairspring_view::Image::new(image.size[0] as u32, image.size[1] as u32);
-    for (to, from) in out.rgb.chunks_exact_mut(3).zip(&image.pixels) {
-        to.copy_from_slice(&from.to_array()[..3]);
-    }
-    out
-}
-
-/// Text in the lower left corner of the picture.
-fn corner(ctx: &egui::Context, rect: egui::Rect, show: impl FnOnce(&mut Ui)) {
-    egui::Area::new(egui::Id::unique("figures"))
-        .fixed_pos(rect.left_bottom() + egui::vec2(10.0, -10.0))
-        .pivot(egui::Align2::LEFT_BOTTOM)
-        .show(ctx, |ui| {
-            ui.style_mut().interaction.selectable_labels = false;
-            egui::Frame::new()
-                .fill(Color32::from_black_alpha(90))
-                .corner_radius(4.0)
-                .inner_margin(6.0)
-                .show(ui, show);
-        });
-}
-
-/// What colours stand for.
-fn legend(painter: &egui::Painter, rect: egui::Rect, value: Value, range: [f32; 2]) {
-    let at = rect.right_top() + egui::vec2(-190.0, 14.0);
-    let text = |place: egui::Pos2, align, text: String| {
-        painter.text(place, align, text, egui::FontId::proportional(13.0), Color32::from_white_alpha(220));
-    };
-    text(at, egui::Align2::LEFT_TOP, format!("{} [{}]", value.name(), value.unit()));
-    if value == Value::Guide {
-        return;
-    }
-    let (bar, height) =
-        (egui::Rect::from_min_size(at + egui::vec2(0.0, 20.0), egui::vec2(170.0, 10.0)), 10.0);
-    for k in 0..34 {
-        let share = k as f32 / 33.0;
-        let c = crate::ramp::color(share, [0.0, 1.0]).to_array().map(|x| (x.powf(1.0 / 2.2) * 255.0) as u8);
-        let piece =
-            egui::Rect::from_min_size(bar.min + egui::vec2(5.0 * k as f32, 0.0), egui::vec2(5.0, height));
-        painter.rect_filled(piece, 0.0, Color32::from_rgb(c[0], c[1], c[2]));
-    }
-    text(bar.left_bottom(), egui::Align2::LEFT_TOP, "0".into());
-    text(bar.right_bottom(), egui::Align2::RIGHT_TOP, format!("{:.3e}", range[1]));
 }

@@ -1,0 +1,108 @@
+//! What a script does to the window.
+
+use super::App;
+use crate::{
+    document::builtin_text,
+    record::{Wish, write},
+    script::Line,
+    session::Action,
+    snapshot::Snapshot,
+};
+use eframe::egui;
+use std::sync::{Arc, mpsc::channel};
+
+impl App {
+    /// Does the next lines of the script that can be done now.
+    pub(super) fn follow_script(&mut self, ctx: &egui::Context, snapshot: Option<&Arc<Snapshot>>) {
+        let Some(snapshot) = snapshot else { return };
+        if self.recorder.is_some() || !self.finger.rests() || self.shot.is_some() {
+            return;
+        }
+        if snapshot.scene < self.session.begun() || snapshot.step < self.waits {
+            return;
+        }
+        self.waits = 0;
+        let Some(line) = self.script.pop_front() else { return };
+        match line {
+            Line::Wait(steps) => {
+                self.waits = snapshot.step + steps;
+                if !self.session.playing() {
+                    (0..steps).for_each(|_| self.act(Action::Step));
+                }
+            }
+            Line::Play(on) => self.act(Action::Play(on)),
+            Line::Step => self.act(Action::Step),
+            Line::Reset => self.act(Action::Reset),
+            Line::Speed(speed) => self.act(Action::Speed(speed)),
+            Line::Set(key, value) => {
+                self.act(Action::Set(key, value));
+                self.act(Action::Rest);
+            }
+            Line::Undo => self.act(Action::Undo),
+            Line::Redo => self.act(Action::Redo),
+            Line::New(style) => self.act(Action::New(builtin_text(&style, self.hairs.0, self.hairs.1))),
+            Line::Open(path) => self.act(Action::Open(path)),
+            Line::Save(path) => self.act(Action::Save(Some(path))),
+            Line::Hand(hand) => self.view.hand = hand,
+            Line::Drag(from, to, frames) => {
+                let place = |v: glam::Vec2| self.rect.min + egui::vec2(v.x, v.y) * self.rect.size();
+                self.finger.drag(place(from), place(to), frames);
+            }
+            Line::Show(value) => self.act(Action::Show(value)),
+            Line::Switch(name, on) => self.switch(&name, on),
+            Line::Record(kind, path, seconds) => self.record(ctx, Wish { kind, path, seconds }),
+            Line::Shot(path) => {
+                let (send, receive) = channel();
+                self.shot = Some(receive);
+                let wake = ctx.clone();
+                ctx.request_screenshot(move |image| {
+                    // The window may have closed meanwhile.
+                    let _ = send.send(write(&path, &picture_of(&image)));
+                    wake.request_repaint();
+                });
+            }
+            Line::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+        }
+        ctx.request_repaint();
+    }
+
+    fn switch(&mut self, name: &str, on: bool) {
+        let overlays = &mut self.view.overlays;
+        let place = match name {
+            "compare" => return self.act(Action::Compare(on)),
+            "second" => return self.act(Action::Second(on)),
+            "graphs" => &mut self.open.graphs,
+            "presets" => &mut self.open.presets,
+            "help" => &mut self.open.help,
+            "panels" => &mut self.open.panels,
+            "hair" => &mut overlays.hair,
+            "body" => &mut overlays.body,
+            "colliders" => &mut overlays.colliders,
+            "slice" => &mut overlays.slice,
+            "volume" => &mut overlays.volume,
+            "frames" => &mut overlays.frames,
+            "roots" => &mut overlays.roots,
+            // The script's reader knows no other.
+            _ => return,
+        };
+        *place = on;
+    }
+
+    /// Hears of a picture of the window that was asked for.
+    pub(super) fn hear_of_shot(&mut self) {
+        let Some(outcome) = self.shot.as_ref().and_then(|shot| shot.try_recv().ok()) else { return };
+        self.shot = None;
+        if let Err(why) = outcome {
+            self.say(why.to_string(), true);
+        }
+    }
+}
+
+/// A picture of the window as a picture.
+fn picture_of(image: &egui::ColorImage) -> hairspring_view::Image {
+    let mut out = hairspring_view::Image::new(image.size[0] as u32, image.size[1] as u32);
+    for (to, from) in out.rgb.chunks_exact_mut(3).zip(&image.pixels) {
+        to.copy_from_slice(&from.to_array()[..3]);
+    }
+    out
+}

@@ -1,0 +1,84 @@
+//! What the window says over the picture: progress, messages, figures, what colours stand for.
+
+use super::{App, MESSAGE};
+use eframe::egui::{self, Color32, Ui};
+use hairspring::stage::Value;
+use std::time::Instant;
+
+impl App {
+    /// Progress of a record, and the last message.
+    pub(super) fn tell(&mut self, ctx: &egui::Context) {
+        if let Some(recorder) = &self.recorder {
+            let (done, all) = recorder.progress();
+            egui::Window::new("Recording").collapsible(false).resizable(false).show(ctx, |ui| {
+                ui.add(
+                    egui::ProgressBar::new(done as f32 / all as f32).text(format!("{done} of {all} frames")),
+                );
+                if ui.button("Stop").clicked() {
+                    self.message = Some((
+                        "stopped: a clip that is not complete is not kept".into(),
+                        false,
+                        Instant::now(),
+                    ));
+                }
+            });
+            if self.message.as_ref().is_some_and(|m| m.0.starts_with("stopped")) {
+                self.recorder = None;
+            }
+        }
+        let Some((text, wrong, since)) = &self.message else { return };
+        if since.elapsed() > MESSAGE {
+            self.message = None;
+            return;
+        }
+        let color = if *wrong { ctx.global_style().visuals.error_fg_color } else { Color32::LIGHT_GREEN };
+        egui::Area::new(egui::Id::unique("message"))
+            .anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0))
+            .interactable(false)
+            .show(ctx, |ui| {
+                egui::Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.set_max_width(640.0);
+                    ui.colored_label(color, text);
+                });
+            });
+        ctx.request_repaint_after(MESSAGE);
+    }
+}
+
+/// Text in the lower left corner of the picture.
+pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, show: impl FnOnce(&mut Ui)) {
+    egui::Area::new(egui::Id::unique("figures"))
+        .fixed_pos(rect.left_bottom() + egui::vec2(10.0, -10.0))
+        .pivot(egui::Align2::LEFT_BOTTOM)
+        .show(ctx, |ui| {
+            ui.style_mut().interaction.selectable_labels = false;
+            egui::Frame::new()
+                .fill(Color32::from_black_alpha(90))
+                .corner_radius(4.0)
+                .inner_margin(6.0)
+                .show(ui, show);
+        });
+}
+
+/// What colours stand for.
+pub(super) fn legend(painter: &egui::Painter, rect: egui::Rect, value: Value, range: [f32; 2]) {
+    let at = rect.right_top() + egui::vec2(-190.0, 14.0);
+    let text = |place: egui::Pos2, align, text: String| {
+        painter.text(place, align, text, egui::FontId::proportional(13.0), Color32::from_white_alpha(220));
+    };
+    text(at, egui::Align2::LEFT_TOP, format!("{} [{}]", value.name(), value.unit()));
+    if value == Value::Guide {
+        return;
+    }
+    let (bar, height) =
+        (egui::Rect::from_min_size(at + egui::vec2(0.0, 20.0), egui::vec2(170.0, 10.0)), 10.0);
+    for k in 0..34 {
+        let share = k as f32 / 33.0;
+        let c = crate::ramp::color(share, [0.0, 1.0]).to_array().map(|x| (x.powf(1.0 / 2.2) * 255.0) as u8);
+        let piece =
+            egui::Rect::from_min_size(bar.min + egui::vec2(5.0 * k as f32, 0.0), egui::vec2(5.0, height));
+        painter.rect_filled(piece, 0.0, Color32::from_rgb(c[0], c[1], c[2]));
+    }
+    text(bar.left_bottom(), egui::Align2::LEFT_TOP, "0".into());
+    text(bar.right_bottom(), egui::Align2::RIGHT_TOP, format!("{:.3e}", range[1]));
+}
