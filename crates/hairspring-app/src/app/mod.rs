@@ -82,7 +82,7 @@ impl App {
         let Options { document, script, drawn } = options;
         let ctx = creation.egui_ctx.clone();
         let painters = vec![Painter::new(creation, drawn)];
-        let hairs = if painters[0].is_gpu() { (100_000, 2_000) } else { (16_000, 800) };
+        let hairs = if painters[0].is_gpu() { (100_000, 2_000) } else { (8_000, 500) };
         let document = match document {
             Some(document) => document,
             None => Document::new("scene.toml".as_ref(), builtin_text("wavy", hairs.0, hairs.1))?,
