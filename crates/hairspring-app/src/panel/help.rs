@@ -6,7 +6,7 @@ use eframe::egui;
 /// Keys and what they do.
 const KEYS: [(&str, &str); 14] = [
     ("Space", "play or pause"),
-    ("→", "a step, while paused"),
+    ("Right", "a step, while paused"),
     ("R", "reset to time 0"),
     ("F", "look at all hair"),
     ("C", "compare two settings on the same motion"),

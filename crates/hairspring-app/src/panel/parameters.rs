@@ -108,7 +108,7 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
             if let Some(response) = response {
                 response.on_hover_text(&tip);
             }
-            if changed && ui.small_button("⟲").on_hover_text("Reset to the default").clicked() {
+            if changed && ui.small_button("reset").on_hover_text("Back to the default").clicked() {
                 edit(None);
             }
         });
@@ -231,7 +231,7 @@ fn control(
                 profile.push(profile.last().copied().unwrap_or(1.0));
                 changed = true;
             }
-            if profile.len() > 1 && ui.small_button("−").on_hover_text("One less").clicked() {
+            if profile.len() > 1 && ui.small_button("-").on_hover_text("One less").clicked() {
                 profile.pop();
                 changed = true;
             }

@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
         if ui.button(name).on_hover_text("Space").clicked() {
             actions.push(Action::Play(!playing));
         }
-        if ui.add_enabled(!playing, egui::Button::new("Step")).on_hover_text("→: a sixtieth of a second").clicked() {
+        if ui.add_enabled(!playing, egui::Button::new("Step")).on_hover_text("Right arrow: a sixtieth of a second").clicked() {
             actions.push(Action::Step);
         }
         if ui.button("Reset").on_hover_text("R: back to time 0").clicked() {
