@@ -178,6 +178,11 @@ impl Recorder {
         outcome
     }
 
+    /// Ends before its end; what to say. A clip that is not complete leaves nothing behind, and the scene plays on as before.
+    pub fn stop(mut self, session: &mut Session) -> Result<String, AppError> {
+        self.end(session, Ok("stopped: a clip that is not complete is not kept".into()))
+    }
+
     /// Frames written, of how many.
     pub fn progress(&self) -> (u32, u32) {
         (self.written.min(self.frames), self.frames)

@@ -3,27 +3,24 @@
 use super::{App, MESSAGE};
 use eframe::egui::{self, Color32, Ui};
 use hairspring::stage::Value;
-use std::time::Instant;
 
 impl App {
     /// Progress of a record, and the last message.
     pub(super) fn tell(&mut self, ctx: &egui::Context) {
         if let Some(recorder) = &self.recorder {
             let (done, all) = recorder.progress();
+            let mut stopped = false;
             egui::Window::new("Recording").collapsible(false).resizable(false).show(ctx, |ui| {
                 ui.add(
                     egui::ProgressBar::new(done as f32 / all as f32).text(format!("{done} of {all} frames")),
                 );
-                if ui.button("Stop").clicked() {
-                    self.message = Some((
-                        "stopped: a clip that is not complete is not kept".into(),
-                        false,
-                        Instant::now(),
-                    ));
-                }
+                stopped = ui.button("Stop").clicked();
             });
-            if self.message.as_ref().is_some_and(|m| m.0.starts_with("stopped")) {
-                self.recorder = None;
+            if stopped && let Some(recorder) = self.recorder.take() {
+                match recorder.stop(&mut self.session) {
+                    Ok(said) => self.say(said, false),
+                    Err(why) => self.say(why.to_string(), true),
+                }
             }
         }
         let Some((text, wrong, since)) = &self.message else { return };

@@ -36,13 +36,13 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
         }
         ui.separator();
         if let Some(snapshot) = snapshot {
-            let real = (crate::player::STEP * session.speed()).max(1e-6);
             let took = snapshot.took.as_secs_f32();
             // What a step may take and the play keeps its speed.
-            let share = (crate::player::STEP / session.speed()) / took.max(1e-6);
+            let due = crate::player::STEP / session.speed();
+            let share = due / took.max(1e-6);
             ui.monospace(format!("{:6.2} s", snapshot.time));
             let pace = if playing && share < 1.0 {
-                format!("step {:.1} ms: {:.0} % of {real:.3} s", 1e3 * took, 100.0 * share)
+                format!("step {:.1} ms: {:.0} % of the speed", 1e3 * took, 100.0 * share)
             } else {
                 format!("step {:.1} ms", 1e3 * took)
             };
