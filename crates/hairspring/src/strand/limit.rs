@@ -90,8 +90,25 @@ pub fn limit<S: Simd>(
 
 /// Where point `i` may be that is at `e` from the strand's point before, which is `at`: within the limits of its segment, outside of every
 /// collider.
-#[inline(always)]
+///
+/// A function by itself, for all models, integrators and sweeps: most segments need none, and all shapes that there are would else be in each of them.
+#[inline(never)]
 fn place<S: Simd>(
+    simd: S,
+    finish: &Finish,
+    step: &Step<S>,
+    tile: &mut Tile,
+    segment: (usize, usize, V3<S>),
+    from: (&Particle<S>, &Tether<S>),
+) -> V3<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || held(simd, finish, step, tile, segment, from),
+    )
+}
+
+#[inline(always)]
+fn held<S: Simd>(
     simd: S,
     finish: &Finish,
     step: &Step<S>,

@@ -24,7 +24,7 @@ use super::{
     root::Root,
     tile::{Tile, rest, state},
 };
-use crate::collide::{contact, surface_displacement};
+use crate::collide::{ObstaclePose, contact, surface_displacement};
 use fearless_simd::prelude::*;
 
 /// Rows of scratch a point, written where any of the eight is in contact.
@@ -53,16 +53,7 @@ pub fn press<S: Simd, const B: usize, const N: usize>(
     if !force.simd_gt(0.0).any_true() {
         return;
     }
-    let world = x + step.root.position;
-    // The surface that is nearest, and how far it moves here.
-    let (mut gap, mut normal, mut carried) = (F::splat(simd, f32::MAX), V3::zero(simd), V3::zero(simd));
-    for pose in step.obstacles {
-        let (distance, n) = contact(simd, pose, world);
-        let nearest = distance.simd_lt(gap);
-        gap = nearest.select(distance, gap);
-        normal = V3::select(nearest, n, normal);
-        carried = V3::select(nearest, surface_displacement(simd, pose, world), carried);
-    }
+    let Surface { distance: mut gap, mut normal, carried } = nearest(simd, step.obstacles, x + step.root.position);
     gap -= load(simd, &tile.rest[i][rest::CLEARANCE]);
 
     // Shut while N could close the gap in a substep; what has gone farther is let go.
@@ -85,6 +76,37 @@ pub fn press<S: Simd, const B: usize, const N: usize>(
         1,
         normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub,
     );
+}
+
+/// What eight places see of the surface that is nearest to each.
+struct Surface<S: Simd> {
+    /// Distance, negative inside [m].
+    distance: F<S>,
+    /// Unit normal, outward.
+    normal: V3<S>,
+    /// How far the surface moves there in the substep [m].
+    carried: V3<S>,
+}
+
+/// The surface that is nearest to `world`. A function by itself, for all models and sweeps, like `limit`'s `place`.
+#[inline(never)]
+fn nearest<S: Simd>(simd: S, obstacles: &[ObstaclePose], world: V3<S>) -> Surface<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let zero = V3::zero(simd);
+            let mut surface = Surface { distance: F::splat(simd, f32::MAX), normal: zero, carried: zero };
+            for pose in obstacles {
+                let (distance, normal) = contact(simd, pose, world);
+                let nearest = distance.simd_lt(surface.distance);
+                let carried = surface_displacement(simd, pose, world);
+                surface.distance = nearest.select(distance, surface.distance);
+                surface.normal = V3::select(nearest, normal, surface.normal);
+                surface.carried = V3::select(nearest, carried, surface.carried);
+            }
+            surface
+        },
+    )
 }
 
 /// The force that presses point `i` once the solve has moved it by `delta`.
