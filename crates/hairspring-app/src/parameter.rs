@@ -142,6 +142,7 @@ macro_rules! parameters {
 /// All of them.
 pub const ALL: &[Parameter] = parameters! {
     Style {
+        Material "tether", "Tether", "×", number(0.0, 3.0), "How far a point may get from its root, over how far it was at rest: 1.1 lets curls fall a tenth. 0: as far as they go. Below 1 the scene file is refused.";
         Material "ghost.pull", "Keep the style", "Hz", number(0.0, 20.0), "Pull to the groomed shape, carried by the head: how fast a lone point would swing about its place. 0: none; from 1 a style lasts, from 4 hair is set.";
         Material "ghost.tip", "… at the tip", "×", number(0.0, 2.0), "That pull at the tip, over that at the root.";
         Material "ghost.damping", "… damping", "", number(0.0, 4.0), "Damping of that pull over the critical: 1 does not swing.";
@@ -181,6 +182,8 @@ pub const ALL: &[Parameter] = parameters! {
     }
     Collision {
         Scene "solver.collide_body", "Meets the body", "", Kind::Switch, "Whether hair collides with the body's mesh. It begins the scene anew.";
+        Scene "solver.contact", "Answered by", "", Kind::Choice(&["both", "penalty", "projection"]), "What keeps hair out of bodies: a force in the solve (penalty: soft), the move to the nearest free place (projection: hard), or both.";
+        Scene "solver.segments", "Segments meet bodies", "", Kind::Switch, "Whether hair stays out of bodies between its points too.";
         Material "friction", "Friction", "", number(0.0, 1.0), "Coulomb friction on bodies. Hair on skin: 0.1 to 0.3.";
         Scene "solver.jump", "A jump is", "m", scale(0.05, 10.0), "A head that moves farther in a frame, over how it moved before, has jumped, and hair goes with it as it is.";
     }

@@ -134,12 +134,13 @@ impl Hull {
         heights.fold((f32::MIN, Vec3::Y), |most, face| if face.0 > most.0 { face } else { most })
     }
 
-    /// Of eight points, those that no face has in front of it; the others are outside.
+    /// Of eight segments that end at `p` and are `e` long, those that no face has in front of it from end to end; the others are outside.
     #[inline(always)]
-    pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
+    pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>, e: V3<S>) -> mask32x8<S> {
         let mut most = F::<S>::splat(simd, f32::MIN);
         for face in &self.faces {
-            most = most.max(V3::splat(simd, face.normal).dot(p) - face.offset);
+            let n = V3::splat(simd, face.normal);
+            most = most.max(n.dot(p) - n.dot(e).max(0.0) - face.offset);
             if !most.simd_le(0.0).any_true() {
                 break;
             }

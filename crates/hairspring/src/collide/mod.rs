@@ -10,6 +10,7 @@ mod rigid;
 mod sheet;
 mod voxelize;
 
+pub(crate) use along::{STEEP, deepest};
 pub use grid::Grid;
 pub use hull::Hull;
 pub use obstacle::{Obstacle, ObstaclePose};

@@ -9,6 +9,12 @@ use fearless_simd::{mask32x8, prelude::*};
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
+/// Cells between places that a segment is looked at on its way past a field [1]: it cannot cross what is a cell thick unseen.
+const LOOK: f32 = 1.5;
+
+/// Most such places [1].
+const MOST_LOOKS: u32 = 7;
+
 /// One collider: a shape in its own space, and how that space moves.
 #[derive(Clone, Debug)]
 pub enum Obstacle {
@@ -85,10 +91,95 @@ impl ObstaclePose {
         }
         match &self.shape {
             Obstacle::Field(grid) => near & grid.may_be_inside(simd, self.local(simd, p)),
-            Obstacle::Hull(hull) => near & hull.may_be_inside(simd, self.local(simd, p)),
+            Obstacle::Hull(hull) => near & hull.may_be_inside(simd, self.local(simd, p), V3::zero(simd)),
             Obstacle::Sheet(sheet) => near & sheet.may_be_inside(simd, self.local(simd, p)),
             _ => near,
         }
+    }
+
+    /// Which of eight segments that end at `p` (world) and are `e` long may have a place between their ends that is deeper than `sag` [m] and than
+    /// both of them; the others have none that counts.
+    ///
+    /// ```text
+    ///   ●─────────●    on a round shape of radius R a segment of length L is deeper between its ends by L²/8R at most:
+    ///  ╱  sag ↕    ╲   where that is below what it may, nothing need be looked at
+    /// ```
+    #[inline(always)]
+    pub(crate) fn may_cut<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> mask32x8<S> {
+        let none = mask32x8::splat(simd, false);
+        let size = e.dot(e);
+        let rounded = match &self.shape {
+            Obstacle::Plane { .. } => return none,
+            Obstacle::Sphere { radius, .. } | Obstacle::Capsule { radius, .. } => *radius,
+            _ => 0.0,
+        };
+        let mut may = size.simd_gt(sag * (8.0 * rounded));
+        if !may.any_true() {
+            return none;
+        }
+        let half = F::splat(simd, -0.5);
+        let d = e.mul_add(half, p) - V3::splat(simd, self.bounds.0);
+        // A little over half of its length.
+        let reach = size.sqrt().mul_add(0.5001, F::splat(simd, self.bounds.1));
+        may &= d.dot(d).simd_le(reach * reach);
+        if !may.any_true() {
+            return none;
+        }
+        match &self.shape {
+            Obstacle::Hull(hull) => {
+                let turned = transform(simd, &self.end.0.transpose(), e);
+                may & hull.may_be_inside(simd, self.local(simd, p), turned)
+            }
+            Obstacle::Field(grid) => {
+                let spacing = LOOK * grid.cell;
+                self.between(
+                    simd,
+                    (p, e),
+                    (size, spacing),
+                    may,
+                    #[inline(always)]
+                    |at| grid.may_be_inside(simd, at),
+                )
+            }
+            Obstacle::Sheet(sheet) => {
+                let spacing = LOOK * sheet.cell();
+                self.between(
+                    simd,
+                    (p, e),
+                    (size, spacing),
+                    may,
+                    #[inline(always)]
+                    |at| sheet.may_be_inside(simd, at),
+                )
+            }
+            _ => may,
+        }
+    }
+
+    /// Of the segments in `may`, those with a place between their ends for which `holds` is true, of places that are no farther than `spacing` [m] from each
+    /// other.
+    #[inline(always)]
+    fn between<S: Simd>(
+        &self,
+        simd: S,
+        (p, e): (V3<S>, V3<S>),
+        (size, spacing): (F<S>, f32),
+        may: mask32x8<S>,
+        holds: impl Fn(V3<S>) -> mask32x8<S>,
+    ) -> mask32x8<S> {
+        // As many places as the longest of the eight needs.
+        let mut pieces = 2;
+        while pieces <= MOST_LOOKS
+            && size.simd_gt(F::splat(simd, (pieces as f32 * spacing).powi(2))).any_true()
+        {
+            pieces += 1;
+        }
+        let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
+        let mut held = mask32x8::splat(simd, false);
+        for k in 1..pieces {
+            held |= holds(e.mul_add(F::splat(simd, -(k as f32) / pieces as f32), p));
+        }
+        may & held
     }
 
     /// Eight world points in the shape's own space at the end of the substep.
@@ -142,8 +233,20 @@ impl Obstacle {
         }
     }
 
+    /// Half of how thick it is where it is thickest [m]: how far its deepest place is from the surface, about; infinite for a plane.
+    pub(crate) fn half_thickness(&self) -> f32 {
+        match self {
+            Obstacle::Sphere { radius, .. } | Obstacle::Capsule { radius, .. } => *radius,
+            Obstacle::Cuboid { half, .. } => half.min_element(),
+            Obstacle::Plane { .. } => f32::INFINITY,
+            Obstacle::Field(grid) => -grid.distances.iter().copied().fold(0.0, f32::min),
+            Obstacle::Hull(hull) => -hull.distance_and_normal(hull.bounds().0).0,
+            Obstacle::Sheet(sheet) => sheet.thickness(),
+        }
+    }
+
     /// A ball around all of it: its middle and radius [m].
-    fn bounds(&self) -> (Vec3, f32) {
+    pub(crate) fn bounds(&self) -> (Vec3, f32) {
         match self {
             Obstacle::Sphere { center, radius } => (*center, *radius),
             Obstacle::Capsule { a, b, radius } => (a.midpoint(*b), 0.5 * a.distance(*b) + radius),

@@ -47,6 +47,16 @@ pub struct Sheet {
 }
 
 impl Sheet {
+    /// How far it reaches from its triangles [m].
+    pub(super) fn thickness(&self) -> f32 {
+        self.thickness
+    }
+
+    /// Distance between neighbouring nodes of its lattice [m].
+    pub(super) fn cell(&self) -> f32 {
+        self.lattice.cell
+    }
+
     /// The sheet of a mesh that reaches `thickness` from its triangles, to both sides [m], above 0.
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]], thickness: f32) -> Self {
         let mut sheet = Self::default();

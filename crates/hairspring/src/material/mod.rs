@@ -46,6 +46,9 @@ pub struct Material {
     pub friction: f32,
     /// Pull to the rest shape, carried by the root; switched by `Solver::ghost`. Default: none.
     pub ghost: Ghost,
+    /// How far a point may get from its root, over how far it was at rest [1], 1 to 10 (a long range attachment); 0, the default: as far as it goes. Not physics:
+    /// for hair that is to fall so far and no farther. From 1.01 on it does not act at rest.
+    pub tether: f32,
     /// Static charge of a length of hair [C/m], −1e-6 to 1e-6. Default 0. Hair of 35 µm holds 6e-9 at most, where air breaks down at its surface; a
     /// field of 100 kV/m lifts it against gravity from 5e-10 on.
     pub charge: f32,
@@ -97,6 +100,7 @@ impl Default for Material {
             drag: 0.5,
             friction: 0.3,
             ghost: Ghost::default(),
+            tether: 0.0,
             charge: 0.0,
         }
     }

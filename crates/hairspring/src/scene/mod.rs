@@ -12,7 +12,7 @@ pub use camera::Camera;
 pub use hand::Hand;
 pub use look::{HairColor, HairLook};
 pub use settings::{
-    Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
+    Collider, Effects, Guides, Integrator, Quality, Response, Shape, Solver, Volume, VolumeMethod, Wind,
 };
 
 use crate::{

@@ -59,6 +59,11 @@ pub struct Solver {
     pub sag_free: bool,
     /// Whether hair collides with the body's mesh. Default true.
     pub collide_body: bool,
+    /// What keeps hair out of colliders. Default `both`.
+    pub contact: Response,
+    /// Whether segments are held out of colliders between their points as well. Default true; where none of them is longer than what it collides with is
+    /// round, points alone do.
+    pub segments: bool,
     /// Iterations of fast projection a substep (Goldenthal 2007), 0 to 20; strands of more than 32 points for each may take one for every
     /// 32. Default 3. For the implicit integrators.
     pub projections: u32,
@@ -73,6 +78,26 @@ pub struct Solver {
     pub jump: f32,
     /// Whether materials' ghost rest shapes pull. Default true; no material has one by default.
     pub ghost: bool,
+}
+
+/// What answers a point, or a segment, that is inside of a collider (proposal §3.3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Response {
+    /// A force that is part of the solve, and what is inside after it moves to the nearest free position: the force carries weight and tension without a
+    /// jerk, the projection stops what lands.
+    #[default]
+    Both,
+    /// The force alone, implicit: soft, what lands goes in and comes out again. Integrators without a solve that knows of contact (all but
+    /// backward Euler and BDF2) project.
+    Penalty,
+    /// The projection alone: the inward motion ends, the point moves to the nearest free position (Liu 2013).
+    Projection,
+}
+
+impl Response {
+    /// All of them.
+    pub const ALL: [Response; 3] = [Self::Both, Self::Penalty, Self::Projection];
 }
 
 /// How positions and velocities come out of a substep (DESIGN §4); all on the same strands, to be compared.
@@ -139,6 +164,8 @@ impl Default for Solver {
             substeps: 4,
             sag_free: true,
             collide_body: true,
+            contact: Response::Both,
+            segments: true,
             projections: 3,
             integrator: Integrator::default(),
             quality: Quality::default(),

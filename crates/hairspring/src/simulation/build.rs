@@ -13,7 +13,7 @@ use crate::{
         lanes::{LANES, Row},
         model::stretch::stiffening,
         rest_shape::{Fibre, RestShape, Start, rest_shape},
-        tile::{Elastic, RestRows, StateRows, StrandRows, history, rest, springs, state, strand},
+        tile::{Elastic, RestRows, SpanRows, StateRows, StrandRows, history, rest, springs, state, strand},
         truss::{particles, truss},
     },
 };
@@ -97,6 +97,9 @@ impl Simulation {
             rest: vec![[Row::default(); rest::ROWS]; first as usize],
             state: vec![[Row::default(); state::ROWS]; first as usize],
             sunk: Vec::new(),
+            tethers: Vec::new(),
+            longest: strands.iter().map(|s| groom.strand_length(*s as usize)).fold(0.0, f32::max),
+            spans: vec![SpanRows::default(); if solver.segments { first as usize } else { 0 }],
             history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],
             holds: Vec::new(),
             around: Around::default(),
@@ -126,30 +129,8 @@ impl Simulation {
         let rows = |at: usize| simulation.state.iter().map(|rows| rows[at]).collect();
         simulation.tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
         simulation.sunk = simulation.authored_depths(obstacles);
+        simulation.tethers = simulation.tethers(materials);
         simulation
-    }
-
-    /// How deep the segment to each point is at rest, see `sunk`.
-    fn authored_depths(&self, obstacles: &[ObstaclePose]) -> Vec<Row> {
-        let tiles: Vec<Vec<Row>> = self
-            .tiles
-            .par_iter()
-            .zip(self.lanes.par_chunks(LANES))
-            .map(|(tile, lanes)| {
-                let mut sunk = vec![Row::default(); tile.points as usize];
-                for (lane, s) in lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
-                    let points = simulated_points(tile.model, self.groom.strand(*s as usize));
-                    let stride = tile.model.stride();
-                    for i in (2 * stride..points.len()).step_by(stride) {
-                        let depth = obstacles.iter().map(|o| o.least_distance(points[i - stride], points[i]));
-                        sunk[i].0[lane] = depth.fold(0.0, f32::min);
-                    }
-                }
-                sunk
-            })
-            .collect();
-        let none = tiles.iter().flatten().all(|row| row.0 == [0.0; LANES]);
-        if none { Vec::new() } else { tiles.concat() }
     }
 
     fn fill(&mut self, materials: &[Material], obstacles: &[ObstaclePose]) {

@@ -1,9 +1,11 @@
 //! Strands in motion: the state of all simulated strands, and one step of it.
 
+mod authored;
 mod build;
 mod carry;
 mod crowd;
 mod energy;
+mod fast;
 mod hands;
 mod hold;
 mod measure;
@@ -30,7 +32,7 @@ use crate::{
     strand::{
         interval::Interval,
         lanes::{LANES, Row},
-        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, state, strand},
+        tile::{Elastic, HistoryRows, HoldRows, RestRows, SpanRows, StateRows, StrandRows, state, strand},
     },
     volume::Volume,
 };
@@ -45,7 +47,7 @@ use std::sync::Arc;
 /// same bits for any number of threads. Strands meet the body, the air, and each other as a volume (see [`Simulation::set_volume`]).
 ///
 /// # Missing
-/// Hair against hair as strands, contact between points (a segment may cut a corner that its ends stay out of), cutting and wetting: each is an issue of its own.
+/// Hair against hair as strands, cutting and wetting: each is an issue of its own.
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
@@ -57,6 +59,12 @@ pub struct Simulation {
     /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]; as long as `state`, or empty where
     /// none was.
     sunk: Vec<Row>,
+    /// What presses the segment to each point between its ends; empty where segments are no contacts.
+    spans: Vec<SpanRows>,
+    /// How far each point may be from its root [m]; empty where no material has a tether.
+    tethers: Vec<Row>,
+    /// Length of the longest strand [m].
+    longest: f32,
     /// As long as `state` for the integrator of second order, else empty.
     history: Vec<HistoryRows>,
     /// What holds points from outside, for each tile; empty where nothing does.
@@ -128,6 +136,8 @@ impl Simulation {
             + size_of_val(&self.rest[..])
             + size_of_val(&self.state[..])
             + size_of_val(&self.sunk[..])
+            + size_of_val(&self.spans[..])
+            + size_of_val(&self.tethers[..])
             + size_of_val(&self.history[..])
             + self.around.bytes()
             + self.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()

@@ -61,6 +61,9 @@ impl Simulation {
             if let Some(history) = self.history.get_mut(at) {
                 history.iter_mut().for_each(|r| r.0[lane] = 0.0);
             }
+            if let Some(span) = self.spans.get_mut(at) {
+                span.iter_mut().for_each(|r| r.0[lane] = 0.0);
+            }
             let rows = &mut self.state[at];
             rows.iter_mut().for_each(|row| row.0[lane] = 0.0);
             // What holds the rest shape.

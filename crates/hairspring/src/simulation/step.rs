@@ -10,7 +10,10 @@ use crate::{
         lanes::{LANES, Row},
         model::{curvature, rod, springs, straight},
         scratch::Memory,
-        tile::{Elastic, HistoryRows, HoldRows, RestRows, StateRows, StrandRows, Tile, grip, strand, tines},
+        tile::{
+            Elastic, HistoryRows, HoldRows, RestRows, SpanRows, StateRows, StrandRows, Tile, grip, strand,
+            tines,
+        },
     },
 };
 use fearless_simd::Level;
@@ -97,7 +100,7 @@ impl Simulation {
     ///
     /// The frame is cut into equal substeps none of which is longer than 1/60 s over `solver.substeps` (so the step does not
     /// depend on the frame rate where that divides it, and roots are on the skin at every frame, which an accumulator that
-    /// carries a remainder would not give).
+    /// carries a remainder would not give); into more where a body passes through the hair that is faster than it is thick.
     ///
     /// # Panics
     /// If `drive.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
@@ -105,9 +108,10 @@ impl Simulation {
         assert_eq!(drive.roots.len(), self.places.len(), "one root pose for each simulated strand");
         assert!(drive.dt > 0.0, "a step takes time");
         let solver = self.settings.solver;
-        let substeps =
-            ((drive.dt / substep_length(&solver) as f32 - 1e-3).ceil() as u32).clamp(1, MAX_SUBSTEPS);
         let carried = self.carry_along(drive);
+        let substeps = ((drive.dt / substep_length(&solver) as f32 - 1e-3).ceil() as u32)
+            .max(self.substeps_past(drive, carried.as_ref()))
+            .clamp(1, MAX_SUBSTEPS);
         let mut interval = std::mem::take(&mut self.interval);
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
         self.begin_tools();
@@ -125,6 +129,9 @@ impl Simulation {
                 grip: &self.around.grip,
                 tines: &self.around.tines,
                 air: &self.around.air,
+                sunk: &self.sunk,
+                spans: &mut self.spans,
+                tethers: &self.tethers,
                 holds: &self.holds,
             },
         );
@@ -152,6 +159,7 @@ impl Simulation {
             (_, Quality::High) => NEWTON,
         };
         interval.continues = (interval.h / self.last_h - 1.0).abs() < 1e-3;
+        interval.response = solver.contact;
         interval.projections = solver.projections;
         interval.gravity = self.settings.gravity;
         interval.anchor = from.matrix();
@@ -204,6 +212,9 @@ struct Piece<'a> {
     grip: &'a [[Row; grip::ROWS]],
     tines: &'a [[Row; tines::ROWS]],
     air: &'a [[Row; 3]],
+    sunk: &'a [Row],
+    spans: &'a mut [SpanRows],
+    tethers: &'a [Row],
     holds: &'a [Vec<HoldRows>],
 }
 
@@ -220,9 +231,26 @@ impl<'a> Piece<'a> {
         let (grip, more_grip) = self.grip.split_at(points.min(self.grip.len()));
         let (tines, more_tines) = self.tines.split_at(points.min(self.tines.len()));
         let (air, more_air) = self.air.split_at(points.min(self.air.len()));
+        let (sunk, more_sunk) = self.sunk.split_at(points.min(self.sunk.len()));
+        let (spans, more_spans) = self.spans.split_at_mut(points.min(self.spans.len()));
+        let (tethers, more_tethers) = self.tethers.split_at(points.min(self.tethers.len()));
         let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
         (
-            Piece { tiles, strand, rest, state, history, push, grip, tines, air, holds },
+            Piece {
+                tiles,
+                strand,
+                rest,
+                state,
+                history,
+                push,
+                grip,
+                tines,
+                air,
+                sunk,
+                spans,
+                tethers,
+                holds,
+            },
             Piece {
                 tiles: more_tiles,
                 strand: more_strand,
@@ -233,6 +261,9 @@ impl<'a> Piece<'a> {
                 grip: more_grip,
                 tines: more_tines,
                 air: more_air,
+                sunk: more_sunk,
+                spans: more_spans,
+                tethers: more_tethers,
                 holds: more_holds,
             },
         )
@@ -252,7 +283,10 @@ impl<'a> Piece<'a> {
             push: if self.push.is_empty() { &[] } else { &self.push[points.clone()] },
             grip: if self.grip.is_empty() { &[] } else { &self.grip[points.clone()] },
             tines: if self.tines.is_empty() { &[] } else { &self.tines[points.clone()] },
-            air: if self.air.is_empty() { &[] } else { &self.air[points] },
+            air: if self.air.is_empty() { &[] } else { &self.air[points.clone()] },
+            sunk: if self.sunk.is_empty() { &[] } else { &self.sunk[points.clone()] },
+            spans: if self.spans.is_empty() { &mut [] } else { &mut self.spans[points.clone()] },
+            tethers: if self.tethers.is_empty() { &[] } else { &self.tethers[points] },
             holds: self.holds.get(k).map_or(&[], |holds| holds),
         }
     }

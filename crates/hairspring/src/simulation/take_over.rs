@@ -73,6 +73,9 @@ impl Simulation {
             if let Some(sunk) = self.sunk.get_mut(to) {
                 sunk.0[lane] = old.sunk[from].0[from_lane];
             }
+            if let (true, Some(span), Some(was)) = (forces, self.spans.get_mut(to), old.spans.get(from)) {
+                span.iter_mut().zip(was).for_each(|(row, was)| row.0[lane] = was.0[from_lane]);
+            }
             if let (Some(history), Some(was)) = (self.history.get_mut(to), old.history.get(from)) {
                 history.iter_mut().zip(was).for_each(|(row, was)| row.0[lane] = was.0[from_lane]);
             }
@@ -97,9 +100,13 @@ impl Simulation {
             if let Some(sunk) = self.sunk.get_mut(at) {
                 sunk.0[place % LANES] = old.sunk(from, i_was);
             }
+            let was_at = old.tiles[from / LANES].first as usize + i_was;
+            if let (true, Some(span), Some(was)) = (forces, self.spans.get_mut(at), old.spans.get(was_at)) {
+                span.iter_mut().zip(was).for_each(|(row, was)| row.0[place % LANES] = was.0[from % LANES]);
+            }
             if forces {
                 let rows = &mut self.state[at];
-                let was_at = &old.state[old.tiles[from / LANES].first as usize + i_was];
+                let was_at = &old.state[was_at];
                 rows[state::PRESS].0[place % LANES] = was_at[state::PRESS].0[from % LANES];
                 if stride == was {
                     rows[state::TENSION].0[place % LANES] = was_at[state::TENSION].0[from % LANES];

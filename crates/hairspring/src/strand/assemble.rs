@@ -26,6 +26,7 @@ use super::{
     press::{press, relieve},
     root::Root,
     scratch::Scratch,
+    segment::{press_between, relieve_between},
     tile::{Tile, grip, history, hold, rest, state, strand, tines},
 };
 use crate::collide::ObstaclePose;
@@ -199,9 +200,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
     let v = V3::load(simd, &tile.state[i + 1][state::V..]);
     let (a, inv_h2) = (step.inertia(), inv_h * inv_h);
     let m_h2 = mass * (a * inv_h2);
-    let drift = || (v - root_velocity) * F::splat(simd, sweep.drift(step.h));
-    // Where the solve begins, from where the substep does.
-    let way = || if sweep == Sweep::First { drift() } else { way };
+    let outset = Outset { sweep, faster: v - root_velocity, share: sweep.drift(step.h), way };
     // p less a/h² of that, and gravity.
     let mut p = if step.second_order {
         let before = &tile.history[i + 1];
@@ -211,11 +210,11 @@ fn add_point<S, M, const B: usize, const N: usize>(
             + (v * F::splat(simd, 4.0) - v_before) * F::splat(simd, 0.5 * inv_h)
             + (way_before * F::splat(simd, 3.0) - step.moved * F::splat(simd, 9.0))
                 * F::splat(simd, 0.25 * inv_h2)
-            - way() * F::splat(simd, a * inv_h2)
+            - outset.way(simd) * F::splat(simd, a * inv_h2)
     } else if sweep == Sweep::First {
         still.pull
     } else {
-        still.pull + (v - root_velocity - way() * F::splat(simd, inv_h)) * F::splat(simd, inv_h)
+        still.pull + (v - root_velocity - outset.way(simd) * F::splat(simd, inv_h)) * F::splat(simd, inv_h)
     };
     if let Some(push) = tile.push.get(i + 1) {
         p += V3::load(simd, push);
@@ -224,7 +223,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
         let stiffness = load(simd, &rows[grip::STIFFNESS]);
         let brake = load(simd, &rows[grip::BRAKE]) * inv_h;
         let late = V3::load(simd, &rows[grip::WAY..]) * F::splat(simd, step.left);
-        p = p - late - (x + drift()) * stiffness - (way() + step.moved) * brake;
+        p = p - late - (x + outset.drift(simd)) * stiffness - (outset.way(simd) + step.moved) * brake;
         band.add_identity(1, mass * (stiffness + brake));
     }
     let mut right = p * mass;
@@ -235,7 +234,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
         let mut slip = if sweep == Sweep::First {
             still.wind - v
         } else {
-            still.wind - root_velocity - way() * F::splat(simd, inv_h)
+            still.wind - root_velocity - outset.way(simd) * F::splat(simd, inv_h)
         };
         if let Some(air) = tile.air.get(i + 1) {
             slip += V3::load(simd, air);
@@ -244,7 +243,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
         band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5).add_identity(across));
         if let Some(rows) = tile.tines.get(i + 1) {
             let brake = load(simd, &rows[tines::BRAKE]) * inv_h;
-            let slip = V3::load(simd, &rows[tines::CARRY..]) - (way() + step.moved) * brake;
+            let slip = V3::load(simd, &rows[tines::CARRY..]) - (outset.way(simd) + step.moved) * brake;
             right += (slip - segment.u * segment.u.dot(slip)) * mass;
             let across = brake * mass;
             band.add_diagonal(1, Sym3::outer(segment.u, -across).add_identity(across));
@@ -261,7 +260,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
             let target = V3::load(simd, &at.rows[hold::TARGET..]) - way - step.root.position;
             let k = (pinned * HOLD).mul_add(m_h2, load(simd, &at.rows[hold::STIFFNESS]));
             band.add_identity(1, k);
-            band.add_force(1, (target - x - drift()) * k);
+            band.add_force(1, (target - x - outset.drift(simd)) * k);
             band.add_force(1, V3::load(simd, &at.rows[hold::FORCE..]));
             if B > 3 {
                 band.add((1, 3), (1, 3), load(simd, &at.rows[hold::CLAMPED]) * HOLD_FRAME);
@@ -271,7 +270,43 @@ fn add_point<S, M, const B: usize, const N: usize>(
     }
     if on_strand {
         let work = &mut scratch.contacts[i + 1];
-        press(simd, step, tile, (i + 1, x, drift(), way()), band, work);
+        press(simd, step, tile, (i + 1, x, outset.drift(simd), outset.way(simd)), band, work);
+        if i + 1 + M::STRIDE < tile.rest.len() {
+            press_between(
+                simd,
+                (sweep, step),
+                tile,
+                (i + 1, x, outset.drift(simd), outset.way(simd)),
+                band,
+                scratch,
+            );
+        }
+    }
+}
+
+/// Where the solve of a point begins, worked out where it is asked for. (Not closures: the compiler may leave those outside of what it builds for the instruction
+/// set, and then each operation in them is a call.)
+struct Outset<S: Simd> {
+    sweep: Sweep,
+    /// Its velocity less the root's [m/s].
+    faster: V3<S>,
+    /// See [`Sweep::drift`] [s].
+    share: f32,
+    /// How far it has gone since the start of the substep, of a sweep again [m].
+    way: V3<S>,
+}
+
+impl<S: Simd> Outset<S> {
+    /// From where the root takes it [m].
+    #[inline(always)]
+    fn drift(&self, simd: S) -> V3<S> {
+        self.faster * F::splat(simd, self.share)
+    }
+
+    /// From where the substep begins [m].
+    #[inline(always)]
+    fn way(&self, simd: S) -> V3<S> {
+        if self.sweep == Sweep::First { self.drift(simd) } else { self.way }
     }
 }
 
@@ -312,6 +347,10 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
             if i.is_multiple_of(M::STRIDE) {
                 relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
             }
+        }
+        if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
+            // Before this point's is added: those of the points after it.
+            relieve_between(simd, step, tile, (i, [delta, solved.moved[M::STRIDE - 1]]), scratch.contacts);
         }
         solved.i = i;
         let fixed = &scratch.fixed[i - i % M::STRIDE];

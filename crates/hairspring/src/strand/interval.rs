@@ -1,6 +1,9 @@
 //! What every tile is told about an exchange interval: the substeps, and where root anchor, colliders and air are in each.
 
-use crate::{collide::ObstaclePose, scene::Integrator};
+use crate::{
+    collide::ObstaclePose,
+    scene::{Integrator, Response},
+};
 use glam::{Mat3, Vec3};
 
 /// The substeps of one exchange interval (a frame), shared by all tiles.
@@ -14,6 +17,8 @@ pub struct Interval {
     pub iterations: u32,
     /// Whether the substep before this interval was as long as those in it.
     pub continues: bool,
+    /// What keeps hair out of colliders.
+    pub response: Response,
     /// Iterations of fast projection a substep.
     pub projections: u32,
     /// Gravity [m/s²].

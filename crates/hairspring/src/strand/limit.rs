@@ -1,4 +1,5 @@
-//! The last word on a substep: no segment longer or shorter than ±1 %, no point inside a collider, and then the velocities.
+//! The last word on a substep: no segment longer or shorter than ±1 %, no point inside a collider and no segment (`segment`), and then the
+//! velocities.
 //!
 //! One sweep from root to tip. Each segment is clamped to its rest length ± [`LIMIT`] by moving the outer point (follow the
 //! leader, Müller 2012, but only past the limit); a point inside a collider moves to the nearest free position with
@@ -10,7 +11,9 @@ use super::{
     lanes::{F, V3, load, store},
     root::Root,
     scratch::Scratch,
-    tile::{Tile, history, rest, state},
+    segment::{clear, sag},
+    tether::tethered,
+    tile::{Tile, history, rest, span, state},
     truss::beside,
 };
 use crate::collide::{contact, surface_displacement};
@@ -22,8 +25,23 @@ pub struct Finish {
     pub limit: f32,
     /// Force over mass that a push into the next solve is worth, over its length [1/s²]; 0 where contact is not in the solve.
     pub press: f32,
+    /// Whether what is inside of a collider moves out.
+    pub project: bool,
     /// Whether `scratch.kick` is added to the velocities.
     pub kicks: bool,
+}
+
+impl Finish {
+    /// The force [N] with which the next solve begins to press what is `depth` inside, where `force` pressed before: by what of the depth did not
+    /// stop an approach by so much in the substep [m]; by all of it, once, where nothing else answers it.
+    #[inline(always)]
+    pub fn pressed<S: Simd>(&self, force: F<S>, mass: F<S>, depth: F<S>, approach: F<S>) -> F<S> {
+        if self.project {
+            force + mass * self.press * (depth - approach).max(0.0)
+        } else {
+            force.max(mass * self.press * depth)
+        }
+    }
 }
 
 /// Largest relative change of a segment's length that leaves a substep [1].
@@ -57,21 +75,25 @@ pub fn limit<S: Simd>(
     let mut i = 2 * stride;
     while i < tile.rest.len() {
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
-        let tether = Tether { length, limit: finish.limit };
+        let link = Link { length, limit: finish.limit };
         // From the strand's point before, wherever that is now.
         let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
         let solved = if stride == 2 { extra + V3::load(simd, &scratch.edges[i]) } else { extra };
         let mut e = solved;
-        shift = V3::zero(simd);
+        e = tethered(simd, tile, i, &at, e);
+        shift = e - solved;
         // A branch, so that a segment waits for the one before it only where something is to be done.
         let world = step.root.position + (at.x + e);
-        let near = step.obstacles.iter().any(|pose| pose.near(simd, world).any_true());
-        if near || tether.wrong(e).any_true() {
+        if near(simd, step, tile, (i, world, e)) || link.wrong(e).any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
-            e = V3::select(free, place(simd, finish, step, tile, (i, stride, e), (&at, &tether)), e);
+            e = V3::select(free, place(simd, finish, step, tile, (i, stride, e), (&at, &link)), e);
             shift = e - solved;
             let press = &mut tile.state[i][state::PRESS];
             store(free.select(load(simd, press), F::splat(simd, 0.0)), press);
+            if let Some(rows) = tile.spans.get_mut(i) {
+                let force = &mut rows[span::FORCE];
+                store(free.select(load(simd, force), F::splat(simd, 0.0)), force);
+            }
         }
         let mut last = e;
         if stride == 2 {
@@ -88,6 +110,20 @@ pub fn limit<S: Simd>(
     }
 }
 
+/// Whether point `i`, which is at `world`, or the segment `e` to it may be inside of a collider.
+#[inline(always)]
+fn near<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, (i, world, e): (usize, V3<S>, V3<S>)) -> bool {
+    for pose in step.obstacles {
+        if pose.near(simd, world).any_true() {
+            return true;
+        }
+        if !tile.spans.is_empty() && pose.may_cut(simd, (world, e), sag(simd, tile, i)).any_true() {
+            return true;
+        }
+    }
+    false
+}
+
 /// Where point `i` may be that is at `e` from the strand's point before, which is `at`: within the limits of its segment, outside of every
 /// collider.
 ///
@@ -99,7 +135,7 @@ fn place<S: Simd>(
     step: &Step<S>,
     tile: &mut Tile,
     segment: (usize, usize, V3<S>),
-    from: (&Particle<S>, &Tether<S>),
+    from: (&Particle<S>, &Link<S>),
 ) -> V3<S> {
     simd.vectorize(
         #[inline(always)]
@@ -114,7 +150,7 @@ fn held<S: Simd>(
     step: &Step<S>,
     tile: &mut Tile,
     (i, stride, e): (usize, usize, V3<S>),
-    (at, tether): (&Particle<S>, &Tether<S>),
+    (at, link): (&Particle<S>, &Link<S>),
 ) -> V3<S> {
     let friction = Root::<S>::fibre(simd, tile.strand).2;
     let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
@@ -123,7 +159,7 @@ fn held<S: Simd>(
         old += V3::load(simd, &tile.state[i - 1][state::EDGE..]);
     }
     let mut press = load(simd, &tile.state[i][state::PRESS]);
-    let mut e = tether.clamp(e);
+    let mut e = link.clamp(e);
     // Summed from the root, like in `press`: far from the world's origin a sum there would lose digits at every point.
     let in_world = |e: V3<S>| step.root.position + (at.x + e);
     for pose in step.obstacles {
@@ -142,15 +178,20 @@ fn held<S: Simd>(
             let v = V3::load(simd, &tile.state[i][state::V..]);
             let approach = normal.dot(carried - v * F::splat(simd, step.h)).max(0.0);
             let mass = load(simd, &tile.rest[i][rest::MASS]);
-            press += mass * finish.press * (depth - approach).max(0.0);
+            press = finish.pressed(press, mass, depth, approach);
             // The limit again, then out: both hold where they can, and where a strand is caught (behind an
             // ear) its length goes before its depth, so that it slips free in time.
-            let mut q = tether.clamp(held);
+            let mut q = link.clamp(held);
             for _ in 0..CORRECTIONS {
                 let (distance, normal) = contact(simd, pose, in_world(q));
-                q = tether.clamp(tether.swing_out(q, normal, (clearance - distance).max(0.0)));
+                q = link.clamp(link.swing_out(q, normal, (clearance - distance).max(0.0)));
             }
-            e = V3::select(depth.simd_gt(0.0), q, e);
+            if finish.project {
+                e = V3::select(depth.simd_gt(0.0), q, e);
+            }
+        }
+        if !tile.spans.is_empty() {
+            e = clear(simd, (finish, step, pose), tile, (i, old, e), (at, link));
         }
     }
     store(press, &mut tile.state[i][state::PRESS]);
@@ -158,11 +199,11 @@ fn held<S: Simd>(
 }
 
 /// A particle on the walk from root to tip.
-struct Particle<S: Simd> {
+pub struct Particle<S: Simd> {
     /// Where it is, from the root [m].
-    x: V3<S>,
+    pub x: V3<S>,
     /// How far it went in the substep [m].
-    way: V3<S>,
+    pub way: V3<S>,
 }
 
 impl<S: Simd> Particle<S> {
@@ -205,14 +246,14 @@ fn write<S: Simd>(
 }
 
 /// What holds a point to the one before it, from which it is at `e`.
-struct Tether<S: Simd> {
+pub struct Link<S: Simd> {
     /// Rest length of the segment [m].
     length: F<S>,
     /// Largest relative change of it.
     limit: f32,
 }
 
-impl<S: Simd> Tether<S> {
+impl<S: Simd> Link<S> {
     /// Where the segment is too long or too short.
     #[inline(always)]
     fn wrong(&self, e: V3<S>) -> mask32x8<S> {
@@ -223,7 +264,7 @@ impl<S: Simd> Tether<S> {
 
     /// The point moved along the segment until its length is within the limit.
     #[inline(always)]
-    fn clamp(&self, e: V3<S>) -> V3<S> {
+    pub fn clamp(&self, e: V3<S>) -> V3<S> {
         let (l, u) = e.length_and_unit();
         let l = l.min(self.length * (1.0 + self.limit)).max(self.length * (1.0 - self.limit));
         V3::select(self.wrong(e), u * l, e)
@@ -233,7 +274,7 @@ impl<S: Simd> Tether<S> {
     /// hold at once. (Out and back in turn hardly moves a tip that meets the surface head on.) Where the point before is deeper than the
     /// segment is long, it points straight out.
     #[inline(always)]
-    fn swing_out(&self, e: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
+    pub fn swing_out(&self, e: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
         let (l, _) = e.length_and_unit();
         let along = e.dot(normal);
         let (_, side) = (e - normal * along).length_and_unit();

@@ -19,6 +19,8 @@ pub(crate) mod project;
 pub(crate) mod rest_shape;
 pub(crate) mod root;
 pub(crate) mod scratch;
+pub(crate) mod segment;
+pub(crate) mod tether;
 pub(crate) mod tile;
 pub(crate) mod truss;
 

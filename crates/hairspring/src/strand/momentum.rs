@@ -54,6 +54,9 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         grip: &[],
         tines: &[],
         air: &[],
+        sunk: &[],
+        spans: &mut [],
+        tethers: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => match model {

@@ -33,8 +33,10 @@ pub mod scratch {
     pub const NORMAL: usize = 0;
     /// Gap before the solve, negative inside [m].
     pub const GAP: usize = 3;
+    /// From here on the same of the segment to the point, at its place that is pressed.
+    pub const SEGMENT: usize = 4;
     /// Rows a point.
-    pub const ROWS: usize = 4;
+    pub const ROWS: usize = 8;
 }
 
 /// Adds contact to point `i`, the second of the band's window, which is at `x` from the root, drifts by
@@ -53,7 +55,8 @@ pub fn press<S: Simd, const B: usize, const N: usize>(
     if !force.simd_gt(0.0).any_true() {
         return;
     }
-    let Surface { distance: mut gap, mut normal, carried } = nearest(simd, step.obstacles, x + step.root.position);
+    let Surface { distance: mut gap, mut normal, carried } =
+        nearest(simd, step.obstacles, x + step.root.position);
     gap -= load(simd, &tile.rest[i][rest::CLEARANCE]);
 
     // Shut while N could close the gap in a substep; what has gone farther is let go.
@@ -79,18 +82,18 @@ pub fn press<S: Simd, const B: usize, const N: usize>(
 }
 
 /// What eight places see of the surface that is nearest to each.
-struct Surface<S: Simd> {
+pub struct Surface<S: Simd> {
     /// Distance, negative inside [m].
-    distance: F<S>,
+    pub distance: F<S>,
     /// Unit normal, outward.
-    normal: V3<S>,
+    pub normal: V3<S>,
     /// How far the surface moves there in the substep [m].
-    carried: V3<S>,
+    pub carried: V3<S>,
 }
 
 /// The surface that is nearest to `world`. A function by itself, for all models and sweeps, like `limit`'s `place`.
 #[inline(never)]
-fn nearest<S: Simd>(simd: S, obstacles: &[ObstaclePose], world: V3<S>) -> Surface<S> {
+pub fn nearest<S: Simd>(simd: S, obstacles: &[ObstaclePose], world: V3<S>) -> Surface<S> {
     simd.vectorize(
         #[inline(always)]
         || {

@@ -309,6 +309,9 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
         grip: &[],
         tines: &[],
         air: &[],
+        sunk: &[],
+        spans: &mut [],
+        tethers: &[],
         holds: &[],
     };
     dispatch!(Level::new(), simd => {

@@ -99,6 +99,16 @@ pub mod springs {
     pub const SIDE: usize = state::NORMAL;
 }
 
+/// Rows of what presses a segment between its ends, carried from substep to substep.
+pub mod span {
+    /// Force with which a collider holds it out there; 0 without contact [N].
+    pub const FORCE: usize = 0;
+    /// Where: 0 at the segment's beginning, 1 at its end.
+    pub const AT: usize = 1;
+    /// Rows a point.
+    pub const ROWS: usize = 2;
+}
+
 /// Rows a point of what the second-order integrator remembers.
 pub mod history {
     /// Velocity before the last substep [m/s], 3 rows.
@@ -165,6 +175,9 @@ pub type RestRows = [Row; rest::ROWS];
 /// The state of one point of eight strands.
 pub type StateRows = [Row; state::ROWS];
 
+/// What presses the segment to one point of eight strands between its ends.
+pub type SpanRows = [Row; span::ROWS];
+
 /// What the integrator of second order remembers of one point.
 pub type HistoryRows = [Row; history::ROWS];
 
@@ -189,6 +202,13 @@ pub struct Tile<'a> {
     pub tines: &'a [[Row; tines::ROWS]],
     /// Velocity of the air besides the wind of all points, frozen for the interval [m/s]: shape `[points]`, empty where there is none.
     pub air: &'a [[Row; 3]],
+    /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]: shape `[points]`, empty where none
+    /// was.
+    pub sunk: &'a [Row],
+    /// What presses the segment to each point between its ends, see `span`: shape `[points]`, empty where segments are no contacts.
+    pub spans: &'a mut [SpanRows],
+    /// How far each point may be from its root [m]: shape `[points]`, empty where none is held so.
+    pub tethers: &'a [Row],
     /// What holds or pulls points, sorted by point.
     pub holds: &'a [HoldRows],
 }
@@ -200,6 +220,7 @@ impl Tile<'_> {
         let points = self.rest.len();
         let all_or_none = |none: bool| if none { 0 } else { points };
         let history = all_or_none(self.history.is_empty());
+        let spans = all_or_none(self.spans.is_empty());
         Tile {
             state: &mut self.state[..points],
             history: &mut self.history[..history],
@@ -207,6 +228,9 @@ impl Tile<'_> {
             grip: &self.grip[..all_or_none(self.grip.is_empty())],
             tines: &self.tines[..all_or_none(self.tines.is_empty())],
             air: &self.air[..all_or_none(self.air.is_empty())],
+            sunk: &self.sunk[..all_or_none(self.sunk.is_empty())],
+            spans: &mut self.spans[..spans],
+            tethers: &self.tethers[..all_or_none(self.tethers.is_empty())],
             ..*self
         }
     }

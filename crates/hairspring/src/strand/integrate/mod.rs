@@ -18,7 +18,7 @@ use super::{
     scratch::Memory,
     tile::{Tile, grip, rest, state, tines},
 };
-use crate::scene::Integrator;
+use crate::scene::{Integrator, Response};
 use fearless_simd::prelude::*;
 
 /// All substeps of `interval` for one tile.
@@ -78,11 +78,14 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
             second_order,
             obstacles: &substep.obstacles,
         };
-        let mut finish = Finish { limit: LIMIT, press: 0.0, kicks: false };
+        let mut finish = Finish { limit: LIMIT, press: 0.0, project: true, kicks: false };
         match interval.integrator {
             Integrator::BackwardEuler | Integrator::Bdf2 => {
                 implicit::advance::<S, M, B, N>(simd, interval, &step, tile, scratch);
-                finish.press = step.inertia() / (step.h * step.h);
+                if interval.response != Response::Projection {
+                    finish.press = step.inertia() / (step.h * step.h);
+                }
+                finish.project = interval.response != Response::Penalty;
             }
             Integrator::ExplicitEuler | Integrator::Verlet => {
                 finish.limit = f32::INFINITY;

@@ -1,0 +1,55 @@
+//! What is measured once of a groom as it was authored: how far its points are from their roots, and how deep its segments are in bodies.
+
+use super::{Simulation, build::simulated_points};
+use crate::{
+    collide::ObstaclePose,
+    material::Material,
+    strand::lanes::{LANES, Row},
+};
+use rayon::prelude::*;
+
+impl Simulation {
+    /// How far each point may be from its root, see `tethers`.
+    pub(super) fn tethers(&self, materials: &[Material]) -> Vec<Row> {
+        if materials.iter().all(|m| m.tether == 0.0) {
+            return Vec::new();
+        }
+        let mut reach = vec![Row([f32::INFINITY; LANES]); self.state.len()];
+        for (place, s) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+            let s = *s as usize;
+            let material = materials.get(self.groom.group(s) as usize).or(materials.last());
+            let Some(tether) = material.map(|m| m.tether).filter(|t| *t > 0.0) else { continue };
+            let tile = self.tiles[place / LANES];
+            let points = self.groom.strand(s);
+            for (k, p) in points.iter().enumerate() {
+                reach[tile.first as usize + k * tile.model.stride()].0[place % LANES] =
+                    tether * p.distance(points[0]);
+            }
+        }
+        reach
+    }
+
+    /// How deep the segment to each point is at rest, see `sunk`.
+    pub(super) fn authored_depths(&self, obstacles: &[ObstaclePose]) -> Vec<Row> {
+        let tiles: Vec<Vec<Row>> = self
+            .tiles
+            .par_iter()
+            .zip(self.lanes.par_chunks(LANES))
+            .map(|(tile, lanes)| {
+                let mut sunk = vec![Row::default(); tile.points as usize];
+                for (lane, s) in lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+                    let points = simulated_points(tile.model, self.groom.strand(*s as usize));
+                    let stride = tile.model.stride();
+                    for i in (2 * stride..points.len()).step_by(stride) {
+                        let [a, b] = [points[i - stride], points[i]];
+                        let depth = obstacles.iter().map(|o| o.least_distance(a, b).min(o.distance(a)));
+                        sunk[i].0[lane] = depth.fold(0.0, f32::min);
+                    }
+                }
+                sunk
+            })
+            .collect();
+        let none = tiles.iter().flatten().all(|row| row.0 == [0.0; LANES]);
+        if none { Vec::new() } else { tiles.concat() }
+    }
+}

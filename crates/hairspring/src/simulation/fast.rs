@@ -1,0 +1,53 @@
+//! Shorter substeps while a body passes through hair that is faster than it is thick: in steps of its own size it would be on the other side of a strand before it met it.
+//!
+//! ```text
+//!      ◯ · · · · · ·│· · · · ·◯       one substep: the strand is outside at both ends, and was never met
+//!      ◯◯◯◯◯◯◯◯◯◯◯◯◯│                 so many that each is a part of the radius: it is pushed along
+//! ```
+//!
+//! All strands take them, so that none depends on which of them share a tile; a rod of 1 cm at 20 m/s asks for 133 in a frame, a hand at 5 m/s for
+//! some 20, and what moves with the head for none.
+//!
+//! # Missing
+//! A skinned body's own limbs: how far they move against the head is known only place by place.
+
+use super::{Simulation, step::Drive};
+use crate::collide::Rigid;
+
+/// Part of a body's half thickness that it may move by in a substep [1]: a strand that it presses is still on the side where it was met.
+const PART: f32 = 0.5;
+
+/// Way in a frame below which nothing is looked at, and the least that a substep is cut to [m].
+const SLOW: f32 = 5e-4;
+
+impl Simulation {
+    /// Substeps that this frame needs so that no body is on the other side of a strand before it meets it; 1 where all are slow or far.
+    pub(super) fn substeps_past(&self, drive: &Drive, carried: Option<&Rigid>) -> u32 {
+        let mut most = 1;
+        for obstacle in drive.obstacles {
+            // Against the anchor: hair moves with that.
+            let start = self.settings.anchor.inverse().after(&obstacle.start(carried));
+            let end = drive.anchor.inverse().after(&obstacle.end);
+            let (center, radius) = obstacle.shape.bounds();
+            let [a, b] = [start, end].map(|pose| pose.point(center));
+            let turn = start.rotation.angle_between(end.rotation);
+            let way = a.distance(b) + turn * radius;
+            if !way.is_finite() || !radius.is_finite() || way < SLOW {
+                continue;
+            }
+            let count = (way / (PART * obstacle.shape.half_thickness()).max(SLOW)).ceil();
+            if count <= 1.0 {
+                continue;
+            }
+            let near = drive.roots.iter().any(|root| {
+                let root = drive.anchor.inverse_point(root.translation);
+                let along = ((root - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
+                root.distance(a.lerp(b, along)) < radius + turn * radius + self.longest
+            });
+            if near {
+                most = most.max(count as u32);
+            }
+        }
+        most
+    }
+}

@@ -1,0 +1,198 @@
+//! Segments stay outside of colliders as points do: where one cuts a corner that its ends stay out of, its outer end swings out until it is
+//! clear (in `limit`), and from then on the place that cut is pressed in the solve, like a point (`press`).
+//!
+//! ```text
+//!        a ●━━━╲━━━━┓           gap −d at the place s of the segment: the outer end swings about a by d/s,
+//!      ────────┐╲   ┃ b         and a force N n at s is one of (1−s) N n on a and s N n on b
+//!      collider│ ╲━━●
+//! ```
+//!
+//! The place is state, like the force: it moves where another is found that cuts, and so a force does not hop about between solves.
+//!
+//! # Missing
+//! A place near the inner end is for the next solve: a strand that is caught, or that lands at 30 m/s, cuts in for a moment.
+
+use super::{
+    assemble::{Step, Sweep},
+    band::Band,
+    lanes::{F, Row, Sym3, V3, load, store},
+    limit::{Finish, Link, Particle},
+    model::stretch::STRETCH,
+    press::{Surface, nearest, scratch as contact, scratch::SEGMENT},
+    root::Root,
+    scratch::Scratch,
+    tile::{Tile, rest, span, state},
+};
+use crate::collide::{ObstaclePose, STEEP, deepest, surface_displacement};
+use fearless_simd::prelude::*;
+
+/// How deep a segment may be between its ends, over its length [1]. On a smooth body it is always a little inside: by L/8R of its length over a
+/// radius of R. That is no contact: points alone hold it, and a head with segments of a centimetre is a smooth body.
+const SAG: f32 = 0.015;
+
+/// How deep at most [m].
+const MOST_SAG: f32 = 2e-4;
+
+/// Nearest place to the inner end whose depth the outer end answers wholly, as a part of the segment [1]. What is nearer is for the inner
+/// end, in the next solve: a lever that short would throw the outer one.
+const NEAREST: f32 = 0.125;
+
+/// Times that a segment swings out; a curved surface leaves a little the first time.
+const CORRECTIONS: usize = 2;
+
+/// How much deeper than the surface the segment to point `i` may be between its ends [m]: as deep as it was authored, and what a smooth body takes.
+#[inline(always)]
+pub fn sag<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
+    let inner = i - tile.model.stride();
+    let sag = (load(simd, &tile.rest[inner][rest::LENGTH]) * SAG).min(MOST_SAG);
+    tile.sunk.get(i).map_or(sag, |sunk| sag - load(simd, sunk))
+}
+
+/// Where point `i` may be, which is at `e` from the strand's point before and was at `old`, so that the segment between them is outside of `pose`. What
+/// held it out presses on in the next solve.
+#[inline(always)]
+pub fn clear<S: Simd>(
+    simd: S,
+    (finish, step, pose): (&Finish, &Step<S>, &ObstaclePose),
+    tile: &mut Tile,
+    (i, old, e): (usize, V3<S>, V3<S>),
+    (inner, link): (&Particle<S>, &Link<S>),
+) -> V3<S> {
+    let zero = F::<S>::splat(simd, 0.0);
+    let a = step.root.position + inner.x;
+    let clear = -sag(simd, tile, i);
+    let may = pose.may_cut(simd, (a + e, e), -clear);
+    if !may.any_true() {
+        return e;
+    }
+    let (mut q, mut cuts) = (e, may);
+    for correction in 0..CORRECTIONS {
+        let Some(place) = deepest(simd, pose, (a, q), clear) else { break };
+        cuts &= place.found;
+        if !cuts.any_true() {
+            break;
+        }
+        let depth = cuts.select(clear - place.distance, zero);
+        let mut out = link.clamp(link.swing_out(q, place.normal, depth / place.at.max(NEAREST)));
+        if correction == 0 {
+            // What of the depth did not stop an approach presses on in the next solve, as of points.
+            let carried = surface_displacement(simd, pose, e.mul_add(place.at, a));
+            let v = |i: usize| V3::load(simd, &tile.state[i][state::V..]);
+            let (v_a, v_b) = (v(i - tile.model.stride()), v(i));
+            let way = (v_b - v_a).mul_add(place.at, v_a) * F::splat(simd, step.h);
+            let approach = place.normal.dot(carried - way).max(0.0);
+            let mass = load(simd, &tile.rest[i][rest::MASS]);
+            let rows = &mut tile.spans[i];
+            let force = load(simd, &rows[span::FORCE]);
+            let pressed = cuts.select(finish.pressed(force, mass, depth, approach), force);
+            store(pressed, &mut rows[span::FORCE]);
+            store(cuts.select(place.at, load(simd, &rows[span::AT])), &mut rows[span::AT]);
+            if !finish.project {
+                break;
+            }
+            // Back along the surface, at most μ times as far.
+            let friction = Root::<S>::fibre(simd, tile.strand).2;
+            let slide = (out - old).mul_add(place.at, inner.way) - carried;
+            let tangent = slide - place.normal * place.normal.dot(slide);
+            let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
+            out = link.clamp(out - tangent * hold.min(1.0));
+        }
+        q = V3::select(cuts, out, q);
+    }
+    q
+}
+
+/// Adds contact to the segment from point `i`, the second of the band's window, to the strand's next, which is in it too. Point `i` is at `x` from the
+/// root, drifts by `drift` and is by then `way` from where the substep began.
+#[inline(always)]
+pub fn press_between<S: Simd, const B: usize, const N: usize>(
+    simd: S,
+    (sweep, step): (Sweep, &Step<S>),
+    tile: &mut Tile,
+    (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
+    band: &mut Band<S, B, N>,
+    memory: &mut Scratch,
+) {
+    let stride = tile.model.stride();
+    let outer = i + stride;
+    let Some(rows) = tile.spans.get(outer) else { return };
+    let force = load(simd, &rows[span::FORCE]);
+    if !force.simd_gt(0.0).any_true() {
+        return;
+    }
+    let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
+    let at = load(simd, &rows[span::AT]);
+    // From this point to the next, now and where the substep began.
+    let mut e = V3::load(simd, &memory.edges[outer]);
+    let mut old = V3::load(simd, &tile.state[outer][state::EDGE..]);
+    if stride == 2 {
+        e += V3::load(simd, &memory.edges[i + 1]);
+        old += V3::load(simd, &tile.state[i + 1][state::EDGE..]);
+    }
+    let Surface { distance, normal, carried } =
+        nearest(simd, step.obstacles, step.root.position + e.mul_add(at, x));
+    let gap = distance + sag(simd, tile, outer);
+
+    // Shut while N could close the gap in a substep; what has gone farther is let go.
+    let m_h2 = load(simd, &tile.rest[outer][rest::MASS]) * (1.0 / (step.h * step.h));
+    let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
+    let force = shut.select(force, zero);
+    let gap = shut.select(gap, zero);
+    store(force, &mut tile.spans[outer][span::FORCE]);
+    if !shut.any_true() {
+        return;
+    }
+    // Across the segment: on an edge the surface's own normal jumps between two faces, this one does not.
+    let (_, u) = e.length_and_unit();
+    let (size, across) = (normal - u * normal.dot(u)).length_and_unit();
+    let normal = V3::select(size.simd_lt(STEEP), normal, across);
+    let normal = V3::select(shut, normal, V3::zero(simd));
+    let work = &mut memory.contacts[outer][SEGMENT..];
+    normal.store(&mut work[contact::NORMAL..]);
+    store(gap, &mut work[contact::GAP]);
+
+    // What the outer end does besides what the inner one does.
+    let v = V3::load(simd, &tile.state[i][state::V..]);
+    let faster = V3::load(simd, &tile.state[outer][state::V..]) - v;
+    let h = F::splat(simd, step.h);
+    let drifts = faster * h;
+    let (drift_more, way_more) =
+        if sweep == Sweep::First { (drifts, drifts) } else { (V3::zero(simd), e - old) };
+    let (drift, way) = (drift_more.mul_add(at, drift), way_more.mul_add(at, way));
+    let along = |v: V3<S>| v - normal * normal.dot(v);
+    let k = shut.select(m_h2 * STRETCH, zero);
+    let before = faster.mul_add(at, v) * h;
+    let (slid, _) = along(before - carried).length_and_unit();
+    let rub = (Root::<S>::fibre(simd, tile.strand).2 * force / slid).min(k);
+    let block = Sym3::outer(normal, k - rub).add_identity(rub);
+    let push = normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub;
+    let share = one - at;
+    band.add_diagonal(1, block * (share * share));
+    band.add_diagonal(1 + stride, block * (at * at));
+    band.add_block(1, 1 + stride, &(block * (share * at)).full());
+    band.add_force(1, push * share);
+    band.add_force(1 + stride, push * at);
+}
+
+/// The force that presses the segment from point `i` once the solve has moved its ends by `moved`.
+#[inline(always)]
+pub fn relieve_between<S: Simd>(
+    simd: S,
+    step: &Step<S>,
+    tile: &mut Tile,
+    (i, moved): (usize, [V3<S>; 2]),
+    contacts: &[[Row; contact::ROWS]],
+) {
+    let outer = i + tile.model.stride();
+    let Some(rows) = tile.spans.get_mut(outer) else { return };
+    let force = load(simd, &rows[span::FORCE]);
+    let shut = force.simd_gt(0.0);
+    if !shut.any_true() {
+        return;
+    }
+    let work = &contacts[outer][SEGMENT..];
+    let delta = (moved[1] - moved[0]).mul_add(load(simd, &rows[span::AT]), moved[0]);
+    let k = load(simd, &tile.rest[outer][rest::MASS]) * (STRETCH / (step.h * step.h));
+    let gap = load(simd, &work[contact::GAP]) + V3::load(simd, &work[contact::NORMAL..]).dot(delta);
+    store(shut.select((force - k * gap).max(0.0), force), &mut rows[span::FORCE]);
+}

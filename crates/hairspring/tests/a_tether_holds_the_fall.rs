@@ -1,0 +1,81 @@
+//! Promise: with a tether of t no point gets farther from its root than t times its distance at rest, whatever pulls; at rest, and where nothing pulls so far, it changes
+//! nothing.
+//!
+//! Coils that are put under twenty times their weight fall to nearly the length of their hair without it. Where a coil turns
+//! back toward its root, its length goes first: a point may be beyond its tether by 1 %.
+
+use glam::Vec3;
+use hairspring::{
+    collide::Rigid,
+    groom::Groom,
+    material::{Material, Model},
+    scene::Solver,
+    simulation::{Air, Drive, Simulation},
+};
+use std::sync::Arc;
+
+const POINTS: usize = 49;
+
+/// Coils of radius 1 cm that hang from the origin's height.
+fn coils() -> Arc<Groom> {
+    let strands = (0..9).map(|s| {
+        let root = Vec3::X * (0.05 * s as f32);
+        (0..POINTS)
+            .map(move |i| {
+                let turn = i as f32 * 0.5;
+                root + Vec3::new(0.01 * (turn.cos() - 1.0), -0.0035 * i as f32, 0.01 * turn.sin())
+            })
+            .collect::<Vec<_>>()
+    });
+    Arc::new(Groom::from_strands(strands, 40e-6))
+}
+
+/// The most that a point is farther from its root than at rest, over that, after two seconds under `g` times gravity; and the points.
+fn fall(model: Model, tether: f32, g: f32) -> (f32, Vec<Vec3>) {
+    let groom = coils();
+    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
+    let roots: Vec<Rigid> =
+        all.iter().map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() }).collect();
+    let materials = [Material { model, tether, ..Material::default() }];
+    let solver = Solver { sag_free: g == 1.0, ..Solver::default() };
+    let gravity = Vec3::NEG_Y * 9.81 * g;
+    let anchor = Rigid::default();
+    let mut simulation = Simulation::new(groom.clone(), &all, &materials, solver, gravity, anchor, &[]);
+    let mut points = vec![Vec3::ZERO; simulation.point_count()];
+    let mut most = 0.0f32;
+    for _ in 0..120 {
+        let (dt, air) = (1.0 / 60.0, Air::default());
+        simulation.step(&Drive { dt, anchor, roots: &roots, obstacles: &[], air });
+        let measure = simulation.measure(&[]);
+        assert_eq!(measure.non_finite, 0, "{model:?}");
+        assert!(measure.stretch_max < 0.011, "{model:?}: {measure:?}");
+        simulation.write_points(&mut points);
+        for (now, rest) in points.chunks(POINTS).zip(groom.points.chunks(POINTS)) {
+            for i in 8..POINTS {
+                most = most.max(now[i].distance(now[0]) / rest[i].distance(rest[0]));
+            }
+        }
+    }
+    (most, points)
+}
+
+#[test]
+fn heavy_coils_fall_as_far_as_they_may() {
+    for model in Model::ALL {
+        let (free, _) = fall(model, 0.0, 20.0);
+        assert!(free > 1.5, "{model:?}: without a tether {free}");
+        for tether in [1.05, 1.3] {
+            let (held, _) = fall(model, tether, 20.0);
+            println!("{model:?}: {free} free, {held} with a tether of {tether}");
+            assert!(held < tether * 1.01, "{model:?}: {held} with a tether of {tether}");
+            assert!(held > tether - 0.05, "{model:?}: {held} with a tether of {tether}: hair hangs on it");
+        }
+    }
+}
+
+#[test]
+fn at_rest_nothing_changes() {
+    for model in Model::ALL {
+        assert_eq!(fall(model, 1.01, 1.0).1, fall(model, 0.0, 1.0).1, "{model:?}");
+    }
+}
