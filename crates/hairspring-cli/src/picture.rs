@@ -101,23 +101,9 @@ impl Studio {
 
     /// Draws the stage as it is now.
     pub fn draw(&mut self, stage: &Stage) -> Result<(&Image, Timings), Fault> {
-        let hair: Vec<HairDraw> = stage
-            .strands()
-            .map(|s| HairDraw {
-                points: s.points,
-                offsets: &s.groom.offsets,
-                radii: &s.groom.radii,
-                colors: &s.groom.colors,
-                look: s.look,
-                width_scale: self.width_scale,
-            })
-            .collect();
-        let body = stage.body().map(|b| MeshDraw {
-            positions: b.positions,
-            normals: b.normals,
-            triangles: &b.mesh.triangles,
-            parts: &b.mesh.parts,
-        });
+        let hair: Vec<HairDraw> =
+            stage.strands().map(|s| HairDraw { width_scale: self.width_scale, ..HairDraw::of(s) }).collect();
+        let body = stage.body().map(MeshDraw::of);
         let frame = Frame {
             hair: &hair,
             bodies: body.as_slice(),

@@ -5,6 +5,7 @@ use glam::Vec3;
 use hairspring::{
     body::Part,
     scene::{Camera, HairLook},
+    stage::{PosedBody, Strands},
 };
 
 /// Strands to draw. Arrays that disagree in length are cut to the shorter; points that are not finite are left out.
@@ -71,7 +72,14 @@ pub struct Frame<'a> {
     pub quality: Quality,
 }
 
-impl HairDraw<'_> {
+impl<'a> HairDraw<'a> {
+    /// A groom as a stage has it now, as wide as it is.
+    pub fn of(strands: Strands<'a>) -> Self {
+        let Strands { points, groom, look } = strands;
+        let (offsets, radii, colors) = (&groom.offsets, &groom.radii, &groom.colors);
+        Self { points, offsets, radii, colors, look, width_scale: 1.0 }
+    }
+
     /// Number of strands whose points are all there.
     pub(crate) fn strand_count(&self) -> usize {
         self.offsets.len().saturating_sub(1)
@@ -89,7 +97,13 @@ impl HairDraw<'_> {
     }
 }
 
-impl MeshDraw<'_> {
+impl<'a> MeshDraw<'a> {
+    /// The body as a stage has it now.
+    pub fn of(body: PosedBody<'a>) -> Self {
+        let PosedBody { mesh, positions, normals } = body;
+        Self { positions, normals, triangles: &mesh.triangles, parts: &mesh.parts }
+    }
+
     /// Whether there is a normal for every vertex.
     pub(crate) fn smooth(&self) -> bool {
         self.normals.len() == self.positions.len()

@@ -195,23 +195,9 @@ fn a_head_looks_alike() {
     let Some(mut gpu) = renderer() else { return };
     let options = BuiltinOptions { strands: 4000, ..BuiltinOptions::default() };
     let stage = Stage::new(scene(&options)).unwrap();
-    let hair: Vec<HairDraw> = stage
-        .strands()
-        .map(|s| HairDraw {
-            points: s.points,
-            offsets: &s.groom.offsets,
-            radii: &s.groom.radii,
-            colors: &s.groom.colors,
-            look: s.look,
-            width_scale: 5.0,
-        })
-        .collect();
-    let body = stage.body().map(|b| MeshDraw {
-        positions: b.positions,
-        normals: b.normals,
-        triangles: &b.mesh.triangles,
-        parts: &b.mesh.parts,
-    });
+    let hair: Vec<HairDraw> =
+        stage.strands().map(|s| HairDraw { width_scale: 5.0, ..HairDraw::of(s) }).collect();
+    let body = stage.body().map(MeshDraw::of);
     let camera = stage.scene().camera.unwrap();
     let lighting = Lighting::facing(&camera);
     let frame = Frame { camera, lighting, ..support::frame(&hair, body.as_slice()) };
