@@ -65,7 +65,7 @@ impl Renderer {
         let start = Instant::now();
         let [width, height] = self.tiles.size();
         let view = View::new(&frame.camera, width as u32, height as u32);
-        let bounds = shadow::bounds(frame.hair);
+        let bounds = shadow::bounds(&frame.hair.iter().map(|h| h.points).collect::<Vec<_>>());
         self.order.fill(frame, bounds.unwrap_or_default());
         self.shadow.fill(frame, bounds, &self.order);
         let shaded = Instant::now();

@@ -10,7 +10,7 @@ mod support;
 use glam::Vec3;
 use hairspring::{
     scene::{
-        Camera, HairColor, HairLook,
+        Camera, Effects, Guides, HairColor, HairLook,
         builtin::{BuiltinOptions, scene},
     },
     stage::Stage,
@@ -108,6 +108,7 @@ impl Few {
             colors: &self.colors,
             look: &self.look,
             width_scale: 1.0,
+            follow: None,
         }
     }
 }
@@ -205,6 +206,31 @@ fn a_head_looks_alike() {
 }
 
 #[test]
+fn a_head_in_motion_looks_alike_whoever_places_its_hair() {
+    let Some(mut gpu) = renderer() else { return };
+    let options = BuiltinOptions { strands: 4000, guides: Guides::Count(400), ..BuiltinOptions::default() };
+    let mut scene = scene(&options);
+    for groom in &mut scene.grooms {
+        groom.effects = Effects { clump: 0.4, curl_radius: 0.002, noise: 0.004, ..Effects::default() };
+    }
+    let mut stage = Stage::new(scene).unwrap();
+    stage.leave_follow_hairs(true);
+    for _ in 0..100 {
+        stage.step(1.0 / 60.0);
+    }
+    // The CPU draws these points; the card places its own.
+    stage.place_follow_hairs();
+    let hair: Vec<HairDraw> =
+        stage.strands().map(|s| HairDraw { width_scale: 5.0, ..HairDraw::of(s) }).collect();
+    assert!(hair.iter().any(|h| h.follow.is_some()));
+    let body = stage.body().map(MeshDraw::of);
+    let camera = stage.scene().camera.unwrap();
+    let frame =
+        Frame { camera, lighting: Lighting::facing(&camera), ..support::frame(&hair, body.as_slice()) };
+    compare(&mut gpu, "moving", &frame, 320, 240);
+}
+
+#[test]
 fn a_frame_drawn_twice_is_the_same_picture_at_any_size() {
     let Some(mut gpu) = renderer() else { return };
     let groom = support::groom(support::Style { strands: 3000, points: 16, ..support::WAVY });
@@ -248,8 +274,15 @@ fn what_changed_is_sent_again() {
 fn an_empty_scene_is_the_backdrop() {
     let Some(mut gpu) = renderer() else { return };
     let look = HairLook::default();
-    let nothing =
-        HairDraw { points: &[], offsets: &[], radii: &[], colors: &[], look: &look, width_scale: 1.0 };
+    let nothing = HairDraw {
+        points: &[],
+        offsets: &[],
+        radii: &[],
+        colors: &[],
+        look: &look,
+        width_scale: 1.0,
+        follow: None,
+    };
     let body = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
     compare(&mut gpu, "empty", &support::frame(&[], &[]), 64, 36);
     compare(
@@ -291,6 +324,7 @@ fn broken_input_is_drawn_around() {
         colors: &[Vec3::NAN],
         look: &look,
         width_scale: 1.0,
+        follow: None,
     };
     let hair = [short, HairDraw { offsets: &[0, 3], radii: &[1e-3; 3], width_scale: f32::INFINITY, ..short }];
     let bodies = [MeshDraw {

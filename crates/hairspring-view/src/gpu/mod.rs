@@ -6,6 +6,7 @@
 //!
 //! | step | shaders |
 //! | --- | --- |
+//! | follow hairs are placed, where that is left to the card | `follow` |
 //! | hair is counted into voxels, bodies are marked in them, and light is swept through | `density`, `walls`, `sweep` |
 //! | bodies as the key lamp sees them, then as the camera does, four samples a pixel | `body`, `settle` |
 //! | every point of every strand is projected and lit | `points`, `fibre`, `light` |
@@ -32,6 +33,7 @@
 
 mod constants;
 mod device;
+mod follow;
 mod memory;
 mod meshes;
 mod picture;

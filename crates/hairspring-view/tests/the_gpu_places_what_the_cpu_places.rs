@@ -1,0 +1,142 @@
+//! Follow hairs are where the library puts them, whoever does it: the graphics card is sent how guides carry them and no more, and its points are
+//! within 2 µm of the CPU's, in motion, with clumps, curls and flyaways, pushed by every collider that the card knows.
+//!
+//! What may differ is rounding, and where the two roundings of a point lie on either side of an edge (of a cell of the body's field, whose gradient
+//! turns there), the way that it is pushed out by: one point in 10,000, by a tenth of a millimetre at most. Where there is no card, nor a driver that draws in software, the tests say so and
+//! pass.
+
+mod support;
+
+use glam::Vec3;
+use hairspring::{
+    scene::{
+        Collider, Effects, Guides, Scene, Shape,
+        builtin::{BuiltinOptions, scene},
+    },
+    stage::Stage,
+};
+use hairspring_view::{
+    HairDraw,
+    gpu::{Gpu, GpuError, GpuRenderer},
+};
+
+/// Farthest that nearly all points are apart [m], the share of others, and how far those may be [m].
+const BOUND: (f32, f32, f32) = (2e-6, 1e-4, 1e-4);
+
+fn renderer() -> Option<GpuRenderer> {
+    match Gpu::open() {
+        Ok(gpu) => Some(GpuRenderer::new(&gpu)),
+        Err(error @ GpuError::Missing(_)) => {
+            eprintln!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn head(effects: Effects, colliders: Vec<Shape>) -> Scene {
+    let options =
+        BuiltinOptions { strands: 1500, points: 24, guides: Guides::Count(150), ..BuiltinOptions::default() };
+    let mut scene = scene(&options);
+    scene.grooms.iter_mut().for_each(|g| g.effects = effects);
+    scene.colliders.extend(colliders.into_iter().map(|shape| Collider { joint: None, shape }));
+    scene
+}
+
+/// Plays, and holds what the card places after every tenth frame against what the CPU places. Returns how many points colliders had moved by more than
+/// 0.1 mm.
+fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usize {
+    let mut stage = Stage::new(scene).unwrap();
+    stage.leave_follow_hairs(true);
+    assert!(gpu.gpu().can_place_among(stage.obstacles()));
+    let mut pushed = 0;
+    for frame in 1..=frames {
+        stage.step(1.0 / 60.0);
+        if frame % 10 != 0 {
+            continue;
+        }
+        let hair: Vec<HairDraw> = stage.strands().map(HairDraw::of).collect();
+        gpu.draw(&support::frame(&hair, &[]), 16, 16);
+        let card = gpu.read_points().unwrap();
+        let free: Vec<Vec3> = stage
+            .strands()
+            .flat_map(|s| {
+                let mut points = s.points.to_vec();
+                s.follow.map(|f| hairspring::follow::Followed { obstacles: &[], ..f }.place(&mut points));
+                points
+            })
+            .collect();
+        stage.place_follow_hairs();
+        let cpu: Vec<Vec3> = stage.strands().flat_map(|s| s.points.to_vec()).collect();
+        assert_eq!(card.len(), cpu.len());
+        let apart: Vec<f32> = cpu.iter().zip(&card).map(|(a, b)| a.distance(*b)).collect();
+        let most = apart.iter().copied().fold(0.0, f32::max);
+        let beyond = apart.iter().filter(|d| !(**d <= BOUND.0)).count();
+        let moved = cpu.iter().zip(&free).filter(|(a, b)| a.distance(**b) > 1e-4).count();
+        println!(
+            "{name}, frame {frame}: of {} points {beyond} beyond {:.0} um, {:.2} um the most; {moved} pushed; {} kB sent",
+            apart.len(),
+            1e6 * BOUND.0,
+            1e6 * most,
+            gpu.timings().bytes / 1000
+        );
+        assert!(beyond as f32 <= BOUND.1 * apart.len() as f32, "{name}: {beyond} of {}", apart.len());
+        assert!(most <= BOUND.2, "{name}: {most} m");
+        pushed += moved;
+    }
+    pushed
+}
+
+const ALL: Effects = Effects { clump: 0.6, curl_radius: 0.004, curl_length: 0.03, noise: 0.006 };
+
+#[test]
+fn hairs_are_carried_alike() {
+    let Some(mut gpu) = renderer() else { return };
+    let mut scene = head(Effects::default(), Vec::new());
+    scene.solver.collide_body = false;
+    scene.collision = None;
+    compare(&mut gpu, "carried", scene, 60);
+}
+
+#[test]
+fn the_body_keeps_hairs_out_alike() {
+    let Some(mut gpu) = renderer() else { return };
+    assert!(compare(&mut gpu, "body", head(Effects::default(), Vec::new()), 60) > 100);
+    assert!(compare(&mut gpu, "body and style", head(ALL, Vec::new()), 60) > 100);
+}
+
+#[test]
+fn every_shape_keeps_hairs_out_alike() {
+    let Some(mut gpu) = renderer() else { return };
+    // Amid the hair at one side: what is inside at rest may stay as deep, what swings in may not.
+    let hair = head(ALL, Vec::new()).grooms[0].groom.points.clone();
+    let center = hair.into_iter().reduce(|a, b| if b.x > a.x { b } else { a }).unwrap();
+    let corner = |k: u32| Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32) - 0.5;
+    let shapes = [
+        ("ball", Shape::Sphere { center, radius: 0.06 }),
+        ("capsule", Shape::Capsule { a: center, b: center + Vec3::new(0.02, -0.1, 0.05), radius: 0.05 }),
+        ("box", Shape::Box { center, size: Vec3::splat(0.1), rotation: Vec3::new(30.0, 20.0, 10.0) }),
+        ("plane", Shape::Plane { point: center, normal: Vec3::new(-1.0, 0.2, 0.1) }),
+        (
+            "hull",
+            Shape::Hull {
+                points: (0..8).map(|k| center + 0.12 * corner(k)).collect(),
+                file: None,
+                scale: None,
+            },
+        ),
+    ];
+    for (name, shape) in shapes {
+        let pushed = compare(&mut gpu, name, head(ALL, vec![shape]), 30);
+        assert!(pushed > 100, "{name}: {pushed} points pushed");
+    }
+}
+
+#[test]
+fn sheets_are_left_to_the_cpu() {
+    let Some(gpu) = renderer() else { return };
+    let mut scene = head(Effects::default(), Vec::new());
+    scene.sheets =
+        vec![hairspring::scene::SceneSheet { body: scene.body.clone().unwrap(), thickness: 0.002 }];
+    assert!(!gpu.gpu().can_place_among(Stage::new(scene).unwrap().obstacles()));
+}
