@@ -321,8 +321,10 @@ impl Followers {
     pub fn send(&mut self, gpu: &Gpu, hair: &[HairDraw], generation: &mut Generation) {
         let mut worlds: Vec<(&[MovingObstacle], u32)> = Vec::new();
         self.grooms.resize_with(hair.len(), || None);
-        for ((first, h), groom) in fitting(gpu, hair).zip(&mut self.grooms) {
-            let Some(now) = h.followed() else {
+        let mut fitting = fitting(gpu, hair);
+        for groom in &mut self.grooms {
+            let followed = fitting.next().and_then(|(first, h)| Some((first, h.followed()?)));
+            let Some((first, now)) = followed else {
                 *groom = None;
                 continue;
             };

@@ -7,7 +7,7 @@ use super::{
 use crate::frame::HairDraw;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use wgpu::BufferUsages;
+use wgpu::{BindingResource, BufferUsages};
 
 /// `Strand` of the shaders.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -93,6 +93,12 @@ impl Strands {
     /// Forgets what was sent, so that all is sent again.
     pub fn forget(&mut self) {
         self.sent.clear();
+    }
+
+    /// What `wgsl/strands.wgsl` asks for.
+    pub fn bindings(&self) -> [(u32, BindingResource<'_>); 5] {
+        let Self { strands, owners, points, radii, styles, .. } = self;
+        [(1, strands.all()), (2, owners.all()), (3, points.all()), (4, radii.all()), (5, styles.all())]
     }
 
     /// Sends a frame's strands.
