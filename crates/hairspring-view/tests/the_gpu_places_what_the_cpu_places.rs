@@ -1,14 +1,15 @@
 //! Follow hairs are where the library puts them, whoever does it: the graphics card is sent how guides carry them and no more, and its points are
 //! within 2 µm of the CPU's, in motion, with clumps, curls and flyaways, pushed by every collider that the card knows.
 //!
-//! What may differ is rounding, and where the two roundings of a point lie on either side of an edge (of a cell of the body's field, whose gradient
-//! turns there), the way that it is pushed out by: one point in 10,000, by a tenth of a millimetre at most. Where there is no card, nor a driver that draws in software, the tests say so and
-//! pass.
+//! What may differ is rounding, and where a curl's frame is carried around a fold of nearly a right angle, little is left of its normal and rounding grows
+//! with what is lost: such strands, one in 500 at most, are within a tenth of a millimetre. Where there is no card, nor a driver that draws in software, the tests
+//! say so and pass.
 
 mod support;
 
 use glam::Vec3;
 use hairspring::{
+    follow::Followed,
     scene::{
         Collider, Effects, Guides, Scene, Shape,
         builtin::{BuiltinOptions, scene},
@@ -20,8 +21,10 @@ use hairspring_view::{
     gpu::{Gpu, GpuError, GpuRenderer},
 };
 
-/// Farthest that nearly all points are apart [m], the share of others, and how far those may be [m].
-const BOUND: (f32, f32, f32) = (2e-6, 1e-4, 1e-4);
+/// Farthest that points are apart [m].
+const BOUND: f32 = 2e-6;
+/// The same of strands whose curl keeps less of its normal than this share around some fold, and how many of them may need it.
+const FOLDED: (f32, f32, f32) = (1e-4, 0.2, 0.002);
 
 fn renderer() -> Option<GpuRenderer> {
     match Gpu::open() {
@@ -43,6 +46,19 @@ fn head(effects: Effects, colliders: Vec<Shape>) -> Scene {
     scene
 }
 
+/// The least share of its normal that a curl's frame keeps from one segment of a strand to the next, as `follow/style.rs` carries it.
+fn kept(points: &[Vec3]) -> f32 {
+    let way = |w: &[Vec3]| (w[1] - w[0]).normalize_or(Vec3::Y);
+    let mut normal = way(points).any_orthonormal_vector();
+    let mut least = 1.0f32;
+    for w in points.windows(2) {
+        let left = normal - way(w) * normal.dot(way(w));
+        least = least.min(left.length());
+        normal = left.normalize_or(normal);
+    }
+    least
+}
+
 /// Plays, and holds what the card places after every tenth frame against what the CPU places. Returns how many points colliders had moved by more than
 /// 0.1 mm.
 fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usize {
@@ -62,7 +78,9 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
             .strands()
             .flat_map(|s| {
                 let mut points = s.points.to_vec();
-                s.follow.map(|f| hairspring::follow::Followed { obstacles: &[], ..f }.place(&mut points));
+                if let Some(f) = s.follow {
+                    Followed { obstacles: &[], ..f }.place(&mut points);
+                }
                 points
             })
             .collect();
@@ -71,17 +89,36 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
         assert_eq!(card.len(), cpu.len());
         let apart: Vec<f32> = cpu.iter().zip(&card).map(|(a, b)| a.distance(*b)).collect();
         let most = apart.iter().copied().fold(0.0, f32::max);
-        let beyond = apart.iter().filter(|d| !(**d <= BOUND.0)).count();
         let moved = cpu.iter().zip(&free).filter(|(a, b)| a.distance(**b) > 1e-4).count();
+        let (mut first, mut strands, mut folded) = (0, 0, 0);
+        for s in stage.strands() {
+            let mut bare = s.points.to_vec();
+            if let Some(f) = s.follow {
+                let effects = Effects { curl_radius: 0.0, noise: 0.0, ..f.effects };
+                Followed { obstacles: &[], effects, ..f }.place(&mut bare);
+            }
+            for k in 0..s.groom.strand_count() {
+                let range = s.groom.range(k);
+                let off = apart[first..][range.clone()].iter().copied().fold(0.0, f32::max);
+                if off.is_nan() || off > BOUND {
+                    folded += 1;
+                    let left = kept(&bare[range]);
+                    assert!(
+                        left < FOLDED.1 && off <= FOLDED.0,
+                        "{name}: strand {k} {off} m apart, {left} kept"
+                    );
+                }
+            }
+            first += s.points.len();
+            strands += s.groom.strand_count();
+        }
         println!(
-            "{name}, frame {frame}: of {} points {beyond} beyond {:.0} um, {:.2} um the most; {moved} pushed; {} kB sent",
-            apart.len(),
-            1e6 * BOUND.0,
+            "{name}, frame {frame}: {:.2} um the most; {folded} of {strands} strands beyond {:.0} um; {moved} points pushed; {} kB sent",
             1e6 * most,
+            1e6 * BOUND,
             gpu.timings().bytes / 1000
         );
-        assert!(beyond as f32 <= BOUND.1 * apart.len() as f32, "{name}: {beyond} of {}", apart.len());
-        assert!(most <= BOUND.2, "{name}: {most} m");
+        assert!(folded as f32 <= FOLDED.2 * strands as f32, "{name}: {folded} of {strands} strands");
         pushed += moved;
     }
     pushed
@@ -127,7 +164,7 @@ fn every_shape_keeps_hairs_out_alike() {
         ),
     ];
     for (name, shape) in shapes {
-        let pushed = compare(&mut gpu, name, head(ALL, vec![shape]), 30);
+        let pushed = compare(&mut gpu, name, head(ALL, vec![shape]), 20);
         assert!(pushed > 100, "{name}: {pushed} points pushed");
     }
 }

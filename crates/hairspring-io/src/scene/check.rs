@@ -268,7 +268,7 @@ fn colored_once(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     for (table, from) in grooms.zip(starts).chain(builtin) {
         let says = |key: &str| table.get("look").is_some_and(|look| look.get(key).is_some());
         if says("melanin") && (says("root_color") || says("tip_color")) {
-            let line = line_of_key(text, from, "melanin").unwrap_or(from);
+            let line = line_of_key(text, from, "melanin").or(line_of_key(text, from, "look")).unwrap_or(from);
             let why = "a look has `melanin` or colours (`root_color`, `tip_color`), and not both: leave one of them out";
             return Err(Problem::line(line, why));
         }
