@@ -74,7 +74,7 @@ pub fn draw(painter: &egui::Painter, rect: egui::Rect, scenery: &Scenery, view: 
         scenery.obstacles.iter().for_each(|o| collider(&pen, o, stroke));
     }
     if overlays.roots {
-        for (still, points) in scenery.still.grooms.iter().zip(&scenery.points) {
+        for (still, points) in scenery.still.grooms.iter().zip(scenery.points()) {
             for root in still.roots().step_by(1 + still.strands() / 4000) {
                 if let Some(at) = points.get(root).and_then(|p| pen.at(*p)) {
                     painter.circle_filled(at, 1.2, Color32::from_rgb(255, 200, 60));
@@ -189,7 +189,7 @@ fn volume(pen: &Pen, scenery: &Scenery) {
     let cell = scenery.volumes.iter().flatten().map(|v| v.cell).next().unwrap_or(0.015);
     let anchor = scenery.anchor;
     let mut cells: HashMap<[i32; 3], u32> = HashMap::new();
-    for p in scenery.points.iter().flatten().filter(|p| p.is_finite()) {
+    for p in scenery.points().flatten().filter(|p| p.is_finite()) {
         let own = (anchor.inverse_point(*p) / cell).floor();
         *cells.entry([own.x as i32, own.y as i32, own.z as i32]).or_default() += 1;
     }

@@ -197,6 +197,9 @@ pub const ALL: &[Parameter] = parameters! {
     Look {
         Groom "look.root_color", "Root", "", Kind::Color, "What a thick lock of it looks like at the root.";
         Groom "look.tip_color", "Tip", "", Kind::Color, "And at the tip.";
+        Groom "look.melanin", "Melanin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5 }, "Pigment in place of the two colours, which must be reset first: 0 is white, 1 is black.";
+        Groom "look.melanin_redness", "Redness", "", number(0.0, 1.0), "Share of the pigment that is the reddish one: brown to red. Counts with melanin.";
+        Groom "look.dye", "Dye", "", Kind::Color, "What white hair would be dyed, over melanin or the colours; white is no dye.";
         Groom "look.variation", "Variation", "", number(0.0, 1.0), "How much pigment differs from strand to strand.";
         Groom "look.roughness", "Roughness", "", number(0.1, 1.0), "Spread of the highlights: oiled to matt.";
         Groom "look.cuticle", "Cuticle", "°", number(0.0, 10.0), "Tilt of the scales, which parts the white highlight from the coloured one.";

@@ -12,6 +12,7 @@ use hairspring::{
     simulation::ToolId,
     stage::{FrameReport, Picked, Stage, Value},
 };
+use hairspring_view::gpu::Gpu;
 use std::{
     sync::{
         Arc, Mutex, PoisonError,
@@ -77,13 +78,13 @@ pub struct Player {
 
 impl Player {
     /// A thread that calls `wake` whenever there is something new to see, and steps on so many threads: fewer than processors where another pool draws,
-    /// for a step would wait at each of its ends for a thread that is not given a processor.
-    pub fn new(threads: usize, wake: impl Fn() + Send + 'static) -> Self {
+    /// for a step would wait at each of its ends for a thread that is not given a processor. To a `card` that draws, placing follow hairs is left where it can.
+    pub fn new(threads: usize, card: Option<Gpu>, wake: impl Fn() + Send + 'static) -> Self {
         let (orders, inbox) = channel();
         let shared = Arc::new(Shared::default());
         let own = shared.clone();
         let thread = std::thread::Builder::new().name("simulation".into()).spawn(move || {
-            let mut work = Work { inbox, shared: own, wake: Box::new(wake), ..Work::new() };
+            let mut work = Work { inbox, shared: own, card, wake: Box::new(wake), ..Work::new() };
             match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => pool.install(|| work.run()),
                 // The pool of all is there in any case.
@@ -131,6 +132,7 @@ impl Drop for Player {
 struct Work {
     inbox: Receiver<Order>,
     shared: Arc<Shared>,
+    card: Option<Gpu>,
     wake: Box<dyn Fn() + Send>,
     stages: Vec<(Stage, Arc<Still>)>,
     playing: bool,
@@ -155,6 +157,7 @@ impl Work {
         Self {
             inbox: channel().1,
             shared: Arc::default(),
+            card: None,
             wake: Box::new(|| ()),
             stages: Vec::new(),
             playing: false,
@@ -209,8 +212,11 @@ impl Work {
     fn obey(&mut self, order: Order) -> bool {
         match order {
             Order::Open(scene, other) => {
-                let stages: Result<Vec<_>, _> =
-                    [Some(scene), other].into_iter().flatten().map(|s| open(*s)).collect();
+                let stages: Result<Vec<_>, _> = [Some(scene), other]
+                    .into_iter()
+                    .flatten()
+                    .map(|s| open(*s, self.card.as_ref()))
+                    .collect();
                 match stages {
                     Ok(stages) => {
                         self.stages = stages;
@@ -355,8 +361,9 @@ impl Work {
     }
 }
 
-fn open(scene: Scene) -> Result<(Stage, Arc<Still>), AppError> {
-    let stage = Stage::new(scene)?;
+fn open(scene: Scene, card: Option<&Gpu>) -> Result<(Stage, Arc<Still>), AppError> {
+    let mut stage = Stage::new(scene)?;
+    stage.leave_follow_hairs(card.is_some_and(|card| card.can_place_among(stage.obstacles())));
     let still = Arc::new(Still::new(&stage));
     Ok((stage, still))
 }

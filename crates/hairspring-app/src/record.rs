@@ -236,7 +236,7 @@ impl Sink {
 
     fn frame(&mut self, snapshot: &Snapshot, sight: &Sight, number: u32) -> Result<(), AppError> {
         let Some(scenery) = snapshot.stages.first() else { return Ok(()) };
-        let image = scenery.draw(sight, |frame| self.renderer.draw(frame));
+        let image = scenery.draw(sight, false, |frame| self.renderer.draw(frame));
         match &mut self.clip {
             Some(clip) => clip.push(image)?,
             None => {

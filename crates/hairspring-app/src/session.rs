@@ -14,6 +14,7 @@ use hairspring::{
     collide::Rigid,
     stage::Value,
 };
+use hairspring_view::gpu::Gpu;
 use std::{path::PathBuf, sync::Arc};
 use toml_edit::Value as Toml;
 
@@ -97,17 +98,18 @@ pub struct Session {
 }
 
 impl Session {
-    /// Opens a document, to be simulated on so many threads; `wake` is called whenever there is something new to see.
+    /// Opens a document, to be simulated on so many threads and drawn by this card, if one draws; `wake` is called whenever there is something new to see.
     pub fn new(
         document: Document,
         threads: usize,
+        card: Option<Gpu>,
         wake: impl Fn() + Send + 'static,
     ) -> Result<Self, AppError> {
         let mut session = Self {
             document,
             second: None,
             on_second: false,
-            player: Player::new(threads, wake),
+            player: Player::new(threads, card, wake),
             playing: true,
             speed: 1.0,
             repeat: true,

@@ -1,15 +1,19 @@
 //! What the simulation's thread shows of a moment: enough to draw it and to say how it is.
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use hairspring::{
     body::{Mesh, Part},
     collide::Rigid,
-    scene::HairLook,
+    follow::{FollowLayout, Followed},
+    scene::{Effects, HairLook},
     simulation::{Measure, MovingObstacle, VolumeReport},
     stage::{FrameReport, Picked, Stage, StrandFigures, Value},
 };
 use hairspring_view::{Background, Frame, HairDraw, Lighting, MeshDraw, Quality};
-use std::{sync::Arc, time::Duration};
+use std::{
+    sync::{Arc, OnceLock},
+    time::Duration,
+};
 
 /// What does not move: made once a scene.
 pub struct Still {
@@ -67,8 +71,10 @@ pub struct Scenery {
     pub still: Arc<Still>,
     /// How each groom is drawn.
     pub looks: Vec<HairLook>,
-    /// Points of each groom [m].
-    pub points: Vec<Vec<Vec3>>,
+    /// Points of each groom [m]; of use where its hairs are not left to a graphics card.
+    points: Vec<Vec<Vec3>>,
+    /// How the guides of each groom carry its hairs, where those are.
+    carried: Vec<Option<Carried>>,
     /// One number a point of each groom, where a value is shown; else empty.
     pub values: Vec<Vec<f32>>,
     /// Vertices and normals of the body.
@@ -92,6 +98,7 @@ impl Scenery {
             still,
             looks: Vec::new(),
             points: Vec::new(),
+            carried: Vec::new(),
             values: Vec::new(),
             positions: Vec::new(),
             normals: Vec::new(),
@@ -107,10 +114,17 @@ impl Scenery {
         self.still = still.clone();
         let grooms = stage.strands().len();
         self.points.resize_with(grooms, Vec::new);
+        self.carried.resize_with(grooms, || None);
         self.looks.clear();
-        for (strands, points) in stage.strands().zip(&mut self.points) {
+        for ((strands, points), carried) in stage.strands().zip(&mut self.points).zip(&mut self.carried) {
             points.clear();
-            points.extend_from_slice(strands.points);
+            match strands.follow {
+                Some(follow) => carried.get_or_insert_with(|| Carried::new(follow)).fill(follow),
+                None => {
+                    points.extend_from_slice(strands.points);
+                    *carried = None;
+                }
+            }
             self.looks.push(strands.look.clone());
         }
         self.values.resize_with(if value.is_some() { grooms } else { 0 }, Vec::new);
@@ -137,20 +151,37 @@ impl Scenery {
 
     /// The box (min, max) of all hair [m]; `None` where no point is finite.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        let points = self.points.iter().flatten().filter(|p| p.is_finite());
+        let points = self.points().flatten().filter(|p| p.is_finite());
         points.fold(None, |b, p| {
             let (low, high): (Vec3, Vec3) = b.unwrap_or((*p, *p));
             Some((low.min(*p), high.max(*p)))
         })
     }
 
-    /// Draws by `draw` what is seen by this camera: every `every`-th hair, those that are drawn being wider by as much.
-    pub fn draw<R>(&self, sight: &Sight, draw: impl FnOnce(&Frame) -> R) -> R {
+    /// Points of each groom [m]. Those of hairs that are left to a graphics card are placed when they are first asked for.
+    pub fn points(&self) -> impl ExactSizeIterator<Item = &[Vec3]> {
+        (0..self.points.len()).map(|g| match &self.carried[g] {
+            Some(carried) => carried.points(&self.obstacles),
+            None => &self.points[g],
+        })
+    }
+
+    /// Draws by `draw` what is seen by this camera: every `every`-th hair, those that are drawn being wider by as much. `card`: what draws can place hairs that
+    /// are left to it.
+    pub fn draw<R>(&self, sight: &Sight, card: bool, draw: impl FnOnce(&Frame) -> R) -> R {
+        let card = card && sight.every <= 1;
+        let left = |g: usize| self.carried[g].as_ref().filter(|_| card);
+        let points: Vec<&[Vec3]> = match card {
+            true => (0..self.points.len())
+                .map(|g| left(g).map_or(&self.points[g][..], |carried| &carried.layout.groom.points))
+                .collect(),
+            false => self.points().collect(),
+        };
         let thinned: Vec<Option<Thin>> = self
             .still
             .grooms
             .iter()
-            .zip(&self.points)
+            .zip(&points)
             .map(|(groom, points)| {
                 // Brows are few, and stay.
                 let every = sight.every.min(groom.strands() / FEW).max(1);
@@ -161,7 +192,7 @@ impl Scenery {
             self.values.iter().map(|v| crate::ramp::colors(v, sight.range)).collect();
         let picked: Vec<Option<Vec<Vec3>>> =
             thinned.iter().enumerate().map(|(g, thin)| Some(thin.as_ref()?.pick(colors.get(g)?))).collect();
-        let hair: Vec<HairDraw> = (0..self.points.len())
+        let hair: Vec<HairDraw> = (0..points.len())
             .map(|g| {
                 let still = &self.still.grooms[g];
                 match &thinned[g] {
@@ -172,14 +203,16 @@ impl Scenery {
                         colors: picked[g].as_ref().unwrap_or(&thin.colors),
                         look: &self.looks[g],
                         width_scale: sight.width * thin.every as f32,
+                        follow: None,
                     },
                     None => HairDraw {
-                        points: &self.points[g],
+                        points: points[g],
                         offsets: &still.offsets,
                         radii: &still.radii,
                         colors: colors.get(g).unwrap_or(&still.colors),
                         look: &self.looks[g],
                         width_scale: sight.width,
+                        follow: left(g).map(|carried| carried.now(&self.obstacles)),
                     },
                 }
             })
@@ -197,6 +230,48 @@ impl Scenery {
             lighting: Lighting { exposure: sight.exposure, ..Lighting::facing(&sight.lit_for) },
             background: Background::default(),
             quality: sight.quality,
+        })
+    }
+}
+
+/// How guides carry the hairs of a groom that a graphics card places.
+struct Carried {
+    layout: Arc<FollowLayout>,
+    effects: Effects,
+    carriers: Vec<Affine3A>,
+    guide_points: Vec<Vec3>,
+    /// What the CPU makes of it, once somebody asks: a record, an overlay.
+    placed: OnceLock<Vec<Vec3>>,
+}
+
+impl Carried {
+    fn new(follow: Followed) -> Self {
+        let layout = follow.layout.clone();
+        let (carriers, guide_points) = (Vec::new(), Vec::new());
+        Self { layout, effects: follow.effects, carriers, guide_points, placed: OnceLock::new() }
+    }
+
+    /// Copies a moment, into the memory that is there.
+    fn fill(&mut self, follow: Followed) {
+        self.layout.clone_from(follow.layout);
+        self.effects = follow.effects;
+        self.carriers.clear();
+        self.carriers.extend_from_slice(follow.carriers);
+        self.guide_points.clear();
+        self.guide_points.extend_from_slice(follow.guide_points);
+        self.placed = OnceLock::new();
+    }
+
+    fn now<'a>(&'a self, obstacles: &'a [MovingObstacle]) -> Followed<'a> {
+        let Self { layout, effects, carriers, guide_points, .. } = self;
+        Followed { layout, effects: *effects, carriers, guide_points, obstacles }
+    }
+
+    fn points(&self, obstacles: &[MovingObstacle]) -> &[Vec3] {
+        self.placed.get_or_init(|| {
+            let mut points = vec![Vec3::ZERO; self.layout.groom.points.len()];
+            self.now(obstacles).place(&mut points);
+            points
         })
     }
 }

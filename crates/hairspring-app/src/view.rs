@@ -309,7 +309,7 @@ impl View {
 fn depth_of_hair(snapshot: &Snapshot, lens: &Lens, at: Vec2) -> Option<f32> {
     let scenery = snapshot.stages.first()?;
     let mut best: Option<(f32, f32)> = None;
-    for p in scenery.points.iter().flat_map(|p| p.iter().step_by(1 + p.len() / 200_000)) {
+    for p in scenery.points().flat_map(|p| p.iter().step_by(1 + p.len() / 200_000)) {
         let Some((place, depth)) = lens.project(*p) else { continue };
         let off = place.distance(at);
         // Of hair within a hundredth of the picture, that in front.

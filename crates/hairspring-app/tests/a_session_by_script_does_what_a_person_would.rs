@@ -77,7 +77,7 @@ fn what_cannot_be_done_is_said_and_changes_nothing() {
 #[test]
 fn settings_change_while_hair_moves_and_the_play_goes_on() {
     let document = Document::new("scene.toml".as_ref(), SMALL.into()).unwrap();
-    let mut session = Session::new(document, 2, || ()).unwrap();
+    let mut session = Session::new(document, 2, None, || ()).unwrap();
     let wait = |session: &Session, step: u64| {
         for _ in 0..6000 {
             if let Some(snapshot) = session.latest().filter(|s| s.scene == session.begun() && s.step >= step)

@@ -65,8 +65,8 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// Sets up for the stage as it is now.
-    pub fn new(view: &View, stage: &Stage) -> Result<Self, Fault> {
+    /// Sets up for the stage as it is now; a graphics card takes over placing its follow hairs, where it can.
+    pub fn new(view: &View, stage: &mut Stage) -> Result<Self, Fault> {
         let (width, height) = view.size;
         let mut camera =
             stage.scene().camera.unwrap_or_else(|| overview(stage, width as f32 / height as f32));
@@ -81,7 +81,11 @@ impl Studio {
         let width_scale = view.hair_width.unwrap_or((HEAD / strands).clamp(1.0, WIDEST));
         let painter = match view.gpu {
             false => Painter::Cpu(Box::new(Renderer::new(width, height))),
-            true => Painter::Gpu(Box::new(Card::new(view.size)?)),
+            true => {
+                let card = Card::new(view.size)?;
+                stage.leave_follow_hairs(card.renderer.gpu().can_place_among(stage.obstacles()));
+                Painter::Gpu(Box::new(card))
+            }
         };
         Ok(Self { painter, camera, width_scale })
     }
@@ -94,6 +98,14 @@ impl Studio {
         }
     }
 
+    /// Bytes that were sent to the graphics card for the last picture.
+    pub fn sent(&self) -> u64 {
+        match &self.painter {
+            Painter::Cpu(_) => 0,
+            Painter::Gpu(card) => card.renderer.timings().bytes,
+        }
+    }
+
     /// How much wider than they are hairs are drawn.
     pub fn width_scale(&self) -> f32 {
         self.width_scale
@@ -101,23 +113,9 @@ impl Studio {
 
     /// Draws the stage as it is now.
     pub fn draw(&mut self, stage: &Stage) -> Result<(&Image, Timings), Fault> {
-        let hair: Vec<HairDraw> = stage
-            .strands()
-            .map(|s| HairDraw {
-                points: s.points,
-                offsets: &s.groom.offsets,
-                radii: &s.groom.radii,
-                colors: &s.groom.colors,
-                look: s.look,
-                width_scale: self.width_scale,
-            })
-            .collect();
-        let body = stage.body().map(|b| MeshDraw {
-            positions: b.positions,
-            normals: b.normals,
-            triangles: &b.mesh.triangles,
-            parts: &b.mesh.parts,
-        });
+        let hair: Vec<HairDraw> =
+            stage.strands().map(|s| HairDraw { width_scale: self.width_scale, ..HairDraw::of(s) }).collect();
+        let body = stage.body().map(MeshDraw::of);
         let frame = Frame {
             hair: &hair,
             bodies: body.as_slice(),

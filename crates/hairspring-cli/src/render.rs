@@ -131,7 +131,7 @@ pub fn shoot(
 ) -> Result<(Stage, Totals, Ending), Fault> {
     interrupt::listen();
     let mut stage = Stage::new(scene)?;
-    let mut studio = Studio::new(view, &stage)?;
+    let mut studio = Studio::new(view, &mut stage)?;
     if studio.width_scale() != 1.0 {
         console.note(format_args!(
             "{} hairs are drawn {:.2} times as wide as they are; --hair-width sets another factor",
@@ -151,9 +151,9 @@ pub fn shoot(
         let mut timings = None;
         if wanted.binary_search(&frame).is_ok() {
             let (image, times) = studio.draw(stage)?;
-            totals.drawn(times);
             timings = Some(times);
             film.show(frame, image)?;
+            totals.drawn(times, studio.sent());
         }
         progress.step(|| {
             let drawn = timings.map_or(String::new(), |t| {

@@ -11,6 +11,8 @@ pub struct Totals {
     began: Instant,
     steps: u32,
     drawn: u32,
+    /// Bytes sent to a graphics card, but for the first picture, which takes what stays.
+    sent: u64,
     substeps: u32,
     reset_strands: usize,
     body: Duration,
@@ -29,6 +31,7 @@ impl Totals {
             began: Instant::now(),
             steps: 0,
             drawn: 0,
+            sent: 0,
             substeps: 0,
             reset_strands: 0,
             body: Duration::ZERO,
@@ -53,8 +56,9 @@ impl Totals {
         }
     }
 
-    /// A frame was drawn.
-    pub fn drawn(&mut self, timings: Timings) {
+    /// A frame was drawn, for which a graphics card was sent some bytes.
+    pub fn drawn(&mut self, timings: Timings, sent: u64) {
+        self.sent += if self.drawn > 0 { sent } else { 0 };
         self.drawn += 1;
         self.shadow += timings.shadow;
         self.draw += timings.strands + timings.tiles;
@@ -81,6 +85,11 @@ impl Totals {
         .filter(|(_, _, n)| *n > 0)
         .map(|(name, time, n)| (name, mean(time, n)))
         .collect()
+    }
+
+    /// Bytes sent to a graphics card a frame, but for the first.
+    fn sent_a_frame(&self) -> f64 {
+        self.sent as f64 / f64::from(self.drawn.saturating_sub(1).max(1))
     }
 
     /// What ran and how fast, in lines on standard output.
@@ -123,6 +132,9 @@ impl Totals {
         }
         let stages: Vec<String> = self.stages().iter().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
         say(format_args!("ms/frame {}", stages.join(", ")));
+        if self.sent > 0 {
+            say(format_args!("sent     {:.1} MB a frame to the graphics card", self.sent_a_frame() * 1e-6));
+        }
         let contact = stage.measure();
         say(format_args!(
             "contact  {} points inside at the end, {:.3} mm the deepest; {} segments deeper than 1 mm, {:.3} mm the deepest",
@@ -166,6 +178,7 @@ impl Totals {
             "deep_segments": contact.deep_segments,
             "segment_depth_m": contact.segment_depth,
             "ms_per_frame": stages,
+            "bytes_sent_per_frame": self.sent_a_frame(),
             "seconds": self.began.elapsed().as_secs_f64(),
         }) else {
             return Value::Object(all);

@@ -36,6 +36,16 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
             &["line 3", "a number of guides above 0, \"all\" or \"file\""],
         ),
         (format!("{GROOM}look = {{ root_colour = [0, 0, 0] }}\n"), &["line 3", "did you mean `root_color`?"]),
+        (
+            format!("{GROOM}look = {{ melanin = 0.5, tip_color = [0, 0, 0] }}\n"),
+            &["line 3", "`melanin` or colours", "not both"],
+        ),
+        (
+            format!("{GROOM}[groom.look]\nroot_color = [0, 0, 0]\nmelanin = 0.5\n"),
+            &["line 5", "`melanin` or colours", "not both"],
+        ),
+        (format!("{GROOM}[groom.look]\nmelanin = 1.5\n"), &["line 4", "`melanin` must be 0 to 1"]),
+        (format!("{GROOM}[groom.look]\ndye = [0, 0, 2]\n"), &["line 4", "`dye` must be three numbers"]),
         (format!("{GROOM}[solver]\nsubsteps = 0\n"), &["line 4", "1 to 64"]),
         (format!("{GROOM}[camera]\nfov = 200\n"), &["line 4", "1 to 170"]),
         (format!("{GROOM}material = \"a\"\n[material.a]\nfriction = 7\n"), &["line 5", "0 to 1"]),

@@ -62,21 +62,8 @@ static HEAD: LazyLock<Stage> = LazyLock::new(|| Stage::new(scene(&BuiltinOptions
 
 #[divan::bench(sample_count = 20, sample_size = 1, args = [1, 2, CARD])]
 fn head(bencher: Bencher, threads: usize) {
-    let draw = |s: hairspring::stage::Strands<'static>| HairDraw {
-        points: s.points,
-        offsets: &s.groom.offsets,
-        radii: &s.groom.radii,
-        colors: &s.groom.colors,
-        look: s.look,
-        width_scale: 1.0,
-    };
-    let hair: Vec<HairDraw> = HEAD.strands().map(draw).collect();
-    let body = HEAD.body().map(|b| MeshDraw {
-        positions: b.positions,
-        normals: b.normals,
-        triangles: &b.mesh.triangles,
-        parts: &b.mesh.parts,
-    });
+    let hair: Vec<HairDraw> = HEAD.strands().map(HairDraw::of).collect();
+    let body = HEAD.body().map(MeshDraw::of);
     let camera = HEAD.scene().camera.unwrap();
     let lighting = Lighting::facing(&camera);
     let frame = Frame { camera, lighting, ..support::frame(&hair, body.as_slice()) };

@@ -205,27 +205,8 @@ fn draw(stage: &mut Stage, time: f32, size: [u32; 2], path: &Path) -> Result<(),
     while stage.time() + 0.5 * FRAME < time {
         stage.step(FRAME);
     }
-    let hair: Vec<HairDraw> = stage
-        .strands()
-        .map(|s| HairDraw {
-            points: s.points,
-            offsets: &s.groom.offsets,
-            radii: &s.groom.radii,
-            colors: &s.groom.colors,
-            look: s.look,
-            width_scale: 1.0,
-        })
-        .collect();
-    let body = stage.body();
-    let bodies: Vec<MeshDraw> = body
-        .iter()
-        .map(|b| MeshDraw {
-            positions: b.positions,
-            normals: b.normals,
-            triangles: &b.mesh.triangles,
-            parts: &b.mesh.parts,
-        })
-        .collect();
+    let hair: Vec<HairDraw> = stage.strands().map(HairDraw::of).collect();
+    let bodies: Vec<MeshDraw> = stage.body().map(MeshDraw::of).into_iter().collect();
     let all = hair.iter().flat_map(|h| h.points).chain(bodies.iter().flat_map(|b| b.positions));
     let bounds = all.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
     let aspect = size[0] as f32 / size[1] as f32;

@@ -4,7 +4,9 @@ use crate::lighting::{Background, Lighting};
 use glam::Vec3;
 use hairspring::{
     body::Part,
+    follow::Followed,
     scene::{Camera, HairLook},
+    stage::{PosedBody, Strands},
 };
 
 /// Strands to draw. Arrays that disagree in length are cut to the shorter; points that are not finite are left out.
@@ -22,6 +24,9 @@ pub struct HairDraw<'a> {
     pub look: &'a HairLook,
     /// Multiplies `radii`: above 1 where few strands stand for many. 1 draws hair as it is.
     pub width_scale: f32,
+    /// What places the strands now, where a graphics card shall do it: then of `points` their number is looked at and nothing else. The CPU renderer draws
+    /// `points`, whatever stands here. Only where [`Gpu::can_place_among`](crate::gpu::Gpu::can_place_among) its colliders.
+    pub follow: Option<Followed<'a>>,
 }
 
 /// A mesh to draw, already posed.
@@ -71,7 +76,21 @@ pub struct Frame<'a> {
     pub quality: Quality,
 }
 
-impl HairDraw<'_> {
+impl<'a> HairDraw<'a> {
+    /// A groom as a stage has it now, as wide as it is.
+    pub fn of(strands: Strands<'a>) -> Self {
+        let Strands { points, groom, look, follow } = strands;
+        let (offsets, radii, colors) = (&groom.offsets, &groom.radii, &groom.colors);
+        Self { points, offsets, radii, colors, look, width_scale: 1.0, follow }
+    }
+
+    /// What places its strands, if that belongs to as many points.
+    pub(crate) fn followed(&self) -> Option<Followed<'a>> {
+        self.follow.filter(|f| {
+            f.layout.groom.points.len() == self.points.len() && f.carriers.len() == f.guide_points.len()
+        })
+    }
+
     /// Number of strands whose points are all there.
     pub(crate) fn strand_count(&self) -> usize {
         self.offsets.len().saturating_sub(1)
@@ -89,7 +108,13 @@ impl HairDraw<'_> {
     }
 }
 
-impl MeshDraw<'_> {
+impl<'a> MeshDraw<'a> {
+    /// The body as a stage has it now.
+    pub fn of(body: PosedBody<'a>) -> Self {
+        let PosedBody { mesh, positions, normals } = body;
+        Self { positions, normals, triangles: &mesh.triangles, parts: &mesh.parts }
+    }
+
     /// Whether there is a normal for every vertex.
     pub(crate) fn smooth(&self) -> bool {
         self.normals.len() == self.positions.len()

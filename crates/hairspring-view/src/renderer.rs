@@ -5,7 +5,7 @@ use crate::{
     camera::View,
     frame::{Frame, HairDraw},
     hair::{
-        color::Colors,
+        color::{self, Colors},
         order::Order,
         ribbon::{Chunk, Setup},
         segment::Dot,
@@ -65,7 +65,7 @@ impl Renderer {
         let start = Instant::now();
         let [width, height] = self.tiles.size();
         let view = View::new(&frame.camera, width as u32, height as u32);
-        let bounds = shadow::bounds(frame.hair);
+        let bounds = shadow::bounds(&frame.hair.iter().map(|h| h.points).collect::<Vec<_>>());
         self.order.fill(frame, bounds.unwrap_or_default());
         self.shadow.fill(frame, bounds, &self.order);
         let shaded = Instant::now();
@@ -82,11 +82,7 @@ impl Renderer {
             shadow: &self.shadow,
             level: Level::new(),
             shader: Shader::new(&frame.lighting, view.eye),
-            pigments: frame
-                .hair
-                .iter()
-                .map(|h| [h.look.root_color, h.look.tip_color].map(shade::pigment))
-                .collect(),
+            pigments: frame.hair.iter().map(|h| color::ends(h.look).map(shade::pigment)).collect(),
             depths: [(middle - reach).max(0.0), middle.max(0.0) + reach],
         };
         let runs = &self.order.runs;

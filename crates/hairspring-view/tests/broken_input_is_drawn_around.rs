@@ -12,8 +12,15 @@ fn an_empty_scene_is_the_backdrop() {
     let image = renderer.draw(&support::frame(&[], &[]));
     assert!(image.rgb.iter().all(|c| *c > 5));
     let look = HairLook::default();
-    let nothing =
-        HairDraw { points: &[], offsets: &[], radii: &[], colors: &[], look: &look, width_scale: 1.0 };
+    let nothing = HairDraw {
+        points: &[],
+        offsets: &[],
+        radii: &[],
+        colors: &[],
+        look: &look,
+        width_scale: 1.0,
+        follow: None,
+    };
     let zero = HairDraw { offsets: &[0], ..nothing };
     let body = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
     let before = renderer.image().clone();
@@ -60,6 +67,7 @@ fn arrays_that_disagree_are_cut_short() {
             colors: &[Vec3::NAN],
             look: &look,
             width_scale: 1.0,
+            follow: None,
         },
         HairDraw {
             points: &points,
@@ -68,6 +76,7 @@ fn arrays_that_disagree_are_cut_short() {
             colors: &[],
             look: &look,
             width_scale: f32::INFINITY,
+            follow: None,
         },
     ];
     let bodies = [MeshDraw {

@@ -26,8 +26,15 @@ fn draw(points: &[Vec3], width: f32, wall: f32) -> Image {
     let radii = vec![0.5e-3 * width; points.len()];
     let look = HairLook::default();
     let offsets = [0, points.len() as u32];
-    let hair =
-        [HairDraw { points, offsets: &offsets, radii: &radii, colors: &[], look: &look, width_scale: 1.0 }];
+    let hair = [HairDraw {
+        points,
+        offsets: &offsets,
+        radii: &radii,
+        colors: &[],
+        look: &look,
+        width_scale: 1.0,
+        follow: None,
+    }];
     let frame = Frame {
         hair: &hair,
         bodies: &[],

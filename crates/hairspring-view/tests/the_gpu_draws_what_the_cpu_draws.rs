@@ -10,7 +10,7 @@ mod support;
 use glam::Vec3;
 use hairspring::{
     scene::{
-        Camera, HairColor, HairLook,
+        Camera, Effects, Guides, HairColor, HairLook,
         builtin::{BuiltinOptions, scene},
     },
     stage::Stage,
@@ -108,6 +108,7 @@ impl Few {
             colors: &self.colors,
             look: &self.look,
             width_scale: 1.0,
+            follow: None,
         }
     }
 }
@@ -195,27 +196,38 @@ fn a_head_looks_alike() {
     let Some(mut gpu) = renderer() else { return };
     let options = BuiltinOptions { strands: 4000, ..BuiltinOptions::default() };
     let stage = Stage::new(scene(&options)).unwrap();
-    let hair: Vec<HairDraw> = stage
-        .strands()
-        .map(|s| HairDraw {
-            points: s.points,
-            offsets: &s.groom.offsets,
-            radii: &s.groom.radii,
-            colors: &s.groom.colors,
-            look: s.look,
-            width_scale: 5.0,
-        })
-        .collect();
-    let body = stage.body().map(|b| MeshDraw {
-        positions: b.positions,
-        normals: b.normals,
-        triangles: &b.mesh.triangles,
-        parts: &b.mesh.parts,
-    });
+    let hair: Vec<HairDraw> =
+        stage.strands().map(|s| HairDraw { width_scale: 5.0, ..HairDraw::of(s) }).collect();
+    let body = stage.body().map(MeshDraw::of);
     let camera = stage.scene().camera.unwrap();
     let lighting = Lighting::facing(&camera);
     let frame = Frame { camera, lighting, ..support::frame(&hair, body.as_slice()) };
     compare(&mut gpu, "head", &frame, 320, 240);
+}
+
+#[test]
+fn a_head_in_motion_looks_alike_whoever_places_its_hair() {
+    let Some(mut gpu) = renderer() else { return };
+    let options = BuiltinOptions { strands: 4000, guides: Guides::Count(400), ..BuiltinOptions::default() };
+    let mut scene = scene(&options);
+    for groom in &mut scene.grooms {
+        groom.effects = Effects { clump: 0.4, curl_radius: 0.002, noise: 0.004, ..Effects::default() };
+    }
+    let mut stage = Stage::new(scene).unwrap();
+    stage.leave_follow_hairs(true);
+    for _ in 0..100 {
+        stage.step(1.0 / 60.0);
+    }
+    // The CPU draws these points; the card places its own.
+    stage.place_follow_hairs();
+    let hair: Vec<HairDraw> =
+        stage.strands().map(|s| HairDraw { width_scale: 5.0, ..HairDraw::of(s) }).collect();
+    assert!(hair.iter().any(|h| h.follow.is_some()));
+    let body = stage.body().map(MeshDraw::of);
+    let camera = stage.scene().camera.unwrap();
+    let frame =
+        Frame { camera, lighting: Lighting::facing(&camera), ..support::frame(&hair, body.as_slice()) };
+    compare(&mut gpu, "moving", &frame, 320, 240);
 }
 
 #[test]
@@ -262,8 +274,15 @@ fn what_changed_is_sent_again() {
 fn an_empty_scene_is_the_backdrop() {
     let Some(mut gpu) = renderer() else { return };
     let look = HairLook::default();
-    let nothing =
-        HairDraw { points: &[], offsets: &[], radii: &[], colors: &[], look: &look, width_scale: 1.0 };
+    let nothing = HairDraw {
+        points: &[],
+        offsets: &[],
+        radii: &[],
+        colors: &[],
+        look: &look,
+        width_scale: 1.0,
+        follow: None,
+    };
     let body = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
     compare(&mut gpu, "empty", &support::frame(&[], &[]), 64, 36);
     compare(
@@ -305,6 +324,7 @@ fn broken_input_is_drawn_around() {
         colors: &[Vec3::NAN],
         look: &look,
         width_scale: 1.0,
+        follow: None,
     };
     let hair = [short, HairDraw { offsets: &[0, 3], radii: &[1e-3; 3], width_scale: f32::INFINITY, ..short }];
     let bodies = [MeshDraw {

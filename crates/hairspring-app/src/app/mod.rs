@@ -88,7 +88,8 @@ impl App {
             None => Document::new("scene.toml".as_ref(), builtin_text("wavy", hairs.0, hairs.1))?,
         };
         let wake = ctx.clone();
-        let session = Session::new(document, painters[0].spared(), move || wake.request_repaint())?;
+        let session =
+            Session::new(document, painters[0].spared(), painters[0].card(), move || wake.request_repaint())?;
         ctx.set_theme(egui::Theme::Dark);
         Ok(Self {
             session,

@@ -64,7 +64,8 @@ impl CpuPainter {
                 }
                 let Some((renderer, _)) = &mut renderer else { continue };
                 let Some(scenery) = job.snapshot.stages.get(job.stage) else { continue };
-                let image = pool.install(|| scenery.draw(&job.sight, |frame| renderer.draw(frame).clone()));
+                let image =
+                    pool.install(|| scenery.draw(&job.sight, false, |frame| renderer.draw(frame).clone()));
                 drop(job.snapshot);
                 let took = began.elapsed().as_secs_f32();
                 if finished.send(Done { image, took, level: job.level }).is_err() {

@@ -34,6 +34,11 @@ impl GpuPainter {
         }
     }
 
+    /// The card.
+    pub fn gpu(&self) -> &Gpu {
+        self.renderer.gpu()
+    }
+
     /// Another on the same device.
     pub fn another(&self) -> Self {
         Self::new(&self.state)
@@ -57,7 +62,7 @@ impl GpuPainter {
             }
             self.valued = !scenery.values.is_empty();
             let began = std::time::Instant::now();
-            scenery.draw(sight, |frame| {
+            scenery.draw(sight, true, |frame| {
                 self.renderer.draw(frame, size[0], size[1]);
             });
             self.took = began.elapsed().as_secs_f32();

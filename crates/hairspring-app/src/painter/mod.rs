@@ -7,6 +7,7 @@ use crate::snapshot::{Sight, Snapshot};
 use cpu::CpuPainter;
 use eframe::{egui, wgpu::DeviceType};
 use gpu::GpuPainter;
+use hairspring_view::gpu::Gpu;
 use std::sync::Arc;
 
 /// Who draws the hair.
@@ -58,6 +59,14 @@ impl Painter {
         match self {
             Self::Gpu(_) => processors(),
             Self::Cpu(_) => half(),
+        }
+    }
+
+    /// The card that draws, if one does.
+    pub fn card(&self) -> Option<Gpu> {
+        match self {
+            Self::Gpu(painter) => Some(painter.gpu().clone()),
+            Self::Cpu(_) => None,
         }
     }
 

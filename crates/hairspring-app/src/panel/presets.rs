@@ -122,23 +122,9 @@ fn draw(ctx: &egui::Context) -> Receiver<(usize, hairspring_view::Image)> {
 }
 
 fn still(stage: &Stage, renderer: &mut Renderer) -> hairspring_view::Image {
-    let hair: Vec<HairDraw> = stage
-        .strands()
-        .map(|s| HairDraw {
-            points: s.points,
-            offsets: &s.groom.offsets,
-            radii: &s.groom.radii,
-            colors: &s.groom.colors,
-            look: s.look,
-            width_scale: 8.0,
-        })
-        .collect();
-    let body = stage.body().map(|b| MeshDraw {
-        positions: b.positions,
-        normals: b.normals,
-        triangles: &b.mesh.triangles,
-        parts: &b.mesh.parts,
-    });
+    let hair: Vec<HairDraw> =
+        stage.strands().map(|s| HairDraw { width_scale: 8.0, ..HairDraw::of(s) }).collect();
+    let body = stage.body().map(MeshDraw::of);
     let camera = stage.scene().camera.unwrap_or_default();
     let frame = Frame {
         hair: &hair,

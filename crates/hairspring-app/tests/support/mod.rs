@@ -40,7 +40,7 @@ pub fn until(window: &mut Harness<'static, App>, done: impl Fn(&App) -> bool) ->
 
 /// Whether all that is simulated is finite.
 pub fn sound(app: &App) -> bool {
-    app.session().latest().is_none_or(|snapshot| {
-        snapshot.stages.iter().all(|s| s.points.iter().flatten().all(|p| p.is_finite()))
-    })
+    app.session()
+        .latest()
+        .is_none_or(|snapshot| snapshot.stages.iter().all(|s| s.points().flatten().all(|p| p.is_finite())))
 }

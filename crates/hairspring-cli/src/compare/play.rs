@@ -45,7 +45,7 @@ pub struct Shot {
 /// Plays so many frames of 1/60 s; with pictures if `draw`.
 pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) -> Result<Played, Fault> {
     let view = View { size: SIZE, camera: None, target: None, fov: None, hair_width: None, gpu: false };
-    let mut studio = if draw { Some(Studio::new(&view, &stage)?) } else { None };
+    let mut studio = if draw { Some(Studio::new(&view, &mut stage)?) } else { None };
     let mut times = Vec::with_capacity(frames as usize);
     let (mut reset_strands, mut sum, mut worst) = (0, 0.0, 0.0f64);
     let mut stretch = Vec::with_capacity(frames as usize);

@@ -151,6 +151,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             return Err(Problem::line(line, "a [[groom]] needs `file` or `grow`, and not both"));
         }
     }
+    colored_once(text, scene)?;
     for collider in &scene.collider {
         first_failure(text, section("[[collider]]"), &[(sound(&collider.shape), "shape", SOUND)])?;
     }
@@ -257,11 +258,32 @@ fn tool_checks(tool: &Tool) -> Vec<Check> {
     }
 }
 
+/// Checks that no look says its colour twice.
+fn colored_once(text: &str, scene: &SceneFile) -> Result<(), Problem> {
+    // What is left out has its default once it is read: only the text knows.
+    let Some(Ok(all)) = text.contains("melanin").then(|| text.parse::<toml::Table>()) else { return Ok(()) };
+    let grooms = all.get("groom").and_then(toml::Value::as_array).into_iter().flatten();
+    let starts = scene.groom.iter().map(|groom| line_at(text, groom.start()));
+    let builtin = all.get("builtin").map(|b| (b, text.find("[builtin]").map_or(1, |at| line_at(text, at))));
+    for (table, from) in grooms.zip(starts).chain(builtin) {
+        let says = |key: &str| table.get("look").is_some_and(|look| look.get(key).is_some());
+        if says("melanin") && (says("root_color") || says("tip_color")) {
+            let line = line_of_key(text, from, "melanin").or(line_of_key(text, from, "look")).unwrap_or(from);
+            let why = "a look has `melanin` or colours (`root_color`, `tip_color`), and not both: leave one of them out";
+            return Err(Problem::line(line, why));
+        }
+    }
+    Ok(())
+}
+
 /// Checks how a groom is drawn, from line `from` on.
 pub(super) fn look(text: &str, from: usize, look: &HairLook) -> Result<(), Problem> {
     let checks = [
         (color(look.root_color), "root_color", "three numbers from 0 to 1"),
         (color(look.tip_color), "tip_color", "three numbers from 0 to 1"),
+        (look.melanin.is_none_or(|m| (0.0..=1.0).contains(&m)), "melanin", "0 to 1"),
+        ((0.0..=1.0).contains(&look.melanin_redness), "melanin_redness", "0 to 1"),
+        (color(look.dye), "dye", "three numbers from 0 to 1"),
         ((0.0..=1.0).contains(&look.variation), "variation", "0 to 1"),
         ((0.1..=1.0).contains(&look.roughness), "roughness", "0.1 to 1"),
         ((0.0..=10.0).contains(&look.cuticle), "cuticle", "0 to 10 [degrees]"),

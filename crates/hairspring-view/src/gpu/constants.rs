@@ -1,7 +1,7 @@
 //! The shaders' sources, and the numbers that they share with the CPU renderer: each has one home, in Rust, and is written into every
 //! shader as a constant.
 
-use super::Gpu;
+use super::{Gpu, follow};
 use crate::{
     body::skin,
     camera,
@@ -34,6 +34,7 @@ macro_rules! source {
     };
 }
 
+pub(super) const FOLLOW: Source = source!("follow": "follow");
 pub(super) const DENSITY: Source = source!("density": "frame", "fibre", "strands", "density");
 pub(super) const WALLS: Source = source!("walls": "frame", "walls");
 pub(super) const SWEEP: Source = source!("sweep": "frame", "sweep");
@@ -121,6 +122,10 @@ fn constants() -> String {
         ("BATCH", BATCH),
         ("TIDY", TIDY),
         ("DIRECTIONS", DIRECTIONS as u32),
+        ("CAPSULE", follow::CAPSULE),
+        ("CUBOID", follow::CUBOID),
+        ("PLANES", follow::PLANES),
+        ("FIELD", follow::FIELD),
     ] {
         let _ = writeln!(out, "const {name}: u32 = {value}u;");
     }
@@ -155,7 +160,7 @@ mod tests {
     /// Without a card, by the compiler alone; nothing is asked for but what every WebGPU device can do.
     #[test]
     fn every_shader_is_valid() {
-        for source in [DENSITY, WALLS, SWEEP, BODY, SETTLE, POINTS, SORT, RIBBON, DEVELOP] {
+        for source in [FOLLOW, DENSITY, WALLS, SWEEP, BODY, SETTLE, POINTS, SORT, RIBBON, DEVELOP] {
             let text = source.text();
             let module = naga::front::wgsl::parse_str(&text)
                 .unwrap_or_else(|e| panic!("{}: {}", source.name, e.emit_to_string(&text)));

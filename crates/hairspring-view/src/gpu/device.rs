@@ -1,6 +1,6 @@
 //! The graphics card.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, atomic::AtomicU64};
 
 /// Why there is no picture: one sentence.
 #[derive(Debug, thiserror::Error)]
@@ -24,6 +24,8 @@ pub struct Gpu {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
+    /// Bytes that were handed over to it, since they were last counted.
+    pub(super) sent: Arc<AtomicU64>,
     /// The first thing that went wrong since it was last asked.
     trouble: Arc<Mutex<Option<String>>>,
 }
@@ -73,7 +75,7 @@ impl Gpu {
     /// A card that a window already draws with. Errors of the device stay with whoever handles them there.
     pub fn from_parts(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let info = device.adapter_info();
-        Self { device, queue, info, trouble: Arc::default() }
+        Self { device, queue, info, sent: Arc::default(), trouble: Arc::default() }
     }
 
     /// What the card calls itself.

@@ -1,7 +1,8 @@
 //! Memory of the card: buffers that grow, and what binds them to a shader.
 
-use super::Gpu;
+use super::{Gpu, GpuError};
 use bytemuck::Pod;
+use std::sync::atomic::Ordering::Relaxed;
 use wgpu::{BindGroup, BindGroupLayout, BindingResource, Buffer, BufferUsages};
 
 /// Counts how often anything was allocated: what is bound must then be bound anew.
@@ -42,6 +43,7 @@ impl Store {
     /// Writes values at an offset [bytes]; there must be room.
     pub fn write<T: Pod>(&self, gpu: &Gpu, offset: usize, values: &[T]) {
         if !values.is_empty() {
+            gpu.sent.fetch_add(size_of_val(values) as u64, Relaxed);
             gpu.queue.write_buffer(&self.buffer, offset as u64, bytemuck::cast_slice(values));
         }
     }
@@ -50,6 +52,17 @@ impl Store {
     pub fn fill<T: Pod>(&mut self, gpu: &Gpu, values: &[T], generation: &mut Generation) {
         self.fit(gpu, size_of_val(values), generation);
         self.write(gpu, 0, values);
+    }
+
+    /// Waits for the first `count` values; it must have been made to be copied from.
+    pub fn read<T: Pod>(&self, gpu: &Gpu, count: usize) -> Result<Vec<T>, GpuError> {
+        let size = (count * size_of::<T>()) as u64;
+        let copy = buffer(gpu, self.label, size.max(4), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.buffer, 0, &copy, 0, size);
+        gpu.queue.submit([encoder.finish()]);
+        let bytes = mapped(gpu, &copy)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes[..size as usize]))
     }
 
     pub fn buffer(&self) -> &Buffer {
@@ -68,6 +81,19 @@ fn buffer(gpu: &Gpu, label: &str, size: u64, usage: BufferUsages) -> Buffer {
         usage,
         mapped_at_creation: false,
     })
+}
+
+/// Waits for what is being copied to a buffer.
+pub(super) fn mapped(gpu: &Gpu, buffer: &Buffer) -> Result<wgpu::BufferView, GpuError> {
+    let failed = |e: String| GpuError::Failed(e);
+    let (tell, told) = std::sync::mpsc::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        // Nobody listens any more only where waiting has failed already.
+        let _ = tell.send(result);
+    });
+    gpu.wait()?;
+    told.recv().map_err(|e| failed(e.to_string()))?.map_err(|e| failed(e.to_string()))?;
+    buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))
 }
 
 /// What a pipeline is given to read and write; bound anew when memory was allocated.
@@ -100,6 +126,18 @@ pub(super) fn bind(gpu: &Gpu, layout: &BindGroupLayout, entries: &[(u32, Binding
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }
 
+/// The compute shader that `module`'s function `entry` is.
+pub(super) fn compute(gpu: &Gpu, module: &wgpu::ShaderModule, entry: &str) -> wgpu::ComputePipeline {
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry),
+        layout: None,
+        module,
+        entry_point: Some(entry),
+        compilation_options: Default::default(),
+        cache: None,
+    })
+}
+
 /// A compute shader and what it works on.
 pub(super) struct Kernel {
     pub pipeline: wgpu::ComputePipeline,
@@ -109,15 +147,7 @@ pub(super) struct Kernel {
 impl Kernel {
     /// `module`'s function `entry`.
     pub fn new(gpu: &Gpu, module: &wgpu::ShaderModule, entry: &str) -> Self {
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry),
-            layout: None,
-            module,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Self { pipeline, bound: Bound::default() }
+        Self { pipeline: compute(gpu, module, entry), bound: Bound::default() }
     }
 
     /// Runs over groups of invocations.

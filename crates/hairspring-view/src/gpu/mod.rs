@@ -6,6 +6,7 @@
 //!
 //! | step | shaders |
 //! | --- | --- |
+//! | follow hairs are placed, where that is left to the card | `follow` |
 //! | hair is counted into voxels, bodies are marked in them, and light is swept through | `density`, `walls`, `sweep` |
 //! | bodies as the key lamp sees them, then as the camera does, four samples a pixel | `body`, `settle` |
 //! | every point of every strand is projected and lit | `points`, `fibre`, `light` |
@@ -18,7 +19,8 @@
 //! without order needs no sort and is steady, but guesses what lies before what. A card sorts four million pieces by 65,536 depths in a few passes
 //! over them, with no comparison, and its blending keeps order for nothing: then the picture is the CPU's, up to rounding.
 //!
-//! **The floor.** 100,000 hairs of 32 points at 1280 × 720, a frame: 38 MB of points go to the card. There, points and radii are read twice
+//! **The floor.** 100,000 hairs of 32 points at 1280 × 720, a frame: 38 MB of points go to the card, or 5 MB where it places follow hairs by itself (how 3,060
+//! guides carry them, and what changed of the body's field), which there reads 77 MB of what stays and writes the points. There, points and radii are read twice
 //! (103 MB), 51 MB of dots and 13 MB of light are written; the sort reads the dots again and writes and reads keys and pieces (51 MB and
 //! 64 MB); pieces find their points anywhere in memory, two lines of 64 bytes each (400 MB). About 3.5 million pieces are 14 million vertices and
 //! some 20 million fragments, which read and write 8 bytes in each of two targets (640 MB). The shadow sweeps 1.5 million voxels eight times
@@ -32,6 +34,7 @@
 
 mod constants;
 mod device;
+mod follow;
 mod memory;
 mod meshes;
 mod picture;

@@ -3,7 +3,7 @@
 use super::{
     Gpu, GpuError,
     constants::{DEVELOP, SAMPLES},
-    memory::Bound,
+    memory::{Bound, mapped},
     renderer::Job,
 };
 use crate::image::Image;
@@ -183,17 +183,9 @@ impl Reader {
             Extent3d { width, height, depth_or_array_layers: 1 },
         );
         gpu.queue.submit([encoder.finish()]);
-        let failed = |e: String| GpuError::Failed(e);
-        let (tell, told) = std::sync::mpsc::channel();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // Nobody listens any more only where waiting has failed already.
-            let _ = tell.send(result);
-        });
-        gpu.wait()?;
-        told.recv().map_err(|e| failed(e.to_string()))?.map_err(|e| failed(e.to_string()))?;
         let mut image = Image::new(width, height);
         {
-            let bytes = buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))?;
+            let bytes = mapped(gpu, &buffer)?;
             let rows = bytes.chunks_exact(row as usize).zip(image.rgb.chunks_exact_mut(3 * width as usize));
             for (from, to) in rows {
                 for (from, to) in from.chunks_exact(4).zip(to.chunks_exact_mut(3)) {

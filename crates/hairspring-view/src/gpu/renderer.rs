@@ -2,6 +2,7 @@
 
 use super::{
     Gpu, GpuError,
+    follow::Followers,
     memory::{Generation, Store},
     meshes::Meshes,
     picture::{Develop, Reader, Targets},
@@ -11,8 +12,17 @@ use super::{
     uniforms::{Map, Style, Uniforms},
     volume::{Volume, grid},
 };
-use crate::{camera::View, frame::Frame, image::Image, shadow};
-use std::time::{Duration, Instant};
+use crate::{
+    camera::View,
+    frame::{Frame, HairDraw},
+    image::Image,
+    shadow,
+};
+use glam::Vec3;
+use std::{
+    sync::atomic::Ordering::Relaxed,
+    time::{Duration, Instant},
+};
 
 /// Draws frames on a graphics card; keeps its memory between them, and allocates none for a frame that is no larger than those before.
 ///
@@ -24,6 +34,7 @@ pub struct GpuRenderer {
     generation: Generation,
     uniforms: Store,
     strands: Strands,
+    followers: Followers,
     meshes: Meshes,
     volume: Volume,
     surfaces: Surfaces,
@@ -53,6 +64,8 @@ pub struct GpuTimings {
     pub send: Duration,
     /// Recording what the card shall do.
     pub record: Duration,
+    /// Bytes that the card was sent.
+    pub bytes: u64,
 }
 
 impl GpuRenderer {
@@ -65,6 +78,7 @@ impl GpuRenderer {
             generation: Generation::default(),
             uniforms,
             strands: Strands::new(gpu),
+            followers: Followers::new(gpu),
             meshes: Meshes::new(gpu),
             volume: Volume::new(gpu),
             surfaces: Surfaces::new(gpu),
@@ -80,7 +94,7 @@ impl GpuRenderer {
     /// that range), and returns it: RGBA, 8 bits, sRGB codes as they are, ready to be shown by egui. It does not wait for the card.
     ///
     /// The same frame gives the same picture. Whatever the arrays hold, a picture comes out.
-    pub fn draw(&mut self, frame: &Frame, width: u32, height: u32) -> &wgpu::TextureView {
+    pub fn draw<'a>(&mut self, frame: &Frame<'a>, width: u32, height: u32) -> &wgpu::TextureView {
         let start = Instant::now();
         let gpu = &self.gpu;
         let most = gpu.most_pixels();
@@ -90,10 +104,13 @@ impl GpuRenderer {
             self.generation.next();
         }
         let view = View::new(&frame.camera, size[0], size[1]);
-        let bounds = shadow::bounds(frame.hair);
-        let grid = bounds.map(|bounds| grid(frame, bounds));
         let map = Map::new(frame, most);
         self.strands.send(gpu, frame.hair, &mut self.generation);
+        self.followers.send(gpu, frame.hair, &mut self.generation);
+        let place = |(style, h): (usize, &HairDraw<'a>)| self.followers.corners(style).unwrap_or(h.points);
+        let places: Vec<&[Vec3]> = frame.hair.iter().enumerate().map(place).collect();
+        let bounds = shadow::bounds(&places);
+        let grid = bounds.map(|bounds| grid(frame, bounds));
         self.meshes.send(gpu, frame.bodies, &mut self.generation);
         let slots = self.strands.slots;
         self.ribbons.fit(gpu, slots, &mut self.generation);
@@ -123,6 +140,7 @@ impl GpuRenderer {
             targets: &self.targets,
         };
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.followers.record(&job, &mut encoder);
         self.surfaces.record_map(&job, &mut encoder);
         if grid.is_some() {
             self.volume.record(&job, &mut encoder);
@@ -136,7 +154,8 @@ impl GpuRenderer {
         }
         self.develop.record(&job, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
-        self.timings = GpuTimings { send: sent - start, record: sent.elapsed() };
+        let bytes = gpu.sent.swap(0, Relaxed);
+        self.timings = GpuTimings { send: sent - start, record: sent.elapsed(), bytes };
         &self.targets.picture
     }
 
@@ -146,6 +165,14 @@ impl GpuRenderer {
     /// [`GpuError::Failed`] if the card refused something or was lost.
     pub fn read(&mut self) -> Result<Image, GpuError> {
         self.reader.read(&self.gpu, &self.targets)
+    }
+
+    /// Waits for the points of all styles, one after the other, as the card has them: those of follow hairs as it placed them [m].
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::read`].
+    pub fn read_points(&self) -> Result<Vec<Vec3>, GpuError> {
+        self.strands.points.read(&self.gpu, self.strands.count)
     }
 
     /// The last picture, as [`GpuRenderer::draw`] returned it.

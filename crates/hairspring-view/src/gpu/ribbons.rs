@@ -105,13 +105,8 @@ impl Ribbons {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         let all = groups(strands.slots, 256);
         let frame = (0, uniforms.all());
-        let entries = [
+        let own = [
             frame.clone(),
-            (1, strands.strands.all()),
-            (2, strands.owners.all()),
-            (3, strands.points.all()),
-            (4, strands.radii.all()),
-            (5, strands.styles.all()),
             (6, strands.colors.all()),
             (7, self.dots.all()),
             (8, self.lights.all()),
@@ -119,6 +114,7 @@ impl Ribbons {
             (12, BindingResource::Sampler(&surfaces.sampler)),
             (13, BindingResource::TextureView(&surfaces.heights)),
         ];
+        let entries = [&own[..], &strands.bindings()[..]].concat();
         self.place.run(gpu, generation, &mut pass, &entries, all);
         let plans = (2, self.plans.all());
         let counts = (3, self.counts.all());

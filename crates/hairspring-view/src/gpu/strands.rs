@@ -7,7 +7,7 @@ use super::{
 use crate::frame::HairDraw;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use wgpu::BufferUsages;
+use wgpu::{BindingResource, BufferUsages};
 
 /// `Strand` of the shaders.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -42,6 +42,19 @@ impl Print {
     }
 }
 
+/// The styles whose points all find room, and the number of each one's first point among all.
+pub(super) fn fitting<'a>(
+    gpu: &Gpu,
+    hair: &'a [HairDraw<'a>],
+) -> impl Iterator<Item = (usize, &'a HairDraw<'a>)> {
+    let (most, mut end) = (gpu.most_points(), 0);
+    hair.iter().map_while(move |h| {
+        let first = end;
+        end += h.points.len();
+        (end <= most).then_some((first, h))
+    })
+}
+
 /// The strands of a frame.
 pub(super) struct Strands {
     pub strands: Store,
@@ -51,8 +64,9 @@ pub(super) struct Strands {
     pub radii: Store,
     pub colors: Store,
     pub styles: Store,
-    /// Number of slots.
+    /// Number of slots, and of points.
     pub slots: usize,
+    pub count: usize,
     /// Strands that found no room.
     pub left_out: usize,
     /// What was sent last: offsets, radii and colours of each style, and its number of points.
@@ -65,11 +79,12 @@ impl Strands {
         Self {
             strands: store("strands"),
             owners: store("owners"),
-            points: store("points"),
+            points: Store::new(gpu, "points", BufferUsages::STORAGE | BufferUsages::COPY_SRC),
             radii: store("radii"),
             colors: store("colors"),
             styles: store("styles"),
             slots: 0,
+            count: 0,
             left_out: 0,
             sent: Vec::new(),
         }
@@ -78,6 +93,12 @@ impl Strands {
     /// Forgets what was sent, so that all is sent again.
     pub fn forget(&mut self) {
         self.sent.clear();
+    }
+
+    /// What `wgsl/strands.wgsl` asks for.
+    pub fn bindings(&self) -> [(u32, BindingResource<'_>); 5] {
+        let Self { strands, owners, points, radii, styles, .. } = self;
+        [(1, strands.all()), (2, owners.all()), (3, points.all()), (4, radii.all()), (5, styles.all())]
     }
 
     /// Sends a frame's strands.
@@ -89,25 +110,9 @@ impl Strands {
             self.send_what_stays(gpu, hair, generation);
             self.sent = now;
         }
-        let mut first = 0;
-        for h in self.fitting(gpu, hair) {
+        for (first, h) in fitting(gpu, hair).filter(|(_, h)| h.followed().is_none()) {
             self.points.write(gpu, size_of::<Vec3>() * first, h.points);
-            first += h.points.len();
         }
-    }
-
-    /// The styles whose points all find room.
-    fn fitting<'a>(
-        &self,
-        gpu: &Gpu,
-        hair: &'a [HairDraw<'a>],
-    ) -> impl Iterator<Item = &'a HairDraw<'a>> + use<'a> {
-        let mut room = gpu.most_points();
-        hair.iter().take_while(move |h| {
-            let fits = h.points.len() <= room;
-            room -= h.points.len().min(room);
-            fits
-        })
     }
 
     fn send_what_stays(&mut self, gpu: &Gpu, hair: &[HairDraw], generation: &mut Generation) {
@@ -115,8 +120,8 @@ impl Strands {
         let (mut strands, mut owners) = (Vec::new(), Vec::new());
         let (mut radii, mut colors) = (Vec::new(), Vec::new());
         let colored = hair.iter().any(|h| !h.colors.is_empty());
-        let mut first = 0;
-        for (style, h) in self.fitting(gpu, hair).enumerate() {
+        let mut end = 0;
+        for (style, (first, h)) in fitting(gpu, hair).enumerate() {
             for s in 0..h.strand_count() {
                 let range = h.range(s);
                 if range.is_empty() || owners.len() + range.len() > most {
@@ -132,22 +137,22 @@ impl Strands {
                     colored: (h.colors.len() >= range.end) as u32,
                 });
             }
-            first += h.points.len();
+            end = first + h.points.len();
             radii.extend_from_slice(&h.radii[..h.radii.len().min(h.points.len())]);
-            radii.resize(first, 0.0);
+            radii.resize(end, 0.0);
             if colored {
                 colors.extend_from_slice(&h.colors[..h.colors.len().min(h.points.len())]);
-                colors.resize(first, Vec3::ZERO);
+                colors.resize(end, Vec3::ZERO);
             }
         }
         let all: usize =
             hair.iter().map(|h| (0..h.strand_count()).filter(|s| !h.range(*s).is_empty()).count()).sum();
         self.left_out = all - strands.len();
-        self.slots = owners.len();
+        (self.slots, self.count) = (owners.len(), end);
         self.strands.fill(gpu, &strands, generation);
         self.owners.fill(gpu, &owners, generation);
         self.radii.fill(gpu, &radii, generation);
         self.colors.fill(gpu, &colors, generation);
-        self.points.fit(gpu, size_of::<Vec3>() * first, generation);
+        self.points.fit(gpu, size_of::<Vec3>() * end, generation);
     }
 }

@@ -4,7 +4,10 @@ use super::{constants::DIRECTIONS, ribbons::most_pieces};
 use crate::{
     camera::View,
     frame::{Frame, HairDraw, MeshDraw},
-    hair::shade::{Fibre, VARIES, pigment},
+    hair::{
+        color,
+        shade::{Fibre, VARIES, pigment},
+    },
     lighting::Light,
     shadow::{self, density::Grid, splat::UNIT, sweep},
 };
@@ -168,10 +171,11 @@ impl Style {
     pub fn new(hair: &HairDraw, focal: f32, voxel: f32) -> Self {
         let look = hair.look;
         let fibre = Fibre::new(look, 0.0);
+        let [root, tip] = color::ends(look).map(|color| pigment(color).to_array());
         Self {
-            root: pigment(look.root_color).to_array(),
+            root,
             variation: look.variation.clamp(0.0, 1.0) * VARIES,
-            tip: pigment(look.tip_color).to_array(),
+            tip,
             width: 2.0 * hair.width_scale * focal,
             spread: fibre.spread,
             tilt: fibre.tilt,

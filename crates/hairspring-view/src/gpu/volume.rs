@@ -104,16 +104,8 @@ impl Volume {
         }
         let mut pass = encoder.begin_compute_pass(&Default::default());
         let frame = (0, uniforms.all());
-        let entries = [
-            frame.clone(),
-            (1, strands.strands.all()),
-            (2, strands.owners.all()),
-            (3, strands.points.all()),
-            (4, strands.radii.all()),
-            (5, strands.styles.all()),
-            (7, self.sums.all()),
-        ];
         if strands.slots > 0 {
+            let entries = [&[frame.clone(), (7, self.sums.all())], &strands.bindings()[..]].concat();
             self.splat.run(gpu, generation, &mut pass, &entries, groups(strands.slots, 256));
         }
         if meshes.count > 0 {

@@ -1,4 +1,12 @@
-//! The colour of every point that is seen, worked out when the first tile asks.
+//! The colour of a look, and of every point that is seen, worked out when the first tile asks.
+//!
+//! A look says its pigment by what a lock looks like, or by melanin. Between the two stands absorption in the fibre, by the fit of Chiang et al. 2016
+//! ("A Practical and Controllable Hair and Fur Model for Production Path Tracing", equation 9): C is what many strands together look like, σ what a
+//! strand absorbs,
+//!
+//! ```text
+//! √σ = −ln C / (5.969 − 0.215 β + 2.532 β² − 10.73 β³ + 5.574 β⁴ + 0.245 β⁵)
+//! ```
 //!
 //! Most hair lies under other hair: of a full head, a quarter is seen. A point's colour depends on nothing that happens while the picture is drawn,
 //! so it does not matter which thread works it out, or whether two do at once.
@@ -9,12 +17,57 @@ use super::{
 };
 use fearless_simd::{dispatch, f32x8, prelude::*};
 use glam::{Vec3, Vec4};
+use hairspring::scene::HairLook;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
 /// Greatest light stored, linear; the tone curve has long been white there.
 pub(crate) const MAX_LIGHT: f32 = 8.0;
 /// Greatest code and lowest bit of red, green and blue: 11, 11 and 10 bits of the colour's square root.
 pub(crate) const CHANNELS: [(f32, u32); 3] = [(2047.0, 0), (2047.0, 11), (1023.0, 22)];
+
+/// What eumelanin and pheomelanin absorb of red, green and blue at an amount of 1, over the fibre's radius (after d'Eon et al. 2011, "An Energy-Conserving Hair
+/// Reflectance Model", by the numbers that Blender's and Unreal's hair shaders share).
+const MELANIN: [Vec3; 2] = [Vec3::new(0.506, 0.841, 1.653), Vec3::new(0.343, 0.733, 1.924)];
+
+/// Azimuthal roughness β that colours are told for: this renderer's lobes have none that could be set, and those shaders begin at this one.
+const AZIMUTHAL: f32 = 0.3;
+
+/// The fit's denominator.
+fn fit(b: f32) -> f32 {
+    ((((0.245 * b + 5.574) * b - 10.73) * b + 2.532) * b - 0.215) * b + 5.969
+}
+
+/// What a fibre absorbs whose locks have this colour.
+fn absorption(color: Vec3) -> Vec3 {
+    let root = color.max(Vec3::splat(1e-4)).map(f32::ln) / fit(AZIMUTHAL);
+    root * root
+}
+
+/// What locks look like whose fibre absorbs this.
+fn seen(absorption: Vec3) -> Vec3 {
+    absorption.map(|s| (-s.max(0.0).sqrt() * fit(AZIMUTHAL)).exp())
+}
+
+/// What a fibre with this much pigment absorbs, of which a share is the reddish one; both 0 to 1.
+fn melanin(amount: f32, redness: f32) -> Vec3 {
+    // Even steps of it look even; 1 is black enough.
+    let amount = -(1.0 - amount.clamp(0.0, 1.0)).max(1e-4).ln();
+    (MELANIN[0].lerp(MELANIN[1], redness.clamp(0.0, 1.0))) * amount
+}
+
+/// Colours of a look at root and tip: as they are given, or by its melanin, under its dye.
+pub(crate) fn ends(look: &HairLook) -> [Vec3; 2] {
+    let dyed = look.dye != Vec3::ONE && look.dye.is_finite();
+    let under_dye = |bare: Vec3| seen(bare + absorption(look.dye));
+    match look.melanin {
+        Some(amount) => {
+            let bare = melanin(amount, look.melanin_redness);
+            [if dyed { under_dye(bare) } else { seen(bare) }; 2]
+        }
+        // A colour that nothing is laid over is left as it is, to the bit.
+        None => [look.root_color, look.tip_color].map(|c| if dyed { under_dye(absorption(c)) } else { c }),
+    }
+}
 
 /// Packed colours of all slots; 0: not worked out yet.
 #[derive(Debug, Default)]
@@ -141,6 +194,57 @@ fn open(bits: u32) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Colours of the published absorption, worked out by themselves: (melanin, redness, colour).
+    #[test]
+    fn melanin_absorbs_what_was_published() {
+        // Half of the scale is an amount of ln 2; what is absorbed is that many times the published coefficients.
+        let close = |a: Vec3, b: Vec3| (a - b).abs().max_element() < 1e-5;
+        assert!(close(melanin(0.5, 0.0), Vec3::new(0.506, 0.841, 1.653) * std::f32::consts::LN_2));
+        assert!(close(melanin(0.5, 1.0), Vec3::new(0.343, 0.733, 1.924) * std::f32::consts::LN_2));
+        assert!(close(melanin(1.0 - (-1.0f32).exp(), 0.5), Vec3::new(0.4245, 0.787, 1.7885)));
+        // The fit at 0.3: 5.969 − 0.0645 + 0.22788 − 0.28971 + 0.045149 + 0.000595.
+        assert!((fit(0.3) - 5.888_414).abs() < 1e-5, "{}", fit(0.3));
+        // exp(−5.888414 √(0.506 ln 2)), and so on.
+        let look = HairLook { melanin: Some(0.5), melanin_redness: 0.0, ..HairLook::default() };
+        let [root, tip] = ends(&look);
+        assert!(close(root, Vec3::new(0.030_584, 0.011_156, 0.001_831)), "{root}");
+        assert_eq!(root, tip);
+    }
+
+    #[test]
+    fn a_colour_is_what_it_absorbs() {
+        for color in [Vec3::new(0.42, 0.27, 0.13), Vec3::new(0.011, 0.009, 0.008), Vec3::ONE] {
+            assert!((seen(absorption(color)) - color).abs().max_element() < 1e-5);
+        }
+        let look = HairLook::default();
+        assert_eq!(ends(&look), [look.root_color, look.tip_color]);
+    }
+
+    /// More pigment is darker in every channel, redder pigment redder; white hair takes on its dye, and dye makes nothing lighter.
+    #[test]
+    fn pigment_and_dye_darken() {
+        let of = |melanin: f32, redness: f32, dye: Vec3| {
+            ends(&HairLook { melanin: Some(melanin), melanin_redness: redness, dye, ..HairLook::default() })
+                [0]
+        };
+        for k in 0..20 {
+            let (a, b) = (k as f32 / 20.0, (k + 1) as f32 / 20.0);
+            assert!(of(b, 0.3, Vec3::ONE).cmplt(of(a, 0.3, Vec3::ONE)).all());
+            assert!(
+                of(b, 1.0, Vec3::ONE).x / of(b, 1.0, Vec3::ONE).z
+                    > of(b, 0.0, Vec3::ONE).x / of(b, 0.0, Vec3::ONE).z
+            );
+        }
+        let blue = Vec3::new(0.05, 0.1, 0.6);
+        assert!((of(0.0, 0.3, blue) - blue).abs().max_element() < 1e-5);
+        assert!(of(0.3, 0.3, blue).cmplt(of(0.3, 0.3, Vec3::ONE)).all());
+        let dyed = ends(&HairLook { dye: blue, ..HairLook::default() });
+        assert!(dyed[1].cmplt(HairLook::default().tip_color).all());
+        // Out of range is at its end.
+        assert_eq!(of(-1.0, 7.0, blue), of(0.0, 1.0, blue));
+        assert_eq!(of(f32::INFINITY, 0.0, blue), of(1.0, 0.0, blue));
+    }
 
     #[test]
     fn packing_keeps_what_the_eye_sees() {

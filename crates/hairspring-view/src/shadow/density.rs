@@ -4,10 +4,7 @@
 //! over the area of its face. Sums are fixed-point integers, so that any split over threads gives the same bits.
 
 use super::splat::{self, UNIT};
-use crate::{
-    frame::{Frame, HairDraw},
-    hair::order::Order,
-};
+use crate::{frame::Frame, hair::order::Order};
 use fearless_simd::{Level, dispatch};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -81,10 +78,11 @@ impl Grid {
 ///
 /// Points farther from the middle than 12 times the mean distance (per axis) are left out: one stray strand would
 /// otherwise take all the voxels.
-pub(crate) fn bounds(hair: &[HairDraw]) -> Option<(Vec3, Vec3)> {
+pub(crate) fn bounds(styles: &[&[Vec3]]) -> Option<(Vec3, Vec3)> {
     // Some thousand points of every style tell where it is.
-    let some = |h: &HairDraw| h.points.len() / 8192 + 1;
-    let sample = || hair.iter().flat_map(|h| h.points.iter().step_by(some(h))).filter(|p| p.is_finite());
+    let some = |points: &[Vec3]| points.len() / 8192 + 1;
+    let sample =
+        || styles.iter().flat_map(|points| points.iter().step_by(some(points))).filter(|p| p.is_finite());
     let count = sample().count();
     if count == 0 {
         return None;
@@ -95,13 +93,13 @@ pub(crate) fn bounds(hair: &[HairDraw]) -> Option<(Vec3, Vec3)> {
     let (low, high) = (mean - reach, mean + reach);
     let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let join = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
-    let found = hair.iter().fold(none, |found, h| {
+    let found = styles.iter().fold(none, |found, points| {
         let of = |points: &[Vec3]| {
             points.iter().fold(none, |b, p| {
                 if p.cmpge(low).all() && p.cmple(high).all() { join(b, (*p, *p)) } else { b }
             })
         };
-        join(found, h.points.par_chunks(1 << 16).map(of).reduce(|| none, join))
+        join(found, points.par_chunks(1 << 16).map(of).reduce(|| none, join))
     });
     // The shadow reaches no farther than a building, whatever the input.
     (found.0.is_finite() && found.1.is_finite() && (found.1 - found.0).max_element() < 1e4).then_some(found)

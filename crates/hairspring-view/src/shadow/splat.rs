@@ -120,6 +120,7 @@ mod tests {
                     colors: &[],
                     look: &look,
                     width_scale: 1.0,
+                    follow: None,
                 };
                 let mut sum = vec![0; grid.len()];
                 let level = Level::new();

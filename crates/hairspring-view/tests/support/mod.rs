@@ -150,6 +150,7 @@ pub fn hair<'a>(groom: &'a Groom, look: &'a HairLook) -> HairDraw<'a> {
         colors: &groom.colors,
         look,
         width_scale: 1.0,
+        follow: None,
     }
 }
 

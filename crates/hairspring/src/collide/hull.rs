@@ -109,6 +109,11 @@ impl Hull {
         self.bounds
     }
 
+    /// The planes of its faces: outward unit normal, and where the plane is along it [m]. Inside, the distance is the greatest of those to the planes.
+    pub fn planes(&self) -> impl ExactSizeIterator<Item = (Vec3, f32)> + '_ {
+        self.faces.iter().map(|f| (f.normal, f.offset))
+    }
+
     /// Distance [m], negative inside, and outward unit normal at `p` [m].
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
         let depth = |f: &Face| f.normal.dot(p) - f.offset;

@@ -21,33 +21,84 @@ use crate::{
     collide::ObstaclePose,
     groom::{Groom, GuideWeights},
     scene::Effects,
+    simulation::MovingObstacle,
 };
 use fearless_simd::{Level, dispatch};
 use glam::{Affine3A, Quat, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
 
+/// Which hairs of a groom follow which guides, and where on them: what stays while a scene plays.
+#[derive(Clone, Debug)]
+pub struct FollowLayout {
+    /// The groom: points of the rest pose.
+    pub groom: Arc<Groom>,
+    /// Guides of each strand as indices into `guides`, and weights; shape `[strands]`.
+    pub weights: Vec<GuideWeights>,
+    /// The guide strands, in the order of their points.
+    pub guides: Vec<u32>,
+    /// First point of each guide in the array of all guides' points, and their number at the end; shape `[guides + 1]`.
+    pub guide_offsets: Vec<u32>,
+    /// For every strand its place among the guides; `u32::MAX` for follow hairs; shape `[strands]`.
+    pub guide_of: Vec<u32>,
+    /// Where along each of its guides a point rides: fraction of the guide's points, 16 bits; shape `[points]`.
+    pub ride: Vec<[u16; 3]>,
+    /// How deep each point may be inside a collider, 0 or less [m]; shape `[points]`.
+    pub clearance: Vec<f32>,
+}
+
 /// The follow hairs of one groom: settings, and the frames of the guides in the current frame.
 ///
 /// # Missing
-/// Drawing-time interpolation on a GPU; levels of detail.
+/// Levels of detail.
 pub struct Follow {
-    groom: Arc<Groom>,
-    /// Guides of each strand as indices into `guides`, and weights; shape `[strands]`.
-    weights: Vec<GuideWeights>,
-    /// The guide strands, in the order of their points in [`Follow::place`].
-    guides: Vec<u32>,
-    /// First point of each guide in the array of all guides' points, and their number at the end.
-    guide_offsets: Vec<u32>,
-    /// For every strand its place among the guides; `u32::MAX` for follow hairs.
-    guide_of: Vec<u32>,
-    /// Where along each of its guides a point rides: fraction of the guide's points, 16 bits; shape `[points]`.
-    ride: Vec<[u16; 3]>,
-    /// How deep each point may be inside a collider, 0 or less [m]; shape `[points]`.
-    clearance: Vec<f32>,
+    layout: Arc<FollowLayout>,
     effects: Effects,
     /// From the rest pose to now, of each guide point.
     carriers: Vec<Affine3A>,
+}
+
+/// What places the follow hairs of one groom as they are now: here, by [`Followed::place`], or by a viewer on a graphics card.
+#[derive(Clone, Copy)]
+pub struct Followed<'a> {
+    /// What stays.
+    pub layout: &'a Arc<FollowLayout>,
+    /// What is laid over the hairs.
+    pub effects: Effects,
+    /// From the rest pose to now, of each guide point; shape `[guide points]`.
+    pub carriers: &'a [Affine3A],
+    /// Points of all guides now [m]; shape `[guide points]`.
+    pub guide_points: &'a [Vec3],
+    /// What hairs are kept out of, as it is at the end of the frame.
+    pub obstacles: &'a [MovingObstacle],
+}
+
+impl std::fmt::Debug for Followed<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Followed {{ {} guides }}", self.layout.guides.len())
+    }
+}
+
+impl FollowLayout {
+    /// The places of one strand's three guides among all guides' points.
+    fn guide_ranges(&self, strand: usize) -> [std::ops::Range<usize>; 3] {
+        self.weights[strand].guides.map(|g| self.guide_range(g as usize))
+    }
+
+    /// Where the points of a guide, by its place among the guides, are among all guides' points.
+    pub fn guide_range(&self, guide: usize) -> std::ops::Range<usize> {
+        self.guide_offsets[guide] as usize..self.guide_offsets[guide + 1] as usize
+    }
+
+    /// Place of a strand among the guides, if it is one.
+    pub fn guide(&self, strand: usize) -> Option<usize> {
+        Some(self.guide_of[strand]).filter(|guide| *guide != u32::MAX).map(|guide| guide as usize)
+    }
+
+    /// The angles at which curls and flyaways of a strand begin, 0 to 2π [rad]: the curl's, then those of the four waves of the noise.
+    pub fn phases(strand: u32) -> [f32; 5] {
+        style::phases(strand)
+    }
 }
 
 impl Follow {
@@ -80,94 +131,60 @@ impl Follow {
             .map(|p| obstacles.iter().map(|o| o.distance(*p)).fold(0.0, f32::min))
             .collect();
         let carriers = vec![Affine3A::IDENTITY; *guide_offsets.last().unwrap_or(&0) as usize];
-        Self {
-            groom,
-            weights,
-            guides: guides.to_vec(),
-            guide_offsets,
-            guide_of,
-            ride,
-            clearance,
-            effects,
-            carriers,
-        }
+        let guides = guides.to_vec();
+        let layout = FollowLayout { groom, weights, guides, guide_offsets, guide_of, ride, clearance };
+        Self { layout: Arc::new(layout), effects, carriers }
     }
 
-    /// Lays other effects over the follow hairs from the next [`Follow::place`] on; whether they are other ones.
+    /// Lays other effects over the follow hairs from now on; whether they are other ones.
     pub fn set_effects(&mut self, effects: Effects) -> bool {
         std::mem::replace(&mut self.effects, effects) != effects
     }
 
-    /// Places all strands: guides as they are, follow hairs carried by them and kept out of the colliders.
+    /// Finds how the guides carry the hairs around them now.
     ///
     /// - `guide_points`: points of all guides now [m], as `Simulation::write_points` gives them.
     /// - `turns`: rotation of each guide's root since rest.
-    /// - `out`: all points of the groom [m].
-    pub fn place(
-        &mut self,
-        guide_points: &[Vec3],
-        turns: &[Quat],
-        obstacles: &[ObstaclePose],
-        out: &mut [Vec3],
-    ) {
-        carry::update_carriers(
-            &self.groom,
-            &self.guides,
-            &self.guide_offsets,
-            guide_points,
-            turns,
-            &mut self.carriers,
-        );
-        let groom = &*self.groom;
-        let this = &*self;
-        let level = Level::new();
-        split_by(out, &groom.offsets).into_par_iter().enumerate().with_min_len(64).for_each(|(s, strand)| {
-            let guide = this.guide_of[s];
-            if guide != u32::MAX {
-                let first = this.guide_offsets[guide as usize] as usize;
-                strand.copy_from_slice(&guide_points[first..first + strand.len()]);
-                return;
-            }
-            let range = groom.range(s);
-            let weights = &this.weights[s];
-            let matrices = weights.guides.map(|g| {
-                let g = g as usize;
-                &this.carriers[this.guide_offsets[g] as usize..this.guide_offsets[g + 1] as usize]
-            });
-            carry::carry(&groom.points[range.clone()], weights, matrices, &this.ride[range.clone()], strand);
-            if this.effects != Effects::default() {
-                let g = weights.guides[0] as usize;
-                let lead = &guide_points[this.guide_offsets[g] as usize..this.guide_offsets[g + 1] as usize];
-                style::lay_over(&this.effects, s as u32, lead, &this.ride[range.clone()], strand);
-            }
-            let clearance = &this.clearance[range];
-            dispatch!(level, simd => keep_out::keep_out(simd, obstacles, strand, clearance));
-        });
+    pub fn carry(&mut self, guide_points: &[Vec3], turns: &[Quat]) {
+        let FollowLayout { groom, guides, guide_offsets, .. } = &*self.layout;
+        carry::update_carriers(groom, guides, guide_offsets, guide_points, turns, &mut self.carriers);
+    }
+
+    /// The hairs as they were last carried by guides that are at `guide_points` [m], among `obstacles`.
+    pub fn now<'a>(&'a self, guide_points: &'a [Vec3], obstacles: &'a [MovingObstacle]) -> Followed<'a> {
+        let Self { layout, effects, carriers } = self;
+        Followed { layout, effects: *effects, carriers, guide_points, obstacles }
     }
 
     /// Place of a strand among the guides, if it is one.
     pub(crate) fn guide(&self, strand: usize) -> Option<usize> {
-        Some(self.guide_of[strand]).filter(|guide| *guide != u32::MAX).map(|guide| guide as usize)
+        self.layout.guide(strand)
+    }
+
+    /// Where the points of a guide, by its place among the guides, are among all guides' points.
+    pub(crate) fn guide_range(&self, guide: usize) -> std::ops::Range<usize> {
+        self.layout.guide_range(guide)
     }
 
     /// Place among the guides of the first that a strand follows; its own where it is one.
     pub(crate) fn first_guide(&self, strand: usize) -> usize {
-        self.guide(strand).unwrap_or(self.weights[strand].guides[0] as usize)
+        self.guide(strand).unwrap_or(self.layout.weights[strand].guides[0] as usize)
     }
 
     /// Writes one number a point of all strands, given those of all guides' points: guides have their own, follow hairs those of their first guide where
     /// they ride on it.
     pub(crate) fn spread(&self, of_guides: &[f32], out: &mut [f32]) {
-        let strands = split_by(out, &self.groom.offsets);
+        let layout = &*self.layout;
+        let strands = split_by(out, &layout.groom.offsets);
         strands.into_par_iter().enumerate().with_min_len(64).for_each(|(s, out)| {
             let guide = self.first_guide(s);
-            let lead = &of_guides[self.guide_offsets[guide] as usize..self.guide_offsets[guide + 1] as usize];
+            let lead = &of_guides[layout.guide_range(guide)];
             if self.guide(s).is_some() {
                 out.copy_from_slice(lead);
                 return;
             }
             let last = lead.len() - 1;
-            for (value, ride) in out.iter_mut().zip(&self.ride[self.groom.range(s)]) {
+            for (value, ride) in out.iter_mut().zip(&layout.ride[layout.groom.range(s)]) {
                 let at = f32::from(ride[0]) * (last as f32 / f32::from(u16::MAX));
                 let i = (at as usize).min(last - 1);
                 *value = lead[i] + (lead[i + 1] - lead[i]) * (at - i as f32);
@@ -177,10 +194,39 @@ impl Follow {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.weights[..])
-            + size_of_val(&self.ride[..])
-            + size_of_val(&self.clearance[..])
+        let FollowLayout { weights, ride, clearance, .. } = &*self.layout;
+        size_of_val(&weights[..])
+            + size_of_val(&ride[..])
+            + size_of_val(&clearance[..])
             + size_of_val(&self.carriers[..])
+    }
+}
+
+impl Followed<'_> {
+    /// Writes all points of the groom [m]: guides as they are, follow hairs carried by them and kept out of the colliders.
+    pub fn place(&self, out: &mut [Vec3]) {
+        let poses: Vec<ObstaclePose> = self.obstacles.iter().map(MovingObstacle::now).collect();
+        let strands = split_by(out, &self.layout.groom.offsets).into_par_iter().enumerate();
+        strands.with_min_len(64).for_each(|(s, strand)| self.place_strand(s, &poses, strand));
+    }
+
+    /// The same of one strand, kept out of `poses`.
+    pub(crate) fn place_strand(&self, s: usize, poses: &[ObstaclePose], strand: &mut [Vec3]) {
+        let layout = &**self.layout;
+        if let Some(guide) = layout.guide(s) {
+            strand.copy_from_slice(&self.guide_points[layout.guide_range(guide)]);
+            return;
+        }
+        let range = layout.groom.range(s);
+        let guides = layout.guide_ranges(s);
+        let lead = &self.guide_points[guides[0].clone()];
+        let (rest, ride) = (&layout.groom.points[range.clone()], &layout.ride[range.clone()]);
+        carry::carry(rest, &layout.weights[s], guides.map(|g| &self.carriers[g]), ride, strand);
+        if self.effects != Effects::default() {
+            style::lay_over(&self.effects, s as u32, lead, ride, strand);
+        }
+        let clearance = &layout.clearance[range];
+        dispatch!(Level::new(), simd => keep_out::keep_out(simd, poses, strand, clearance));
     }
 }
 

@@ -28,8 +28,7 @@ pub(super) fn lay_over(
 /// Adds a helix and a slow wander, both in a frame carried along the strand, so that they swing with it.
 fn displace(effects: &Effects, strand: u32, points: &mut [Vec3]) {
     let last = (points.len() - 1) as f32;
-    let phase = hash(strand, 0) * std::f32::consts::TAU;
-    let wander = [1, 2, 3, 4].map(|k| hash(strand, k) * std::f32::consts::TAU);
+    let [phase, wander @ ..] = phases(strand);
     let mut tangent = (points[1] - points[0]).normalize_or(Vec3::Y);
     let mut normal = tangent.any_orthonormal_vector();
     let mut arc = 0.0;
@@ -51,6 +50,11 @@ fn displace(effects: &Effects, strand: u32, points: &mut [Vec3]) {
         *p = here + curl + noise;
         (before, tangent) = (here, t);
     }
+}
+
+/// See [`FollowLayout::phases`](super::FollowLayout::phases).
+pub(super) fn phases(strand: u32) -> [f32; 5] {
+    [0, 1, 2, 3, 4].map(|k| hash(strand, k) * std::f32::consts::TAU)
 }
 
 /// A number from 0 to 1 that only depends on the strand and `k` (an integer mix by Steele et al. 2014, SplitMix).

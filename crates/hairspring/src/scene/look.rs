@@ -6,7 +6,11 @@ use serde::{Deserialize, Serialize};
 /// Colour and gloss of one groom.
 ///
 /// Colours are what a thick, evenly lit lock of the hair looks like (linear Rec. 709). The renderer turns them
-/// into absorption inside the fibre, so highlights, transmitted light and shadow take their tints from them.
+/// into absorption inside the fibre, so highlights, transmitted light and shadow take their tints from them. In their place the
+/// pigment may be given, `melanin`: then they do not count.
+///
+/// # Missing
+/// Melanin of the tip by itself; grey hairs among others by their share.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HairLook {
@@ -14,6 +18,14 @@ pub struct HairLook {
     pub root_color: Vec3,
     /// Linear RGB at the tip, 0 to 1. Default: a lighter brown, as sun and washing leave it.
     pub tip_color: Vec3,
+    /// Pigment in the fibre, 0 (none: white) to 1 (black), even to the eye: −ln(1 − melanin) is its amount, as in Blender's and Unreal's
+    /// hair shaders. `None`, the default: the colours count.
+    pub melanin: Option<f32>,
+    /// Share of the pigment that is the reddish one, pheomelanin, 0 (all eumelanin: brown) to 1 (red). Default 0.3: light brown hair is a little
+    /// warm. Counts with `melanin`.
+    pub melanin_redness: f32,
+    /// What the hair is dyed: linear RGB that white hair would take on, 0 to 1, over melanin or the colours. Default white: not dyed.
+    pub dye: Vec3,
     /// How much pigment differs from strand to strand, 0 (not at all) to 1. Default 0.25: visible only as depth.
     pub variation: f32,
     /// Spread of the highlights along the strand, 0.1 (oiled) to 1 (matt). Default 0.32: healthy hair
@@ -37,6 +49,9 @@ impl Default for HairLook {
         Self {
             root_color: Vec3::new(0.045, 0.022, 0.011),
             tip_color: Vec3::new(0.10, 0.05, 0.024),
+            melanin: None,
+            melanin_redness: 0.3,
+            dye: Vec3::ONE,
             variation: 0.25,
             roughness: 0.32,
             cuticle: 3.0,

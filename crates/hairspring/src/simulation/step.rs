@@ -50,6 +50,11 @@ impl MovingObstacle {
         Self { shape, start: pose, end: pose }
     }
 
+    /// As it is at the end of the frame, having moved in all of it.
+    pub fn now(&self) -> ObstaclePose {
+        ObstaclePose::new(self.shape.clone(), self.start.matrix(), self.end.matrix(), 1.0)
+    }
+
     /// Its start for hair that was carried along by `by` before the frame: the obstacle was too, or it was not, whichever leaves it less far to go.
     pub(crate) fn start(&self, by: Option<&Rigid>) -> Rigid {
         let Some(by) = by else { return self.start };

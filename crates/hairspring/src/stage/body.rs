@@ -332,10 +332,7 @@ impl StagedBody {
 
     /// The colliders as they are now.
     pub(super) fn poses(&self) -> Vec<ObstaclePose> {
-        self.obstacles
-            .iter()
-            .map(|o| ObstaclePose::new(o.shape.clone(), o.start.matrix(), o.end.matrix(), 1.0))
-            .collect()
+        self.obstacles.iter().map(MovingObstacle::now).collect()
     }
 
     /// Vertex positions now [m]; empty without a body.

@@ -4,7 +4,7 @@ use super::{FrameReport, Strands, body::StagedBody};
 use crate::{
     around::Tool,
     collide::{ObstaclePose, Rigid},
-    follow::{Follow, assign_guides, choose_guides, split_by},
+    follow::{Follow, Followed, assign_guides, choose_guides, split_by},
     groom::Groom,
     material::Material,
     scene::{Guides, HairLook, Scene, SceneGroom},
@@ -29,8 +29,11 @@ pub(super) struct StagedHair {
     triangles: Vec<[u32; 3]>,
     roots: Vec<Rigid>,
     turns: Vec<Quat>,
+    /// Points of the simulated strands; of use where others follow them.
     guide_points: Vec<Vec3>,
     points: Vec<Vec3>,
+    /// Whether the follow hairs among `points` are left to who draws them, and not up to date.
+    left: bool,
 }
 
 impl StagedHair {
@@ -68,6 +71,14 @@ impl StagedHair {
             rest_frames,
             triangles,
             roots,
+            left: false,
+        }
+    }
+
+    /// See [`super::Stage::leave_follow_hairs`].
+    pub(super) fn leave(&mut self, left: bool, body: &StagedBody) {
+        if std::mem::replace(&mut self.left, left) && !left {
+            self.place_followers(body);
         }
     }
 
@@ -131,7 +142,7 @@ impl StagedHair {
         report.follow += stepped.elapsed();
     }
 
-    /// Brings the points of all strands up to date.
+    /// Brings the points of all strands up to date, but for follow hairs that are left to who draws them.
     fn show(&mut self, body: &StagedBody) {
         let Some(follow) = &mut self.follow else {
             self.simulation.write_points(&mut self.points);
@@ -141,7 +152,49 @@ impl StagedHair {
         for (turn, root) in self.turns.iter_mut().zip(&self.roots) {
             *turn = root.rotation;
         }
-        follow.place(&self.guide_points, &self.turns, &body.poses(), &mut self.points);
+        follow.carry(&self.guide_points, &self.turns);
+        if !self.left {
+            self.place_followers(body);
+        }
+    }
+
+    /// See [`super::Stage::place_follow_hairs`].
+    pub(super) fn place_followers(&mut self, body: &StagedBody) {
+        if let Some(follow) = &self.follow {
+            follow.now(&self.guide_points, body.obstacles()).place(&mut self.points);
+        }
+    }
+
+    /// What places the follow hairs as they are now, where there are any.
+    fn followed<'a>(&'a self, body: &'a StagedBody) -> Option<Followed<'a>> {
+        Some(self.follow.as_ref()?.now(&self.guide_points, body.obstacles()))
+    }
+
+    /// Looks at each strand's points as they are now, those left to who draws them too, on many threads.
+    pub(super) fn each_strand<'a, T: Send + 'a>(
+        &'a self,
+        body: &'a StagedBody,
+        strands: std::ops::Range<usize>,
+        look: impl Fn(usize, &[Vec3]) -> T + Sync + Send + 'a,
+    ) -> impl ParallelIterator<Item = T> + 'a {
+        let left = if self.left { self.followed(body) } else { None };
+        let poses = left.map_or(Vec::new(), |_| body.poses());
+        let of_strand = move |own: &mut Vec<Vec3>, s: usize| {
+            let range = self.groom.range(s);
+            let Some(left) = left else { return look(s, &self.points[range]) };
+            own.resize(range.len(), Vec3::ZERO);
+            left.place_strand(s, &poses, own);
+            look(s, own)
+        };
+        strands.into_par_iter().with_min_len(256).map_init(Vec::new, of_strand)
+    }
+
+    /// Points of a simulated strand, by its place among them and its number in the groom [m].
+    pub(super) fn guide_points(&self, k: usize, strand: usize) -> &[Vec3] {
+        match &self.follow {
+            Some(follow) => &self.guide_points[follow.guide_range(k)],
+            None => &self.points[self.groom.range(strand)],
+        }
     }
 
     /// See [`Simulation::take`].
@@ -196,7 +249,7 @@ impl StagedHair {
 
     /// How far each joint of a simulated strand (its place among them, its number in the groom) is turned from the groom's, carried along by the root [rad].
     pub(super) fn turns(&self, k: usize, strand: usize, out: &mut [f32]) {
-        let (rest, now) = (self.groom.strand(strand), &self.points[self.groom.range(strand)]);
+        let (rest, now) = (self.groom.strand(strand), self.guide_points(k, strand));
         let mut turn = self.roots[k].rotation;
         out.fill(0.0);
         for (i, angle) in out.iter_mut().enumerate().take(rest.len() - 1) {
@@ -209,8 +262,13 @@ impl StagedHair {
         }
     }
 
-    pub(super) fn strands(&self) -> Strands<'_> {
-        Strands { points: &self.points, groom: &self.groom, look: &self.look }
+    pub(super) fn strands<'a>(&'a self, body: &'a StagedBody) -> Strands<'a> {
+        let follow = if self.left { self.followed(body) } else { None };
+        Strands { points: &self.points, groom: &self.groom, look: &self.look, follow }
+    }
+
+    pub(super) fn groom(&self) -> &Groom {
+        &self.groom
     }
 
     pub(super) fn simulation(&self) -> &Simulation {

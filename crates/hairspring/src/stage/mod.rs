@@ -15,6 +15,7 @@ pub use values::{Picked, StrandFigures, Value};
 use crate::{
     around::Tool,
     collide::Rigid,
+    follow::Followed,
     groom::{Groom, bind_roots},
     scene::{HairLook, Scene},
     simulation::{Air, Measure, MovingObstacle, Start, StepReport, ToolId, VolumeReport},
@@ -93,12 +94,14 @@ pub struct FrameReport {
 /// One groom as it is now, to draw or to write.
 #[derive(Clone, Copy)]
 pub struct Strands<'a> {
-    /// Points of all strands [m].
+    /// Points of all strands [m]; where `follow` is there, those of follow hairs are as they were when they were last placed here.
     pub points: &'a [Vec3],
     /// The groom they belong to: offsets, radii, colours.
     pub groom: &'a Groom,
     /// How it is drawn.
     pub look: &'a HairLook,
+    /// What places its follow hairs, where that is left to who draws them ([`Stage::leave_follow_hairs`]).
+    pub follow: Option<Followed<'a>>,
 }
 
 /// The body as it is now, to draw.
@@ -225,7 +228,18 @@ impl Stage {
 
     /// All grooms as they are now.
     pub fn strands(&self) -> impl ExactSizeIterator<Item = Strands<'_>> {
-        self.hair.iter().map(StagedHair::strands)
+        self.hair.iter().map(|h| h.strands(&self.body))
+    }
+
+    /// Leaves follow hairs to who draws them, a viewer that places them on a graphics card: a step then finds no more than how guides carry them, which
+    /// [`Strands::follow`] gives, and their points stay behind. Off at the start; turned off, they are placed at once.
+    pub fn leave_follow_hairs(&mut self, left: bool) {
+        self.hair.iter_mut().for_each(|h| h.leave(left, &self.body));
+    }
+
+    /// Places follow hairs that are left to who draws them, for once.
+    pub fn place_follow_hairs(&mut self) {
+        self.hair.iter_mut().for_each(|h| h.place_followers(&self.body));
     }
 
     /// The body as it is now; `None` for a scene without one.
@@ -235,13 +249,13 @@ impl Stage {
 
     /// Strands that are simulated, of how many there are.
     pub fn simulated_strands(&self) -> (usize, usize) {
-        let all = self.hair.iter().map(|h| h.strands().groom.strand_count()).sum();
+        let all = self.hair.iter().map(|h| h.groom().strand_count()).sum();
         (self.hair.iter().map(|h| h.simulation().strand_count()).sum(), all)
     }
 
     /// Points that are simulated, of how many there are.
     pub fn simulated_points(&self) -> (usize, usize) {
-        let all = self.hair.iter().map(|h| h.strands().groom.point_count()).sum();
+        let all = self.hair.iter().map(|h| h.groom().point_count()).sum();
         (self.hair.iter().map(|h| h.simulation().point_count()).sum(), all)
     }
 

@@ -140,11 +140,9 @@ impl Stage {
             points.iter().enumerate().filter_map(seen).min_by(Candidate::order)
         };
         let of_groom = |(g, hair): (usize, &StagedHair)| {
-            let strands = hair.strands();
-            (0..strands.groom.strand_count())
-                .into_par_iter()
-                .with_min_len(256)
-                .filter_map(|s| of_strand(g, s, &strands.points[strands.groom.range(s)]))
+            let found = |s: usize, points: &[Vec3]| of_strand(g, s, points);
+            hair.each_strand(&self.body, 0..hair.groom().strand_count(), found)
+                .flatten()
                 .min_by(Candidate::order)
         };
         self.hair.iter().enumerate().filter_map(of_groom).min_by(Candidate::order).map(|c| c.picked)
@@ -167,31 +165,31 @@ impl Stage {
     pub fn strand_figures(&self, groom: usize, strand: usize) -> StrandFigures {
         let hair = &self.hair[groom];
         let (k, guide) = (hair.first_guide(strand), self.guide_of(groom, strand));
-        let strands = hair.strands();
-        let mut values = vec![0.0; strands.groom.range(guide as usize).len()];
+        let groom = hair.groom();
+        let mut values = vec![0.0; groom.range(guide as usize).len()];
         let mut most = |what: Value| {
             write(hair, what, (k, guide as usize), &mut values);
             values.iter().copied().fold(f32::NEG_INFINITY, f32::max)
         };
-        let points = &strands.points[strands.groom.range(strand)];
         let depth = |p: &Vec3| {
             let depth = |o: &crate::simulation::MovingObstacle| -o.shape.distance(o.end.inverse_point(*p));
             self.body.obstacles().iter().map(depth).fold(0.0, f32::max)
         };
+        let deepest = |_, points: &[Vec3]| points.iter().skip(1).map(depth).fold(0.0, f32::max);
         StrandFigures {
             simulated: hair.simulated(strand).is_some(),
             guide,
-            points: points.len(),
-            length: strands.groom.strand_length(strand),
+            points: groom.range(strand).len(),
+            length: groom.strand_length(strand),
             tension_max: most(Value::Tension),
             turn_max: most(Value::Turn),
             speed_max: most(Value::Speed),
             contact_max: most(Value::Contact),
             stretch_max: {
                 let of = |i: usize| hair.simulation().stretch_at(k, i).abs();
-                (0..strands.groom.range(guide as usize).len()).map(of).fold(0.0, f32::max)
+                (0..groom.range(guide as usize).len()).map(of).fold(0.0, f32::max)
             },
-            depth: points.iter().skip(1).map(depth).fold(0.0, f32::max),
+            depth: hair.each_strand(&self.body, strand..strand + 1, deepest).sum(),
         }
     }
 }
@@ -209,8 +207,7 @@ fn write(hair: &StagedHair, what: Value, (k, strand): (usize, usize), out: &mut 
         Value::Stretch => each(out, &|i| simulation.stretch_at(k, i)),
         Value::Speed => each(out, &|i| simulation.speed_at(k, i)),
         Value::Density => {
-            let strands = hair.strands();
-            let points = &strands.points[strands.groom.range(strand)];
+            let points = hair.guide_points(k, strand);
             each(out, &|i| simulation.density_at(points[i]));
         }
         Value::Contact => each(out, &|i| simulation.contact_at(k, i)),

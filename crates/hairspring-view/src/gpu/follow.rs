@@ -1,0 +1,384 @@
+//! Follow hairs placed on the card, from how guides carry them: `wgsl/follow.wgsl`.
+//!
+//! Once: points of the rest pose and where each rides on its guides (24 bytes a point), weights (64 bytes a strand). Every frame: 48 bytes a guide point,
+//! 112 a collider, and of distance fields what changed.
+
+use super::{
+    Gpu,
+    constants::FOLLOW,
+    memory::{Bound, Generation, Store, groups},
+    renderer::Job,
+    strands::fitting,
+};
+use crate::frame::HairDraw;
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat3, Vec3, Vec4};
+use hairspring::{
+    collide::Obstacle,
+    follow::{FollowLayout, Followed},
+    scene::Effects,
+    simulation::MovingObstacle,
+};
+use rayon::prelude::*;
+use std::sync::Arc;
+use wgpu::BufferUsages;
+
+/// `kind` of the shader's colliders.
+pub(super) const CAPSULE: u32 = 0;
+pub(super) const CUBOID: u32 = 1;
+pub(super) const PLANES: u32 = 2;
+pub(super) const FIELD: u32 = 3;
+
+/// Numbers of shapes that are compared, and sent, together.
+const BLOCK: usize = 1 << 14;
+
+/// Bit of a strand's count: it is a guide.
+const GUIDE: u32 = 1 << 31;
+
+/// Most that curls and flyaways move a point, in their radius and their amplitude: a chord of the circle's, and both waves across each other.
+const SWAY: [f32; 2] = [2.0, std::f32::consts::SQRT_2];
+
+/// `Groom` of the shader.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Settings {
+    strands: u32,
+    first: u32,
+    colliders: u32,
+    clump: f32,
+    curl_radius: f32,
+    curl_rate: f32,
+    noise: f32,
+    unused: u32,
+}
+
+/// `Follower` of the shader.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Follower {
+    first: u32,
+    count: u32,
+    guides: [u32; 3],
+    lasts: [u32; 3],
+    weights: [f32; 3],
+    phases: [f32; 5],
+}
+
+/// `Collider` of the shader.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Collider {
+    axes: [Vec4; 3],
+    a: Vec4,
+    b: Vec4,
+    size: [u32; 3],
+    first: u32,
+    kind: u32,
+    unused: [u32; 3],
+}
+
+/// The hairs of one style that follow.
+struct Groom {
+    layout: Arc<FollowLayout>,
+    followers: Store,
+    rest: Store,
+    rides: Store,
+    guides: Store,
+    carriers: Store,
+    settings: Store,
+    bound: Bound,
+    /// The box of what every guide point carries, from where it is, in the rest pose [m].
+    boxes: Vec<(Vec3, Vec3)>,
+    /// Corners of boxes that hold all its points now [m].
+    corners: Vec<Vec3>,
+    /// Whose colliders are its own.
+    world: usize,
+}
+
+/// What some grooms are kept out of.
+struct World {
+    colliders: Store,
+    shapes: Store,
+    /// What is there of shapes.
+    sent: Vec<f32>,
+}
+
+/// All follow hairs of a frame.
+pub(super) struct Followers {
+    pipeline: wgpu::ComputePipeline,
+    /// By the number of the style; `None`: its points are sent as they are.
+    grooms: Vec<Option<Groom>>,
+    worlds: Vec<World>,
+}
+
+impl Gpu {
+    /// Whether follow hairs among these colliders can be placed on the card: not among open sheets, and not where fields are too large for it.
+    pub fn can_place_among(&self, obstacles: &[MovingObstacle]) -> bool {
+        let numbers: usize = obstacles.iter().map(|o| Shape::of(o).map_or(0, |s| s.numbers.len())).sum();
+        let sheet = |o: &MovingObstacle| matches!(o.shape, Obstacle::Sheet(_));
+        !obstacles.iter().any(sheet)
+            && numbers as u64 * 4 <= self.device.limits().max_storage_buffer_binding_size
+    }
+}
+
+/// A collider and its numbers.
+struct Shape<'a> {
+    collider: Collider,
+    numbers: std::borrow::Cow<'a, [f32]>,
+}
+
+impl<'a> Shape<'a> {
+    /// `None`: it holds nothing out, or only the CPU knows how.
+    fn of(obstacle: &'a MovingObstacle) -> Option<Self> {
+        let (turn, at) = obstacle.end.matrix();
+        let placed = |turn: Mat3, at: Vec3, kind: u32| {
+            let [x, y, z] = [turn.x_axis.extend(at.x), turn.y_axis.extend(at.y), turn.z_axis.extend(at.z)];
+            let (a, b) = (Vec4::ZERO, Vec4::ZERO);
+            Collider { axes: [x, y, z], a, b, size: [0; 3], first: 0, kind, unused: [0; 3] }
+        };
+        let capsule = |a: Vec3, b: Vec3, radius: f32| Collider {
+            a: a.extend(radius),
+            b: b.extend(0.0),
+            ..placed(turn, at, CAPSULE)
+        };
+        let planes = |planes: Vec<Vec4>| Self {
+            collider: Collider { size: [planes.len() as u32, 0, 0], ..placed(turn, at, PLANES) },
+            numbers: planes.iter().flat_map(Vec4::to_array).collect(),
+        };
+        let alone = |collider| Self { collider, numbers: Default::default() };
+        Some(match &obstacle.shape {
+            Obstacle::Sphere { center, radius } => alone(capsule(*center, *center, *radius)),
+            Obstacle::Capsule { a, b, radius } => alone(capsule(*a, *b, *radius)),
+            Obstacle::Cuboid { center, half, axes } => {
+                // In a space of its own it lies along the axes.
+                let placed = placed(turn * *axes, turn * *center + at, CUBOID);
+                alone(Collider { a: half.extend(0.0), ..placed })
+            }
+            Obstacle::Plane { point, normal } => planes(vec![normal.extend(normal.dot(*point))]),
+            Obstacle::Hull(hull) => planes(hull.planes().map(|(n, offset)| n.extend(offset)).collect()),
+            Obstacle::Field(grid) if !grid.distances.is_empty() => Self {
+                collider: Collider {
+                    a: grid.origin.extend(grid.cell),
+                    size: grid.size.to_array(),
+                    ..placed(turn, at, FIELD)
+                },
+                numbers: grid.distances[..].into(),
+            },
+            Obstacle::Field(_) | Obstacle::Sheet(_) => return None,
+        })
+    }
+}
+
+impl World {
+    fn new(gpu: &Gpu) -> Self {
+        let store = |label| Store::new(gpu, label, BufferUsages::STORAGE);
+        Self { colliders: store("colliders"), shapes: store("shapes"), sent: Vec::new() }
+    }
+
+    /// Sends colliders, and of their shapes what changed. Returns how many they are.
+    fn send(&mut self, gpu: &Gpu, obstacles: &[MovingObstacle], generation: &mut Generation) -> u32 {
+        let mut shapes: Vec<Shape> = obstacles.iter().filter_map(Shape::of).collect();
+        let mut first = 0;
+        for shape in &mut shapes {
+            shape.collider.first = first as u32;
+            first += shape.numbers.len();
+        }
+        let then = *generation;
+        self.shapes.fit(gpu, 4 * first, generation);
+        if *generation != then {
+            self.sent.clear();
+        }
+        // What is no number is no other's equal, and is sent.
+        self.sent.resize(first, f32::NAN);
+        for shape in &shapes {
+            let first = shape.collider.first as usize;
+            let there = self.sent[first..][..shape.numbers.len()].chunks_mut(BLOCK);
+            for (k, (there, now)) in there.zip(shape.numbers.chunks(BLOCK)).enumerate() {
+                if there != now {
+                    self.shapes.write(gpu, 4 * (first + k * BLOCK), now);
+                    there.copy_from_slice(now);
+                }
+            }
+        }
+        let colliders: Vec<Collider> = shapes.iter().map(|s| s.collider).collect();
+        self.colliders.fill(gpu, &colliders, generation);
+        colliders.len() as u32
+    }
+}
+
+impl Groom {
+    fn new(gpu: &Gpu, layout: &Arc<FollowLayout>, generation: &mut Generation) -> Self {
+        let store = |label| Store::new(gpu, label, BufferUsages::STORAGE);
+        let mut groom = Self {
+            layout: layout.clone(),
+            followers: store("followers"),
+            rest: store("rest"),
+            rides: store("rides"),
+            guides: store("guides"),
+            carriers: store("carriers"),
+            settings: Store::new(gpu, "follow", BufferUsages::UNIFORM),
+            bound: Bound::default(),
+            boxes: boxes(layout),
+            corners: Vec::new(),
+            world: 0,
+        };
+        let strands = 0..layout.groom.strand_count();
+        let followers: Vec<Follower> = strands.into_par_iter().map(|s| follower(layout, s)).collect();
+        groom.followers.fill(gpu, &followers, generation);
+        groom.rest.fill(gpu, &layout.groom.points, generation);
+        let word = |(ride, clearance): (&[u16; 3], &f32)| {
+            [u32::from(ride[0]) | u32::from(ride[1]) << 16, u32::from(ride[2]), clearance.to_bits()]
+        };
+        let rides: Vec<[u32; 3]> = layout.ride.par_iter().zip(&layout.clearance).map(word).collect();
+        groom.rides.fill(gpu, &rides, generation);
+        let guides: Vec<Vec3> =
+            layout.guides.iter().flat_map(|g| layout.groom.strand(*g as usize)).copied().collect();
+        groom.guides.fill(gpu, &guides, generation);
+        groom
+    }
+
+    /// Sends how guides carry, and finds the boxes around what they carry.
+    fn send(&mut self, gpu: &Gpu, now: &Followed, [first, colliders]: [u32; 2], generation: &mut Generation) {
+        let carried = |(carrier, at): (&glam::Affine3A, &Vec3)| {
+            let m = Mat3::from(carrier.matrix3);
+            [m.x_axis.extend(at.x), m.y_axis.extend(at.y), m.z_axis.extend(at.z)]
+        };
+        let places = || now.carriers.iter().zip(now.guide_points);
+        let carriers: Vec<[Vec4; 3]> = places().map(carried).collect();
+        self.carriers.fill(gpu, &carriers, generation);
+        let Effects { clump, curl_radius, curl_length, noise } = now.effects;
+        let settings = Settings {
+            strands: self.layout.groom.strand_count() as u32,
+            first,
+            colliders,
+            clump,
+            curl_radius,
+            // As in `follow/style.rs`.
+            curl_rate: std::f32::consts::TAU / curl_length.max(1e-4),
+            noise,
+            unused: 0,
+        };
+        self.settings.fill(gpu, &[settings], generation);
+        let sway = SWAY[0] * curl_radius.max(0.0) + SWAY[1] * noise.max(0.0);
+        self.corners.clear();
+        for ((carrier, at), (low, high)) in places().zip(&self.boxes) {
+            let m = Mat3::from(carrier.matrix3);
+            let middle = *at + m * low.midpoint(*high);
+            let half = 0.5 * (*high - *low);
+            let reach = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y + m.z_axis.abs() * half.z + sway;
+            self.corners.extend([middle - reach, middle + reach]);
+        }
+    }
+}
+
+/// What the card knows of strand `s`.
+fn follower(layout: &FollowLayout, s: usize) -> Follower {
+    let range = layout.groom.range(s);
+    let (guides, weights, bit) = match layout.guide(s) {
+        Some(guide) => ([guide as u32; 3], [1.0, 0.0, 0.0], GUIDE),
+        None => (layout.weights[s].guides, layout.weights[s].weights, 0),
+    };
+    let guide = guides.map(|g| layout.guide_range(g as usize));
+    Follower {
+        first: range.start as u32,
+        count: range.len() as u32 | bit,
+        lasts: guide.clone().map(|g| g.len() as u32 - 1),
+        guides: guide.map(|g| g.start as u32),
+        weights,
+        phases: FollowLayout::phases(s as u32),
+    }
+}
+
+/// The box around the points that each guide point carries, from where it is, in the rest pose [m].
+fn boxes(layout: &FollowLayout) -> Vec<(Vec3, Vec3)> {
+    let rest: Vec<Vec3> =
+        layout.guides.iter().flat_map(|g| layout.groom.strand(*g as usize)).copied().collect();
+    let mut boxes = vec![(Vec3::ZERO, Vec3::ZERO); rest.len()];
+    for (s, weights) in layout.weights.iter().enumerate() {
+        for (g, _) in weights.weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+            let range = layout.guide_range(weights.guides[g] as usize);
+            let last = range.len() - 1;
+            for i in layout.groom.range(s) {
+                let at = f32::from(layout.ride[i][g]) * (last as f32 / f32::from(u16::MAX));
+                let k = range.start + (at as usize).min(last - 1);
+                for k in [k, k + 1] {
+                    let d = layout.groom.points[i] - rest[k];
+                    boxes[k] = (boxes[k].0.min(d), boxes[k].1.max(d));
+                }
+            }
+        }
+    }
+    boxes
+}
+
+impl Followers {
+    pub fn new(gpu: &Gpu) -> Self {
+        let pipeline = super::memory::compute(gpu, &FOLLOW.module(gpu), "follow");
+        Self { pipeline, grooms: Vec::new(), worlds: Vec::new() }
+    }
+
+    /// Sends what changed of a frame's follow hairs.
+    pub fn send(&mut self, gpu: &Gpu, hair: &[HairDraw], generation: &mut Generation) {
+        let mut worlds: Vec<(&[MovingObstacle], u32)> = Vec::new();
+        self.grooms.resize_with(hair.len(), || None);
+        let mut fitting = fitting(gpu, hair);
+        for groom in &mut self.grooms {
+            let followed = fitting.next().and_then(|(first, h)| Some((first, h.followed()?)));
+            let Some((first, now)) = followed else {
+                *groom = None;
+                continue;
+            };
+            let world = worlds.iter().position(|(obstacles, _)| std::ptr::eq(*obstacles, now.obstacles));
+            let world = world.unwrap_or_else(|| {
+                let k = worlds.len();
+                if self.worlds.len() == k {
+                    self.worlds.push(World::new(gpu));
+                    generation.next();
+                }
+                worlds.push((now.obstacles, self.worlds[k].send(gpu, now.obstacles, generation)));
+                k
+            });
+            if groom.as_ref().is_none_or(|g| !Arc::ptr_eq(&g.layout, now.layout)) {
+                *groom = Some(Groom::new(gpu, now.layout, generation));
+                generation.next();
+            }
+            if let Some(groom) = groom {
+                groom.world = world;
+                groom.send(gpu, &now, [first as u32, worlds[world].1], generation);
+            }
+        }
+    }
+
+    /// Corners of boxes that hold all points of a style [m]; `None` where its points are sent as they are.
+    pub fn corners(&self, style: usize) -> Option<&[Vec3]> {
+        Some(&self.grooms.get(style)?.as_ref()?.corners)
+    }
+
+    /// Places them.
+    pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
+        if self.grooms.iter().all(Option::is_none) {
+            return;
+        }
+        let Job { gpu, generation, strands, .. } = *job;
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&self.pipeline);
+        for groom in self.grooms.iter_mut().flatten() {
+            let world = &self.worlds[groom.world];
+            let entries = [
+                (0, groom.settings.all()),
+                (1, groom.followers.all()),
+                (2, groom.rest.all()),
+                (3, groom.rides.all()),
+                (4, groom.guides.all()),
+                (5, groom.carriers.all()),
+                (6, world.colliders.all()),
+                (7, world.shapes.all()),
+                (8, strands.points.all()),
+            ];
+            let layout = self.pipeline.get_bind_group_layout(0);
+            pass.set_bind_group(0, groom.bound.group(gpu, generation, layout, &entries), &[]);
+            let [x, y, z] = groups(groom.layout.groom.strand_count(), 64);
+            pass.dispatch_workgroups(x, y, z);
+        }
+    }
+}

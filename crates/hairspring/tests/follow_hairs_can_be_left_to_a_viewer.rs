@@ -1,0 +1,65 @@
+//! A viewer may place follow hairs by itself, on a graphics card, and the stage then does not do it as well. What is asked of the stage meanwhile is
+//! answered as if it did: which strand a ray finds, figures of a strand, values to colour by; and the points are there, to the bit, as soon as they are
+//! asked for.
+
+use glam::Vec3;
+use hairspring::{
+    scene::{
+        Effects, Guides,
+        builtin::{BuiltinOptions, scene},
+    },
+    stage::{Stage, Value},
+};
+
+fn stage() -> Stage {
+    let options =
+        BuiltinOptions { strands: 600, points: 16, guides: Guides::Count(60), ..BuiltinOptions::default() };
+    let mut scene = scene(&options);
+    for groom in &mut scene.grooms {
+        groom.effects = Effects { clump: 0.5, curl_radius: 0.003, noise: 0.004, ..Effects::default() };
+    }
+    Stage::new(scene).unwrap()
+}
+
+fn points(stage: &Stage) -> Vec<Vec<Vec3>> {
+    stage.strands().map(|s| s.points.to_vec()).collect()
+}
+
+#[test]
+fn what_is_left_is_there_when_it_is_asked_for() {
+    let (mut here, mut left) = (stage(), stage());
+    left.leave_follow_hairs(true);
+    let before = points(&left);
+    for _ in 0..20 {
+        here.step(1.0 / 60.0);
+        left.step(1.0 / 60.0);
+    }
+    let head = |stage: &Stage| stage.strands().next().unwrap().follow.is_some();
+    assert!(left.strands().len() > 1 && head(&left) && here.strands().all(|s| s.follow.is_none()));
+    // Nothing was placed twice; the brows, which nobody follows, are where they are.
+    assert_eq!(points(&left)[0], before[0]);
+    assert_eq!(points(&left)[1], points(&here)[1]);
+    assert_ne!(points(&here)[0], before[0]);
+
+    let target = points(&here)[0][300 * 16 + 8];
+    for from in [Vec3::new(0.0, 1.6, 1.0), Vec3::new(1.0, 1.7, 0.2), Vec3::new(-0.3, 2.5, -0.8)] {
+        let found = here.nearest_strand(from, target - from).unwrap();
+        assert_eq!(left.nearest_strand(from, target - from), Some(found));
+        let (groom, strand) = (found.groom, found.strand);
+        assert_eq!(left.strand_figures(groom, strand), here.strand_figures(groom, strand));
+    }
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for value in Value::ALL {
+        here.values(value, 0, &mut a);
+        left.values(value, 0, &mut b);
+        assert_eq!(a, b, "{value:?}");
+    }
+
+    left.place_follow_hairs();
+    assert_eq!(points(&left), points(&here));
+    left.step(1.0 / 60.0);
+    here.step(1.0 / 60.0);
+    left.leave_follow_hairs(false);
+    assert_eq!(points(&left), points(&here));
+    assert!(left.strands().all(|s| s.follow.is_none()));
+}
