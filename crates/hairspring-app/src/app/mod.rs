@@ -87,8 +87,7 @@ impl App {
             Some(document) => document,
             None => Document::new("scene.toml".as_ref(), builtin_text("wavy", hairs.0, hairs.1))?,
         };
-        let wake = ctx.clone();
-        let session = Session::new(document, painters[0].spared(), move || wake.request_repaint())?;
+        let session = Session::new(document, painters[0].spared(), painters[0].wake(&ctx))?;
         ctx.set_theme(egui::Theme::Dark);
         Ok(Self {
             session,
@@ -408,7 +407,9 @@ impl eframe::App for App {
             }
         }
         if !self.is_idle() {
-            ctx.request_repaint_after(Duration::from_millis(15));
+            // What waits for steps alone is woken by them, but for a scene that could not be opened.
+            let soon = self.recorder.is_some() || !self.finger.rests() || self.shot.is_some();
+            ctx.request_repaint_after(Duration::from_millis(if soon { 15 } else { 200 }));
         }
     }
 }

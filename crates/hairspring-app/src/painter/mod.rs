@@ -7,7 +7,13 @@ use crate::snapshot::{Sight, Snapshot};
 use cpu::CpuPainter;
 use eframe::{egui, wgpu::DeviceType};
 use gpu::GpuPainter;
-use std::sync::Arc;
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering::Relaxed},
+    },
+    time::Duration,
+};
 
 /// Who draws the hair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,6 +67,21 @@ impl Painter {
         }
     }
 
+    /// What is to be called when there is something new to see. A window that waits for a picture by the CPU is woken by that alone: all that it could
+    /// do before is to draw the last one once more, which takes a software driver as long as the picture.
+    pub fn wake(&self, ctx: &egui::Context) -> impl Fn() + Send + 'static {
+        let ctx = ctx.clone();
+        let busy = match self {
+            Self::Gpu(_) => Arc::<AtomicBool>::default(),
+            Self::Cpu(painter) => painter.busy(),
+        };
+        move || {
+            if !busy.load(Relaxed) {
+                once(&ctx);
+            }
+        }
+    }
+
     /// Whether a GPU draws.
     pub fn is_gpu(&self) -> bool {
         matches!(self, Self::Gpu(_))
@@ -88,6 +109,11 @@ impl Painter {
             Self::Cpu(painter) => painter.note(),
         }
     }
+}
+
+/// Lets the window draw itself. Asked without a delay, egui does so twice.
+fn once(ctx: &egui::Context) {
+    ctx.request_repaint_after(Duration::from_millis(1));
 }
 
 fn processors() -> usize {
