@@ -89,6 +89,8 @@ impl App {
         };
         let session = Session::new(document, painters[0].spared(), painters[0].wake(&ctx))?;
         ctx.set_theme(egui::Theme::Dark);
+        // The window is cleared in that colour: to fill panels with it once more would take a software driver as long as a picture.
+        ctx.all_styles_mut(|style| style.visuals.panel_fill = Color32::TRANSPARENT);
         Ok(Self {
             session,
             view: View::default(),
@@ -299,9 +301,8 @@ impl App {
             let pixels = ui.ctx().pixels_per_point();
             let size = [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(16, 8192));
             let painter = ui.painter_at(rect);
-            if let Some(texture) = self.painters[k].draw(ui.ctx(), snapshot, k, &sight, size) {
-                let all = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-                painter.image(texture, rect, all, Color32::WHITE);
+            if let Some(shape) = self.painters[k].draw(ui.ctx(), snapshot, k, &sight, (rect, size)) {
+                painter.add(shape);
             }
             overlay::draw(&painter, rect, scenery, &self.view, &sight);
             if count > 1 {
@@ -342,6 +343,10 @@ impl App {
 }
 
 impl eframe::App for App {
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.window_fill.to_normalized_gamma_f32()
+    }
+
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = &ui.ctx().clone();
         let _ = frame;

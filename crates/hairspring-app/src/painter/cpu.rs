@@ -1,8 +1,11 @@
 //! The picture by the CPU, on a thread of its own, as fine as there is time for: the window stays quick, and says what it leaves out.
 
-use super::once;
+use super::{image, once, pane::Pane};
 use crate::snapshot::{Sight, Snapshot};
-use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
+use eframe::{
+    egui::{self, ColorImage, TextureHandle, TextureOptions},
+    egui_wgpu::RenderState,
+};
 use hairspring_view::{Image, Quality, Renderer};
 use std::{
     sync::{
@@ -40,11 +43,11 @@ const LEVELS: [Level; 9] = [
     level(0.85, 1, [80, 768]),
     level(0.75, 1, [64, 512]),
     level(0.65, 2, [56, 512]),
-    level(0.5, 2, [56, 512]),
+    level(0.55, 2, [56, 512]),
     level(0.5, 3, [48, 384]),
-    level(0.4, 4, [40, 384]),
-    level(0.33, 6, [32, 256]),
-    level(0.25, 8, [32, 256]),
+    level(0.45, 4, [40, 384]),
+    level(0.4, 6, [32, 256]),
+    level(0.35, 8, [32, 256]),
 ];
 
 struct Job {
@@ -61,13 +64,27 @@ struct Done {
     level: usize,
 }
 
+/// How a picture comes into the window.
+enum Shows {
+    /// By a pipeline of its own.
+    Pane(Box<Pane>),
+    /// By the window's library: where nobody knows what it draws with, as in tests.
+    Texture(Option<TextureHandle>),
+}
+
+impl Shows {
+    fn new(window: Option<&RenderState>) -> Self {
+        window.map_or(Self::Texture(None), |state| Self::Pane(Box::new(Pane::new(state))))
+    }
+}
+
 /// Draws one view.
 pub struct CpuPainter {
     jobs: Sender<Job>,
     done: Receiver<Done>,
     /// Whether a picture is being drawn.
     busy: Arc<AtomicBool>,
-    texture: Option<TextureHandle>,
+    shows: Shows,
     /// What the picture shows: not drawn again while it is the same.
     shown: Option<(u64, u64, Sight, [u32; 2])>,
     level: usize,
@@ -83,7 +100,7 @@ pub struct CpuPainter {
 
 impl CpuPainter {
     /// Starts the thread, which draws on so many others; it wakes the window when a picture is there.
-    pub fn new(ctx: &egui::Context, threads: usize) -> Self {
+    pub fn new(ctx: &egui::Context, window: Option<&RenderState>, threads: usize) -> Self {
         let (jobs, todo) = channel::<Job>();
         let (finished, done) = channel();
         let ctx = ctx.clone();
@@ -111,7 +128,7 @@ impl CpuPainter {
             jobs,
             done,
             busy: Arc::default(),
-            texture: None,
+            shows: Shows::new(window),
             shown: None,
             // From where a slow machine is quick; a fast one is finer within a second.
             level: 4,
@@ -123,20 +140,29 @@ impl CpuPainter {
         }
     }
 
+    /// Another for the same window.
+    pub fn another(&self, ctx: &egui::Context, threads: usize) -> Self {
+        let window = match &self.shows {
+            Shows::Pane(pane) => Some(pane.state()),
+            Shows::Texture(_) => None,
+        };
+        Self::new(ctx, window, threads)
+    }
+
     /// Whether a picture is being drawn, now and later.
     pub fn busy(&self) -> Arc<AtomicBool> {
         self.busy.clone()
     }
 
-    /// Asks for a picture of `size` pixels where none is being drawn, and returns the last one.
-    pub fn draw(
+    /// Asks for a picture of `size` pixels where none is being drawn, and takes one that is done.
+    pub fn ask(
         &mut self,
         ctx: &egui::Context,
         snapshot: &Arc<Snapshot>,
         stage: usize,
         sight: &Sight,
         size: [u32; 2],
-    ) -> Option<egui::TextureId> {
+    ) {
         match self.done.try_recv() {
             Ok(done) => self.show(ctx, done),
             Err(TryRecvError::Disconnected) => self.busy.store(true, Relaxed),
@@ -169,16 +195,25 @@ impl CpuPainter {
         } else if same && !rested {
             ctx.request_repaint_after(Duration::from_millis(310));
         }
-        self.texture.as_ref().map(TextureHandle::id)
+    }
+
+    /// The last picture, laid in at `rect`.
+    pub fn shape(&self, rect: egui::Rect) -> Option<egui::Shape> {
+        match &self.shows {
+            Shows::Pane(pane) => pane.shape(rect),
+            Shows::Texture(texture) => texture.as_ref().map(|texture| image(texture.id(), rect)),
+        }
     }
 
     fn show(&mut self, ctx: &egui::Context, done: Done) {
         self.busy.store(false, Relaxed);
-        let size = [done.image.width as usize, done.image.height as usize];
-        let image = ColorImage::from_rgb(size, &done.image.rgb);
-        match &mut self.texture {
-            Some(texture) => texture.set(image, TextureOptions::LINEAR),
-            None => self.texture = Some(ctx.load_texture("hair", image, TextureOptions::LINEAR)),
+        match &mut self.shows {
+            Shows::Pane(pane) => pane.take(&done.image),
+            Shows::Texture(texture) => {
+                let size = [done.image.width as usize, done.image.height as usize];
+                let image = ColorImage::from_rgb(size, &done.image.rgb);
+                *texture = Some(ctx.load_texture("hair", image, TextureOptions::LINEAR));
+            }
         }
         let mean = |mean: f32, last: f32| if mean == 0.0 { last } else { mean + SMOOTH * (last - mean) };
         let since = self.came.elapsed().as_secs_f32();

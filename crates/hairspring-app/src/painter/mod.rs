@@ -2,6 +2,7 @@
 
 mod cpu;
 mod gpu;
+mod pane;
 
 use crate::snapshot::{Sight, Snapshot};
 use cpu::CpuPainter;
@@ -47,7 +48,10 @@ impl Painter {
         });
         match state {
             Some(state) => Self::Gpu(Box::new(GpuPainter::new(state))),
-            None => Self::Cpu(Box::new(CpuPainter::new(&creation.egui_ctx, half()))),
+            None => {
+                let window = creation.wgpu_render_state.as_ref();
+                Self::Cpu(Box::new(CpuPainter::new(&creation.egui_ctx, window, half())))
+            }
         }
     }
 
@@ -55,7 +59,7 @@ impl Painter {
     pub fn another(&self, ctx: &egui::Context) -> Self {
         match self {
             Self::Gpu(painter) => Self::Gpu(Box::new(painter.another())),
-            Self::Cpu(_) => Self::Cpu(Box::new(CpuPainter::new(ctx, half()))),
+            Self::Cpu(painter) => Self::Cpu(Box::new(painter.another(ctx, half()))),
         }
     }
 
@@ -87,18 +91,21 @@ impl Painter {
         matches!(self, Self::Gpu(_))
     }
 
-    /// The picture of a stage of a snapshot, `size` pixels large, or the last one where that is not ready yet.
+    /// The picture of a stage of a snapshot, `size` pixels large and laid in at `rect`, or the last one where that is not ready yet.
     pub fn draw(
         &mut self,
         ctx: &egui::Context,
         snapshot: &Arc<Snapshot>,
         stage: usize,
         sight: &Sight,
-        size: [u32; 2],
-    ) -> Option<egui::TextureId> {
+        (rect, size): (egui::Rect, [u32; 2]),
+    ) -> Option<egui::Shape> {
         match self {
-            Self::Gpu(painter) => painter.draw(snapshot, stage, sight, size),
-            Self::Cpu(painter) => painter.draw(ctx, snapshot, stage, sight, size),
+            Self::Gpu(painter) => painter.draw(snapshot, stage, sight, size).map(|id| image(id, rect)),
+            Self::Cpu(painter) => {
+                painter.ask(ctx, snapshot, stage, sight, size);
+                painter.shape(rect)
+            }
         }
     }
 
@@ -114,6 +121,12 @@ impl Painter {
 /// Lets the window draw itself. Asked without a delay, egui does so twice.
 fn once(ctx: &egui::Context) {
     ctx.request_repaint_after(Duration::from_millis(1));
+}
+
+/// All of a texture at `rect`.
+fn image(texture: egui::TextureId, rect: egui::Rect) -> egui::Shape {
+    let all = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+    egui::Shape::image(texture, rect, all, egui::Color32::WHITE)
 }
 
 fn processors() -> usize {
