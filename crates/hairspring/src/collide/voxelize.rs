@@ -84,19 +84,21 @@ impl Voxelizer {
         let (flats, layers, level) = (&self.triangles, &self.layers, Level::new());
         let span = each * size.x * size.y;
         let parts = grid.distances.par_chunks_mut(span).zip(grid.nearest.par_chunks_mut(span));
-        self.benches.par_iter_mut().zip(parts).enumerate().for_each(|(part, (bench, (distances, nearest)))| {
-            bench.deep.clear();
-            let slabs = distances.chunks_mut(size.x * size.y).zip(nearest.chunks_mut(size.x * size.y));
-            for (z, (distances, nearest)) in (part * each..).zip(slabs) {
-                bench.begin(lattice.size);
-                for t in &layers[z] {
-                    let flat = &flats[*t as usize];
-                    dispatch!(level, simd => bench.measure(simd, flat, z, lattice.size));
-                    count_crossings(&flat.corners, z, (size.x, size.y), &mut bench.crossings);
+        self.benches.par_iter_mut().zip(parts).enumerate().for_each(
+            |(part, (bench, (distances, nearest)))| {
+                bench.deep.clear();
+                let slabs = distances.chunks_mut(size.x * size.y).zip(nearest.chunks_mut(size.x * size.y));
+                for (z, (distances, nearest)) in (part * each..).zip(slabs) {
+                    bench.begin(lattice.size);
+                    for t in &layers[z] {
+                        let flat = &flats[*t as usize];
+                        dispatch!(level, simd => bench.measure(simd, flat, z, lattice.size));
+                        count_crossings(&flat.corners, z, (size.x, size.y), &mut bench.crossings);
+                    }
+                    bench.finish(&lattice, z, distances, nearest);
                 }
-                bench.finish(&lattice, z, distances, nearest);
-            }
-        });
+            },
+        );
         sweep_inside(grid, &self.benches);
         grid.mark_inside();
     }
@@ -300,7 +302,8 @@ fn sweep_inside(grid: &mut Grid, benches: &[Bench]) {
     for [z, y, first, end] in runs().filter(coarse) {
         even(first, end).for_each(|x| update(d, [z, y, x]));
     }
-    let back = benches.iter().rev().flat_map(|bench| bench.deep.iter().rev()).map(|run| run.map(|i| i as usize));
+    let back =
+        benches.iter().rev().flat_map(|bench| bench.deep.iter().rev()).map(|run| run.map(|i| i as usize));
     for [z, y, first, end] in back.filter(coarse) {
         even(first, end).rev().for_each(|x| update(d, [z, y, x]));
     }
@@ -413,6 +416,47 @@ mod tests {
                 assert!(n.dot((p - center).normalize()) > 0.995, "normal at {p}: {n}");
             }
         }
+    }
+
+    #[test]
+    fn every_node_of_the_band_is_as_far_off_as_its_nearest_triangle_and_moves_with_it() {
+        let (mut positions, mut triangles) = ball(Vec3::new(0.01, 0.0, 0.003), 0.1, 3);
+        // One with its corners in a row, one that is a point.
+        triangles.extend([[0, 0, 1], [5, 5, 5]]);
+        positions.iter_mut().for_each(|p| p.y *= 0.7);
+        let before: Vec<Vec3> = positions.iter().map(|p| *p - Vec3::new(0.0, 0.1 * p.x, 0.002)).collect();
+        let (mut grid, cell) = (Grid::default(), 0.011);
+        Voxelizer::default().update(&mut grid, &positions, Some(&before), &triangles, None, cell);
+        let mut near = 0;
+        for (i, d) in grid.distances.iter().enumerate() {
+            let at = [
+                i as u32 % grid.size.x,
+                i as u32 / grid.size.x % grid.size.y,
+                i as u32 / grid.size.x / grid.size.y,
+            ];
+            let p = grid.origin + Vec3::from(at.map(|n| n as f32)) * grid.cell;
+            let place = |t: &[u32; 3], of: &[Vec3]| {
+                let w = crate::body::nearest_on_triangle(p, t.map(|i| positions[i as usize])).to_array();
+                t.iter().zip(w).map(|(i, w)| of[*i as usize] * w).sum::<Vec3>()
+            };
+            let distance = |t: &&[u32; 3]| place(t, &positions).distance(p);
+            let nearest = triangles.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap();
+            let exact = distance(&nearest);
+            if exact < 0.98 * BAND * cell {
+                near += 1;
+                assert!((d.abs() - exact).abs() < 1e-6, "at {p}: {d} in place of {exact}");
+                let moved = place(nearest, &positions) - place(nearest, &before);
+                // Where two are as near, either may be meant: they lie side by side.
+                assert!(
+                    (grid.displacement(p) - moved).length() < 1e-4,
+                    "at {p}: {} in place of {moved}",
+                    grid.displacement(p)
+                );
+            } else {
+                assert!(d.abs() > 0.97 * BAND * cell, "at {p}: {d} in place of {exact}");
+            }
+        }
+        assert!(near > 1000, "{near} nodes");
     }
 
     #[test]
