@@ -87,6 +87,10 @@ impl Grid {
         let triangle = self.nearest[node] as usize;
         let Some(moved) = self.moved.get(triangle).filter(|_| known) else { return Vec3::ZERO };
         let weights = nearest_on_triangle(p, self.corners[triangle]);
+        if !weights.is_finite() {
+            // Its corners lie on one another, or in a row.
+            return moved[0];
+        }
         moved[0] * weights.x + moved[1] * weights.y + moved[2] * weights.z
     }
 
