@@ -327,6 +327,11 @@ fn sweep_inside(grid: &mut Grid, benches: &[Bench]) {
     for [z, y, first, end] in runs().filter(|run| run[0] % 2 == 1) {
         between(z, y, first, end, [(z - 1) * ny + y, (z + 1).min(nz - 1) / 2 * 2 * ny + y]);
     }
+    // None of these is nearer to the surface than the band is wide.
+    for [z, y, first, end] in runs() {
+        let row = (z * ny + y) * nx;
+        d[row + first..row + end].iter_mut().for_each(|d| *d = d.min(-BAND * *cell));
+    }
 }
 
 /// Adds the oriented crossings of one triangle with the lines y = const of layer `z`.
