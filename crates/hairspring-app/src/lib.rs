@@ -60,6 +60,8 @@ pub fn run(options: Options) -> Result<(), AppError> {
             .with_app_id("hairspring")
             .with_inner_size(SIZE)
             .with_drag_and_drop(true),
+        // The picture of the hair has its own; the rest is flat. Software drivers take as long for it as for the letters.
+        dithering: false,
         ..Default::default()
     };
     let open = || {

@@ -9,18 +9,25 @@ use hairspring::{
     around::Tool,
     collide::Rigid,
     scene::Scene,
-    simulation::ToolId,
+    simulation::{Measure, ToolId},
     stage::{FrameReport, Picked, Stage, Value},
 };
 use hairspring_view::gpu::Gpu;
 use std::{
     sync::{
         Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering::Relaxed},
         mpsc::{Receiver, RecvTimeoutError, Sender, channel},
     },
     thread::JoinHandle,
     time::{Duration, Instant},
 };
+
+/// Steps are shown at least so often [s] while nobody asks for them: a window that draws slower than the play finds a moment that is not older.
+const SHOWN: Duration = Duration::from_millis(33);
+
+/// Steps from one measurement of all strands to the next while it plays: figures that change faster cannot be read.
+const MEASURED: u64 = 15;
 
 /// Length of a step [s]: what a frame of most screens takes.
 pub const STEP: f32 = 1.0 / 60.0;
@@ -61,6 +68,8 @@ pub enum Order {
 #[derive(Default)]
 struct Shared {
     latest: Mutex<Option<Arc<Snapshot>>>,
+    /// Whether the last moment has been seen, and another is wanted.
+    seen: AtomicBool,
     error: Mutex<Option<AppError>>,
 }
 
@@ -104,6 +113,7 @@ impl Player {
 
     /// The last moment.
     pub fn latest(&self) -> Option<Arc<Snapshot>> {
+        self.shared.seen.store(true, Relaxed);
         lock(&self.shared.latest).clone()
     }
 
@@ -145,7 +155,15 @@ struct Work {
     step: u64,
     reset_strands: usize,
     report: FrameReport,
+    /// Of each stage, at the last measurement, and the scene and step of that.
+    measures: Vec<Measure>,
+    measured: (u64, u64),
+    /// Steps are played whose follow hairs have not been placed.
+    unshown: bool,
+    /// What a step takes, all that belongs to it included, over some steps.
     took: Duration,
+    /// When something was shown last.
+    shown: Instant,
     /// When the next step is due.
     due: Instant,
     /// Snapshots whose memory is used again once the window has left them.
@@ -170,7 +188,11 @@ impl Work {
             step: 0,
             reset_strands: 0,
             report: FrameReport::default(),
+            measures: Vec::new(),
+            measured: (0, 0),
+            unshown: false,
             took: Duration::ZERO,
+            shown: Instant::now(),
             due: Instant::now(),
             pool: Vec::new(),
         }
@@ -196,8 +218,14 @@ impl Work {
                     }
                 }
                 Err(RecvTimeoutError::Timeout) if !idle => {
+                    let began = Instant::now();
                     self.advance();
-                    self.publish();
+                    if self.shared.seen.load(Relaxed) || self.shown.elapsed() > SHOWN {
+                        self.publish();
+                    }
+                    // Smooth: steps that are shown take longer than others.
+                    let took = began.elapsed();
+                    self.took = if self.step < 2 { took } else { self.took.mul_f32(0.9) + took.mul_f32(0.1) };
                     let frame = Duration::from_secs_f32(STEP / self.speed);
                     // A step that took too long is not made up for: time runs slower.
                     self.due = (self.due + frame).max(Instant::now());
@@ -221,7 +249,7 @@ impl Work {
                     Ok(stages) => {
                         self.stages = stages;
                         (self.step, self.reset_strands) = (0, 0);
-                        (self.tool, self.picked) = (None, None);
+                        (self.tool, self.picked, self.unshown) = (None, None, false);
                         self.due = Instant::now();
                     }
                     Err(why) => *lock(&self.shared.error) = Some(why),
@@ -242,7 +270,11 @@ impl Work {
                 self.due = Instant::now();
                 return false;
             }
-            Order::Step => self.advance(),
+            Order::Step => {
+                let began = Instant::now();
+                self.advance();
+                self.took = began.elapsed();
+            }
             Order::Reset => self.reset(),
             Order::Speed(speed) => {
                 self.speed = speed.clamp(0.01, 10.0);
@@ -278,6 +310,7 @@ impl Work {
             }
             Order::Show(value) => self.show = value,
             Order::Pick(ray) => {
+                self.show();
                 self.picked = ray.and_then(|(from, way)| self.stages.first()?.0.nearest_strand(from, way));
             }
         }
@@ -292,7 +325,7 @@ impl Work {
 
     fn reset(&mut self) {
         self.stages.iter_mut().for_each(|(stage, _)| stage.reset());
-        self.tool = None;
+        (self.tool, self.unshown) = (None, false);
         self.due = Instant::now();
     }
 
@@ -301,22 +334,40 @@ impl Work {
             self.reset();
             return;
         }
-        let began = Instant::now();
         for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
-            let report = stage.step(STEP);
+            let report = stage.advance(STEP);
             self.reset_strands += report.step.reset_strands;
             if k == 0 {
-                self.report = report;
+                self.report = FrameReport { follow: self.report.follow, ..report };
             }
         }
-        self.took = began.elapsed();
+        self.unshown = true;
         self.step += 1;
+    }
+
+    /// Brings all strands of the stages up to date.
+    fn show(&mut self) {
+        if std::mem::take(&mut self.unshown) {
+            for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
+                let took = stage.show();
+                if k == 0 {
+                    self.report.follow = took;
+                }
+            }
+        }
     }
 
     /// Shows the stages as they are.
     fn publish(&mut self) {
         if self.stages.is_empty() {
             return;
+        }
+        self.show();
+        let measured = self.measured.0 == self.scene && self.measures.len() == self.stages.len();
+        if !(self.playing && measured && self.step < self.measured.1 + MEASURED) {
+            self.measured = (self.scene, self.step);
+            self.measures.clear();
+            self.measures.extend(self.stages.iter().map(|(stage, _)| stage.measure()));
         }
         let mut next = self.spare();
         // Nobody else has it: `spare` saw to that.
@@ -327,14 +378,19 @@ impl Work {
         if snapshot.scene != self.scene || snapshot.stages.len() != self.stages.len() {
             snapshot.stages = self.stages.iter().map(fresh).collect();
         }
-        for (scenery, (stage, still)) in snapshot.stages.iter_mut().zip(&self.stages) {
+        for ((scenery, (stage, still)), measure) in
+            snapshot.stages.iter_mut().zip(&self.stages).zip(&self.measures)
+        {
             scenery.fill(stage, still, self.show);
+            scenery.measure = *measure;
         }
         let picked = self.picked;
         snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));
         (snapshot.step, snapshot.scene, snapshot.time) = (self.step, self.scene, first.time());
         (snapshot.report, snapshot.took, snapshot.reset_strands) =
             (self.report, self.took, self.reset_strands);
+        self.shown = Instant::now();
+        self.shared.seen.store(false, Relaxed);
         if let Some(old) = lock(&self.shared.latest).replace(next) {
             self.pool.push(old);
         }

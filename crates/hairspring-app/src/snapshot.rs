@@ -85,7 +85,7 @@ pub struct Scenery {
     pub obstacles: Vec<MovingObstacle>,
     /// The frame that roots move with.
     pub anchor: Rigid,
-    /// Stretch, depth, speed.
+    /// Stretch, depth, speed: of this moment or, while it plays, of one a few steps ago.
     pub measure: Measure,
     /// Volume of each groom's hair.
     pub volumes: Vec<Option<VolumeReport>>,
@@ -144,7 +144,6 @@ impl Scenery {
         self.obstacles.clear();
         self.obstacles.extend_from_slice(stage.obstacles());
         self.anchor = stage.body_anchor();
-        self.measure = stage.measure();
         self.volumes.clear();
         self.volumes.extend(stage.volumes());
     }
@@ -350,7 +349,7 @@ pub struct Snapshot {
     pub stages: Vec<Scenery>,
     /// Where the step's time went.
     pub report: FrameReport,
-    /// How long the step took, all of it.
+    /// How long a step takes, all that belongs to it included, over some steps.
     pub took: Duration,
     /// Strands put back to rest since the scene was opened.
     pub reset_strands: usize,

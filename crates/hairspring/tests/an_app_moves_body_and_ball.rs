@@ -1,7 +1,7 @@
 //! Promise: what an app moves, hair feels: the body as a whole, and a ball.
 //!
 //! Roots stay on a body that is carried through the world besides its clip. A ball keeps all hair out, follow hairs too, passes on its velocity, and has none
-//! where it appears.
+//! where it appears. Moments that it does not look at cost nothing, and change nothing.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -126,4 +126,20 @@ fn a_ball_stays_where_other_settings_come() {
     stage.reset();
     assert_eq!(stage.obstacles()[1].start, stage.obstacles()[1].end);
     assert_eq!(stage.obstacles()[1].end.translation, center);
+}
+
+#[test]
+fn moments_that_nobody_looks_at_change_nothing() {
+    let options = BuiltinOptions { strands: 200, guides: Guides::Count(40), ..BuiltinOptions::default() };
+    let scene = builtin::scene(&options);
+    let [mut seen, mut unseen] = [0; 2].map(|_| Stage::new(scene.clone()).unwrap());
+    let points = |stage: &Stage| stage.strands().map(|s| s.points.to_vec()).collect::<Vec<_>>();
+    let before = points(&unseen);
+    for _ in 0..30 {
+        seen.step(FRAME);
+        unseen.advance(FRAME);
+    }
+    assert_eq!(points(&unseen), before, "what is not shown stays");
+    unseen.show();
+    assert_eq!(points(&unseen), points(&seen), "the same bits");
 }

@@ -87,10 +87,10 @@ impl App {
             Some(document) => document,
             None => Document::new("scene.toml".as_ref(), builtin_text("wavy", hairs.0, hairs.1))?,
         };
-        let wake = ctx.clone();
-        let session =
-            Session::new(document, painters[0].spared(), painters[0].card(), move || wake.request_repaint())?;
+        let session = Session::new(document, painters[0].spared(), painters[0].card(), painters[0].wake(&ctx))?;
         ctx.set_theme(egui::Theme::Dark);
+        // The window is cleared in that colour: to fill panels with it once more would take a software driver as long as a picture.
+        ctx.all_styles_mut(|style| style.visuals.panel_fill = Color32::TRANSPARENT);
         Ok(Self {
             session,
             view: View::default(),
@@ -301,9 +301,8 @@ impl App {
             let pixels = ui.ctx().pixels_per_point();
             let size = [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(16, 8192));
             let painter = ui.painter_at(rect);
-            if let Some(texture) = self.painters[k].draw(ui.ctx(), snapshot, k, &sight, size) {
-                let all = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-                painter.image(texture, rect, all, Color32::WHITE);
+            if let Some(shape) = self.painters[k].draw(ui.ctx(), snapshot, k, &sight, (rect, size)) {
+                painter.add(shape);
             }
             overlay::draw(&painter, rect, scenery, &self.view, &sight);
             if count > 1 {
@@ -344,6 +343,10 @@ impl App {
 }
 
 impl eframe::App for App {
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.window_fill.to_normalized_gamma_f32()
+    }
+
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = &ui.ctx().clone();
         let _ = frame;
@@ -409,7 +412,9 @@ impl eframe::App for App {
             }
         }
         if !self.is_idle() {
-            ctx.request_repaint_after(Duration::from_millis(15));
+            // What waits for steps alone is woken by them, but for a scene that could not be opened.
+            let soon = self.recorder.is_some() || !self.finger.rests() || self.shot.is_some();
+            ctx.request_repaint_after(Duration::from_millis(if soon { 15 } else { 200 }));
         }
     }
 }

@@ -9,7 +9,10 @@ use crate::{
     snapshot::Snapshot,
 };
 use eframe::egui;
-use std::sync::{Arc, mpsc::channel};
+use std::{
+    sync::{Arc, mpsc::channel},
+    time::Duration,
+};
 
 impl App {
     /// Does the next lines of the script that can be done now.
@@ -63,7 +66,7 @@ impl App {
             }
             Line::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
         }
-        ctx.request_repaint();
+        ctx.request_repaint_after(Duration::from_millis(1));
     }
 
     fn switch(&mut self, name: &str, on: bool) {

@@ -1,11 +1,16 @@
 //! The picture by the CPU, on a thread of its own, as fine as there is time for: the window stays quick, and says what it leaves out.
 
+use super::{image, once, pane::Pane};
 use crate::snapshot::{Sight, Snapshot};
-use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
-use hairspring_view::{Image, Renderer};
+use eframe::{
+    egui::{self, ColorImage, TextureHandle, TextureOptions},
+    egui_wgpu::RenderState,
+};
+use hairspring_view::{Image, Quality, Renderer};
 use std::{
     sync::{
         Arc,
+        atomic::{AtomicBool, Ordering::Relaxed},
         mpsc::{Receiver, Sender, TryRecvError, channel},
     },
     time::{Duration, Instant},
@@ -14,9 +19,36 @@ use std::{
 /// Longest that a picture of moving hair should take [s]: 20 a second, of which the window's own work leaves 15.
 const BUDGET: f32 = 0.05;
 
-/// Parts of the full size, and every how-manieth hair, from the finest to the coarsest. Fewer hairs than the last are no picture of a head of hair.
-const LEVELS: [(f32, usize); 8] =
-    [(1.0, 1), (0.75, 1), (0.75, 2), (0.5, 2), (0.5, 4), (0.4, 4), (0.33, 8), (0.25, 8)];
+/// How much of the last picture's time counts in the mean.
+const SMOOTH: f32 = 0.3;
+
+/// How much of a picture is drawn.
+struct Level {
+    /// Part of the full size.
+    scale: f32,
+    /// Every how-manieth hair.
+    every: usize,
+    /// Voxels and texels of the shadows.
+    shadow: [u32; 2],
+}
+
+const fn level(scale: f32, every: usize, shadow: [u32; 2]) -> Level {
+    Level { scale, every, shadow }
+}
+
+/// From the finest to the coarsest. Fewer hairs than the last are no picture of a head of hair. Shadows are blurred by a hair's neighbours anyway: half as fine, they
+/// look alike and take an eighth of the voxels.
+const LEVELS: [Level; 9] = [
+    level(1.0, 1, [112, 1024]),
+    level(0.85, 1, [80, 768]),
+    level(0.75, 1, [64, 512]),
+    level(0.65, 2, [56, 512]),
+    level(0.55, 2, [56, 512]),
+    level(0.5, 3, [48, 384]),
+    level(0.45, 4, [40, 384]),
+    level(0.4, 6, [32, 256]),
+    level(0.35, 8, [32, 256]),
+];
 
 struct Job {
     snapshot: Arc<Snapshot>,
@@ -32,24 +64,43 @@ struct Done {
     level: usize,
 }
 
+/// How a picture comes into the window.
+enum Shows {
+    /// By a pipeline of its own.
+    Pane(Box<Pane>),
+    /// By the window's library: where nobody knows what it draws with, as in tests.
+    Texture(Option<TextureHandle>),
+}
+
+impl Shows {
+    fn new(window: Option<&RenderState>) -> Self {
+        window.map_or(Self::Texture(None), |state| Self::Pane(Box::new(Pane::new(state))))
+    }
+}
+
 /// Draws one view.
 pub struct CpuPainter {
     jobs: Sender<Job>,
     done: Receiver<Done>,
-    busy: bool,
-    texture: Option<TextureHandle>,
+    /// Whether a picture is being drawn.
+    busy: Arc<AtomicBool>,
+    shows: Shows,
     /// What the picture shows: not drawn again while it is the same.
     shown: Option<(u64, u64, Sight, [u32; 2])>,
     level: usize,
     /// Level of the picture that is seen.
     seen: usize,
+    /// What a picture of this level takes, over some pictures [s].
     took: f32,
+    /// From a picture of moving hair to the next, over some pictures [s], and when the last came.
+    pace: f32,
+    came: Instant,
     moved: Instant,
 }
 
 impl CpuPainter {
     /// Starts the thread, which draws on so many others; it wakes the window when a picture is there.
-    pub fn new(ctx: &egui::Context, threads: usize) -> Self {
+    pub fn new(ctx: &egui::Context, window: Option<&RenderState>, threads: usize) -> Self {
         let (jobs, todo) = channel::<Job>();
         let (finished, done) = channel();
         let ctx = ctx.clone();
@@ -71,35 +122,51 @@ impl CpuPainter {
                 if finished.send(Done { image, took, level: job.level }).is_err() {
                     return;
                 }
-                ctx.request_repaint();
+                once(&ctx);
             }
         });
         Self {
             jobs,
             done,
-            busy: false,
-            texture: None,
+            busy: Arc::default(),
+            shows: Shows::new(window),
             shown: None,
             // From where a slow machine is quick; a fast one is finer within a second.
-            level: 3,
-            seen: 3,
+            level: 4,
+            seen: 4,
             took: 0.0,
+            pace: 0.0,
+            came: Instant::now(),
             moved: Instant::now(),
         }
     }
 
-    /// Asks for a picture of `size` pixels where none is being drawn, and returns the last one.
-    pub fn draw(
+    /// Another for the same window.
+    pub fn another(&self, ctx: &egui::Context, threads: usize) -> Self {
+        let window = match &self.shows {
+            Shows::Pane(pane) => Some(pane.state()),
+            Shows::Texture(_) => None,
+        };
+        Self::new(ctx, window, threads)
+    }
+
+    /// Whether a picture is being drawn, now and later.
+    pub fn busy(&self) -> Arc<AtomicBool> {
+        self.busy.clone()
+    }
+
+    /// Asks for a picture of `size` pixels where none is being drawn, and takes one that is done.
+    pub fn ask(
         &mut self,
         ctx: &egui::Context,
         snapshot: &Arc<Snapshot>,
         stage: usize,
         sight: &Sight,
         size: [u32; 2],
-    ) -> Option<egui::TextureId> {
+    ) {
         match self.done.try_recv() {
             Ok(done) => self.show(ctx, done),
-            Err(TryRecvError::Disconnected) => self.busy = true,
+            Err(TryRecvError::Disconnected) => self.busy.store(true, Relaxed),
             Err(TryRecvError::Empty) => {}
         }
         let wanted = (snapshot.scene, snapshot.step, *sight, size);
@@ -110,51 +177,74 @@ impl CpuPainter {
         // What has stood still for a moment is drawn in full.
         let rested = self.moved.elapsed() > Duration::from_millis(300);
         let level = if rested { 0 } else { self.level };
-        if !self.busy && (!same || (rested && self.seen > 0)) {
-            let (scale, every) = LEVELS[level];
+        if !self.busy.load(Relaxed) && (!same || (rested && self.seen > 0)) {
+            let Level { scale, every, shadow: [shadow_voxels, shadow_texels] } = LEVELS[level];
             let side = |s: u32| ((s as f32 * scale) as u32).max(16);
             let job = Job {
                 snapshot: snapshot.clone(),
                 stage,
-                sight: Sight { every: every.max(sight.every), ..*sight },
+                sight: Sight {
+                    every: every.max(sight.every),
+                    quality: Quality { shadow_voxels, shadow_texels, ..sight.quality },
+                    ..*sight
+                },
                 size: size.map(side),
                 level,
             };
-            self.busy = self.jobs.send(job).is_ok();
+            self.busy.store(self.jobs.send(job).is_ok(), Relaxed);
             self.shown = Some(wanted);
         } else if same && !rested {
             ctx.request_repaint_after(Duration::from_millis(310));
         }
-        self.texture.as_ref().map(TextureHandle::id)
+    }
+
+    /// The last picture, laid in at `rect`.
+    pub fn shape(&self, rect: egui::Rect) -> Option<egui::Shape> {
+        match &self.shows {
+            Shows::Pane(pane) => pane.shape(rect),
+            Shows::Texture(texture) => texture.as_ref().map(|texture| image(texture.id(), rect)),
+        }
     }
 
     fn show(&mut self, ctx: &egui::Context, done: Done) {
-        self.busy = false;
-        let size = [done.image.width as usize, done.image.height as usize];
-        let image = ColorImage::from_rgb(size, &done.image.rgb);
-        match &mut self.texture {
-            Some(texture) => texture.set(image, TextureOptions::LINEAR),
-            None => self.texture = Some(ctx.load_texture("hair", image, TextureOptions::LINEAR)),
+        self.busy.store(false, Relaxed);
+        match &mut self.shows {
+            Shows::Pane(pane) => pane.take(&done.image),
+            Shows::Texture(texture) => {
+                let size = [done.image.width as usize, done.image.height as usize];
+                let image = ColorImage::from_rgb(size, &done.image.rgb);
+                *texture = Some(ctx.load_texture("hair", image, TextureOptions::LINEAR));
+            }
         }
-        (self.took, self.seen) = (done.took, done.level);
+        let mean = |mean: f32, last: f32| if mean == 0.0 { last } else { mean + SMOOTH * (last - mean) };
+        let since = self.came.elapsed().as_secs_f32();
+        self.came = Instant::now();
+        // A picture of what stood still begins anew.
+        self.pace = if done.level == self.level && since < 1.0 { mean(self.pace, since) } else { 0.0 };
+        self.took = if done.level == self.seen { mean(self.took, done.took) } else { done.took };
+        self.seen = done.level;
         if done.level == self.level {
             // Finer only where that would surely fit: it must not go to and fro.
-            if done.took > BUDGET {
+            if self.took > BUDGET {
                 self.level = (self.level + 1).min(LEVELS.len() - 1);
-            } else if done.took < 0.45 * BUDGET {
+            } else if self.took < 0.45 * BUDGET {
                 self.level = self.level.saturating_sub(1);
             }
         }
     }
 
-    /// What is left out of the picture that is seen, and how long it took.
+    /// What is left out of the picture that is seen, how long it took, and how many come in a second.
     pub fn note(&self) -> String {
-        let (scale, every) = LEVELS[self.seen];
+        let Level { scale, every, .. } = LEVELS[self.seen];
         let part = match (scale, every) {
             (1.0, 1) => "in full".to_owned(),
             (_, 1) => format!("at {:.0} % of the size", 100.0 * scale),
             _ => format!("at {:.0} % of the size, 1 hair of {every}", 100.0 * scale),
         };
-        format!("CPU: {part}, {:.0} ms", 1e3 * self.took)
+        let pace = match self.pace {
+            0.0 => String::new(),
+            pace => format!("; {:.0} pictures a second", 1.0 / pace),
+        };
+        format!("CPU: {part}, {:.0} ms{pace}", 1e3 * self.took)
     }
 }

@@ -2,13 +2,20 @@
 
 mod cpu;
 mod gpu;
+mod pane;
 
 use crate::snapshot::{Sight, Snapshot};
 use cpu::CpuPainter;
 use eframe::{egui, wgpu::DeviceType};
 use gpu::GpuPainter;
 use hairspring_view::gpu::Gpu;
-use std::sync::Arc;
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering::Relaxed},
+    },
+    time::Duration,
+};
 
 /// Who draws the hair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,7 +49,10 @@ impl Painter {
         });
         match state {
             Some(state) => Self::Gpu(Box::new(GpuPainter::new(state))),
-            None => Self::Cpu(Box::new(CpuPainter::new(&creation.egui_ctx, half()))),
+            None => {
+                let window = creation.wgpu_render_state.as_ref();
+                Self::Cpu(Box::new(CpuPainter::new(&creation.egui_ctx, window, half())))
+            }
         }
     }
 
@@ -50,7 +60,7 @@ impl Painter {
     pub fn another(&self, ctx: &egui::Context) -> Self {
         match self {
             Self::Gpu(painter) => Self::Gpu(Box::new(painter.another())),
-            Self::Cpu(_) => Self::Cpu(Box::new(CpuPainter::new(ctx, half()))),
+            Self::Cpu(painter) => Self::Cpu(Box::new(painter.another(ctx, half()))),
         }
     }
 
@@ -70,23 +80,41 @@ impl Painter {
         }
     }
 
+    /// What is to be called when there is something new to see. A window that waits for a picture by the CPU is woken by that alone: all that it could
+    /// do before is to draw the last one once more, which takes a software driver as long as the picture.
+    pub fn wake(&self, ctx: &egui::Context) -> impl Fn() + Send + 'static {
+        let ctx = ctx.clone();
+        let busy = match self {
+            Self::Gpu(_) => Arc::<AtomicBool>::default(),
+            Self::Cpu(painter) => painter.busy(),
+        };
+        move || {
+            if !busy.load(Relaxed) {
+                once(&ctx);
+            }
+        }
+    }
+
     /// Whether a GPU draws.
     pub fn is_gpu(&self) -> bool {
         matches!(self, Self::Gpu(_))
     }
 
-    /// The picture of a stage of a snapshot, `size` pixels large, or the last one where that is not ready yet.
+    /// The picture of a stage of a snapshot, `size` pixels large and laid in at `rect`, or the last one where that is not ready yet.
     pub fn draw(
         &mut self,
         ctx: &egui::Context,
         snapshot: &Arc<Snapshot>,
         stage: usize,
         sight: &Sight,
-        size: [u32; 2],
-    ) -> Option<egui::TextureId> {
+        (rect, size): (egui::Rect, [u32; 2]),
+    ) -> Option<egui::Shape> {
         match self {
-            Self::Gpu(painter) => painter.draw(snapshot, stage, sight, size),
-            Self::Cpu(painter) => painter.draw(ctx, snapshot, stage, sight, size),
+            Self::Gpu(painter) => painter.draw(snapshot, stage, sight, size).map(|id| image(id, rect)),
+            Self::Cpu(painter) => {
+                painter.ask(ctx, snapshot, stage, sight, size);
+                painter.shape(rect)
+            }
         }
     }
 
@@ -97,6 +125,17 @@ impl Painter {
             Self::Cpu(painter) => painter.note(),
         }
     }
+}
+
+/// Lets the window draw itself. Asked without a delay, egui does so twice.
+fn once(ctx: &egui::Context) {
+    ctx.request_repaint_after(Duration::from_millis(1));
+}
+
+/// All of a texture at `rect`.
+fn image(texture: egui::TextureId, rect: egui::Rect) -> egui::Shape {
+    let all = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+    egui::Shape::image(texture, rect, all, egui::Color32::WHITE)
 }
 
 fn processors() -> usize {

@@ -1,6 +1,7 @@
 //! A signed distance field on a regular grid.
 
-use super::lattice::Lattice;
+use super::{lattice::Lattice, voxelize::BAND};
+use crate::body::nearest_on_triangle;
 use crate::strand::lanes::{F, LANES, Row, V3, load};
 use fearless_simd::{mask32x8, prelude::*};
 use glam::{UVec3, Vec3};
@@ -17,9 +18,11 @@ pub struct Grid {
     pub size: UVec3,
     /// Distance at each node [m], x fastest; shape `[size.z][size.y][size.x]`.
     pub distances: Vec<f32>,
-    /// How far the nearest surface moved during the last interval, in the field's space [m]; the shape of `distances`,
-    /// or empty: the surface is rigid.
-    pub displacements: Vec<Vec3>,
+    /// Number of the nearest triangle at each node of the band, anything at others; the shape of `distances`.
+    pub(super) nearest: Vec<u32>,
+    /// Corners of the triangles, and how far they moved during the last interval, in the field's space [m]; empty: the surface is rigid.
+    corners: Vec<[Vec3; 3]>,
+    moved: Vec<[Vec3; 3]>,
     /// A bit for each cell that holds a place inside, at the index of its lower node; empty: any may.
     inside: Vec<u32>,
 }
@@ -27,12 +30,32 @@ pub struct Grid {
 impl Grid {
     /// Whether the surface moved in the field's own space.
     pub fn deforms(&self) -> bool {
-        !self.displacements.is_empty()
+        !self.moved.is_empty()
+    }
+
+    /// A grid of that size, whose distances and nearest triangles are still to be filled in; `before`: vertices an interval ago.
+    pub(super) fn begin(
+        &mut self,
+        lattice: Lattice,
+        positions: &[Vec3],
+        before: Option<&[Vec3]>,
+        triangles: &[[u32; 3]],
+    ) {
+        (self.origin, self.cell, self.size) = (lattice.origin, lattice.cell, lattice.size);
+        self.distances.resize(lattice.nodes(), 0.0);
+        self.nearest.resize(lattice.nodes(), 0);
+        self.corners.clear();
+        self.moved.clear();
+        if let Some(before) = before {
+            self.corners.extend(triangles.iter().map(|t| t.map(|i| positions[i as usize])));
+            let moved = |i: u32| positions[i as usize] - before[i as usize];
+            self.moved.extend(triangles.iter().map(|t| t.map(moved)));
+        }
     }
 
     /// The surface is where it was an interval ago.
     pub(crate) fn hold_still(&mut self) {
-        self.displacements.clear();
+        self.moved.clear();
     }
 
     /// The ball around the whole grid, outside of which nothing is inside: its middle and radius [m].
@@ -55,11 +78,20 @@ impl Grid {
         (mix(y[0], y[1], fz) + out.length() * self.cell, gradient.normalize_or(Vec3::Y))
     }
 
-    /// How far the surface nearest to `p` [m] moved in the last interval [m]; 0 for a rigid one.
+    /// How far the surface nearest to `p` [m] moved in the last interval [m]; 0 for a rigid one, and beyond the band of exact distances.
     pub fn displacement(&self, p: Vec3) -> Vec3 {
         let top = (self.size - UVec3::ONE).as_vec3();
         let c = ((p - self.origin) / self.cell).max(Vec3::ZERO).min(top);
-        self.displacements.get(self.lattice().index(c.round().as_uvec3())).copied().unwrap_or_default()
+        let node = self.lattice().index(c.round().as_uvec3());
+        let known = self.distances[node].abs() < 0.99 * BAND * self.cell;
+        let triangle = self.nearest[node] as usize;
+        let Some(moved) = self.moved.get(triangle).filter(|_| known) else { return Vec3::ZERO };
+        let weights = nearest_on_triangle(p, self.corners[triangle]);
+        if !weights.is_finite() {
+            // Its corners lie on one another, or in a row.
+            return moved[0];
+        }
+        moved[0] * weights.x + moved[1] * weights.y + moved[2] * weights.z
     }
 
     fn lattice(&self) -> Lattice {
@@ -81,9 +113,13 @@ impl Grid {
             .par_chunks(u32::BITS as usize)
             .with_min_len(1024)
             .map(|nodes| {
-                // A NaN counts as inside: what is not known is looked at.
-                let outside = nodes.iter().rev().fold(0, |bits, d| bits << 1 | u32::from(*d > 0.0));
-                !outside
+                // Most words are all the same. A NaN counts as inside: what is not known is looked at.
+                let outside: u32 = nodes.iter().map(|d| u32::from(*d > 0.0)).sum();
+                if outside == 0 || outside == u32::BITS {
+                    return if outside == 0 { u32::MAX } else { 0 };
+                }
+                let bits = nodes.iter().zip(0..).fold(0, |bits, (d, k)| bits | u32::from(*d > 0.0) << k);
+                !bits
             })
             .collect_into_vec(&mut self.inside);
         // A cell reaches one node on along each axis. From the first word on: what is read is not yet written.

@@ -9,12 +9,14 @@ use super::{
     Grid,
     lattice::{self, Lattice},
 };
-use crate::body::nearest_on_triangle;
-use glam::{DVec2, Vec3};
+use crate::strand::lanes::{F, LANES, V3};
+use fearless_simd::{Level, dispatch, prelude::*};
+use glam::{DVec2, UVec3, Vec3};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Half-width of the band of exact distances, in cells.
-const BAND: f32 = 2.0;
+pub(super) const BAND: f32 = 2.0;
 
 /// Largest number of nodes of a grid; the cell grows until it fits. 4 Mi nodes: 16 MiB.
 const MAX_NODES: usize = lattice::MAX_NODES / 2;
@@ -29,15 +31,15 @@ pub fn voxelize(positions: &[Vec3], triangles: &[[u32; 3]], cell: f32) -> Grid {
 /// Builds fields again and again without allocating, once its buffers have grown.
 #[derive(Default)]
 pub struct Voxelizer {
+    triangles: Vec<Flat>,
     /// Triangles that come near each layer of nodes in z.
     layers: Vec<Vec<u32>>,
-    /// Entries (+) and exits (−) of the surface before each node, along x.
-    crossings: Vec<i16>,
+    benches: Vec<Bench>,
 }
 
 impl Voxelizer {
     /// Makes `grid` the field of the mesh. `before`, where given, holds the vertices one interval ago in the same
-    /// space: the grid then also carries how far the surface moved.
+    /// space: the grid then also knows how far the surface moved.
     ///
     /// The grid covers the mesh with a margin of the band, but no more than the box `within` (min, max) [m] where that is
     /// given, in cells of `cell` [m] or larger where that would be too many. A mesh without triangles gives a field that
@@ -59,142 +61,284 @@ impl Voxelizer {
         let nowhere = within.map_or(Vec3::ZERO, |(a, _)| a);
         let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (nowhere, nowhere) };
         let lattice = Lattice::covering(lo, hi, BAND + 0.5, cell, MAX_NODES);
-        (grid.origin, grid.cell, grid.size) = (lattice.origin, lattice.cell, lattice.size);
-        let cell = grid.cell;
-        let (nx, ny, nz) = (grid.size.x as usize, grid.size.y as usize, grid.size.z as usize);
-        let count = nx * ny * nz;
-        grid.distances.clear();
-        grid.distances.resize(count, BAND * cell);
-        grid.displacements.clear();
-        grid.displacements.resize(if before.is_some() { count } else { 0 }, Vec3::ZERO);
-        self.crossings.clear();
-        self.crossings.resize(count, 0);
+        grid.begin(lattice, positions, before, triangles);
+        let size = lattice.size.as_usizevec3();
 
         // Which triangles come near which layer.
-        self.layers.resize_with(nz.max(self.layers.len()), Vec::new);
+        self.triangles.clear();
+        self.layers.resize_with(size.z.max(self.layers.len()), Vec::new);
         self.layers.iter_mut().for_each(Vec::clear);
-        let origin = grid.origin;
-        let corners = |t: u32| triangles[t as usize].map(|i| (positions[i as usize] - origin) / cell);
-        for t in 0..triangles.len() as u32 {
-            let c = corners(t);
-            if !c.iter().all(|p| p.is_finite()) {
-                continue;
-            }
-            let z0 = (c[0].z.min(c[1].z).min(c[2].z) - BAND).max(0.0) as usize;
-            let z1 = c[0].z.max(c[1].z).max(c[2].z) + BAND;
-            if z1 >= 0.0 && z0 < nz {
-                self.layers[z0..=(z1 as usize).min(nz - 1)].iter_mut().for_each(|l| l.push(t));
+        for (number, t) in triangles.iter().enumerate() {
+            let corners = t.map(|i| (positions[i as usize] - lattice.origin) / lattice.cell);
+            let Some(flat) = Flat::new(corners, number as u32) else { continue };
+            let [_, _, layers] = flat.near(lattice.size);
+            if !layers.is_empty() {
+                self.layers[layers].iter_mut().for_each(|layer| layer.push(self.triangles.len() as u32));
+                self.triangles.push(flat);
             }
         }
 
-        // Distances and crossings, a layer at a time.
-        let moved = |t: u32, weights: Vec3| {
-            let before = before.expect("displacements are only kept with a pose before");
-            let own = |k: usize| {
-                let i = triangles[t as usize][k] as usize;
-                (positions[i] - before[i]) * weights[k]
-            };
-            own(0) + own(1) + own(2)
-        };
-        let mut no_displacements: Vec<[Vec3; 0]> = vec![[]; nz];
-        let displaced: Vec<&mut [Vec3]> = if before.is_some() {
-            grid.displacements.chunks_mut(nx * ny).collect()
-        } else {
-            no_displacements.iter_mut().map(|e| e.as_mut_slice()).collect()
-        };
-        let layers = &self.layers;
-        grid.distances
-            .par_chunks_mut(nx * ny)
-            .zip(self.crossings.par_chunks_mut(nx * ny))
-            .zip(displaced)
-            .enumerate()
-            .for_each(|(z, ((distances, crossings), displaced))| {
-                for &t in &layers[z] {
-                    let c = corners(t);
-                    let [lo, hi] = [c[0].min(c[1]).min(c[2]), c[0].max(c[1]).max(c[2])];
-                    let range = |lo: f32, hi: f32, n: usize| {
-                        (lo - BAND).ceil().max(0.0) as usize
-                            ..((hi + BAND).max(-1.0) + 1.0).min(n as f32) as usize
-                    };
-                    let normal = (c[1] - c[0]).cross(c[2] - c[0]).normalize_or_zero();
-                    for y in range(lo.y, hi.y, ny) {
-                        for x in range(lo.x, hi.x, nx) {
-                            let p = Vec3::new(x as f32, y as f32, z as f32);
-                            // Most nodes of the box are too far from the plane to be looked at closer.
-                            if normal.dot(p - c[0]).abs() > BAND {
-                                continue;
-                            }
-                            let weights = nearest_on_triangle(p, c);
-                            let d =
-                                (c[0] * weights.x + c[1] * weights.y + c[2] * weights.z).distance(p) * cell;
-                            let at = y * nx + x;
-                            if d < distances[at] {
-                                distances[at] = d;
-                                if let Some(slot) = displaced.get_mut(at) {
-                                    *slot = moved(t, weights);
-                                }
-                            }
-                        }
+        // A few benches a thread, each for some layers in a row. A layer knows of no other: it does not matter who makes it.
+        let each = size.z.div_ceil(4 * rayon::current_num_threads());
+        self.benches.resize_with(size.z.div_ceil(each), Bench::default);
+        let (flats, layers, level) = (&self.triangles, &self.layers, Level::new());
+        let span = each * size.x * size.y;
+        let parts = grid.distances.par_chunks_mut(span).zip(grid.nearest.par_chunks_mut(span));
+        self.benches.par_iter_mut().zip(parts).enumerate().for_each(
+            |(part, (bench, (distances, nearest)))| {
+                bench.deep.clear();
+                let slabs = distances.chunks_mut(size.x * size.y).zip(nearest.chunks_mut(size.x * size.y));
+                for (z, (distances, nearest)) in (part * each..).zip(slabs) {
+                    bench.begin(lattice.size);
+                    for t in &layers[z] {
+                        let flat = &flats[*t as usize];
+                        dispatch!(level, simd => bench.measure(simd, flat, z, lattice.size));
+                        count_crossings(&flat.corners, z, (size.x, size.y), &mut bench.crossings);
                     }
-                    if lo.z <= z as f32 && z as f32 <= hi.z {
-                        count_crossings(&c, z, (nx, ny), crossings);
-                    }
+                    bench.finish(&lattice, z, distances, nearest);
                 }
-                // Winding along x: inside where more surfaces were entered than left.
-                for (row, crossing) in distances.chunks_mut(nx).zip(crossings.chunks(nx)) {
-                    let mut winding = 0;
-                    for (d, c) in row.iter_mut().zip(crossing) {
-                        winding += *c;
-                        if winding > 0 {
-                            *d = -*d;
-                        }
-                    }
-                }
-            });
-        sweep_inside(grid);
+            },
+        );
+        sweep_inside(grid, &self.benches);
         grid.mark_inside();
     }
 }
 
-/// Extends distances through the inside beyond the band: one round of fast sweeping for |∇d| = 1 (Zhao 2005).
-fn sweep_inside(grid: &mut Grid) {
-    let (nx, ny, nz) = (grid.size.x as usize, grid.size.y as usize, grid.size.z as usize);
-    let known = -(BAND - 0.01) * grid.cell;
+/// A triangle in cells, with what many nodes ask of it.
+struct Flat {
+    corners: [Vec3; 3],
+    /// From each corner to the next, and one over the square of that.
+    edges: [Vec3; 3],
+    inverse: [f32; 3],
+    /// Unit normal; zero where the corners lie in a row.
+    normal: Vec3,
+    /// Out of the triangle, across each edge, in its plane.
+    out: [Vec3; 3],
+    /// Which of the mesh's.
+    number: u32,
+}
+
+impl Flat {
+    /// `None`: it is nowhere.
+    fn new(corners: [Vec3; 3], number: u32) -> Option<Self> {
+        let [a, b, c] = corners;
+        let edges = [b - a, c - b, a - c];
+        let normal = edges[0].cross(c - a).normalize_or_zero();
+        let inverse = edges.map(|e| 1.0 / e.length_squared().max(1e-12));
+        let out = edges.map(|e| e.cross(normal));
+        corners.iter().all(|p| p.is_finite()).then_some(Self { corners, edges, inverse, normal, out, number })
+    }
+
+    /// The nodes along each axis that may lie in its band.
+    fn near(&self, size: UVec3) -> [Range<usize>; 3] {
+        let [a, b, c] = self.corners;
+        let (lo, hi) = ((a.min(b).min(c) - BAND).ceil(), (a.max(b).max(c) + BAND).floor());
+        std::array::from_fn(|k| {
+            let end = (hi[k] + 1.0).clamp(0.0, size[k] as f32) as usize;
+            (lo[k].max(0.0) as usize).min(end)..end
+        })
+    }
+}
+
+/// Where some layers of a field are made, one after the other, while they sit in the nearest caches.
+#[derive(Default)]
+struct Bench {
+    /// Squared distance to the surface [cells²]. Rows are longer than the layer's, so that eight nodes fit from any of them on.
+    squared: Vec<f32>,
+    /// Number of the nearest triangle, as the bits of an `f32`: it is only chosen, never reckoned with.
+    nearest: Vec<f32>,
+    /// Entries (+) and exits (−) of the surface before each node, along x.
+    crossings: Vec<i16>,
+    /// Rows that any triangle is near to.
+    seen: Vec<bool>,
+    /// Runs of nodes in a row that lie deeper than the band: layer, row, first and end.
+    deep: Vec<[u32; 4]>,
+}
+
+impl Bench {
+    /// A layer of which nothing is known.
+    fn begin(&mut self, size: UVec3) {
+        let (nx, ny) = (size.x as usize, size.y as usize);
+        let places = ny * (nx + LANES);
+        self.squared.clear();
+        self.squared.resize(places, BAND * BAND);
+        // What is farther than the band is the nearest of none, and its number is not asked for.
+        self.nearest.resize(places, 0.0);
+        self.crossings.clear();
+        self.crossings.resize(nx * ny, 0);
+        self.seen.clear();
+        self.seen.resize(ny, false);
+    }
+
+    /// Exact distances from the nodes of layer `z` in the triangle's band to the triangle, eight nodes of a row at a time: to its plane where
+    /// the foot of the perpendicular lies in it, else to the nearest edge.
+    #[inline(always)]
+    fn measure<S: Simd>(&mut self, simd: S, flat: &Flat, z: usize, size: UVec3) {
+        let stride = size.x as usize + LANES;
+        let [columns, rows, _] = flat.near(size);
+        let normal = flat.normal;
+        let lane = F::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        let number = F::splat(simd, f32::from_bits(flat.number));
+        let (zero, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
+        for y in rows {
+            // Most nodes of the box are too far from the plane to be looked at closer.
+            let row = Vec3::new(0.0, y as f32, z as f32);
+            let (off, slack) = (normal.dot(row - flat.corners[0]), BAND + 1e-3);
+            let (mut first, mut end) = (columns.start as f32, columns.end as f32);
+            if normal.x.abs() > 1e-3 {
+                let (p, q) = ((-slack - off) / normal.x, (slack - off) / normal.x);
+                (first, end) = (first.max(p.min(q).ceil()), end.min(p.max(q).floor() + 1.0));
+            } else if off.abs() > slack + 1e-3 * stride as f32 {
+                continue;
+            }
+            self.seen[y] |= first < end;
+            let mut x = first;
+            while x < end {
+                let mut squared = F::splat(simd, f32::MAX);
+                let mut within = zero.simd_eq(zero);
+                // What differs along a row is x alone.
+                for k in 0..3 {
+                    let from = row + Vec3::X * x - flat.corners[k];
+                    let (edge, out) = (flat.edges[k], flat.out[k]);
+                    let along = lane.mul_add(edge.x * flat.inverse[k], from.dot(edge) * flat.inverse[k]);
+                    let share = along.max(zero).min(one);
+                    let d = V3 {
+                        x: share.mul_add(-edge.x, lane + from.x),
+                        y: share.mul_add(-edge.y, from.y),
+                        z: share.mul_add(-edge.z, from.z),
+                    };
+                    squared = squared.min(d.dot(d));
+                    within &= lane.mul_add(out.x, from.dot(out)).simd_lt(zero);
+                }
+                let above = lane.mul_add(normal.x, off + normal.x * x);
+                squared = within.select(above * above, squared);
+                let place = y * stride + x as usize;
+                let best = F::from_slice(simd, &self.squared[place..place + LANES]);
+                let nearer = squared.simd_lt(best);
+                if nearer.any_true() {
+                    let who = F::from_slice(simd, &self.nearest[place..place + LANES]);
+                    nearer.select(squared, best).store_slice(&mut self.squared[place..place + LANES]);
+                    nearer.select(number, who).store_slice(&mut self.nearest[place..place + LANES]);
+                }
+                x += LANES as f32;
+            }
+        }
+    }
+
+    /// Signed distances [m] and nearest triangles of layer `z`, by winding along x: inside where more surfaces were entered than left.
+    fn finish(&mut self, lattice: &Lattice, z: usize, distances: &mut [f32], nearest: &mut [u32]) {
+        let nx = lattice.size.x as usize;
+        let known = -(BAND - 0.01) * lattice.cell;
+        let rows = self.squared.chunks(nx + LANES).zip(self.nearest.chunks(nx + LANES));
+        let rows = rows.zip(self.crossings.chunks(nx)).enumerate();
+        let out = distances.chunks_mut(nx).zip(nearest.chunks_mut(nx));
+        for ((y, ((squared, who), crossings)), (distances, nearest)) in rows.zip(out) {
+            if self.seen[y] {
+                distances.iter_mut().zip(squared).for_each(|(d, squared)| *d = squared.sqrt() * lattice.cell);
+                nearest.copy_from_slice(bytemuck::cast_slice(&who[..nx]));
+            } else {
+                distances.fill(BAND * lattice.cell);
+            }
+            if crossings.iter().fold(0, |any, c| any | c) == 0 {
+                continue;
+            }
+            let (mut winding, mut deep) = (0, None);
+            for (x, (d, crossing)) in distances.iter_mut().zip(crossings).enumerate() {
+                winding += crossing;
+                if winding > 0 {
+                    *d = -*d;
+                }
+                match (*d <= known, deep) {
+                    (true, None) => deep = Some(x),
+                    (false, Some(first)) => {
+                        self.deep.push([z, y, first, x].map(|i| i as u32));
+                        deep = None;
+                    }
+                    _ => {}
+                }
+            }
+            self.deep.extend(deep.map(|first| [z, y, first, nx].map(|i| i as u32)));
+        }
+    }
+}
+
+/// Extends distances through the inside beyond the band: one round of fast sweeping for |∇d| = 1 (Zhao 2005) over every second node along
+/// each axis, and means between those. So deep, the way out is all that is asked for.
+fn sweep_inside(grid: &mut Grid, benches: &[Bench]) {
+    let Grid { distances: d, size, cell, .. } = grid;
+    let [nx, ny, nz] = size.to_array().map(|n| n as usize);
+    let h = 2.0 * *cell;
     // Deeper than any way out of the grid.
-    let far = -((nx + ny + nz) as f32 * grid.cell);
-    let inside: Vec<usize> = (0..grid.distances.len()).filter(|i| grid.distances[*i] <= known).collect();
-    inside.iter().for_each(|i| grid.distances[*i] = far);
-    let (sy, sz) = (nx, nx * ny);
-    let mut update = |i: usize| {
-        let d = &grid.distances;
+    let far = -((nx + ny + nz) as f32 * *cell);
+    let runs = || benches.iter().flat_map(|bench| &bench.deep).map(|run| run.map(|i| i as usize));
+    for [z, y, first, end] in runs() {
+        let row = (z * ny + y) * nx;
+        d[row + first..row + end].fill(far);
+    }
+    let update = |d: &mut [f32], [z, y, x]: [usize; 3]| {
+        let i = (z * ny + y) * nx + x;
         // The nearer of both neighbours on each axis, as positive depths; a grid that cuts through the mesh has inside
         // nodes on its border, which have one.
         let axis = |at: usize, n: usize, stride: usize| {
-            let before = if at > 0 { d[i - stride] } else { far };
-            before.max(if at + 1 < n { d[i + stride] } else { far })
+            let before = if at >= 2 { d[i - 2 * stride] } else { far };
+            -before.max(if at + 2 < n { d[i + 2 * stride] } else { far })
         };
-        let mut a = [axis(i % nx, nx, 1), axis(i / nx % ny, ny, sy), axis(i / sz, nz, sz)].map(|d| -d);
-        a.sort_by(f32::total_cmp);
-        let h = grid.cell;
-        let mut u = a[0] + h;
-        if u > a[1] {
-            u = 0.5 * (a[0] + a[1] + (2.0 * h * h - (a[0] - a[1]).powi(2)).max(0.0).sqrt());
-            if u > a[2] {
-                let s = a[0] + a[1] + a[2];
-                let q = s * s - 3.0 * (a[0] * a[0] + a[1] * a[1] + a[2] * a[2] - h * h);
-                u = (s + q.max(0.0).sqrt()) / 3.0;
+        let [a, b, c] = [axis(x, nx, 1), axis(y, ny, nx), axis(z, nz, nx * ny)];
+        let (low, high) = (a.min(b), a.max(b));
+        let [a, b, c] = [low.min(c), high.min(c).max(low), high.max(c)];
+        let mut u = a + h;
+        if u > b {
+            u = 0.5 * (a + b + (2.0 * h * h - (a - b) * (a - b)).max(0.0).sqrt());
+            if u > c {
+                let s = a + b + c;
+                let q = s * s - 3.0 * (a * a + b * b + c * c - h * h);
+                u = (s + q.max(0.0).sqrt()) * (1.0 / 3.0);
             }
         }
-        if u < -grid.distances[i] {
-            grid.distances[i] = -u;
+        d[i] = d[i].max(-u);
+    };
+    let even = |first: usize, end: usize| (first.next_multiple_of(2)..end).step_by(2);
+    let coarse = |run: &[usize; 4]| run[0].is_multiple_of(2) && run[1].is_multiple_of(2);
+    for [z, y, first, end] in runs().filter(coarse) {
+        even(first, end).for_each(|x| update(d, [z, y, x]));
+    }
+    let back =
+        benches.iter().rev().flat_map(|bench| bench.deep.iter().rev()).map(|run| run.map(|i| i as usize));
+    for [z, y, first, end] in back.filter(coarse) {
+        even(first, end).rev().for_each(|x| update(d, [z, y, x]));
+    }
+
+    // Between them: along x, then along y, then along z. A deep node's neighbours are all inside.
+    for [z, y, first, end] in runs().filter(coarse) {
+        let row = (z * ny + y) * nx;
+        for x in (first | 1..end).step_by(2) {
+            d[row + x] = 0.5 * (d[row + x - 1] + d[row + (x + 1).min(nx - 1) / 2 * 2]);
+        }
+    }
+    let mut between = |z: usize, y: usize, first: usize, end: usize, [above, below]: [usize; 2]| {
+        let row = (z * ny + y) * nx;
+        for x in first..end {
+            d[row + x] = 0.5 * (d[above * nx + x] + d[below * nx + x]);
         }
     };
-    inside.iter().for_each(|i| update(*i));
-    inside.iter().rev().for_each(|i| update(*i));
+    for [z, y, first, end] in runs().filter(|run| run[0].is_multiple_of(2) && run[1] % 2 == 1) {
+        between(z, y, first, end, [z * ny + y - 1, z * ny + (y + 1).min(ny - 1) / 2 * 2]);
+    }
+    for [z, y, first, end] in runs().filter(|run| run[0] % 2 == 1) {
+        between(z, y, first, end, [(z - 1) * ny + y, (z + 1).min(nz - 1) / 2 * 2 * ny + y]);
+    }
+    // None of these is nearer to the surface than the band is wide.
+    for [z, y, first, end] in runs() {
+        let row = (z * ny + y) * nx;
+        d[row + first..row + end].iter_mut().for_each(|d| *d = d.min(-BAND * *cell));
+    }
 }
 
 /// Adds the oriented crossings of one triangle with the lines y = const of layer `z`.
 fn count_crossings(c: &[Vec3; 3], z: usize, (nx, ny): (usize, usize), crossings: &mut [i16]) {
+    if c.iter().all(|v| v.z < z as f32) || c.iter().all(|v| v.z > z as f32) {
+        return;
+    }
     // In f64 and with the vertices in a fixed order, so that an edge shared by two triangles is decided alike.
     let p = c.map(|v| DVec2::new(v.y as f64, v.z as f64));
     let y0 = p[0].x.min(p[1].x).min(p[2].x).ceil().max(0.0) as usize;

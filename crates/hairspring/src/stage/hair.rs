@@ -122,7 +122,7 @@ impl StagedHair {
         self.show(body);
     }
 
-    /// Plays one frame of `dt` [s].
+    /// Plays one frame of `dt` [s] of the simulated strands.
     pub(super) fn step(&mut self, dt: f32, body: &StagedBody, air: Air, report: &mut FrameReport) {
         let began = Instant::now();
         self.pose_roots(body);
@@ -136,14 +136,11 @@ impl StagedHair {
         });
         report.step.substeps = report.step.substeps.max(step.substeps);
         report.step.reset_strands += step.reset_strands;
-        let stepped = Instant::now();
-        report.simulate += stepped - began;
-        self.show(body);
-        report.follow += stepped.elapsed();
+        report.simulate += began.elapsed();
     }
 
     /// Brings the points of all strands up to date, but for follow hairs that are left to who draws them.
-    fn show(&mut self, body: &StagedBody) {
+    pub(super) fn show(&mut self, body: &StagedBody) {
         let Some(follow) = &mut self.follow else {
             self.simulation.write_points(&mut self.points);
             return;

@@ -199,6 +199,14 @@ impl Stage {
 
     /// Plays `dt` [s] (above 0) of the scene.
     pub fn step(&mut self, dt: f32) -> FrameReport {
+        let mut report = self.advance(dt);
+        report.follow = self.show();
+        report
+    }
+
+    /// Plays `dt` [s] (above 0) of what is simulated alone: what [`Stage::strands`] shows stays as it is until [`Stage::show`], and costs nothing in frames that
+    /// nobody looks at. No result depends on which frames are shown.
+    pub fn advance(&mut self, dt: f32) -> FrameReport {
         let mut report = FrameReport::default();
         let began = Instant::now();
         self.hands.begin(&self.scene.hands, self.time, &self.body, &mut self.hair);
@@ -214,6 +222,13 @@ impl Stage {
         }
         self.time += dt;
         report
+    }
+
+    /// Brings the points of all strands up to date after [`Stage::advance`]; how long it took.
+    pub fn show(&mut self) -> Duration {
+        let began = Instant::now();
+        self.hair.iter_mut().for_each(|hair| hair.show(&self.body));
+        began.elapsed()
     }
 
     /// Time played since the start [s].

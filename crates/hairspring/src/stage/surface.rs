@@ -24,6 +24,8 @@ pub(super) enum Making {
 pub(super) struct Surface {
     making: Making,
     voxelizer: Voxelizer,
+    /// Colliders of frames before that were looked at elsewhere when the next was made, for their memory.
+    spare: Vec<Obstacle>,
     /// Vertices in the anchor's space, now and a frame ago.
     now: Vec<Vec3>,
     before: Vec<Vec3>,
@@ -68,11 +70,21 @@ impl Making {
     }
 }
 
+/// Whether nobody else looks at a shape.
+fn is_free(shape: &mut Obstacle) -> bool {
+    match shape {
+        Obstacle::Field(grid) => Arc::get_mut(grid).is_some(),
+        Obstacle::Sheet(sheet) => Arc::get_mut(sheet).is_some(),
+        _ => true,
+    }
+}
+
 impl Surface {
     pub(super) fn new(making: Making) -> Self {
         Self {
             making,
             voxelizer: Voxelizer::default(),
+            spare: Vec::new(),
             now: Vec::new(),
             before: Vec::new(),
             normals: Vec::new(),
@@ -105,6 +117,12 @@ impl Surface {
             return;
         }
         let before = (!fresh).then_some(self.before.as_slice());
+        // Someone may still look at the last one: another is made, in place of a copy that would be written over.
+        if !is_free(shape) {
+            let free = self.spare.iter_mut().position(is_free).map(|k| self.spare.swap_remove(k));
+            let last = std::mem::replace(shape, free.unwrap_or_else(|| self.making.nothing()));
+            self.spare.push(last);
+        }
         self.making.make(shape, &mut self.voxelizer, (&self.now, before), &body.mesh.triangles, within);
     }
 }

@@ -1,0 +1,65 @@
+//! Promise: a distance field is exact at every node near its surface, and knows how the surface moved there.
+//!
+//! Eight nodes are measured at once, to planes and edges. Here every node is asked again by the tree of boxes, triangle by triangle: of a ball pressed flat, with a triangle
+//! in it that is a point.
+
+use glam::Vec3;
+use hairspring::{
+    body::{Mesh, NearestTree},
+    collide::{Grid, Voxelizer},
+};
+use std::f32::consts::{PI, TAU};
+
+/// Half-width of the band [cells].
+const BAND: f32 = 2.0;
+
+#[test]
+fn every_node_of_the_band_is_as_far_off_as_its_nearest_triangle_and_moves_with_it() {
+    let (rows, columns) = (14, 23);
+    let mut mesh = Mesh::default();
+    for r in 0..=rows {
+        for c in 0..columns {
+            let (s, y) = (r as f32 * PI / rows as f32).sin_cos();
+            let (z, x) = (c as f32 * TAU / columns as f32).sin_cos();
+            mesh.positions.push(Vec3::new(0.1 * s * x + 0.01, 0.07 * y, 0.1 * s * z + 0.003));
+        }
+    }
+    for r in 1..rows - 1 {
+        for c in 0..columns {
+            let i = |r: u32, c: u32| r * columns + c % columns;
+            let [a, b, d, e] = [i(r, c), i(r, c + 1), i(r + 1, c), i(r + 1, c + 1)];
+            mesh.triangles.extend([[a, b, e], [a, e, d]]);
+        }
+    }
+    for c in 0..columns {
+        let (top, bottom) = (columns, (rows - 1) * columns);
+        mesh.triangles.push([0, top + (c + 1) % columns, top + c]);
+        mesh.triangles.push([rows * columns, bottom + c, bottom + (c + 1) % columns]);
+    }
+    let tree = NearestTree::new(&mesh);
+    let moved = |p: Vec3| Vec3::new(0.1 * p.y, 0.0, 0.002);
+    let before: Vec<Vec3> = mesh.positions.iter().map(|p| *p - moved(*p)).collect();
+    let mut triangles = mesh.triangles.clone();
+    triangles.push([40, 40, 40]);
+    let (mut grid, cell) = (Grid::default(), 0.011);
+    Voxelizer::default().update(&mut grid, &mesh.positions, Some(&before), &triangles, None, cell);
+    let mut near = 0;
+    for (i, d) in grid.distances.iter().enumerate() {
+        let (i, size) = (i as u32, grid.size);
+        let at = [i % size.x, i / size.x % size.y, i / size.x / size.y];
+        let p = grid.origin + Vec3::from(at.map(|n| n as f32)) * grid.cell;
+        let nearest = tree.nearest(p, |_| true).unwrap();
+        let exact = nearest.distance_squared.sqrt();
+        if exact > 0.98 * BAND * cell {
+            assert!(d.abs() > 0.97 * BAND * cell, "at {p}: {d} in place of {exact}");
+            continue;
+        }
+        near += 1;
+        assert!((d.abs() - exact).abs() < 1e-6, "at {p}: {d} in place of {exact}");
+        let corners = mesh.corners(nearest.triangle as usize);
+        let foot: Vec3 = corners.iter().zip(nearest.barycentric.to_array()).map(|(c, w)| *c * w).sum();
+        let found = grid.displacement(p);
+        assert!((found - moved(foot)).length() < 1e-5, "at {p}: {found} in place of {}", moved(foot));
+    }
+    assert!(near > 1000, "{near} nodes");
+}
