@@ -2,26 +2,35 @@
 //!
 //! | file | what is in it |
 //! | --- | --- |
-//! | `document` | the scene's text, edited in place; undo, save |
-//! | `key`, `parameter` | names of its values; every parameter with its unit, range and what it does |
+//! | `document`, `effective` | the scene's text, edited in place; undo, save; what counts in it |
+//! | `key`, `parameter`, `field` | names of its values; every parameter, and every field of a list's entries, with its unit, range and what it does |
+//! | `differ` | what two scenes that are compared differ in |
 //! | `player`, `snapshot` | the simulation on a thread of its own, and what that shows of a moment |
 //! | `session` | document and player together: whatever is done to them is an action |
-//! | `view`, `orbit`, `overlay`, `ramp` | camera and tools, and what is laid over the picture |
+//! | `view`, `orbit`, `overlay`, `axes`, `ramp` | camera and tools, and what is laid over the picture |
+//! | `handle`, `carried` | what can be taken in the picture, and where joints have carried it |
 //! | `painter` | who draws the hair |
 //! | `panel` | what stands around the picture |
-//! | `record`, `script` | files of what is seen; a session line by line |
+//! | `record`, `letters`, `script` | files of what is seen, and words on them; a session line by line |
 //! | `app` | all of it in a window |
 //!
 //! Data goes one way: panels read the session and say actions, the session edits the document and tells the player, the player shows snapshots, a painter draws them.
 //!
 //! # Missing
-//! Paths of hands and charged bodies, and keys of a motion, are edited in the file. A thumbnail shows no motion.
+//! A thumbnail shows no motion.
 
 mod app;
+mod axes;
+mod carried;
+mod differ;
 mod document;
+mod effective;
 mod error;
+mod field;
 mod finger;
+mod handle;
 mod key;
+mod letters;
 mod orbit;
 mod overlay;
 mod painter;

@@ -59,7 +59,7 @@ pub enum Line {
 }
 
 /// Names of what [`Line::Switch`] switches.
-pub const SWITCHES: [&str; 13] = [
+pub const SWITCHES: [&str; 14] = [
     "compare",
     "second",
     "graphs",
@@ -73,6 +73,7 @@ pub const SWITCHES: [&str; 13] = [
     "volume",
     "frames",
     "roots",
+    "handles",
 ];
 
 /// Reads a script.

@@ -1,9 +1,11 @@
 //! What the simulation's thread shows of a moment: enough to draw it and to say how it is.
 
-use glam::Vec3;
+use crate::carried::Carried;
+use glam::{Mat3, Vec3};
 use hairspring::{
     body::{Mesh, Part},
     collide::Rigid,
+    groom::RootBinding,
     scene::HairLook,
     simulation::{Measure, MovingObstacle, VolumeReport},
     stage::{FrameReport, Picked, Stage, StrandFigures, Value},
@@ -28,12 +30,22 @@ pub struct StillGroom {
     offsets: Vec<u32>,
     radii: Vec<f32>,
     colors: Vec<Vec3>,
+    /// Where each strand sits on the body; empty where none carries it.
+    bindings: Vec<RootBinding>,
 }
 
 impl StillGroom {
     /// Number of strands.
     pub fn strands(&self) -> usize {
         self.offsets.len().saturating_sub(1)
+    }
+
+    /// Points of a strand; none where there is no such strand.
+    pub fn strand(&self, strand: usize) -> std::ops::Range<usize> {
+        match self.offsets.get(strand..strand + 2) {
+            Some(&[from, to]) => from as usize..to as usize,
+            _ => 0..0,
+        }
     }
 
     /// Index of each strand's first point.
@@ -49,6 +61,7 @@ impl Still {
             offsets: s.groom.offsets.clone(),
             radii: s.groom.radii.clone(),
             colors: s.groom.colors.clone(),
+            bindings: s.groom.roots.clone(),
         });
         let mesh = |m: &Mesh| (m.triangles.clone(), m.parts.clone());
         let ((simulated, strands), (points, all)) = (stage.simulated_strands(), stage.simulated_points());
@@ -83,6 +96,8 @@ pub struct Scenery {
     pub measure: Measure,
     /// Volume of each groom's hair.
     pub volumes: Vec<Option<VolumeReport>>,
+    /// Where what the scene lists has been carried.
+    pub carried: Carried,
 }
 
 impl Scenery {
@@ -99,6 +114,7 @@ impl Scenery {
             anchor: Rigid::default(),
             measure: Measure::default(),
             volumes: Vec::new(),
+            carried: Carried::default(),
         }
     }
 
@@ -133,6 +149,18 @@ impl Scenery {
         self.measure = stage.measure();
         self.volumes.clear();
         self.volumes.extend(stage.volumes());
+        self.carried.fill(stage);
+    }
+
+    /// The frame that a strand's root moves with: that of the skin's triangle (x along an edge, y along the normal), or the head's where no skin carries it.
+    pub fn root_frame(&self, groom: usize, strand: usize) -> Mat3 {
+        let skin = || {
+            let binding = self.still.grooms.get(groom)?.bindings.get(strand)?;
+            let corners = self.still.body.as_ref()?.0.get(binding.triangle as usize)?;
+            let [a, b, c] = corners.map(|v| self.positions.get(v as usize).copied());
+            Some(Mat3::from_quat(binding.frame([a?, b?, c?])))
+        };
+        skin().unwrap_or(self.anchor.matrix().0)
     }
 
     /// The box (min, max) of all hair [m]; `None` where no point is finite.

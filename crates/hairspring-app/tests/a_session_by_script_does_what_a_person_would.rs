@@ -52,6 +52,36 @@ fn a_session_opens_plays_changes_records_saves_and_opens_again() {
 }
 
 #[test]
+fn a_still_of_two_that_are_compared_shows_both_and_what_they_differ_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let still = folder.path().join("pair.png");
+    let script = format!(
+        "pause\nwait 1\ncompare on\nsecond on\n\
+         set builtin.look.root_color [0.9, 0.0, 0.0]\nset builtin.look.tip_color [0.9, 0.0, 0.0]\nwait 1\nstill {}\n",
+        still.display()
+    );
+    let mut window = window(folder.path(), SMALL, &script);
+    assert!(until(&mut window, |app| app.is_idle()));
+    let image = hairspring_view::read_png(&still).unwrap();
+    let (left, gap, right) = (0..638, 638..642, 642..1280);
+    assert!(gap.clone().all(|x| (0..692).all(|y| image.pixel(x, y) == [24; 3])), "a gap parts them");
+    let red = |columns: std::ops::Range<u32>| -> u64 {
+        let of = |x: u32| {
+            (0..692).map(|y| image.pixel(x, y)).map(|[r, g, _]| u64::from(r.saturating_sub(g))).sum::<u64>()
+        };
+        columns.map(of).sum()
+    };
+    let (brown, dyed) = (red(left.clone()), red(right.clone()));
+    assert!(dyed > 2 * brown && brown > 0, "each side is its own scene: {brown}, {dyed}");
+    for side in [left, right] {
+        let words = side.map(|x| (692..720).filter(|y| image.pixel(x, *y)[0] > 150).count()).sum::<usize>();
+        assert!(words > 100, "what they differ in stands under each: {words} light pixels");
+    }
+    let [first, second] = window.state().session().captions();
+    assert!(first.starts_with("Root: [") && second.contains("Tip: [0.9, 0, 0]"), "{first}; {second}");
+}
+
+#[test]
 fn what_cannot_be_done_is_said_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut window = window(folder.path(), SMALL, "pause\nset solver.substeps 0\nwait 1");

@@ -82,6 +82,7 @@ impl App {
             "volume" => &mut overlays.volume,
             "frames" => &mut overlays.frames,
             "roots" => &mut overlays.roots,
+            "handles" => &mut overlays.handles,
             // The script's reader knows no other.
             _ => return,
         };

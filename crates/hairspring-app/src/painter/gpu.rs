@@ -39,6 +39,11 @@ impl GpuPainter {
         Self::new(&self.state)
     }
 
+    /// The window's device.
+    pub fn gpu(&self) -> Gpu {
+        Gpu::from_parts(self.state.device.clone(), self.state.queue.clone())
+    }
+
     /// Draws what has changed.
     pub fn draw(
         &mut self,

@@ -7,6 +7,7 @@ use crate::snapshot::{Sight, Snapshot};
 use cpu::CpuPainter;
 use eframe::{egui, wgpu::DeviceType};
 use gpu::GpuPainter;
+use hairspring_view::gpu::Gpu;
 use std::sync::Arc;
 
 /// Who draws the hair.
@@ -61,9 +62,12 @@ impl Painter {
         }
     }
 
-    /// Whether a GPU draws.
-    pub fn is_gpu(&self) -> bool {
-        matches!(self, Self::Gpu(_))
+    /// The GPU that draws, if one does.
+    pub fn gpu(&self) -> Option<Gpu> {
+        match self {
+            Self::Gpu(painter) => Some(painter.gpu()),
+            Self::Cpu(_) => None,
+        }
     }
 
     /// The picture of a stage of a snapshot, `size` pixels large, or the last one where that is not ready yet.
