@@ -29,8 +29,10 @@ pub fn draw(pen: &Pen, scenery: &Scenery, picked: &[[usize; 2]]) {
             pen.painter.text(tip, Align2::LEFT_BOTTOM, name, FontId::proportional(13.0), Color32::WHITE);
         }
     }
+    // A groom of few hairs, such as brows, has as few frames.
+    let every = 1 + scenery.still.counts[1] / ROOTS;
     for (g, (still, points)) in scenery.still.grooms.iter().zip(&scenery.points).enumerate() {
-        for strand in (0..still.strands()).step_by(1 + still.strands() / ROOTS) {
+        for strand in (0..still.strands()).step_by(every) {
             if let Some(root) = points.get(still.strand(strand).start) {
                 frame(pen, *root, scenery.root_frame(g, strand), SHORT, 1.5);
             }
@@ -65,9 +67,9 @@ fn frame(pen: &Pen, at: Vec3, axes: Mat3, length: f32, width: f32) {
 /// The frames of a strand's segments, at their middles; the strand itself in white.
 fn along(pen: &Pen, points: &[Vec3], root: Mat3) {
     for (pair, axes) in points.windows(2).zip(carried(points, root)) {
-        pen.line(pair[0], pair[1], Stroke::new(2.0, Color32::WHITE));
-        let length = 0.45 * pair[0].distance(pair[1]).clamp(0.002, 0.02);
-        frame(pen, 0.5 * (pair[0] + pair[1]), axes, length, 1.5);
+        pen.line(pair[0], pair[1], Stroke::new(1.0, Color32::WHITE));
+        let length = 0.9 * pair[0].distance(pair[1]).clamp(0.004, 0.02);
+        frame(pen, 0.5 * (pair[0] + pair[1]), axes, length, 2.0);
     }
 }
 

@@ -74,7 +74,7 @@ const ALL: &[Field] = fields! {
     given "normal", "Normal", "", Kind::Number, "Which way is out of what is solid. Any length above 0.";
     given "axis", "Axis", "", Kind::Number, "Its direction. Any length above 0. Pull the arrow's tip in the picture.";
     given "size", "Edges", "m", Kind::Number, "Length of its edges.";
-    maybe "rotation", "Turned", "°", Kind::Number, "How it is turned: about X, then Y, then Z.";
+    maybe "rotation", "Turned by", "°", Kind::Number, "How it is turned: about X, then Y, then Z.";
     given "radius", "Radius", "m", Kind::Number, "How far it reaches from its middle or axis, above 0.";
     given "speed", "Speed", "m/s", Kind::Number, "Of the air, at the mouth or the radius. Below 0: the other way round.";
     maybe "spread", "Spread", "°", Kind::Number, "Angle from the jet's axis to its edge, 0 to 80.";
@@ -115,6 +115,11 @@ pub fn of(list: &str, name: &str) -> Option<&'static Field> {
         ("charged", "path") => Some(&CHARGED_WAY),
         _ => ALL.iter().find(|field| field.name == name),
     }
+}
+
+/// Where a field of this name stands among the others of an entry.
+pub fn place(name: &str) -> usize {
+    ALL.iter().position(|field| field.name == name).unwrap_or(ALL.len())
 }
 
 #[cfg(test)]

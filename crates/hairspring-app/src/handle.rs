@@ -7,9 +7,9 @@ use hairspring::collide::Rigid;
 use toml_edit::Value;
 
 /// Where the wind's arrow begins in the picture, from its top left corner, over its width and height [1].
-const ROSE: Vec2 = Vec2::new(0.88, 0.82);
+const ROSE: Vec2 = Vec2::new(0.8, 0.7);
 /// Length of the arrow of a storm, over the height of the picture [1].
-const LONGEST: f32 = 0.3;
+const LONGEST: f32 = 0.25;
 /// Speed of that storm [m/s].
 const STORM: f32 = 20.0;
 /// An arrow shorter than this is calm, over the height of the picture [1]: a hand does not find 0 otherwise.

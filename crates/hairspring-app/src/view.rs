@@ -323,7 +323,7 @@ impl View {
             }
             self.held = None;
         }
-        self.over = response.hover_pos().and_then(|at| near(at)).map(|(k, _)| k);
+        self.over = response.hover_pos().and_then(near).map(|(k, _)| k);
         if self.over.is_some() {
             ui.set_cursor_icon(egui::CursorIcon::Grab);
         }

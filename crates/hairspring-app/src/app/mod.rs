@@ -391,7 +391,8 @@ impl eframe::App for App {
                 egui::Panel::bottom("graphs").show(ui, |ui| self.history.show(ui));
             }
             egui::Panel::right("parameters").default_size(360.0).show(ui, |ui| {
-                parameters::show(ui, &self.session, &mut self.filter, &mut actions);
+                let at = self.view.orbit.map_or(glam::Vec3::ZERO, |orbit| orbit.target);
+                parameters::show(ui, &self.session, &mut self.filter, at, &mut actions);
             });
         }
         let notes: Vec<String> = self.painters.iter().map(Painter::note).collect();

@@ -24,6 +24,12 @@ impl Keys {
         self.columns.iter().map(|c| Self::width(c)).sum()
     }
 
+    /// Each column, and the number of its first number.
+    fn columns(&self) -> Vec<(&'static str, usize)> {
+        let start = |k: usize| self.columns[..k].iter().map(|c| Self::width(c)).sum();
+        self.columns.iter().enumerate().map(|(k, column)| (*column, start(k))).collect()
+    }
+
     /// Whether keys follow one another in time.
     fn timed(&self) -> bool {
         self.columns.first() == Some(&"time")
@@ -102,26 +108,28 @@ pub fn show(
         let list: Array = rows.iter().map(|row| keys.written(row)).collect();
         Action::Set(key.clone(), Some(list.into()))
     };
+    let columns = keys.columns();
+    // What does not fit in one line has a line for each column.
+    let (first_line, others) = columns.split_at(if columns.len() > 2 { 1 } else { columns.len() });
     for (k, row) in rows.iter().enumerate() {
+        let cell = |ui: &mut Ui, (column, at): (&'static str, usize), actions: &mut Vec<Action>| {
+            let mut own = row[at..at + Keys::width(column)].to_vec();
+            let range = if column == "time" { between(&rows, k) } else { (f64::MIN, f64::MAX) };
+            if !edited(ui, (field, column), &mut own, range, slow) {
+                return;
+            }
+            actions.push(if keys.plain {
+                let mut whole = row.clone();
+                whole[at..at + own.len()].copy_from_slice(&own);
+                Action::Set(key.place(k), Some(keys.written(&whole)))
+            } else {
+                Action::Set(key.place(k).field(column), Some(column_value(&own)))
+            });
+        };
         ui.push_id(k, |ui| {
-            ui.horizontal_wrapped(|ui| {
+            ui.horizontal(|ui| {
                 ui.label(format!("{}", k + 1));
-                let mut at = 0;
-                for column in keys.columns {
-                    let width = Keys::width(column);
-                    let mut own = row[at..at + width].to_vec();
-                    let range = if *column == "time" { between(&rows, k) } else { (f64::MIN, f64::MAX) };
-                    if edited(ui, (field, column), &mut own, range, slow) {
-                        actions.push(if keys.plain {
-                            let mut whole = row.clone();
-                            whole[at..at + width].copy_from_slice(&own);
-                            Action::Set(key.place(k), Some(keys.written(&whole)))
-                        } else {
-                            Action::Set(key.place(k).field(column), Some(column_value(&own)))
-                        });
-                    }
-                    at += width;
-                }
+                first_line.iter().for_each(|column| cell(ui, *column, actions));
                 if ui.small_button("+").on_hover_text("A key after this one").clicked() {
                     let mut rows = rows.clone();
                     rows.insert(k + 1, keys.after(&rows, k));
@@ -134,6 +142,13 @@ pub fn show(
                     actions.push(if left { all(&rows) } else { Action::Set(key.clone(), None) });
                 }
             });
+            for column in others {
+                ui.horizontal(|ui| {
+                    ui.add_space(16.0);
+                    ui.label(of("", column.0).map_or(column.0, |field| field.label));
+                    cell(ui, *column, actions);
+                });
+            }
         });
     }
     if rows.is_empty() && ui.small_button("Add a key").on_hover_text(field.tip).clicked() {

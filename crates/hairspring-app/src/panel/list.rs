@@ -3,12 +3,13 @@
 
 use super::{Labelled, keys};
 use crate::{
-    field::{Field, Kind, of},
+    field::{Field, Kind, of, place},
     key::Key,
     session::{Action, Session},
 };
 use eframe::egui::{self, DragValue, Ui};
-use toml_edit::Value;
+use glam::Vec3;
+use toml_edit::{DocumentMut, TableLike, Value};
 
 /// Width of names [points].
 const LABEL: f32 = 86.0;
@@ -40,12 +41,12 @@ pub const AIR: [List; 2] = [
         kinds: &[
             (
                 "Fan",
-                "shape.fan = { center = [0.0, 1.55, 0.8], axis = [0.0, 0.0, -1.0], radius = 0.15, speed = 4.0 }",
+                "shape.fan = { center = [-0.22, 1.5, 0.2], axis = [1.0, 0.0, -0.5], radius = 0.05, speed = 4.0 }",
             ),
-            ("Point", "shape.point = { center = [0.3, 1.5, 0.0], radius = 0.05, speed = 2.0 }"),
+            ("Point", "shape.point = { center = [0.22, 1.5, 0.0], radius = 0.05, speed = 2.0 }"),
             (
                 "Vortex",
-                "shape.vortex = { center = [0.0, 1.5, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.2, speed = 2.0 }",
+                "shape.vortex = { center = [0.0, 1.5, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.15, speed = 2.0 }",
             ),
         ],
     },
@@ -53,7 +54,7 @@ pub const AIR: [List; 2] = [
         name: "charged",
         label: "Charged bodies",
         one: "Charged body",
-        kinds: &[("Balloon", "center = [0.3, 1.8, 0.0]\nradius = 0.13\ncharge = -2e-7")],
+        kinds: &[("Balloon", "center = [0.2, 1.6, 0.0]\nradius = 0.06\ncharge = -2e-7")],
     },
 ];
 
@@ -64,10 +65,10 @@ pub const COLLISION: [List; 2] = [
         label: "Colliders",
         one: "Collider",
         kinds: &[
-            ("Sphere", "shape.sphere = { center = [0.0, 1.3, 0.25], radius = 0.08 }"),
-            ("Capsule", "shape.capsule = { a = [-0.2, 1.35, 0.15], b = [0.2, 1.35, 0.15], radius = 0.03 }"),
-            ("Box", "shape.box = { center = [0.0, 1.2, 0.3], size = [0.4, 0.02, 0.2] }"),
-            ("Floor", "shape.plane = { point = [0.0, 1.2, 0.0], normal = [0.0, 1.0, 0.0] }"),
+            ("Sphere", "shape.sphere = { center = [0.18, 1.45, 0.1], radius = 0.05 }"),
+            ("Capsule", "shape.capsule = { a = [-0.15, 1.4, 0.15], b = [0.15, 1.4, 0.15], radius = 0.02 }"),
+            ("Box", "shape.box = { center = [0.0, 1.38, 0.15], size = [0.3, 0.02, 0.1] }"),
+            ("Floor", "shape.plane = { point = [0.0, 1.32, 0.0], normal = [0.0, 1.0, 0.0] }"),
         ],
     },
     List {
@@ -75,7 +76,7 @@ pub const COLLISION: [List; 2] = [
         label: "Hands",
         one: "Hand",
         kinds: &[
-            ("Grab", "tool.grab = { center = [0.1, 1.35, 0.1], radius = 0.02 }"),
+            ("Grab", "tool.grab = { center = [0.1, 1.42, 0.08], radius = 0.02 }"),
             ("Comb", "tool.comb = { a = [-0.1, 1.6, 0.15], b = [0.1, 1.6, 0.15], radius = 0.02 }"),
             (
                 "Tie",
@@ -85,8 +86,38 @@ pub const COLLISION: [List; 2] = [
     },
 ];
 
-/// Shows these lists.
-pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], actions: &mut Vec<Action>) {
+/// What is looked at where the places of what can be added are as they stand above [m].
+const LOOK: Vec3 = Vec3::new(0.0, 1.5, 0.0);
+
+/// The text of an entry's fields with its places moved by `by` [m]: what is added is where one looks.
+fn placed(fields: &str, by: Vec3) -> String {
+    fn shift(table: &mut dyn TableLike, by: Vec3) {
+        for (name, item) in table.iter_mut() {
+            let place = ["center", "a", "b", "point"].contains(&name.get());
+            match item.as_array_mut() {
+                Some(list) if place => {
+                    for (x, by) in list.iter_mut().zip(by.to_array()) {
+                        let moved = x.as_float().unwrap_or(0.0) + f64::from(by);
+                        let decor = x.decor().clone();
+                        *x = Value::from((moved * 1e3).round() / 1e3);
+                        *x.decor_mut() = decor;
+                    }
+                }
+                _ => {
+                    if let Some(inner) = item.as_table_like_mut() {
+                        shift(inner, by);
+                    }
+                }
+            }
+        }
+    }
+    let Ok(mut document) = fields.parse::<DocumentMut>() else { return fields.to_owned() };
+    shift(document.as_table_mut(), by);
+    document.to_string()
+}
+
+/// Shows these lists; what is added stands about `at` [m].
+pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], at: Vec3, actions: &mut Vec<Action>) {
     let effective = session.edited().effective();
     for list in lists {
         ui.horizontal(|ui| {
@@ -94,7 +125,7 @@ pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], actions: &mu
             ui.menu_button("Add", |ui| {
                 for (name, fields) in list.kinds {
                     if ui.button(*name).clicked() {
-                        actions.push(Action::Add(list.name, (*fields).to_owned()));
+                        actions.push(Action::Add(list.name, placed(fields, at - LOOK)));
                         ui.close();
                     }
                 }
@@ -104,7 +135,8 @@ pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], actions: &mu
         for (place, entry) in entries.iter().enumerate() {
             ui.indent((list.name, place), |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(format!("{} {}", list.one, place + 1));
+                    let kind = kind(entry).map(|kind| format!(": {kind}")).unwrap_or_default();
+                    ui.label(format!("{} {}{kind}", list.one, place + 1));
                     if ui.small_button("Remove").clicked() {
                         actions.push(Action::Remove(list.name, place));
                     }
@@ -148,21 +180,16 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// The fields of a table; a table in it is shown by its fields in turn.
+    /// The fields of a table: those of a table in it first, then its own in the order in which they are told of.
     fn fields(&mut self, ui: &mut Ui, key: &Key, value: &toml::Value) {
         let Some(table) = value.as_table() else { return };
-        for (name, value) in table {
-            let key = key.entry(name);
-            match value {
-                toml::Value::Table(inner) => {
-                    // `shape.sphere`, `tool.grab`: one table in another, of which the inner one's name is news.
-                    if inner.values().all(|v| !v.is_table()) {
-                        ui.weak(name);
-                    }
-                    self.fields(ui, &key, value);
-                }
-                _ => self.field(ui, &key, name, Some(value)),
-            }
+        for (name, inner) in table.iter().filter(|(_, value)| value.is_table()) {
+            self.fields(ui, &key.entry(name), inner);
+        }
+        let mut own: Vec<_> = table.iter().filter(|(_, value)| !value.is_table()).collect();
+        own.sort_by_key(|(name, _)| place(name));
+        for (name, value) in own {
+            self.field(ui, &key.entry(name), name, Some(value));
         }
     }
 
@@ -244,8 +271,11 @@ impl Rows<'_> {
                 new
             }
             (Kind::Maybe(from), None) => {
-                let mut on = false;
-                ui.checkbox(&mut on, "never").changed().then(|| Some(from.into()))
+                let mut never = true;
+                ui.checkbox(&mut never, "never")
+                    .on_hover_text(tip(field))
+                    .changed()
+                    .then(|| Some(from.into()))
             }
             (_, Some(toml::Value::Boolean(on))) => {
                 let mut on = *on;
@@ -272,6 +302,12 @@ impl Rows<'_> {
             (_, None) => None,
         }
     }
+}
+
+/// What kind of collider or tool an entry is, if there are kinds of it.
+fn kind(entry: &toml::Value) -> Option<&str> {
+    let shape = entry.get("shape").or_else(|| entry.get("tool"))?;
+    shape.as_table()?.keys().next().map(String::as_str)
 }
 
 fn tip(field: &Field) -> String {
@@ -318,8 +354,8 @@ mod tests {
             let mut actions = Vec::new();
             {
                 let session = shown.borrow();
-                show(ui, &session, &AIR, &mut actions);
-                show(ui, &session, &COLLISION, &mut actions);
+                show(ui, &session, &AIR, LOOK, &mut actions);
+                show(ui, &session, &COLLISION, LOOK, &mut actions);
                 motion(ui, &session, &mut actions);
             }
             actions.into_iter().for_each(|action| shown.borrow_mut().act(action).unwrap());
@@ -356,6 +392,20 @@ mod tests {
             session.borrow_mut().act(Action::Undo).unwrap();
         }
         assert_eq!(session.borrow().document().text(), SCENE);
+    }
+
+    #[test]
+    fn what_is_added_stands_where_one_looks() {
+        let text =
+            placed("shape.sphere = { center = [0.0, 1.3, 0.25], radius = 0.08 }", Vec3::new(0.1, -0.5, 0.0));
+        assert_eq!(text.trim(), "shape.sphere = { center = [0.1, 0.8, 0.25], radius = 0.08 }");
+        for list in AIR.iter().chain(&COLLISION) {
+            for (name, fields) in list.kinds {
+                let (_, session) = panel();
+                let added = session.borrow_mut().act(Action::Add(list.name, placed(fields, Vec3::X)));
+                assert!(added.is_ok(), "{name}: {added:?}");
+            }
+        }
     }
 
     #[test]

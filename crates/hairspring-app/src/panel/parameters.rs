@@ -7,6 +7,7 @@ use crate::{
     session::{Action, Session},
 };
 use eframe::egui::{self, DragValue, RichText, Slider, Ui};
+use glam::Vec3;
 use hairspring::material::{PRESETS, preset};
 use std::{collections::HashMap, sync::LazyLock};
 use toml_edit::Value;
@@ -27,8 +28,8 @@ static MATERIALS: LazyLock<HashMap<Option<&str>, toml::Table>> = LazyLock::new(|
     names.map(|name| (name, table(name))).collect()
 });
 
-/// Shows all groups.
-pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, actions: &mut Vec<Action>) {
+/// Shows all groups; what is added to the scene stands about `at` [m].
+pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actions: &mut Vec<Action>) {
     choose(ui, session, actions);
     ui.add(egui::TextEdit::singleline(filter).hint_text("Find a parameter").desired_width(f32::INFINITY));
     ui.separator();
@@ -52,10 +53,10 @@ pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, actions: &mut V
                         row(ui, session, parameter, actions);
                     }
                     if group == Group::Air {
-                        super::list::show(ui, session, &super::list::AIR, actions);
+                        super::list::show(ui, session, &super::list::AIR, at, actions);
                     }
                     if group == Group::Collision {
-                        super::list::show(ui, session, &super::list::COLLISION, actions);
+                        super::list::show(ui, session, &super::list::COLLISION, at, actions);
                     }
                     if group == Group::Motion {
                         super::list::motion(ui, session, actions);
