@@ -57,8 +57,7 @@ fn written(value: Option<&toml::Value>) -> String {
         None => "none".into(),
         Some(toml::Value::String(text)) => text.clone(),
         Some(toml::Value::Table(_)) => "there".into(),
-        // Settings are single precision: what a double adds is noise.
-        Some(toml::Value::Float(x)) => (*x as f32).to_string(),
+        Some(toml::Value::Float(x)) => x.to_string(),
         Some(toml::Value::Array(list)) => {
             format!("[{}]", list.iter().map(|x| written(Some(x))).collect::<Vec<_>>().join(", "))
         }

@@ -49,5 +49,16 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
     if let Some(camera) = &scene.camera {
         all.insert("camera".into(), value(camera));
     }
+    all.iter_mut().for_each(|(_, value)| shortest(value));
     all
+}
+
+/// Settings are single precision: each number is the shortest that reads as it, as a person would write it.
+fn shortest(value: &mut toml::Value) {
+    match value {
+        toml::Value::Float(x) => *x = (*x as f32).to_string().parse().unwrap_or(*x),
+        toml::Value::Array(list) => list.iter_mut().for_each(shortest),
+        toml::Value::Table(table) => table.iter_mut().for_each(|(_, value)| shortest(value)),
+        _ => {}
+    }
 }

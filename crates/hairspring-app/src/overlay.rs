@@ -89,11 +89,6 @@ pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picke
     if let Some((center, radius)) = view.ball() {
         pen.ball(center, radius, Stroke::new(1.5, Color32::from_white_alpha(170)));
     }
-    // What one takes hold of is seen.
-    if !handles.is_empty() && !overlays.colliders {
-        let faint = Stroke::new(1.0, Color32::from_rgba_unmultiplied(90, 200, 255, 90));
-        scenery.obstacles.iter().for_each(|o| collider(pen, o, faint));
-    }
     for (k, handle) in handles.iter().enumerate() {
         handle_at(pen, handle, view.touched() == Some(k));
     }
@@ -117,7 +112,8 @@ fn handle_at(pen: &Pen, handle: &Handle, touched: bool) {
     }
     if let Some(middle) = handle.rim() {
         let radius = middle.distance(handle.at);
-        pen.ball(middle, radius, Stroke::new(1.0, color.gamma_multiply(0.5)));
+        // What is not touched is hinted at: hair is looked at, and not its colliders.
+        pen.ball(middle, radius, Stroke::new(1.0, color.gamma_multiply(if touched { 0.8 } else { 0.2 })));
     }
     let radius = if touched { 6.0 } else { 4.0 };
     pen.painter.circle(

@@ -141,6 +141,7 @@ struct Work {
     picked: Option<Picked>,
     scene: u64,
     step: u64,
+    published: u64,
     reset_strands: usize,
     report: FrameReport,
     took: Duration,
@@ -165,6 +166,7 @@ impl Work {
             picked: None,
             scene: 0,
             step: 0,
+            published: 0,
             reset_strands: 0,
             report: FrameReport::default(),
             took: Duration::ZERO,
@@ -327,6 +329,8 @@ impl Work {
         let picked = self.picked;
         snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));
         (snapshot.step, snapshot.scene, snapshot.time) = (self.step, self.scene, first.time());
+        self.published += 1;
+        snapshot.number = self.published;
         (snapshot.report, snapshot.took, snapshot.reset_strands) =
             (self.report, self.took, self.reset_strands);
         if let Some(old) = lock(&self.shared.latest).replace(next) {
@@ -342,6 +346,7 @@ impl Work {
         let free = self.pool.iter_mut().position(|s| Arc::get_mut(s).is_some());
         free.map(|k| self.pool.swap_remove(k)).unwrap_or_else(|| {
             Arc::new(Snapshot {
+                number: 0,
                 step: 0,
                 scene: 0,
                 time: 0.0,

@@ -293,6 +293,8 @@ pub struct Sight {
 
 /// Everything that the window knows of a moment.
 pub struct Snapshot {
+    /// Counts snapshots: another number, something else to see, whether time went on or a colour changed.
+    pub number: u64,
     /// Steps since the scene was opened; goes up by one each.
     pub step: u64,
     /// Counts scenes: another number, another scene.

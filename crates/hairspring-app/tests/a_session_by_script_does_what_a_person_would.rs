@@ -126,4 +126,17 @@ fn settings_change_while_hair_moves_and_the_play_goes_on() {
     let after = wait(&session, before.step + 30);
     assert_eq!(after.scene, before.scene, "a setting does not begin the scene anew");
     assert!(after.time > before.time);
+    // Paused, a change is something else to see though time stands still.
+    session.act(hairspring_app::Action::Play(false)).unwrap();
+    session.act(hairspring_app::Action::Rest).unwrap();
+    let seen = |session: &Session| session.latest().map(|s| (s.number, s.step));
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let paused = seen(&session).unwrap();
+    let key = "builtin.look.roughness".parse().unwrap();
+    session.act(hairspring_app::Action::Set(key, Some(0.9.into()))).unwrap();
+    let newer = (0..2000).any(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        seen(&session).unwrap().0 > paused.0
+    });
+    assert!(newer && seen(&session).unwrap().1 == paused.1);
 }

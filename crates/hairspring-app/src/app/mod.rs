@@ -400,10 +400,16 @@ impl eframe::App for App {
             self.picture(ui, snapshot.as_ref(), &mut actions);
         });
         if let Some(snapshot) = snapshot.as_deref().filter(|_| self.open.panels) {
-            told::corner(ctx, self.rect, |ui| {
+            told::corner(ctx, self.rect, egui::Align2::LEFT_BOTTOM, |ui| {
                 inspect::figures(ui, &self.session, snapshot, &notes.join("; "));
-                inspect::picked(ui, snapshot, &mut actions);
             });
+            if snapshot.picked.is_some() {
+                // Under the name of a side.
+                let below = egui::Rect::from_min_max(self.rect.min + egui::vec2(0.0, 22.0), self.rect.max);
+                told::corner(ctx, below, egui::Align2::LEFT_TOP, |ui| {
+                    inspect::picked(ui, snapshot, &mut actions)
+                });
+            }
         }
         self.windows(ctx, &mut actions);
         self.tell(ctx);

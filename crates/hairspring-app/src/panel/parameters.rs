@@ -34,17 +34,20 @@ pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actio
     ui.add(egui::TextEdit::singleline(filter).hint_text("Find a parameter").desired_width(f32::INFINITY));
     ui.separator();
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let sought = filter.trim().to_lowercase();
+        let mut none = true;
         for group in Group::ALL {
-            let sought = filter.trim().to_lowercase();
             let found = |p: &&Parameter| {
                 sought.is_empty()
                     || [p.label, p.name, p.tip].iter().any(|t| t.to_lowercase().contains(&sought))
             };
             let parameters: Vec<_> =
                 parameter::ALL.iter().filter(|p| p.group == group).filter(found).collect();
-            if parameters.is_empty() {
+            let listed = lists(group).iter().any(|name| name.to_lowercase().contains(&sought));
+            if parameters.is_empty() && !listed {
                 continue;
             }
+            none = false;
             egui::CollapsingHeader::new(RichText::new(group.name()).strong())
                 .default_open(group == Group::Stiffness)
                 .open((!sought.is_empty()).then_some(true))
@@ -63,7 +66,20 @@ pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actio
                     }
                 });
         }
+        if none {
+            ui.weak("Nothing is called so.");
+        }
     });
+}
+
+/// Lists that stand in a group besides its parameters.
+fn lists(group: Group) -> &'static [&'static str] {
+    match group {
+        Group::Motion => &["Keys"],
+        Group::Air => &["Sources of wind", "Charged bodies"],
+        Group::Collision => &["Colliders", "Hands"],
+        _ => &[],
+    }
 }
 
 /// Which groom, and which group of it.
