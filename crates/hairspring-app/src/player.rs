@@ -185,10 +185,16 @@ impl Work {
             };
             match self.inbox.recv_timeout(wait) {
                 Ok(order) => {
-                    let mut news = self.obey(order);
                     // What has come in meanwhile belongs to the same moment.
-                    while let Ok(order) = self.inbox.try_recv() {
-                        news |= self.obey(order);
+                    let orders: Vec<Order> = std::iter::once(order).chain(self.inbox.try_iter()).collect();
+                    let last = orders.iter().rposition(|o| matches!(o, Order::Open(..))).unwrap_or(0);
+                    let mut news = false;
+                    for (k, order) in orders.into_iter().enumerate() {
+                        match order {
+                            // A scene that another one has already taken the place of is none to build.
+                            Order::Open(..) if k < last => self.scene += 1,
+                            order => news |= self.obey(order),
+                        }
                     }
                     if news {
                         self.publish();
@@ -295,6 +301,8 @@ impl Work {
     fn advance(&mut self) {
         if self.end.is_some_and(|end| self.stages.first().is_some_and(|(s, _)| s.time() + 0.5 * STEP > end)) {
             self.reset();
+            // It counts as a step: who waits for so many would else wait for ever.
+            self.step += 1;
             return;
         }
         let began = Instant::now();

@@ -105,6 +105,19 @@ fn what_cannot_be_done_is_said_and_changes_nothing() {
 }
 
 #[test]
+fn a_record_goes_on_past_the_end_of_the_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    // A motion of three steps, which begins anew again and again within a clip of twelve.
+    let scene =
+        format!("{SMALL}[clip]\nkeys = [{{ time = 0.0 }}, {{ time = 0.05, rotation = [0.0, 5.0, 0.0] }}]\n");
+    let clip = folder.path().join("p.##.png");
+    let script = format!("pause\nwait 9\npictures {} 0.2\n", clip.display());
+    let mut window = window(folder.path(), &scene, &script);
+    assert!(until(&mut window, |app| app.is_idle()), "the record came to its end");
+    assert!(folder.path().join("p.06.png").exists());
+}
+
+#[test]
 fn settings_change_while_hair_moves_and_the_play_goes_on() {
     let document = Document::new("scene.toml".as_ref(), SMALL.into()).unwrap();
     let mut session = Session::new(document, 2, || ()).unwrap();
