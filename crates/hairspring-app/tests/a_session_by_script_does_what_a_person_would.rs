@@ -139,17 +139,20 @@ fn settings_change_while_hair_moves_and_the_play_goes_on() {
     let after = wait(&session, before.step + 30);
     assert_eq!(after.scene, before.scene, "a setting does not begin the scene anew");
     assert!(after.time > before.time);
-    // Paused, a change is something else to see though time stands still.
+    // Paused, a change is something else to see though time stands still: what is ordered after the pause meets a scene that stands.
     session.act(hairspring_app::Action::Play(false)).unwrap();
-    session.act(hairspring_app::Action::Rest).unwrap();
-    let seen = |session: &Session| session.latest().map(|s| (s.number, s.step));
-    std::thread::sleep(std::time::Duration::from_millis(500));
-    let paused = seen(&session).unwrap();
-    let key = "builtin.look.roughness".parse().unwrap();
-    session.act(hairspring_app::Action::Set(key, Some(0.9.into()))).unwrap();
-    let newer = (0..2000).any(|_| {
-        std::thread::sleep(std::time::Duration::from_millis(5));
-        seen(&session).unwrap().0 > paused.0
-    });
-    assert!(newer && seen(&session).unwrap().1 == paused.1);
+    let mut seen = |roughness: f64| {
+        let key = "builtin.look.roughness".parse().unwrap();
+        session.act(hairspring_app::Action::Set(key, Some(roughness.into()))).unwrap();
+        for _ in 0..6000 {
+            let shown = session.latest().filter(|s| s.stages[0].looks[0].roughness == roughness as f32);
+            if let Some(snapshot) = shown {
+                return (snapshot.number, snapshot.step);
+            }
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        panic!("a roughness of {roughness} was not shown");
+    };
+    let (first, second) = (seen(0.875), seen(0.75));
+    assert!(second.0 > first.0 && second.1 == first.1, "{first:?}, {second:?}");
 }
