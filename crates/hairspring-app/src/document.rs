@@ -3,10 +3,10 @@
 //! The text is the only copy: sliders write into it, undo puts an older one back, save writes it out. What it comes to is read by `hairspring-io`, as for every other command, so that the window can
 //! do nothing that a scene file cannot, and a value that the reader refuses is refused here with the same sentence.
 
-use crate::{error::AppError, key::Key};
+use crate::{effective::effective, error::AppError, key::Key};
 use hairspring::{
     material::PRESETS,
-    scene::{Scene, SceneGroom, builtin::Style},
+    scene::{Scene, builtin::Style},
 };
 use hairspring_io::{Loaded, read_scene_text, read_settings, same_geometry};
 use std::{
@@ -36,8 +36,10 @@ pub struct Document {
     undo: Vec<String>,
     redo: Vec<String>,
     /// What is being dragged: its values are one step to go back.
-    dragged: Option<Key>,
+    dragged: Vec<Key>,
     settings: Scene,
+    /// The text as a table, read once for all who ask what it says.
+    said: toml::Table,
     effective: toml::Table,
 }
 
@@ -56,6 +58,7 @@ impl Document {
     /// A scene with this text that is not saved yet; what it names is relative to `path`'s folder.
     pub fn new(path: &Path, text: String) -> Result<Self, AppError> {
         let settings = read_settings(path, &text)?;
+        let said = table(&text)?;
         Ok(Self {
             path: path.to_owned(),
             on_disk: false,
@@ -63,9 +66,10 @@ impl Document {
             text,
             undo: Vec::new(),
             redo: Vec::new(),
-            dragged: None,
-            effective: effective(&settings),
+            dragged: Vec::new(),
+            effective: effective(&settings, &said),
             settings,
+            said,
         })
     }
 
@@ -86,10 +90,14 @@ impl Document {
         &self.settings
     }
 
-    /// Every value that counts, whether the text says it or its default does, by the names of a scene file; but that `groom` lists all grooms, the built-in
-    /// scene's among them, and that a groom's `material` is the list of its materials.
+    /// Every value that counts: see [`crate::effective::effective`].
     pub fn effective(&self) -> &toml::Table {
         &self.effective
+    }
+
+    /// What the text itself says.
+    pub fn said(&self) -> &toml::Table {
+        &self.said
     }
 
     /// The text.
@@ -114,19 +122,27 @@ impl Document {
 
     /// Writes a value, or takes it away so that its default counts. While a value is dragged, what is written to it is one step to go back: until [`Document::rest`].
     pub fn set(&mut self, key: &Key, value: Option<Value>) -> Result<Change, AppError> {
+        self.set_all(vec![(key.clone(), value)])
+    }
+
+    /// As [`Document::set`], several values at once: one step to go back.
+    pub fn set_all(&mut self, values: Vec<(Key, Option<Value>)>) -> Result<Change, AppError> {
         let mut edited = self.parsed()?;
-        if !key.write(edited.as_table_mut(), value) {
-            return Err(AppError::new(format!("the scene has no {key}")));
+        let mut keys = Vec::with_capacity(values.len());
+        for (key, value) in values {
+            if !key.write(edited.as_table_mut(), value) {
+                return Err(AppError::new(format!("the scene has no {key}")));
+            }
+            keys.push(key);
         }
-        let again = self.dragged.as_ref() == Some(key);
-        let change = self.take(edited.to_string(), !again)?;
-        self.dragged = Some(key.clone());
+        let change = self.take(edited.to_string(), self.dragged != keys)?;
+        self.dragged = keys;
         Ok(change)
     }
 
     /// What was dragged is let go of: the next value is a step of its own.
     pub fn rest(&mut self) {
-        self.dragged = None;
+        self.dragged.clear();
     }
 
     /// Adds an entry, given as the text of its fields, to a list such as `collider`.
@@ -198,6 +214,7 @@ impl Document {
         let mut file = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
         file.write_all(text.as_bytes()).map_err(failed)?;
         file.persist(path).map_err(|why| failed(why.error))?;
+        self.said = table(&text)?;
         self.text.clone_from(&text);
         (self.path, self.saved, self.on_disk) = (path.to_owned(), text, true);
         Ok(())
@@ -227,8 +244,8 @@ impl Document {
         let Some(place) = self.groom_key(groom).map(|key| key.field("material")) else {
             return Err(AppError::new(format!("the scene says nothing of groom {groom}")));
         };
-        let text: toml::Table = self.text.parse().map_err(|why| AppError::new(format!("{why}")))?;
-        let named = place.look_up(&text);
+        let text = &self.said;
+        let named = place.look_up(text);
         let list: Vec<String> = match named {
             Some(toml::Value::String(name)) => vec![name.clone()],
             Some(toml::Value::Array(names)) => {
@@ -270,7 +287,7 @@ impl Document {
             return Err(AppError::new(format!("the scene has no {place}")));
         }
         self.take(edited.to_string(), true)?;
-        self.dragged = Some(key(&name));
+        self.dragged = vec![key(&name)];
         Ok(key(&name))
     }
 
@@ -291,9 +308,9 @@ impl Document {
 
     /// Name of the preset that the first material of groom `groom` begins from, if any.
     pub fn preset_of(&self, groom: usize) -> Option<&'static str> {
-        let text: toml::Table = self.text.parse().ok()?;
+        let text = &self.said;
         let key = self.groom_key(groom)?;
-        let named = match key.field("material").look_up(&text) {
+        let named = match key.field("material").look_up(text) {
             Some(toml::Value::Array(names)) => names.first().and_then(toml::Value::as_str),
             Some(name) => name.as_str(),
             None if groom == 0 => text
@@ -307,7 +324,7 @@ impl Document {
     }
 
     fn listed_grooms(&self) -> usize {
-        self.parsed().ok().and_then(|d| Some(d.get("groom")?.as_array_of_tables()?.len())).unwrap_or(0)
+        self.said.get("groom").and_then(toml::Value::as_array).map_or(0, Vec::len)
     }
 
     fn parsed(&self) -> Result<DocumentMut, AppError> {
@@ -327,17 +344,22 @@ impl Document {
             self.undo.drain(..many);
         }
         self.redo.clear();
-        self.dragged = None;
+        self.dragged.clear();
         Ok(change)
     }
 
     fn put(&mut self, text: String) -> Result<Change, AppError> {
         let settings = read_settings(&self.path, &text)?;
         let same = same_geometry(&self.text, &text);
-        self.effective = effective(&settings);
+        self.said = table(&text)?;
+        self.effective = effective(&settings, &self.said);
         (self.settings, self.text) = (settings, text);
         Ok(if same { Change::Settings } else { Change::Geometry })
     }
+}
+
+fn table(text: &str) -> Result<toml::Table, AppError> {
+    text.parse().map_err(|why| AppError::new(format!("{why}")))
 }
 
 /// A table that is written only by what is in it.
@@ -370,47 +392,4 @@ fn rename_files(table: &mut dyn toml_edit::TableLike, rename: &dyn Fn(&str) -> P
             }
         }
     }
-}
-
-/// What counts in a scene with one groom that says nothing.
-pub fn defaults() -> toml::Table {
-    let gravity = glam::Vec3::new(0.0, -9.81, 0.0);
-    effective(&Scene { grooms: vec![SceneGroom::default()], gravity, ..Scene::default() })
-}
-
-/// See [`Document::effective`].
-fn effective(scene: &Scene) -> toml::Table {
-    fn value(of: &impl serde::Serialize) -> toml::Value {
-        toml::Value::try_from(of).unwrap_or_else(|why| unreachable!("settings are plain data: {why}"))
-    }
-    let grooms = scene.grooms.iter().map(|groom| {
-        let mut table = toml::Table::new();
-        table.insert("look".into(), value(&groom.look));
-        table.insert("effects".into(), value(&groom.effects));
-        let default = [hairspring::material::Material::default()];
-        let materials = if groom.materials.is_empty() { &default[..] } else { &groom.materials };
-        table.insert("material".into(), value(&materials));
-        toml::Value::Table(table)
-    });
-    let mut all = toml::Table::new();
-    all.insert("groom".into(), toml::Value::Array(grooms.collect()));
-    for (name, value) in [
-        ("name", value(&scene.name)),
-        ("gravity", value(&scene.gravity)),
-        ("collider", value(&scene.colliders)),
-        ("wind", value(&scene.wind)),
-        ("wind_source", value(&scene.wind_sources)),
-        ("turbulence", value(&scene.turbulence)),
-        ("shelter", value(&scene.shelter)),
-        ("charged", value(&scene.charged)),
-        ("solver", value(&scene.solver)),
-        ("volume", value(&scene.volume)),
-        ("hand", value(&scene.hands)),
-    ] {
-        all.insert(name.into(), value);
-    }
-    if let Some(camera) = &scene.camera {
-        all.insert("camera".into(), value(camera));
-    }
-    all
 }

@@ -43,6 +43,13 @@ impl Key {
         Self(steps)
     }
 
+    /// The field `name` beside what this key names.
+    pub fn sibling(&self, name: &str) -> Self {
+        let mut steps = self.0.clone();
+        steps.pop();
+        Self(steps).entry(name)
+    }
+
     /// What a table of effective values says here.
     pub fn look_up<'a>(&self, table: &'a toml::Table) -> Option<&'a toml::Value> {
         let Some((Step::Field(first), rest)) = self.0.split_first() else { return None };
@@ -79,7 +86,8 @@ fn write(table: &mut dyn TableLike, steps: &[Step], value: Option<Value>) -> boo
             }
             Some(Item::Value(Value::Array(list))) => match (list.get_mut(*place), rest, value) {
                 (Some(Value::InlineTable(table)), [_, ..], value) => write(table, rest, value),
-                (Some(old), [], Some(value)) => {
+                (Some(old), [], Some(mut value)) => {
+                    *value.decor_mut() = old.decor().clone();
                     *old = value;
                     true
                 }

@@ -2,26 +2,37 @@
 //!
 //! | file | what is in it |
 //! | --- | --- |
-//! | `document` | the scene's text, edited in place; undo, save |
-//! | `key`, `parameter` | names of its values; every parameter with its unit, range and what it does |
+//! | `document`, `effective` | the scene's text, edited in place; undo, save; what counts in it |
+//! | `key`, `parameter`, `field` | names of its values; every parameter, and every field of a list's entries, with its unit, range and what it does |
+//! | `differ` | what two scenes that are compared differ in |
 //! | `player`, `snapshot` | the simulation on a thread of its own, and what that shows of a moment |
 //! | `session` | document and player together: whatever is done to them is an action |
-//! | `view`, `orbit`, `overlay`, `ramp` | camera and tools, and what is laid over the picture |
+//! | `view`, `orbit`, `overlay`, `axes`, `ramp` | camera and tools, and what is laid over the picture |
+//! | `handle`, `carried` | what can be taken in the picture, and where joints have carried it |
 //! | `painter` | who draws the hair |
 //! | `panel` | what stands around the picture |
-//! | `record`, `script` | files of what is seen; a session line by line |
-//! | `app` | all of it in a window |
+//! | `record`, `letters`, `script` | files of what is seen, and words on them; a session line by line |
+//! | `app`, `desktop` | all of it in a window, and what is said where there can be none |
 //!
 //! Data goes one way: panels read the session and say actions, the session edits the document and tells the player, the player shows snapshots, a painter draws them.
 //!
 //! # Missing
-//! Paths of hands and charged bodies, and keys of a motion, are edited in the file. A thumbnail shows no motion.
+//! A thumbnail shows no motion.
 
 mod app;
+mod axes;
+mod carried;
+mod desktop;
+mod differ;
 mod document;
+mod effective;
 mod error;
+mod field;
 mod finger;
+mod followers;
+mod handle;
 mod key;
+mod letters;
 mod orbit;
 mod overlay;
 mod painter;
@@ -44,7 +55,6 @@ pub use script::parse as read_script;
 pub use session::{Action, Session};
 
 use eframe::egui;
-use std::sync::Arc;
 
 /// Size of the window when it opens [points].
 const SIZE: [f32; 2] = [1360.0, 860.0];
@@ -71,47 +81,8 @@ pub fn run(options: Options) -> Result<(), AppError> {
             Box::new(move |creation| Ok(Box::new(App::new(creation, options)?))),
         )
     };
-    match without_library(open) {
-        Ok(opened) => opened.map_err(|why| {
-            AppError::new(format!(
-                "no window could be opened: {why} (on Linux it takes libvulkan1 and a driver such as mesa-vulkan-drivers, libxcursor1, libxi6, \
-                 libx11-xcb1 and libxkbcommon-x11-0)"
-            ))
-        }),
-        Err(library) => Err(AppError::new(format!(
-            "no window could be opened: {library} (on Debian: apt install libxkbcommon-x11-0 libxkbcommon0 libx11-xcb1)"
-        ))),
-    }
-}
-
-/// Runs `open`; an error where a library of the desktop is missing, which the window's library says by a panic. Other panics go on.
-fn without_library<R>(open: impl FnOnce() -> R) -> Result<R, String> {
-    const SIGN: &str = "could not be loaded";
-    let usual: Arc<dyn Fn(&std::panic::PanicHookInfo<'_>) + Send + Sync> = Arc::from(std::panic::take_hook());
-    let other = usual.clone();
-    std::panic::set_hook(Box::new(move |panic| {
-        if !panic.payload_as_str().is_some_and(|what| what.contains(SIGN)) {
-            other(panic);
-        }
-    }));
-    let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(open));
-    std::panic::set_hook(Box::new(move |panic| usual(panic)));
-    outcome.map_err(|panic| {
-        let what =
-            panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
-        match what.filter(|what| what.contains(SIGN)) {
-            Some(what) => what.trim_end_matches('.').to_owned(),
-            None => std::panic::resume_unwind(panic),
-        }
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn a_missing_library_is_a_sentence() {
-        let missing = super::without_library(|| panic!("Library libxkbcommon-x11.so could not be loaded."));
-        assert_eq!(missing, Err::<(), _>("Library libxkbcommon-x11.so could not be loaded".into()));
-        assert_eq!(super::without_library(|| 3), Ok(3));
+    match desktop::without_library(open) {
+        Ok(opened) => opened.map_err(|why| AppError::new(desktop::sentence(&why.to_string()))),
+        Err(library) => Err(AppError::new(desktop::sentence(&library))),
     }
 }

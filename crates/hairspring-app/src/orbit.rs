@@ -103,6 +103,16 @@ impl Lens {
         (self.eye, self.forward + self.right * x + self.up * y)
     }
 
+    /// How deep a place is [m].
+    pub fn depth(&self, p: Vec3) -> f32 {
+        (p - self.eye).dot(self.forward)
+    }
+
+    /// Which way is right.
+    pub fn right(&self) -> Vec3 {
+        self.right
+    }
+
     /// Pixels to a metre at `depth` [m] in a picture so many pixels high.
     pub fn scale(&self, depth: f32, height: f32) -> f32 {
         0.5 * height / (depth * self.slope)

@@ -1,11 +1,6 @@
-//! What is drawn over the picture to see inside: outlines of colliders, a slice through their distance, cells of the hair's volume, frames and roots.
+//! What is drawn over the picture to see inside: outlines of colliders, a slice through their distance, cells of the hair's volume, roots; and handles. Frames are in `axes`.
 
-use crate::{
-    orbit::Lens,
-    ramp,
-    snapshot::{Scenery, Sight},
-    view::View,
-};
+use crate::{axes, handle::Handle, orbit::Lens, ramp, snapshot::Scenery, view::View};
 use eframe::egui::{self, Color32, Pos2, Stroke};
 use glam::{Mat3, Vec2, Vec3};
 use hairspring::{collide::Obstacle, collide::ObstaclePose};
@@ -19,28 +14,35 @@ const SQUARES: usize = 48;
 const CELLS: usize = 6000;
 
 /// A painter of lines in space.
-struct Pen<'a> {
-    painter: &'a egui::Painter,
-    lens: Lens,
-    rect: egui::Rect,
+pub struct Pen<'a> {
+    /// What it draws on.
+    pub painter: &'a egui::Painter,
+    /// Through which the picture is seen.
+    pub lens: Lens,
+    /// Where the picture is.
+    pub rect: egui::Rect,
 }
 
 impl Pen<'_> {
-    fn at(&self, p: Vec3) -> Option<Pos2> {
+    /// Where a place is on the screen; `None` behind the camera.
+    pub fn at(&self, p: Vec3) -> Option<Pos2> {
         let (at, _) = self.lens.project(p)?;
         Some(self.place(at))
     }
 
+    /// Where a place of the picture is on the screen.
     fn place(&self, at: Vec2) -> Pos2 {
         self.rect.min + egui::vec2(at.x * self.rect.width(), at.y * self.rect.height())
     }
 
-    fn line(&self, a: Vec3, b: Vec3, stroke: Stroke) {
+    /// A line in space.
+    pub fn line(&self, a: Vec3, b: Vec3, stroke: Stroke) {
         if let (Some(a), Some(b)) = (self.at(a), self.at(b)) {
             self.painter.line_segment([a, b], stroke);
         }
     }
 
+    /// A circle between two axes.
     fn circle(&self, center: Vec3, x: Vec3, y: Vec3, stroke: Stroke) {
         let on = |k: usize| {
             let (sin, cos) = (k as f32 / PIECES as f32 * std::f32::consts::TAU).sin_cos();
@@ -49,6 +51,7 @@ impl Pen<'_> {
         (0..PIECES).for_each(|k| self.line(on(k), on(k + 1), stroke));
     }
 
+    /// A ball by three circles.
     fn ball(&self, center: Vec3, radius: f32, stroke: Stroke) {
         let [x, y, z] = [Vec3::X * radius, Vec3::Y * radius, Vec3::Z * radius];
         self.circle(center, x, y, stroke);
@@ -58,20 +61,18 @@ impl Pen<'_> {
 }
 
 /// Draws what is switched on over the picture at `rect`.
-pub fn draw(painter: &egui::Painter, rect: egui::Rect, scenery: &Scenery, view: &View, sight: &Sight) {
-    let lens = Lens::new(&sight.camera, rect.width() / rect.height().max(1.0));
-    let painter = &painter.with_clip_rect(rect);
-    let pen = Pen { painter, lens, rect };
+pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picked: &[[usize; 2]]) {
+    let painter = pen.painter;
     let overlays = view.overlays;
     if overlays.slice {
-        slice(&pen, scenery, view.slice);
+        slice(pen, scenery, view.slice);
     }
     if overlays.volume {
-        volume(&pen, scenery);
+        volume(pen, scenery);
     }
     if overlays.colliders {
         let stroke = Stroke::new(1.0, Color32::from_rgb(90, 200, 255));
-        scenery.obstacles.iter().for_each(|o| collider(&pen, o, stroke));
+        scenery.obstacles.iter().for_each(|o| collider(pen, o, stroke));
     }
     if overlays.roots {
         for (still, points) in scenery.still.grooms.iter().zip(scenery.points()) {
@@ -83,16 +84,62 @@ pub fn draw(painter: &egui::Painter, rect: egui::Rect, scenery: &Scenery, view: 
         }
     }
     if overlays.frames {
-        let (m, at) = scenery.anchor.matrix();
-        for (axis, color) in
-            [(m.x_axis, Color32::RED), (m.y_axis, Color32::GREEN), (m.z_axis, Color32::LIGHT_BLUE)]
-        {
-            pen.line(at, at + axis * 0.15, Stroke::new(2.0, color));
-        }
+        axes::draw(pen, scenery, picked);
     }
     if let Some((center, radius)) = view.ball() {
         pen.ball(center, radius, Stroke::new(1.5, Color32::from_white_alpha(170)));
     }
+    for (k, handle) in handles.iter().enumerate() {
+        handle_at(pen, handle, view.touched() == Some(k));
+    }
+}
+
+/// A handle, and its name where the pointer is on it.
+fn handle_at(pen: &Pen, handle: &Handle, touched: bool) {
+    let color = if touched { Color32::from_rgb(255, 210, 90) } else { Color32::from_rgb(120, 200, 255) };
+    let Some(at) = pen.at(handle.at) else { return };
+    if let Some(from) = handle.arrow() {
+        if handle.is_wind() {
+            rose(pen, from, handle.at, color);
+        }
+        if let Some(from) = pen.at(from).filter(|from| from.distance(at) > 1.0) {
+            let way = (at - from).normalized() * 9.0;
+            let side = way.rot90() * 0.5;
+            pen.painter.line_segment([from, at], Stroke::new(2.0, color));
+            pen.painter.line_segment([at, at - way + side], Stroke::new(2.0, color));
+            pen.painter.line_segment([at, at - way - side], Stroke::new(2.0, color));
+        }
+    }
+    if let Some(middle) = handle.rim() {
+        let radius = middle.distance(handle.at);
+        // What is not touched is hinted at: hair is looked at, and not its colliders.
+        pen.ball(middle, radius, Stroke::new(1.0, color.gamma_multiply(if touched { 0.8 } else { 0.2 })));
+    }
+    let radius = if touched { 6.0 } else { 4.0 };
+    pen.painter.circle(
+        at,
+        radius,
+        color.gamma_multiply(0.6),
+        Stroke::new(1.0, Color32::from_black_alpha(160)),
+    );
+    if touched || handle.is_wind() {
+        let place = if touched { at } else { pen.at(handle.arrow().unwrap_or(handle.at)).unwrap_or(at) };
+        let (place, align) = (place + egui::vec2(0.0, 14.0), egui::Align2::CENTER_TOP);
+        let font = egui::FontId::proportional(13.0);
+        let shade = Color32::from_black_alpha(170);
+        pen.painter.text(place + egui::vec2(1.0, 1.0), align, &handle.name, font.clone(), shade);
+        pen.painter.text(place, align, &handle.name, font, Color32::from_white_alpha(220));
+    }
+}
+
+/// A level ring about the wind's beginning, and how far its tip is above or below it: else nobody sees how an arrow lies in space.
+fn rose(pen: &Pen, from: Vec3, tip: Vec3, color: Color32) {
+    let thin = Stroke::new(1.0, color.gamma_multiply(0.5));
+    let radius = 0.09 / pen.lens.scale(pen.lens.depth(from), 1.0);
+    pen.circle(from, Vec3::X * radius, Vec3::Z * radius, thin);
+    let level = Vec3::new(tip.x, from.y, tip.z);
+    pen.line(from, level, thin);
+    pen.line(level, tip, thin);
 }
 
 /// The outline of a collider.

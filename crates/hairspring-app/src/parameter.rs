@@ -1,5 +1,5 @@
 //! Every parameter of a scene file that is one number, switch, choice, colour or direction, as an artist looks for it: what it is called, its unit, its range, what it does. Their defaults are the
-//! library's; entries of lists (colliders, hands, sources of wind, charged bodies) are shown by `panel::list`.
+//! library's; entries of lists (colliders, hands, sources of wind, charged bodies, keys) are in `field`.
 
 use crate::{document::Document, key::Key};
 
@@ -12,6 +12,8 @@ pub enum Group {
     Stiffness,
     /// How heavy it is.
     Weight,
+    /// How the body moves.
+    Motion,
     /// What blows.
     Air,
     /// Bodies.
@@ -26,10 +28,11 @@ pub enum Group {
 
 impl Group {
     /// All of them, in the order of the panel.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Style,
         Self::Stiffness,
         Self::Weight,
+        Self::Motion,
         Self::Air,
         Self::Collision,
         Self::Volume,
@@ -43,6 +46,7 @@ impl Group {
             Self::Style => "Style",
             Self::Stiffness => "Stiffness",
             Self::Weight => "Weight",
+            Self::Motion => "Motion",
             Self::Air => "Air",
             Self::Collision => "Collision",
             Self::Volume => "Volume",
@@ -161,10 +165,12 @@ pub const ALL: &[Parameter] = parameters! {
         Material "shear", "Shear modulus", "Pa", scale(1e7, 1e11), "Stiffness of the substance against twisting. Human hair: 0.89e9.";
     }
     Weight {
-        Scene "gravity", "Gravity", "m/s²", Kind::Vector { reach: 30.0 }, "Which way things fall, and how fast.";
+        Scene "gravity", "Gravity", "m/s²", Kind::Vector { reach: 30.0 }, "Which way things fall, and how fast. Hair that starts in balance is put in balance under every gravity anew: it keeps its shape, and swings otherwise. To see it give way, switch off \"Starts in balance\" (Solver).";
         Material "density", "Density", "kg/m³", number(100.0, 5000.0), "Of the fibre. Dry human hair: 1310.";
         Material "mass_profile", "Mass along it", "", Kind::Profile, "Weights from root to tip, linear in between; only their ratios count: 1, 3 is three times as heavy at the tip.";
         Material "radius", "Fibre radius", "m", Kind::Maybe { min: 1e-5, max: 2e-4, from: 3.5e-5 }, "Of the fibre, in place of the groom's own. Human hair: 25e-6 to 50e-6. It begins the scene anew.";
+    }
+    Motion {
         Scene "solver.inertia", "Inertia of the head", "×", number(0.0, 1.0), "How much of the head's motion hair feels: 0, and it moves as if the head stood still.";
     }
     Air {

@@ -153,6 +153,7 @@ struct Work {
     picked: Option<Picked>,
     scene: u64,
     step: u64,
+    published: u64,
     reset_strands: usize,
     report: FrameReport,
     /// Of each stage, at the last measurement, and the scene and step of that.
@@ -186,6 +187,7 @@ impl Work {
             picked: None,
             scene: 0,
             step: 0,
+            published: 0,
             reset_strands: 0,
             report: FrameReport::default(),
             measures: Vec::new(),
@@ -208,10 +210,16 @@ impl Work {
             };
             match self.inbox.recv_timeout(wait) {
                 Ok(order) => {
-                    let mut news = self.obey(order);
                     // What has come in meanwhile belongs to the same moment.
-                    while let Ok(order) = self.inbox.try_recv() {
-                        news |= self.obey(order);
+                    let orders: Vec<Order> = std::iter::once(order).chain(self.inbox.try_iter()).collect();
+                    let last = orders.iter().rposition(|o| matches!(o, Order::Open(..))).unwrap_or(0);
+                    let mut news = false;
+                    for (k, order) in orders.into_iter().enumerate() {
+                        match order {
+                            // A scene that another one has already taken the place of is none to build.
+                            Order::Open(..) if k < last => self.scene += 1,
+                            order => news |= self.obey(order),
+                        }
                     }
                     if news {
                         self.publish();
@@ -332,6 +340,8 @@ impl Work {
     fn advance(&mut self) {
         if self.end.is_some_and(|end| self.stages.first().is_some_and(|(s, _)| s.time() + 0.5 * STEP > end)) {
             self.reset();
+            // It counts as a step: who waits for so many would else wait for ever.
+            self.step += 1;
             return;
         }
         for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
@@ -387,6 +397,8 @@ impl Work {
         let picked = self.picked;
         snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));
         (snapshot.step, snapshot.scene, snapshot.time) = (self.step, self.scene, first.time());
+        self.published += 1;
+        snapshot.number = self.published;
         (snapshot.report, snapshot.took, snapshot.reset_strands) =
             (self.report, self.took, self.reset_strands);
         self.shown = Instant::now();
@@ -404,6 +416,7 @@ impl Work {
         let free = self.pool.iter_mut().position(|s| Arc::get_mut(s).is_some());
         free.map(|k| self.pool.swap_remove(k)).unwrap_or_else(|| {
             Arc::new(Snapshot {
+                number: 0,
                 step: 0,
                 scene: 0,
                 time: 0.0,

@@ -1,12 +1,17 @@
-//! Stills, pictures, clips and turntables of what is seen. Every frame is drawn in full, however long that takes: while a record runs, the simulation waits for it.
+//! Stills, pictures, clips and turntables of what is seen, both sides where two scenes are compared. Every frame is drawn in full, however long that takes: while a record runs, the simulation waits for it.
 
 use crate::{
     AppError,
+    letters::Letters,
     orbit::Orbit,
     session::{Action, Session},
-    snapshot::{Sight, Snapshot},
+    snapshot::{Scenery, Sight, Snapshot},
 };
-use hairspring_view::{ClipWriter, Renderer, sequence_path, write_jpeg, write_png};
+use hairspring_view::{
+    ClipWriter, Image, Renderer,
+    gpu::{Gpu, GpuRenderer},
+    sequence_path, write_jpeg, write_png,
+};
 use std::{
     path::{Path, PathBuf},
     sync::{
@@ -21,6 +26,14 @@ const RATE: u32 = 30;
 const STEPS: u64 = 2;
 /// Size of what is recorded [pixels].
 const SIZE: [u32; 2] = [1280, 720];
+/// Between two that are compared [pixels].
+const GAP: u32 = 4;
+/// Height of what stands under them [pixels].
+const CAPTION: u32 = 28;
+/// How far words stand off [pixels].
+const INSET: u32 = 10;
+/// Gray between and under them.
+const DARK: u8 = 24;
 
 /// What is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,8 +84,19 @@ pub struct Wish {
     pub seconds: f32,
 }
 
+/// A frame of a record.
+struct Shot {
+    snapshot: Arc<Snapshot>,
+    /// How each stage is looked at.
+    sights: Vec<Sight>,
+    /// What stands under two that are compared.
+    captions: [String; 2],
+    /// From 1.
+    number: u32,
+}
+
 enum Job {
-    Frame(Arc<Snapshot>, Sight, u32),
+    Frame(Shot),
     Finish,
 }
 
@@ -93,14 +117,15 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Begins; the play is paused and goes on by what is recorded.
+    /// Begins; the play is paused and goes on by what is recorded. It is drawn by `gpu`, if there is one, else by the CPU.
     pub fn new(
         wish: Wish,
         session: &mut Session,
         snapshot: &Snapshot,
+        gpu: Option<Gpu>,
         wake: impl Fn() + Send + 'static,
     ) -> Result<Self, AppError> {
-        let sink = Sink::new(&wish)?;
+        let sink = Sink::new(&wish, gpu)?;
         let frames = match wish.kind {
             Kind::Still => 1,
             _ => ((wish.seconds * RATE as f32).round() as u32).clamp(1, 100_000),
@@ -124,7 +149,7 @@ impl Recorder {
         &mut self,
         session: &mut Session,
         snapshot: &Arc<Snapshot>,
-        sight: &Sight,
+        mut sights: Vec<Sight>,
     ) -> Option<Result<String, AppError>> {
         while let Ok(outcome) = self.done.try_recv() {
             if let Err(why) = outcome {
@@ -141,17 +166,18 @@ impl Recorder {
             };
             return Some(self.end(session, Ok(said)));
         }
-        if self.sent < self.frames && self.sent == self.written && snapshot.step >= self.due {
-            let sight = match self.wish.kind {
-                Kind::Turntable => {
-                    let turn = self.sent as f32 / self.frames as f32 * std::f32::consts::TAU;
+        let ready = self.sent == self.written && snapshot.step >= self.due && !sights.is_empty();
+        if self.sent < self.frames && ready {
+            if self.wish.kind == Kind::Turntable {
+                let turn = self.sent as f32 / self.frames as f32 * std::f32::consts::TAU;
+                for sight in &mut sights {
                     let orbit = Orbit::new(&sight.camera);
-                    Sight { camera: Orbit { turn: orbit.turn + turn, ..orbit }.camera(), ..*sight }
+                    sight.camera = Orbit { turn: orbit.turn + turn, ..orbit }.camera();
                 }
-                _ => *sight,
-            };
+            }
             self.sent += 1;
-            self.tell(Job::Frame(snapshot.clone(), sight, self.sent));
+            let (captions, number) = (session.captions().clone(), self.sent);
+            self.tell(Job::Frame(Shot { snapshot: snapshot.clone(), sights, captions, number }));
             if self.sent == self.frames {
                 self.tell(Job::Finish);
             } else if matches!(self.wish.kind, Kind::Clip | Kind::Pictures) {
@@ -189,15 +215,48 @@ impl Recorder {
     }
 }
 
+/// Who draws a record: whoever draws the window.
+enum Brush {
+    Cpu(Box<Renderer>),
+    Gpu(Box<GpuRenderer>),
+}
+
+impl Brush {
+    fn draw(
+        &mut self,
+        scenery: &Scenery,
+        sight: &Sight,
+        [width, height]: [u32; 2],
+    ) -> Result<Image, AppError> {
+        match self {
+            Self::Cpu(renderer) => {
+                if (renderer.image().width, renderer.image().height) != (width, height) {
+                    **renderer = Renderer::new(width, height);
+                }
+                Ok(scenery.draw(sight, false, |frame| renderer.draw(frame).clone()))
+            }
+            Self::Gpu(renderer) => {
+                // Snapshots use their memory again: what lies where it lay is not what was sent.
+                renderer.forget();
+                scenery.draw(sight, true, |frame| {
+                    renderer.draw(frame, width, height);
+                });
+                renderer.read().map_err(|why| AppError::new(why.to_string()))
+            }
+        }
+    }
+}
+
 /// Where frames go.
 struct Sink {
     path: PathBuf,
     clip: Option<ClipWriter>,
-    renderer: Renderer,
+    brush: Brush,
+    letters: Letters,
 }
 
 impl Sink {
-    fn new(wish: &Wish) -> Result<Self, AppError> {
+    fn new(wish: &Wish, gpu: Option<Gpu>) -> Result<Self, AppError> {
         let path = wish.path.clone();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let wrong = |expected: &str| {
@@ -213,14 +272,18 @@ impl Sink {
             (_, "mp4") => Some(ClipWriter::create(&path, SIZE[0], SIZE[1], f64::from(RATE))?),
             _ => return wrong("a .mp4"),
         };
-        Ok(Self { path, clip, renderer: Renderer::new(SIZE[0], SIZE[1]) })
+        let brush = match gpu {
+            Some(gpu) => Brush::Gpu(Box::new(GpuRenderer::new(&gpu))),
+            None => Brush::Cpu(Box::new(Renderer::new(SIZE[0], SIZE[1]))),
+        };
+        Ok(Self { path, clip, brush, letters: Letters::default() })
     }
 
     /// Draws and writes until it is told to finish, and tells `said` of each frame and of the end; nothing is left of a clip that is not finished.
     fn run(mut self, todo: &Receiver<Job>, said: impl Fn(Result<(), AppError>) -> bool) {
         for job in todo {
             let outcome = match job {
-                Job::Frame(snapshot, sight, number) => self.frame(&snapshot, &sight, number),
+                Job::Frame(shot) => self.frame(&shot),
                 Job::Finish => {
                     let outcome = self.clip.take().map_or(Ok(()), ClipWriter::finish);
                     said(outcome.map_err(AppError::from));
@@ -234,17 +297,41 @@ impl Sink {
         }
     }
 
-    fn frame(&mut self, snapshot: &Snapshot, sight: &Sight, number: u32) -> Result<(), AppError> {
-        let Some(scenery) = snapshot.stages.first() else { return Ok(()) };
-        let image = scenery.draw(sight, false, |frame| self.renderer.draw(frame));
+    fn frame(&mut self, shot: &Shot) -> Result<(), AppError> {
+        let image = match (&*shot.snapshot.stages, &*shot.sights) {
+            ([], _) | (_, []) => return Ok(()),
+            ([one], [sight, ..]) | ([one, ..], [sight]) => self.brush.draw(one, sight, SIZE)?,
+            ([left, right, ..], [first, second, ..]) => {
+                self.pair([(left, first), (right, second)], &shot.captions)?
+            }
+        };
         match &mut self.clip {
-            Some(clip) => clip.push(image)?,
+            Some(clip) => clip.push(&image)?,
             None => {
-                let path = sequence_path(&self.path, number).unwrap_or_else(|| self.path.clone());
-                write(&path, image)?;
+                let path = sequence_path(&self.path, shot.number).unwrap_or_else(|| self.path.clone());
+                write(&path, &image)?;
             }
         }
         Ok(())
+    }
+
+    /// Two that are compared, side by side, with what they differ in under them.
+    fn pair(&mut self, sides: [(&Scenery, &Sight); 2], captions: &[String; 2]) -> Result<Image, AppError> {
+        let size = [(SIZE[0] - GAP) / 2, SIZE[1] - CAPTION];
+        let mut all = Image::new(SIZE[0], SIZE[1]);
+        all.rgb.fill(DARK);
+        for (k, (scenery, sight)) in sides.into_iter().enumerate() {
+            let left = k as u32 * (size[0] + GAP);
+            let half = self.brush.draw(scenery, sight, size)?;
+            let bytes = 3 * size[0] as usize;
+            for (row, from) in half.rgb.chunks_exact(bytes).enumerate() {
+                let at = 3 * (row * SIZE[0] as usize + left as usize);
+                all.rgb[at..at + bytes].copy_from_slice(from);
+            }
+            let place = [left + INSET, size[1] + (CAPTION - INSET) / 3];
+            self.letters.write(&mut all, place, size[0] - 2 * INSET, &captions[k]);
+        }
+        Ok(all)
     }
 }
 

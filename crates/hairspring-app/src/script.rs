@@ -9,7 +9,7 @@
 //! shot window.png                  the window as it is
 //! ```
 //!
-//! Further: `play`, `pause`, `step`, `reset`, `speed X`, `undo`, `redo`, `new STYLE`, `open FILE`, `save FILE`, `show VALUE` (or `natural`), `overlay NAME on|off`,
+//! Further: `play`, `pause`, `step`, `reset`, `speed X`, `undo`, `redo`, `new STYLE`, `open FILE`, `save FILE`, `show VALUE` (or `natural`), `find TEXT` (parameters), `overlay NAME on|off`,
 //! `compare on|off`, `second on|off`, `graphs on|off`, `presets on|off`, `help on|off`, `panels on|off`, `still FILE`, `clip FILE SECONDS`, `pictures FILE SECONDS`, `turntable FILE SECONDS`, `quit`.
 
 use crate::{AppError, key::Key, record::Kind, view::Hand};
@@ -48,6 +48,8 @@ pub enum Line {
     Drag(Vec2, Vec2, u32),
     /// What colours show.
     Show(Option<Value>),
+    /// Finds parameters, whose groups open.
+    Find(String),
     /// Switches something on or off, by its name.
     Switch(String, bool),
     /// Records for so many seconds.
@@ -59,7 +61,7 @@ pub enum Line {
 }
 
 /// Names of what [`Line::Switch`] switches.
-pub const SWITCHES: [&str; 13] = [
+pub const SWITCHES: [&str; 14] = [
     "compare",
     "second",
     "graphs",
@@ -73,6 +75,7 @@ pub const SWITCHES: [&str; 13] = [
     "volume",
     "frames",
     "roots",
+    "handles",
 ];
 
 /// Reads a script.
@@ -148,6 +151,7 @@ fn read(line: &str) -> Result<Line, String> {
             let known = Value::ALL.into_iter().find(|v| v.name().eq_ignore_ascii_case(rest));
             Line::Show(Some(known.ok_or_else(|| format!("'{rest}' is nothing that colours show"))?))
         }
+        "find" => Line::Find(rest.to_owned()),
         "overlay" => {
             let (name, state) =
                 rest.split_once(char::is_whitespace).ok_or("`overlay` needs a name and on or off")?;
@@ -178,8 +182,8 @@ mod tests {
     #[test]
     fn every_line_of_the_help_is_read_and_others_are_refused_by_their_number() {
         let text = "wait 30\nset groom[0].look.roughness 0.5\nunset wind.gust\nhand grab\ndrag 0.4 0.6 0.7 0.5 30\n# no\n\nshot a b.png\n\
-                    overlay slice on\ncompare off\nshow natural\nshow speed\nclip x.mp4 2\nquit";
-        assert_eq!(parse(text).unwrap().len(), 12);
+                    overlay slice on\ncompare off\nshow natural\nshow speed\nclip x.mp4 2\nfind wind\nquit";
+        assert_eq!(parse(text).unwrap().len(), 13);
         for wrong in [
             "fly",
             "set a",

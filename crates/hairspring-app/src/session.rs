@@ -1,7 +1,7 @@
 //! What the window works on, without the window: the scene, the one beside it, and the simulation. Whatever a person, a script or a monkey does comes in as an [`Action`].
 
 use crate::{
-    AppError,
+    AppError, differ,
     document::{Change, Document},
     key::Key,
     parameter::Parameter,
@@ -35,6 +35,8 @@ pub enum Action {
     Parameter(&'static Parameter, Option<Toml>),
     /// Writes a value by its key.
     Set(Key, Option<Toml>),
+    /// Writes several values by their keys, which are one step to go back.
+    SetAll(Vec<(Key, Option<Toml>)>),
     /// What was dragged is let go of.
     Rest,
     /// Adds an entry to a list, by the text of its fields.
@@ -93,6 +95,10 @@ pub struct Session {
     notes: Vec<String>,
     /// Length of the scene's motion [s].
     length: Option<f32>,
+    /// Names of the body's joints.
+    joints: Vec<String>,
+    /// What the two that are compared differ in.
+    captions: [String; 2],
     /// Scenes that were begun: a snapshot of an earlier one is not news.
     begun: u64,
 }
@@ -118,6 +124,8 @@ impl Session {
             held: false,
             notes: Vec::new(),
             length: None,
+            joints: Vec::new(),
+            captions: [String::new(), String::new()],
             begun: 0,
         };
         session.begin()?;
@@ -155,6 +163,10 @@ impl Session {
             }
             Action::Set(key, value) => {
                 let change = self.edited_mut().set(&key, value)?;
+                self.follow(change)?;
+            }
+            Action::SetAll(values) => {
+                let change = self.edited_mut().set_all(values)?;
                 self.follow(change)?;
             }
             Action::Rest => self.edited_mut().rest(),
@@ -267,11 +279,22 @@ impl Session {
         let second = self.second.as_ref().map(Document::load).transpose()?;
         self.length = loaded.value.clip.as_ref().map(|clip| clip.duration()).filter(|d| *d > STEP);
         self.notes = loaded.notes;
+        let joints = loaded.value.body.iter().flat_map(|body| &body.joints);
+        self.joints = joints.map(|joint| joint.name.clone()).collect();
         self.held = false;
         self.begun += 1;
         self.player.tell(Order::Open(Box::new(loaded.value), second.map(|s| Box::new(s.value))));
         self.tell_length();
+        self.compare();
         Ok(())
+    }
+
+    /// Finds what the two that are compared differ in.
+    fn compare(&mut self) {
+        self.captions = match &self.second {
+            Some(second) => differ::captions(self.document.effective(), second.effective()),
+            None => [String::new(), String::new()],
+        };
     }
 
     fn tell_length(&self) {
@@ -280,6 +303,7 @@ impl Session {
 
     /// Brings the simulation up to an edit.
     fn follow(&mut self, change: Change) -> Result<(), AppError> {
+        self.compare();
         match change {
             Change::None => Ok(()),
             Change::Geometry => self.begin(),
@@ -363,6 +387,16 @@ impl Session {
     /// The groom and the group whose parameters are shown.
     pub fn chosen(&self) -> (usize, usize) {
         self.chosen
+    }
+
+    /// Names of the body's joints.
+    pub fn joints(&self) -> &[String] {
+        &self.joints
+    }
+
+    /// What the two that are compared differ in, left and right; empty where nothing is compared.
+    pub fn captions(&self) -> &[String; 2] {
+        &self.captions
     }
 
     /// What was said of the scene's files as they were read.

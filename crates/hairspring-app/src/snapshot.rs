@@ -1,19 +1,17 @@
 //! What the simulation's thread shows of a moment: enough to draw it and to say how it is.
 
-use glam::{Affine3A, Vec3};
+use crate::{carried::Carried, followers::Followers};
+use glam::{Mat3, Vec3};
 use hairspring::{
     body::{Mesh, Part},
     collide::Rigid,
-    follow::{FollowLayout, Followed},
-    scene::{Effects, HairLook},
+    groom::RootBinding,
+    scene::HairLook,
     simulation::{Measure, MovingObstacle, VolumeReport},
     stage::{FrameReport, Picked, Stage, StrandFigures, Value},
 };
 use hairspring_view::{Background, Frame, HairDraw, Lighting, MeshDraw, Quality};
-use std::{
-    sync::{Arc, OnceLock},
-    time::Duration,
-};
+use std::{sync::Arc, time::Duration};
 
 /// What does not move: made once a scene.
 pub struct Still {
@@ -32,12 +30,22 @@ pub struct StillGroom {
     offsets: Vec<u32>,
     radii: Vec<f32>,
     colors: Vec<Vec3>,
+    /// Where each strand sits on the body; empty where none carries it.
+    bindings: Vec<RootBinding>,
 }
 
 impl StillGroom {
     /// Number of strands.
     pub fn strands(&self) -> usize {
         self.offsets.len().saturating_sub(1)
+    }
+
+    /// Points of a strand; none where there is no such strand.
+    pub fn strand(&self, strand: usize) -> std::ops::Range<usize> {
+        match self.offsets.get(strand..strand + 2) {
+            Some(&[from, to]) => from as usize..to as usize,
+            _ => 0..0,
+        }
     }
 
     /// Index of each strand's first point.
@@ -53,6 +61,7 @@ impl Still {
             offsets: s.groom.offsets.clone(),
             radii: s.groom.radii.clone(),
             colors: s.groom.colors.clone(),
+            bindings: s.groom.roots.clone(),
         });
         let mesh = |m: &Mesh| (m.triangles.clone(), m.parts.clone());
         let ((simulated, strands), (points, all)) = (stage.simulated_strands(), stage.simulated_points());
@@ -74,7 +83,7 @@ pub struct Scenery {
     /// Points of each groom [m]; of use where its hairs are not left to a graphics card.
     points: Vec<Vec<Vec3>>,
     /// How the guides of each groom carry its hairs, where those are.
-    carried: Vec<Option<Carried>>,
+    followers: Vec<Option<Followers>>,
     /// One number a point of each groom, where a value is shown; else empty.
     pub values: Vec<Vec<f32>>,
     /// Vertices and normals of the body.
@@ -89,6 +98,8 @@ pub struct Scenery {
     pub measure: Measure,
     /// Volume of each groom's hair.
     pub volumes: Vec<Option<VolumeReport>>,
+    /// Where what the scene lists has been carried.
+    pub carried: Carried,
 }
 
 impl Scenery {
@@ -98,7 +109,7 @@ impl Scenery {
             still,
             looks: Vec::new(),
             points: Vec::new(),
-            carried: Vec::new(),
+            followers: Vec::new(),
             values: Vec::new(),
             positions: Vec::new(),
             normals: Vec::new(),
@@ -106,6 +117,7 @@ impl Scenery {
             anchor: Rigid::default(),
             measure: Measure::default(),
             volumes: Vec::new(),
+            carried: Carried::default(),
         }
     }
 
@@ -114,15 +126,15 @@ impl Scenery {
         self.still = still.clone();
         let grooms = stage.strands().len();
         self.points.resize_with(grooms, Vec::new);
-        self.carried.resize_with(grooms, || None);
+        self.followers.resize_with(grooms, || None);
         self.looks.clear();
-        for ((strands, points), carried) in stage.strands().zip(&mut self.points).zip(&mut self.carried) {
+        for ((strands, points), left) in stage.strands().zip(&mut self.points).zip(&mut self.followers) {
             points.clear();
             match strands.follow {
-                Some(follow) => carried.get_or_insert_with(|| Carried::new(follow)).fill(follow),
+                Some(follow) => left.get_or_insert_with(|| Followers::new(follow)).fill(follow),
                 None => {
                     points.extend_from_slice(strands.points);
-                    *carried = None;
+                    *left = None;
                 }
             }
             self.looks.push(strands.look.clone());
@@ -146,6 +158,18 @@ impl Scenery {
         self.anchor = stage.body_anchor();
         self.volumes.clear();
         self.volumes.extend(stage.volumes());
+        self.carried.fill(stage);
+    }
+
+    /// The frame that a strand's root moves with: that of the skin's triangle (x along an edge, y along the normal), or the head's where no skin carries it.
+    pub fn root_frame(&self, groom: usize, strand: usize) -> Mat3 {
+        let skin = || {
+            let binding = self.still.grooms.get(groom)?.bindings.get(strand)?;
+            let corners = self.still.body.as_ref()?.0.get(binding.triangle as usize)?;
+            let [a, b, c] = corners.map(|v| self.positions.get(v as usize).copied());
+            Some(Mat3::from_quat(binding.frame([a?, b?, c?])))
+        };
+        skin().unwrap_or(self.anchor.matrix().0)
     }
 
     /// The box (min, max) of all hair [m]; `None` where no point is finite.
@@ -159,8 +183,8 @@ impl Scenery {
 
     /// Points of each groom [m]. Those of hairs that are left to a graphics card are placed when they are first asked for.
     pub fn points(&self) -> impl ExactSizeIterator<Item = &[Vec3]> {
-        (0..self.points.len()).map(|g| match &self.carried[g] {
-            Some(carried) => carried.points(&self.obstacles),
+        (0..self.points.len()).map(|g| match &self.followers[g] {
+            Some(left) => left.points(&self.obstacles),
             None => &self.points[g],
         })
     }
@@ -169,10 +193,10 @@ impl Scenery {
     /// are left to it.
     pub fn draw<R>(&self, sight: &Sight, card: bool, draw: impl FnOnce(&Frame) -> R) -> R {
         let card = card && sight.every <= 1;
-        let left = |g: usize| self.carried[g].as_ref().filter(|_| card);
+        let left = |g: usize| self.followers[g].as_ref().filter(|_| card);
         let points: Vec<&[Vec3]> = match card {
             true => (0..self.points.len())
-                .map(|g| left(g).map_or(&self.points[g][..], |carried| &carried.layout.groom.points))
+                .map(|g| left(g).map_or(&self.points[g][..], |left| &left.layout.groom.points))
                 .collect(),
             false => self.points().collect(),
         };
@@ -211,7 +235,7 @@ impl Scenery {
                         colors: colors.get(g).unwrap_or(&still.colors),
                         look: &self.looks[g],
                         width_scale: sight.width,
-                        follow: left(g).map(|carried| carried.now(&self.obstacles)),
+                        follow: left(g).map(|left| left.now(&self.obstacles)),
                     },
                 }
             })
@@ -229,48 +253,6 @@ impl Scenery {
             lighting: Lighting { exposure: sight.exposure, ..Lighting::facing(&sight.lit_for) },
             background: Background::default(),
             quality: sight.quality,
-        })
-    }
-}
-
-/// How guides carry the hairs of a groom that a graphics card places.
-struct Carried {
-    layout: Arc<FollowLayout>,
-    effects: Effects,
-    carriers: Vec<Affine3A>,
-    guide_points: Vec<Vec3>,
-    /// What the CPU makes of it, once somebody asks: a record, an overlay.
-    placed: OnceLock<Vec<Vec3>>,
-}
-
-impl Carried {
-    fn new(follow: Followed) -> Self {
-        let layout = follow.layout.clone();
-        let (carriers, guide_points) = (Vec::new(), Vec::new());
-        Self { layout, effects: follow.effects, carriers, guide_points, placed: OnceLock::new() }
-    }
-
-    /// Copies a moment, into the memory that is there.
-    fn fill(&mut self, follow: Followed) {
-        self.layout.clone_from(follow.layout);
-        self.effects = follow.effects;
-        self.carriers.clear();
-        self.carriers.extend_from_slice(follow.carriers);
-        self.guide_points.clear();
-        self.guide_points.extend_from_slice(follow.guide_points);
-        self.placed = OnceLock::new();
-    }
-
-    fn now<'a>(&'a self, obstacles: &'a [MovingObstacle]) -> Followed<'a> {
-        let Self { layout, effects, carriers, guide_points, .. } = self;
-        Followed { layout, effects: *effects, carriers, guide_points, obstacles }
-    }
-
-    fn points(&self, obstacles: &[MovingObstacle]) -> &[Vec3] {
-        self.placed.get_or_init(|| {
-            let mut points = vec![Vec3::ZERO; self.layout.groom.points.len()];
-            self.now(obstacles).place(&mut points);
-            points
         })
     }
 }
@@ -339,6 +321,8 @@ pub struct Sight {
 
 /// Everything that the window knows of a moment.
 pub struct Snapshot {
+    /// Counts snapshots: another number, something else to see, whether time went on or a colour changed.
+    pub number: u64,
     /// Steps since the scene was opened; goes up by one each.
     pub step: u64,
     /// Counts scenes: another number, another scene.

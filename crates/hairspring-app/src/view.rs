@@ -1,6 +1,7 @@
 //! What is seen and by which hand it is touched: the camera, the tools, what is laid over the picture.
 
 use crate::{
+    handle::Handle,
     orbit::{Lens, Orbit},
     session::{Action, Session},
     snapshot::{Scenery, Sight, Snapshot},
@@ -12,6 +13,8 @@ use std::path::PathBuf;
 
 /// Hairs on a human head.
 const HEAD: f32 = 100_000.0;
+/// How near the pointer takes a handle [points].
+const TOUCH: f32 = 10.0;
 /// Widest that a hair is drawn by default, times its own width.
 const WIDEST: f32 = 10.0;
 
@@ -66,10 +69,12 @@ pub struct Overlays {
     pub slice: bool,
     /// Cells of the hair's volume.
     pub volume: bool,
-    /// The frame that roots move with.
+    /// Frames of the head, of roots, and along the strand that is picked.
     pub frames: bool,
     /// Where strands begin.
     pub roots: bool,
+    /// Handles of the wind and of what the scene lists.
+    pub handles: bool,
     /// Whether hair is drawn.
     pub hair: bool,
     /// Whether the body is drawn.
@@ -84,6 +89,7 @@ impl Default for Overlays {
             volume: false,
             frames: false,
             roots: false,
+            handles: true,
             hair: true,
             body: true,
         }
@@ -110,6 +116,9 @@ pub struct View {
     pub range: [f32; 2],
     /// What is being dragged: how deep it is, where it began and where it is [m].
     drag: Option<Drag>,
+    held: Option<Held>,
+    /// The handle that the pointer is on.
+    over: Option<usize>,
     /// How far the head is from where it should be, and how fast it goes back [m], [m/s].
     head: (Vec3, Vec3),
     /// Number of the scene that the camera was set for, and its file.
@@ -117,6 +126,14 @@ pub struct View {
     file: Option<PathBuf>,
     /// Whether the next scene is another one, to be looked at anew.
     pub forget: bool,
+}
+
+/// A handle that is pulled.
+struct Held {
+    handle: usize,
+    depth: f32,
+    /// From the pointer to it: it is not always taken at its middle [m].
+    off: Vec3,
 }
 
 struct Drag {
@@ -137,6 +154,8 @@ impl Default for View {
             slice: 0.5,
             range: [0.0, 1.0],
             drag: None,
+            held: None,
+            over: None,
             head: (Vec3::ZERO, Vec3::ZERO),
             framed: 0,
             file: None,
@@ -186,14 +205,18 @@ impl View {
         self.orbit = Some(Orbit::new(&camera));
     }
 
-    /// What the pointer does in the picture that lies at `rect`.
+    /// What the pointer does in the picture that lies at `rect`, where these handles can be taken.
     pub fn touch(
         &mut self,
         ui: &egui::Ui,
         response: &egui::Response,
         snapshot: &Snapshot,
+        handles: &[Handle],
         actions: &mut Vec<Action>,
     ) {
+        if !handles.is_empty() && self.pull(ui, response, handles, actions) {
+            return;
+        }
         let rect = response.rect;
         let Some(orbit) = &mut self.orbit else { return };
         let part = |v: egui::Vec2| Vec2::new(v.x, v.y) / rect.height().max(1.0);
@@ -257,6 +280,65 @@ impl View {
                 _ => {}
             }
         }
+    }
+
+    /// Takes, pulls and lets go of a handle; whether the pointer is on one.
+    fn pull(
+        &mut self,
+        ui: &egui::Ui,
+        response: &egui::Response,
+        handles: &[Handle],
+        actions: &mut Vec<Action>,
+    ) -> bool {
+        use egui::PointerButton::Primary;
+        let rect = response.rect;
+        let Some(lens) = self.lens(rect) else { return false };
+        let place = |p: egui::Pos2| (p - rect.min) / rect.size();
+        let ray = |p: egui::Pos2| lens.ray(Vec2::new(place(p).x, place(p).y));
+        let near = |pointer: egui::Pos2| {
+            let off = |handle: &Handle| {
+                let (at, depth) = lens.project(handle.at)?;
+                let at = rect.min + egui::vec2(at.x, at.y) * rect.size();
+                Some((at.distance(pointer), depth)).filter(|(off, _)| *off < TOUCH)
+            };
+            let some = handles.iter().enumerate().filter_map(|(k, handle)| Some((k, off(handle)?)));
+            some.min_by(|a, b| a.1.0.total_cmp(&b.1.0)).map(|(k, (_, depth))| (k, depth))
+        };
+        if response.drag_started_by(Primary)
+            && let Some(pressed) = ui.input(|i| i.pointer.press_origin())
+            && let Some((handle, depth)) = near(pressed)
+        {
+            let (from, way) = ray(pressed);
+            self.held = Some(Held { handle, depth, off: handles[handle].at - (from + way * depth) });
+        }
+        if let Some(held) = &self.held {
+            let (handle, pointer) = (handles.get(held.handle), response.interact_pointer_pos());
+            if let (Some(handle), Some(pointer), true) = (handle, pointer, response.dragged_by(Primary)) {
+                let (from, way) = ray(pointer);
+                ui.set_cursor_icon(egui::CursorIcon::Grabbing);
+                if response.drag_delta() != egui::Vec2::ZERO {
+                    actions.push(handle.pulled(from + way * held.depth + held.off));
+                }
+                return true;
+            }
+            self.held = None;
+        }
+        self.over = response.hover_pos().and_then(near).map(|(k, _)| k);
+        if self.over.is_some() {
+            ui.set_cursor_icon(egui::CursorIcon::Grab);
+        }
+        // Until the drag is one, the press is neither the tool's.
+        self.over.is_some() && response.is_pointer_button_down_on()
+    }
+
+    /// The lens through which the picture at `rect` is seen.
+    pub fn lens(&self, rect: egui::Rect) -> Option<Lens> {
+        Some(Lens::new(&self.orbit?.camera(), rect.width() / rect.height().max(1.0)))
+    }
+
+    /// The handle that the pointer is on or holds.
+    pub fn touched(&self) -> Option<usize> {
+        self.held.as_ref().map(|held| held.handle).or(self.over)
     }
 
     /// The head goes back where it was dragged from, as on a spring that does not swing; called once a frame of `dt` [s].

@@ -105,7 +105,7 @@ fn a_monkey_breaks_nothing() {
     let mut window = window(folder.path(), SMALL, "wait 3");
     assert!(until(&mut window, |app| app.is_idle()));
     let mut monkey = Monkey(1);
-    let (began, mut at_first) = (Instant::now(), None);
+    let (began, mut at_a_minute, mut at_first) = (Instant::now(), None, None);
     let limit = Duration::from_secs(seconds);
     let mut acts = 0;
     while began.elapsed() < limit {
@@ -114,12 +114,21 @@ fn a_monkey_breaks_nothing() {
         assert!(sound(window.state()), "after {acts} acts");
         assert!(!window.state().session().is_dead(), "the simulation ended after {acts} acts");
         acts += 1;
+        if at_a_minute.is_none() && began.elapsed() > Duration::from_secs(60) {
+            at_a_minute = memory();
+        }
         // What there is room for once is not a leak: from a third of the time on, it counts.
         if at_first.is_none() && began.elapsed() > limit / 3 {
             at_first = memory();
         }
     }
-    println!("{acts} acts in {seconds} s, {at_first:?} then {:?} bytes", memory());
+    let mib = |bytes: Option<u64>| bytes.map_or("-".into(), |b| (b >> 20).to_string());
+    println!(
+        "{acts} acts in {seconds} s; memory {} MiB after a minute, {} after a third, {} at the end",
+        mib(at_a_minute),
+        mib(at_first),
+        mib(memory())
+    );
     if let (Some(first), Some(last)) = (at_first, memory()) {
         assert!(last < first + (300 << 20), "memory grew from {first} to {last} bytes");
     }

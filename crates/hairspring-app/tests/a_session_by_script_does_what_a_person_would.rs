@@ -52,6 +52,36 @@ fn a_session_opens_plays_changes_records_saves_and_opens_again() {
 }
 
 #[test]
+fn a_still_of_two_that_are_compared_shows_both_and_what_they_differ_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let still = folder.path().join("pair.png");
+    let script = format!(
+        "pause\nwait 1\ncompare on\nsecond on\n\
+         set builtin.look.root_color [0.9, 0.0, 0.0]\nset builtin.look.tip_color [0.9, 0.0, 0.0]\nwait 1\nstill {}\n",
+        still.display()
+    );
+    let mut window = window(folder.path(), SMALL, &script);
+    assert!(until(&mut window, |app| app.is_idle()));
+    let image = hairspring_view::read_png(&still).unwrap();
+    let (left, gap, right) = (0..638, 638..642, 642..1280);
+    assert!(gap.clone().all(|x| (0..692).all(|y| image.pixel(x, y) == [24; 3])), "a gap parts them");
+    let red = |columns: std::ops::Range<u32>| -> u64 {
+        let of = |x: u32| {
+            (0..692).map(|y| image.pixel(x, y)).map(|[r, g, _]| u64::from(r.saturating_sub(g))).sum::<u64>()
+        };
+        columns.map(of).sum()
+    };
+    let (brown, dyed) = (red(left.clone()), red(right.clone()));
+    assert!(dyed > 2 * brown && brown > 0, "each side is its own scene: {brown}, {dyed}");
+    for side in [left, right] {
+        let words = side.map(|x| (692..720).filter(|y| image.pixel(x, *y)[0] > 150).count()).sum::<usize>();
+        assert!(words > 100, "what they differ in stands under each: {words} light pixels");
+    }
+    let [first, second] = window.state().session().captions();
+    assert!(first.starts_with("Root: [") && second.contains("Tip: [0.9, 0, 0]"), "{first}; {second}");
+}
+
+#[test]
 fn what_cannot_be_done_is_said_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut window = window(folder.path(), SMALL, "pause\nset solver.substeps 0\nwait 1");
@@ -72,6 +102,19 @@ fn what_cannot_be_done_is_said_and_changes_nothing() {
         assert!(said.contains(word), "{line}: {said:?}");
         assert_eq!(window.state().session().document().text(), SMALL, "{line}");
     }
+}
+
+#[test]
+fn a_record_goes_on_past_the_end_of_the_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    // A motion of three steps, which begins anew again and again within a clip of twelve.
+    let scene =
+        format!("{SMALL}[clip]\nkeys = [{{ time = 0.0 }}, {{ time = 0.05, rotation = [0.0, 5.0, 0.0] }}]\n");
+    let clip = folder.path().join("p.##.png");
+    let script = format!("pause\nwait 9\npictures {} 0.2\n", clip.display());
+    let mut window = window(folder.path(), &scene, &script);
+    assert!(until(&mut window, |app| app.is_idle()), "the record came to its end");
+    assert!(folder.path().join("p.06.png").exists());
 }
 
 #[test]
@@ -96,4 +139,20 @@ fn settings_change_while_hair_moves_and_the_play_goes_on() {
     let after = wait(&session, before.step + 30);
     assert_eq!(after.scene, before.scene, "a setting does not begin the scene anew");
     assert!(after.time > before.time);
+    // Paused, a change is something else to see though time stands still: what is ordered after the pause meets a scene that stands.
+    session.act(hairspring_app::Action::Play(false)).unwrap();
+    let mut seen = |roughness: f64| {
+        let key = "builtin.look.roughness".parse().unwrap();
+        session.act(hairspring_app::Action::Set(key, Some(roughness.into()))).unwrap();
+        for _ in 0..6000 {
+            let shown = session.latest().filter(|s| s.stages[0].looks[0].roughness == roughness as f32);
+            if let Some(snapshot) = shown {
+                return (snapshot.number, snapshot.step);
+            }
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        panic!("a roughness of {roughness} was not shown");
+    };
+    let (first, second) = (seen(0.875), seen(0.75));
+    assert!(second.0 > first.0 && second.1 == first.1, "{first:?}, {second:?}");
 }

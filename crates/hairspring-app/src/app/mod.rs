@@ -7,7 +7,8 @@ use crate::{
     AppError,
     document::{Document, builtin_text},
     finger::Finger,
-    overlay,
+    handle,
+    overlay::{self, Pen},
     painter::{Drawn, Painter},
     panel::{
         files::{Decision, Files, For},
@@ -82,12 +83,13 @@ impl App {
         let Options { document, script, drawn } = options;
         let ctx = creation.egui_ctx.clone();
         let painters = vec![Painter::new(creation, drawn)];
-        let hairs = if painters[0].is_gpu() { (100_000, 2_000) } else { (8_000, 500) };
+        let hairs = if painters[0].gpu().is_some() { (100_000, 2_000) } else { (8_000, 500) };
         let document = match document {
             Some(document) => document,
             None => Document::new("scene.toml".as_ref(), builtin_text("wavy", hairs.0, hairs.1))?,
         };
-        let session = Session::new(document, painters[0].spared(), painters[0].card(), painters[0].wake(&ctx))?;
+        let session =
+            Session::new(document, painters[0].spared(), painters[0].gpu(), painters[0].wake(&ctx))?;
         ctx.set_theme(egui::Theme::Dark);
         // The window is cleared in that colour: to fill panels with it once more would take a software driver as long as a picture.
         ctx.all_styles_mut(|style| style.visuals.panel_fill = Color32::TRANSPARENT);
@@ -146,7 +148,8 @@ impl App {
     fn record(&mut self, ctx: &egui::Context, wish: Wish) {
         let Some(snapshot) = self.session.latest() else { return };
         let wake = ctx.clone();
-        match Recorder::new(wish, &mut self.session, &snapshot, move || wake.request_repaint()) {
+        let gpu = self.painters[0].gpu();
+        match Recorder::new(wish, &mut self.session, &snapshot, gpu, move || wake.request_repaint()) {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(why) => self.say(why.to_string(), true),
         }
@@ -296,20 +299,37 @@ impl App {
                 self.rect = rect;
                 self.view.follow_range(scenery, guides);
             }
-            self.view.touch(ui, &response, snapshot, actions);
-            let Some(sight) = self.view.sight(scenery) else { continue };
+            // Handles are the scene's whose parameters are shown.
+            let own = (k == 1) == self.session.on_second() && self.view.overlays.handles;
+            let handles = match (self.view.lens(rect), self.view.orbit) {
+                (Some(lens), Some(orbit)) if own => {
+                    handle::all(self.session.edited(), scenery, &lens, orbit.distance)
+                }
+                _ => Vec::new(),
+            };
+            self.view.touch(ui, &response, snapshot, &handles, actions);
+            let (Some(sight), Some(lens)) = (self.view.sight(scenery), self.view.lens(rect)) else {
+                continue;
+            };
             let pixels = ui.ctx().pixels_per_point();
             let size = [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(16, 8192));
             let painter = ui.painter_at(rect);
             if let Some(shape) = self.painters[k].draw(ui.ctx(), snapshot, k, &sight, (rect, size)) {
                 painter.add(shape);
             }
-            overlay::draw(&painter, rect, scenery, &self.view, &sight);
+            let picked =
+                snapshot.picked.as_ref().map(|(p, f)| [p.strand, f.guide as usize].map(|s| [p.groom, s]));
+            let picked = picked.as_ref().map_or(&[][..], |picked| &picked[..]);
+            overlay::draw(&Pen { painter: &painter, lens, rect }, scenery, &self.view, &handles, picked);
             if count > 1 {
                 painter.text(
                     rect.left_top() + egui::vec2(10.0, 8.0),
                     egui::Align2::LEFT_TOP,
-                    if k == 0 { "Left" } else { "Right" },
+                    format!(
+                        "{} · {}",
+                        if k == 0 { "Left" } else { "Right" },
+                        self.session.captions()[k.min(1)]
+                    ),
                     egui::FontId::proportional(16.0),
                     Color32::from_white_alpha(200),
                 );
@@ -376,7 +396,8 @@ impl eframe::App for App {
                 egui::Panel::bottom("graphs").show(ui, |ui| self.history.show(ui));
             }
             egui::Panel::right("parameters").default_size(360.0).show(ui, |ui| {
-                parameters::show(ui, &self.session, &mut self.filter, &mut actions);
+                let at = self.view.orbit.map_or(glam::Vec3::ZERO, |orbit| orbit.target);
+                parameters::show(ui, &self.session, &mut self.filter, at, &mut actions);
             });
         }
         let notes: Vec<String> = self.painters.iter().map(Painter::note).collect();
@@ -384,10 +405,16 @@ impl eframe::App for App {
             self.picture(ui, snapshot.as_ref(), &mut actions);
         });
         if let Some(snapshot) = snapshot.as_deref().filter(|_| self.open.panels) {
-            told::corner(ctx, self.rect, |ui| {
+            told::corner(ctx, self.rect, egui::Align2::LEFT_BOTTOM, |ui| {
                 inspect::figures(ui, &self.session, snapshot, &notes.join("; "));
-                inspect::picked(ui, snapshot, &mut actions);
             });
+            if snapshot.picked.is_some() {
+                // Under the name of a side.
+                let below = egui::Rect::from_min_max(self.rect.min + egui::vec2(0.0, 22.0), self.rect.max);
+                told::corner(ctx, below, egui::Align2::LEFT_TOP, |ui| {
+                    inspect::picked(ui, snapshot, &mut actions)
+                });
+            }
         }
         self.windows(ctx, &mut actions);
         self.tell(ctx);
@@ -403,8 +430,8 @@ impl eframe::App for App {
             self.act(action);
         }
         if let (Some(mut recorder), Some(snapshot)) = (self.recorder.take(), &snapshot) {
-            let sight = snapshot.stages.first().and_then(|s| self.view.sight(s));
-            let ended = sight.and_then(|sight| recorder.advance(&mut self.session, snapshot, &sight));
+            let sights = snapshot.stages.iter().map_while(|s| self.view.sight(s)).collect();
+            let ended = recorder.advance(&mut self.session, snapshot, sights);
             match ended {
                 Some(Ok(said)) => self.say(said, false),
                 Some(Err(why)) => self.say(why.to_string(), true),

@@ -51,6 +51,7 @@ impl App {
                 let place = |v: glam::Vec2| self.rect.min + egui::vec2(v.x, v.y) * self.rect.size();
                 self.finger.drag(place(from), place(to), frames);
             }
+            Line::Find(text) => self.filter = text,
             Line::Show(value) => self.act(Action::Show(value)),
             Line::Switch(name, on) => self.switch(&name, on),
             Line::Record(kind, path, seconds) => self.record(ctx, Wish { kind, path, seconds }),
@@ -85,6 +86,7 @@ impl App {
             "volume" => &mut overlays.volume,
             "frames" => &mut overlays.frames,
             "roots" => &mut overlays.roots,
+            "handles" => &mut overlays.handles,
             // The script's reader knows no other.
             _ => return,
         };

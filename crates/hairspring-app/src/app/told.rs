@@ -42,15 +42,16 @@ impl App {
     }
 }
 
-/// Text in the lower left corner of the picture.
-pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, show: impl FnOnce(&mut Ui)) {
-    egui::Area::new(egui::Id::unique("figures"))
-        .fixed_pos(rect.left_bottom() + egui::vec2(10.0, -10.0))
-        .pivot(egui::Align2::LEFT_BOTTOM)
+/// Text in a corner of the picture, on the left.
+pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2, show: impl FnOnce(&mut Ui)) {
+    let inside = rect.shrink2(egui::vec2(10.0, 10.0));
+    egui::Area::new(egui::Id::unique(("figures", align.y() == egui::Align::TOP)))
+        .fixed_pos(align.pos_in_rect(&inside))
+        .pivot(align)
         .show(ctx, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
             egui::Frame::new()
-                .fill(Color32::from_black_alpha(90))
+                .fill(Color32::from_black_alpha(120))
                 .corner_radius(4.0)
                 .inner_margin(6.0)
                 .show(ui, show);

@@ -169,7 +169,7 @@ impl CpuPainter {
             Err(TryRecvError::Disconnected) => self.busy.store(true, Relaxed),
             Err(TryRecvError::Empty) => {}
         }
-        let wanted = (snapshot.scene, snapshot.step, *sight, size);
+        let wanted = (snapshot.scene, snapshot.number, *sight, size);
         let same = self.shown == Some(wanted);
         if !same {
             self.moved = Instant::now();

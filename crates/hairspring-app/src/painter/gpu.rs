@@ -53,7 +53,7 @@ impl GpuPainter {
         size: [u32; 2],
     ) -> Option<TextureId> {
         let scenery = snapshot.stages.get(stage)?;
-        let wanted = (snapshot.scene, snapshot.step, *sight, size);
+        let wanted = (snapshot.scene, snapshot.number, *sight, size);
         if self.shown != Some(wanted) {
             // Colours of values change in place, and another scene may lie where the last one lay.
             let another = self.shown.is_none_or(|shown| shown.0 != snapshot.scene);

@@ -72,8 +72,8 @@ impl Painter {
         }
     }
 
-    /// The card that draws, if one does.
-    pub fn card(&self) -> Option<Gpu> {
+    /// The GPU that draws, if one does.
+    pub fn gpu(&self) -> Option<Gpu> {
         match self {
             Self::Gpu(painter) => Some(painter.gpu().clone()),
             Self::Cpu(_) => None,
@@ -93,11 +93,6 @@ impl Painter {
                 once(&ctx);
             }
         }
-    }
-
-    /// Whether a GPU draws.
-    pub fn is_gpu(&self) -> bool {
-        matches!(self, Self::Gpu(_))
     }
 
     /// The picture of a stage of a snapshot, `size` pixels large and laid in at `rect`, or the last one where that is not ready yet.

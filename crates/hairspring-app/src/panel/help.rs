@@ -4,7 +4,7 @@ use crate::view::Hand;
 use eframe::egui;
 
 /// Keys and what they do.
-const KEYS: [(&str, &str); 14] = [
+const KEYS: [(&str, &str); 15] = [
     ("Space", "play or pause"),
     ("Right", "a step, while paused"),
     ("R", "reset to time 0"),
@@ -19,11 +19,16 @@ const KEYS: [(&str, &str); 14] = [
     ("Home", "the head back to where it was"),
     ("?", "this page"),
     ("Esc", "close what is open; forget the picked strand"),
+    ("drag a blue dot", "blow from elsewhere; move, turn, widen what stands in the scene"),
 ];
+
+/// Width of what keys do [points].
+const WIDTH: f32 = 420.0;
 
 /// Shows the page.
 pub fn show(ctx: &egui::Context, open: &mut bool) {
-    egui::Window::new("Keys").open(open).resizable(false).collapsible(false).show(ctx, |ui| {
+    let window = egui::Window::new("Keys").open(open).resizable(false).collapsible(false);
+    window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ctx, |ui| {
         egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
             for (key, what) in KEYS {
                 ui.monospace(key);
@@ -32,7 +37,10 @@ pub fn show(ctx: &egui::Context, open: &mut bool) {
             }
             for (_, name, key, tip) in Hand::ALL {
                 ui.monospace(key.name());
-                ui.label(format!("{name}: {tip}"));
+                ui.vertical(|ui| {
+                    ui.set_width(WIDTH);
+                    ui.label(format!("{name}: {tip}"));
+                });
                 ui.end_row();
             }
         });

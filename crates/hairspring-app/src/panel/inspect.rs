@@ -127,8 +127,12 @@ pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) 
         ui.colored_label(ui.visuals().warn_fg_color, text);
     }
     ui.weak(note);
-    for note in session.notes() {
-        ui.weak(note);
+    match session.notes() {
+        [] => {}
+        notes => {
+            let many = if notes.len() == 1 { "a note".to_owned() } else { format!("{} notes", notes.len()) };
+            ui.weak(format!("{many} on its files: rest the pointer here")).on_hover_text(notes.join("\n"));
+        }
     }
 }
 

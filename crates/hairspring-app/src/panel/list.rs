@@ -1,16 +1,33 @@
-//! Entries of lists: colliders, hands, sources of wind, charged bodies. Each is shown with all that its text or its defaults say of it.
+//! Entries of lists: colliders, hands, sources of wind, charged bodies; and the keys of a motion made by hand. Each is shown with all that its text or its defaults say of it, every
+//! number with its unit, what it does and a reset.
 
+use super::{Labelled, keys};
 use crate::{
+    field::{Field, Kind, of, place},
     key::Key,
     session::{Action, Session},
 };
 use eframe::egui::{self, DragValue, Ui};
-use toml_edit::Value;
+use glam::Vec3;
+use toml_edit::{DocumentMut, TableLike, Value};
+
+/// Width of names [points].
+const LABEL: f32 = 86.0;
+
+/// Fields that an entry may have though neither its text nor its defaults say so, by the list.
+const MORE: [(&str, &[&str]); 4] = [
+    ("collider", &["joint"]),
+    ("wind_source", &["joint"]),
+    ("charged", &["joint"]),
+    ("hand", &["joint", "until"]),
+];
 
 /// A list of the scene file, and what can be added to it.
 pub struct List {
     name: &'static str,
     label: &'static str,
+    /// What one of its entries is called.
+    one: &'static str,
     /// Name of each kind of entry and the text of its fields.
     kinds: &'static [(&'static str, &'static str)],
 }
@@ -20,22 +37,24 @@ pub const AIR: [List; 2] = [
     List {
         name: "wind_source",
         label: "Sources of wind",
+        one: "Source",
         kinds: &[
             (
                 "Fan",
-                "shape.fan = { center = [0.0, 1.55, 0.8], axis = [0.0, 0.0, -1.0], radius = 0.15, speed = 4.0 }",
+                "shape.fan = { center = [-0.22, 1.5, 0.2], axis = [1.0, 0.0, -0.5], radius = 0.05, speed = 4.0 }",
             ),
-            ("Point", "shape.point = { center = [0.3, 1.5, 0.0], radius = 0.05, speed = 2.0 }"),
+            ("Point", "shape.point = { center = [0.22, 1.5, 0.0], radius = 0.05, speed = 2.0 }"),
             (
                 "Vortex",
-                "shape.vortex = { center = [0.0, 1.5, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.2, speed = 2.0 }",
+                "shape.vortex = { center = [0.0, 1.5, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.15, speed = 2.0 }",
             ),
         ],
     },
     List {
         name: "charged",
         label: "Charged bodies",
-        kinds: &[("Balloon", "center = [0.3, 1.8, 0.0]\nradius = 0.13\ncharge = -2e-7")],
+        one: "Charged body",
+        kinds: &[("Balloon", "center = [0.2, 1.6, 0.0]\nradius = 0.06\ncharge = -2e-7")],
     },
 ];
 
@@ -44,18 +63,20 @@ pub const COLLISION: [List; 2] = [
     List {
         name: "collider",
         label: "Colliders",
+        one: "Collider",
         kinds: &[
-            ("Sphere", "shape.sphere = { center = [0.0, 1.3, 0.25], radius = 0.08 }"),
-            ("Capsule", "shape.capsule = { a = [-0.2, 1.35, 0.15], b = [0.2, 1.35, 0.15], radius = 0.03 }"),
-            ("Box", "shape.box = { center = [0.0, 1.2, 0.3], size = [0.4, 0.02, 0.2] }"),
-            ("Floor", "shape.plane = { point = [0.0, 1.2, 0.0], normal = [0.0, 1.0, 0.0] }"),
+            ("Sphere", "shape.sphere = { center = [0.18, 1.45, 0.1], radius = 0.05 }"),
+            ("Capsule", "shape.capsule = { a = [-0.15, 1.4, 0.15], b = [0.15, 1.4, 0.15], radius = 0.02 }"),
+            ("Box", "shape.box = { center = [0.0, 1.38, 0.15], size = [0.3, 0.02, 0.1] }"),
+            ("Floor", "shape.plane = { point = [0.0, 1.32, 0.0], normal = [0.0, 1.0, 0.0] }"),
         ],
     },
     List {
         name: "hand",
         label: "Hands",
+        one: "Hand",
         kinds: &[
-            ("Grab", "tool.grab = { center = [0.1, 1.35, 0.1], radius = 0.02 }"),
+            ("Grab", "tool.grab = { center = [0.1, 1.42, 0.08], radius = 0.02 }"),
             ("Comb", "tool.comb = { a = [-0.1, 1.6, 0.15], b = [0.1, 1.6, 0.15], radius = 0.02 }"),
             (
                 "Tie",
@@ -65,16 +86,46 @@ pub const COLLISION: [List; 2] = [
     },
 ];
 
-/// Shows these lists.
-pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], actions: &mut Vec<Action>) {
+/// What is looked at where the places of what can be added are as they stand above [m].
+const LOOK: Vec3 = Vec3::new(0.0, 1.5, 0.0);
+
+/// The text of an entry's fields with its places moved by `by` [m]: what is added is where one looks.
+fn placed(fields: &str, by: Vec3) -> String {
+    fn shift(table: &mut dyn TableLike, by: Vec3) {
+        for (name, item) in table.iter_mut() {
+            let place = ["center", "a", "b", "point"].contains(&name.get());
+            match item.as_array_mut() {
+                Some(list) if place => {
+                    for (x, by) in list.iter_mut().zip(by.to_array()) {
+                        let moved = x.as_float().unwrap_or(0.0) + f64::from(by);
+                        let decor = x.decor().clone();
+                        *x = Value::from((moved * 1e3).round() / 1e3);
+                        *x.decor_mut() = decor;
+                    }
+                }
+                _ => {
+                    if let Some(inner) = item.as_table_like_mut() {
+                        shift(inner, by);
+                    }
+                }
+            }
+        }
+    }
+    let Ok(mut document) = fields.parse::<DocumentMut>() else { return fields.to_owned() };
+    shift(document.as_table_mut(), by);
+    document.to_string()
+}
+
+/// Shows these lists; what is added stands about `at` [m].
+pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], at: Vec3, actions: &mut Vec<Action>) {
     let effective = session.edited().effective();
     for list in lists {
         ui.horizontal(|ui| {
-            ui.label(list.label);
+            ui.strong(list.label);
             ui.menu_button("Add", |ui| {
                 for (name, fields) in list.kinds {
                     if ui.button(*name).clicked() {
-                        actions.push(Action::Add(list.name, (*fields).to_owned()));
+                        actions.push(Action::Add(list.name, placed(fields, at - LOOK)));
                         ui.close();
                     }
                 }
@@ -84,81 +135,286 @@ pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], actions: &mu
         for (place, entry) in entries.iter().enumerate() {
             ui.indent((list.name, place), |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(format!("{} {}", list.label, place + 1));
+                    let kind = kind(entry).map(|kind| format!(": {kind}")).unwrap_or_default();
+                    ui.label(format!("{} {}{kind}", list.one, place + 1));
                     if ui.small_button("Remove").clicked() {
                         actions.push(Action::Remove(list.name, place));
                     }
                 });
+                let mut rows = Rows { session, list: list.name, actions };
                 let key = Key::top(list.name).place(place);
-                fields(ui, &key, entry, actions);
+                rows.fields(ui, &key, entry);
+                let more = MORE.iter().find(|more| more.0 == list.name).map_or(&[][..], |more| more.1);
+                for name in more.iter().filter(|name| entry.get(**name).is_none()) {
+                    rows.field(ui, &key.entry(name), name, None);
+                }
             });
         }
     }
 }
 
-/// The fields of a table; a table in it is shown by its fields in turn.
-fn fields(ui: &mut Ui, key: &Key, value: &toml::Value, actions: &mut Vec<Action>) {
-    let Some(table) = value.as_table() else { return };
-    for (name, value) in table {
-        let key = key.entry(name);
-        if value.is_table() {
-            ui.weak(name);
-            fields(ui, &key, value, actions);
-            continue;
+/// Shows the motion: its keys, if it is made of keys, or where it is from.
+pub fn motion(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let clip = session.edited().effective().get("clip");
+    if let Some(file) = clip.and_then(|clip| clip.get("file")).and_then(toml::Value::as_str) {
+        ui.weak(format!("from {file}"));
+        return;
+    }
+    let key = Key::top("clip");
+    let keys = clip.and_then(|clip| clip.get("keys"));
+    let mut rows = Rows { session, list: "clip", actions };
+    rows.field(ui, &key.entry("keys"), "keys", keys);
+    if keys.is_some() {
+        let zero = toml::Value::from(vec![0.0; 3]);
+        let pivot = clip.and_then(|clip| clip.get("pivot")).unwrap_or(&zero);
+        rows.field(ui, &key.entry("pivot"), "pivot", Some(pivot));
+    }
+    ui.weak("Keys take the place of the scene's own motion, and each change begins the scene anew.");
+}
+
+/// Rows of the fields of an entry of a list.
+struct Rows<'a> {
+    session: &'a Session,
+    list: &'static str,
+    actions: &'a mut Vec<Action>,
+}
+
+impl Rows<'_> {
+    /// The fields of a table: those of a table in it first, then its own in the order in which they are told of.
+    fn fields(&mut self, ui: &mut Ui, key: &Key, value: &toml::Value) {
+        let Some(table) = value.as_table() else { return };
+        for (name, inner) in table.iter().filter(|(_, value)| value.is_table()) {
+            self.fields(ui, &key.entry(name), inner);
         }
-        ui.horizontal(|ui| {
-            ui.add_sized([70.0, 18.0], egui::Label::new(name).truncate());
-            if let Some(new) = field(ui, value) {
-                actions.push(Action::Set(key.clone(), Some(new)));
+        let mut own: Vec<_> = table.iter().filter(|(_, value)| !value.is_table()).collect();
+        own.sort_by_key(|(name, _)| place(name));
+        for (name, value) in own {
+            self.field(ui, &key.entry(name), name, Some(value));
+        }
+    }
+
+    /// One field.
+    fn field(&mut self, ui: &mut Ui, key: &Key, name: &str, value: Option<&toml::Value>) {
+        let Some(field) = of(self.list, name) else { return };
+        let said = key.look_up(self.session.edited().said()).is_some();
+        if let Kind::Keys(keys) = field.kind {
+            // The corners of a hull may be a file's: the text says none then.
+            if name == "points" && !said {
+                return;
             }
+            ui.push_id(name, |ui| {
+                ui.horizontal(|ui| self.name(ui, key, field, said));
+                let first = self.first_key(key, name);
+                keys::show(ui, (key, field, keys), value, (&first, self.list == "clip"), self.actions);
+            });
+            return;
+        }
+        ui.push_id(name, |ui| {
+            ui.horizontal(|ui| {
+                let left = egui::Layout::left_to_right(egui::Align::Center);
+                ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
+                    ui.set_min_width(LABEL);
+                    ui.add(egui::Label::new(field.label).truncate()).on_hover_text(tip(field));
+                });
+                if let Some(new) = self.control(ui, field, value) {
+                    self.actions.push(Action::Set(key.clone(), new));
+                }
+                self.reset(ui, key, field, said);
+            });
         });
     }
-}
 
-/// A field, and its new value where it was changed. What lies in range is known to the reader of the file, which refuses the rest.
-fn field(ui: &mut Ui, value: &toml::Value) -> Option<Value> {
-    match value {
-        toml::Value::Float(x) => number(ui, *x).map(Value::from),
-        toml::Value::Integer(i) => {
-            let mut i = *i;
-            ui.add(DragValue::new(&mut i)).changed().then(|| i.into())
+    fn name(&mut self, ui: &mut Ui, key: &Key, field: &Field, said: bool) {
+        ui.label(field.label).on_hover_text(tip(field));
+        self.reset(ui, key, field, said);
+    }
+
+    fn reset(&mut self, ui: &mut Ui, key: &Key, field: &Field, said: bool) {
+        if field.optional && said && ui.small_button("reset").on_hover_text("Back to the default").clicked() {
+            self.actions.push(Action::Set(key.clone(), None));
         }
-        toml::Value::Boolean(on) => {
-            let mut on = *on;
-            ui.checkbox(&mut on, "").changed().then(|| on.into())
-        }
-        toml::Value::Array(list) if list.iter().all(|x| x.is_float() || x.is_integer()) => {
-            let mut changed = false;
-            let mut out = Vec::with_capacity(list.len());
-            for x in list {
-                let x = x.as_float().or(x.as_integer().map(|i| i as f64)).unwrap_or(0.0);
-                let new = number(ui, x);
-                changed |= new.is_some();
-                out.push(new.unwrap_or(x));
+    }
+
+    /// What the first key says: where a charged body is, a second later; elsewhere 0.
+    fn first_key(&self, key: &Key, name: &str) -> Vec<f64> {
+        let effective = self.session.edited().effective();
+        let center = key.sibling("center").look_up(effective).and_then(toml::Value::as_array);
+        match (self.list, name, center) {
+            ("charged", "path", Some(center)) => {
+                std::iter::once(1.0).chain(center.iter().filter_map(toml::Value::as_float)).collect()
             }
-            changed.then(|| Value::from_iter(out))
+            ("clip", ..) => vec![0.0; 7],
+            _ => vec![0.0; 4],
         }
-        toml::Value::String(text) => {
-            ui.label(text);
-            None
-        }
-        other => {
-            // Paths of keys are lists of lists: the file is the place to write them.
-            ui.weak(format!("{} entries, see the text", other.as_array().map_or(0, Vec::len)));
-            None
+    }
+
+    /// The widget of a field: `Some(None)` takes it away. What lies in range is known to the reader of the file, which refuses the rest.
+    fn control(&self, ui: &mut Ui, field: &Field, value: Option<&toml::Value>) -> Option<Option<Value>> {
+        match (field.kind, value) {
+            (Kind::Joint, value) => {
+                let none = if self.list == "collider" { "the head" } else { "nothing" };
+                let chosen = value.and_then(toml::Value::as_str);
+                let mut new = None;
+                let combo = egui::ComboBox::from_id_salt(field.name)
+                    .selected_text(chosen.unwrap_or(none))
+                    .show_ui(ui, |ui| {
+                        if ui.selectable_label(chosen.is_none(), none).clicked() {
+                            new = Some(None);
+                        }
+                        for joint in self.session.joints() {
+                            if ui.selectable_label(chosen == Some(joint), joint).clicked() {
+                                new = Some(Some(joint.as_str().into()));
+                            }
+                        }
+                    });
+                combo.response.labelled(ui, field.label).on_hover_text(tip(field));
+                new
+            }
+            (Kind::Maybe(from), None) => {
+                let mut never = true;
+                ui.checkbox(&mut never, "never")
+                    .on_hover_text(tip(field))
+                    .changed()
+                    .then(|| Some(from.into()))
+            }
+            (_, Some(toml::Value::Boolean(on))) => {
+                let mut on = *on;
+                let response = ui.checkbox(&mut on, "").labelled(ui, field.label);
+                response.on_hover_text(tip(field)).changed().then(|| Some(on.into()))
+            }
+            (_, Some(toml::Value::Array(list))) => {
+                let mut changed = false;
+                let mut out = Vec::with_capacity(list.len());
+                for (axis, x) in ["x", "y", "z"].into_iter().zip(list) {
+                    let x = as_number(x).unwrap_or(0.0);
+                    let new = number(ui, x, "", &format!("{axis}: {}", tip(field)));
+                    changed |= new.is_some();
+                    out.push(new.unwrap_or(x));
+                }
+                if !field.unit.is_empty() {
+                    ui.weak(field.unit);
+                }
+                changed.then(|| Some(Value::from_iter(out)))
+            }
+            (_, Some(value)) => {
+                number(ui, as_number(value)?, field.unit, &tip(field)).map(|x| Some(x.into()))
+            }
+            (_, None) => None,
         }
     }
 }
 
-fn number(ui: &mut Ui, x: f64) -> Option<f64> {
+/// What kind of collider or tool an entry is, if there are kinds of it.
+fn kind(entry: &toml::Value) -> Option<&str> {
+    let shape = entry.get("shape").or_else(|| entry.get("tool"))?;
+    shape.as_table()?.keys().next().map(String::as_str)
+}
+
+fn tip(field: &Field) -> String {
+    match field.unit {
+        "" => field.tip.to_owned(),
+        unit => format!("{} [{unit}]", field.tip),
+    }
+}
+
+fn as_number(value: &toml::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
+}
+
+fn number(ui: &mut Ui, x: f64, unit: &str, tip: &str) -> Option<f64> {
     let mut new = x;
     // A hundredth of the number a point, or a centimetre's hundredth near 0.
     let speed = (x.abs() * 0.01).max(if x == 0.0 || x.abs() > 1e-4 { 1e-3 } else { 0.0 });
     let drag = DragValue::new(&mut new).speed(speed);
+    let drag = if unit.is_empty() { drag } else { drag.suffix(format!(" {unit}")) };
     let drag = if x != 0.0 && x.abs() < 1e-3 {
         drag.custom_formatter(|x, _| format!("{x:.2e}"))
     } else {
         drag.max_decimals(3)
     };
-    ui.add(drag).changed().then_some(new)
+    ui.add(drag).on_hover_text(tip).changed().then_some(new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Document;
+    use egui_kittest::{Harness, kittest::Queryable};
+    use std::{cell::RefCell, rc::Rc};
+
+    const SCENE: &str = "[builtin]\nstrands = 10\nguides = 5\n\n[[hand]]\ntool.grab = { center = [0.1, 1.3, 0.1], radius = 0.02 }\n\n\
+        [[charged]]\ncenter = [0.3, 1.8, 0.0]\nradius = 0.13\ncharge = -2e-7\n";
+
+    /// The lists of a scene, and what has been done to it.
+    fn panel() -> (Harness<'static>, Rc<RefCell<Session>>) {
+        let document = Document::new("scene.toml".as_ref(), SCENE.into()).unwrap();
+        let session = Rc::new(RefCell::new(Session::new(document, 1, || ()).unwrap()));
+        let shown = session.clone();
+        let harness = Harness::builder().with_size([500.0, 1600.0]).build_ui(move |ui| {
+            let mut actions = Vec::new();
+            {
+                let session = shown.borrow();
+                show(ui, &session, &AIR, LOOK, &mut actions);
+                show(ui, &session, &COLLISION, LOOK, &mut actions);
+                motion(ui, &session, &mut actions);
+            }
+            actions.into_iter().for_each(|action| shown.borrow_mut().act(action).unwrap());
+        });
+        (harness, session)
+    }
+
+    fn press(harness: &mut Harness<'static>, label: &str, which: usize) {
+        harness.get_all_by_label(label).nth(which).unwrap().click();
+        harness.run_steps(3);
+    }
+
+    #[test]
+    fn keys_are_added_and_taken_out_by_buttons_and_undo_leads_back() {
+        let (mut harness, session) = panel();
+        let says = |text: &str| session.borrow().document().text().contains(text);
+        // In the order of the panel: the charged body's, the hand's, the motion's.
+        press(&mut harness, "Add a key", 0);
+        assert!(
+            says("path = [{ time = 1.0, center = [0.3, 1.8, 0.0] }]"),
+            "{}",
+            session.borrow().document().text()
+        );
+        press(&mut harness, "+", 0);
+        assert!(says("{ time = 1.5, center = [0.3, 1.8, 0.0] }"));
+        press(&mut harness, "Add a key", 0);
+        assert!(says("path = [[0.0, 0.0, 0.0, 0.0]]"));
+        press(&mut harness, "Add a key", 0);
+        assert!(says("keys = [{ time = 0.0, position = [0.0, 0.0, 0.0], rotation = [0.0, 0.0, 0.0] }]"));
+        press(&mut harness, "-", 0);
+        press(&mut harness, "-", 0);
+        assert!(!says("time = 1"), "{}", session.borrow().document().text());
+        for _ in 0..6 {
+            session.borrow_mut().act(Action::Undo).unwrap();
+        }
+        assert_eq!(session.borrow().document().text(), SCENE);
+    }
+
+    #[test]
+    fn what_is_added_stands_where_one_looks() {
+        let text =
+            placed("shape.sphere = { center = [0.0, 1.3, 0.25], radius = 0.08 }", Vec3::new(0.1, -0.5, 0.0));
+        assert_eq!(text.trim(), "shape.sphere = { center = [0.1, 0.8, 0.25], radius = 0.08 }");
+        for list in AIR.iter().chain(&COLLISION) {
+            for (name, fields) in list.kinds {
+                let (_, session) = panel();
+                let added = session.borrow_mut().act(Action::Add(list.name, placed(fields, Vec3::X)));
+                assert!(added.is_ok(), "{name}: {added:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_may_be_left_out_is_switched_on_and_reset() {
+        let (mut harness, session) = panel();
+        let says = |text: &str| session.borrow().document().text().contains(text);
+        press(&mut harness, "never", 0);
+        assert!(says("until = 2.0"));
+        press(&mut harness, "reset", 0);
+        assert!(!says("until"));
+    }
 }

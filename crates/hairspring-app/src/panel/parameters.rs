@@ -1,37 +1,53 @@
 //! Every parameter as a slider with its unit, range, tooltip and reset, under what an artist thinks of.
 
+use super::Labelled;
 use crate::{
     key::Key,
     parameter::{self, Group, Kind, Of, Parameter},
     session::{Action, Session},
 };
 use eframe::egui::{self, DragValue, RichText, Slider, Ui};
-use std::sync::LazyLock;
+use glam::Vec3;
+use hairspring::material::{PRESETS, preset};
+use std::{collections::HashMap, sync::LazyLock};
 use toml_edit::Value;
 
 /// Width of names [points].
 const LABEL: f32 = 116.0;
 
 /// Effective values of a scene that says nothing, by the names of [`crate::document::Document::effective`].
-static DEFAULTS: LazyLock<toml::Table> = LazyLock::new(crate::document::defaults);
+static DEFAULTS: LazyLock<toml::Table> = LazyLock::new(crate::effective::defaults);
 
-/// Shows all groups.
-pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, actions: &mut Vec<Action>) {
+/// Values of a material by its preset; of one without, the library's.
+static MATERIALS: LazyLock<HashMap<Option<&str>, toml::Table>> = LazyLock::new(|| {
+    let names = std::iter::once(None).chain(PRESETS.into_iter().map(Some));
+    let table = |name: Option<&'static str>| {
+        let material = name.and_then(preset).unwrap_or_default();
+        toml::Table::try_from(material).unwrap_or_else(|why| unreachable!("settings are plain data: {why}"))
+    };
+    names.map(|name| (name, table(name))).collect()
+});
+
+/// Shows all groups; what is added to the scene stands about `at` [m].
+pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actions: &mut Vec<Action>) {
     choose(ui, session, actions);
     ui.add(egui::TextEdit::singleline(filter).hint_text("Find a parameter").desired_width(f32::INFINITY));
     ui.separator();
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let sought = filter.trim().to_lowercase();
+        let mut none = true;
         for group in Group::ALL {
-            let sought = filter.trim().to_lowercase();
             let found = |p: &&Parameter| {
                 sought.is_empty()
                     || [p.label, p.name, p.tip].iter().any(|t| t.to_lowercase().contains(&sought))
             };
             let parameters: Vec<_> =
                 parameter::ALL.iter().filter(|p| p.group == group).filter(found).collect();
-            if parameters.is_empty() {
+            let listed = lists(group).iter().any(|name| name.to_lowercase().contains(&sought));
+            if parameters.is_empty() && !listed {
                 continue;
             }
+            none = false;
             egui::CollapsingHeader::new(RichText::new(group.name()).strong())
                 .default_open(group == Group::Stiffness)
                 .open((!sought.is_empty()).then_some(true))
@@ -40,14 +56,30 @@ pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, actions: &mut V
                         row(ui, session, parameter, actions);
                     }
                     if group == Group::Air {
-                        super::list::show(ui, session, &super::list::AIR, actions);
+                        super::list::show(ui, session, &super::list::AIR, at, actions);
                     }
                     if group == Group::Collision {
-                        super::list::show(ui, session, &super::list::COLLISION, actions);
+                        super::list::show(ui, session, &super::list::COLLISION, at, actions);
+                    }
+                    if group == Group::Motion {
+                        super::list::motion(ui, session, actions);
                     }
                 });
         }
+        if none {
+            ui.weak("Nothing is called so.");
+        }
     });
+}
+
+/// Lists that stand in a group besides its parameters.
+fn lists(group: Group) -> &'static [&'static str] {
+    match group {
+        Group::Motion => &["Keys"],
+        Group::Air => &["Sources of wind", "Charged bodies"],
+        Group::Collision => &["Colliders", "Hands"],
+        _ => &[],
+    }
 }
 
 /// Which groom, and which group of it.
@@ -88,7 +120,7 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
     let key = parameter.key(groom, group);
     let now = key.look_up(session.edited().effective());
     let default = default_of(session, parameter, groom);
-    let changed = now != default.as_ref();
+    let changed = now != default;
     let mut edit = |value: Option<Value>| actions.push(Action::Parameter(parameter, value));
     ui.push_id(parameter.name, |ui| {
         ui.horizontal(|ui| {
@@ -116,14 +148,12 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
 }
 
 /// The value that counts where the text says nothing: the library's, or that of a material's preset.
-fn default_of(session: &Session, parameter: &Parameter, groom: usize) -> Option<toml::Value> {
+fn default_of(session: &Session, parameter: &Parameter, groom: usize) -> Option<&'static toml::Value> {
     if parameter.of == Of::Material {
         let style = session.edited().preset_of(groom);
-        let base = style.and_then(hairspring::material::preset).unwrap_or_default();
-        let table = toml::Table::try_from(base).ok()?;
-        return Key::default().field(parameter.name).look_up(&table).cloned();
+        return Key::default().field(parameter.name).look_up(MATERIALS.get(&style)?);
     }
-    parameter.key(0, 0).look_up(&DEFAULTS).cloned()
+    parameter.key(0, 0).look_up(&DEFAULTS)
 }
 
 /// The widget of a parameter, which calls `edit` with a new value.
@@ -256,18 +286,6 @@ fn written<'a>(slider: Slider<'a>, parameter: &Parameter) -> Slider<'a> {
     match unit {
         "" => slider,
         unit => slider.suffix(format!(" {unit}")),
-    }
-}
-
-/// Names a widget for screen readers and scripts.
-trait Labelled {
-    fn labelled(self, ui: &Ui, name: &str) -> Self;
-}
-
-impl Labelled for egui::Response {
-    fn labelled(self, ui: &Ui, name: &str) -> Self {
-        ui.ctx().accesskit_node_builder(self.id, |node| node.set_label(name));
-        self
     }
 }
 

@@ -27,7 +27,7 @@ const PRESETS: [(&str, &str, &str); 8] = [
     (
         "On end",
         "straight",
-        "material = \"charged\"\nmotion = false\n\n[material.charged]\npreset = \"straight\"\nbend = 1.0\ncharge = 3e-9\n\n[[charged]]\ncenter = [0.0, 1.55, 0.0]\nradius = 0.1\ncharge = 3e-7\nsolid = false\n",
+        "material = \"charged\"\nmotion = false\n\n[material.charged]\npreset = \"straight\"\ncharge = 3e-10\n\n[[charged]]\ncenter = [0.0, 0.03, -0.01]\nradius = 0.09\ncharge = 1e-6\nsolid = false\n",
     ),
 ];
 

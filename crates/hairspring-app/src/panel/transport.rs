@@ -85,8 +85,9 @@ pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<
                 (&mut o.colliders, "Colliders"),
                 (&mut o.slice, "Slice of distance"),
                 (&mut o.volume, "Volume grid"),
-                (&mut o.frames, "Frame of the head"),
+                (&mut o.frames, "Frames of head, roots and the picked strand"),
                 (&mut o.roots, "Roots"),
+                (&mut o.handles, "Handles of wind and what stands in the scene"),
             ] {
                 ui.checkbox(on, name);
             }

@@ -1,7 +1,7 @@
 //! The window without a desktop: its frames run one after the other, its picture comes from the CPU.
 #![allow(dead_code)] // Each test uses a part of it.
 
-use egui_kittest::Harness;
+use egui_kittest::{Harness, TestRenderer};
 use hairspring_app::{App, Document, Drawn, Options, read_script};
 use std::{
     path::Path,
@@ -10,6 +10,15 @@ use std::{
 
 /// A head that is quick to simulate and to draw.
 pub const SMALL: &str = "name = \"Small\"\n\n[builtin]\nstrands = 400\nguides = 60\n";
+
+/// Looks at nothing: a window that nobody draws would keep every picture of hair until somebody does.
+struct Blind;
+
+impl TestRenderer for Blind {
+    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
+        delta.clear();
+    }
+}
 
 /// The window on this scene, in a folder, with a script.
 pub fn window(folder: &Path, scene: &str, script: &str) -> Harness<'static, App> {
@@ -21,6 +30,7 @@ pub fn window(folder: &Path, scene: &str, script: &str) -> Harness<'static, App>
     };
     Harness::builder()
         .with_size([960.0, 640.0])
+        .renderer(Blind)
         .build_eframe(|creation| App::new(creation, options).expect("the window opens"))
 }
 

@@ -1,0 +1,105 @@
+//! What a window takes of the system, and what is said where that is missing: one sentence, never a panic.
+
+use std::sync::Arc;
+
+/// Libraries that the window's own libraries look for when it opens, and Debian's packages of them. Some systems do without the one or the other: only what failed names what is missing.
+const LIBRARIES: &[(&str, &str)] = if cfg!(target_os = "linux") {
+    &[
+        ("libX11.so.6", "libx11-6"),
+        ("libX11-xcb.so.1", "libx11-xcb1"),
+        ("libxcb.so.1", "libxcb1"),
+        ("libXcursor.so.1", "libxcursor1"),
+        ("libXi.so.6", "libxi6"),
+        ("libxkbcommon.so.0", "libxkbcommon0"),
+        ("libxkbcommon-x11.so.0", "libxkbcommon-x11-0"),
+        ("libwayland-client.so.0", "libwayland-client0"),
+        ("libvulkan.so.1", "libvulkan1 mesa-vulkan-drivers"),
+        ("libEGL.so.1", "libegl1"),
+    ]
+} else {
+    &[]
+};
+
+/// What to say where no window could be opened for this reason.
+pub fn sentence(why: &str) -> String {
+    said(why, &missing(LIBRARIES))
+}
+
+fn said(why: &str, missing: &[&(&str, &str)]) -> String {
+    let why = plain(why);
+    let (names, packages): (Vec<&str>, Vec<&str>) = missing.iter().copied().copied().unzip();
+    match names[..] {
+        [] => format!("no window could be opened: {why}"),
+        _ => format!(
+            "no window could be opened: {why}; not found: {} (on Debian: apt install {})",
+            names.join(", "),
+            packages.join(" ")
+        ),
+    }
+}
+
+/// Those of `libraries` that the system does not find.
+fn missing<'a>(libraries: &'a [(&'a str, &'a str)]) -> Vec<&'a (&'a str, &'a str)> {
+    // SAFETY: these are the libraries that the window has just looked for by the same names: what they do when they are loaded is what they do in every window.
+    let found = |name: &str| unsafe { libloading::Library::new(name) }.is_ok();
+    libraries.iter().filter(|(name, _)| !found(name)).collect()
+}
+
+/// A reason without the place in somebody's source that it was found at, as in `os error at mod.rs:788: no such thing`.
+fn plain(why: &str) -> &str {
+    if why.contains("for any enabled backend") {
+        return "no graphics driver draws on this desktop";
+    }
+    let after = why.rsplit_once(".rs:").map_or(why, |(_, after)| {
+        after.trim_start_matches(|c: char| c.is_ascii_digit() || c == ':').trim_start()
+    });
+    after.trim_end_matches('.')
+}
+
+/// Runs `open`; an error where a library of the desktop is missing, which the window's library says by a panic. Other panics go on.
+pub fn without_library<R>(open: impl FnOnce() -> R) -> Result<R, String> {
+    const SIGN: &str = "could not be loaded";
+    let usual: Arc<dyn Fn(&std::panic::PanicHookInfo<'_>) + Send + Sync> = Arc::from(std::panic::take_hook());
+    let other = usual.clone();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !panic.payload_as_str().is_some_and(|what| what.contains(SIGN)) {
+            other(panic);
+        }
+    }));
+    let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(open));
+    std::panic::set_hook(Box::new(move |panic| usual(panic)));
+    outcome.map_err(|panic| {
+        let what =
+            panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        match what.filter(|what| what.contains(SIGN)) {
+            Some(what) => what.to_owned(),
+            None => std::panic::resume_unwind(panic),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_library_is_a_sentence() {
+        let missing = without_library(|| panic!("Library libxkbcommon-x11.so could not be loaded."));
+        assert_eq!(missing, Err::<(), _>("Library libxkbcommon-x11.so could not be loaded.".into()));
+        assert_eq!(without_library(|| 3), Ok(3));
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn what_is_missing_is_named_with_its_package_and_no_place_in_a_source() {
+        let libraries = [("libc.so.6", "libc6"), ("libnosuch.so.9", "libnosuch9")];
+        let missing = missing(&libraries);
+        assert_eq!(missing, [&("libnosuch.so.9", "libnosuch9")]);
+        let why = "winit EventLoopError: os error at /home/a/winit/linux/mod.rs:788: Failed to load one of xlib's shared libraries";
+        assert_eq!(
+            said(why, &missing),
+            "no window could be opened: Failed to load one of xlib's shared libraries; not found: libnosuch.so.9 (on Debian: apt install libnosuch9)"
+        );
+        assert_eq!(said("no seat.", &[]), "no window could be opened: no seat");
+    }
+}

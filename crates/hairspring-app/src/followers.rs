@@ -1,0 +1,55 @@
+//! Hairs that are left to a graphics card to place: how guides carry them at one moment.
+
+use glam::{Affine3A, Vec3};
+use hairspring::{
+    follow::{FollowLayout, Followed},
+    scene::Effects,
+    simulation::MovingObstacle,
+};
+use std::sync::{Arc, OnceLock};
+
+/// How guides carry the hairs of a groom that a graphics card places.
+pub struct Followers {
+    /// What stays as it is.
+    pub layout: Arc<FollowLayout>,
+    effects: Effects,
+    carriers: Vec<Affine3A>,
+    guide_points: Vec<Vec3>,
+    /// What the CPU makes of it, once somebody asks: a record, an overlay.
+    placed: OnceLock<Vec<Vec3>>,
+}
+
+impl Followers {
+    /// Memory for it.
+    pub fn new(follow: Followed) -> Self {
+        let layout = follow.layout.clone();
+        let (carriers, guide_points) = (Vec::new(), Vec::new());
+        Self { layout, effects: follow.effects, carriers, guide_points, placed: OnceLock::new() }
+    }
+
+    /// Copies a moment, into the memory that is there.
+    pub fn fill(&mut self, follow: Followed) {
+        self.layout.clone_from(follow.layout);
+        self.effects = follow.effects;
+        self.carriers.clear();
+        self.carriers.extend_from_slice(follow.carriers);
+        self.guide_points.clear();
+        self.guide_points.extend_from_slice(follow.guide_points);
+        self.placed = OnceLock::new();
+    }
+
+    /// For who places them.
+    pub fn now<'a>(&'a self, obstacles: &'a [MovingObstacle]) -> Followed<'a> {
+        let Self { layout, effects, carriers, guide_points, .. } = self;
+        Followed { layout, effects: *effects, carriers, guide_points, obstacles }
+    }
+
+    /// Where they are [m]; placed when it is first asked for.
+    pub fn points(&self, obstacles: &[MovingObstacle]) -> &[Vec3] {
+        self.placed.get_or_init(|| {
+            let mut points = vec![Vec3::ZERO; self.layout.groom.points.len()];
+            self.now(obstacles).place(&mut points);
+            points
+        })
+    }
+}

@@ -1,0 +1,284 @@
+//! Handles in the picture: the arrow of the wind, and what the scene lists (colliders, hands, sources of wind, charged bodies), to be taken with the mouse, moved, turned and widened where they
+//! are. What a handle does is what a slider would: it writes into the scene's text.
+
+use crate::{document::Document, key::Key, orbit::Lens, session::Action, snapshot::Scenery};
+use glam::{Vec2, Vec3};
+use hairspring::collide::Rigid;
+use toml_edit::Value;
+
+/// Where the wind's arrow begins in the picture, from its top left corner, over its width and height [1].
+const ROSE: Vec2 = Vec2::new(0.8, 0.7);
+/// Length of the arrow of a storm, over the height of the picture [1].
+const LONGEST: f32 = 0.25;
+/// Speed of that storm [m/s].
+const STORM: f32 = 20.0;
+/// An arrow shorter than this is calm, over the height of the picture [1]: a hand does not find 0 otherwise.
+const CALM: f32 = 0.015;
+/// Length of the arrow of a source that blows at 1 m/s [m]; as the root of the speed.
+const ARROW: f32 = 0.08;
+/// Narrowest that something is pulled [m].
+const NARROWEST: f32 = 1e-3;
+
+/// What pulling a handle changes.
+#[derive(Clone, Debug)]
+enum Pull {
+    /// The scene's wind: an arrow from this place, so many metres long in a storm.
+    Wind(Vec3, f32),
+    /// A place.
+    Place(Key),
+    /// How far something reaches from its middle.
+    Radius(Key, Vec3),
+    /// Which way an axis points from its middle and, by the arrow's length, how fast air goes along it: above or below 0 as it is now.
+    Axis(Key, Option<(Key, f32)>, Vec3),
+}
+
+/// Something to take.
+#[derive(Clone, Debug)]
+pub struct Handle {
+    /// Where it is in the world [m].
+    pub at: Vec3,
+    /// What it is, in words.
+    pub name: String,
+    pull: Pull,
+    /// Where what it belongs to has been carried.
+    pose: Rigid,
+}
+
+impl Handle {
+    /// What being pulled to a place of the world comes to.
+    pub fn pulled(&self, to: Vec3) -> Action {
+        let own = |place: Vec3| list(self.pose.inverse_point(place), 1e4);
+        match &self.pull {
+            Pull::Wind(from, longest) => {
+                let way = to - *from;
+                let share = way.length() / longest;
+                let calm = share * LONGEST < CALM;
+                let speed = if calm { 0.0 } else { STORM * (share * share).min(1.0) };
+                Action::Set(
+                    Key::top("wind").field("velocity"),
+                    Some(list(way.normalize_or_zero() * speed, 1e2)),
+                )
+            }
+            Pull::Place(key) => Action::Set(key.clone(), Some(own(to))),
+            Pull::Radius(key, middle) => {
+                let radius = to.distance(*middle).max(NARROWEST);
+                Action::Set(key.clone(), Some(rounded(radius, 1e4).into()))
+            }
+            Pull::Axis(key, speed, middle) => {
+                let way = to - *middle;
+                let axis = self.pose.rotation.inverse() * way.normalize_or(Vec3::Y);
+                let mut values = vec![(key.clone(), Some(list(axis, 1e3)))];
+                values.extend(speed.as_ref().map(|(key, sign)| {
+                    let speed = (way.length() / ARROW).powi(2).clamp(0.01, 100.0);
+                    (key.clone(), Some(rounded(speed * sign, 1e2).into()))
+                }));
+                Action::SetAll(values)
+            }
+        }
+    }
+
+    /// From where an arrow leads to it, if it is the tip of one.
+    pub fn arrow(&self) -> Option<Vec3> {
+        match self.pull {
+            Pull::Wind(from, _) | Pull::Axis(.., from) => Some(from),
+            _ => None,
+        }
+    }
+
+    /// The middle that it is the rim of, if it is.
+    pub fn rim(&self) -> Option<Vec3> {
+        match self.pull {
+            Pull::Radius(_, middle) => Some(middle),
+            _ => None,
+        }
+    }
+
+    /// Whether it is the wind's.
+    pub fn is_wind(&self) -> bool {
+        matches!(self.pull, Pull::Wind(..))
+    }
+}
+
+/// All handles of a scene, seen through `lens` by an eye that is so far from what it looks at [m].
+pub fn all(document: &Document, scenery: &Scenery, lens: &Lens, distance: f32) -> Vec<Handle> {
+    let mut handles = vec![wind(document, lens, distance)];
+    let carried = &scenery.carried;
+    for (name, one, poses) in [
+        ("collider", "Collider", &carried.colliders),
+        ("hand", "Hand", &carried.hands),
+        ("wind_source", "Source", &carried.wind_sources),
+        ("charged", "Charged body", &carried.charged),
+    ] {
+        let entries = document.effective().get(name).and_then(toml::Value::as_array);
+        for (k, entry) in entries.into_iter().flatten().enumerate() {
+            let (key, table) = shape(Key::top(name).place(k), entry);
+            let pose = poses.get(k).copied().unwrap_or_default();
+            of_shape(&format!("{one} {}", k + 1), (&key, table), pose, lens, &mut handles);
+        }
+    }
+    handles
+}
+
+fn wind(document: &Document, lens: &Lens, distance: f32) -> Handle {
+    let (eye, way) = lens.ray(ROSE);
+    let from = eye + way * distance;
+    // Metres that the picture is high at this depth.
+    let longest = LONGEST / lens.scale(distance, 1.0);
+    let key = Key::top("wind").field("velocity");
+    let velocity = vector(key.look_up(document.effective())).unwrap_or_default();
+    let speed = velocity.length();
+    let tip = velocity.normalize_or_zero() * longest * (speed / STORM).sqrt().min(1.0);
+    let name = if speed > 0.0 { format!("wind {speed:.1} m/s") } else { "calm: pull for wind".into() };
+    Handle { at: from + tip, name, pull: Pull::Wind(from, longest), pose: Rigid::default() }
+}
+
+/// The table that holds an entry's places: its `shape`'s or its `tool`'s, or its own.
+fn shape(key: Key, entry: &toml::Value) -> (Key, &toml::Value) {
+    for name in ["shape", "tool"] {
+        if let Some((kind, inner)) =
+            entry.get(name).and_then(toml::Value::as_table).and_then(|t| t.iter().next())
+        {
+            return (key.field(name).entry(kind), inner);
+        }
+    }
+    (key, entry)
+}
+
+/// Handles of a shape: its places, its radius about its middle, its axis.
+fn of_shape(
+    name: &str,
+    (key, table): (&Key, &toml::Value),
+    pose: Rigid,
+    lens: &Lens,
+    handles: &mut Vec<Handle>,
+) {
+    let number = |name: &str| table.get(name).and_then(toml::Value::as_float).map(|x| x as f32);
+    let mut add = |what: &str, at: Vec3, pull: Pull| {
+        handles.push(Handle { at, name: format!("{name}: {what}"), pull, pose });
+    };
+    for (field, what) in [("center", "move"), ("a", "move an end"), ("b", "move an end"), ("point", "move")] {
+        if let Some(place) = vector(table.get(field)) {
+            add(what, pose.point(place), Pull::Place(key.field(field)));
+        }
+    }
+    let Some(middle) = vector(table.get("center")).map(|center| pose.point(center)) else { return };
+    if let Some(radius) = number("radius") {
+        add("widen", middle + lens.right() * radius, Pull::Radius(key.field("radius"), middle));
+    }
+    if let Some(axis) = vector(table.get("axis")).and_then(Vec3::try_normalize) {
+        let speed = number("speed");
+        let length = ARROW * speed.map_or(1.0, |s| s.abs().max(0.01).sqrt());
+        let sign = speed.map(|s| (key.field("speed"), if s < 0.0 { -1.0 } else { 1.0 }));
+        let what = if sign.is_some() { "turn, pull for speed" } else { "turn" };
+        add(what, middle + pose.rotation * axis * length, Pull::Axis(key.field("axis"), sign, middle));
+    }
+}
+
+fn vector(value: Option<&toml::Value>) -> Option<Vec3> {
+    let number =
+        |x: &toml::Value| x.as_float().or_else(|| x.as_integer().map(|i| i as f64)).map(|x| x as f32);
+    let list: Vec<f32> = value?.as_array()?.iter().map(number).collect::<Option<_>>()?;
+    <[f32; 3]>::try_from(list).ok().map(Vec3::from)
+}
+
+fn rounded(x: f32, parts: f64) -> f64 {
+    // A number that is no place on the grid of doubles is written as short as it is read.
+    (f64::from(x) * parts).round() / parts
+}
+
+fn list(v: Vec3, parts: f64) -> Value {
+    v.to_array().into_iter().map(|x| rounded(x, parts)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::snapshot::Still;
+    use hairspring::scene::Camera;
+    use std::sync::Arc;
+
+    const SCENE: &str = "[builtin]\nstrands = 10\nguides = 5\n\
+        [wind]\nvelocity = [0.0, 0.0, 5.0]\n\
+        [[collider]]\nshape.sphere = { center = [0.0, 1.3, 0.25], radius = 0.08 }\n\
+        [[wind_source]]\nshape.fan = { center = [0.0, 1.55, 0.8], axis = [0.0, 0.0, -1.0], radius = 0.15, speed = 4.0 }\n\
+        [[hand]]\ntool.comb = { a = [-0.1, 1.6, 0.15], b = [0.1, 1.6, 0.15], radius = 0.02 }\n\
+        [[charged]]\ncenter = [0.3, 1.8, 0.0]\nradius = 0.13\ncharge = -2e-7\n";
+
+    fn scene() -> (Document, Scenery, Lens) {
+        let document = Document::new("scene.toml".as_ref(), SCENE.into()).unwrap();
+        let still = Still { grooms: Vec::new(), body: None, counts: [0; 4], instruction_set: String::new() };
+        let camera =
+            Camera { position: Vec3::new(0.0, 1.5, 2.0), target: Vec3::new(0.0, 1.5, 0.0), fov: 30.0 };
+        (document, Scenery::new(Arc::new(still)), Lens::new(&camera, 1.5))
+    }
+
+    #[test]
+    fn a_handle_that_is_pulled_nowhere_changes_nothing() {
+        let (mut document, scenery, lens) = scene();
+        let handles = all(&document, &scenery, &lens, 2.0);
+        // The wind; a ball's middle and rim; a comb's ends; a fan's middle, rim and tip; a balloon's middle and rim.
+        assert_eq!(handles.len(), 1 + 2 + 2 + 3 + 2);
+        let before = document.effective().clone();
+        for handle in handles {
+            let values = match handle.pulled(handle.at) {
+                Action::Set(key, value) => vec![(key, value)],
+                Action::SetAll(values) => values,
+                other => panic!("{other:?}"),
+            };
+            document.set_all(values).unwrap();
+            let now = document.effective();
+            assert!(
+                alike(&before.clone().into(), &now.clone().into()),
+                "{}: {}",
+                handle.name,
+                document.text()
+            );
+        }
+    }
+
+    /// Whether two values are the same up to the tenth of a millimetre to which a handle's are written.
+    fn alike(a: &toml::Value, b: &toml::Value) -> bool {
+        use toml::Value::{Array, Float, Table};
+        match (a, b) {
+            (Float(a), Float(b)) => (a - b).abs() < 2e-4 * (1.0 + a.abs()),
+            (Array(a), Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| alike(a, b)),
+            (Table(a), Table(b)) => {
+                a.len() == b.len() && a.iter().all(|(k, a)| b.get(k).is_some_and(|b| alike(a, b)))
+            }
+            _ => a == b,
+        }
+    }
+
+    #[test]
+    fn what_a_joint_has_carried_is_moved_where_it_is() {
+        let (mut document, mut scenery, lens) = scene();
+        let turn = glam::Quat::from_rotation_y(std::f32::consts::FRAC_PI_2);
+        scenery.carried.colliders = vec![Rigid { rotation: turn, translation: Vec3::new(0.0, 0.5, 0.0) }];
+        let handles = all(&document, &scenery, &lens, 2.0);
+        let ball = &handles[1];
+        assert!(ball.at.distance(Vec3::new(0.25, 1.8, 0.0)) < 1e-6, "{}", ball.at);
+        // 5 cm further along the world's x are 5 cm further along its own z.
+        let Action::Set(key, value) = ball.pulled(ball.at + Vec3::X * 0.05) else { panic!() };
+        document.set(&key, value).unwrap();
+        assert!(document.text().contains("center = [0.0, 1.3, 0.3]"), "{}", document.text());
+    }
+
+    #[test]
+    fn an_arrow_turns_and_blows_by_its_length_and_goes_back_in_one_step() {
+        let (mut document, scenery, lens) = scene();
+        let handles = all(&document, &scenery, &lens, 2.0);
+        let tip = handles.iter().find(|h| h.name.contains("turn")).unwrap();
+        let middle = tip.arrow().unwrap();
+        let Action::SetAll(values) = tip.pulled(middle + Vec3::X * ARROW * 3.0) else { panic!() };
+        document.set_all(values).unwrap();
+        assert!(
+            document.text().contains("axis = [1.0, 0.0, 0.0]") && document.text().contains("speed = 9.0")
+        );
+        document.undo().unwrap();
+        assert_eq!(document.text(), SCENE);
+        let wind = &handles[0];
+        let Action::Set(key, value) = wind.pulled(wind.arrow().unwrap()) else { panic!() };
+        document.set(&key, value).unwrap();
+        assert!(document.text().contains("velocity = [0.0, 0.0, 0.0]"));
+    }
+}
