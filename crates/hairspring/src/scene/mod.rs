@@ -12,7 +12,7 @@ pub use camera::Camera;
 pub use hand::Hand;
 pub use look::{HairColor, HairLook};
 pub use settings::{
-    Collider, Effects, Guides, Integrator, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
+    Collider, Effects, Guides, Integrator, Neighbours, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
 };
 
 use crate::{
@@ -87,6 +87,8 @@ pub struct Scene {
     pub solver: Solver,
     /// How hair meets hair.
     pub volume: Volume,
+    /// How strands meet their neighbours, one by one.
+    pub neighbours: Neighbours,
     /// Where it is seen from; `None`: framed automatically.
     pub camera: Option<Camera>,
     /// What hands hold to the hair.
