@@ -405,6 +405,7 @@ fn effective(scene: &Scene) -> toml::Table {
         ("charged", value(&scene.charged)),
         ("solver", value(&scene.solver)),
         ("volume", value(&scene.volume)),
+        ("neighbours", value(&scene.neighbours)),
         ("hand", value(&scene.hands)),
     ] {
         all.insert(name.into(), value);

@@ -106,12 +106,13 @@ fn a_strand_lies_over_another_and_is_borne() {
     let borne = (side(k + 2) - side(k - 3) + weight).length();
     println!("N {} of {borne} from tensions, depth {}", report.force, report.depth);
     assert!((report.force / borne - 1.0).abs() < 0.01, "the bar bears {} N of {borne} N", report.force);
-    assert!(report.depth < 1e-3 * 0.001, "{} m deep", report.depth);
+    assert!(report.depth < 0.01 * 0.001, "{} m deep", report.depth);
     let fastest = (0..26).map(|i| strands.simulation.speed_at(1, i)).fold(0.0, f32::max);
     assert!(fastest < 1e-3, "it moves at {fastest} m/s");
 }
 
-/// A strand across a bar, at its joints `press` down and `pull` along the bar with these forces [N]; how far the joint goes in a second.
+/// A strand across a bar, at its joints `press` down and `pull` along the bar with these forces [N]; how far the segment there
+/// goes in a second under the whole pull.
 fn rubbed(press: f32, pull: f32, friction: f32) -> f32 {
     let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
     let rope = line(Vec3::new(-0.105, 0.002, 0.0), Vec3::new(0.105, 0.002, 0.0), 22);
@@ -128,12 +129,13 @@ fn rubbed(press: f32, pull: f32, friction: f32) -> f32 {
     };
     strands.simulation.set_holds(&pulled(0.0));
     strands.play(0.5);
-    let before = strands.points()[1][10].z;
     // Slowly, so that it is the force that is felt and not a blow.
     for k in 1..=60 {
         strands.simulation.set_holds(&pulled(pull * k as f32 / 60.0));
         strands.play(bench::FRAME);
     }
+    strands.play(0.5);
+    let before = strands.points()[1][10].z;
     strands.play(1.0);
     strands.points()[1][10].z - before
 }
@@ -143,7 +145,7 @@ fn what_is_pulled_aside_with_less_than_friction_sticks() {
     let (press, friction) = (2e-5, 0.4);
     let stuck = rubbed(press, 0.95 * friction * press, friction);
     let slid = rubbed(press, 1.10 * friction * press, friction);
-    assert!(stuck.abs() < 1e-4, "below μN it went {stuck} m");
+    assert!(stuck.abs() < 2e-5, "below μN it went {stuck} m");
     assert!(slid > 2e-3, "above μN it went {slid} m");
 }
 
@@ -159,7 +161,11 @@ fn torn(stiction: f32, pull: f32) -> (f32, usize) {
     };
     strands.simulation.set_holds(&pulled(-5e-6));
     strands.play(0.5);
-    assert!(stiction == 0.0 || strands.simulation.neighbours().unwrap().bonds > 0, "{:?}", strands.simulation.neighbours());
+    assert!(
+        stiction == 0.0 || strands.simulation.neighbours().unwrap().bonds > 0,
+        "{:?}",
+        strands.simulation.neighbours()
+    );
     // Slowly, so that it is the force that is felt and not a blow.
     for k in 1..=60 {
         strands.simulation.set_holds(&pulled(pull * k as f32 / 60.0));
@@ -228,7 +234,9 @@ fn at_rest_nothing_moves() {
     let curl = |s: usize| {
         let root = Vec3::new(0.004 * (s % 5) as f32, 0.0, 0.004 * (s / 5) as f32);
         let turn = |i: usize| 0.5 * i as f32 + s as f32;
-        (0..32).map(|i| root + Vec3::new(0.004 * turn(i).sin(), -0.004 * i as f32, 0.004 * turn(i).cos())).collect()
+        (0..32)
+            .map(|i| root + Vec3::new(0.004 * turn(i).sin(), -0.004 * i as f32, 0.004 * turn(i).cos()))
+            .collect()
     };
     let straight = |s: usize| {
         let root = Vec3::new(0.002 * (s % 5) as f32, 0.0, 0.002 * (s / 5) as f32);
@@ -240,8 +248,7 @@ fn at_rest_nothing_moves() {
     ] {
         let groom = Arc::new(Groom::from_strands(&all, 4e-5));
         let names: Vec<u32> = (0..25).collect();
-        let roots: Vec<Rigid> =
-            all.iter().map(|s| Rigid { translation: s[0], ..Rigid::default() }).collect();
+        let roots: Vec<Rigid> = all.iter().map(|s| Rigid { translation: s[0], ..Rigid::default() }).collect();
         let played = |neighbours: Neighbours| {
             let mut simulation = Simulation::new(
                 groom.clone(),
@@ -255,7 +262,13 @@ fn at_rest_nothing_moves() {
             simulation.set_neighbours(&neighbours);
             let mut step = || {
                 let air = Air::default();
-                simulation.step(&Drive { dt: bench::FRAME, anchor: Rigid::default(), roots: &roots, obstacles: &[], air });
+                simulation.step(&Drive {
+                    dt: bench::FRAME,
+                    anchor: Rigid::default(),
+                    roots: &roots,
+                    obstacles: &[],
+                    air,
+                });
                 let mut points = vec![Vec3::ZERO; simulation.point_count()];
                 simulation.write_points(&mut points);
                 points
@@ -333,15 +346,19 @@ fn folded_strands_in_a_heap_stay_finite_and_keep_their_lengths() {
         }
     }
     let finite = strands.points().iter().flatten().all(|p| p.is_finite());
-    println!("stretch {worst}, {:?}", strands.simulation.neighbours().unwrap());
+    let speeds = (0..800).map(|k| strands.simulation.speed_at(k / 20, k % 20));
+    let mean = speeds.sum::<f32>() / 800.0;
+    println!("stretch {worst}, {mean} m/s, {:?}", strands.simulation.neighbours().unwrap());
     assert!(finite && worst < 0.011, "stretch {worst}");
+    assert!(mean < 0.05, "two seconds after the shake points move at {mean} m/s in the mean");
 }
 
 #[test]
 fn a_shaken_head_keeps_its_volume_as_strands_and_by_the_lattice() {
-    let measured = Volume { method: VolumeMethod::Density, friction: 0.0, pressure: 0.0, ..Volume::default() };
+    let measured =
+        Volume { method: VolumeMethod::Density, friction: 0.0, pressure: 0.0, ..Volume::default() };
     let kept = |volume: Volume, neighbours: Neighbours| {
-        let mut bench = Bench::new(400, 24, Solver::default());
+        let mut bench = Bench::new(300, 20, Solver::default());
         bench.simulation.set_volume(&volume);
         bench.simulation.set_neighbours(&neighbours);
         let mut sum = 0.0;
@@ -351,7 +368,6 @@ fn a_shaken_head_keeps_its_volume_as_strands_and_by_the_lattice() {
                 sum += bench.simulation.volume().unwrap().share / 60.0;
             }
         }
-        println!("  {:?} {:?}", bench.simulation.neighbours(), bench.measure());
         sum
     };
     let off = Neighbours::default();

@@ -10,7 +10,7 @@
 use super::hair::Hair;
 use glam::Vec3;
 
-/// Memory for one strand, and which strands are asked for.
+/// Memory for one strand, and what all did before any impulse.
 #[derive(Default)]
 pub struct Along {
     /// Velocities before any impulse, shape `[points]` [m/s].
@@ -35,11 +35,6 @@ impl Along {
     /// Velocities are now as they were before any impulse.
     pub fn begin(&mut self, hair: &Hair) {
         self.before.copy_from_slice(&hair.v);
-    }
-
-    /// Velocities are again as they were.
-    pub fn take_back(&self, hair: &mut Hair) {
-        hair.v.copy_from_slice(&self.before);
     }
 
     /// Takes out of all changes of velocity what would stretch a segment.

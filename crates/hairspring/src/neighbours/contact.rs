@@ -14,15 +14,15 @@
 use super::{closest::closest, hair::Hair, response::Response};
 use glam::{Mat3, Vec3};
 
-/// Share of an overlap, or of a slip, that is taken back in a substep [1]. With the load that is carried, 0.5 settles fastest; less forgives the masses that are not
-/// known well.
+/// Share of an overlap, or of a slip, that is taken back in a substep [1]. With x the overlap and η the share of what moves that an impulse stops, loads settle as
+/// x''' + η x'' + η (RECOVERY + LASTING) x' + η RECOVERY LASTING x = 0, which rings where η < RECOVERY LASTING / (RECOVERY + LASTING): a seventh.
 const RECOVERY: f32 = 0.2;
 
-/// Share of an impulse that counts as load [1].
+/// Share of an impulse that counts as load, where it adds to one [1]; what takes of a load counts whole, so that what is let go of is not thrown.
 const LASTING: f32 = 0.5;
 
 /// Gap over the sum of the radii up to which segments are near each other, and bonds hold [1].
-const NEAR: f32 = 0.25;
+pub const NEAR: f32 = 0.15;
 
 /// Cosine between one substep's normal and the next where an end of a segment has passed the other [1]; between segments that cross, any turn of more than a
 /// right angle is a passage.
@@ -76,6 +76,12 @@ impl Sides {
         let each = sides.map(|(i, s)| Response::of(i, s, hair, h));
         Self { each, give: sides.iter().zip(&each).map(|((i, s), side)| side.give(*i, *s)).sum() }
     }
+
+    /// Changes velocities by an impulse on the first [N s], and the opposite on the second.
+    fn strike(&self, impulse: Vec3, hair: &mut Hair) {
+        self.each[0].strike(impulse, hair);
+        self.each[1].strike(-impulse, hair);
+    }
 }
 
 /// What acts on the first segment of a pair.
@@ -102,11 +108,16 @@ impl Contact {
         let mut distance = apart.length();
         let within = hair.radius[pair[0] as usize] + hair.radius[pair[1] as usize];
         let across = || (a[1] - a[0]).cross(b[1] - b[0]).try_normalize().unwrap_or(Vec3::Y);
-        let mut normal = if distance > 1e-6 * within { apart / distance } else { old.map_or_else(across, |old| old.normal) };
+        let mut normal = if distance > 1e-6 * within {
+            apart / distance
+        } else {
+            old.map_or_else(across, |old| old.normal)
+        };
         if let Some(old) = old {
             let inner = |s: f32| s > 0.0 && s < 1.0;
             let turned = normal.dot(old.normal);
-            if turned < if inner(s) && inner(t) { 0.0 } else { PASSED } {
+            // What is through by more than its thickness is through.
+            if distance < within && turned < if inner(s) && inner(t) { 0.0 } else { PASSED } {
                 (distance, normal) = (-distance, -normal);
             }
         }
@@ -159,19 +170,8 @@ impl Contact {
         }
     }
 
-    /// Adds to velocities what its impulse does to the four points themselves.
-    pub fn strike_points(&self, hair: &mut Hair) {
-        let impulse = self.normal * self.impulse.along + self.impulse.across;
-        if impulse != Vec3::ZERO {
-            self.strike(impulse, hair);
-        }
-    }
-
-    /// One sweep's change of velocities.
-    pub fn solve(&mut self, sides: &Sides, rules: &Rules, hair: &mut Hair) {
-        if sides.give <= 0.0 {
-            return;
-        }
+    /// One sweep's change of velocities. How the `sides` give way is found where it is first asked for.
+    pub fn solve(&mut self, sides: &mut Option<Sides>, rules: &Rules, hair: &mut Hair) {
         let Rules { h, friction, stiction } = *rules;
         let velocity = self.velocity(hair);
         let along = self.normal.dot(velocity);
@@ -179,39 +179,53 @@ impl Contact {
         let ahead = self.gap > 0.0 && self.bond == Bond::None;
         let aim = self.gap / h * if ahead { 1.0 } else { RECOVERY };
         let before = self.load.along * h + self.impulse.along;
+        let rubbed = self.load.across * h + self.impulse.across;
+        if bound == 0.0 && before == 0.0 && rubbed == Vec3::ZERO && along + aim >= 0.0 {
+            return;
+        }
+        let sides = sides.get_or_insert_with(|| Sides::of(self, hair, h));
+        if sides.give <= 0.0 {
+            return;
+        }
         let asked = before - (along + aim) / sides.give;
         let now = asked.max(-bound);
 
         let across = velocity - self.normal * along + self.slip * (RECOVERY / h);
-        let rubbed = self.load.across * h + self.impulse.across;
         let asked_across = rubbed - across / sides.give;
         let cone = friction * now.max(0.0) + bound;
         let held = asked_across.clamp_length_max(cone);
         // Where nothing presses there is nothing to slide on.
-        self.at_bound = (bound > 0.0 && asked < -bound) || (cone > 0.0 && asked_across.length_squared() > cone * cone);
+        self.at_bound =
+            (bound > 0.0 && asked < -bound) || (cone > 0.0 && asked_across.length_squared() > cone * cone);
 
         let change = self.normal * (now - before) + (held - rubbed);
-        if change != Vec3::ZERO && change.is_finite() {
+        if change.is_finite() {
             self.impulse.along += now - before;
             self.impulse.across += held - rubbed;
-            sides.each[0].strike(change, hair);
-            sides.each[1].strike(-change, hair);
+            sides.strike(change, hair);
         }
     }
 
     /// Ends the substep: what acted in it and in the one before is the load of the next.
     pub fn carry(&mut self, rules: &Rules) {
+        let share = if self.impulse.along < 0.0 { 1.0 } else { LASTING };
         let total = Force {
-            along: self.load.along + self.impulse.along * (LASTING / rules.h),
+            along: self.load.along + self.impulse.along * (share / rules.h),
             across: self.load.across + self.impulse.across * (LASTING / rules.h),
         };
         let Force { along, across } = self.last;
-        self.load.along = if total.along * along > 0.0 { total.along.abs().min(along.abs()).copysign(along) } else { 0.0 };
-        self.load.across =
-            if total.across.dot(across) > 0.0 { total.across.clamp_length_max(across.length()) } else { Vec3::ZERO };
+        self.load.along =
+            if total.along * along > 0.0 { total.along.abs().min(along.abs()).copysign(along) } else { 0.0 };
+        self.load.across = if total.across.dot(across) > 0.0 {
+            total.across.clamp_length_max(across.length())
+        } else {
+            Vec3::ZERO
+        };
         (self.last, self.impulse) = (total, Force::default());
         self.bond = match (self.bond, self.at_bound) {
-            (Bond::None, false) if rules.stiction > 0.0 && total.along > 0.0 && self.gap <= 0.0 => Bond::Holds,
+            (Bond::None, false) if rules.stiction > 0.0 && total.along > 0.0 && self.gap <= 0.0 => {
+                Bond::Holds
+            }
             (Bond::None, _) | (Bond::Torn, true) => Bond::None,
             (_, true) => Bond::Torn,
             (_, false) => Bond::Holds,

@@ -2,7 +2,7 @@
 //!
 //! Teschner et al. 2003, *Optimized Spatial Hashing for Collision Detection of Deformable Objects*, with the cells of a bucket kept apart.
 
-use super::hair::Hair;
+use super::{contact::NEAR, hair::Hair};
 use glam::{IVec3, Vec3};
 
 /// Cells that a segment's box reaches into, in the mean, at most; cells grow until it is so.
@@ -120,7 +120,8 @@ impl Grid {
                 let b = bucket(c, buckets);
                 let inside = &entries[first[b] as usize..first[b + 1] as usize];
                 // Those after it in order come last in each bucket.
-                for (_, other) in inside.iter().rev().take_while(|(_, o)| *o > k as u32).filter(|e| e.0 == c) {
+                for (_, other) in inside.iter().rev().take_while(|(_, o)| *o > k as u32).filter(|e| e.0 == c)
+                {
                     let (other, with) = segments[*other as usize];
                     // In the one cell in which the boxes' common part begins.
                     let low = bounds[0].max(with[0]);
@@ -138,10 +139,10 @@ impl Grid {
     }
 }
 
-/// How far around itself a segment looks for others [m]: a quarter more than they touch at, and what it may come nearer by, of which no more counts than its
+/// How far around itself a segment looks for others [m]: what counts as near, and what it may come nearer by, of which no more counts than its
 /// length: what is faster is not seen to come.
 fn reach(radius: f32, length: f32, way: f32) -> f32 {
-    1.25 * radius + way.min(length)
+    (1.0 + NEAR) * radius + way.min(length)
 }
 
 /// Cells that a box reaches into.
@@ -163,7 +164,8 @@ fn cell_of(cell: f32, x: Vec3) -> IVec3 {
 }
 
 fn bucket(c: IVec3, buckets: usize) -> usize {
-    let hash = (c.x.wrapping_mul(73_856_093)) ^ (c.y.wrapping_mul(19_349_663)) ^ (c.z.wrapping_mul(83_492_791));
+    let hash =
+        (c.x.wrapping_mul(73_856_093)) ^ (c.y.wrapping_mul(19_349_663)) ^ (c.z.wrapping_mul(83_492_791));
     // The low bits of the products are those of the cells; the high ones are mixed.
     ((hash as u32).wrapping_mul(0x9e37_79b1) >> 7) as usize & (buckets - 1)
 }

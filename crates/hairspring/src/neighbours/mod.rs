@@ -6,7 +6,8 @@
 //! ```text
 //! before a substep   v ← v + h M⁻¹ Jᵀ F           F the loads that contacts carry, J from velocities to those of contacts
 //! the substep        every strand by itself
-//! after it           v ← v + M⁻¹ Jᵀ p             p by projected Gauss–Seidel, so that no segments will be in each other at the end of the next
+//! after it           v ← v + A⁻¹ Jᵀ p             p by projected Gauss–Seidel, so that no segments will be in each other at the end of the next;
+//!                                                 A what strands make of it: masses, bending (`response`), and lengths that stay (`along`)
 //! carried            F ← what acted in this substep and in the one before it, F + p/h
 //! ```
 //!
@@ -24,8 +25,8 @@
 //! to be found and solved (see [`docs/physics`](https://github.com/hairspring/hairspring/blob/main/docs/physics/volume.md)).
 //!
 //! # Missing
-//! A strand does not meet itself, nor one of another groom. Followers are moved by their guides alone. Impulses know the masses of points and not how
-//! stiff the strand between them is: what weighs on one contact with many times the mass of its points sinks in for some substeps before it is held.
+//! A strand does not meet itself, nor one of another groom. Followers are moved by their guides alone. Where more
+//! strands are pressed together than there is room for, they overlap, and tremble.
 
 mod along;
 mod closest;
@@ -34,6 +35,8 @@ mod grid;
 mod hair;
 mod response;
 mod rest;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use hair::Hair;
 
@@ -60,8 +63,8 @@ pub(crate) struct Neighbours {
     /// Sorted by their segments.
     contacts: Vec<Contact>,
     before: Vec<Contact>,
-    /// Of each contact.
-    sides: Vec<Sides>,
+    /// Of each contact, where it was asked for.
+    sides: Vec<Option<Sides>>,
 }
 
 /// What is known of strands that meet each other one by one.
@@ -119,7 +122,9 @@ impl Neighbours {
     pub fn bytes(&self) -> usize {
         self.hair.bytes()
             + self.grid.bytes()
-            + MOST_CONTACTS * self.hair.segments().count() * (2 * size_of::<Contact>() + size_of::<Sides>())
+            + MOST_CONTACTS
+                * self.hair.segments().count()
+                * (2 * size_of::<Contact>() + size_of::<Option<Sides>>())
     }
 
     /// Nothing touches any more: strands were put elsewhere.
@@ -165,15 +170,15 @@ impl Neighbours {
         });
         let rules = Rules { h, friction: self.settings.friction, stiction: self.settings.stiction };
         sides.clear();
-        sides.extend(contacts.iter().map(|contact| Sides::of(contact, hair, h)));
+        sides.resize_with(contacts.len(), || None);
         along.begin(hair);
         for _ in 0..SWEEPS {
-            contacts.iter_mut().zip(&*sides).for_each(|(contact, sides)| contact.solve(sides, &rules, hair));
+            contacts
+                .iter_mut()
+                .zip(&mut *sides)
+                .for_each(|(contact, sides)| contact.solve(sides, &rules, hair));
             along.keep_lengths(hair);
         }
-        // What strands make of it is up to their solve.
-        along.take_back(hair);
-        contacts.iter().for_each(|contact| contact.strike_points(hair));
         contacts.iter_mut().for_each(|contact| contact.carry(&rules));
     }
 }

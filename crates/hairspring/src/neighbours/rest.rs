@@ -10,7 +10,8 @@ const TAKEN: f32 = 0.999;
 pub fn find_radii(asked: Option<f32>, hair: &mut Hair, grid: &mut Grid) -> f32 {
     let segments: Vec<u32> = hair.segments().collect();
     let length = |hair: &Hair, s: u32| hair.ends(s)[0].distance(hair.ends(s)[1]);
-    let mean = segments.iter().map(|s| f64::from(length(hair, *s))).sum::<f64>() / segments.len().max(1) as f64;
+    let mean =
+        segments.iter().map(|s| f64::from(length(hair, *s))).sum::<f64>() / segments.len().max(1) as f64;
     // Where no radius is asked for, strands farther off than a segment is long count as that far.
     let within = asked.map_or(mean as f32, |radius| 2.0 * radius);
     let mut nearest = vec![within; hair.x.len()];
@@ -23,7 +24,8 @@ pub fn find_radii(asked: Option<f32>, hair: &mut Hair, grid: &mut Grid) -> f32 {
             nearest[s as usize] = nearest[s as usize].min(distance);
         }
     });
-    let room = segments.iter().map(|s| f64::from(nearest[*s as usize])).sum::<f64>() / segments.len().max(1) as f64;
+    let room =
+        segments.iter().map(|s| f64::from(nearest[*s as usize])).sum::<f64>() / segments.len().max(1) as f64;
     let radius = asked.unwrap_or(0.5 * room as f32);
     for s in segments {
         hair.radius[s as usize] = radius.min(0.5 * TAKEN * nearest[s as usize]);

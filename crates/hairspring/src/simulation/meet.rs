@@ -39,7 +39,12 @@ impl Simulation {
     }
 
     /// Lets strands meet at the end of the interval's substep `number`.
-    pub(super) fn meet_neighbours(&mut self, neighbours: &mut Neighbours, interval: &Interval, number: usize) {
+    pub(super) fn meet_neighbours(
+        &mut self,
+        neighbours: &mut Neighbours,
+        interval: &Interval,
+        number: usize,
+    ) {
         let substep = &interval.substeps[number];
         self.show_neighbours((substep.fraction, substep.anchor), interval.h, &mut neighbours.hair);
         neighbours.meet(interval.h);
@@ -72,7 +77,8 @@ impl Simulation {
                     hair.inverse_mass[i] =
                         if free { self.rest[first + j][rest::MASS].0[lane].recip() } else { 0.0 };
                     let rest = |row: usize| self.rest[first + j][row].0[lane];
-                    hair.inverse_length[i] = if rest(rest::LENGTH) > 0.0 { rest(rest::LENGTH).recip() } else { 0.0 };
+                    hair.inverse_length[i] =
+                        if rest(rest::LENGTH) > 0.0 { rest(rest::LENGTH).recip() } else { 0.0 };
                     // What bends springs lies between its points, and counts for little here.
                     hair.bend[i] = if stride == 1 { rest(rest::BEND) * damped } else { 0.0 };
                     i += 1;

@@ -42,8 +42,10 @@ impl Stage {
         if before.hands != scene.hands {
             self.hands.retune((&before.hands, &scene.hands), joints.hands, &mut self.hair);
         }
-        let rests = |scene: &Scene| (scene.gravity, scene.solver, scene.volume, scene.shelter, scene.neighbours);
-        let fresh = (before.gravity, before.solver, before.volume, before.shelter, before.neighbours) != rests(scene);
+        let rests =
+            |scene: &Scene| (scene.gravity, scene.solver, scene.volume, scene.shelter, scene.neighbours);
+        let fresh =
+            (before.gravity, before.solver, before.volume, before.shelter, before.neighbours) != rests(scene);
         for (hair, groom) in self.hair.iter_mut().zip(grooms) {
             hair.retune(groom, scene, &self.body, fresh);
         }
