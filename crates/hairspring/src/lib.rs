@@ -10,7 +10,7 @@ pub mod collide;
 pub mod follow;
 pub mod groom;
 pub mod material;
-mod neighbours;
+pub(crate) mod neighbours;
 pub mod scene;
 pub mod simulation;
 pub mod stage;

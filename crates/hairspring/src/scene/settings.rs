@@ -186,8 +186,8 @@ pub struct Neighbours {
     /// Radius of a strand where it meets others [m], above 0: a strand stands for the hairs around it. It is nowhere more than half of the way to the nearest
     /// other strand at rest, so that nothing touches there. `None`, the default: half of that way in the mean, at most half a segment.
     pub radius: Option<f32>,
-    /// Coulomb friction of strands on each other [1], 0 or more. Default 0.3, of hair on hair across the cuticle (Bhushan 2010, *Biophysics of Human Hair*:
-    /// 0.1 to 0.4).
+    /// Coulomb friction of strands on each other [1], 0 or more. Default 0.3: scales let hair slide more easily toward the tip than toward the root, and it is
+    /// between the two.
     pub friction: f32,
     /// Force that two segments which have been pressed together hold with, along and across, besides friction; it breaks when more pulls [N], 0 or more.
     /// Default 0. A hair of 25 cm weighs 1.6e-5 N.
