@@ -32,9 +32,7 @@ impl Simulation {
     pub(super) fn bear_neighbours(&mut self, neighbours: &mut Neighbours, h: f32) {
         let kicks = neighbours.bear(h);
         self.each_velocity(|i, rows| {
-            for k in 0..3 {
-                *rows[k] += kicks[i][k];
-            }
+            rows.into_iter().zip(kicks[i].to_array()).for_each(|(row, kick)| *row += kick);
         });
     }
 
@@ -51,9 +49,7 @@ impl Simulation {
         let hair = &neighbours.hair;
         self.each_velocity(|i, rows| {
             if hair.inverse_mass[i] > 0.0 {
-                for k in 0..3 {
-                    *rows[k] = hair.v[i][k];
-                }
+                rows.into_iter().zip(hair.v[i].to_array()).for_each(|(row, v)| *row = v);
             }
         });
     }
