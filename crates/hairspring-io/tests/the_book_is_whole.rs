@@ -25,7 +25,7 @@ const SOURCE: &str = include_str!("../../hairspring/src/air/source.rs");
 const CHARGE: &str = include_str!("../../hairspring/src/around/charge.rs");
 
 /// What a parameter's name begins with, and the struct (or variant) whose fields follow.
-const STRUCTS: [(&str, &str, &str); 39] = [
+const STRUCTS: [(&str, &str, &str); 40] = [
     ("", FILE, "SceneFile"),
     ("builtin.", FILE, "BuiltinFile"),
     ("body.", FILE, "BodyFile"),
