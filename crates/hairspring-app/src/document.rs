@@ -393,3 +393,50 @@ fn rename_files(table: &mut dyn toml_edit::TableLike, rename: &dyn Fn(&str) -> P
         }
     }
 }
+<<<<<<< HEAD
+=======
+
+/// What counts in a scene with one groom that says nothing.
+pub fn defaults() -> toml::Table {
+    let gravity = glam::Vec3::new(0.0, -9.81, 0.0);
+    effective(&Scene { grooms: vec![SceneGroom::default()], gravity, ..Scene::default() })
+}
+
+/// See [`Document::effective`].
+fn effective(scene: &Scene) -> toml::Table {
+    fn value(of: &impl serde::Serialize) -> toml::Value {
+        toml::Value::try_from(of).unwrap_or_else(|why| unreachable!("settings are plain data: {why}"))
+    }
+    let grooms = scene.grooms.iter().map(|groom| {
+        let mut table = toml::Table::new();
+        table.insert("look".into(), value(&groom.look));
+        table.insert("effects".into(), value(&groom.effects));
+        let default = [hairspring::material::Material::default()];
+        let materials = if groom.materials.is_empty() { &default[..] } else { &groom.materials };
+        table.insert("material".into(), value(&materials));
+        toml::Value::Table(table)
+    });
+    let mut all = toml::Table::new();
+    all.insert("groom".into(), toml::Value::Array(grooms.collect()));
+    for (name, value) in [
+        ("name", value(&scene.name)),
+        ("gravity", value(&scene.gravity)),
+        ("collider", value(&scene.colliders)),
+        ("wind", value(&scene.wind)),
+        ("wind_source", value(&scene.wind_sources)),
+        ("turbulence", value(&scene.turbulence)),
+        ("shelter", value(&scene.shelter)),
+        ("charged", value(&scene.charged)),
+        ("solver", value(&scene.solver)),
+        ("volume", value(&scene.volume)),
+        ("neighbours", value(&scene.neighbours)),
+        ("hand", value(&scene.hands)),
+    ] {
+        all.insert(name.into(), value);
+    }
+    if let Some(camera) = &scene.camera {
+        all.insert("camera".into(), value(camera));
+    }
+    all
+}
+>>>>>>> 50ad234114f316b4d8d932f7a85e9110a3ace981

@@ -199,6 +199,10 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "volume.pressure", "Pressure", "m/s", number(0.0, 3.0), "density: speed with which a crowd spreads.";
         Scene "volume.regain", "Regain", "1/s", number(0.0, 100.0), "incompressible: share of lost volume that is regained a second.";
         Scene "volume.cell", "Cell", "m", Kind::Maybe { min: 0.002, max: 0.1, from: 0.015 }, "Edge of a cell of the lattice; left out, the smallest that holds eight points at rest.";
+        Scene "neighbours.on", "Strand on strand", "", Kind::Switch, "Whether simulated strands meet each other one by one: exact, and slow. For guides and small scenes.";
+        Scene "neighbours.radius", "Radius of a strand", "m", Kind::Maybe { min: 0.0002, max: 0.02, from: 0.002 }, "With the hairs that it stands for; nowhere more than half of the way to the next at rest. Left out, half of that way in the mean.";
+        Scene "neighbours.friction", "Friction of strands", "", number(0.0, 1.0), "Coulomb friction of strands on each other.";
+        Scene "neighbours.stiction", "Stiction", "N", number(0.0, 1e-4), "Force that touching segments hold together with until more pulls. A hair of 25 cm weighs 1.6e-5.";
     }
     Look {
         Groom "look.root_color", "Root", "", Kind::Color, "What a thick lock of it looks like at the root.";

@@ -13,7 +13,7 @@ use hairspring::{
     air::{Flow, Shelter, Turbulence, WindSource},
     around::{Tool, comb::Comb, tie::Tie},
     body::{Body, Clip},
-    scene::{Guides, Hand, Shape, Volume, VolumeMethod},
+    scene::{Guides, Hand, Neighbours, Shape, Volume, VolumeMethod},
 };
 use hairspring_io::Loaded;
 use scenes::{folder, message, read};
@@ -62,6 +62,9 @@ fn a_scene_is_what_its_file_describes() {
         [volume]
         method = "incompressible"
         cell = 0.02
+        [neighbours]
+        on = true
+        radius = 0.002
         [[hand]]
         tool.tie = { center = [0, 1, 0], axis = [0, -1, 0], radius = 0.01, reach = 0.1 }
         [[hand]]
@@ -99,6 +102,7 @@ fn a_scene_is_what_its_file_describes() {
     assert_eq!(scene.solver, Default::default());
     let volume = Volume { method: VolumeMethod::Incompressible, cell: Some(0.02), ..Volume::default() };
     assert_eq!(scene.volume, volume);
+    assert_eq!(scene.neighbours, Neighbours { on: true, radius: Some(0.002), ..Neighbours::default() });
     let (center, axis) = (Vec3::Y, Vec3::NEG_Y);
     let tie = Tie { center, axis, radius: 0.01, reach: 0.1, gather: 0.5, pull: 60.0, damping: 1.0 };
     assert_eq!(scene.hands[0], Hand::new(Tool::Tie(tie)));

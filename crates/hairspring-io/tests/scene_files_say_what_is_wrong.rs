@@ -20,6 +20,8 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
         (format!("[slover]\n{GROOM}"), &["line 1", "did you mean `solver`?"]),
         (format!("{GROOM}[volume]\nmethod = \"densty\"\n"), &["line 4", "did you mean `density`?"]),
         (format!("{GROOM}[volume]\ncell = 0\n"), &["line 4", "`cell` must be above 0 [m]"]),
+        (format!("{GROOM}[neighbours]\nradius = 0\n"), &["line 4", "`radius` must be above 0 [m]"]),
+        (format!("{GROOM}[neighbours]\nstiction = -1\n"), &["line 4", "`stiction` must be 0 or more [N]"]),
         (format!("{GROOM}[volume]\nfriction = -1\n"), &["line 4", "`friction` must be 0 or more [1/s]"]),
         (
             format!("{GROOM}[material.a]\npreset = \"wavvy\"\n")

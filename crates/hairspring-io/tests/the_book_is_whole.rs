@@ -8,7 +8,7 @@ use hairspring::{
     around::charge::Charged,
     groom::{Growth, Thicken},
     material::Material,
-    scene::{Camera, Collider, Effects, HairLook, Hand, Solver, Volume, Wind},
+    scene::{Camera, Collider, Effects, HairLook, Hand, Neighbours, Solver, Volume, Wind},
 };
 use hairspring_io::scene::check_text;
 use serde::{Serialize, de::DeserializeOwned};
@@ -25,7 +25,7 @@ const SOURCE: &str = include_str!("../../hairspring/src/air/source.rs");
 const CHARGE: &str = include_str!("../../hairspring/src/around/charge.rs");
 
 /// What a parameter's name begins with, and the struct (or variant) whose fields follow.
-const STRUCTS: [(&str, &str, &str); 39] = [
+const STRUCTS: [(&str, &str, &str); 40] = [
     ("", FILE, "SceneFile"),
     ("builtin.", FILE, "BuiltinFile"),
     ("body.", FILE, "BodyFile"),
@@ -60,6 +60,7 @@ const STRUCTS: [(&str, &str, &str); 39] = [
     ("hand.tool.tie.", include_str!("../../hairspring/src/around/tie.rs"), "Tie"),
     ("solver.", SETTINGS, "Solver"),
     ("volume.", SETTINGS, "Volume"),
+    ("neighbours.", SETTINGS, "Neighbours"),
     ("camera.", include_str!("../../hairspring/src/scene/camera.rs"), "Camera"),
     // Tables that have a page's heading as a whole, besides those of their fields.
     ("collision.", "", ""),
@@ -236,6 +237,7 @@ fn defaults() -> BTreeMap<String, Value> {
     defaults_of::<Shelter>("shelter", "", &mut all);
     defaults_of::<Solver>("solver", "", &mut all);
     defaults_of::<Volume>("volume", "", &mut all);
+    defaults_of::<Neighbours>("neighbours", "", &mut all);
     defaults_of::<Camera>("camera", "position = [1, 0, 0]\ntarget = [0, 0, 0]", &mut all);
     let place = "center = [0, 0, 0]\nradius = 1\n";
     let ring = format!("{place}axis = [0, 1, 0]\n");

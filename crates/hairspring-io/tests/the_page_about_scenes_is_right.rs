@@ -39,6 +39,7 @@ fn the_page_leaves_no_setting_out() {
     let page = include_str!("../../../docs/scene.md");
     let material = hairspring::material::Material { radius: Some(1.0), ..Default::default() };
     let volume = hairspring::scene::Volume { cell: Some(1.0), ..Default::default() };
+    let neighbours = hairspring::scene::Neighbours { radius: Some(1.0), ..Default::default() };
     for (name, fields) in [
         ("look", toml::Table::try_from(hairspring::scene::HairLook::default())),
         ("effects", toml::Table::try_from(hairspring::scene::Effects::default())),
@@ -47,6 +48,7 @@ fn the_page_leaves_no_setting_out() {
         ("shelter", toml::Table::try_from(hairspring::air::Shelter::default())),
         ("solver", toml::Table::try_from(hairspring::scene::Solver::default())),
         ("volume", toml::Table::try_from(volume)),
+        ("neighbours", toml::Table::try_from(neighbours)),
         ("camera", toml::Table::try_from(hairspring::scene::Camera::default())),
         ("material", toml::Table::try_from(material)),
     ] {

@@ -10,6 +10,7 @@ pub mod collide;
 pub mod follow;
 pub mod groom;
 pub mod material;
+pub(crate) mod neighbours;
 pub mod scene;
 pub mod simulation;
 pub mod stage;

@@ -9,7 +9,7 @@ use hairspring::{
     collide::Rigid,
     material::Material,
     scene::{
-        Solver, Volume, VolumeMethod, Wind,
+        Neighbours, Solver, Volume, VolumeMethod, Wind,
         bench::{self, Bench},
     },
     simulation::{Air, Drive, Simulation},
@@ -65,6 +65,20 @@ fn hair_on_hair_allocates_nothing() {
         });
         assert_eq!(counted, 0, "{counted} allocations in 20 steps, hair on hair {}", method.name());
     }
+    // Strand by strand.
+    let counted = pool.install(|| {
+        let mut bench = Bench::new(200, 16, Solver::default());
+        bench.simulation.set_neighbours(&Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
+        bench.step();
+        let before = COUNT.load(Ordering::Relaxed);
+        for _ in 0..40 {
+            bench.step();
+        }
+        let report = bench.simulation.neighbours().unwrap();
+        assert!(report.pressing > 50, "{report:?}");
+        COUNT.load(Ordering::Relaxed) - before
+    });
+    assert_eq!(counted, 0, "{counted} allocations in 40 steps, strands that meet one by one");
     // With hands on the hair and a ghost, while a tie still gathers.
     let counted = pool.install(|| {
         let material = Material { ghost: Ghost { pull: 2.0, ..Ghost::default() }, ..Material::default() };

@@ -348,7 +348,7 @@ mod tests {
     /// The lists of a scene, and what has been done to it.
     fn panel() -> (Harness<'static>, Rc<RefCell<Session>>) {
         let document = Document::new("scene.toml".as_ref(), SCENE.into()).unwrap();
-        let session = Rc::new(RefCell::new(Session::new(document, 1, || ()).unwrap()));
+        let session = Rc::new(RefCell::new(Session::new(document, 1, None, || ()).unwrap()));
         let shown = session.clone();
         let harness = Harness::builder().with_size([500.0, 1600.0]).build_ui(move |ui| {
             let mut actions = Vec::new();

@@ -172,6 +172,13 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         (from_0(volume.regain), "regain", "0 or more [1/s]"),
     ];
     first_failure(text, section("[volume]"), &volumes)?;
+    let neighbours = &scene.neighbours;
+    let neighbours = [
+        (above_0(neighbours.radius), "radius", "above 0 [m]"),
+        (from_0(neighbours.friction), "friction", "0 or more"),
+        (from_0(neighbours.stiction), "stiction", "0 or more [N]"),
+    ];
+    first_failure(text, section("[neighbours]"), &neighbours)?;
     if let Some(camera) = &scene.camera {
         let cameras = [
             (finite(camera.position), "position", "three finite numbers [m]"),

@@ -6,7 +6,7 @@ use hairspring::{
     around::charge::Charged,
     body::{Key, Travel},
     groom::{Growth, Thicken},
-    scene::{Camera, Collider, Effects, Guides, HairLook, Hand, Shape, Solver, Volume, Wind},
+    scene::{Camera, Collider, Effects, Guides, HairLook, Hand, Neighbours, Shape, Solver, Volume, Wind},
 };
 use serde::{Deserialize, Deserializer, de};
 use std::{collections::BTreeMap, path::PathBuf};
@@ -67,6 +67,9 @@ pub(super) struct SceneFile {
     /// How hair meets hair.
     #[serde(default)]
     pub volume: Volume,
+    /// How strands meet their neighbours, one by one.
+    #[serde(default)]
+    pub neighbours: Neighbours,
     /// Where the scene is seen from. Default: framed automatically.
     pub camera: Option<Camera>,
     /// What hands hold to the hair.

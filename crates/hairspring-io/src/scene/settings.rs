@@ -35,6 +35,7 @@ impl Reader<'_> {
             gravity: file.gravity,
             solver: file.solver,
             volume: file.volume,
+            neighbours: file.neighbours,
             camera: file.camera.or(base.camera),
             hands: file.hand.clone(),
             ..Scene::default()

@@ -12,7 +12,11 @@ pub use camera::Camera;
 pub use hand::Hand;
 pub use look::{HairColor, HairLook};
 pub use settings::{
+<<<<<<< HEAD
     Collider, Effects, Guides, Integrator, Quality, Response, Shape, Solver, Volume, VolumeMethod, Wind,
+=======
+    Collider, Effects, Guides, Integrator, Neighbours, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
+>>>>>>> 50ad234114f316b4d8d932f7a85e9110a3ace981
 };
 
 use crate::{
@@ -87,6 +91,8 @@ pub struct Scene {
     pub solver: Solver,
     /// How hair meets hair.
     pub volume: Volume,
+    /// How strands meet their neighbours, one by one.
+    pub neighbours: Neighbours,
     /// Where it is seen from; `None`: framed automatically.
     pub camera: Option<Camera>,
     /// What hands hold to the hair.

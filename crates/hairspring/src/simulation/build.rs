@@ -109,6 +109,7 @@ impl Simulation {
             charged: Vec::new(),
             hair_field: HairField::default(),
             volume: None,
+            neighbours: None,
             tensions: Default::default(),
             motion: super::carry::Motion::default(),
             noise: Noise::default(),

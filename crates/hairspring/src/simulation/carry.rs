@@ -55,6 +55,9 @@ impl Simulation {
                 }
             }
         }
+        if let Some(neighbours) = &mut self.neighbours {
+            neighbours.turn(by.rotation);
+        }
         self.carry_tools(&by);
         self.settings.anchor = by.after(&self.settings.anchor);
         self.motion.velocity = turn * self.motion.velocity;

@@ -9,6 +9,7 @@ mod fast;
 mod hands;
 mod hold;
 mod measure;
+mod meet;
 mod place;
 mod reset;
 mod step;
@@ -17,6 +18,7 @@ mod take_over;
 mod values;
 
 pub use crate::air::Air;
+pub use crate::neighbours::NeighboursReport;
 pub use crate::strand::rest_shape::Start;
 pub use crate::volume::VolumeReport;
 pub use energy::Energy;
@@ -29,6 +31,7 @@ use crate::{
     air::{Noise, Shade, Shelter},
     around::{Around, HairField, charge::ChargedBall, ghost::Ghost},
     groom::Groom,
+    neighbours::Neighbours,
     strand::{
         interval::Interval,
         lanes::{LANES, Row},
@@ -44,10 +47,15 @@ use std::sync::Arc;
 /// Simulated strands: mass-spring chains stepped by backward Euler with a direct banded solver.
 ///
 /// Settings come in by [`Simulation::new`] and never change; state is positions, velocities and tensions. A step gives the
-/// same bits for any number of threads. Strands meet the body, the air, and each other as a volume (see [`Simulation::set_volume`]).
+/// same bits for any number of threads. Strands meet the body, the air, and each other, as a volume (see [`Simulation::set_volume`]) or one by one (see
+/// [`Simulation::set_neighbours`]).
 ///
 /// # Missing
+<<<<<<< HEAD
 /// Hair against hair as strands, cutting and wetting: each is an issue of its own.
+=======
+/// Contact between points (a segment may cut a corner that its ends stay out of), cutting and wetting: each is an issue of its own.
+>>>>>>> 50ad234114f316b4d8d932f7a85e9110a3ace981
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
@@ -81,6 +89,8 @@ pub struct Simulation {
     hair_field: HairField,
     /// Where hair is, and hair on hair; `None`: strands pass through each other, and nothing asks where they are.
     volume: Option<Box<Volume>>,
+    /// Strands that meet each other one by one; `None`: they do not.
+    neighbours: Option<Box<Neighbours>>,
     /// Tensions of the rest shape, of segments and, in the springs model, of triangles' sides; shapes as `state`, the second empty without springs.
     tensions: [Vec<Row>; 2],
     /// How the anchor moved in the last frame.
@@ -142,6 +152,7 @@ impl Simulation {
             + self.around.bytes()
             + self.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
             + self.volume.as_ref().map_or(0, |volume| volume.bytes())
+            + self.neighbours.as_ref().map_or(0, |neighbours| neighbours.bytes())
             + (self.lanes.len() + self.places.len()) * size_of::<u32>()
             + self.tiles.len() * size_of::<TilePlace>()
     }

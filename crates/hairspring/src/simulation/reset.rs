@@ -41,6 +41,9 @@ impl Simulation {
         for k in 0..self.places.len() {
             self.reset_strand(self.places[k] as usize);
         }
+        if let Some(neighbours) = &mut self.neighbours {
+            neighbours.forget();
+        }
         self.motion = super::carry::Motion::default();
         self.last_h = 0.0;
     }

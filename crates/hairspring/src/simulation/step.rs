@@ -4,6 +4,7 @@ use super::{Simulation, TilePlace, reset};
 use crate::{
     air::Air,
     collide::{Obstacle, ObstaclePose, Rigid},
+    neighbours::Neighbours,
     scene::{Integrator, Quality, Solver},
     strand::{
         interval::{Interval, Substep},
@@ -121,9 +122,42 @@ impl Simulation {
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
         self.begin_tools();
         self.exchange(drive, carried.as_ref());
+        self.settings.anchor = drive.anchor;
+        let reset_strands = match self.neighbours.take() {
+            None => self.run(&interval),
+            Some(mut neighbours) => {
+                let reset_strands = self.run_and_meet(&mut neighbours, &mut interval);
+                self.neighbours = Some(neighbours);
+                reset_strands
+            }
+        };
+        self.rest_holds();
+        self.rest_tools(drive.dt);
+        self.last_h = interval.h;
+        // The colliders' shapes are the caller's again.
+        interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
+        self.interval = interval;
+        StepReport { substeps, reset_strands }
+    }
+
+    /// Runs substep after substep, and lets strands meet each other after each; returns how many were reset.
+    fn run_and_meet(&mut self, neighbours: &mut Neighbours, interval: &mut Interval) -> usize {
+        let mut reset_strands = 0;
+        for number in interval.now.clone() {
+            interval.now = number..number + 1;
+            self.bear_neighbours(neighbours, interval.h);
+            reset_strands += self.run(interval);
+            interval.continues = true;
+            self.meet_neighbours(neighbours, interval, number);
+        }
+        reset_strands
+    }
+
+    /// Runs the interval's substeps; returns how many strands turned non-finite and were reset.
+    fn run(&mut self, interval: &Interval) -> usize {
         let reset = run(
             self.level,
-            &interval,
+            interval,
             Piece {
                 tiles: &self.tiles,
                 strand: &self.strand,
@@ -140,15 +174,7 @@ impl Simulation {
                 holds: &self.holds,
             },
         );
-        self.rest_holds();
-        self.rest_tools(drive.dt);
-        self.last_h = interval.h;
-        // The colliders' shapes are the caller's again.
-        interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
-        self.interval = interval;
-        self.settings.anchor = drive.anchor;
-        let reset_strands = if reset { self.reset_non_finite() } else { 0 };
-        StepReport { substeps, reset_strands }
+        if reset { self.reset_non_finite() } else { 0 }
     }
 
     /// Fills `interval` for a frame; its memory is used again.
@@ -169,6 +195,7 @@ impl Simulation {
         interval.gravity = self.settings.gravity;
         interval.anchor = from.matrix();
         interval.substeps.resize_with(count as usize, Substep::default);
+        interval.now = 0..count as usize;
         for (k, substep) in interval.substeps.iter_mut().enumerate() {
             let fraction = (k + 1) as f32 / count as f32;
             let before = k as f32 / count as f32;

@@ -48,6 +48,9 @@ impl Simulation {
                 self.take_points(place, old, from);
             }
         }
+        if let (Some(neighbours), Some(old)) = (&mut self.neighbours, &old.neighbours) {
+            neighbours.take_over(old);
+        }
         self.take_over_tools(old, &lanes);
     }
 

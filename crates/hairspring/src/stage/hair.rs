@@ -286,6 +286,7 @@ fn simulation(
         Simulation::new(groom.clone(), simulated, materials, scene.solver, scene.gravity, anchor, obstacles);
     simulation.set_volume(&scene.volume);
     simulation.set_shelter(&scene.shelter);
+    simulation.set_neighbours(&scene.neighbours);
     simulation
 }
 

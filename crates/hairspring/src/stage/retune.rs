@@ -10,7 +10,7 @@ impl Stage {
     /// Geometry stays and is not looked at: `grooms[k].groom`, `grooms[k].guides`, `body`, `collision`, `sheets`, `clip` and `solver.collide_body`. All else
     /// is taken up. A material's `radius` is that of the simulated fibre alone: what is drawn has the groom's.
     ///
-    /// - Where materials, gravity, solver, volume or shelter change, rest shapes are found anew: with `solver.sag_free`, the groom is in balance under the
+    /// - Where materials, gravity, solver, volume, neighbours or shelter change, rest shapes are found anew: with `solver.sag_free`, the groom is in balance under the
     ///   new gravity, as it would be from the start. What did not change costs nothing.
     /// - How deep hair may be in a collider is what it was authored with: a collider that is new pushes out all hair.
     /// - Tools of [`Stage::take`] go on. So does a hand of the scene whose settings are still there; others let go, and new ones begin.
@@ -42,8 +42,10 @@ impl Stage {
         if before.hands != scene.hands {
             self.hands.retune((&before.hands, &scene.hands), joints.hands, &mut self.hair);
         }
-        let rests = |scene: &Scene| (scene.gravity, scene.solver, scene.volume, scene.shelter);
-        let fresh = (before.gravity, before.solver, before.volume, before.shelter) != rests(scene);
+        let rests =
+            |scene: &Scene| (scene.gravity, scene.solver, scene.volume, scene.shelter, scene.neighbours);
+        let fresh =
+            (before.gravity, before.solver, before.volume, before.shelter, before.neighbours) != rests(scene);
         for (hair, groom) in self.hair.iter_mut().zip(grooms) {
             hair.retune(groom, scene, &self.body, fresh);
         }

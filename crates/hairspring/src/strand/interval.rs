@@ -5,6 +5,7 @@ use crate::{
     scene::{Integrator, Response},
 };
 use glam::{Mat3, Vec3};
+use std::ops::Range;
 
 /// The substeps of one exchange interval (a frame), shared by all tiles.
 #[derive(Default)]
@@ -27,6 +28,16 @@ pub struct Interval {
     pub anchor: (Mat3, Vec3),
     /// Each substep's end.
     pub substeps: Vec<Substep>,
+    /// Those that are to be run now: all of them, or one where strands meet each other in between.
+    pub now: Range<usize>,
+}
+
+impl Interval {
+    /// Fraction of the interval that has passed before the substeps that are to be run, and the anchor's pose there.
+    pub fn begun(&self) -> (f32, &(Mat3, Vec3)) {
+        let before = self.now.start.checked_sub(1).map(|k| &self.substeps[k]);
+        before.map_or((0.0, &self.anchor), |substep| (substep.fraction, &substep.anchor))
+    }
 }
 
 /// The world at the end of one substep.

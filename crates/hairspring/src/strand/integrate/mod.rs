@@ -21,7 +21,7 @@ use super::{
 use crate::scene::{Integrator, Response};
 use fearless_simd::prelude::*;
 
-/// All substeps of `interval` for one tile.
+/// The substeps of `interval` that are to be run now, for one tile.
 #[inline(always)]
 pub fn run_tile<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -43,14 +43,15 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     if interval.integrator == Integrator::LocalGlobal {
         local_global::factor(simd, interval.h, tile, scratch);
     }
-    let mut root = Root::between(simd, tile.strand, 0.0, &interval.anchor);
+    let (fraction, anchor) = interval.begun();
+    let mut root = Root::between(simd, tile.strand, fraction, anchor);
     // What the root drives drifts with it.
     let velocity: [_; 3] = std::array::from_fn(|k| tile.state[0][state::V + k]);
     for driven in &mut tile.state[1..M::DRIVEN] {
         driven[state::V..state::V + 3].copy_from_slice(&velocity);
     }
     let mut continues = interval.continues;
-    for (number, substep) in interval.substeps.iter().enumerate() {
+    for (number, substep) in interval.substeps[interval.now.clone()].iter().enumerate() {
         let next = Root::at(simd, tile.strand, substep);
         let moved = next.position - root.position;
         root = next;

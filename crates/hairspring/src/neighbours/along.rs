@@ -1,0 +1,75 @@
+//! What a strand makes of impulses at once: segments keep their lengths, and what strikes one point moves others too.
+//!
+//! ```text
+//! v_i ← v_i + (T_i u_i − T_{i−1} u_{i−1}) / m_i        u_i · (v_{i+1} − v_i) = 0
+//! ```
+//!
+//! A tridiagonal system for the impulses T along the segments (Goldenthal et al. 2007, *Efficient Simulation of Inextensible Cloth*, for velocities): the
+//! change that impulses from outside ask for becomes the nearest one, by masses, that stretches nothing.
+
+use super::hair::Hair;
+use glam::Vec3;
+
+/// Memory for one strand, and what all did before any impulse.
+#[derive(Default)]
+pub struct Along {
+    /// Velocities before any impulse, shape `[points]` [m/s].
+    before: Vec<Vec3>,
+    /// Unit vectors of a strand's segments.
+    units: Vec<Vec3>,
+    /// Eliminated rows of its system: what is above the diagonal, and the right-hand side.
+    rows: Vec<[f32; 2]>,
+}
+
+impl Along {
+    /// Memory for the strands of `hair`.
+    pub fn new(hair: &Hair) -> Self {
+        let longest = hair.strands().map(|s| s.len()).max().unwrap_or(0);
+        Self {
+            before: vec![Vec3::ZERO; hair.x.len()],
+            units: Vec::with_capacity(longest),
+            rows: Vec::with_capacity(longest),
+        }
+    }
+
+    /// Velocities are now as they were before any impulse.
+    pub fn begin(&mut self, hair: &Hair) {
+        self.before.copy_from_slice(&hair.v);
+    }
+
+    /// Takes out of all changes of velocity what would stretch a segment.
+    pub fn keep_lengths(&mut self, hair: &mut Hair) {
+        for s in 0..hair.strand_count() {
+            let range = hair.strand(s);
+            if hair.v[range.clone()] != self.before[range.clone()] {
+                self.keep_lengths_of(range, hair);
+            }
+        }
+    }
+
+    fn keep_lengths_of(&mut self, range: std::ops::Range<usize>, hair: &mut Hair) {
+        let (x, w) = (&hair.x[range.clone()], &hair.inverse_mass[range.clone()]);
+        let (v, before) = (&mut hair.v[range.clone()], &self.before[range]);
+        let (units, rows) = (&mut self.units, &mut self.rows);
+        units.clear();
+        units.extend(x.windows(2).map(|x| (x[1] - x[0]).normalize_or_zero()));
+        rows.clear();
+        let mut last = [0.0; 2];
+        for (i, u) in units.iter().enumerate() {
+            let stretching = u.dot((v[i + 1] - before[i + 1]) - (v[i] - before[i]));
+            let below = if i > 0 { -w[i] * u.dot(units[i - 1]) } else { 0.0 };
+            let above = units.get(i + 1).map_or(0.0, |next| -w[i + 1] * u.dot(*next));
+            let diagonal = w[i] + w[i + 1] - below * last[0];
+            // Segments whose ends are both driven, and folded ones that are one to rounding, take nothing.
+            let inverse = if diagonal > 1e-6 * (w[i] + w[i + 1]) { diagonal.recip() } else { 0.0 };
+            last = [above * inverse, (stretching - below * last[1]) * inverse];
+            rows.push(last);
+        }
+        let mut after = 0.0;
+        for (i, (row, u)) in rows.iter().zip(units.iter()).enumerate().rev() {
+            after = row[1] - row[0] * after;
+            v[i] += *u * (after * w[i]);
+            v[i + 1] -= *u * (after * w[i + 1]);
+        }
+    }
+}

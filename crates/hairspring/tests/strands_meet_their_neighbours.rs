@@ -1,0 +1,380 @@
+//! Promise: strands that meet one by one carry each other's weight, rub by Coulomb's law, hold together up to the force that they are given and not
+//! beyond, keep a squeezed bundle's room, and change nothing of a start at rest; the same bits on any number of threads.
+//!
+//! Closed forms are those of ropes and blocks: over a smooth bar the tension is the same on both sides, so that the bar bears N = |T u₁ − T u₂|; what is
+//! pressed with N sticks where it is pulled aside with less than μN, and slides where with more. Momentum, which impulses keep to rounding, has its test
+//! beside the code (`neighbours/tests.rs`).
+
+use glam::{Mat3, Vec3};
+use hairspring::{
+    collide::{Obstacle, Rigid},
+    groom::Groom,
+    material::{Material, Model},
+    scene::{
+        Neighbours, Solver, Volume, VolumeMethod,
+        bench::{self, Bench},
+    },
+    simulation::{Air, Drive, Hold, Simulation},
+};
+use std::sync::Arc;
+
+const ON: Neighbours = Neighbours { on: true, radius: Some(0.001), friction: 0.0, stiction: 0.0 };
+
+/// Strands in still air that nothing else meets, on roots that stay where they are.
+struct Strands {
+    groom: Arc<Groom>,
+    simulation: Simulation,
+    roots: Vec<Rigid>,
+    bodies: Vec<hairspring::simulation::MovingObstacle>,
+}
+
+impl Strands {
+    fn new(strands: &[Vec<Vec3>], material: Material, gravity: Vec3, neighbours: Neighbours) -> Self {
+        let groom = Arc::new(Groom::from_strands(strands, 4e-5));
+        let all: Vec<u32> = (0..strands.len() as u32).collect();
+        let solver = Solver { sag_free: false, ..Solver::default() };
+        let mut simulation =
+            Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
+        simulation.set_neighbours(&neighbours);
+        let roots = strands.iter().map(|s| Rigid { translation: s[0], ..Rigid::default() }).collect();
+        Self { groom, simulation, roots, bodies: Vec::new() }
+    }
+
+    fn play(&mut self, seconds: f32) {
+        for _ in 0..(seconds * 60.0).round() as u32 {
+            let report = self.simulation.step(&Drive {
+                dt: bench::FRAME,
+                anchor: Rigid::default(),
+                roots: &self.roots,
+                obstacles: &self.bodies,
+                air: Air::default(),
+            });
+            assert_eq!(report.reset_strands, 0);
+        }
+    }
+
+    fn points(&self) -> Vec<Vec<Vec3>> {
+        let mut now = vec![Vec3::ZERO; self.simulation.point_count()];
+        self.simulation.write_points(&mut now);
+        (0..self.groom.strand_count()).map(|s| now[self.groom.range(s)].to_vec()).collect()
+    }
+
+    /// All points of a strand held fast where they are.
+    fn bar(&self, strand: usize) -> Vec<Hold> {
+        let points = self.groom.strand(strand);
+        let hold = |i: usize| Hold {
+            strand: strand as u32,
+            point: i as u32,
+            target: Some(points[i]),
+            ..Hold::default()
+        };
+        (2..points.len()).map(hold).collect()
+    }
+}
+
+fn line(from: Vec3, to: Vec3, points: usize) -> Vec<Vec3> {
+    (0..points).map(|i| from.lerp(to, i as f32 / (points - 1) as f32)).collect()
+}
+
+/// Hair that hardly bends back, and that still air hardly brakes.
+fn limp() -> Material {
+    Material { bend: 0.01, drag: 1.0, model: Model::Curvature, ..Material::default() }
+}
+
+/// Hair that still air hardly brakes, and that keeps to one plane.
+fn hair() -> Material {
+    Material { model: Model::Curvature, ..Material::default() }
+}
+
+const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
+
+#[test]
+fn a_strand_lies_over_another_and_is_borne() {
+    // A bar, and a strand that is rooted beside it and falls over it.
+    let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
+    let rope = line(Vec3::new(-0.05, 0.01, 0.0), Vec3::new(0.20, 0.01, 0.0), 26);
+    let mut strands = Strands::new(&[bar, rope], limp(), GRAVITY, ON);
+    let holds = strands.bar(0);
+    strands.simulation.set_holds(&holds);
+    strands.play(5.0);
+    let rope = &strands.points()[1];
+    let report = strands.simulation.neighbours().unwrap();
+    // The joint that lies on the bar.
+    let k = (2..24).min_by(|a, b| rope[*a].x.abs().total_cmp(&rope[*b].x.abs())).unwrap();
+    let side = |i: usize| (rope[i + 1] - rope[i]).normalize() * strands.simulation.tension_at(1, i);
+    let weight = GRAVITY * (5.0 * 0.01 * 1300.0 * std::f32::consts::PI * 4e-5 * 4e-5);
+    let borne = (side(k + 2) - side(k - 3) + weight).length();
+    println!("N {} of {borne} from tensions, depth {}", report.force, report.depth);
+    assert!((report.force / borne - 1.0).abs() < 0.01, "the bar bears {} N of {borne} N", report.force);
+    assert!(report.depth < 0.01 * 0.001, "{} m deep", report.depth);
+    let fastest = (0..26).map(|i| strands.simulation.speed_at(1, i)).fold(0.0, f32::max);
+    assert!(fastest < 1e-3, "it moves at {fastest} m/s");
+}
+
+/// A strand across a bar, at its joints `press` down and `pull` along the bar with these forces [N]; how far the segment there
+/// goes in a second under the whole pull.
+fn rubbed(press: f32, pull: f32, friction: f32) -> f32 {
+    let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
+    let rope = line(Vec3::new(-0.105, 0.002, 0.0), Vec3::new(0.105, 0.002, 0.0), 22);
+    let mut strands = Strands::new(&[bar, rope], hair(), Vec3::ZERO, Neighbours { friction, ..ON });
+    let bar = strands.bar(0);
+    let pulled = |pull: f32| {
+        let at = |point: u32| Hold {
+            strand: 1,
+            point,
+            force: Vec3::new(0.0, -press, pull) * 0.5,
+            ..Hold::default()
+        };
+        [&bar[..], &[at(10), at(11)]].concat()
+    };
+    strands.simulation.set_holds(&pulled(0.0));
+    strands.play(0.5);
+    // Slowly, so that it is the force that is felt and not a blow.
+    for k in 1..=60 {
+        strands.simulation.set_holds(&pulled(pull * k as f32 / 60.0));
+        strands.play(bench::FRAME);
+    }
+    strands.play(0.5);
+    let before = strands.points()[1][10].z;
+    strands.play(1.0);
+    strands.points()[1][10].z - before
+}
+
+#[test]
+fn what_is_pulled_aside_with_less_than_friction_sticks() {
+    let (press, friction) = (2e-5, 0.4);
+    let stuck = rubbed(press, 0.95 * friction * press, friction);
+    let slid = rubbed(press, 1.10 * friction * press, friction);
+    assert!(stuck.abs() < 2e-5, "below μN it went {stuck} m");
+    assert!(slid > 2e-3, "above μN it went {slid} m");
+}
+
+/// How far a strand is from a bar that it was pressed to, a quarter of a second after it is pulled away with a force [N].
+fn torn(stiction: f32, pull: f32) -> (f32, usize) {
+    let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
+    let rope = line(Vec3::new(-0.105, 0.0021, 0.0), Vec3::new(0.105, 0.0021, 0.0), 22);
+    let mut strands = Strands::new(&[bar, rope], hair(), Vec3::ZERO, Neighbours { stiction, ..ON });
+    let bar = strands.bar(0);
+    let pulled = |force: f32| {
+        let at = |point: u32| Hold { strand: 1, point, force: Vec3::Y * (0.5 * force), ..Hold::default() };
+        [&bar[..], &[at(10), at(11)]].concat()
+    };
+    strands.simulation.set_holds(&pulled(-5e-6));
+    strands.play(0.5);
+    assert!(
+        stiction == 0.0 || strands.simulation.neighbours().unwrap().bonds > 0,
+        "{:?}",
+        strands.simulation.neighbours()
+    );
+    // Slowly, so that it is the force that is felt and not a blow.
+    for k in 1..=60 {
+        strands.simulation.set_holds(&pulled(pull * k as f32 / 60.0));
+        strands.play(bench::FRAME);
+    }
+    strands.play(0.25);
+    (strands.points()[1][10].y - 0.002, strands.simulation.neighbours().unwrap().bonds)
+}
+
+#[test]
+fn a_bond_breaks_at_its_force_and_not_before() {
+    let stiction = 1e-5;
+    let (held, bonds) = torn(stiction, 0.93 * stiction);
+    assert!(held < 1e-4 && bonds == 1, "pulled with less it is {held} m off, with {bonds} bonds");
+    let (off, bonds) = torn(stiction, 1.07 * stiction);
+    assert!(off > 1e-3 && bonds == 0, "pulled with more it is {off} m off, with {bonds} bonds");
+    assert!(torn(0.0, 0.1 * stiction).0 > 1e-3, "nothing held it");
+}
+
+/// A bundle that two walls press to two thirds of its width: mean distance of its tips to the nearest other, over that at rest.
+fn squeezed(neighbours: Neighbours) -> f32 {
+    let (side, step) = (6, 0.003);
+    let place = |k: usize| (k as f32 - 0.5 * (side - 1) as f32) * step;
+    let strand = |s: usize| {
+        let root = Vec3::new(place(s % side), 0.0, place(s / side));
+        line(root, root + Vec3::NEG_Y * 0.15, 16)
+    };
+    let all: Vec<Vec<Vec3>> = (0..side * side).map(strand).collect();
+    let mut strands = Strands::new(&all, Material::default(), GRAVITY, neighbours);
+    for frame in 0..120 {
+        let wall = |side: f32| {
+            let at = |frame: i32| {
+                let in_by = 0.003 * (frame as f32 / 60.0).min(1.0);
+                Rigid { translation: Vec3::X * (side * (0.009 - in_by)), ..Rigid::default() }
+            };
+            let (center, half) = (Vec3::new(side * 0.02, -0.13, 0.0), Vec3::new(0.02, 0.04, 0.1));
+            hairspring::simulation::MovingObstacle {
+                shape: Obstacle::Cuboid { center, half, axes: Mat3::IDENTITY },
+                start: at(frame),
+                end: at(frame + 1),
+            }
+        };
+        strands.bodies = vec![wall(-1.0), wall(1.0)];
+        strands.play(bench::FRAME);
+    }
+    let tips: Vec<Vec3> = strands.points().iter().map(|s| s[15]).collect();
+    let nearest = |a: usize| {
+        let others = (0..tips.len()).filter(|b| *b != a);
+        others.map(|b| tips[a].distance(tips[b])).fold(f32::MAX, f32::min)
+    };
+    (0..tips.len()).map(nearest).sum::<f32>() / tips.len() as f32 / step
+}
+
+#[test]
+fn a_squeezed_bundle_keeps_its_room() {
+    let without = squeezed(Neighbours::default());
+    let with = squeezed(Neighbours { on: true, ..Neighbours::default() });
+    println!("nearest tips: {without} of the distance at rest without, {with} with");
+    assert!(without < 0.75, "without contact {without}");
+    assert!(with > 0.9, "with contact {with}");
+}
+
+#[test]
+fn at_rest_nothing_moves() {
+    // Straight hair on a ball, and curls that go through each other.
+    let curl = |s: usize| {
+        let root = Vec3::new(0.004 * (s % 5) as f32, 0.0, 0.004 * (s / 5) as f32);
+        let turn = |i: usize| 0.5 * i as f32 + s as f32;
+        (0..32)
+            .map(|i| root + Vec3::new(0.004 * turn(i).sin(), -0.004 * i as f32, 0.004 * turn(i).cos()))
+            .collect()
+    };
+    let straight = |s: usize| {
+        let root = Vec3::new(0.002 * (s % 5) as f32, 0.0, 0.002 * (s / 5) as f32);
+        line(root, root + Vec3::NEG_Y * 0.2, 24)
+    };
+    for (name, all) in [
+        ("straight", (0..25).map(straight).collect::<Vec<_>>()),
+        ("curls", (0..25).map(curl).collect::<Vec<_>>()),
+    ] {
+        let groom = Arc::new(Groom::from_strands(&all, 4e-5));
+        let names: Vec<u32> = (0..25).collect();
+        let roots: Vec<Rigid> = all.iter().map(|s| Rigid { translation: s[0], ..Rigid::default() }).collect();
+        let played = |neighbours: Neighbours| {
+            let mut simulation = Simulation::new(
+                groom.clone(),
+                &names,
+                &[Material::default()],
+                Solver::default(),
+                GRAVITY,
+                Rigid::default(),
+                &[],
+            );
+            simulation.set_neighbours(&neighbours);
+            let mut step = || {
+                let air = Air::default();
+                simulation.step(&Drive {
+                    dt: bench::FRAME,
+                    anchor: Rigid::default(),
+                    roots: &roots,
+                    obstacles: &[],
+                    air,
+                });
+                let mut points = vec![Vec3::ZERO; simulation.point_count()];
+                simulation.write_points(&mut points);
+                points
+            };
+            (step(), (1..60).map(|_| step()).last().unwrap())
+        };
+        let (first, last) = played(Neighbours::default());
+        let (own_first, own_last) = played(Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
+        let far = own_last.iter().zip(&last).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        println!("{name}: {far} m from without after a second");
+        assert!(own_first == first, "{name}: hair at rest was moved by its neighbours");
+        assert!(far < 1e-4, "{name}: {far} m from where it is without");
+    }
+}
+
+/// Shaken hair on a ball that is full of contact.
+fn shaken(neighbours: Neighbours, threads: usize, frames: u32) -> (Vec<Vec3>, Bench) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| {
+        let mut bench = Bench::new(150, 16, Solver::default());
+        bench.simulation.set_neighbours(&neighbours);
+        (0..frames).for_each(|_| assert_eq!(bench.step().reset_strands, 0));
+        let mut points = vec![Vec3::ZERO; bench.simulation.point_count()];
+        bench.simulation.write_points(&mut points);
+        (points, bench)
+    })
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let neighbours = Neighbours { on: true, radius: Some(0.002), stiction: 1e-6, ..Neighbours::default() };
+    let (one, bench) = shaken(neighbours, 1, 60);
+    let report = bench.simulation.neighbours().unwrap();
+    println!("{report:?}");
+    assert!(report.pressing > 50, "{report:?}");
+    for threads in [2, 7] {
+        assert!(shaken(neighbours, threads, 60).0 == one, "other bits on {threads} threads");
+    }
+}
+
+#[test]
+fn folded_strands_in_a_heap_stay_finite_and_keep_their_lengths() {
+    // Random walks in a box of five centimetres, let fall and shaken by their roots for ten seconds.
+    let mut seed = 7_u32;
+    let mut random = || {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) as f32 / (1 << 24) as f32 - 0.5
+    };
+    let mut vector = || Vec3::new(random(), random(), random());
+    let all: Vec<Vec<Vec3>> = (0..40)
+        .map(|_| {
+            let mut at = vector() * 0.05;
+            (0..20)
+                .map(|_| {
+                    at += vector().normalize_or(Vec3::Y) * 0.008;
+                    at
+                })
+                .collect()
+        })
+        .collect();
+    let neighbours = Neighbours { on: true, radius: Some(0.003), stiction: 1e-6, ..Neighbours::default() };
+    let mut strands = Strands::new(&all, Material::default(), GRAVITY, neighbours);
+    let rest: Vec<Vec3> = strands.roots.iter().map(|r| r.translation).collect();
+    let mut worst = 0.0_f32;
+    for frame in 0..600 {
+        let shift = 0.05 * (0.2 * frame as f32).sin() * if frame < 480 { 1.0 } else { 0.0 };
+        for (root, at) in strands.roots.iter_mut().zip(&rest) {
+            root.translation = *at + Vec3::X * shift;
+        }
+        strands.play(bench::FRAME);
+        for s in 0..40 {
+            for i in 0..19 {
+                worst = worst.max(strands.simulation.stretch_at(s, i).abs());
+            }
+        }
+    }
+    let finite = strands.points().iter().flatten().all(|p| p.is_finite());
+    let speeds = (0..800).map(|k| strands.simulation.speed_at(k / 20, k % 20));
+    let mean = speeds.sum::<f32>() / 800.0;
+    println!("stretch {worst}, {mean} m/s, {:?}", strands.simulation.neighbours().unwrap());
+    assert!(finite && worst < 0.011, "stretch {worst}");
+    assert!(mean < 0.05, "two seconds after the shake points move at {mean} m/s in the mean");
+}
+
+#[test]
+fn a_shaken_head_keeps_its_volume_as_strands_and_by_the_lattice() {
+    let measured =
+        Volume { method: VolumeMethod::Density, friction: 0.0, pressure: 0.0, ..Volume::default() };
+    let kept = |volume: Volume, neighbours: Neighbours| {
+        let mut bench = Bench::new(300, 20, Solver::default());
+        bench.simulation.set_volume(&volume);
+        bench.simulation.set_neighbours(&neighbours);
+        let mut sum = 0.0;
+        for frame in 0..180 {
+            assert_eq!(bench.step().reset_strands, 0);
+            if frame >= 120 {
+                sum += bench.simulation.volume().unwrap().share / 60.0;
+            }
+        }
+        sum
+    };
+    let off = Neighbours::default();
+    let without = kept(measured, off);
+    let strands = kept(measured, Neighbours { on: true, ..off });
+    let lattice = kept(Volume { method: VolumeMethod::Incompressible, ..Volume::default() }, off);
+    let soft = kept(Volume { method: VolumeMethod::Density, ..Volume::default() }, off);
+    println!("kept: without {without}, strands {strands}, incompressible {lattice}, density {soft}");
+    assert!(strands > without + 0.1, "strands keep {strands}, of which {without} is left without");
+}
