@@ -39,6 +39,7 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
         ("charged", value(&scene.charged)),
         ("solver", value(&scene.solver)),
         ("volume", value(&scene.volume)),
+        ("neighbours", value(&scene.neighbours)),
         ("hand", value(&scene.hands)),
     ] {
         all.insert(name.into(), value);

@@ -12,11 +12,8 @@ pub use camera::Camera;
 pub use hand::Hand;
 pub use look::{HairColor, HairLook};
 pub use settings::{
-<<<<<<< HEAD
-    Collider, Effects, Guides, Integrator, Quality, Response, Shape, Solver, Volume, VolumeMethod, Wind,
-=======
-    Collider, Effects, Guides, Integrator, Neighbours, Quality, Shape, Solver, Volume, VolumeMethod, Wind,
->>>>>>> 50ad234114f316b4d8d932f7a85e9110a3ace981
+    Collider, Effects, Guides, Integrator, Neighbours, Quality, Response, Shape, Solver, Volume,
+    VolumeMethod, Wind,
 };
 
 use crate::{

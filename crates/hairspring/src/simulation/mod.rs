@@ -51,11 +51,7 @@ use std::sync::Arc;
 /// [`Simulation::set_neighbours`]).
 ///
 /// # Missing
-<<<<<<< HEAD
-/// Hair against hair as strands, cutting and wetting: each is an issue of its own.
-=======
-/// Contact between points (a segment may cut a corner that its ends stay out of), cutting and wetting: each is an issue of its own.
->>>>>>> 50ad234114f316b4d8d932f7a85e9110a3ace981
+/// Cutting and wetting: each is an issue of its own.
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
