@@ -24,6 +24,12 @@ pub mod prelude {
 pub trait Simd: Copy {
     /// Which of the eight lanes.
     fn lane(self) -> usize;
+
+    /// Runs `f` with the instructions of the set.
+    #[inline(always)]
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
+    }
 }
 
 /// The only instruction set that there is.

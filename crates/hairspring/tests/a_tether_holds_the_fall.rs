@@ -1,8 +1,8 @@
-//! Promise: with a tether of t no point gets farther from its root than t times its distance at rest, whatever pulls; at rest, and where nothing pulls so far, it changes
-//! nothing.
+//! Promise: with a tether of t no point gets farther from its root than t times what it and those before it were at rest, whatever pulls; at rest, and where
+//! nothing pulls so far, it changes nothing.
 //!
-//! Coils that are put under twenty times their weight fall to nearly the length of their hair without it. Where a coil turns
-//! back toward its root, its length goes first: a point may be beyond its tether by 1 %.
+//! Coils that are put under twenty times their weight fall to nearly the length of their hair without it. (Those before it:
+//! where a coil turns back toward its root, its length goes first.)
 
 use glam::Vec3;
 use hairspring::{
@@ -30,7 +30,7 @@ fn coils() -> Arc<Groom> {
     Arc::new(Groom::from_strands(strands, 40e-6))
 }
 
-/// The most that a point is farther from its root than at rest, over that, after two seconds under `g` times gravity; and the points.
+/// The most that a point is from its root, over the farthest of it and those before it at rest, after two seconds under `g` times gravity; and the points.
 fn fall(model: Model, tether: f32, g: f32) -> (f32, Vec<Vec3>) {
     let groom = coils();
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
@@ -51,8 +51,10 @@ fn fall(model: Model, tether: f32, g: f32) -> (f32, Vec<Vec3>) {
         assert!(measure.stretch_max < 0.011, "{model:?}: {measure:?}");
         simulation.write_points(&mut points);
         for (now, rest) in points.chunks(POINTS).zip(groom.points.chunks(POINTS)) {
-            for i in 8..POINTS {
-                most = most.max(now[i].distance(now[0]) / rest[i].distance(rest[0]));
+            let mut farthest = 0.0f32;
+            for i in 1..POINTS {
+                farthest = farthest.max(rest[i].distance(rest[0]));
+                most = most.max(now[i].distance(now[0]) / farthest);
             }
         }
     }
@@ -67,7 +69,7 @@ fn heavy_coils_fall_as_far_as_they_may() {
         for tether in [1.05, 1.3] {
             let (held, _) = fall(model, tether, 20.0);
             println!("{model:?}: {free} free, {held} with a tether of {tether}");
-            assert!(held < tether * 1.01, "{model:?}: {held} with a tether of {tether}");
+            assert!(held < tether + 1e-3, "{model:?}: {held} with a tether of {tether}");
             assert!(held > tether - 0.05, "{model:?}: {held} with a tether of {tether}: hair hangs on it");
         }
     }

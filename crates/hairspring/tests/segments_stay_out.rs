@@ -1,8 +1,8 @@
 //! Promise: segments stay outside of colliders, not only points: a strand that falls over an edge does not cut the corner, one that falls on
 //! a ball or a rod smaller than its segments rests on it, and hair that lies so comes to rest and stays.
 //!
-//! Segments may be inside by 0.2 mm: those on a large round body always are. At rest they are by no more than 0.3 mm, and by 1 mm while they
-//! land. What lies so moves by less than 0.1 mm in a second (springs, which tremble on an edge, by 5 mm). Where nothing is near, none of it
+//! Segments may be inside by 1.5 % of their length, here 0.3 mm: those on a large round body always are. At rest they are by no more than 0.4 mm, and by 1 mm while they
+//! land. What lies so moves by less than 0.1 mm in a second (springs, which tremble on an edge, by 0.5 mm). Where nothing is near, none of it
 //! shows.
 
 use glam::{Mat3, Vec3};
@@ -120,11 +120,11 @@ fn hair_falls_over_edges_and_lies_on_them() {
                 }
             };
             check(landing.segment_depth < 1e-3, "a segment is deep while it lands");
-            check(settled.segment_depth < 3e-4, "a segment is deep at rest");
+            check(settled.segment_depth < 4e-4, "a segment is deep at rest");
             check(landing.max_depth < 1e-4, "a point is deep");
             check(landing.stretch_max < 0.011, "a segment is too long");
             check(lowest < -0.1, "nothing hangs over");
-            check(crept < if model == Model::Springs { 5e-3 } else { 1e-4 }, "hair at rest creeps");
+            check(crept < if model == Model::Springs { 5e-4 } else { 1e-4 }, "hair at rest creeps");
         }
     }
     assert!(failures.is_empty(), "{failures:#?}");

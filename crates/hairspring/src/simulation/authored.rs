@@ -21,9 +21,12 @@ impl Simulation {
             let Some(tether) = material.map(|m| m.tether).filter(|t| *t > 0.0) else { continue };
             let tile = self.tiles[place / LANES];
             let points = self.groom.strand(s);
+            let mut before = 0.0f32;
             for (k, p) in points.iter().enumerate() {
-                reach[tile.first as usize + k * tile.model.stride()].0[place % LANES] =
-                    tether * p.distance(points[0]);
+                // Where a coil turns back toward its root, as near as hair of its length can be.
+                let segment = p.distance(points[k.saturating_sub(1)]);
+                before = (tether * p.distance(points[0])).max(before - segment);
+                reach[tile.first as usize + k * tile.model.stride()].0[place % LANES] = before;
             }
         }
         reach

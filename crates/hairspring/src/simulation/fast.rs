@@ -17,8 +17,11 @@ use crate::collide::Rigid;
 /// Part of a body's half thickness that it may move by in a substep [1]: a strand that it presses is still on the side where it was met.
 const PART: f32 = 0.5;
 
-/// Way in a frame below which nothing is looked at, and the least that a substep is cut to [m].
-const SLOW: f32 = 5e-4;
+/// Way in a frame, over the radius of the ball around a body, below which nothing is looked at [1]: what is so slow is not thinner.
+const SLOW: f32 = 0.005;
+
+/// Most substeps that a body may ask for: a sheet has no thickness to speak of.
+const MOST: f32 = 256.0;
 
 impl Simulation {
     /// Substeps that this frame needs so that no body is on the other side of a strand before it meets it; 1 where all are slow or far.
@@ -32,10 +35,10 @@ impl Simulation {
             let [a, b] = [start, end].map(|pose| pose.point(center));
             let turn = start.rotation.angle_between(end.rotation);
             let way = a.distance(b) + turn * radius;
-            if !way.is_finite() || !radius.is_finite() || way < SLOW {
+            if !way.is_finite() || !radius.is_finite() || way < SLOW * radius {
                 continue;
             }
-            let count = (way / (PART * obstacle.shape.half_thickness()).max(SLOW)).ceil();
+            let count = (way / (PART * obstacle.shape.half_thickness()).max(1e-12)).ceil().min(MOST);
             if count <= 1.0 {
                 continue;
             }

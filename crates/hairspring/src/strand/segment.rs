@@ -30,9 +30,6 @@ use fearless_simd::prelude::*;
 /// radius of R. That is no contact: points alone hold it, and a head with segments of a centimetre is a smooth body.
 const SAG: f32 = 0.015;
 
-/// How deep at most [m].
-const MOST_SAG: f32 = 2e-4;
-
 /// Nearest place to the inner end whose depth the outer end answers wholly, as a part of the segment [1]. What is nearer is for the inner
 /// end, in the next solve: a lever that short would throw the outer one.
 const NEAREST: f32 = 0.125;
@@ -44,7 +41,7 @@ const CORRECTIONS: usize = 2;
 #[inline(always)]
 pub fn sag<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
     let inner = i - tile.model.stride();
-    let sag = (load(simd, &tile.rest[inner][rest::LENGTH]) * SAG).min(MOST_SAG);
+    let sag = load(simd, &tile.rest[inner][rest::LENGTH]) * SAG;
     tile.sunk.get(i).map_or(sag, |sunk| sag - load(simd, sunk))
 }
 
