@@ -1,4 +1,6 @@
-//! Hairs that are left to a graphics card to place: how guides carry them at one moment.
+//! Hairs that are left to who draws them: how guides carry them at one moment.
+//!
+//! A graphics card places all; a picture of every eighth hair needs an eighth of them; a picture that nobody draws none.
 
 use glam::{Affine3A, Vec3};
 use hairspring::{
@@ -8,14 +10,14 @@ use hairspring::{
 };
 use std::sync::{Arc, OnceLock};
 
-/// How guides carry the hairs of a groom that a graphics card places.
+/// How guides carry the hairs of a groom.
 pub struct Followers {
     /// What stays as it is.
     pub layout: Arc<FollowLayout>,
     effects: Effects,
     carriers: Vec<Affine3A>,
     guide_points: Vec<Vec3>,
-    /// What the CPU makes of it, once somebody asks: a record, an overlay.
+    /// All of them, once somebody asks: a record, an overlay.
     placed: OnceLock<Vec<Vec3>>,
 }
 
@@ -51,5 +53,12 @@ impl Followers {
             self.now(obstacles).place(&mut points);
             points
         })
+    }
+
+    /// Where every `every`-th strand is [m], each from its place in `offsets` on.
+    pub fn some_points(&self, every: usize, offsets: &[u32], obstacles: &[MovingObstacle]) -> Vec<Vec3> {
+        let mut points = vec![Vec3::ZERO; offsets.last().map_or(0, |end| *end as usize)];
+        self.now(obstacles).place_every(every, offsets, &mut points);
+        points
     }
 }

@@ -87,7 +87,8 @@ pub struct Player {
 
 impl Player {
     /// A thread that calls `wake` whenever there is something new to see, and steps on so many threads: fewer than processors where another pool draws,
-    /// for a step would wait at each of its ends for a thread that is not given a processor. To a `card` that draws, placing follow hairs is left where it can.
+    /// for a step would wait at each of its ends for a thread that is not given a processor. Follow hairs are left to who draws
+    /// them: a `card` where it can place them, or else the picture by the CPU, which has no use for all of them.
     pub fn new(threads: usize, card: Option<Gpu>, wake: impl Fn() + Send + 'static) -> Self {
         let (orders, inbox) = channel();
         let shared = Arc::new(Shared::default());
@@ -432,7 +433,7 @@ impl Work {
 
 fn open(scene: Scene, card: Option<&Gpu>) -> Result<(Stage, Arc<Still>), AppError> {
     let mut stage = Stage::new(scene)?;
-    stage.leave_follow_hairs(card.is_some_and(|card| card.can_place_among(stage.obstacles())));
+    stage.leave_follow_hairs(card.is_none_or(|card| card.can_place_among(stage.obstacles())));
     let still = Arc::new(Still::new(&stage));
     Ok((stage, still))
 }

@@ -7,6 +7,7 @@
 //! hand grab                        look, grab, ball, head, pick
 //! drag 0.4 0.6 0.7 0.5 30          presses, moves in so many frames of the window, releases
 //! shot window.png                  the window as it is
+//! pace                             prints how it draws, how many pictures come in a second, and a step's time
 //! ```
 //!
 //! Further: `play`, `pause`, `step`, `reset`, `speed X`, `undo`, `redo`, `new STYLE`, `open FILE`, `save FILE`, `show VALUE` (or `natural`), `find TEXT` (parameters), `overlay NAME on|off`,
@@ -56,6 +57,8 @@ pub enum Line {
     Record(Kind, PathBuf, f32),
     /// Writes the window as a picture.
     Shot(PathBuf),
+    /// Prints how quick it is.
+    Pace,
     /// Closes the window.
     Quit,
 }
@@ -162,6 +165,7 @@ fn read(line: &str) -> Result<Line, String> {
         "pictures" => record(Kind::Pictures)?,
         "turntable" => record(Kind::Turntable)?,
         "shot" => Line::Shot(path()?),
+        "pace" => Line::Pace,
         "quit" => Line::Quit,
         name => switch(name, on(rest)?)?,
     })

@@ -80,7 +80,7 @@ pub struct Scenery {
     pub still: Arc<Still>,
     /// How each groom is drawn.
     pub looks: Vec<HairLook>,
-    /// Points of each groom [m]; of use where its hairs are not left to a graphics card.
+    /// Points of each groom [m]; of use where its hairs are not left to who draws them.
     points: Vec<Vec<Vec3>>,
     /// How the guides of each groom carry its hairs, where those are.
     followers: Vec<Option<Followers>>,
@@ -181,34 +181,36 @@ impl Scenery {
         })
     }
 
-    /// Points of each groom [m]. Those of hairs that are left to a graphics card are placed when they are first asked for.
+    /// Points of each groom [m]. Those of hairs that are left to who draws them are placed when they are first asked for.
     pub fn points(&self) -> impl ExactSizeIterator<Item = &[Vec3]> {
-        (0..self.points.len()).map(|g| match &self.followers[g] {
+        (0..self.points.len()).map(|g| self.points_of(g))
+    }
+
+    fn points_of(&self, groom: usize) -> &[Vec3] {
+        match &self.followers[groom] {
             Some(left) => left.points(&self.obstacles),
-            None => &self.points[g],
-        })
+            None => &self.points[groom],
+        }
     }
 
     /// Draws by `draw` what is seen by this camera: every `every`-th hair, those that are drawn being wider by as much. `card`: what draws can place hairs that
     /// are left to it.
     pub fn draw<R>(&self, sight: &Sight, card: bool, draw: impl FnOnce(&Frame) -> R) -> R {
-        let card = card && sight.every <= 1;
         let left = |g: usize| self.followers[g].as_ref().filter(|_| card);
-        let points: Vec<&[Vec3]> = match card {
-            true => (0..self.points.len())
-                .map(|g| left(g).map_or(&self.points[g][..], |left| &left.layout.groom.points))
-                .collect(),
-            false => self.points().collect(),
-        };
-        let thinned: Vec<Option<Thin>> = self
-            .still
-            .grooms
-            .iter()
-            .zip(&points)
-            .map(|(groom, points)| {
+        let thinned: Vec<Option<Thin>> = (0..self.points.len())
+            .map(|g| {
                 // Brows are few, and stay.
-                let every = sight.every.min(groom.strands() / FEW).max(1);
-                (every > 1).then(|| Thin::new(groom, points, every))
+                let every = sight.every.min(self.still.grooms[g].strands() / FEW).max(1);
+                (every > 1).then(|| Thin::new(self, g, every))
+            })
+            .collect();
+        let points: Vec<&[Vec3]> = thinned
+            .iter()
+            .enumerate()
+            .map(|(g, thin)| match (thin, left(g)) {
+                (Some(thin), _) => &thin.points[..],
+                (None, Some(left)) => &left.layout.groom.points,
+                (None, None) => self.points_of(g),
             })
             .collect();
         let colors: Vec<Vec<Vec3>> =
@@ -220,7 +222,7 @@ impl Scenery {
                 let still = &self.still.grooms[g];
                 match &thinned[g] {
                     Some(thin) => HairDraw {
-                        points: &thin.points,
+                        points: points[g],
                         offsets: &thin.offsets,
                         radii: &thin.radii,
                         colors: picked[g].as_ref().unwrap_or(&thin.colors),
@@ -271,7 +273,8 @@ struct Thin {
 }
 
 impl Thin {
-    fn new(still: &StillGroom, points: &[Vec3], every: usize) -> Self {
+    fn new(scenery: &Scenery, groom: usize, every: usize) -> Self {
+        let still = &scenery.still.grooms[groom];
         let strands: Vec<_> =
             still.offsets.windows(2).step_by(every).map(|w| w[0] as usize..w[1] as usize).collect();
         let mut thin = Self {
@@ -282,17 +285,20 @@ impl Thin {
             radii: Vec::new(),
             colors: Vec::new(),
         };
-        for strand in thin.strands.clone() {
-            thin.points.extend_from_slice(&points[strand.clone()]);
+        for strand in &thin.strands {
             thin.radii.extend_from_slice(&still.radii[strand.clone()]);
-            thin.colors.extend_from_slice(still.colors.get(strand).unwrap_or(&[]));
-            thin.offsets.push(thin.points.len() as u32);
+            thin.colors.extend_from_slice(still.colors.get(strand.clone()).unwrap_or(&[]));
+            thin.offsets.push(thin.radii.len() as u32);
         }
+        thin.points = match &scenery.followers[groom] {
+            Some(left) => left.some_points(every, &thin.offsets, &scenery.obstacles),
+            None => thin.pick(&scenery.points[groom]),
+        };
         thin
     }
 
-    fn pick(&self, colors: &[Vec3]) -> Vec<Vec3> {
-        self.strands.iter().flat_map(|s| colors[s.clone()].iter().copied()).collect()
+    fn pick(&self, of_all: &[Vec3]) -> Vec<Vec3> {
+        self.strands.iter().flat_map(|s| of_all[s.clone()].iter().copied()).collect()
     }
 }
 

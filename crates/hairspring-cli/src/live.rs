@@ -12,7 +12,7 @@ Examples:
   hairspring live shot.toml
   hairspring live --script show.txt
 
-Keys are on `?` in the window. A script is a session line by line: wait 30, set KEY VALUE, drag X Y X Y FRAMES, shot FILE.png, quit.")]
+Keys are on `?` in the window. A script is a session line by line: wait 30, set KEY VALUE, drag X Y X Y FRAMES, shot FILE.png, pace, quit.")]
 pub struct Options {
     /// A scene file; without one, the built-in head
     scene: Option<PathBuf>,

@@ -320,7 +320,8 @@ impl App {
             let picked =
                 snapshot.picked.as_ref().map(|(p, f)| [p.strand, f.guide as usize].map(|s| [p.groom, s]));
             let picked = picked.as_ref().map_or(&[][..], |picked| &picked[..]);
-            overlay::draw(&Pen { painter: &painter, lens, rect }, scenery, &self.view, &handles, picked);
+            let seen = self.painters[k].moment(snapshot).stages.get(k).unwrap_or(scenery);
+            overlay::draw(&Pen { painter: &painter, lens, rect }, seen, &self.view, &handles, picked);
             if count > 1 {
                 painter.text(
                     rect.left_top() + egui::vec2(10.0, 8.0),

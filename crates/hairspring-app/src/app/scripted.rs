@@ -65,6 +65,9 @@ impl App {
                     wake.request_repaint();
                 });
             }
+            Line::Pace => {
+                println!("{}; a step in {:.1} ms", self.painters[0].note(), 1e3 * snapshot.took.as_secs_f32());
+            }
             Line::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
         }
         ctx.request_repaint_after(Duration::from_millis(1));

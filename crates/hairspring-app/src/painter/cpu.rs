@@ -60,6 +60,7 @@ struct Job {
 
 struct Done {
     image: Image,
+    snapshot: Arc<Snapshot>,
     took: f32,
     level: usize,
 }
@@ -87,6 +88,8 @@ pub struct CpuPainter {
     shows: Shows,
     /// What the picture shows: not drawn again while it is the same.
     shown: Option<(u64, u64, Sight, [u32; 2])>,
+    /// The moment of the picture that is seen.
+    moment: Option<Arc<Snapshot>>,
     level: usize,
     /// Level of the picture that is seen.
     seen: usize,
@@ -117,9 +120,8 @@ impl CpuPainter {
                 let Some(scenery) = job.snapshot.stages.get(job.stage) else { continue };
                 let image =
                     pool.install(|| scenery.draw(&job.sight, false, |frame| renderer.draw(frame).clone()));
-                drop(job.snapshot);
                 let took = began.elapsed().as_secs_f32();
-                if finished.send(Done { image, took, level: job.level }).is_err() {
+                if finished.send(Done { image, snapshot: job.snapshot, took, level: job.level }).is_err() {
                     return;
                 }
                 once(&ctx);
@@ -131,6 +133,7 @@ impl CpuPainter {
             busy: Arc::default(),
             shows: Shows::new(window),
             shown: None,
+            moment: None,
             // From where a slow machine is quick; a fast one is finer within a second.
             level: 4,
             seen: 4,
@@ -198,6 +201,11 @@ impl CpuPainter {
         }
     }
 
+    /// The moment of the picture that is seen; `None` before the first.
+    pub fn moment(&self) -> Option<&Arc<Snapshot>> {
+        self.moment.as_ref()
+    }
+
     /// The last picture, laid in at `rect`.
     pub fn shape(&self, rect: egui::Rect) -> Option<egui::Shape> {
         match &self.shows {
@@ -223,6 +231,7 @@ impl CpuPainter {
         self.pace = if done.level == self.level && since < 1.0 { mean(self.pace, since) } else { 0.0 };
         self.took = if done.level == self.seen { mean(self.took, done.took) } else { done.took };
         self.seen = done.level;
+        self.moment = Some(done.snapshot);
         if done.level == self.level {
             // Finer only where that would surely fit: it must not go to and fro.
             if self.took > BUDGET {

@@ -113,6 +113,14 @@ impl Painter {
         }
     }
 
+    /// The moment of the picture that is seen, so that what is laid over it fits: one by the CPU is of a step that has passed.
+    pub fn moment<'a>(&'a self, now: &'a Arc<Snapshot>) -> &'a Snapshot {
+        match self {
+            Self::Gpu(_) => now,
+            Self::Cpu(painter) => painter.moment().filter(|m| m.scene == now.scene).unwrap_or(now),
+        }
+    }
+
     /// How it draws, in words.
     pub fn note(&self) -> String {
         match self {

@@ -11,6 +11,7 @@ use crate::{
 };
 use fearless_simd::{Level, dispatch, f32x8, prelude::*, u32x8};
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 use raster::{Bins, ScreenTriangle};
 
 /// Samples of a pixel for the outlines of bodies: one in each of eight columns and rows. Shape `[axis][sample]`.
@@ -40,6 +41,8 @@ pub(crate) struct Lit<'a> {
 /// The frame's triangles on the screen, kept between frames for their memory.
 #[derive(Debug, Default)]
 pub(crate) struct Bodies {
+    /// Vertices of one body: pixels and depth.
+    vertices: Vec<Vec3>,
     screen: Vec<ScreenTriangle>,
     bins: Bins,
     /// First triangle number of each body.
@@ -69,21 +72,18 @@ impl Bodies {
         let mut count = 0u32;
         for body in frame.bodies {
             self.first.push(count);
-            for (i, t) in body.triangles.iter().enumerate() {
-                let Some(corner) = corners(body, t) else {
-                    continue;
+            body.positions.par_iter().map(|p| view.project(*p)).collect_into_vec(&mut self.vertices);
+            let vertices = &self.vertices;
+            let near = |p: Vec3| p.with_z(1.0 / p.z);
+            let triangles = body.triangles.par_iter().enumerate().with_min_len(4096);
+            self.screen.par_extend(triangles.flat_map_iter(|(i, t)| {
+                let source = count + i as u32;
+                let fan = match corners(vertices, t) {
+                    Some(c) if c.iter().all(|p| p.z > NEAR) => [Some(c.map(near)), None],
+                    _ => cut(body, t, view).map(|fan| fan.map(|c| c.map(near))),
                 };
-                let screen = |p: Vec3| {
-                    let p = view.project(p);
-                    p.with_z(1.0 / p.z)
-                };
-                // Cut at the near plane: a fan of up to two triangles.
-                let (polygon, n) = clip(corner, |p| (p - view.eye).dot(view.forward) - NEAR);
-                for k in 2..n {
-                    let fan = [polygon[0], polygon[k - 1], polygon[k]].map(screen);
-                    self.screen.extend(ScreenTriangle::new(fan, count + i as u32, width, height));
-                }
-            }
+                fan.into_iter().flatten().filter_map(move |c| ScreenTriangle::new(c, source, width, height))
+            }));
             count = count.saturating_add(body.triangles.len() as u32);
         }
         self.bins.fill(&self.screen, [width, height], [SIDE; 2]);
@@ -172,9 +172,16 @@ fn neighbours(body: &MeshDraw, t: usize, other: u32) -> bool {
 }
 
 /// Corners of a triangle; `None` if an index is past the end or a corner is not finite.
-fn corners(body: &MeshDraw, t: &[u32; 3]) -> Option<[Vec3; 3]> {
-    let at = |i: u32| body.positions.get(i as usize).copied().filter(|p| p.is_finite());
+pub(crate) fn corners(vertices: &[Vec3], t: &[u32; 3]) -> Option<[Vec3; 3]> {
+    let at = |i: u32| vertices.get(i as usize).copied().filter(|p| p.is_finite());
     Some([at(t[0])?, at(t[1])?, at(t[2])?])
+}
+
+/// A triangle cut at the near plane, in pixels and depth: a fan of up to two triangles.
+fn cut(body: &MeshDraw, t: &[u32; 3], view: &View) -> [Option<[Vec3; 3]>; 2] {
+    let Some(corner) = corners(body.positions, t) else { return [None; 2] };
+    let (polygon, n) = clip(corner, |p| (p - view.eye).dot(view.forward) - NEAR);
+    [3, 4].map(|k| (k <= n).then(|| [0, k - 2, k - 1].map(|i| view.project(polygon[i]))))
 }
 
 /// The part of a triangle where `side` is above 0, as a polygon (Sutherland & Hodgman 1974), and its corner count.

@@ -4,7 +4,11 @@
 //! over the area of its face. Sums are fixed-point integers, so that any split over threads gives the same bits.
 
 use super::splat::{self, UNIT};
-use crate::{frame::Frame, hair::order::Order};
+use crate::{
+    body::corners,
+    frame::{Frame, MeshDraw},
+    hair::order::Order,
+};
 use fearless_simd::{Level, dispatch};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -112,6 +116,8 @@ pub(crate) struct Density {
     partial: Vec<Vec<u32>>,
     /// Voxels that a surface of a body passes through.
     walls: Vec<bool>,
+    /// Voxel that each vertex of one body is in.
+    nearest: Vec<Option<usize>>,
     scratch: Vec<f32>,
     /// Hair alone, in optical depth per voxel.
     pub hair: Vec<f32>,
@@ -128,7 +134,7 @@ impl Density {
         // One grid a thread; more than eight would cost more to add up than they save.
         let parts = rayon::current_num_threads().clamp(1, 8);
         self.partial.resize_with(parts, Vec::new);
-        let (partial, walls) = (&mut self.partial, &mut self.walls);
+        let (partial, walls, nearest) = (&mut self.partial, &mut self.walls, &mut self.nearest);
         let splats = |(part, sum): (usize, &mut Vec<u32>)| {
             sum.clear();
             sum.resize(len, 0);
@@ -143,12 +149,7 @@ impl Density {
             || {
                 walls.clear();
                 walls.resize(len, false);
-                for body in frame.bodies {
-                    for t in body.triangles {
-                        let corner = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
-                        wall(&grid, corner, walls);
-                    }
-                }
+                frame.bodies.iter().for_each(|body| wall_in(&grid, body, nearest, walls));
             },
         );
         let [nx, ny, _] = grid.size;
@@ -169,18 +170,35 @@ impl Density {
     }
 }
 
-/// Marks the voxels that a triangle passes through.
-fn wall(grid: &Grid, [a, b, c]: [Vec3; 3], walls: &mut [bool]) {
+/// Marks the voxels that a body's triangles pass through: rows of samples on them, less than a voxel apart.
+fn wall_in(grid: &Grid, body: &MeshDraw, nearest: &mut Vec<Option<usize>>, walls: &mut [bool]) {
+    body.positions.par_iter().map(|p| grid.nearest(*p)).collect_into_vec(nearest);
+    let most = (grid.voxel / FINER).powi(2);
+    for t in body.triangles {
+        let Some([a, b, c]) = corners(body.positions, t) else { continue };
+        let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+        if longest <= most {
+            // Most of a fine mesh: the corners are all the samples.
+            t.iter().filter_map(|i| nearest[*i as usize]).for_each(|at| walls[at] = true);
+        } else if longest.is_finite() {
+            wall_across(grid, [a, b, c], longest.sqrt(), walls);
+        }
+    }
+}
+
+/// Samples of a triangle for each voxel along its longest edge.
+const FINER: f32 = 1.5;
+
+/// Marks the voxels that a large triangle passes through.
+fn wall_across(grid: &Grid, [a, b, c]: [Vec3; 3], longest: f32, walls: &mut [bool]) {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let end =
         grid.origin + Vec3::new(grid.size[0] as f32, grid.size[1] as f32, grid.size[2] as f32) * grid.voxel;
-    let apart = !(low.cmple(end).all() && high.cmpge(grid.origin).all());
-    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    if apart || !longest.is_finite() {
+    if !(low.cmple(end).all() && high.cmpge(grid.origin).all()) {
         return;
     }
-    // Rows of samples less than a voxel apart; a triangle many times the grid's size is sampled no finer than 512.
-    let n = (longest / grid.voxel * 1.5).ceil().clamp(1.0, 512.0) as usize;
+    // A triangle many times the grid's size is sampled no finer than 512.
+    let n = (longest / grid.voxel * FINER).ceil().clamp(1.0, 512.0) as usize;
     for i in 0..=n {
         for j in 0..=n - i {
             let (u, v) = (i as f32 / n as f32, j as f32 / n as f32);

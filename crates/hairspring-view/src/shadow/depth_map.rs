@@ -26,6 +26,8 @@ pub(crate) struct DepthMap {
     origin: Vec2,
     /// Greatest height above the plane through the origin that faces the lamp [m]; −∞ where nothing is.
     heights: Vec<f32>,
+    /// Vertices of one body: texels and height.
+    vertices: Vec<Vec3>,
     triangles: Vec<ScreenTriangle>,
     bins: Bins,
 }
@@ -38,10 +40,9 @@ impl DepthMap {
         self.up = self.toward.cross(self.right);
         self.triangles.clear();
         let flat = |p: Vec3| Vec2::new(p.dot(self.right), p.dot(self.up));
-        let points =
-            || frame.bodies.iter().flat_map(|b| b.positions).filter(|p| p.is_finite()).map(|p| flat(*p));
+        let points = frame.bodies.iter().flat_map(|b| b.positions).filter(|p| p.is_finite());
         let (low, high) =
-            points().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |b, p| (b.0.min(p), b.1.max(p)));
+            points.map(|p| flat(*p)).fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |b, p| (b.0.min(p), b.1.max(p)));
         let extent = (high - low).max_element();
         self.side = 0;
         if !(extent > 0.0 && extent.is_finite()) {
@@ -50,14 +51,16 @@ impl DepthMap {
         self.side = frame.quality.shadow_texels.clamp(64, 8192) as usize;
         self.scale = (self.side as f32 - 8.0) / extent;
         self.origin = Vec2::splat(4.0) - low * self.scale;
-        for body in frame.bodies {
-            for t in body.triangles {
-                let p = t.map(|i| body.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
-                let screen = p.map(|p| self.texel(p));
-                self.triangles.extend(ScreenTriangle::new(screen, 0, self.side, self.side));
-            }
-        }
         let side = self.side;
+        for body in frame.bodies {
+            let mut vertices = std::mem::take(&mut self.vertices);
+            body.positions.par_iter().map(|p| self.texel(*p)).collect_into_vec(&mut vertices);
+            self.triangles.par_extend(body.triangles.par_iter().with_min_len(4096).filter_map(|t| {
+                let corner = t.map(|i| vertices.get(i as usize).copied().unwrap_or(Vec3::NAN));
+                ScreenTriangle::new(corner, 0, side, side)
+            }));
+            self.vertices = vertices;
+        }
         self.bins.fill(&self.triangles, [side; 2], [side, BAND]);
         self.heights.clear();
         self.heights.resize(side * side, f32::NEG_INFINITY);

@@ -205,9 +205,16 @@ impl Follow {
 impl Followed<'_> {
     /// Writes all points of the groom [m]: guides as they are, follow hairs carried by them and kept out of the colliders.
     pub fn place(&self, out: &mut [Vec3]) {
+        self.place_every(1, &self.layout.groom.offsets, out);
+    }
+
+    /// The same of every `every`-th strand from the first on, 1 or more, for a picture of fewer hairs.
+    ///
+    /// - `offsets`: first point of each of these in `out`, and the end; shape `[strands + 1]`.
+    pub fn place_every(&self, every: usize, offsets: &[u32], out: &mut [Vec3]) {
         let poses: Vec<ObstaclePose> = self.obstacles.iter().map(MovingObstacle::now).collect();
-        let strands = split_by(out, &self.layout.groom.offsets).into_par_iter().enumerate();
-        strands.with_min_len(64).for_each(|(s, strand)| self.place_strand(s, &poses, strand));
+        let strands = split_by(out, offsets).into_par_iter().enumerate();
+        strands.with_min_len(64).for_each(|(s, strand)| self.place_strand(s * every, &poses, strand));
     }
 
     /// The same of one strand, kept out of `poses`.
