@@ -23,7 +23,7 @@ use hairspring_view::{
 
 /// Farthest that points are apart [m].
 const BOUND: f32 = 2e-6;
-/// The same of strands whose curl keeps less of its normal than this share around some fold, and how many of them may need it.
+/// The same of strands whose curl keeps less of its normal than this share, and how many of them may need it.
 const FOLDED: (f32, f32, f32) = (1e-4, 0.2, 0.002);
 
 fn renderer() -> Option<GpuRenderer> {
@@ -46,17 +46,18 @@ fn head(effects: Effects, colliders: Vec<Shape>) -> Scene {
     scene
 }
 
-/// The least share of its normal that a curl's frame keeps from one segment of a strand to the next, as `follow/style.rs` carries it.
+/// The share of its normal that a curl's frame keeps from one end of a strand to the other, as `follow/style.rs` carries it: what is lost at each segment
+/// multiplies the rounding of those before.
 fn kept(points: &[Vec3]) -> f32 {
     let way = |w: &[Vec3]| (w[1] - w[0]).normalize_or(Vec3::Y);
     let mut normal = way(points).any_orthonormal_vector();
-    let mut least = 1.0f32;
+    let mut share = 1.0f32;
     for w in points.windows(2) {
         let left = normal - way(w) * normal.dot(way(w));
-        least = least.min(left.length());
+        share *= left.length();
         normal = left.normalize_or(normal);
     }
-    least
+    share
 }
 
 /// Plays, and holds what the card places after every tenth frame against what the CPU places. Returns how many points colliders had moved by more than

@@ -66,7 +66,11 @@ impl App {
                 });
             }
             Line::Pace => {
-                println!("{}; a step in {:.1} ms", self.painters[0].note(), 1e3 * snapshot.took.as_secs_f32());
+                println!(
+                    "{}; a step in {:.1} ms",
+                    self.painters[0].note(),
+                    1e3 * snapshot.took.as_secs_f32()
+                );
             }
             Line::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
         }

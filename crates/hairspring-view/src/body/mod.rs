@@ -11,8 +11,8 @@ use crate::{
 };
 use fearless_simd::{Level, dispatch, f32x8, prelude::*, u32x8};
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 use raster::{Bins, ScreenTriangle};
+use rayon::prelude::*;
 
 /// Samples of a pixel for the outlines of bodies: one in each of eight columns and rows. Shape `[axis][sample]`.
 const SAMPLES: [[f32; 8]; 2] = [

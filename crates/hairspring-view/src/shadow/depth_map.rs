@@ -41,8 +41,9 @@ impl DepthMap {
         self.triangles.clear();
         let flat = |p: Vec3| Vec2::new(p.dot(self.right), p.dot(self.up));
         let points = frame.bodies.iter().flat_map(|b| b.positions).filter(|p| p.is_finite());
-        let (low, high) =
-            points.map(|p| flat(*p)).fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |b, p| (b.0.min(p), b.1.max(p)));
+        let (low, high) = points
+            .map(|p| flat(*p))
+            .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |b, p| (b.0.min(p), b.1.max(p)));
         let extent = (high - low).max_element();
         self.side = 0;
         if !(extent > 0.0 && extent.is_finite()) {

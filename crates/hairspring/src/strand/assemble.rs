@@ -27,6 +27,7 @@ use super::{
     root::Root,
     scratch::Scratch,
     segment::{press_between, relieve_between},
+    tether,
     tile::{Tile, grip, history, hold, rest, state, strand, tines},
 };
 use crate::collide::ObstaclePose;
@@ -193,6 +194,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
     ask_beyond(tile.rest, i, step.number);
     ask_beyond(tile.state, i, 2 * step.number);
     ask_beyond(tile.state, i, 2 * step.number + 1);
+    ask_beyond(tile.spans, i, step.number);
 
     // Mass, air and gravity of point i+1. Drag along a slender fibre is half of that across it (Batchelor 1970).
     let inv_h = 1.0 / step.h;
@@ -269,6 +271,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
         *held += 1;
     }
     if on_strand {
+        tether::pull(simd, step, tile, (i + 1, x, outset.drift(simd)), band);
         let work = &mut scratch.contacts[i + 1];
         press(simd, step, tile, (i + 1, x, outset.drift(simd), outset.way(simd)), band, work);
         if i + 1 + M::STRIDE < tile.rest.len() {

@@ -80,7 +80,7 @@ pub fn limit<S: Simd>(
         let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
         let solved = if stride == 2 { extra + V3::load(simd, &scratch.edges[i]) } else { extra };
         let mut e = solved;
-        e = tethered(simd, tile, i, &at, e);
+        e = tethered(simd, tile, i, (&at, &link), e);
         shift = e - solved;
         // A branch, so that a segment waits for the one before it only where something is to be done.
         let world = step.root.position + (at.x + e);
@@ -266,8 +266,13 @@ impl<S: Simd> Link<S> {
     #[inline(always)]
     pub fn clamp(&self, e: V3<S>) -> V3<S> {
         let (l, u) = e.length_and_unit();
-        let l = l.min(self.length * (1.0 + self.limit)).max(self.length * (1.0 - self.limit));
-        V3::select(self.wrong(e), u * l, e)
+        V3::select(self.wrong(e), u * self.within(l), e)
+    }
+
+    /// The nearest length that is within the limit.
+    #[inline(always)]
+    pub fn within(&self, l: F<S>) -> F<S> {
+        l.min(self.length * (1.0 + self.limit)).max(self.length * (1.0 - self.limit))
     }
 
     /// The point swung about the point before until it is `depth` farther out along `normal`: for a flat surface both its length and the surface

@@ -6,28 +6,69 @@
 //!        └────r────┘
 //! ```
 //!
-//! Not physics: what keeps a coil together is its stiffness. For an artist who wants the fall of hair and no more of it than this.
+//! Not physics: what keeps a coil together is its stiffness. For an artist who wants the fall of hair and no more of it than this. What is beyond its tether
+//! is pulled back in the solve, by a spring that all of the strand knows of; what that could not know (a fall, twenty times its weight) ends in `limit`.
 
 use super::{
-    lanes::{V3, load},
-    limit::Particle,
-    tile::Tile,
+    assemble::Step,
+    band::Band,
+    lanes::{F, Sym3, V3, load},
+    limit::{Link, Particle},
+    model::stretch::STRETCH,
+    tile::{Tile, rest},
 };
 use fearless_simd::prelude::*;
 
-/// Where point `i` may be that is at `e` from the point before, which is `at`: no farther from the root than its tether is long, at the same length. Where not
-/// both can be, it points to the root.
+/// How far a spring may let a point be beyond its tether, over the tether's length [1].
+const SLACK: f32 = 1e-3;
+
+/// Adds the pull on point `i`, the second of the band's window, which is at `x` from the root and drifts by `drift`.
 #[inline(always)]
-pub fn tethered<S: Simd>(simd: S, tile: &Tile, i: usize, at: &Particle<S>, e: V3<S>) -> V3<S> {
+pub fn pull<S: Simd, const B: usize, const N: usize>(
+    simd: S,
+    step: &Step<S>,
+    tile: &Tile,
+    (i, x, drift): (usize, V3<S>, V3<S>),
+    band: &mut Band<S, B, N>,
+) {
+    let Some(reach) = tile.tethers.get(i) else { return };
+    let (size, out) = x.length_and_unit();
+    let beyond = size - load(simd, reach);
+    let far = beyond.simd_gt(0.0);
+    if !far.any_true() {
+        return;
+    }
+    // Like a segment's: there is nothing that it should give way to.
+    let k = load(simd, &tile.rest[i][rest::MASS]) * (STRETCH / (step.h * step.h));
+    let zero = F::splat(simd, 0.0);
+    let (k, beyond) = (far.select(k, zero), far.select(beyond, zero));
+    band.add_diagonal(1, Sym3::outer(out, k));
+    band.add_force(1, out * (k * -(beyond + out.dot(drift))));
+}
+
+/// Where point `i` may be that is at `e` from the point before, which is `at`: no farther from the root than its tether is long, within the limits of its
+/// segment. Where not both can be, it points to the root.
+///
+/// Straight toward the root as far as the segment may shorten, and only then aside: a segment that points away from the root would have to swing by √(2 l δ)
+/// to come back by δ at its length, which is motion out of nothing.
+#[inline(always)]
+pub fn tethered<S: Simd>(
+    simd: S,
+    tile: &Tile,
+    i: usize,
+    (at, link): (&Particle<S>, &Link<S>),
+    e: V3<S>,
+) -> V3<S> {
     let Some(reach) = tile.tethers.get(i) else { return e };
-    let reach = load(simd, reach);
+    let reach = load(simd, reach) * (1.0 + SLACK);
     let x = at.x + e;
     let far = x.dot(x).simd_gt(reach * reach);
     if !far.any_true() {
         return e;
     }
-    // Swung about the point before, at its length: the place of the sphere that is nearest to where it was.
-    let (l, _) = e.length_and_unit();
+    let (size, out) = x.length_and_unit();
+    let pulled = e - out * (size - reach);
+    let l = link.within(pulled.length_and_unit().0);
     let (d, away) = at.x.length_and_unit();
     let along = (reach * reach - d * d - l * l) / (d * 2.0).max(1e-12);
     let along = along.max(-l).min(l);
