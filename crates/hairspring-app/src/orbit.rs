@@ -84,6 +84,11 @@ impl Lens {
         Self { eye: camera.position, right, up: right.cross(forward), forward, slope, aspect }
     }
 
+    /// Where it is seen from [m].
+    pub fn eye(&self) -> Vec3 {
+        self.eye
+    }
+
     /// Where a place is in the picture, and how deep [m]; `None` behind the camera.
     pub fn project(&self, p: Vec3) -> Option<(Vec2, f32)> {
         let d = p - self.eye;

@@ -13,6 +13,11 @@ const SQUARES: usize = 48;
 /// Most cells of the volume that are drawn: more would be a wall.
 const CELLS: usize = 6000;
 
+/// Most triangles of a sheet that are drawn, and dots on a body.
+const TRIANGLES: usize = 3000;
+/// See [`TRIANGLES`].
+const DOTS: usize = 8000;
+
 /// A painter of lines in space.
 pub struct Pen<'a> {
     /// What it draws on.
@@ -72,7 +77,7 @@ pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picke
     }
     if overlays.colliders {
         let stroke = Stroke::new(1.0, Color32::from_rgb(90, 200, 255));
-        scenery.obstacles.iter().for_each(|o| collider(pen, o, stroke));
+        scenery.obstacles.iter().for_each(|o| collider(pen, scenery, o, stroke));
     }
     if overlays.roots {
         for (still, points) in scenery.still.grooms.iter().zip(scenery.points()) {
@@ -143,7 +148,7 @@ fn rose(pen: &Pen, from: Vec3, tip: Vec3, color: Color32) {
 }
 
 /// The outline of a collider.
-fn collider(pen: &Pen, obstacle: &hairspring::simulation::MovingObstacle, stroke: Stroke) {
+fn collider(pen: &Pen, scenery: &Scenery, obstacle: &hairspring::simulation::MovingObstacle, stroke: Stroke) {
     let pose = obstacle.end;
     let (m, _) = pose.matrix();
     let turned = |axes: Mat3| m * axes;
@@ -184,8 +189,29 @@ fn collider(pen: &Pen, obstacle: &hairspring::simulation::MovingObstacle, stroke
                 pen.line(at + y * step - x * 0.5, at + y * step + x * 0.5, stroke);
             }
         }
-        // Fields, hulls and sheets are seen by their slice.
-        _ => {}
+        Obstacle::Hull(hull) => {
+            hull.triangles().for_each(|t| triangle(pen, t.map(|p| pose.point(p)), stroke))
+        }
+        Obstacle::Sheet(sheet) => {
+            let all = sheet.triangles();
+            let some = all.iter().step_by(1 + all.len() / TRIANGLES);
+            some.for_each(|t| triangle(pen, t.map(|p| pose.point(p)), stroke));
+        }
+        Obstacle::Field(_) => skin(pen, scenery, stroke.color),
+    }
+}
+
+fn triangle(pen: &Pen, [a, b, c]: [Vec3; 3], stroke: Stroke) {
+    [(a, b), (b, c), (c, a)].into_iter().for_each(|(a, b)| pen.line(a, b, stroke));
+}
+
+/// The side of the body that is seen, by dots: its field is as fine as its mesh.
+fn skin(pen: &Pen, scenery: &Scenery, color: Color32) {
+    let vertices = scenery.positions.iter().zip(&scenery.normals);
+    for (p, n) in vertices.step_by(1 + scenery.positions.len() / DOTS) {
+        if let Some(at) = pen.at(*p).filter(|_| n.dot(pen.lens.eye() - *p) > 0.0) {
+            pen.painter.circle_filled(at, 1.0, color.gamma_multiply(0.7));
+        }
     }
 }
 

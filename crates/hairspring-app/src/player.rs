@@ -9,7 +9,7 @@ use hairspring::{
     around::Tool,
     collide::Rigid,
     scene::Scene,
-    simulation::{Measure, ToolId},
+    simulation::{Energy, Measure, ToolId},
     stage::{FrameReport, Picked, Stage, Value},
 };
 use hairspring_view::gpu::Gpu;
@@ -31,6 +31,10 @@ const MEASURED: u64 = 15;
 
 /// Length of a step [s]: what a frame of most screens takes.
 pub const STEP: f32 = 1.0 / 60.0;
+
+/// Fastest that the pointer takes the head along, and a tool [m/s]: a head that is shaken hard, and a hand that throws. Where steps take longer than they last, the
+/// pointer is that much faster in the scene than on the desk.
+const FASTEST: [f32; 2] = [1.5, 4.0];
 
 /// What the thread is told.
 pub enum Order {
@@ -139,6 +143,28 @@ impl Drop for Player {
     }
 }
 
+/// What the pointer pulls.
+#[derive(Clone, Copy, Default)]
+struct Pulled {
+    now: Rigid,
+    wanted: Rigid,
+}
+
+impl Pulled {
+    fn at(pose: Rigid) -> Self {
+        Self { now: pose, wanted: pose }
+    }
+
+    /// Goes on for a step, no faster than so many metres a second; whether it moved.
+    fn go(&mut self, fastest: f32) -> bool {
+        let way = self.wanted.translation - self.now.translation;
+        let moved = self.now != self.wanted;
+        let translation = self.now.translation + way.clamp_length_max(fastest * STEP);
+        self.now = Rigid { translation, ..self.wanted };
+        moved
+    }
+}
+
 /// What the thread works with.
 struct Work {
     inbox: Receiver<Order>,
@@ -150,6 +176,10 @@ struct Work {
     speed: f32,
     end: Option<f32>,
     tool: Option<Vec<Option<ToolId>>>,
+    /// Where the body is carried, a tool and the ball, and where the pointer has them.
+    body: Pulled,
+    carried: Pulled,
+    ball: Option<(Pulled, f32)>,
     show: Option<Value>,
     picked: Option<Picked>,
     scene: u64,
@@ -158,7 +188,7 @@ struct Work {
     reset_strands: usize,
     report: FrameReport,
     /// Of each stage, at the last measurement, and the scene and step of that.
-    measures: Vec<Measure>,
+    measures: Vec<(Measure, Energy)>,
     measured: (u64, u64),
     /// Steps are played whose follow hairs have not been placed.
     unshown: bool,
@@ -184,6 +214,9 @@ impl Work {
             speed: 1.0,
             end: None,
             tool: None,
+            body: Pulled::default(),
+            carried: Pulled::default(),
+            ball: None,
             show: None,
             picked: None,
             scene: 0,
@@ -259,6 +292,7 @@ impl Work {
                         self.stages = stages;
                         (self.step, self.reset_strands) = (0, 0);
                         (self.tool, self.picked, self.unshown) = (None, None, false);
+                        (self.body, self.ball) = (Pulled::default(), None);
                         self.due = Instant::now();
                     }
                     Err(why) => *lock(&self.shared.error) = Some(why),
@@ -300,21 +334,29 @@ impl Work {
                     taken.push(stage.take(tool, pose));
                 }
                 self.tool = Some(taken);
+                self.carried = Pulled::at(pose);
                 return false;
             }
             Order::Carry(pose) => {
-                for ((stage, _), id) in self.stages.iter_mut().zip(self.tool.iter().flatten()) {
-                    id.inspect(|id| stage.carry(*id, pose));
-                }
+                self.carried.wanted = pose;
                 return false;
             }
             Order::LetGo => {
                 self.let_go();
                 return false;
             }
-            Order::Ball(ball) => self.stages.iter_mut().for_each(|(stage, _)| stage.set_ball(ball)),
+            Order::Ball(ball) => {
+                let fresh = self.ball.is_none();
+                self.ball = ball.map(|(at, radius)| {
+                    let wanted = Rigid { translation: at, ..Rigid::default() };
+                    (Pulled { wanted, ..self.ball.map_or(Pulled::at(wanted), |(pulled, _)| pulled) }, radius)
+                });
+                if fresh || ball.is_none() {
+                    self.stages.iter_mut().for_each(|(stage, _)| stage.set_ball(ball));
+                }
+            }
             Order::Body(by) => {
-                self.stages.iter_mut().for_each(|(stage, _)| stage.move_body(by));
+                self.body.wanted = by;
                 return false;
             }
             Order::Show(value) => self.show = value,
@@ -338,7 +380,26 @@ impl Work {
         self.due = Instant::now();
     }
 
+    /// Takes what the pointer pulls along, for a step.
+    fn pull(&mut self) {
+        if self.body.go(FASTEST[0]) {
+            self.stages.iter_mut().for_each(|(stage, _)| stage.move_body(self.body.now));
+        }
+        if self.tool.is_some() && self.carried.go(FASTEST[1]) {
+            for ((stage, _), id) in self.stages.iter_mut().zip(self.tool.iter().flatten()) {
+                id.inspect(|id| stage.carry(*id, self.carried.now));
+            }
+        }
+        if let Some((ball, radius)) = &mut self.ball
+            && ball.go(FASTEST[1])
+        {
+            let now = Some((ball.now.translation, *radius));
+            self.stages.iter_mut().for_each(|(stage, _)| stage.set_ball(now));
+        }
+    }
+
     fn advance(&mut self) {
+        self.pull();
         if self.end.is_some_and(|end| self.stages.first().is_some_and(|(s, _)| s.time() + 0.5 * STEP > end)) {
             self.reset();
             // It counts as a step: who waits for so many would else wait for ever.
@@ -378,7 +439,7 @@ impl Work {
         if !(self.playing && measured && self.step < self.measured.1 + MEASURED) {
             self.measured = (self.scene, self.step);
             self.measures.clear();
-            self.measures.extend(self.stages.iter().map(|(stage, _)| stage.measure()));
+            self.measures.extend(self.stages.iter().map(|(stage, _)| (stage.measure(), stage.energy())));
         }
         let mut next = self.spare();
         // Nobody else has it: `spare` saw to that.
@@ -393,7 +454,7 @@ impl Work {
             snapshot.stages.iter_mut().zip(&self.stages).zip(&self.measures)
         {
             scenery.fill(stage, still, self.show);
-            scenery.measure = *measure;
+            (scenery.measure, scenery.energy) = *measure;
         }
         let picked = self.picked;
         snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));

@@ -167,7 +167,8 @@ fn read(line: &str) -> Result<Line, String> {
         "shot" => Line::Shot(path()?),
         "pace" => Line::Pace,
         "quit" => Line::Quit,
-        name => switch(name, on(rest)?)?,
+        name if SWITCHES.contains(&name) => switch(name, on(rest)?)?,
+        name => return Err(format!("'{name}' is nothing that a script can do")),
     })
 }
 

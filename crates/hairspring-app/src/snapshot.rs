@@ -7,7 +7,7 @@ use hairspring::{
     collide::Rigid,
     groom::RootBinding,
     scene::HairLook,
-    simulation::{Measure, MovingObstacle, VolumeReport},
+    simulation::{Energy, Measure, MovingObstacle, VolumeReport},
     stage::{FrameReport, Picked, Stage, StrandFigures, Value},
 };
 use hairspring_view::{Background, Frame, HairDraw, Lighting, MeshDraw, Quality};
@@ -96,6 +96,8 @@ pub struct Scenery {
     pub anchor: Rigid,
     /// Stretch, depth, speed: of this moment or, while it plays, of one a few steps ago.
     pub measure: Measure,
+    /// Energy of the same moment.
+    pub energy: Energy,
     /// Volume of each groom's hair.
     pub volumes: Vec<Option<VolumeReport>>,
     /// Where what the scene lists has been carried.
@@ -116,6 +118,7 @@ impl Scenery {
             obstacles: Vec::new(),
             anchor: Rigid::default(),
             measure: Measure::default(),
+            energy: Energy::default(),
             volumes: Vec::new(),
             carried: Carried::default(),
         }

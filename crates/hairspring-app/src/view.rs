@@ -365,10 +365,7 @@ impl View {
             self.range = [0.0, 1.0];
             return;
         }
-        let total: usize = scenery.values.iter().map(Vec::len).sum();
-        let every = (total / 4096).max(1);
-        let mut some: Vec<f32> =
-            scenery.values.iter().flatten().step_by(every).copied().filter(|v| v.is_finite()).collect();
+        let mut some: Vec<f32> = scattered(&scenery.values).filter(|v| v.is_finite()).collect();
         if some.is_empty() {
             return;
         }
@@ -387,6 +384,15 @@ impl View {
     }
 }
 
+/// Some thousand of the values of each groom, however many points its strands have: every so-manieth would be the root of each.
+fn scattered(values: &[Vec<f32>]) -> impl Iterator<Item = f32> {
+    // Multiples of the golden ratio are spread evenly over 0 to 1 (Weyl 1916).
+    let place = |k: u32| (f64::from(k) * 0.618_033_988_749_894_9).fract();
+    values.iter().filter(|v| !v.is_empty()).flat_map(move |v| {
+        (0..v.len().min(4096) as u32).map(move |k| v[(place(k) * v.len() as f64) as usize])
+    })
+}
+
 /// Depth of the hair that is nearest to a place of the picture [m]; `None` where there is none close by.
 fn depth_of_hair(snapshot: &Snapshot, lens: &Lens, at: Vec2) -> Option<f32> {
     let scenery = snapshot.stages.first()?;
@@ -400,4 +406,22 @@ fn depth_of_hair(snapshot: &Snapshot, lens: &Lens, at: Vec2) -> Option<f32> {
         }
     }
     best.map(|(_, depth)| depth)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_taken_from_all_along_strands_of_any_number_of_points() {
+        for points in 2..200usize {
+            // From root to tip 0 to 1, as many strands as make any stride a multiple of their points.
+            let along = |i: usize| (i % points) as f32 / (points - 1) as f32;
+            let values = [(0..points * 2048).map(along).collect::<Vec<f32>>(), vec![0.5; 3]];
+            let some: Vec<f32> = scattered(&values).collect();
+            let mean = some.iter().sum::<f32>() / some.len() as f32;
+            assert!((mean - 0.5).abs() < 0.02, "{points} points: {mean}");
+            assert!(some.len() <= 2 * 4096);
+        }
+    }
 }

@@ -299,11 +299,13 @@ impl App {
                 self.rect = rect;
                 self.view.follow_range(scenery, guides);
             }
+            let moment = self.painters[k].moment(ui.ctx(), snapshot);
+            let seen = moment.stages.get(k).unwrap_or(scenery);
             // Handles are the scene's whose parameters are shown.
             let own = (k == 1) == self.session.on_second() && self.view.overlays.handles;
             let handles = match (self.view.lens(rect), self.view.orbit) {
                 (Some(lens), Some(orbit)) if own => {
-                    handle::all(self.session.edited(), scenery, &lens, orbit.distance)
+                    handle::all(self.session.edited(), seen, &lens, orbit.distance)
                 }
                 _ => Vec::new(),
             };
@@ -320,7 +322,6 @@ impl App {
             let picked =
                 snapshot.picked.as_ref().map(|(p, f)| [p.strand, f.guide as usize].map(|s| [p.groom, s]));
             let picked = picked.as_ref().map_or(&[][..], |picked| &picked[..]);
-            let seen = self.painters[k].moment(snapshot).stages.get(k).unwrap_or(scenery);
             overlay::draw(&Pen { painter: &painter, lens, rect }, seen, &self.view, &handles, picked);
             if count > 1 {
                 painter.text(

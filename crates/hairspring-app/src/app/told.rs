@@ -64,7 +64,11 @@ pub(super) fn legend(painter: &egui::Painter, rect: egui::Rect, value: Value, ra
     let text = |place: egui::Pos2, align, text: String| {
         painter.text(place, align, text, egui::FontId::proportional(13.0), Color32::from_white_alpha(220));
     };
-    text(at, egui::Align2::LEFT_TOP, format!("{} [{}]", value.name(), value.unit()));
+    let unit = match value.unit() {
+        "1" => "",
+        unit => unit,
+    };
+    text(at, egui::Align2::LEFT_TOP, value.name().to_owned());
     if value == Value::Guide {
         return;
     }
@@ -78,5 +82,34 @@ pub(super) fn legend(painter: &egui::Painter, rect: egui::Rect, value: Value, ra
         painter.rect_filled(piece, 0.0, Color32::from_rgb(c[0], c[1], c[2]));
     }
     text(bar.left_bottom(), egui::Align2::LEFT_TOP, "0".into());
-    text(bar.right_bottom(), egui::Align2::RIGHT_TOP, format!("{:.3e}", range[1]));
+    text(bar.right_bottom(), egui::Align2::RIGHT_TOP, readable(range[1], unit));
+}
+
+/// A number in three digits, with the unit's prefix.
+fn readable(value: f32, unit: &str) -> String {
+    let (scale, prefix) = match value {
+        v if unit.is_empty() && v < 0.1 => return format!("{:.3} %", 100.0 * v),
+        v if unit.is_empty() || v >= 0.1 => (1.0, ""),
+        v if v >= 1e-4 => (1e3, "m"),
+        v if v >= 1e-7 => (1e6, "µ"),
+        _ => (1e9, "n"),
+    };
+    let value = value * scale;
+    let digits = (2.0 - value.max(1e-9).log10().floor()).clamp(0.0, 3.0) as usize;
+    format!("{value:.digits$} {prefix}{unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::readable;
+
+    #[test]
+    fn numbers_of_the_legend_can_be_read() {
+        assert_eq!(readable(5.455e-6, "N"), "5.46 µN");
+        assert_eq!(readable(2.0e-3, "m/s"), "2.00 mm/s");
+        assert_eq!(readable(1.25, "m/s"), "1.25 m/s");
+        assert_eq!(readable(123.4, "rad"), "123 rad");
+        assert_eq!(readable(8.6e-5, ""), "0.009 %");
+        assert_eq!(readable(0.82, ""), "0.820 ");
+    }
 }

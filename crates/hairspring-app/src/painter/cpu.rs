@@ -158,7 +158,16 @@ impl CpuPainter {
         self.busy.clone()
     }
 
-    /// Asks for a picture of `size` pixels where none is being drawn, and takes one that is done.
+    /// Takes a picture that is done.
+    pub fn look(&mut self, ctx: &egui::Context) {
+        match self.done.try_recv() {
+            Ok(done) => self.show(ctx, done),
+            Err(TryRecvError::Disconnected) => self.busy.store(true, Relaxed),
+            Err(TryRecvError::Empty) => {}
+        }
+    }
+
+    /// Asks for a picture of `size` pixels where none is being drawn.
     pub fn ask(
         &mut self,
         ctx: &egui::Context,
@@ -167,11 +176,6 @@ impl CpuPainter {
         sight: &Sight,
         size: [u32; 2],
     ) {
-        match self.done.try_recv() {
-            Ok(done) => self.show(ctx, done),
-            Err(TryRecvError::Disconnected) => self.busy.store(true, Relaxed),
-            Err(TryRecvError::Empty) => {}
-        }
         let wanted = (snapshot.scene, snapshot.number, *sight, size);
         let same = self.shown == Some(wanted);
         if !same {

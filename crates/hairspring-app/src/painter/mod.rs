@@ -113,11 +113,14 @@ impl Painter {
         }
     }
 
-    /// The moment of the picture that is seen, so that what is laid over it fits: one by the CPU is of a step that has passed.
-    pub fn moment<'a>(&'a self, now: &'a Arc<Snapshot>) -> &'a Snapshot {
+    /// Takes the picture that is done; the moment of the one that is seen, so that what is laid over it fits: one by the CPU is of a step that has passed.
+    pub fn moment(&mut self, ctx: &egui::Context, now: &Arc<Snapshot>) -> Arc<Snapshot> {
         match self {
-            Self::Gpu(_) => now,
-            Self::Cpu(painter) => painter.moment().filter(|m| m.scene == now.scene).unwrap_or(now),
+            Self::Gpu(_) => now.clone(),
+            Self::Cpu(painter) => {
+                painter.look(ctx);
+                painter.moment().filter(|m| m.scene == now.scene).unwrap_or(now).clone()
+            }
         }
     }
 

@@ -1,4 +1,4 @@
-//! Numbers: time of each stage, stretch, depth, volume; their last seconds as graphs; the strand that was picked.
+//! Numbers: time of each stage, stretch, speed, energy, depth, volume; their last seconds as graphs; the strand that was picked.
 
 use crate::{
     session::{Action, Session},
@@ -21,6 +21,8 @@ struct Moment {
     stretch: [f64; 2],
     /// Fastest point [m/s].
     speed: f64,
+    /// Of motion, and of what is bent, twisted and stretched [µJ].
+    energy: [f64; 2],
     /// Deepest point and segment inside a collider [mm].
     depth: [f64; 2],
 }
@@ -42,12 +44,13 @@ impl History {
         let Some(scenery) = snapshot.stages.first().filter(|_| self.last != now) else { return };
         self.last = now;
         let ms = |d: std::time::Duration| 1e3 * d.as_secs_f64();
-        let (r, m) = (snapshot.report, scenery.measure);
+        let (r, m, e) = (snapshot.report, scenery.measure, scenery.energy);
         self.moments.push_back(Moment {
             time: snapshot.step as f64 * f64::from(crate::player::STEP),
             took: [ms(r.body), ms(r.simulate), ms(r.follow), ms(snapshot.took)],
             stretch: [100.0 * m.stretch_mean, 100.0 * m.stretch_max],
             speed: m.speed_max,
+            energy: [1e6 * e.kinetic, 1e6 * (e.bending + e.twisting + e.stretching)],
             depth: [1e3 * m.max_depth, 1e3 * m.segment_depth],
         });
         if self.moments.len() > MOMENTS {
@@ -62,7 +65,7 @@ impl History {
 
     /// Shows the graphs side by side.
     pub fn show(&self, ui: &mut Ui) {
-        let width = (ui.available_width() / 4.0 - 8.0).max(120.0);
+        let width = (ui.available_width() / 5.0 - 8.0).max(120.0);
         ui.horizontal(|ui| {
             let plot = |ui: &mut Ui, name: &str, lines: Vec<Line<'_>>| {
                 ui.vertical(|ui| {
@@ -87,6 +90,11 @@ impl History {
                 vec![self.line("mean", |m| m.stretch[0]), self.line("worst", |m| m.stretch[1])],
             );
             plot(ui, "Fastest point [m/s]", vec![self.line("speed", |m| m.speed)]);
+            plot(
+                ui,
+                "Energy [µJ]",
+                vec![self.line("motion", |m| m.energy[0]), self.line("shape", |m| m.energy[1])],
+            );
             plot(
                 ui,
                 "Deepest inside [mm]",

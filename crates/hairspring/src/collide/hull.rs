@@ -76,6 +76,11 @@ impl Hull {
         Some(Self { bounds: (center, radius), ..hull })
     }
 
+    /// The triangles of its faces [m], counter-clockwise seen from outside.
+    pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
+        self.faces.iter().flat_map(|face| &face.triangles).copied()
+    }
+
     /// What the library makes of points around the origin that reach to about 1.
     fn of_unit(points: &[Vec3]) -> Option<Self> {
         let points: Vec<_> = points.iter().map(|p| p.to_array().into()).collect();

@@ -47,6 +47,11 @@ pub struct Sheet {
 }
 
 impl Sheet {
+    /// Its triangles [m], as they are now.
+    pub fn triangles(&self) -> &[[Vec3; 3]] {
+        &self.corners
+    }
+
     /// How far it reaches from its triangles [m].
     pub(super) fn thickness(&self) -> f32 {
         self.thickness

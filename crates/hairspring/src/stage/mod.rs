@@ -18,7 +18,7 @@ use crate::{
     follow::Followed,
     groom::{Groom, bind_roots},
     scene::{HairLook, Scene},
-    simulation::{Air, Measure, MovingObstacle, Start, StepReport, ToolId, VolumeReport},
+    simulation::{Air, Energy, Measure, MovingObstacle, Start, StepReport, ToolId, VolumeReport},
 };
 use body::StagedBody;
 use glam::Vec3;
@@ -287,6 +287,11 @@ impl Stage {
     /// Name of the instruction set that strands are simulated with.
     pub fn instruction_set(&self) -> String {
         self.hair.first().map_or(String::new(), |h| h.simulation().instruction_set())
+    }
+
+    /// Energy of all simulated strands at the end of the last step.
+    pub fn energy(&self) -> Energy {
+        self.hair.iter().map(|h| h.simulation().energy()).fold(Energy::default(), |sum, e| sum + e)
     }
 
     /// Figures over all simulated strands at the end of the last step.
