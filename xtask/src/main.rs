@@ -10,7 +10,7 @@ const HELP: &str = "cargo xtask NAME
   test           all tests, in release; closes on one line with the sum
   lint           formatting, clippy with warnings refused, the docs, and where all dependencies come from and under which licence
   fuzz [SECONDS] every fuzz target, so long each (default 60), two at a time
-  window         draws the pictures of docs/window.md anew, on a desktop
+  window         draws the pictures of docs/window.md anew, on a desktop; Sintel's from ../shared/data
   monkey [MINUTES] random presses in the window, so long (default 10)
   golden         writes the golden pictures anew (look at them before you commit)
   pictures [NAME] draws the pictures of the book anew, all or those whose name contains NAME (look at them too); needs no build where
@@ -28,7 +28,7 @@ fn main() {
             Ok(seconds) => fuzz::all(seconds, None),
             Err(_) => Err(format!("'{seconds}' is not a number of seconds")),
         },
-        ["window"] => run::cargo(&["run", "--release", "--", "live", "--script", "docs/tour.txt"], &[]),
+        ["window"] => window("docs/tour.txt").and_then(|()| window("docs/tour-sintel.txt")),
         ["monkey"] => monkey("10"),
         ["monkey", minutes] => monkey(minutes),
         ["golden"] => {
@@ -47,6 +47,11 @@ fn main() {
         eprintln!("xtask: {why}");
         std::process::exit(1);
     }
+}
+
+/// Draws the pictures of a page about the window, by a script.
+fn window(script: &str) -> Result<(), String> {
+    run::cargo(&["run", "--release", "--", "live", "--script", script], &[])
 }
 
 /// Lets a random hand play with the window's controls.

@@ -1,6 +1,6 @@
 //! The picture by the CPU, on a thread of its own, as fine as there is time for: the window stays quick, and says what it leaves out.
 
-use super::{image, once, pane::Pane};
+use super::{Pace, image, once, pane::Pane, smooth};
 use crate::snapshot::{Sight, Snapshot};
 use eframe::{
     egui::{self, ColorImage, TextureHandle, TextureOptions},
@@ -18,9 +18,6 @@ use std::{
 
 /// Longest that a picture of moving hair should take [s]: 20 a second, of which the window's own work leaves 15.
 const BUDGET: f32 = 0.05;
-
-/// How much of the last picture's time counts in the mean.
-const SMOOTH: f32 = 0.3;
 
 /// How much of a picture is drawn.
 struct Level {
@@ -95,9 +92,7 @@ pub struct CpuPainter {
     seen: usize,
     /// What a picture of this level takes, over some pictures [s].
     took: f32,
-    /// From a picture of moving hair to the next, over some pictures [s], and when the last came.
-    pace: f32,
-    came: Instant,
+    pace: Pace,
     moved: Instant,
 }
 
@@ -138,8 +133,7 @@ impl CpuPainter {
             level: 4,
             seen: 4,
             took: 0.0,
-            pace: 0.0,
-            came: Instant::now(),
+            pace: Pace::new(),
             moved: Instant::now(),
         }
     }
@@ -228,12 +222,8 @@ impl CpuPainter {
                 *texture = Some(ctx.load_texture("hair", image, TextureOptions::LINEAR));
             }
         }
-        let mean = |mean: f32, last: f32| if mean == 0.0 { last } else { mean + SMOOTH * (last - mean) };
-        let since = self.came.elapsed().as_secs_f32();
-        self.came = Instant::now();
-        // A picture of what stood still begins anew.
-        self.pace = if done.level == self.level && since < 1.0 { mean(self.pace, since) } else { 0.0 };
-        self.took = if done.level == self.seen { mean(self.took, done.took) } else { done.took };
+        self.pace.tick(done.level != self.level);
+        self.took = if done.level == self.seen { smooth(self.took, done.took) } else { done.took };
         self.seen = done.level;
         self.moment = Some(done.snapshot);
         if done.level == self.level {
@@ -254,10 +244,6 @@ impl CpuPainter {
             (_, 1) => format!("at {:.0} % of the size", 100.0 * scale),
             _ => format!("at {:.0} % of the size, 1 hair of {every}", 100.0 * scale),
         };
-        let pace = match self.pace {
-            0.0 => String::new(),
-            pace => format!("; {:.0} pictures a second", 1.0 / pace),
-        };
-        format!("CPU: {part}, {:.0} ms{pace}", 1e3 * self.took)
+        format!("CPU: {part}, {:.0} ms{}", 1e3 * self.took, self.pace.words())
     }
 }

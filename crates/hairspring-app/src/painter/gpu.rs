@@ -1,5 +1,6 @@
 //! The picture by the GPU that also draws the window: strands are uploaded, drawn, and shown without coming back.
 
+use super::Pace;
 use crate::snapshot::{Sight, Snapshot};
 use eframe::{egui::TextureId, egui_wgpu::RenderState, wgpu::FilterMode};
 use hairspring_view::gpu::{Gpu, GpuRenderer};
@@ -12,6 +13,7 @@ pub struct GpuPainter {
     texture: Option<(TextureId, [u32; 2])>,
     shown: Option<(u64, u64, Sight, [u32; 2])>,
     took: f32,
+    pace: Pace,
     /// Whether colours of the last picture were values.
     valued: bool,
 }
@@ -30,6 +32,7 @@ impl GpuPainter {
             texture: None,
             shown: None,
             took: 0.0,
+            pace: Pace::new(),
             valued: false,
         }
     }
@@ -66,6 +69,7 @@ impl GpuPainter {
                 self.renderer.draw(frame, size[0], size[1]);
             });
             self.took = began.elapsed().as_secs_f32();
+            self.pace.tick(another);
             self.shown = Some(wanted);
         }
         let view = self.renderer.view();
@@ -89,10 +93,10 @@ impl GpuPainter {
         self.texture.map(|(id, _)| id)
     }
 
-    /// Who draws, and how long handing it over took.
+    /// Who draws, how long handing it over took, and how many pictures come in a second.
     pub fn note(&self) -> String {
         let name = self.state.adapter.get_info().name;
-        format!("GPU: {name}, {:.1} ms to hand over", 1e3 * self.took)
+        format!("GPU: {name}, {:.1} ms to hand over{}", 1e3 * self.took, self.pace.words())
     }
 }
 

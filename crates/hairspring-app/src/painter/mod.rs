@@ -14,7 +14,7 @@ use std::{
         Arc,
         atomic::{AtomicBool, Ordering::Relaxed},
     },
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 /// Who draws the hair.
@@ -132,6 +132,43 @@ impl Painter {
         }
     }
 }
+
+/// How fast pictures of moving hair come.
+struct Pace {
+    /// From one to the next, over some pictures [s]; 0 before the second.
+    mean: f32,
+    came: Instant,
+}
+
+impl Pace {
+    fn new() -> Self {
+        Self { mean: 0.0, came: Instant::now() }
+    }
+
+    /// A picture is there; `anew`: it is not one of a row.
+    fn tick(&mut self, anew: bool) {
+        let since = self.came.elapsed().as_secs_f32();
+        self.came = Instant::now();
+        // What stood still begins anew.
+        self.mean = if anew || since > 1.0 { 0.0 } else { smooth(self.mean, since) };
+    }
+
+    /// In words, behind others.
+    fn words(&self) -> String {
+        match self.mean {
+            0.0 => String::new(),
+            mean => format!("; {:.0} pictures a second", 1.0 / mean),
+        }
+    }
+}
+
+/// A mean over some values, of which the last is one; 0: it is the first.
+fn smooth(mean: f32, last: f32) -> f32 {
+    if mean == 0.0 { last } else { mean + SMOOTH * (last - mean) }
+}
+
+/// How much of the last value counts in a mean.
+const SMOOTH: f32 = 0.3;
 
 /// Lets the window draw itself. Asked without a delay, egui does so twice.
 fn once(ctx: &egui::Context) {
