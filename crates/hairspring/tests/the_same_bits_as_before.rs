@@ -18,8 +18,8 @@ const GOLDEN: [(Model, Integrator, [u64; 2]); 7] = [
     (Model::Rod, Integrator::BackwardEuler, [0xa56f3d0eeb826ddc, 0xa086cb37bda9e2da]),
     (Model::Rod, Integrator::Bdf2, [0x41ee731d4928f678, 0xe415fcc4c4bba2b1]),
     (Model::Curvature, Integrator::LocalGlobal, [0xf9456ebe4ad528de, 0x821e78f89233f590]),
-    (Model::Curvature, Integrator::Ftl, [0xf8fbdc19e5e4e479, 0x9ce32c8d9840d881]),
-    (Model::Curvature, Integrator::Dftl, [0x6fce0d673ff3c43f, 0xdf49cea3a50e2ec7]),
+    (Model::Curvature, Integrator::Ftl, [0x0f1a719608ca4720, 0x46514eba2072a478]),
+    (Model::Curvature, Integrator::Dftl, [0xf771b97674523004, 0x95f013ec023610ba]),
 ];
 
 fn hash(set: &str, model: Model, integrator: Integrator, threads: usize) -> Option<u64> {
