@@ -21,6 +21,7 @@
 
 mod app;
 mod axes;
+mod ball;
 mod carried;
 mod desktop;
 mod differ;

@@ -1,6 +1,13 @@
 //! What is drawn over the picture to see inside: outlines of colliders, a slice through their distance, cells of the hair's volume, roots; and handles. Frames are in `axes`.
 
-use crate::{axes, handle::Handle, orbit::Lens, ramp, snapshot::Scenery, view::View};
+use crate::{
+    axes,
+    handle::Handle,
+    orbit::Lens,
+    ramp,
+    snapshot::Scenery,
+    view::{Hand, View},
+};
 use eframe::egui::{self, Color32, Pos2, Stroke};
 use glam::{Mat3, Vec2, Vec3};
 use hairspring::{collide::Obstacle, collide::ObstaclePose};
@@ -91,7 +98,7 @@ pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picke
     if overlays.frames {
         axes::draw(pen, scenery, picked);
     }
-    if let Some((center, radius)) = view.ball() {
+    if let Some((center, radius)) = view.ball().filter(|_| view.hand == Hand::Grab) {
         pen.ball(center, radius, Stroke::new(1.5, Color32::from_white_alpha(170)));
     }
     for (k, handle) in handles.iter().enumerate() {

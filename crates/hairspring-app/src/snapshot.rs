@@ -1,6 +1,6 @@
 //! What the simulation's thread shows of a moment: enough to draw it and to say how it is.
 
-use crate::{carried::Carried, followers::Followers};
+use crate::{ball::Ball, carried::Carried, followers::Followers};
 use glam::{Mat3, Vec3};
 use hairspring::{
     body::{Mesh, Part},
@@ -251,9 +251,11 @@ impl Scenery {
             triangles,
             parts,
         });
+        let ball = sight.ball.map(Ball::new);
+        let bodies: Vec<MeshDraw> = body.into_iter().chain(ball.as_ref().map(Ball::mesh)).collect();
         draw(&Frame {
             hair: if sight.hair { &hair } else { &[] },
-            bodies: body.as_slice(),
+            bodies: &bodies,
             camera: sight.camera,
             lighting: Lighting { exposure: sight.exposure, ..Lighting::facing(&sight.lit_for) },
             background: Background::default(),
@@ -324,6 +326,8 @@ pub struct Sight {
     pub hair: bool,
     /// Whether the body is drawn.
     pub body: bool,
+    /// The ball that is pushed through hair: middle and radius [m].
+    pub ball: Option<(Vec3, f32)>,
     /// Work to spend.
     pub quality: Quality,
 }

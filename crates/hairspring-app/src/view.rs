@@ -179,6 +179,7 @@ impl View {
             range: self.range,
             hair: self.overlays.hair,
             body: self.overlays.body,
+            ball: self.ball().filter(|_| self.hand == Hand::Ball),
             quality: Quality::default(),
         })
     }
