@@ -7,7 +7,7 @@
 //! picture = "gallery/fan"              scene = "rail"                   of docs/parameters/scenes
 //! frame = 90                           frame = 30                       at 30 frames a second
 //! data = true  (files from elsewhere)
-//!                                      low = 0.5                        any value of TOML
+//! card = true  (drawn with --gpu)      low = 0.5                        any value of TOML
 //!                                      high = 8.0
 //!                                      with = { "wind.gust" = 1.0 }     what is changed in both, if anything
 //! ```
@@ -36,7 +36,8 @@ pub fn draw(part: &str) -> Result<(), String> {
         if entry.get("data").is_some() && !Path::new("../shared/data").exists() {
             println!("{picture}: skipped, the data that {file} names is not here");
         } else if picture.contains(part) {
-            render(&program, Path::new(file), picture, frame(entry)?, "640x480")?;
+            let card = entry.get("card").and_then(Value::as_bool).unwrap_or(false);
+            render(&program, Path::new(file), picture, frame(entry)?, "640x480", card)?;
         }
     }
     for entry in entries(&table, "parameter") {
@@ -54,7 +55,8 @@ pub fn draw(part: &str) -> Result<(), String> {
             set(&mut changed, name, value)?;
             let from = Path::new(CHANGED).join(format!("{name}-{side}.toml"));
             fs::write(&from, changed.to_string()).map_err(|why| format!("{}: {why}", from.display()))?;
-            render(&program, &from, &format!("parameters/{name}-{side}"), frame(entry)?, "320x240")?;
+            let picture = format!("parameters/{name}-{side}");
+            render(&program, &from, &picture, frame(entry)?, "320x240", false)?;
         }
     }
     Ok(())
@@ -70,8 +72,15 @@ fn program() -> Result<PathBuf, String> {
     Ok(target.join("release").join(format!("hairspring{}", std::env::consts::EXE_SUFFIX)))
 }
 
-/// Draws one frame of a scene as a picture of the book.
-fn render(program: &Path, scene: &Path, picture: &str, frame: i64, size: &str) -> Result<(), String> {
+/// Draws one frame of a scene as a picture of the book, on the processor or on the graphics card.
+fn render(
+    program: &Path,
+    scene: &Path,
+    picture: &str,
+    frame: i64,
+    size: &str,
+    card: bool,
+) -> Result<(), String> {
     let to = PathBuf::from(format!("docs/pictures/{picture}.jpg"));
     let folder = to.parent().unwrap_or(Path::new(""));
     fs::create_dir_all(folder).map_err(|why| format!("{}: {why}", folder.display()))?;
@@ -79,6 +88,7 @@ fn render(program: &Path, scene: &Path, picture: &str, frame: i64, size: &str) -
         .args(["--quiet", "render", "--size", size, "--frames", &frame.to_string(), "-o"])
         .arg(&to)
         .arg(scene)
+        .args(card.then_some("--gpu"))
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .status();

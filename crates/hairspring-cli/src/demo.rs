@@ -94,7 +94,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         guides: options.guides,
     });
     let wanted: Vec<u32> = (1..=frames).collect();
-    let (stage, totals, ending) = shoot(scene, &wanted, options.fps, &options.view, sinks, console)?;
+    let (stage, totals, ending) = shoot(scene, &wanted, options.fps, &options.view, None, sinks, console)?;
     if let Ending::Stopped(after) = ending {
         let text = format!("stopped after frame {after} of {frames}: the clip was not written");
         return Err(Fault::Interrupted(text));

@@ -2,7 +2,7 @@
 
 use crate::{fault::Fault, frames};
 use clap::Args;
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use hairspring::{scene::Camera, stage::Stage};
 use hairspring_view::{
     Background, Frame, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, Timings, frame_camera,
@@ -60,6 +60,8 @@ struct Card {
 /// A camera, its lamps and a renderer.
 pub struct Studio {
     painter: Painter,
+    /// Where the camera begins, and where it stands.
+    start: Camera,
     camera: Camera,
     width_scale: f32,
 }
@@ -87,7 +89,7 @@ impl Studio {
                 Painter::Gpu(Box::new(card))
             }
         };
-        Ok(Self { painter, camera, width_scale })
+        Ok(Self { painter, start: camera, camera, width_scale })
     }
 
     /// The graphics card that draws, if one does.
@@ -109,6 +111,13 @@ impl Studio {
     /// How much wider than they are hairs are drawn.
     pub fn width_scale(&self) -> f32 {
         self.width_scale
+    }
+
+    /// Carries the camera round the vertical through what it looks at, by a share of a whole turn from where it began; seen from above, against the clock.
+    pub fn turn(&mut self, share: f32) {
+        let turn = Quat::from_rotation_y(share * std::f32::consts::TAU);
+        let back = self.start.position - self.start.target;
+        self.camera.position = self.start.target + turn * back;
     }
 
     /// Draws the stage as it is now.

@@ -27,7 +27,8 @@ Examples:
   hairspring render head.hair -o head.png
   hairspring render shot.toml -o shot.mp4 --size 1920x1080 --fps 24
   hairspring render shot.toml -o frame.####.png --frames 20-80 --resume
-  hairspring render shot.toml -o side.png --frames 60 --camera 1.2,1.6,0 --target 0,1.5,0")]
+  hairspring render shot.toml -o side.png --frames 60 --camera 1.2,1.6,0 --target 0,1.5,0
+  hairspring render shot.toml -o turn.mp4 --turntable --frames 61-180")]
 pub struct Options {
     #[command(flatten)]
     input: Input,
@@ -47,6 +48,10 @@ pub struct Options {
     #[command(flatten)]
     view: View,
 
+    /// Carry the camera round what it looks at, once in the frames that are drawn; its lamps go with it
+    #[arg(long)]
+    turntable: bool,
+
     /// Skip pictures that are there, complete and of this size; they are simulated through
     #[arg(long)]
     resume: bool,
@@ -63,6 +68,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if options.resume && kind != Kind::Pictures {
         let text =
             "--resume needs numbered pictures, such as frame.####.png: a clip or a still is drawn as a whole";
+        return Err(Fault::Usage(text.into()));
+    }
+    if options.turntable && kind == Kind::Still {
+        let text =
+            "--turntable needs a clip (turn.mp4) or numbered pictures (turn.####.png): a still does not turn";
         return Err(Fault::Usage(text.into()));
     }
     let scene = options.input.scene(console)?;
@@ -88,7 +98,9 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         Kind::Pictures => Sink::Pictures(options.output.clone()),
         Kind::Still => Sink::Still(options.output.clone(), range.first),
     };
-    let (stage, totals, ending) = shoot(scene, &wanted, options.fps, &options.view, vec![sink], console)?;
+    let turn = options.turntable.then_some(range);
+    let (stage, totals, ending) =
+        shoot(scene, &wanted, options.fps, &options.view, turn, vec![sink], console)?;
     if let Ending::Stopped(after) = ending {
         let how = match kind {
             Kind::Pictures => "run the same command with --resume to go on",
@@ -120,12 +132,13 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Plays a scene and films the frames in `wanted`, which are in order.
+/// Plays a scene and films the frames in `wanted`, which are in order; in the frames of `turn` the camera goes round once.
 pub fn shoot(
     scene: Scene,
     wanted: &[u32],
     fps: f64,
     view: &View,
+    turn: Option<FrameRange>,
     sinks: Vec<Sink>,
     console: Console,
 ) -> Result<(Stage, Totals, Ending), Fault> {
@@ -150,6 +163,9 @@ pub fn shoot(
         totals.stepped(frame, report);
         let mut timings = None;
         if wanted.binary_search(&frame).is_ok() {
+            if let Some(turn) = turn {
+                studio.turn((frame - turn.first) as f32 / turn.count() as f32);
+            }
             let (image, times) = studio.draw(stage)?;
             timings = Some(times);
             film.show(frame, image)?;

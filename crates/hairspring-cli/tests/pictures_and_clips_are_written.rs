@@ -123,6 +123,36 @@ fn a_scene_is_numbered_pictures_that_resume() {
     assert!(std::fs::read(folder.path().join("still.png")).unwrap() == whole[3].1);
 }
 
+/// Once round: the first frame is the picture from where the camera begins, the one after half of the frames that from the other side. A frame of it
+/// that is drawn anew is the same.
+#[test]
+fn a_turntable_goes_round_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 400);
+    let draw = |name, more: &[&str]| {
+        let target = ["--target", "0.1,0,0.1"];
+        let arguments = [&["render", "groom.hair", "-o", name], &SIZE[..], &target, more].concat();
+        succeed(f, &arguments);
+    };
+    draw("turn.#.png", &["--turntable", "--frames", "1-4", "--camera", "0.1,0.2,0.9"]);
+    let turn = |n: u32| std::fs::read(f.join(format!("turn.{n}.png"))).unwrap();
+    draw("front.png", &["--frames", "1", "--camera", "0.1,0.2,0.9"]);
+    assert!(turn(1) == std::fs::read(f.join("front.png")).unwrap());
+    let [second, third] = [turn(2), turn(3)];
+    assert!(second != third && third != turn(4));
+    // The scene plays on meanwhile: frame 3 from behind.
+    draw("back.png", &["--frames", "3", "--camera", "0.1,0.2,-0.7"]);
+    let [turned, still] = ["turn.3.png", "back.png"].map(|name| read_png(&f.join(name)).unwrap());
+    let apart = turned.rgb.iter().zip(&still.rgb).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+    assert!(drawn_pixels(&still) > 100 && apart < turned.rgb.len() / 100, "{apart} values are apart");
+    std::fs::remove_file(f.join("turn.2.png")).unwrap();
+    draw("turn.#.png", &["--turntable", "--frames", "1-4", "--resume", "--camera", "0.1,0.2,0.9"]);
+    assert!(turn(2) == second);
+    let refused = common::run(f, &["render", "groom.hair", "-o", "still.png", "--turntable"]);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("--turntable needs a clip"));
+}
+
 #[test]
 fn a_scene_is_a_clip() {
     let folder = tempfile::tempdir().unwrap();

@@ -78,7 +78,7 @@ fn moving(bencher: Bencher, threads: usize) {
 }
 
 /// The stage as it is, by its own camera.
-fn seen<'a>(stage: &'a Stage, draw: impl FnOnce(&Frame)) {
+fn seen(stage: &Stage, draw: impl FnOnce(&Frame)) {
     let hair: Vec<HairDraw> = stage.strands().map(HairDraw::of).collect();
     let body = stage.body().map(MeshDraw::of);
     let camera = stage.scene().camera.unwrap();

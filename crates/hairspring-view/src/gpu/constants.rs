@@ -89,6 +89,7 @@ fn constants() -> String {
         ("TRT_PATH", shade::TRT.2),
         ("MULTIPLE_FACING", shade::MULTIPLE.0),
         ("MULTIPLE_ROUND", shade::MULTIPLE.1),
+        ("HAIR_SHEEN", shade::SHEEN),
         ("MAX_LIGHT", color::MAX_LIGHT),
         ("UNIT", splat::UNIT),
         ("SPACING", splat::SPACING),
@@ -133,6 +134,8 @@ fn constants() -> String {
     let tops = color::CHANNELS.map(|(top, _)| top);
     let sky = shadow::SKY.map(vector);
     let _ = writeln!(out, "const CHANNEL_TOPS: vec3f = {};", vector(Vec3::from_array(tops)));
+    let bounce = vector(skin::SKIN.0 * shade::KEY_BOUNCE);
+    let _ = writeln!(out, "const HAIR_KEY_BOUNCE: vec3f = {bounce};");
     let _ = writeln!(out, "const WRAP: vec3f = {};", vector(skin::WRAP));
     let _ = writeln!(out, "const SKY: array<vec3f, {}> = array({});", sky.len(), sky.join(", "));
     let _ = writeln!(out, "const FILM_IN: mat3x3f = {};", matrix(&tonemap::FILM_IN));

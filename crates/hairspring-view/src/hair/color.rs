@@ -184,8 +184,9 @@ fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
     (Fibre::new(look, shade::random(!owner.strand)), block)
 }
 
+/// Linear RGB of a packed colour.
 #[inline(always)]
-fn open(bits: u32) -> Vec3 {
+pub(super) fn open(bits: u32) -> Vec3 {
     let root = Vec3::new((bits & 2047) as f32, (bits >> 11 & 2047) as f32, (bits >> 22) as f32);
     let scaled = root * Vec3::new(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0);
     scaled * scaled * MAX_LIGHT

@@ -6,7 +6,7 @@
 //! as the logarithm of colour, so that paths through the fibre, mixtures and shadow are sums and products.
 
 use super::color;
-use crate::lighting::Lighting;
+use crate::{body::skin, lighting::Lighting};
 use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
 use hairspring::scene::HairLook;
@@ -42,6 +42,8 @@ pub(crate) struct Shader {
     lamps: [(Vec3, Vec3); 3],
     sky: Vec3,
     ground: Vec3,
+    /// The key lamp's light, off skin.
+    bounce: Vec3,
 }
 
 /// What the points of one strand share.
@@ -96,6 +98,12 @@ pub(crate) const BENT: ([f32; 2], [f32; 2]) = ([1.19, 0.36], [-0.8, 0.6]);
 pub(crate) const TRT: ([f32; 2], f32, f32) = ([17.0, -16.78], 1.5, 0.8);
 /// Light from strand to strand: the share that faces the lamp, and the share from all round.
 pub(crate) const MULTIPLE: (f32, f32) = (0.7, 0.35);
+/// Light that is hidden from hair is not lost: it comes back from what hides it, in the colour of that (so has it ambient occlusion with bounces: Jiménez
+/// et al. 2016, "Practical Real-Time Strategies for Accurate Indirect Occlusion"). Of the light around, as much as reaches skin ([`skin::BOUNCE`]); of
+/// the key lamp's, what lit skin in a tenth of all directions sends on [1].
+pub(crate) const KEY_BOUNCE: f32 = 0.1;
+/// What the cuticle reflects of light from all round: Schlick's Fresnel, averaged over the width of a cylinder. It is what shows black hair its shape.
+pub(crate) const SHEEN: f32 = 0.07;
 
 impl Shader {
     pub fn new(lighting: &Lighting, eye: Vec3) -> Self {
@@ -105,6 +113,7 @@ impl Shader {
             lamps: [lamp(&lighting.key), lamp(&lighting.rim), lamp(&lighting.fill)],
             sky: lighting.sky,
             ground: lighting.ground,
+            bounce: lighting.key.color * skin::SKIN.0 * KEY_BOUNCE,
         }
     }
 
@@ -255,10 +264,13 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
     let up = across.0[1] * 0.5 + 0.5;
     for (i, sum) in sum.iter_mut().enumerate() {
         let (sky, ground) = (shader.sky.to_array()[i], shader.ground.to_array()[i]);
-        let ambient = (up * (sky - ground) + ground) * open;
+        let around = up * (sky - ground) + ground;
+        let near = (around * skin::BOUNCE + shader.bounce.to_array()[i]) * (-open + 1.0);
         let c = pigment.0[i];
-        let tint = exp2(c * (-open * 0.5 + 1.5));
-        *sum += ambient * tint * fibre.scatter;
+        let far = around * open;
+        // What came through hair is dyed on its way; what came between hair and body, once, as a lock is.
+        let scattered = far * exp2(c * (-open * 0.5 + 1.5)) + near * exp2(c);
+        *sum += scattered * fibre.scatter + (far + near) * (SHEEN * fibre.specular);
     }
     // Packed here, once a point and in lanes. A broken point darkens a strand; it does not spread over the picture.
     let mut bits = fearless_simd::u32x8::splat(simd, 0);
@@ -290,6 +302,7 @@ pub(crate) fn pigment(color: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tonemap::filmic;
     use fearless_simd::{Level, dispatch};
 
     #[test]
@@ -300,6 +313,26 @@ mod tests {
             let mut got = [0.0; LANES];
             dispatch!(level, simd => exp2(f32x8::splat(simd, x)).store_slice(&mut got));
             assert!((got[0] / x.exp2() - 1.0).abs() < 2e-4, "{x}: {} {}", got[0], x.exp2());
+        }
+    }
+
+    /// Where neither lamps nor sky reach, hair is dark, and dyed as much as in the open or more; it is not a hole in the picture, be it black.
+    #[test]
+    fn hair_in_deep_shade_is_dark_and_not_black() {
+        let shader = Shader::new(&Lighting::default(), Vec3::Z);
+        let fibre = Fibre::new(&HairLook::default(), 0.0);
+        let lit = |color: Vec3, depth: f32, open: f32| {
+            let mut block = Block { t: [[0.0; LANES], [1.0; LANES], [0.0; LANES]], ..Block::default() };
+            block.pigment = pigment(color).to_array().map(|c| [c; LANES]);
+            block.light = [depth, depth, depth, open].map(|l| [l; LANES]);
+            dispatch!(Level::new(), simd => shader.shade(simd, &fibre, &mut block));
+            color::open(block.color[0])
+        };
+        for color in [Vec3::new(0.55, 0.36, 0.16), Vec3::new(0.12, 0.05, 0.02), Vec3::splat(0.004)] {
+            let (shade, shine) = (lit(color, 60.0, 0.0), lit(color, 0.0, 1.0));
+            assert!(filmic(shade).min_element() > 0.5 / 255.0 / 12.92, "{color}: {shade}");
+            assert!(shade.max_element() < 0.35 * shine.max_element(), "{color}: {shade} of {shine}");
+            assert!(shade.x / shade.z > 0.9 * shine.x / shine.z, "{color}: {shade} of {shine}");
         }
     }
 

@@ -13,14 +13,21 @@ const SMOOTH: u32 = 0x80000000u;
 
 struct Vertex {
     @builtin(position) at: vec4f,
-    @location(0) @interpolate(perspective, centroid) p: vec3f,
-    @location(1) @interpolate(perspective, centroid) normal: vec3f,
-    @location(2) @interpolate(flat) face: vec3f,
-    @location(3) @interpolate(flat) cloth: vec4f,
+    @location(0) @interpolate(flat) triangle: u32,
 }
 
 fn position(i: u32) -> vec3f {
     return vec3f(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
+}
+
+fn normal(i: u32) -> vec3f {
+    return vec3f(normals[3u * i], normals[3u * i + 1u], normals[3u * i + 2u]);
+}
+
+/// A direction's unit vector, or another where it has no length.
+fn unit(v: vec3f, otherwise: vec3f) -> vec3f {
+    let length2 = dot(v, v);
+    return select(otherwise, v * inverseSqrt(length2), length2 > 1e-30);
 }
 
 fn known(p: vec3f) -> bool {
@@ -38,21 +45,28 @@ fn surface(@builtin(vertex_index) vertex: u32) -> Vertex {
     if !(known(a) && known(b) && known(c)) {
         return out;
     }
-    let i = triangle[vertex % 3u];
-    out.p = position(i);
-    let d = out.p - frame.eye;
+    let d = position(triangle[vertex % 3u]) - frame.eye;
     let slope = vec2f(dot(d, frame.right), dot(d, frame.up)) * frame.focal;
     // Depth is nearness: NEAR / distance.
     out.at = vec4f(slope / (0.5 * frame.size), NEAR, dot(d, frame.forward));
-    let face = cross(b - a, c - a);
-    let length2 = dot(face, face);
-    out.face = select(vec3f(0.0, 1.0, 0.0), face * inverseSqrt(length2), length2 > 0.0);
-    out.normal = out.face;
-    if (triangle.w & SMOOTH) != 0u {
-        out.normal = vec3f(normals[3u * i], normals[3u * i + 1u], normals[3u * i + 2u]);
-    }
-    out.cloth = cloths[triangle.w & ~SMOOTH];
+    out.triangle = vertex / 3u;
     return out;
+}
+
+/// `skin::meet`: the weights of a triangle's corners where the ray through the middle of a pixel meets its plane, kept inside the triangle. A place that the
+/// card interpolates is not to be trusted at edges: Mesa's software driver weighs it at the centroid and divides by the w of the pixel's middle, so that a
+/// place a metre and a half from the origin is off by millimetres, and in the shadow of the surface that it lies on.
+fn meet(ray: vec3f, a: vec3f, b: vec3f, c: vec3f) -> vec3f {
+    let to_b = b - a;
+    let to_c = c - a;
+    let q = cross(ray, to_c);
+    let det = dot(to_b, q);
+    let s = frame.eye - a;
+    let u = dot(s, q) / det;
+    let v = dot(ray, cross(s, to_b)) / det;
+    let weight = vec3f(1.0 - u - v, u, v);
+    let inside = clamp(select(vec3f(1.0 / 3.0), weight, known(weight)), vec3f(0.0), vec3f(1.0));
+    return inside / (inside.x + inside.y + inside.z);
 }
 
 /// One lobe of `skin::specular`.
@@ -80,14 +94,26 @@ fn specular(n: vec3f, v: vec3f, l: vec3f, roughness: f32, nv: f32) -> f32 {
 /// `skin::light`.
 @fragment
 fn light(in: Vertex) -> @location(0) vec4f {
-    let eye = normalize(frame.eye - in.p);
-    let length2 = dot(in.normal, in.normal);
-    let turned = dot(in.face, eye) < 0.0 && dot(in.normal, eye) < 0.0;
-    let n = select(in.face, in.normal * inverseSqrt(length2), length2 > 1e-30) * select(1.0, -1.0, turned);
-    let depth = shadow_around(in.p + n * (2.5 * frame.voxel));
+    let triangle = triangles[in.triangle];
+    let corners = mat3x3f(position(triangle.x), position(triangle.y), position(triangle.z));
+    let offset = (in.at.xy - 0.5 * frame.size) / frame.focal;
+    let ray = frame.forward + frame.right * offset.x - frame.up * offset.y;
+    let weight = meet(ray, corners[0], corners[1], corners[2]);
+    let p = corners * weight;
+    let eye = -normalize(ray);
+    let face = unit(cross(corners[1] - corners[0], corners[2] - corners[0]), vec3f(0.0, 1.0, 0.0));
+    var smooth_ = face;
+    if (triangle.w & SMOOTH) != 0u {
+        smooth_ = mat3x3f(normal(triangle.x), normal(triangle.y), normal(triangle.z)) * weight;
+    }
+    // Open meshes are seen from both sides.
+    let turned = dot(face, eye) < 0.0 && dot(smooth_, eye) < 0.0;
+    let n = unit(smooth_, face) * select(1.0, -1.0, turned);
+    let cloth = cloths[triangle.w & ~SMOOTH];
+    let depth = shadow_around(p + n * (2.5 * frame.voxel));
     let thinned = exp(-HAIR_SHADE * depth.xyz);
     // Key, rim and fill.
-    let open = vec3f(soft_body_light(in.p + n * 5e-4) * thinned.x, thinned.yz);
+    let open = vec3f(soft_body_light(p + n * 5e-4) * thinned.x, thinned.yz);
     let nv = max(dot(n, eye), 1e-3);
     var diffuse = vec3f(0.0);
     var gloss = vec3f(0.0);
@@ -97,13 +123,13 @@ fn light(in: Vertex) -> @location(0) vec4f {
         let wrapped = max((nl + WRAP) / (1.0 + WRAP), vec3f(0.0)) / (1.0 + WRAP);
         let tinted = vec3f(pow(open[k], 0.75), open[k], pow(open[k], 1.1));
         diffuse += frame.lamps[k].color * wrapped * tinted;
-        gloss += frame.lamps[k].color * (specular(n, eye, l, in.cloth.w, nv) * max(nl, 0.0) * open[k]);
+        gloss += frame.lamps[k].color * (specular(n, eye, l, cloth.w, nv) * max(nl, 0.0) * open[k]);
     }
     let open_sky = BOUNCE + (1.0 - BOUNCE) * depth.w;
     let sky = mix(frame.ground, frame.sky, 0.5 + 0.5 * n.y) * open_sky + frame.lamps[0].color * KEY_BOUNCE;
     let grazing = (1.0 - nv) * (1.0 - nv);
     let sheen = SHEEN * grazing * grazing * depth.w;
-    let lit = in.cloth.xyz * (diffuse + sky) + gloss + frame.sky * sheen;
+    let lit = cloth.xyz * (diffuse + sky) + gloss + frame.sky * sheen;
     return vec4f(select(vec3f(0.0), lit, known(lit)), 1.0);
 }
 

@@ -99,8 +99,12 @@ fn shade(p: vec3f, t: vec3f, pigment: vec3f, light: vec4f, body: f32, tilt: f32,
     }
     let open = light.w;
     let up = across.y * 0.5 + 0.5;
-    let ambient = (frame.ground + up * (frame.sky - frame.ground)) * open;
-    sum += ambient * exp2(pigment * (1.5 - 0.5 * open)) * style.scatter;
+    let around = frame.ground + up * (frame.sky - frame.ground);
+    let near = (around * BOUNCE + frame.lamps[0].color * HAIR_KEY_BOUNCE) * (1.0 - open);
+    let far = around * open;
+    // What came through hair is dyed on its way; what came between hair and body, once, as a lock is.
+    let scattered = far * exp2(pigment * (1.5 - 0.5 * open)) + near * exp2(pigment);
+    sum += scattered * style.scatter + (far + near) * HAIR_SHEEN * style.specular;
     return sum;
 }
 
