@@ -2,8 +2,9 @@
 //!
 //! | file | what is in it |
 //! | --- | --- |
-//! | `document`, `effective` | the scene's text, edited in place; undo, save; what counts in it |
+//! | `document`, `effective`, `defaults` | the scene's text, edited in place; undo, save; what counts in it, and what would had nobody changed it |
 //! | `key`, `parameter`, `field` | names of its values; every parameter, and every field of a list's entries, with its unit, range and what it does |
+//! | `edit` | what a parameter's new value writes, and where |
 //! | `differ` | what two scenes that are compared differ in |
 //! | `player`, `snapshot` | the simulation on a thread of its own, and what that shows of a moment |
 //! | `session` | document and player together: whatever is done to them is an action |
@@ -22,9 +23,11 @@
 mod app;
 mod axes;
 mod carried;
+mod defaults;
 mod desktop;
 mod differ;
 mod document;
+mod edit;
 mod effective;
 mod error;
 mod field;

@@ -3,6 +3,7 @@
 use crate::{
     AppError, differ,
     document::{Change, Document},
+    edit,
     key::Key,
     parameter::Parameter,
     player::{Order, Player, STEP},
@@ -154,11 +155,10 @@ impl Session {
                 self.tell_length();
             }
             Action::Parameter(parameter, value) => {
-                let (groom, group) = self.chosen;
+                let chosen = self.chosen;
                 let document = self.edited_mut();
-                // A default is taken away from where it is written; it needs no material of its own.
-                let key = parameter.place(document, groom, group)?;
-                let change = document.set(&key, value)?;
+                let edits = edit::of(document, parameter, value, chosen)?;
+                let change = document.set_all(edits)?;
                 self.follow(change)?;
             }
             Action::Set(key, value) => {
