@@ -43,6 +43,19 @@ pub struct Document {
     defaults: Reference,
 }
 
+/// A scene's text, and where its files are named from.
+pub struct Source {
+    path: PathBuf,
+    text: String,
+}
+
+impl Source {
+    /// Reads the scene with all its files.
+    pub fn load(&self) -> Result<Loaded<Scene>, AppError> {
+        Ok(read_scene_text(&self.path, &self.text)?)
+    }
+}
+
 /// What an edit asks of what is playing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
@@ -84,7 +97,12 @@ impl Document {
 
     /// Reads the scene with all its files.
     pub fn load(&self) -> Result<Loaded<Scene>, AppError> {
-        Ok(read_scene_text(&self.path, &self.text)?)
+        self.source().load()
+    }
+
+    /// What it takes to read the scene elsewhere.
+    pub fn source(&self) -> Source {
+        Source { path: self.path.clone(), text: self.text.clone() }
     }
 
     /// Its settings; grooms are without strands.

@@ -7,7 +7,7 @@
 //! | `edit` | what a parameter's new value writes, and where |
 //! | `differ` | what two scenes that are compared differ in |
 //! | `player`, `snapshot` | the simulation on a thread of its own, and what that shows of a moment |
-//! | `session` | document and player together: whatever is done to them is an action |
+//! | `session`, `reading` | document and player together: whatever is done to them is an action; a scene that is read again meanwhile |
 //! | `view`, `orbit`, `overlay`, `axes`, `ramp` | camera and tools, and what is laid over the picture |
 //! | `handle`, `carried` | what can be taken in the picture, and where joints have carried it |
 //! | `painter` | who draws the hair |
@@ -43,6 +43,7 @@ mod panel;
 mod parameter;
 mod player;
 mod ramp;
+mod reading;
 mod record;
 mod script;
 mod session;

@@ -6,7 +6,7 @@ use eframe::egui::{self, DragValue, Slider, Ui};
 use toml_edit::Value;
 
 /// Width of a slider's number with its unit [points].
-pub const VALUE: f32 = 82.0;
+pub const VALUE: f32 = 90.0;
 
 /// The widget of a parameter, which calls `edit` with a new value; `listed`: of a groom that the text lists, which may have guides of its own.
 pub fn control(
@@ -56,10 +56,10 @@ pub fn control(
         }
         Kind::Guides { max } => {
             let word = now.and_then(toml::Value::as_str);
-            let words = ["number", "all", "file"];
+            let words = ["some", "all", "file"];
             let words = if listed { &words[..] } else { &words[..2] };
             let combo = egui::ComboBox::from_id_salt(parameter.name)
-                .width(54.0)
+                .width(24.0)
                 .selected_text(word.unwrap_or(words[0]))
                 .show_ui(ui, |ui| {
                     for choice in words {

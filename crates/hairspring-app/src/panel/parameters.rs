@@ -1,9 +1,6 @@
 //! Every parameter as a slider with its unit, range, tooltip and reset, under what an artist thinks of.
 
-use super::{
-    Labelled,
-    control::{VALUE, as_number, control},
-};
+use super::control::{VALUE, as_number, control};
 use crate::{
     edit,
     key::Key,
@@ -15,14 +12,19 @@ use glam::Vec3;
 use toml_edit::Value;
 
 /// Width of names [points].
-const LABEL: f32 = 108.0;
+const LABEL: f32 = 106.0;
 /// Width of what brings a parameter back, which has its room whether it is there or not [points].
-const RESET: f32 = 38.0;
+const RESET: f32 = 44.0;
 
 /// Shows all groups; what is added to the scene stands about `at` [m].
 pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actions: &mut Vec<Action>) {
     choose(ui, session, actions);
-    ui.add(egui::TextEdit::singleline(filter).hint_text("Find a parameter").desired_width(f32::INFINITY));
+    ui.horizontal(|ui| {
+        if session.is_reading() {
+            ui.add(egui::Spinner::new().size(14.0)).on_hover_text("The scene is made anew");
+        }
+        ui.add(egui::TextEdit::singleline(filter).hint_text("Find a parameter").desired_width(f32::INFINITY));
+    });
     ui.separator();
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let sought = filter.trim().to_lowercase();
@@ -164,7 +166,9 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
         });
         let waits = parameter.is_geometry() && ui.input(|i| i.pointer.any_down());
         match (edited, held) {
-            (Some(Some(value)), _) if waits => ui.data_mut(|data| drop(data.insert_temp(held_id, value))),
+            (Some(Some(value)), _) if waits => {
+                ui.data_mut(|data| data.insert_temp(held_id, value));
+            }
             (None, Some(_)) if waits => {}
             (edited, held) => {
                 if let Some(value) = edited.or(held.map(Some)) {

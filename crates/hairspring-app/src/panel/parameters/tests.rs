@@ -305,6 +305,21 @@ fn hairs_are_counted_anew_when_the_slider_is_let_go_of() {
     panel.pointer(at(0.1), Some(false));
     assert_ne!(panel.text(), HEAD);
     assert_eq!(panel.session.borrow().begun(), begun + 1, "once");
+    assert!(panel.session.borrow().is_reading(), "by another thread than the window's");
+    let key = Key::top("groom").place(0).field("strands");
+    let session = &panel.session;
+    let hairs = key.look_up(session.borrow().document().effective()).and_then(toml::Value::as_integer);
+    let shown = || {
+        assert!(session.borrow_mut().error().is_none());
+        let session = session.borrow();
+        let snapshot = session.latest().filter(|s| s.scene == session.begun())?;
+        Some(snapshot.stages[0].still.grooms[0].strands() as i64)
+    };
+    let waited = (0..12_000).find_map(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        shown()
+    });
+    assert_eq!(waited, hairs);
     panel.session.borrow_mut().act(Action::Undo).unwrap();
     assert_eq!(panel.text(), HEAD, "one step");
 }
@@ -333,10 +348,11 @@ fn a_tooltip_names_range_unit_and_default() {
 fn a_change_does_not_widen_the_panel() {
     let mut panel = panel(HEAD, ".");
     let before = *panel.width.borrow();
-    let values: [(&str, Value); 4] = [
+    let values: [(&str, Value); 5] = [
         ("damping", 0.12345.into()),
         ("young", 4.56e9.into()),
         ("guides", 7.into()),
+        ("density", 4321.5.into()),
         ("mass_profile", [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0].into_iter().collect()),
     ];
     for (name, value) in values {
@@ -344,7 +360,7 @@ fn a_change_does_not_widen_the_panel() {
         panel.harness.run_steps(3);
         assert_eq!(*panel.width.borrow(), before, "{name}");
     }
-    assert_eq!(panel.resets(), 4);
+    assert_eq!(panel.resets(), 5);
     assert!(before < 380.0, "{before}");
 }
 
