@@ -7,6 +7,8 @@ use toml_edit::Value;
 
 /// Width of a slider's number with its unit [points].
 pub const VALUE: f32 = 90.0;
+/// Of one without a unit [points].
+const BARE: f32 = 66.0;
 
 /// The widget of a parameter, which calls `edit` with a new value; `listed`: of a groom that the text lists, which may have guides of its own.
 pub fn control(
@@ -29,7 +31,7 @@ pub fn control(
                 value
             });
             let slider = slider.logarithmic(log).clamping(egui::SliderClamping::Never).max_decimals(4);
-            fit(ui);
+            fit(ui, parameter.unit);
             Some(ui.add(written(slider, parameter)).labelled(ui, name))
         }
         Kind::Maybe { min, max, from } => {
@@ -45,13 +47,13 @@ pub fn control(
                 }
                 value
             });
-            fit(ui);
+            fit(ui, parameter.unit);
             // From 0 on, equal ways are equal steps: of factors there is no least.
             let slider = slider.logarithmic(min > 0.0).max_decimals(4);
             Some(ui.add(written(slider, parameter)).labelled(ui, name))
         }
         Kind::Count { min, max } => {
-            fit(ui);
+            fit(ui, parameter.unit);
             Some(count(ui, number.unwrap_or(min as f64), (min, max), edit).labelled(ui, name))
         }
         Kind::Guides { max } => {
@@ -71,7 +73,7 @@ pub fn control(
                 });
             let combo = combo.response.labelled(ui, name);
             let Some(value) = number else { return Some(combo) };
-            fit(ui);
+            fit(ui, parameter.unit);
             Some(count(ui, value, (1, max), edit).labelled(ui, name))
         }
         Kind::Switch => {
@@ -176,8 +178,8 @@ fn count(
 }
 
 /// Makes a slider as wide as fits in what is left of its row.
-fn fit(ui: &mut Ui) {
-    let left = ui.available_size_before_wrap().x - VALUE;
+fn fit(ui: &mut Ui, unit: &str) {
+    let left = ui.available_size_before_wrap().x - if unit.is_empty() { BARE } else { VALUE };
     ui.spacing_mut().slider_width = left.clamp(20.0, 240.0);
 }
 

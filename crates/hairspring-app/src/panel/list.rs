@@ -222,7 +222,8 @@ impl Rows<'_> {
             return;
         }
         ui.push_id(name, |ui| {
-            ui.horizontal(|ui| {
+            // What is too long for the panel goes on below: it does not grow.
+            ui.horizontal_wrapped(|ui| {
                 let left = egui::Layout::left_to_right(egui::Align::Center);
                 ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
                     ui.set_min_width(LABEL);

@@ -14,7 +14,7 @@ use toml_edit::Value;
 /// Width of names [points].
 const LABEL: f32 = 106.0;
 /// Width of what brings a parameter back, which has its room whether it is there or not [points].
-const RESET: f32 = 44.0;
+const RESET: f32 = 42.0;
 
 /// Shows all groups; what is added to the scene stands about `at` [m].
 pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actions: &mut Vec<Action>) {
@@ -158,6 +158,7 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
                 });
             });
             if changed {
+                ui.spacing_mut().button_padding.x = 3.0;
                 let back = ui.add(egui::Button::new("reset").small().truncate());
                 if back.on_hover_text("Back to how the scene was opened").clicked() {
                     edited = Some(edit::reset(document, parameter, chosen));

