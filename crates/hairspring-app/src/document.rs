@@ -3,11 +3,8 @@
 //! The text is the only copy: sliders write into it, undo puts an older one back, save writes it out. What it comes to is read by `hairspring-io`, as for every other command, so that the window can
 //! do nothing that a scene file cannot, and a value that the reader refuses is refused here with the same sentence.
 
-use crate::{effective::effective, error::AppError, key::Key};
-use hairspring::{
-    material::PRESETS,
-    scene::{Scene, builtin::Style},
-};
+use crate::{defaults::Reference, effective::effective, error::AppError, key::Key};
+use hairspring::scene::Scene;
 use hairspring_io::{Loaded, read_scene_text, read_settings, same_geometry};
 use std::{
     io::Write,
@@ -41,6 +38,22 @@ pub struct Document {
     /// The text as a table, read once for all who ask what it says.
     said: toml::Table,
     effective: toml::Table,
+    /// What would count had nothing been changed since it was opened, and were nothing said.
+    opened: Reference,
+    defaults: Reference,
+}
+
+/// A scene's text, and where its files are named from.
+pub struct Source {
+    path: PathBuf,
+    text: String,
+}
+
+impl Source {
+    /// Reads the scene with all its files.
+    pub fn load(&self) -> Result<Loaded<Scene>, AppError> {
+        Ok(read_scene_text(&self.path, &self.text)?)
+    }
 }
 
 /// What an edit asks of what is playing.
@@ -68,6 +81,8 @@ impl Document {
             redo: Vec::new(),
             dragged: Vec::new(),
             effective: effective(&settings, &said),
+            opened: Reference::opened(path, &said),
+            defaults: Reference::library(path, &said),
             settings,
             said,
         })
@@ -82,7 +97,12 @@ impl Document {
 
     /// Reads the scene with all its files.
     pub fn load(&self) -> Result<Loaded<Scene>, AppError> {
-        Ok(read_scene_text(&self.path, &self.text)?)
+        self.source().load()
+    }
+
+    /// What it takes to read the scene elsewhere.
+    pub fn source(&self) -> Source {
+        Source { path: self.path.clone(), text: self.text.clone() }
     }
 
     /// Its settings; grooms are without strands.
@@ -93,6 +113,16 @@ impl Document {
     /// Every value that counts: see [`crate::effective::effective`].
     pub fn effective(&self) -> &toml::Table {
         &self.effective
+    }
+
+    /// What would count had nothing been changed since it was opened.
+    pub fn opened(&self) -> &Reference {
+        &self.opened
+    }
+
+    /// Every value that would count if the text said nothing of it, by the same names.
+    pub fn defaults(&self) -> &toml::Table {
+        self.defaults.values()
     }
 
     /// What the text itself says.
@@ -245,19 +275,12 @@ impl Document {
             return Err(AppError::new(format!("the scene says nothing of groom {groom}")));
         };
         let text = &self.said;
-        let named = place.look_up(text);
-        let list: Vec<String> = match named {
-            Some(toml::Value::String(name)) => vec![name.clone()],
-            Some(toml::Value::Array(names)) => {
-                names.iter().filter_map(|n| n.as_str().map(str::to_owned)).collect()
-            }
-            _ => Vec::new(),
-        };
+        let list = self.materials_of(groom);
         let at = group.min(list.len().saturating_sub(1));
-        let known = |name: &str| text.get("material").is_some_and(|m| m.get(name).is_some());
-        if let Some(name) = list.get(at).filter(|name| known(name)) {
-            return Ok(key(name));
+        if let Some(name) = self.material_of(groom, group) {
+            return Ok(key(&name));
         }
+        let known = |name: &str| text.get("material").is_some_and(|m| m.get(name).is_some());
         // A preset, the built-in style's or the default: a material of its own begins from it.
         let style = text
             .get("builtin")
@@ -291,6 +314,24 @@ impl Document {
         Ok(key(&name))
     }
 
+    /// Names of the materials of groom `groom`, as the text says them.
+    fn materials_of(&self, groom: usize) -> Vec<String> {
+        match self.groom_key(groom).and_then(|key| key.field("material").look_up(&self.said)) {
+            Some(toml::Value::String(name)) => vec![name.clone()],
+            Some(toml::Value::Array(names)) => {
+                names.iter().filter_map(|n| n.as_str().map(str::to_owned)).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Name of the material that the text has for group `group` of groom `groom`; `None` where that has a preset, or none.
+    pub fn material_of(&self, groom: usize, group: usize) -> Option<String> {
+        let mut list = self.materials_of(groom);
+        let name = (!list.is_empty()).then(|| list.swap_remove(group.min(list.len() - 1)))?;
+        self.said.get("material")?.get(&name).map(|_| name)
+    }
+
     /// Where the text says what groom `groom` is; `None` for the built-in head's brows, of which it says nothing.
     pub fn groom_key(&self, groom: usize) -> Option<Key> {
         let made = self.settings.grooms.len().saturating_sub(self.listed_grooms());
@@ -304,23 +345,6 @@ impl Document {
     /// Grooms that the text says something of.
     pub fn grooms(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.settings.grooms.len()).filter(|g| self.groom_key(*g).is_some())
-    }
-
-    /// Name of the preset that the first material of groom `groom` begins from, if any.
-    pub fn preset_of(&self, groom: usize) -> Option<&'static str> {
-        let text = &self.said;
-        let key = self.groom_key(groom)?;
-        let named = match key.field("material").look_up(text) {
-            Some(toml::Value::Array(names)) => names.first().and_then(toml::Value::as_str),
-            Some(name) => name.as_str(),
-            None if groom == 0 => text
-                .get("builtin")
-                .map(|b| b.get("style").and_then(toml::Value::as_str).unwrap_or(Style::default().name())),
-            None => None,
-        }?;
-        let own = text.get("material").and_then(|m| m.get(named));
-        let name = own.map_or(Some(named), |own| own.get("preset").and_then(toml::Value::as_str))?;
-        PRESETS.into_iter().find(|preset| *preset == name)
     }
 
     fn listed_grooms(&self) -> usize {
@@ -353,6 +377,8 @@ impl Document {
         let same = same_geometry(&self.text, &text);
         self.said = table(&text)?;
         self.effective = effective(&settings, &self.said);
+        self.opened.follow(&self.path, &self.said);
+        self.defaults.follow(&self.path, &self.said);
         (self.settings, self.text) = (settings, text);
         Ok(if same { Change::Settings } else { Change::Geometry })
     }

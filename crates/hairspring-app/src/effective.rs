@@ -1,29 +1,45 @@
 //! Every value of a scene that counts, whether its text says it or its default does.
 
-use hairspring::scene::{Scene, SceneGroom};
+use hairspring::{
+    groom::{Growth, Thicken},
+    material::{Material, PRESETS},
+    scene::{
+        Guides, Scene, SceneGroom, SceneSheet,
+        builtin::{BuiltinOptions, Style},
+    },
+};
 
-/// What counts in a scene with one groom that says nothing.
-pub fn defaults() -> toml::Table {
-    let gravity = glam::Vec3::new(0.0, -9.81, 0.0);
-    effective(
-        &Scene { grooms: vec![SceneGroom::default()], gravity, ..Scene::default() },
-        &toml::Table::new(),
-    )
+fn value(of: &impl serde::Serialize) -> toml::Value {
+    toml::Value::try_from(of).unwrap_or_else(|why| unreachable!("settings are plain data: {why}"))
 }
 
-/// Of these settings, by the names of a scene file; but that `groom` lists all grooms, the built-in scene's among them, and that a groom's `material` is the list of
-/// its materials. `said` is the text's own table: a motion is no setting, and its keys count as they are written.
+/// Of these settings, by the names of a scene file; but that `groom` lists all grooms, the built-in scene's among them with what `[builtin]` says of it, and that a
+/// groom's `material` is the list of its materials, each with its `preset`. `said` is the text's own table: a motion is no setting, and its keys count as they are written.
 pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
-    fn value(of: &impl serde::Serialize) -> toml::Value {
-        toml::Value::try_from(of).unwrap_or_else(|why| unreachable!("settings are plain data: {why}"))
-    }
-    let grooms = scene.grooms.iter().map(|groom| {
+    let made = scene.grooms.len().saturating_sub(entries(said, "groom").len());
+    let grooms = scene.grooms.iter().enumerate().map(|(place, groom)| {
+        let text = match place.checked_sub(made) {
+            Some(listed) => entries(said, "groom").get(listed),
+            None => said.get("builtin").filter(|_| place == 0),
+        };
         let mut table = toml::Table::new();
         table.insert("look".into(), value(&groom.look));
         table.insert("effects".into(), value(&groom.effects));
-        let default = [hairspring::material::Material::default()];
+        table.insert("guides".into(), guides(groom));
+        let default = [Material::default()];
         let materials = if groom.materials.is_empty() { &default[..] } else { &groom.materials };
-        table.insert("material".into(), value(&materials));
+        let materials = materials.iter().enumerate().map(|(group, material)| {
+            let mut material = value(material);
+            if let Some(table) = material.as_table_mut() {
+                let preset = preset_of(said, text, place < made, group).unwrap_or("none");
+                table.insert("preset".into(), preset.into());
+            }
+            material
+        });
+        table.insert("material".into(), toml::Value::Array(materials.collect()));
+        if let Some(text) = text {
+            if place < made { built(text, &mut table) } else { listed(text, &mut table) }
+        }
         toml::Value::Table(table)
     });
     let mut all = toml::Table::new();
@@ -45,13 +61,115 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
         all.insert(name.into(), value);
     }
     if let Some(clip) = said.get("clip") {
-        all.insert("clip".into(), clip.clone());
+        all.insert("clip".into(), motion(clip));
     }
+    if let Some(body) = said.get("body") {
+        all.insert("body".into(), picked(body, &["color", "roughness"]).into());
+    }
+    let sheets = entries(said, "sheet").iter().map(|sheet| {
+        let mut table = picked(sheet, &["joint", "thickness"]);
+        table.entry("thickness").or_insert(value(&SceneSheet::THICKNESS));
+        toml::Value::Table(table)
+    });
+    all.insert("sheet".into(), toml::Value::Array(sheets.collect()));
     if let Some(camera) = &scene.camera {
         all.insert("camera".into(), value(camera));
     }
     all.iter_mut().for_each(|(_, value)| shortest(value));
     all
+}
+
+/// What `[builtin]` says of the head of hair besides what every groom has.
+fn built(text: &toml::Value, table: &mut toml::Table) {
+    let style =
+        text.get("style").and_then(toml::Value::as_str).and_then(Style::from_name).unwrap_or_default();
+    let strands = i64::from(BuiltinOptions::new(style).strands);
+    table.insert("style".into(), style.name().into());
+    table.insert("strands".into(), text.get("strands").cloned().unwrap_or(strands.into()));
+    table.insert("motion".into(), text.get("motion").cloned().unwrap_or(true.into()));
+}
+
+/// What a `[[groom]]` says besides: how many hairs it is made, and where it stands.
+fn listed(text: &toml::Value, table: &mut toml::Table) {
+    let over = |base: toml::Value, name: &str| {
+        let (mut base, said) = (base.try_into::<toml::Table>().unwrap_or_default(), text.get(name));
+        base.extend(
+            said.and_then(toml::Value::as_table).into_iter().flatten().map(|(k, v)| (k.clone(), v.clone())),
+        );
+        base
+    };
+    table.insert("thicken".into(), over(value(&Thicken::default()), "thicken").into());
+    if text.get("grow").is_some() {
+        let base = Growth::default();
+        let mut grow = toml::Table::new();
+        grow.insert("strands".into(), value(&base.strands));
+        grow.insert("points".into(), value(&base.points));
+        for (name, x) in [("length", base.length), ("spread", base.spread), ("fall", base.fall)] {
+            grow.insert(name.into(), value(&x));
+        }
+        table.insert("grow".into(), over(grow.into(), "grow").into());
+    }
+    let mut place = toml::Table::new();
+    for (name, x) in [("position", 0.0), ("rotation", 0.0), ("scale", 1.0)] {
+        place.insert(name.into(), value(&[x; 3]));
+    }
+    let mut place = over(place.into(), "transform");
+    // One factor is as good as three alike.
+    if let Some(factor) = place.get("scale").filter(|scale| !scale.is_array()).cloned() {
+        place.insert("scale".into(), vec![factor; 3].into());
+    }
+    table.insert("transform".into(), place.into());
+}
+
+/// A motion as it is written, with what counts of a file's where the text leaves it out.
+fn motion(clip: &toml::Value) -> toml::Value {
+    let mut table = clip.as_table().cloned().unwrap_or_default();
+    if clip.get("keys").is_none() {
+        let start = table.entry("start").or_insert(0.into()).clone();
+        if clip.get("joint").is_some() {
+            table.entry("rest_frame").or_insert(start);
+            table.entry("travel").or_insert("in-place".into());
+            table.entry("facing").or_insert(0.0.into());
+        }
+    }
+    table.into()
+}
+
+/// These fields of a table, where they are said.
+fn picked(text: &toml::Value, names: &[&str]) -> toml::Table {
+    names.iter().filter_map(|name| Some(((*name).to_owned(), text.get(name)?.clone()))).collect()
+}
+
+fn guides(groom: &SceneGroom) -> toml::Value {
+    match groom.guides {
+        Guides::FromGroom => "file".into(),
+        Guides::All => "all".into(),
+        Guides::Count(n) => i64::from(n).into(),
+    }
+}
+
+/// Name of the preset that a material of a groom, of which `text` tells, begins from; `built`: of the built-in scene, whose style has a material.
+fn preset_of(
+    said: &toml::Table,
+    text: Option<&toml::Value>,
+    built: bool,
+    group: usize,
+) -> Option<&'static str> {
+    let text = text?;
+    let named = match text.get("material") {
+        Some(toml::Value::Array(names)) => names.get(group).or(names.last()).and_then(toml::Value::as_str),
+        Some(name) => name.as_str(),
+        None if built => text.get("style").map_or(Some(Style::default().name()), toml::Value::as_str),
+        None => None,
+    }?;
+    let own = said.get("material").and_then(|materials| materials.get(named));
+    let name = own.map_or(Some(named), |own| own.get("preset").and_then(toml::Value::as_str))?;
+    PRESETS.into_iter().find(|preset| *preset == name)
+}
+
+/// The entries of a list of tables.
+pub fn entries<'a>(said: &'a toml::Table, list: &str) -> &'a [toml::Value] {
+    said.get(list).and_then(toml::Value::as_array).map_or(&[], Vec::as_slice)
 }
 
 /// Settings are single precision: each number is the shortest that reads as it, as a person would write it.

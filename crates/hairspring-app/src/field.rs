@@ -92,11 +92,12 @@ const ALL: &[Field] = fields! {
     maybe "from", "Takes hold at", "s", Kind::Number, "When it takes hold.";
     maybe "until", "Lets go at", "s", Kind::Maybe(2.0), "When it lets go; left out: never.";
     maybe "path", "Way", "", WAY, "How far it has moved at a time; straight in between, at rest before and after.";
+    maybe "thickness", "Thickness", "m", Kind::Number, "How far hair stays from it, on both sides. It begins the scene anew.";
     maybe "keys", "Keys", "", MOTION, "Where the whole body is at a time: it goes from key to key as a rigid piece, and rests at each.";
     maybe "points", "Corners", "", CORNERS, "Points whose convex hull it is.";
     maybe "time", "Time", "s", Kind::Number, "When. Each key is later than the one before.";
     maybe "position", "Moved by", "m", Kind::Number, "How far it has gone from where it was.";
-    maybe "pivot", "Turns about", "m", Kind::Number, "The point of the body that its keys turn it about.";
+    maybe "pivot", "Turns about", "m", Kind::Number, "The point of the body that its motion turns it about.";
 };
 
 /// The way of a charged body, which is where it is instead of how far it has gone.

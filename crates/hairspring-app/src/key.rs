@@ -45,9 +45,14 @@ impl Key {
 
     /// The field `name` beside what this key names.
     pub fn sibling(&self, name: &str) -> Self {
+        self.parent().entry(name)
+    }
+
+    /// What holds what this key names.
+    pub fn parent(&self) -> Self {
         let mut steps = self.0.clone();
         steps.pop();
-        Self(steps).entry(name)
+        Self(steps)
     }
 
     /// What a table of effective values says here.

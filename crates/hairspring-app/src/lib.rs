@@ -2,11 +2,12 @@
 //!
 //! | file | what is in it |
 //! | --- | --- |
-//! | `document`, `effective` | the scene's text, edited in place; undo, save; what counts in it |
+//! | `document`, `effective`, `defaults` | the scene's text, edited in place; undo, save; what counts in it, and what would had nobody changed it |
 //! | `key`, `parameter`, `field` | names of its values; every parameter, and every field of a list's entries, with its unit, range and what it does |
+//! | `edit` | what a parameter's new value writes, and where |
 //! | `differ` | what two scenes that are compared differ in |
 //! | `player`, `snapshot` | the simulation on a thread of its own, and what that shows of a moment |
-//! | `session` | document and player together: whatever is done to them is an action |
+//! | `session`, `reading` | document and player together: whatever is done to them is an action; a scene that is read again meanwhile |
 //! | `view`, `orbit`, `overlay`, `axes`, `ramp` | camera and tools, and what is laid over the picture |
 //! | `handle`, `carried` | what can be taken in the picture, and where joints have carried it |
 //! | `painter` | who draws the hair |
@@ -23,9 +24,11 @@ mod app;
 mod axes;
 mod ball;
 mod carried;
+mod defaults;
 mod desktop;
 mod differ;
 mod document;
+mod edit;
 mod effective;
 mod error;
 mod field;
@@ -41,6 +44,7 @@ mod panel;
 mod parameter;
 mod player;
 mod ramp;
+mod reading;
 mod record;
 mod script;
 mod session;

@@ -2,11 +2,12 @@
 //! library's; entries of lists (colliders, hands, sources of wind, charged bodies, keys) are in `field`.
 
 use crate::{document::Document, key::Key};
+use hairspring::material::PRESETS;
 
 /// What an artist thinks of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Group {
-    /// What is laid over the groom.
+    /// What hair it is, how much of it, and what is laid over it.
     Style,
     /// How hair holds its shape.
     Stiffness,
@@ -22,13 +23,15 @@ pub enum Group {
     Volume,
     /// Colour and gloss.
     Look,
+    /// Where it is seen from.
+    Camera,
     /// How time is cut.
     Solver,
 }
 
 impl Group {
     /// All of them, in the order of the panel.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Style,
         Self::Stiffness,
         Self::Weight,
@@ -37,6 +40,7 @@ impl Group {
         Self::Collision,
         Self::Volume,
         Self::Look,
+        Self::Camera,
         Self::Solver,
     ];
 
@@ -51,6 +55,7 @@ impl Group {
             Self::Collision => "Collision",
             Self::Volume => "Volume",
             Self::Look => "Look",
+            Self::Camera => "Camera",
             Self::Solver => "Solver",
         }
     }
@@ -88,7 +93,12 @@ pub enum Kind {
         /// Where it starts when it is switched on.
         from: f64,
     },
-    /// A whole number.
+    /// A whole number of guides, or a word for them.
+    Guides {
+        /// Most.
+        max: i64,
+    },
+    /// A whole number; where it spans more than a thousandfold, equal ways of the slider are equal factors.
     Count {
         /// Least.
         min: i64,
@@ -101,6 +111,8 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// Linear red, green, blue.
     Color,
+    /// A colour that may be left out, with what to begin from.
+    MaybeColor([f64; 3]),
     /// Three numbers.
     Vector {
         /// Farthest from 0 of each.
@@ -146,6 +158,18 @@ macro_rules! parameters {
 /// All of them.
 pub const ALL: &[Parameter] = parameters! {
     Style {
+        Groom "style", "Hairstyle", "", Kind::Choice(&PRESETS), "Of the built-in head: cut, wave, colour and material together.";
+        Groom "strands", "Hairs", "", Kind::Count { min: 100, max: 200_000 }, "On the scalp of the built-in head. A human head has about 100,000; fewer are drawn wider, so that they still cover it. The file takes up to 10,000,000.";
+        Groom "guides", "Guides", "", Kind::Guides { max: 20_000 }, "How many of the hairs are simulated; the others follow up to three of them. Few guides move hair in slabs, many cost time. file: those that the groom's file names.";
+        Groom "grow.strands", "Hairs", "", Kind::Count { min: 10, max: 200_000 }, "That are grown from the body, evenly by area.";
+        Groom "grow.length", "Length", "m", scale(0.002, 1.0), "Of the longest hair.";
+        Groom "grow.spread", "Length varies", "", number(0.0, 1.0), "How much shorter the shortest hair is than the longest.";
+        Groom "grow.fall", "Bent down", "", number(0.0, 1.0), "How far hair bends over as it grows: 0 stands along the skin's normal, 1 ends pointing down.";
+        Groom "grow.points", "Points of a hair", "", Kind::Count { min: 3, max: 64 }, "More bend finer, and cost as much more time.";
+        Groom "thicken.copies", "Hairs around each", "", Kind::Count { min: 0, max: 20 }, "Follow hairs that are added around each strand of the file.";
+        Groom "thicken.radius", "… within", "m", number(0.0, 0.01), "Radius of the disc on the skin that they grow in.";
+        Groom "thicken.tip", "… at the tip", "×", number(0.0, 10.0), "How many times as far from their strand they are at the tip as at the root.";
+        Material "preset", "Material", "", Kind::Choice(&["none", "straight", "wavy", "curly", "coily", "short-fur"]), "What the material begins from: all that is not set below. none: a lone human hair.";
         Material "tether", "Tether", "×", number(0.0, 3.0), "How far a point may get from its root, over how far it was at rest: 1.1 lets curls fall a tenth. 0: as far as they go. Below 1 the scene file is refused.";
         Material "ghost.pull", "Keep the style", "Hz", number(0.0, 20.0), "Pull to the groomed shape, carried by the head: how fast a lone point would swing about its place. 0: none; from 1 a style lasts, from 4 hair is set.";
         Material "ghost.tip", "… at the tip", "×", number(0.0, 2.0), "That pull at the tip, over that at the root.";
@@ -154,6 +178,9 @@ pub const ALL: &[Parameter] = parameters! {
         Groom "effects.curl_radius", "Curl radius", "m", number(0.0, 0.02), "Radius of the curls laid over follow hairs.";
         Groom "effects.curl_length", "Curl length", "m", scale(0.002, 0.2), "Length of hair in one turn of those curls.";
         Groom "effects.noise", "Flyaway", "m", number(0.0, 0.02), "How far the tips of follow hairs stray.";
+        Groom "transform.position", "Moved by", "m", Kind::Vector { reach: 5.0 }, "Where the hairstyle stands: after it is scaled and turned.";
+        Groom "transform.rotation", "Turned by", "°", Kind::Vector { reach: 180.0 }, "About X, then Y, then Z.";
+        Groom "transform.scale", "Scaled by", "×", Kind::Vector { reach: 10.0 }, "Along x, y and z; below 0 mirrors. 0 is refused.";
     }
     Stiffness {
         Material "model", "Model", "", Kind::Choice(&["auto", "springs", "curvature", "rod"]), "What holds a strand's shape. auto: the rod, or curvature where it comes to the same.";
@@ -171,6 +198,11 @@ pub const ALL: &[Parameter] = parameters! {
         Material "radius", "Fibre radius", "m", Kind::Maybe { min: 1e-5, max: 2e-4, from: 3.5e-5 }, "Of the fibre, in place of the groom's own. Human hair: 25e-6 to 50e-6. It begins the scene anew.";
     }
     Motion {
+        Groom "motion", "Moves by itself", "", Kind::Switch, "Whether the built-in head nods, turns and shakes where the scene has no motion of its own.";
+        Scene "clip.start", "Begins at frame", "", Kind::Count { min: 0, max: 500 }, "First frame of the motion's file that is used.";
+        Scene "clip.rest_frame", "Rests in frame", "", Kind::Count { min: 0, max: 500 }, "The frame in which the joint that drives the body counts as being at rest.";
+        Scene "clip.travel", "Way through the world", "", Kind::Choice(&["keep", "in-place", "none"]), "What is kept of it. in-place: bobbing only.";
+        Scene "clip.facing", "Faces", "°", number(-180.0, 180.0), "Direction of the body, about the vertical from +Z.";
         Scene "solver.inertia", "Inertia of the head", "×", number(0.0, 1.0), "How much of the head's motion hair feels: 0, and it moves as if the head stood still.";
     }
     Air {
@@ -207,8 +239,8 @@ pub const ALL: &[Parameter] = parameters! {
     Look {
         Groom "look.root_color", "Root", "", Kind::Color, "What a thick lock of it looks like at the root.";
         Groom "look.tip_color", "Tip", "", Kind::Color, "And at the tip.";
-        Groom "look.melanin", "Melanin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5 }, "Pigment in place of the two colours, which must be reset first: 0 is white, 1 is black.";
-        Groom "look.melanin_redness", "Redness", "", number(0.0, 1.0), "Share of the pigment that is the reddish one: brown to red. Counts with melanin.";
+        Groom "look.melanin", "Melanin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5 }, "Pigment in place of the two colours: 0 is white, 1 is black.";
+        Groom "look.melanin_redness", "Redness", "", number(0.0, 1.0), "Share of the pigment that is the reddish one: brown to red.";
         Groom "look.dye", "Dye", "", Kind::Color, "What white hair would be dyed, over melanin or the colours; white is no dye.";
         Groom "look.variation", "Variation", "", number(0.0, 1.0), "How much pigment differs from strand to strand.";
         Groom "look.roughness", "Roughness", "", number(0.1, 1.0), "Spread of the highlights: oiled to matt.";
@@ -217,6 +249,13 @@ pub const ALL: &[Parameter] = parameters! {
         Groom "look.backlight", "Backlight", "×", number(0.0, 4.0), "Strength of light that shines through from behind.";
         Groom "look.scatter", "Scatter", "×", number(0.0, 4.0), "Strength of light from strand to strand.";
         Groom "look.shadow", "Shadow", "×", number(0.0, 4.0), "How strongly strands shade what is behind them.";
+        Scene "body.color", "Skin", "", Kind::MaybeColor([0.5, 0.3, 0.23]), "Colour of the body's whole surface, in place of its file's.";
+        Scene "body.roughness", "Roughness of skin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5 }, "Glossy to matt, in place of the body's file's.";
+    }
+    Camera {
+        Scene "camera.position", "Stands at", "m", Kind::Vector { reach: 10.0 }, "The scene's own camera, which looks when it is opened and rendered. The window's is turned by hand.";
+        Scene "camera.target", "Looks at", "m", Kind::Vector { reach: 10.0 }, "What that camera looks at.";
+        Scene "camera.fov", "Opens by", "°", number(5.0, 90.0), "Its vertical field of view: small from far is a portrait, large takes in the room.";
     }
     Solver {
         Scene "solver.integrator", "Integrator", "", Kind::Choice(&["backward-euler", "bdf2", "explicit-euler", "verlet", "local-global", "ftl", "dftl"]), "How a substep is made. The explicit ones blow up: they are there to be compared.";
@@ -238,15 +277,45 @@ impl Parameter {
         }
     }
 
-    /// Where the text says it; a material of its own is made for the group where it has none.
+    /// Whether it is of hair, body or motion themselves: the scene begins anew with it.
+    pub fn is_geometry(&self) -> bool {
+        const NAMES: [&str; 6] = ["style", "strands", "guides", "motion", "radius", "solver.collide_body"];
+        const TABLES: [&str; 5] = ["grow", "thicken", "transform", "clip", "body"];
+        NAMES.contains(&self.name) || self.name.split_once('.').is_some_and(|(t, _)| TABLES.contains(&t))
+    }
+
+    /// Why it does not count in this scene beside another that does, if so.
+    pub fn idle(&self, document: &Document, groom: usize) -> Option<&'static str> {
+        let melanin = Key::top("groom").place(groom).field("look.melanin");
+        let pigment = melanin.look_up(document.effective()).is_some();
+        match self.name {
+            "look.root_color" | "look.tip_color" if pigment => {
+                Some("Does not count while Melanin is ticked, which takes its place.")
+            }
+            "look.melanin_redness" if !pigment => Some("Counts only while Melanin is ticked."),
+            _ => None,
+        }
+    }
+
+    /// Where the text may say it; `None` where it has no place for it yet.
+    pub fn said(&self, document: &Document, groom: usize, group: usize) -> Option<Key> {
+        match self.of {
+            Of::Scene => Some(self.key(0, 0)),
+            Of::Groom => document.groom_key(groom).map(|key| key.field(self.name)),
+            Of::Material => {
+                let name = document.material_of(groom, group)?;
+                Some(Key::top("material").entry(&name).field(self.name))
+            }
+        }
+    }
+
+    /// Where to write it; a material of its own is made for the group where it has none.
     pub fn place(&self, document: &mut Document, groom: usize, group: usize) -> Result<Key, crate::AppError> {
         match self.of {
-            Of::Scene => Ok(self.key(0, 0)),
-            Of::Groom => document
-                .groom_key(groom)
-                .map(|key| key.field(self.name))
-                .ok_or_else(|| crate::AppError::new(format!("the scene says nothing of groom {groom}"))),
             Of::Material => document.own_material(groom, group, self.name),
+            _ => self
+                .said(document, groom, group)
+                .ok_or_else(|| crate::AppError::new(format!("the scene says nothing of groom {groom}"))),
         }
     }
 }

@@ -3,9 +3,11 @@
 use crate::{
     AppError, differ,
     document::{Change, Document},
+    edit,
     key::Key,
     parameter::Parameter,
     player::{Order, Player, STEP},
+    reading::{Read, Reading, both},
     snapshot::Snapshot,
 };
 use glam::Vec3;
@@ -15,7 +17,10 @@ use hairspring::{
     stage::Value,
 };
 use hairspring_view::gpu::Gpu;
-use std::{path::PathBuf, sync::Arc};
+use std::{
+    path::PathBuf,
+    sync::{Arc, Mutex, PoisonError},
+};
 use toml_edit::Value as Toml;
 
 /// What can be done.
@@ -101,6 +106,17 @@ pub struct Session {
     captions: [String; 2],
     /// Scenes that were begun: a snapshot of an earlier one is not news.
     begun: u64,
+    /// The scene that is being read, after which another begins.
+    reading: Option<Reading>,
+    threads: usize,
+    wake: Wake,
+}
+
+/// What is called whenever there is something new to see, by whoever makes it.
+type Wake = Arc<Mutex<dyn Fn() + Send>>;
+
+fn rouse(wake: &Wake) {
+    wake.lock().unwrap_or_else(PoisonError::into_inner)();
 }
 
 impl Session {
@@ -111,11 +127,16 @@ impl Session {
         card: Option<Gpu>,
         wake: impl Fn() + Send + 'static,
     ) -> Result<Self, AppError> {
+        let wake: Wake = Arc::new(Mutex::new(wake));
+        let player = Player::new(threads, card, {
+            let wake = wake.clone();
+            move || rouse(&wake)
+        });
         let mut session = Self {
             document,
             second: None,
             on_second: false,
-            player: Player::new(threads, card, wake),
+            player,
             playing: true,
             speed: 1.0,
             repeat: true,
@@ -127,6 +148,9 @@ impl Session {
             joints: Vec::new(),
             captions: [String::new(), String::new()],
             begun: 0,
+            reading: None,
+            threads,
+            wake,
         };
         session.begin()?;
         session.player.tell(Order::Play(true));
@@ -154,37 +178,36 @@ impl Session {
                 self.tell_length();
             }
             Action::Parameter(parameter, value) => {
-                let (groom, group) = self.chosen;
+                let chosen = self.chosen;
                 let document = self.edited_mut();
-                // A default is taken away from where it is written; it needs no material of its own.
-                let key = parameter.place(document, groom, group)?;
-                let change = document.set(&key, value)?;
-                self.follow(change)?;
+                let edits = edit::of(document, parameter, value, chosen)?;
+                let change = document.set_all(edits)?;
+                self.follow(change);
             }
             Action::Set(key, value) => {
                 let change = self.edited_mut().set(&key, value)?;
-                self.follow(change)?;
+                self.follow(change);
             }
             Action::SetAll(values) => {
                 let change = self.edited_mut().set_all(values)?;
-                self.follow(change)?;
+                self.follow(change);
             }
             Action::Rest => self.edited_mut().rest(),
             Action::Add(list, fields) => {
                 let change = self.edited_mut().add(list, &fields)?;
-                self.follow(change)?;
+                self.follow(change);
             }
             Action::Remove(list, place) => {
                 let change = self.edited_mut().remove(list, place)?;
-                self.follow(change)?;
+                self.follow(change);
             }
             Action::Undo => {
                 let change = self.edited_mut().undo()?;
-                self.follow(change)?;
+                self.follow(change);
             }
             Action::Redo => {
                 let change = self.edited_mut().redo()?;
-                self.follow(change)?;
+                self.follow(change);
             }
             Action::Choose(groom, group) => self.chosen = (groom, group),
             Action::New(text) => self.take(Document::new(&folder().join("scene.toml"), text)?)?,
@@ -275,8 +298,40 @@ impl Session {
 
     /// Reads the scene, and the second, and begins at time 0.
     fn begin(&mut self) -> Result<(), AppError> {
-        let loaded = self.document.load()?;
-        let second = self.second.as_ref().map(Document::load).transpose()?;
+        let read = both(&self.document, self.second.as_ref())?;
+        self.reading = None;
+        self.play(read);
+        Ok(())
+    }
+
+    /// As [`Session::begin`], but for who waits: what plays goes on until it is read.
+    fn begin_soon(&mut self) {
+        match &mut self.reading {
+            // One reader at a time: it is begun again when it comes to its end.
+            Some(reading) => reading.stale = true,
+            None => {
+                let wake = self.wake.clone();
+                let second = self.second.as_ref();
+                self.reading = Some(Reading::new(&self.document, second, self.threads, move || rouse(&wake)));
+            }
+        }
+    }
+
+    /// Takes up what has been read meanwhile.
+    fn hear(&mut self) -> Option<AppError> {
+        let outcome = self.reading.as_ref()?.outcome()?;
+        if self.reading.take().is_some_and(|reading| reading.stale) {
+            self.begin_soon();
+            return None;
+        }
+        let why = outcome.map(|read| self.play(read)).err();
+        // Settings may have changed while it was read.
+        self.retune();
+        why
+    }
+
+    /// Begins what was read at time 0.
+    fn play(&mut self, (loaded, second): Read) {
         self.length = loaded.value.clip.as_ref().map(|clip| clip.duration()).filter(|d| *d > STEP);
         self.notes = loaded.notes;
         let joints = loaded.value.body.iter().flat_map(|body| &body.joints);
@@ -286,7 +341,6 @@ impl Session {
         self.player.tell(Order::Open(Box::new(loaded.value), second.map(|s| Box::new(s.value))));
         self.tell_length();
         self.compare();
-        Ok(())
     }
 
     /// Finds what the two that are compared differ in.
@@ -302,17 +356,18 @@ impl Session {
     }
 
     /// Brings the simulation up to an edit.
-    fn follow(&mut self, change: Change) -> Result<(), AppError> {
+    fn follow(&mut self, change: Change) {
         self.compare();
         match change {
-            Change::None => Ok(()),
-            Change::Geometry => self.begin(),
-            Change::Settings => {
-                let settings = |document: &Document| Box::new(document.settings().clone());
-                self.player.tell(Order::Retune(settings(&self.document), self.second.as_ref().map(settings)));
-                Ok(())
-            }
+            Change::None => {}
+            Change::Geometry => self.begin_soon(),
+            Change::Settings => self.retune(),
         }
+    }
+
+    fn retune(&self) {
+        let settings = |document: &Document| Box::new(document.settings().clone());
+        self.player.tell(Order::Retune(settings(&self.document), self.second.as_ref().map(settings)));
     }
 
     /// The document whose parameters are shown.
@@ -344,9 +399,14 @@ impl Session {
         self.player.latest()
     }
 
-    /// Why the simulation could not do what it was told, once.
-    pub fn error(&self) -> Option<AppError> {
-        self.player.error()
+    /// Takes up what other threads have done since: a scene that was read begins. Why they could not do what they were told, once.
+    pub fn error(&mut self) -> Option<AppError> {
+        self.hear().or_else(|| self.player.error())
+    }
+
+    /// Whether a scene is being read, while the one before plays on.
+    pub fn is_reading(&self) -> bool {
+        self.reading.is_some()
     }
 
     /// Whether the simulation has ended by itself.
@@ -356,7 +416,7 @@ impl Session {
 
     /// Scenes that were begun: the number of the newest snapshot, once it is there.
     pub fn begun(&self) -> u64 {
-        self.begun
+        self.begun + u64::from(self.reading.is_some())
     }
 
     /// Whether it plays.

@@ -15,8 +15,9 @@ use toml_edit::{DocumentMut, TableLike, Value};
 const LABEL: f32 = 86.0;
 
 /// Fields that an entry may have though neither its text nor its defaults say so, by the list.
-const MORE: [(&str, &[&str]); 4] = [
+const MORE: [(&str, &[&str]); 5] = [
     ("collider", &["joint"]),
+    ("sheet", &["joint"]),
     ("wind_source", &["joint"]),
     ("charged", &["joint"]),
     ("hand", &["joint", "until"]),
@@ -59,7 +60,7 @@ pub const AIR: [List; 2] = [
 ];
 
 /// What hair meets and what holds it.
-pub const COLLISION: [List; 2] = [
+pub const COLLISION: [List; 3] = [
     List {
         name: "collider",
         label: "Colliders",
@@ -71,6 +72,8 @@ pub const COLLISION: [List; 2] = [
             ("Floor", "shape.plane = { point = [0.0, 1.32, 0.0], normal = [0.0, 1.0, 0.0] }"),
         ],
     },
+    // Each is a file of its own: there is nothing to add it from.
+    List { name: "sheet", label: "Sheets", one: "Sheet", kinds: &[] },
     List {
         name: "hand",
         label: "Hands",
@@ -120,8 +123,15 @@ fn placed(fields: &str, by: Vec3) -> String {
 pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], at: Vec3, actions: &mut Vec<Action>) {
     let effective = session.edited().effective();
     for list in lists {
+        let entries = effective.get(list.name).and_then(toml::Value::as_array).map_or(&[][..], Vec::as_slice);
+        if entries.is_empty() && list.kinds.is_empty() {
+            continue;
+        }
         ui.horizontal(|ui| {
             ui.strong(list.label);
+            if list.kinds.is_empty() {
+                return;
+            }
             ui.menu_button("Add", |ui| {
                 for (name, fields) in list.kinds {
                     if ui.button(*name).clicked() {
@@ -131,7 +141,6 @@ pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], at: Vec3, ac
                 }
             });
         });
-        let Some(entries) = effective.get(list.name).and_then(toml::Value::as_array) else { continue };
         for (place, entry) in entries.iter().enumerate() {
             ui.indent((list.name, place), |ui| {
                 ui.horizontal(|ui| {
@@ -156,13 +165,16 @@ pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], at: Vec3, ac
 /// Shows the motion: its keys, if it is made of keys, or where it is from.
 pub fn motion(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let clip = session.edited().effective().get("clip");
+    let key = Key::top("clip");
+    let mut rows = Rows { session, list: "clip", actions };
     if let Some(file) = clip.and_then(|clip| clip.get("file")).and_then(toml::Value::as_str) {
         ui.weak(format!("from {file}"));
+        if let Some(pivot) = clip.and_then(|clip| clip.get("pivot")) {
+            rows.field(ui, &key.entry("pivot"), "pivot", Some(pivot));
+        }
         return;
     }
-    let key = Key::top("clip");
     let keys = clip.and_then(|clip| clip.get("keys"));
-    let mut rows = Rows { session, list: "clip", actions };
     rows.field(ui, &key.entry("keys"), "keys", keys);
     if keys.is_some() {
         let zero = toml::Value::from(vec![0.0; 3]);
@@ -210,7 +222,8 @@ impl Rows<'_> {
             return;
         }
         ui.push_id(name, |ui| {
-            ui.horizontal(|ui| {
+            // What is too long for the panel goes on below: it does not grow.
+            ui.horizontal_wrapped(|ui| {
                 let left = egui::Layout::left_to_right(egui::Align::Center);
                 ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
                     ui.set_min_width(LABEL);

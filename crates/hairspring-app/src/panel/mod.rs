@@ -1,5 +1,6 @@
 //! The panels around the picture: each shows the session as it is and says what a person asks for as actions.
 
+pub mod control;
 pub mod files;
 pub mod help;
 pub mod inspect;

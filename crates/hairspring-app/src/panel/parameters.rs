@@ -1,37 +1,30 @@
 //! Every parameter as a slider with its unit, range, tooltip and reset, under what an artist thinks of.
 
-use super::Labelled;
+use super::control::{VALUE, as_number, control};
 use crate::{
+    edit,
     key::Key,
-    parameter::{self, Group, Kind, Of, Parameter},
+    parameter::{self, Group, Kind, Parameter},
     session::{Action, Session},
 };
-use eframe::egui::{self, DragValue, RichText, Slider, Ui};
+use eframe::egui::{self, RichText, Ui};
 use glam::Vec3;
-use hairspring::material::{PRESETS, preset};
-use std::{collections::HashMap, sync::LazyLock};
 use toml_edit::Value;
 
 /// Width of names [points].
-const LABEL: f32 = 116.0;
-
-/// Effective values of a scene that says nothing, by the names of [`crate::document::Document::effective`].
-static DEFAULTS: LazyLock<toml::Table> = LazyLock::new(crate::effective::defaults);
-
-/// Values of a material by its preset; of one without, the library's.
-static MATERIALS: LazyLock<HashMap<Option<&str>, toml::Table>> = LazyLock::new(|| {
-    let names = std::iter::once(None).chain(PRESETS.into_iter().map(Some));
-    let table = |name: Option<&'static str>| {
-        let material = name.and_then(preset).unwrap_or_default();
-        toml::Table::try_from(material).unwrap_or_else(|why| unreachable!("settings are plain data: {why}"))
-    };
-    names.map(|name| (name, table(name))).collect()
-});
+const LABEL: f32 = 106.0;
+/// Width of what brings a parameter back, which has its room whether it is there or not [points].
+const RESET: f32 = 42.0;
 
 /// Shows all groups; what is added to the scene stands about `at` [m].
 pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actions: &mut Vec<Action>) {
     choose(ui, session, actions);
-    ui.add(egui::TextEdit::singleline(filter).hint_text("Find a parameter").desired_width(f32::INFINITY));
+    ui.horizontal(|ui| {
+        if session.is_reading() {
+            ui.add(egui::Spinner::new().size(14.0)).on_hover_text("The scene is made anew");
+        }
+        ui.add(egui::TextEdit::singleline(filter).hint_text("Find a parameter").desired_width(f32::INFINITY));
+    });
     ui.separator();
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let sought = filter.trim().to_lowercase();
@@ -41,16 +34,20 @@ pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actio
                 sought.is_empty()
                     || [p.label, p.name, p.tip].iter().any(|t| t.to_lowercase().contains(&sought))
             };
-            let parameters: Vec<_> =
-                parameter::ALL.iter().filter(|p| p.group == group).filter(found).collect();
+            let parameters: Vec<_> = parameter::ALL
+                .iter()
+                .filter(|p| p.group == group && has_place(session, p))
+                .filter(found)
+                .collect();
             let listed = lists(group).iter().any(|name| name.to_lowercase().contains(&sought));
             if parameters.is_empty() && !listed {
                 continue;
             }
             none = false;
+            // What a search opens is another header than the one that stands without it, which stays as it was left.
             egui::CollapsingHeader::new(RichText::new(group.name()).strong())
-                .default_open(group == Group::Stiffness)
-                .open((!sought.is_empty()).then_some(true))
+                .id_salt((group.name(), &sought))
+                .default_open(!sought.is_empty() || [Group::Style, Group::Stiffness].contains(&group))
                 .show(ui, |ui| {
                     for parameter in parameters {
                         row(ui, session, parameter, actions);
@@ -77,7 +74,7 @@ fn lists(group: Group) -> &'static [&'static str] {
     match group {
         Group::Motion => &["Keys"],
         Group::Air => &["Sources of wind", "Charged bodies"],
-        Group::Collision => &["Colliders", "Hands"],
+        Group::Collision => &["Colliders", "Sheets", "Hands"],
         _ => &[],
     }
 }
@@ -114,215 +111,111 @@ fn choose(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     }
 }
 
+/// Whether a scene like this has the parameter: hair that is read from a file is not of a style, and grows nowhere.
+fn has_place(session: &Session, parameter: &Parameter) -> bool {
+    let (groom, group) = session.chosen();
+    let (key, effective) = (parameter.key(groom, group), session.edited().effective());
+    let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor(_));
+    key.look_up(effective).is_some() || (maybe && key.parent().look_up(effective).is_some())
+}
+
 /// One parameter.
 fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &mut Vec<Action>) {
-    let (groom, group) = session.chosen();
-    let key = parameter.key(groom, group);
-    let now = key.look_up(session.edited().effective());
-    let default = default_of(session, parameter, groom);
-    let changed = now != default;
-    let mut edit = |value: Option<Value>| actions.push(Action::Parameter(parameter, value));
+    let chosen = session.chosen();
+    let document = session.edited();
+    let key = parameter.key(chosen.0, chosen.1);
     ui.push_id(parameter.name, |ui| {
+        // A scene that begins anew does so when the hand lets go: until then the value is only shown.
+        let held_id = ui.scope_id().with("held");
+        let held: Option<Value> = ui.data(|data| data.get_temp(held_id));
+        let shown: Option<toml::Value> =
+            held.as_ref().and_then(|value| value.to_string().trim().parse().ok());
+        let now = shown.as_ref().or_else(|| key.look_up(document.effective()));
+        let idle = parameter.idle(document, chosen.0);
+        let changed = idle.is_none() && now != key.look_up(document.opened().values());
+        let listed = document.groom_key(chosen.0).is_none_or(|key| key != Key::top("builtin"));
+        let mut edited = None;
         ui.horizontal(|ui| {
             let name = RichText::new(parameter.label);
             let name = if changed { name.strong() } else { name };
-            let tip = if parameter.unit.is_empty() {
-                format!("{}\n\n{}", parameter.tip, parameter.name)
-            } else {
-                format!("{} [{}]\n\n{}", parameter.tip, parameter.unit, parameter.name)
-            };
+            let tip = tip(parameter, idle, key.look_up(document.defaults()));
             let left = egui::Layout::left_to_right(egui::Align::Center);
             ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
                 ui.set_min_width(LABEL);
-                ui.add(egui::Label::new(name).truncate()).on_hover_text(&tip);
+                ui.add_enabled(idle.is_none(), egui::Label::new(name).truncate())
+                    .on_hover_text(&tip)
+                    .on_disabled_hover_text(&tip);
             });
-            let response = control(ui, parameter, now, &mut edit);
-            if let Some(response) = response {
-                response.on_hover_text(&tip);
-            }
-            if changed && ui.small_button("reset").on_hover_text("Back to the default").clicked() {
-                edit(None);
+            let room = (ui.available_width() - RESET - ui.spacing().item_spacing.x).max(VALUE);
+            ui.allocate_ui_with_layout(egui::vec2(room, 18.0), left.with_main_wrap(true), |ui| {
+                ui.set_min_width(room);
+                ui.set_max_width(room);
+                ui.add_enabled_ui(idle.is_none(), |ui| {
+                    let response = control(ui, parameter, now, listed, &mut |value| edited = Some(value));
+                    if let Some(response) = response {
+                        response.on_hover_text(&tip).on_disabled_hover_text(&tip);
+                    }
+                });
+            });
+            if changed {
+                ui.spacing_mut().button_padding.x = 3.0;
+                let back = ui.add(egui::Button::new("reset").small().truncate());
+                if back.on_hover_text("Back to how the scene was opened").clicked() {
+                    edited = Some(edit::reset(document, parameter, chosen));
+                }
             }
         });
+        let waits = parameter.is_geometry() && ui.input(|i| i.pointer.any_down());
+        match (edited, held) {
+            (Some(Some(value)), _) if waits => {
+                ui.data_mut(|data| data.insert_temp(held_id, value));
+            }
+            (None, Some(_)) if waits => {}
+            (edited, held) => {
+                if let Some(value) = edited.or(held.map(Some)) {
+                    actions.push(Action::Parameter(parameter, value));
+                    ui.data_mut(|data| data.remove::<Value>(held_id));
+                }
+            }
+        }
     });
 }
 
-/// The value that counts where the text says nothing: the library's, or that of a material's preset.
-fn default_of(session: &Session, parameter: &Parameter, groom: usize) -> Option<&'static toml::Value> {
-    if parameter.of == Of::Material {
-        let style = session.edited().preset_of(groom);
-        return Key::default().field(parameter.name).look_up(MATERIALS.get(&style)?);
-    }
-    parameter.key(0, 0).look_up(&DEFAULTS)
-}
-
-/// The widget of a parameter, which calls `edit` with a new value.
-fn control(
-    ui: &mut Ui,
-    parameter: &Parameter,
-    now: Option<&toml::Value>,
-    edit: &mut dyn FnMut(Option<Value>),
-) -> Option<egui::Response> {
-    let number = now.and_then(as_number);
-    let name = parameter.label;
-    match parameter.kind {
-        Kind::Number { min, max, log } => {
-            let mut value = number.unwrap_or(min);
-            let slider = Slider::from_get_set(min..=max, |new| {
-                if let Some(new) = new {
-                    value = new;
-                    edit(Some(tidy(new)));
-                }
-                value
-            });
-            let slider = slider.logarithmic(log).clamping(egui::SliderClamping::Never).max_decimals(4);
-            Some(ui.add(written(slider, parameter)).labelled(ui, name))
-        }
-        Kind::Maybe { min, max, from } => {
-            let mut on = number.is_some();
-            if ui.checkbox(&mut on, "").changed() {
-                edit(on.then(|| tidy(from)));
-            }
-            let mut value = number?;
-            let slider = Slider::from_get_set(min..=max, |new| {
-                if let Some(new) = new {
-                    value = new;
-                    edit(Some(tidy(new)));
-                }
-                value
-            });
-            Some(ui.add(written(slider.logarithmic(true), parameter)).labelled(ui, name))
-        }
-        Kind::Count { min, max } => {
-            let mut value = number.unwrap_or(min as f64);
-            let slider = Slider::from_get_set(min as f64..=max as f64, |new| {
-                if let Some(new) = new
-                    && new.round() != value
-                {
-                    value = new.round();
-                    edit(Some((value as i64).into()));
-                }
-                value
-            });
-            Some(ui.add(slider.integer()).labelled(ui, name))
-        }
-        Kind::Switch => {
-            let mut on = now.and_then(toml::Value::as_bool).unwrap_or(false);
-            let response = ui.checkbox(&mut on, "").labelled(ui, name);
-            if response.changed() {
-                edit(Some(on.into()));
-            }
-            Some(response)
-        }
-        Kind::Choice(words) => {
-            let chosen = now.and_then(toml::Value::as_str).unwrap_or(words[0]);
-            let combo =
-                egui::ComboBox::from_id_salt(parameter.name).selected_text(chosen).show_ui(ui, |ui| {
-                    for word in words {
-                        if ui.selectable_label(*word == chosen, *word).clicked() && *word != chosen {
-                            edit(Some((*word).into()));
-                        }
-                    }
-                });
-            Some(combo.response)
-        }
-        Kind::Color => {
-            let mut color = numbers::<3>(now);
-            let response = ui.color_edit_button_rgb(&mut color);
-            if response.changed() {
-                edit(Some(color.iter().map(|c| tidy_f64(f64::from(*c))).collect()));
-            }
-            Some(response)
-        }
-        Kind::Vector { reach } => {
-            let mut vector = numbers::<3>(now);
-            let mut changed = false;
-            for (axis, x) in ["x", "y", "z"].into_iter().zip(&mut vector) {
-                let drag = DragValue::new(x).speed(reach / 200.0).range(-reach..=reach).max_decimals(2);
-                let drag = ui.add(drag).on_hover_text(format!("{axis} [{}]", parameter.unit));
-                changed |= drag.changed();
-            }
-            if parameter.name == "wind.velocity" {
-                changed |= super::wind::pad(ui, &mut vector, reach as f32);
-            }
-            if changed {
-                edit(Some(vector.iter().map(|c| tidy_f64(f64::from(*c))).collect()));
-            }
-            None
-        }
-        Kind::Profile => {
-            let mut profile: Vec<f64> =
-                now.and_then(toml::Value::as_array).into_iter().flatten().filter_map(as_number).collect();
-            let mut changed = false;
-            for x in &mut profile {
-                changed |= ui.add(DragValue::new(x).speed(0.02).range(0.01..=100.0)).changed();
-            }
-            if profile.len() < 8 && ui.small_button("+").on_hover_text("One more towards the tip").clicked() {
-                profile.push(profile.last().copied().unwrap_or(1.0));
-                changed = true;
-            }
-            if profile.len() > 1 && ui.small_button("-").on_hover_text("One less").clicked() {
-                profile.pop();
-                changed = true;
-            }
-            if changed {
-                edit(Some(profile.into_iter().map(tidy_f64).collect()));
-            }
-            None
-        }
-    }
-}
-
-/// A slider with its unit; very large and very small numbers as powers of ten.
-fn written<'a>(slider: Slider<'a>, parameter: &Parameter) -> Slider<'a> {
-    let unit = parameter.unit;
-    let far = match parameter.kind {
+/// What a parameter does, what it takes and what it is where nothing is said.
+fn tip(parameter: &Parameter, idle: Option<&str>, default: Option<&toml::Value>) -> String {
+    let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+    let range = match parameter.kind {
         Kind::Number { min, max, .. } | Kind::Maybe { min, max, .. } => {
-            max >= 1e5 || max.abs().max(min.abs()) < 1e-2
+            format!("{} to {}{unit}", short(min), short(max))
         }
-        _ => false,
+        Kind::Count { min, max } => format!("{min} to {max}"),
+        Kind::Guides { max } => format!("1 to {max}, or a word"),
+        Kind::Switch => "on or off".into(),
+        Kind::Choice(words) => words.join(", "),
+        Kind::Color | Kind::MaybeColor(_) => "red, green, blue, 0 to 1 each".into(),
+        Kind::Vector { reach } => format!("{} to {}{unit} each", short(-reach), short(reach)),
+        Kind::Profile => "numbers above 0".into(),
     };
-    let slider = if far { slider.custom_formatter(|x, _| format!("{x:.2e}")) } else { slider };
-    match unit {
-        "" => slider,
-        unit => slider.suffix(format!(" {unit}")),
-    }
+    let default = default.map_or("none".into(), |value| match value {
+        toml::Value::Boolean(on) => (if *on { "on" } else { "off" }).into(),
+        toml::Value::Array(list) => {
+            let numbers: Vec<_> = list.iter().filter_map(as_number).map(short).collect();
+            format!("{}{unit}", numbers.join(", "))
+        }
+        value => match (as_number(value), value.as_str()) {
+            (Some(x), _) => format!("{}{unit}", short(x)),
+            (None, word) => word.unwrap_or_default().into(),
+        },
+    });
+    let first = idle.map(|why| format!("{why}\n\n")).unwrap_or_default();
+    format!("{first}{}\n\n{range}; default {default}\n{}", parameter.tip, parameter.name)
 }
 
-fn as_number(value: &toml::Value) -> Option<f64> {
-    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
-}
-
-fn numbers<const N: usize>(value: Option<&toml::Value>) -> [f32; N] {
-    let mut list = value.and_then(toml::Value::as_array).into_iter().flatten().filter_map(as_number);
-    std::array::from_fn(|_| list.next().unwrap_or(0.0) as f32)
-}
-
-/// A number as a person would write it: four digits that count.
-fn tidy(x: f64) -> Value {
-    tidy_f64(x).into()
-}
-
-fn tidy_f64(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
+/// A number in few letters.
+fn short(x: f64) -> String {
+    let far = x != 0.0 && !(1e-3..1e6).contains(&x.abs());
+    if far { format!("{x:e}") } else { format!("{x}") }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_parameter_has_a_value_and_a_default() {
-        let document = crate::document::Document::new(
-            std::path::Path::new("scene.toml"),
-            "[builtin]\nstrands = 10\nguides = 5\n".into(),
-        )
-        .unwrap();
-        for parameter in parameter::ALL {
-            let here = parameter.key(0, 0).look_up(document.effective()).is_some();
-            let maybe = matches!(parameter.kind, Kind::Maybe { .. });
-            assert!(here || maybe, "{} is not in the scene", parameter.name);
-            assert!(parameter.tip.ends_with('.'), "{}", parameter.name);
-        }
-    }
-}
+mod tests;

@@ -12,7 +12,7 @@ const SIZE: [u32; 2] = [132, 132];
 const HAIRS: u32 = 3000;
 
 /// What there is: its name and how its text begins; `{}` takes the numbers of hairs.
-const PRESETS: [(&str, &str, &str); 8] = [
+pub(super) const PRESETS: [(&str, &str, &str); 8] = [
     ("Straight", "straight", ""),
     ("Wavy", "wavy", ""),
     ("Curly", "curly", ""),
@@ -32,7 +32,7 @@ const PRESETS: [(&str, &str, &str); 8] = [
 ];
 
 /// The text of a preset.
-fn text(k: usize, hairs: u32, guides: u32) -> String {
+pub(super) fn text(k: usize, hairs: u32, guides: u32) -> String {
     let (name, style, more) = PRESETS[k];
     let text = builtin_text(style, hairs, guides).replace("Built-in head", name);
     format!("{text}{more}")

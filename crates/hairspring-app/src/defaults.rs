@@ -1,0 +1,148 @@
+//! What would count in a scene that nobody changed: as it was opened, and by the defaults of the library, of a built-in style and of the presets of materials.
+
+use crate::effective::{effective, entries};
+use hairspring_io::read_settings;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// Lists that are edited entry by entry: they have no default.
+const LISTS: [&str; 5] = ["collider", "hand", "wind_source", "charged", "sheet"];
+
+/// The values of a scene whose text is that of another, but for what defaults hang on: the built-in style, and which presets its materials begin from. Those it takes over.
+pub struct Reference {
+    /// The other's text.
+    from: Table,
+    /// What was read last.
+    text: Table,
+    values: Table,
+}
+
+impl Reference {
+    /// Of the scene `said` as it is now: what is changed later is compared with this.
+    pub fn opened(path: &Path, said: &Table) -> Self {
+        Self::new(path, said, said.clone())
+    }
+
+    /// Of a scene that says of its hair, body and motion what they are, and nothing else.
+    pub fn library(path: &Path, said: &Table) -> Self {
+        Self::new(path, said, bare(said))
+    }
+
+    fn new(path: &Path, said: &Table, mut from: Table) -> Self {
+        LISTS.iter().for_each(|list| drop(from.remove(*list)));
+        let mut reference = Self { from, text: Table::new(), values: Table::new() };
+        reference.follow(path, said);
+        reference
+    }
+
+    /// Takes over the style and the presets that the scene says now.
+    pub fn follow(&mut self, path: &Path, said: &Table) {
+        let mut named = self.from.clone();
+        take_over(named.get_mut("builtin"), said.get("builtin"), "style");
+        let mut text = named.clone();
+        take_over(text.get_mut("builtin"), said.get("builtin"), "material");
+        let grooms = text.get_mut("groom").and_then(Value::as_array_mut);
+        for (groom, said) in grooms.into_iter().flatten().zip(entries(said, "groom")) {
+            take_over(Some(groom), Some(said), "material");
+        }
+        let before = text.remove("material");
+        let materials = said.get("material").and_then(Value::as_table).into_iter().flatten();
+        let materials = materials.map(|(name, said)| {
+            let mut material =
+                before.as_ref().and_then(|m| m.get(name)).cloned().unwrap_or(Table::new().into());
+            take_over(Some(&mut material), Some(said), "preset");
+            (name.clone(), material)
+        });
+        text.insert("material".into(), Value::Table(materials.collect()));
+        if text == self.text {
+            return;
+        }
+        // What the scene itself can be read with can be read here: less is said.
+        if let Ok(settings) = read_settings(path, &text.to_string()) {
+            // The names are the other's: a preset that was chosen since differs from what it was.
+            self.values = effective(&settings, &named);
+            let style = self.from.get("builtin").map(|b| b.get("style").cloned().unwrap_or("wavy".into()));
+            let grooms = self.values.get_mut("groom").and_then(Value::as_array_mut);
+            if let (Some(style), Some(head)) = (style, grooms.and_then(|g| g.first_mut()?.as_table_mut())) {
+                head.insert("style".into(), style);
+            }
+        }
+        self.text = text;
+    }
+
+    /// Its values, by the names of [`effective`].
+    pub fn values(&self) -> &Table {
+        &self.values
+    }
+
+    /// The other's text.
+    pub fn said(&self) -> &Table {
+        &self.from
+    }
+}
+
+/// Writes what `said` says of `name`, or that it says nothing of it.
+fn take_over(table: Option<&mut Value>, said: Option<&Value>, name: &str) {
+    if let Some(table) = table.and_then(Value::as_table_mut) {
+        match said.and_then(|said| said.get(name)) {
+            Some(value) => drop(table.insert(name.into(), value.clone())),
+            None => drop(table.remove(name)),
+        }
+    }
+}
+
+/// The scene's hair, body and motion, by no more than what they are made from.
+fn bare(said: &Table) -> Table {
+    let only = |value: &Value, names: &[&str]| -> Value {
+        let table = names.iter().filter_map(|name| Some(((*name).to_owned(), value.get(name)?.clone())));
+        Value::Table(table.collect())
+    };
+    let mut out = Table::new();
+    for (name, fields) in
+        [("builtin", &[][..]), ("body", &["file"][..]), ("clip", &["file", "keys", "joint", "pivot"][..])]
+    {
+        if let Some(value) = said.get(name) {
+            out.insert(name.into(), only(value, fields));
+        }
+    }
+    let grooms = entries(said, "groom").iter().map(|groom| {
+        let mut bare = only(groom, &["file"]);
+        if let (Some(table), Some(_)) = (bare.as_table_mut(), groom.get("grow")) {
+            table.insert("grow".into(), Table::new().into());
+        }
+        bare
+    });
+    let grooms: Vec<_> = grooms.collect();
+    if !grooms.is_empty() {
+        out.insert("groom".into(), Value::Array(grooms));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Document;
+
+    fn looked_up(table: &Table, key: &str) -> Value {
+        key.parse::<crate::key::Key>().unwrap().look_up(table).unwrap().clone()
+    }
+
+    #[test]
+    fn defaults_are_those_of_the_style_and_the_preset_that_are_chosen() {
+        let text = "[builtin]\nstyle = \"curly\"\n[builtin.look]\nroughness = 0.5\n";
+        let mut document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
+        assert_eq!(document.opened().values(), document.effective());
+        let root = looked_up(document.defaults(), "groom[0].look.root_color");
+        document.set(&"builtin.style".parse().unwrap(), Some("straight".into())).unwrap();
+        for table in [document.defaults(), document.opened().values()] {
+            let key = "groom[0].look.root_color";
+            assert_ne!(looked_up(table, key), root, "a style's own colour");
+            assert_eq!(looked_up(table, key), looked_up(document.effective(), key));
+        }
+        assert_eq!(looked_up(document.defaults(), "groom[0].look.roughness").as_float(), Some(0.32));
+        assert_eq!(looked_up(document.opened().values(), "groom[0].look.roughness").as_float(), Some(0.5));
+        assert_eq!(looked_up(document.opened().values(), "groom[0].style").as_str(), Some("curly"));
+        assert_eq!(looked_up(document.defaults(), "groom[0].style").as_str(), Some("wavy"));
+    }
+}

@@ -1,0 +1,219 @@
+//! The widget of a parameter: a slider, a switch, a choice, a colour, a direction.
+
+use super::Labelled;
+use crate::parameter::{Kind, Parameter};
+use eframe::egui::{self, DragValue, Slider, Ui};
+use toml_edit::Value;
+
+/// Width of a slider's number with its unit [points].
+pub const VALUE: f32 = 90.0;
+/// Of one without a unit [points].
+const BARE: f32 = 66.0;
+
+/// The widget of a parameter, which calls `edit` with a new value; `listed`: of a groom that the text lists, which may have guides of its own.
+pub fn control(
+    ui: &mut Ui,
+    parameter: &Parameter,
+    now: Option<&toml::Value>,
+    listed: bool,
+    edit: &mut dyn FnMut(Option<Value>),
+) -> Option<egui::Response> {
+    let number = now.and_then(as_number);
+    let name = parameter.label;
+    match parameter.kind {
+        Kind::Number { min, max, log } => {
+            let mut value = number.unwrap_or(min);
+            let slider = Slider::from_get_set(min..=max, |new| {
+                if let Some(new) = new {
+                    value = new;
+                    edit(Some(tidy(new)));
+                }
+                value
+            });
+            let slider = slider.logarithmic(log).clamping(egui::SliderClamping::Never).max_decimals(4);
+            fit(ui, parameter.unit);
+            Some(ui.add(written(slider, parameter)).labelled(ui, name))
+        }
+        Kind::Maybe { min, max, from } => {
+            let mut on = number.is_some();
+            if ui.checkbox(&mut on, "").labelled(ui, name).changed() {
+                edit(on.then(|| tidy(from)));
+            }
+            let mut value = number?;
+            let slider = Slider::from_get_set(min..=max, |new| {
+                if let Some(new) = new {
+                    value = new;
+                    edit(Some(tidy(new)));
+                }
+                value
+            });
+            fit(ui, parameter.unit);
+            // From 0 on, equal ways are equal steps: of factors there is no least.
+            let slider = slider.logarithmic(min > 0.0).max_decimals(4);
+            Some(ui.add(written(slider, parameter)).labelled(ui, name))
+        }
+        Kind::Count { min, max } => {
+            fit(ui, parameter.unit);
+            Some(count(ui, number.unwrap_or(min as f64), (min, max), edit).labelled(ui, name))
+        }
+        Kind::Guides { max } => {
+            let word = now.and_then(toml::Value::as_str);
+            let words = ["some", "all", "file"];
+            let words = if listed { &words[..] } else { &words[..2] };
+            let combo = egui::ComboBox::from_id_salt(parameter.name)
+                .width(24.0)
+                .selected_text(word.unwrap_or(words[0]))
+                .show_ui(ui, |ui| {
+                    for choice in words {
+                        let is = *choice == word.unwrap_or(words[0]);
+                        if ui.selectable_label(is, *choice).clicked() && !is {
+                            edit(Some(if *choice == words[0] { 2000.into() } else { (*choice).into() }));
+                        }
+                    }
+                });
+            let combo = combo.response.labelled(ui, name);
+            let Some(value) = number else { return Some(combo) };
+            fit(ui, parameter.unit);
+            Some(count(ui, value, (1, max), edit).labelled(ui, name))
+        }
+        Kind::Switch => {
+            let mut on = now.and_then(toml::Value::as_bool).unwrap_or(false);
+            let response = ui.checkbox(&mut on, "").labelled(ui, name);
+            if response.changed() {
+                edit(Some(on.into()));
+            }
+            Some(response)
+        }
+        Kind::Choice(words) => {
+            let chosen = now.and_then(toml::Value::as_str).unwrap_or(words[0]);
+            let combo =
+                egui::ComboBox::from_id_salt(parameter.name).selected_text(chosen).show_ui(ui, |ui| {
+                    for word in words {
+                        if ui.selectable_label(*word == chosen, *word).clicked() && *word != chosen {
+                            edit(Some((*word).into()));
+                        }
+                    }
+                });
+            Some(combo.response)
+        }
+        Kind::Color => {
+            let mut color = numbers::<3>(now);
+            let response = ui.color_edit_button_rgb(&mut color);
+            if response.changed() {
+                edit(Some(color.iter().map(|c| tidy_f64(f64::from(*c))).collect()));
+            }
+            Some(response)
+        }
+        Kind::MaybeColor(from) => {
+            let mut on = now.is_some();
+            if ui.checkbox(&mut on, "").labelled(ui, name).changed() {
+                edit(on.then(|| from.into_iter().collect()));
+            }
+            let mut color = numbers::<3>(Some(now?));
+            let response = ui.color_edit_button_rgb(&mut color);
+            if response.changed() {
+                edit(Some(color.iter().map(|c| tidy_f64(f64::from(*c))).collect()));
+            }
+            Some(response)
+        }
+        Kind::Vector { reach } => {
+            let mut vector = numbers::<3>(now);
+            let mut changed = false;
+            for (axis, x) in ["x", "y", "z"].into_iter().zip(&mut vector) {
+                let drag = DragValue::new(x).speed(reach / 200.0).range(-reach..=reach).max_decimals(2);
+                let drag = ui.add(drag).on_hover_text(format!("{axis} [{}]", parameter.unit));
+                changed |= drag.changed();
+            }
+            if parameter.name == "wind.velocity" {
+                changed |= super::wind::pad(ui, &mut vector, reach as f32);
+            }
+            if changed {
+                edit(Some(vector.iter().map(|c| tidy_f64(f64::from(*c))).collect()));
+            }
+            None
+        }
+        Kind::Profile => {
+            let mut profile: Vec<f64> =
+                now.and_then(toml::Value::as_array).into_iter().flatten().filter_map(as_number).collect();
+            let mut changed = false;
+            for x in &mut profile {
+                let weight = DragValue::new(x).speed(0.02).range(0.01..=100.0).max_decimals(2);
+                changed |= ui.add(weight).labelled(ui, name).changed();
+            }
+            if profile.len() < 8 && ui.small_button("+").on_hover_text("One more towards the tip").clicked() {
+                profile.push(profile.last().copied().unwrap_or(1.0));
+                changed = true;
+            }
+            if profile.len() > 1 && ui.small_button("-").on_hover_text("One less").clicked() {
+                profile.pop();
+                changed = true;
+            }
+            if changed {
+                edit(Some(profile.into_iter().map(tidy_f64).collect()));
+            }
+            None
+        }
+    }
+}
+
+/// A slider of whole numbers.
+fn count(
+    ui: &mut Ui,
+    mut value: f64,
+    (min, max): (i64, i64),
+    edit: &mut dyn FnMut(Option<Value>),
+) -> egui::Response {
+    let slider = Slider::from_get_set(min as f64..=max as f64, |new| {
+        if let Some(new) = new
+            && new.round() != value
+        {
+            value = new.round();
+            edit(Some((value as i64).into()));
+        }
+        value
+    });
+    // A number that is typed may lie beyond.
+    let slider = slider.clamping(egui::SliderClamping::Never).logarithmic(max > 1000 * min.max(1));
+    ui.add(slider.integer())
+}
+
+/// Makes a slider as wide as fits in what is left of its row.
+fn fit(ui: &mut Ui, unit: &str) {
+    let left = ui.available_size_before_wrap().x - if unit.is_empty() { BARE } else { VALUE };
+    ui.spacing_mut().slider_width = left.clamp(20.0, 240.0);
+}
+
+/// A slider with its unit; very large and very small numbers as powers of ten.
+fn written<'a>(slider: Slider<'a>, parameter: &Parameter) -> Slider<'a> {
+    let unit = parameter.unit;
+    let far = match parameter.kind {
+        Kind::Number { min, max, .. } | Kind::Maybe { min, max, .. } => {
+            max >= 1e5 || max.abs().max(min.abs()) < 1e-2
+        }
+        _ => false,
+    };
+    let slider = if far { slider.custom_formatter(|x, _| format!("{x:.2e}")) } else { slider };
+    match unit {
+        "" => slider,
+        unit => slider.suffix(format!(" {unit}")),
+    }
+}
+
+/// A number, whether it is written as a whole one or not.
+pub fn as_number(value: &toml::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
+}
+
+fn numbers<const N: usize>(value: Option<&toml::Value>) -> [f32; N] {
+    let mut list = value.and_then(toml::Value::as_array).into_iter().flatten().filter_map(as_number);
+    std::array::from_fn(|_| list.next().unwrap_or(0.0) as f32)
+}
+
+/// A number as a person would write it: four digits that count.
+fn tidy(x: f64) -> Value {
+    tidy_f64(x).into()
+}
+
+fn tidy_f64(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
