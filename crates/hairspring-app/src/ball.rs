@@ -14,8 +14,15 @@ pub struct Ball {
     positions: Vec<Vec3>,
 }
 
-/// Corners of a ball of radius 1, its triangles and its cloth: pale and matt, so that hair is seen on it.
-static UNIT: LazyLock<(Vec<Vec3>, Vec<[u32; 3]>, [Part; 1])> = LazyLock::new(|| {
+/// A ball of radius 1 around the origin.
+struct Unit {
+    corners: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    /// Pale and matt, so that hair is seen on it.
+    cloth: [Part; 1],
+}
+
+static UNIT: LazyLock<Unit> = LazyLock::new(|| {
     let corner = |k: u32| {
         let (row, column) = (k / COLUMNS, k % COLUMNS);
         let (down, around) = (PI * row as f32 / ROWS as f32, 2.0 * PI * column as f32 / COLUMNS as f32);
@@ -30,18 +37,23 @@ static UNIT: LazyLock<(Vec<Vec3>, Vec<[u32; 3]>, [Part; 1])> = LazyLock::new(|| 
     let all = 0..triangles.len() as u32;
     let cloth =
         Part { name: "ball".into(), triangles: all, color: Vec3::new(0.5, 0.52, 0.55), roughness: 0.6 };
-    ((0..(ROWS + 1) * COLUMNS).map(corner).collect(), triangles, [cloth])
+    Unit { corners: (0..(ROWS + 1) * COLUMNS).map(corner).collect(), triangles, cloth: [cloth] }
 });
 
 impl Ball {
     /// Around `center`, of this radius [m].
     pub fn new((center, radius): (Vec3, f32)) -> Self {
-        Self { positions: UNIT.0.iter().map(|p| center + *p * radius).collect() }
+        Self { positions: UNIT.corners.iter().map(|p| center + *p * radius).collect() }
     }
 
     /// To draw.
     pub fn mesh(&self) -> MeshDraw<'_> {
-        MeshDraw { positions: &self.positions, normals: &UNIT.0, triangles: &UNIT.1, parts: &UNIT.2 }
+        MeshDraw {
+            positions: &self.positions,
+            normals: &UNIT.corners,
+            triangles: &UNIT.triangles,
+            parts: &UNIT.cloth,
+        }
     }
 }
 
@@ -53,7 +65,7 @@ mod tests {
     fn its_triangles_look_outward_and_close_it() {
         let ball = Ball::new((Vec3::X, 0.5));
         let mut volume = 0.0;
-        for t in &UNIT.1 {
+        for t in &UNIT.triangles {
             let [a, b, c] = t.map(|i| ball.positions[i as usize] - Vec3::X);
             volume += a.dot(b.cross(c)) / 6.0;
         }
