@@ -360,13 +360,14 @@ impl View {
         true
     }
 
-    /// Finds the range of the colours that are shown: from 0 to what a fiftieth of points exceeds, followed smoothly.
+    /// Finds the range of the colours that are shown: from 0 to what a fiftieth of points that have any exceeds, followed smoothly.
     pub fn follow_range(&mut self, scenery: &Scenery, guides: bool) {
         if guides || scenery.values.is_empty() {
             self.range = [0.0, 1.0];
             return;
         }
-        let mut some: Vec<f32> = scattered(&scenery.values).filter(|v| v.is_finite()).collect();
+        // What most points have none of, contact, is of those that have.
+        let mut some: Vec<f32> = scattered(&scenery.values).filter(|v| v.is_finite() && *v > 0.0).collect();
         if some.is_empty() {
             return;
         }

@@ -262,10 +262,14 @@ impl App {
             ui.toggle_value(&mut self.open.help, "?");
             let document = self.session.document();
             let star = if document.is_changed() { " *" } else { "" };
-            let file = document.file().map_or("not saved".into(), |p| p.display().to_string());
+            let file = document.file();
+            let name = file.and_then(|p| p.file_name()).map(|n| n.to_string_lossy());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.label(RichText::new(format!("{}{star}", document.settings().name)).strong());
-                ui.weak(file);
+                let shown = ui.weak(name.unwrap_or("not saved".into()));
+                if let Some(file) = file {
+                    shown.on_hover_text(file.display().to_string());
+                }
             });
         });
     }
@@ -337,7 +341,7 @@ impl App {
                 );
             }
             if let Some(value) = self.session.shown() {
-                told::legend(&painter, rect, value, self.view.range);
+                told::legend(&painter, rect, value, &self.view, seen);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! What the window says over the picture: progress, messages, figures, what colours stand for.
 
 use super::{App, MESSAGE};
+use crate::{snapshot::Scenery, view::View};
 use eframe::egui::{self, Color32, Ui};
 use hairspring::stage::Value;
 
@@ -59,7 +60,13 @@ pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2,
 }
 
 /// What colours stand for.
-pub(super) fn legend(painter: &egui::Painter, rect: egui::Rect, value: Value, range: [f32; 2]) {
+pub(super) fn legend(
+    painter: &egui::Painter,
+    rect: egui::Rect,
+    value: Value,
+    view: &View,
+    scenery: &Scenery,
+) {
     let at = rect.right_top() + egui::vec2(-190.0, 14.0);
     let text = |place: egui::Pos2, align, text: String| {
         painter.text(place, align, text, egui::FontId::proportional(13.0), Color32::from_white_alpha(220));
@@ -72,6 +79,10 @@ pub(super) fn legend(painter: &egui::Painter, rect: egui::Rect, value: Value, ra
     if value == Value::Guide {
         return;
     }
+    if value == Value::Density && scenery.volumes.iter().all(Option::is_none) {
+        text(at + egui::vec2(0.0, 18.0), egui::Align2::LEFT_TOP, "known with hair on hair: Volume".into());
+        return;
+    }
     let (bar, height) =
         (egui::Rect::from_min_size(at + egui::vec2(0.0, 20.0), egui::vec2(170.0, 10.0)), 10.0);
     for k in 0..34 {
@@ -82,20 +93,20 @@ pub(super) fn legend(painter: &egui::Painter, rect: egui::Rect, value: Value, ra
         painter.rect_filled(piece, 0.0, Color32::from_rgb(c[0], c[1], c[2]));
     }
     text(bar.left_bottom(), egui::Align2::LEFT_TOP, "0".into());
-    text(bar.right_bottom(), egui::Align2::RIGHT_TOP, readable(range[1], unit));
+    text(bar.right_bottom(), egui::Align2::RIGHT_TOP, readable(view.range[1], unit));
 }
 
 /// A number in three digits, with the unit's prefix.
 fn readable(value: f32, unit: &str) -> String {
     let (scale, prefix) = match value {
-        v if unit.is_empty() && v < 0.1 => return format!("{:.3} %", 100.0 * v),
+        v if unit.is_empty() && v < 0.1 => (1e2, "%"),
         v if unit.is_empty() || v >= 0.1 => (1.0, ""),
         v if v >= 1e-4 => (1e3, "m"),
         v if v >= 1e-7 => (1e6, "µ"),
         _ => (1e9, "n"),
     };
     let value = value * scale;
-    let digits = (2.0 - value.max(1e-9).log10().floor()).clamp(0.0, 3.0) as usize;
+    let digits = (2.0 - value.max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{value:.digits$} {prefix}{unit}").trim_end().to_owned()
 }
 
@@ -109,7 +120,7 @@ mod tests {
         assert_eq!(readable(2.0e-3, "m/s"), "2.00 mm/s");
         assert_eq!(readable(1.25, "m/s"), "1.25 m/s");
         assert_eq!(readable(123.4, "rad"), "123 rad");
-        assert_eq!(readable(8.6e-5, ""), "0.009 %");
+        assert_eq!(readable(8.62e-5, ""), "0.00862 %");
         assert_eq!(readable(0.82, ""), "0.820");
     }
 }
