@@ -84,6 +84,11 @@ impl Lens {
         Self { eye: camera.position, right, up: right.cross(forward), forward, slope, aspect }
     }
 
+    /// Up in the picture.
+    pub fn up(&self) -> Vec3 {
+        self.up
+    }
+
     /// Where it is seen from [m].
     pub fn eye(&self) -> Vec3 {
         self.eye

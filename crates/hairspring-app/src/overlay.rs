@@ -6,7 +6,7 @@ use crate::{
     orbit::Lens,
     ramp,
     snapshot::Scenery,
-    view::{Hand, View},
+    view::{FINGERS, Hand, View},
 };
 use eframe::egui::{self, Color32, Pos2, Stroke};
 use glam::{Mat3, Vec2, Vec3};
@@ -101,8 +101,21 @@ pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picke
     if let Some((center, radius)) = view.ball().filter(|_| view.hand == Hand::Grab) {
         pen.ball(center, radius, Stroke::new(1.5, Color32::from_white_alpha(170)));
     }
+    if let Some((center, radius)) = view.ball().filter(|_| view.hand == Hand::Comb) {
+        fingers(pen, center, radius, Stroke::new(2.0, Color32::from_white_alpha(170)));
+    }
     for (k, handle) in handles.iter().enumerate() {
         handle_at(pen, handle, view.touched() == Some(k));
+    }
+}
+
+/// Five fingers, as wide and as long as they reach.
+fn fingers(pen: &Pen, center: Vec3, radius: f32, stroke: Stroke) {
+    let (right, down) = (pen.lens.right() * (FINGERS * radius), -pen.lens.up() * radius);
+    pen.line(center - right, center + right, stroke);
+    for k in -2..=2 {
+        let at = center + right * (k as f32 / 2.0);
+        pen.line(at, at + down, stroke);
     }
 }
 

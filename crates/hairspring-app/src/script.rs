@@ -4,7 +4,7 @@
 //! # from the picture's top left corner (0, 0) to its bottom right (1, 1)
 //! wait 30                          steps of the simulation
 //! set groom[0].look.roughness 0.5  a value by its key; `unset KEY` takes it away
-//! hand grab                        look, grab, ball, head, pick
+//! hand grab                        look, grab, ball, head, pick, comb
 //! drag 0.4 0.6 0.7 0.5 30          presses, moves in so many frames of the window, releases
 //! shot window.png                  the window as it is
 //! pace                             prints how it draws, how many pictures come in a second, and a step's time

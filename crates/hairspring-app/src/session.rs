@@ -12,7 +12,7 @@ use crate::{
 };
 use glam::Vec3;
 use hairspring::{
-    around::{Tool, grab::Grab},
+    around::{Tool, comb::Comb, grab::Grab},
     collide::Rigid,
     stage::Value,
 };
@@ -72,6 +72,8 @@ pub enum Action {
     Unpick,
     /// Takes hold of the hair in a ball.
     Grab(Vec3, f32),
+    /// Puts spread fingers in around a place, half of their row [m], and how far they reach [m].
+    Comb(Vec3, Vec3, f32),
     /// Moves what took hold, or the ball's.
     Carry(Vec3),
     /// Lets go.
@@ -236,6 +238,12 @@ impl Session {
                 // In the tool's own space the ball is where it took hold: it is carried by how far it has gone since.
                 let grab = Grab { center: Vec3::ZERO, radius, pull: 60.0, damping: 1.0 };
                 self.player.tell(Order::Take(Tool::Grab(grab), at(center)));
+                self.held = true;
+            }
+            Action::Comb(center, half, radius) => {
+                // Tines that are hard, on hair that slides, as in a scene file.
+                let comb = Comb { a: -half, b: half, radius, grip: 1000.0, friction: 3.0 };
+                self.player.tell(Order::Take(Tool::Comb(comb), at(center)));
                 self.held = true;
             }
             Action::Carry(center) => self.player.tell(Order::Carry(at(center))),

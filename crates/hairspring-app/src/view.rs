@@ -18,6 +18,9 @@ const TOUCH: f32 = 10.0;
 /// Widest that a hair is drawn by default, times its own width.
 const WIDEST: f32 = 10.0;
 
+/// Half of a hand's width, over the length of its fingers' reach.
+pub const FINGERS: f32 = 2.0;
+
 /// What the left button does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hand {
@@ -32,11 +35,18 @@ pub enum Hand {
     Head,
     /// Picks a strand.
     Pick,
+    /// Goes through the hair with spread fingers.
+    Comb,
 }
 
 impl Hand {
+    /// Whether it has a size.
+    pub fn reaches(self) -> bool {
+        matches!(self, Self::Ball | Self::Grab | Self::Comb)
+    }
+
     /// All of them, with their names, keys and what they do.
-    pub const ALL: [(Self, &'static str, egui::Key, &'static str); 5] = [
+    pub const ALL: [(Self, &'static str, egui::Key, &'static str); 6] = [
         (
             Self::Look,
             "Look",
@@ -57,6 +67,12 @@ impl Hand {
         ),
         (Self::Head, "Head", egui::Key::Num4, "Drag the head; it comes back when it is let go of."),
         (Self::Pick, "Pick", egui::Key::Num5, "Press on a strand to see its numbers."),
+        (
+            Self::Comb,
+            "Comb",
+            egui::Key::Num6,
+            "Drag spread fingers through the hair: it goes with them across itself, and slides through along itself.",
+        ),
     ];
 }
 
@@ -257,6 +273,9 @@ impl View {
             match self.hand {
                 Hand::Grab => actions.push(Action::Grab(place, self.reach)),
                 Hand::Ball => actions.push(Action::Ball(Some((place, self.reach)))),
+                Hand::Comb => {
+                    actions.push(Action::Comb(place, lens.right() * (FINGERS * self.reach), self.reach))
+                }
                 _ => {}
             }
         } else if let Some(drag) = &mut self.drag
@@ -264,7 +283,7 @@ impl View {
         {
             drag.at = from + way * drag.depth;
             match self.hand {
-                Hand::Grab => actions.push(Action::Carry(drag.at)),
+                Hand::Grab | Hand::Comb => actions.push(Action::Carry(drag.at)),
                 Hand::Ball => actions.push(Action::Ball(Some((drag.at, self.reach)))),
                 Hand::Head => {
                     // Farther than an arm, the head would leave the picture.
@@ -276,7 +295,7 @@ impl View {
         }
         if response.drag_stopped() && self.drag.take().is_some() {
             match self.hand {
-                Hand::Grab => actions.push(Action::LetGo),
+                Hand::Grab | Hand::Comb => actions.push(Action::LetGo),
                 Hand::Ball => actions.push(Action::Ball(None)),
                 _ => {}
             }
@@ -379,9 +398,9 @@ impl View {
         self.range = [0.0, if far { high } else { self.range[1] + 0.1 * (high - self.range[1]) }];
     }
 
-    /// The ball, while it is dragged: its middle and radius [m].
+    /// The ball, what is grabbed or combed, while it is dragged: its middle and radius [m].
     pub fn ball(&self) -> Option<(Vec3, f32)> {
-        let drag = self.drag.as_ref().filter(|_| matches!(self.hand, Hand::Ball | Hand::Grab))?;
+        let drag = self.drag.as_ref().filter(|_| self.hand.reaches())?;
         Some((drag.at, self.reach))
     }
 }

@@ -59,7 +59,7 @@ pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<
                 view.hand = hand;
             }
         }
-        if matches!(view.hand, Hand::Ball | Hand::Grab) {
+        if view.hand.reaches() {
             ui.add(
                 egui::Slider::new(&mut view.reach, 0.002..=0.2).logarithmic(true).suffix(" m").text("Radius"),
             );
