@@ -17,9 +17,7 @@ use hairspring::{
     stage::Stage,
 };
 use hairspring_view::{
-    Frame, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer,
-    gpu::{Gpu, GpuError, GpuRenderer},
-    write_png,
+    Frame, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, gpu::GpuRenderer, write_png,
 };
 use image_compare::{Algorithm, gray_similarity_structure};
 
@@ -29,18 +27,6 @@ const ALIKE: f64 = 0.99;
 const BRIGHTNESS: f64 = 0.5;
 /// Greatest difference of a channel in any one pixel of a body, of codes around it [codes of 255].
 const BRIGHTNESS_HERE: i32 = 4;
-
-/// A renderer on the card there is, if there is one.
-fn renderer() -> Option<GpuRenderer> {
-    match Gpu::open() {
-        Ok(gpu) => Some(GpuRenderer::new(&gpu)),
-        Err(error @ GpuError::Missing(_)) => {
-            eprintln!("skipped: {error}");
-            None
-        }
-        Err(error) => panic!("{error}"),
-    }
-}
 
 fn luma(image: &Image) -> image_compare::prelude::GrayImage {
     let grey = |p: &[u8]| (0.2126 * p[0] as f32 + 0.7152 * p[1] as f32 + 0.0722 * p[2] as f32).round() as u8;
@@ -163,7 +149,7 @@ fn leak(few: Few) -> &'static Few {
 
 #[test]
 fn a_strand_is_where_it_is_and_as_wide_as_it_is() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let (a, b) = (Vec3::new(-0.09, -0.04, 0.0), Vec3::new(0.08, 0.05, 0.03));
     for (name, radius) in [("wide", 2e-3), ("pixel", 4e-4), ("thin", 6e-5)] {
         let few = leak(Few::new(&[strand(a, b, 0.02), strand(b * 0.7, -b, 0.01)], radius));
@@ -174,7 +160,7 @@ fn a_strand_is_where_it_is_and_as_wide_as_it_is() {
 /// The CPU's hair does not flicker when it moves by parts of a pixel (`hair_covers_its_true_area.rs`), so neither does the card's.
 #[test]
 fn a_moving_hair_is_the_same_hair() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     for step in 0..6 {
         let moved = Vec3::new(0.000_23, 0.000_31, 0.0) * step as f32;
         let few = leak(Few::new(
@@ -187,7 +173,7 @@ fn a_moving_hair_is_the_same_hair() {
 
 #[test]
 fn what_is_nearer_hides_what_is_farther() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let mut far = Few::new(&[strand(Vec3::new(-0.1, -0.06, -0.02), Vec3::new(0.1, 0.06, -0.02), 0.0)], 5e-3);
     far.look = HairLook::from(HairColor::Black);
     let near = Few::new(&[strand(Vec3::new(-0.1, 0.06, 0.02), Vec3::new(0.1, -0.06, 0.02), 0.0)], 5e-3);
@@ -198,7 +184,7 @@ fn what_is_nearer_hides_what_is_farther() {
 
 #[test]
 fn points_have_their_own_colours() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let mut few = Few::new(&[strand(Vec3::NEG_X * 0.1, Vec3::X * 0.1, 0.03)], 4e-3);
     few.colors = (0..12).map(|i| [Vec3::X, Vec3::Y, Vec3::Z][i / 4] * 0.7 + 0.05).collect();
     compare(&mut gpu, "coloured", &close(&[leak(few).draw()]), 160, 120);
@@ -206,7 +192,7 @@ fn points_have_their_own_colours() {
 
 #[test]
 fn hair_on_a_body_is_lit_and_shaded_alike() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let ball = support::ball();
     for (name, style, color) in
         [("straight", support::STRAIGHT, HairColor::Brown), ("wavy", support::WAVY, HairColor::Blonde)]
@@ -223,7 +209,7 @@ fn hair_on_a_body_is_lit_and_shaded_alike() {
 /// slant have many edges; and they lie far from the origin, so that a place that is a thousandth too small is millimetres off.
 #[test]
 fn slivers_have_no_speckles() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let (rows, columns, far) = (60, 9, Vec3::new(0.3, 1.5, -0.2));
     let mut mesh = Mesh::default();
     for (j, i) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (j, i))) {
@@ -248,7 +234,7 @@ fn slivers_have_no_speckles() {
 
 #[test]
 fn a_head_looks_alike() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let options = BuiltinOptions { strands: 4000, ..BuiltinOptions::default() };
     let stage = Stage::new(scene(&options)).unwrap();
     let hair: Vec<HairDraw> =
@@ -262,7 +248,7 @@ fn a_head_looks_alike() {
 
 #[test]
 fn a_head_in_motion_looks_alike_whoever_places_its_hair() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let options = BuiltinOptions { strands: 4000, guides: Guides::Count(400), ..BuiltinOptions::default() };
     let mut scene = scene(&options);
     for groom in &mut scene.grooms {
@@ -287,7 +273,7 @@ fn a_head_in_motion_looks_alike_whoever_places_its_hair() {
 
 #[test]
 fn a_frame_drawn_twice_is_the_same_picture_at_any_size() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let groom = support::groom(support::Style { strands: 3000, points: 16, ..support::WAVY });
     let (look, ball) = (HairLook::default(), support::ball());
     let (hair, bodies) = ([support::hair(&groom, &look)], [support::body(&ball)]);
@@ -305,7 +291,7 @@ fn a_frame_drawn_twice_is_the_same_picture_at_any_size() {
 
 #[test]
 fn what_changed_is_sent_again() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let mut few = Few::new(&[strand(Vec3::NEG_X * 0.1, Vec3::X * 0.1, 0.03)], 4e-3);
     let close = |few: &Few, gpu: &mut GpuRenderer| {
         let hair = [few.draw()];
@@ -327,7 +313,7 @@ fn what_changed_is_sent_again() {
 
 #[test]
 fn an_empty_scene_is_the_backdrop() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let look = HairLook::default();
     let nothing = HairDraw {
         points: &[],
@@ -351,7 +337,7 @@ fn an_empty_scene_is_the_backdrop() {
 
 #[test]
 fn broken_input_is_drawn_around() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let mut groom = support::groom(support::Style { strands: 2000, points: 12, ..support::STRAIGHT });
     let look = HairLook::default();
     for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30].into_iter().enumerate() {

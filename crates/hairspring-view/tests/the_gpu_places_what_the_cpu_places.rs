@@ -16,26 +16,12 @@ use hairspring::{
     },
     stage::Stage,
 };
-use hairspring_view::{
-    HairDraw,
-    gpu::{Gpu, GpuError, GpuRenderer},
-};
+use hairspring_view::{HairDraw, gpu::GpuRenderer};
 
 /// Farthest that points are apart [m].
 const BOUND: f32 = 2e-6;
 /// The same of strands whose curl keeps less of its normal than this share, and how many of them may need it.
 const FOLDED: (f32, f32, f32) = (1e-4, 0.2, 0.002);
-
-fn renderer() -> Option<GpuRenderer> {
-    match Gpu::open() {
-        Ok(gpu) => Some(GpuRenderer::new(&gpu)),
-        Err(error @ GpuError::Missing(_)) => {
-            eprintln!("skipped: {error}");
-            None
-        }
-        Err(error) => panic!("{error}"),
-    }
-}
 
 fn head(effects: Effects, colliders: Vec<Shape>) -> Scene {
     let options =
@@ -129,7 +115,7 @@ const ALL: Effects = Effects { clump: 0.6, curl_radius: 0.004, curl_length: 0.03
 
 #[test]
 fn hairs_are_carried_alike() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     let mut scene = head(Effects::default(), Vec::new());
     scene.solver.collide_body = false;
     scene.collision = None;
@@ -138,14 +124,14 @@ fn hairs_are_carried_alike() {
 
 #[test]
 fn the_body_keeps_hairs_out_alike() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     assert!(compare(&mut gpu, "body", head(Effects::default(), Vec::new()), 60) > 100);
     assert!(compare(&mut gpu, "body and style", head(ALL, Vec::new()), 60) > 100);
 }
 
 #[test]
 fn every_shape_keeps_hairs_out_alike() {
-    let Some(mut gpu) = renderer() else { return };
+    let Some(mut gpu) = support::card() else { return };
     // Amid the hair at one side: what is inside at rest may stay as deep, what swings in may not.
     let hair = head(ALL, Vec::new()).grooms[0].groom.points.clone();
     let center = hair.into_iter().reduce(|a, b| if b.x > a.x { b } else { a }).unwrap();
@@ -172,7 +158,7 @@ fn every_shape_keeps_hairs_out_alike() {
 
 #[test]
 fn sheets_are_left_to_the_cpu() {
-    let Some(gpu) = renderer() else { return };
+    let Some(gpu) = support::card() else { return };
     let mut scene = head(Effects::default(), Vec::new());
     scene.sheets =
         vec![hairspring::scene::SceneSheet { body: scene.body.clone().unwrap(), thickness: 0.002 }];

@@ -7,7 +7,10 @@ use hairspring::{
     groom::Groom,
     scene::{Camera, HairLook},
 };
-use hairspring_view::{Background, Frame, HairDraw, Lighting, MeshDraw, Quality};
+use hairspring_view::{
+    Background, Frame, HairDraw, Lighting, MeshDraw, Quality,
+    gpu::{Gpu, GpuError, GpuRenderer},
+};
 
 /// Radius of the ball [m].
 pub const RADIUS: f32 = 0.095;
@@ -178,5 +181,17 @@ pub fn frame<'a>(hair: &'a [HairDraw<'a>], bodies: &'a [MeshDraw<'a>]) -> Frame<
         lighting: Lighting::default(),
         background: Background::default(),
         quality: Quality::default(),
+    }
+}
+
+/// A renderer on the card there is, if there is one.
+pub fn card() -> Option<GpuRenderer> {
+    match Gpu::open() {
+        Ok(gpu) => Some(GpuRenderer::new(&gpu)),
+        Err(error @ GpuError::Missing(_)) => {
+            eprintln!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
     }
 }

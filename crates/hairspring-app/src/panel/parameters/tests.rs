@@ -380,3 +380,13 @@ fn a_search_leaves_the_groups_as_they_were() {
     panel.harness.run_steps(30);
     assert_eq!(open(&panel), 0, "closed as before");
 }
+
+#[test]
+fn the_colour_picker_opens_and_its_letters_are_known() {
+    let mut panel = panel(HEAD, "root");
+    let button = panel.harness.query_all_by_role(egui::accesskit::Role::ColorWell).next().unwrap();
+    button.click();
+    // A letter that no font has ends the test.
+    panel.harness.run_steps(3);
+    assert!(panel.harness.query_by_label("📋").is_some());
+}
