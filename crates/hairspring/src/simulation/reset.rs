@@ -2,15 +2,27 @@
 
 use super::{Simulation, build::simulated_points};
 use crate::strand::{
-    lanes::LANES,
+    lanes::{F, LANES, Row, load, store},
     tile::{Elastic, StateRows, springs, state, strand},
 };
+use fearless_simd::{Level, dispatch, prelude::*};
 use glam::{Quat, Vec3};
 
 /// Whether every number of these rows is finite.
-pub(super) fn all_finite(state: &[StateRows]) -> bool {
-    // x·0 is 0 for finite x and NaN otherwise; the sum has no branch.
-    state.iter().flatten().map(|row| row.0.iter().map(|x| x * 0.0).sum::<f32>()).sum::<f32>() == 0.0
+pub(super) fn all_finite(level: Level, points: &[StateRows]) -> bool {
+    let mut total = Row::default();
+    dispatch!(level, simd => {
+        // x·0 is 0 for finite x and NaN otherwise; sums have no branch, and so many do not wait for each other.
+        let zero = F::splat(simd, 0.0);
+        let mut sums = [zero; state::ROWS];
+        for rows in points {
+            for (sum, row) in sums.iter_mut().zip(rows) {
+                *sum = load(simd, row).mul_add(zero, *sum);
+            }
+        }
+        store(sums.into_iter().fold(zero, |all, sum| all + sum), &mut total);
+    });
+    total.0 == [0.0; LANES]
 }
 
 impl Simulation {

@@ -344,7 +344,7 @@ fn run(level: Level, interval: &Interval, mut piece: Piece) -> bool {
                 Elastic::Springs => springs::run,
             };
             run(level, interval, &mut tile, memory);
-            broken |= !reset::all_finite(tile.state);
+            broken |= !reset::all_finite(level, tile.state);
         }
         broken
     })

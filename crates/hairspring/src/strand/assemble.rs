@@ -185,6 +185,10 @@ fn add_point<S, M, const B: usize, const N: usize>(
     S: Simd,
     M: Model<S, B, N>,
 {
+    if phase == 0 && i > 0 && i + M::STRIDE < tile.rest.len() {
+        // Before anything is said of the window's last point: what is added where few tiles come by has to be in memory, and here all of it is.
+        elements.press_between(simd, (sweep, step), i, tile, scratch);
+    }
     let segment = elements.add(simd, i, phase, tile, scratch);
     if sweep == Sweep::Again {
         let [new, old] = [&scratch.edges[i + 1][..], &tile.state[i + 1][state::EDGE..]];
@@ -274,16 +278,6 @@ fn add_point<S, M, const B: usize, const N: usize>(
         tether::pull(simd, step, tile, (i + 1, x, outset.drift(simd)), band);
         let work = &mut scratch.contacts[i + 1];
         press(simd, step, tile, (i + 1, x, outset.drift(simd), outset.way(simd)), band, work);
-        if i + 1 + M::STRIDE < tile.rest.len() {
-            press_between(
-                simd,
-                (sweep, step),
-                tile,
-                (i + 1, x, outset.drift(simd), outset.way(simd)),
-                band,
-                scratch,
-            );
-        }
     }
 }
 
@@ -443,6 +437,22 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             wind: V3::splat(simd, step.wind) + (root_velocity - now),
         };
         Self { band, model, at, x: zero, way: zero, root_velocity, still, half_drag, explicit }
+    }
+
+    /// Adds contact of the segment from point `i`, the band's first.
+    #[inline(always)]
+    fn press_between(
+        &mut self,
+        simd: S,
+        (sweep, step): (Sweep, &Step<S>),
+        i: usize,
+        tile: &mut Tile,
+        scratch: &mut Scratch,
+    ) {
+        let faster = V3::load(simd, &tile.state[i][state::V..]) - self.root_velocity;
+        let outset = Outset { sweep, faster, share: sweep.drift(step.h), way: self.way };
+        let inner = (i, self.x, outset.drift(simd), outset.way(simd));
+        press_between(simd, (sweep, step, M::STRIDE), tile, inner, &mut self.band, scratch);
     }
 
     /// Adds what begins at the next point `i`: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i

@@ -99,18 +99,18 @@ pub fn clear<S: Simd>(
     q
 }
 
-/// Adds contact to the segment from point `i`, the second of the band's window, to the strand's next, which is in it too. Point `i` is at `x` from the
-/// root, drifts by `drift` and is by then `way` from where the substep began.
+/// Adds contact to the segment from point `i`, the first of the band's window, to the strand's next, which is in it too. Point `i` is at `x` from the
+/// root, drifts by `drift` and is by then `way` from where the substep began. `stride` is the model's, told and not looked up: the compiler has to know
+/// which entries these are, or all of the band stays in memory.
 #[inline(always)]
 pub fn press_between<S: Simd, const B: usize, const N: usize>(
     simd: S,
-    (sweep, step): (Sweep, &Step<S>),
+    (sweep, step, stride): (Sweep, &Step<S>, usize),
     tile: &mut Tile,
     (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
     band: &mut Band<S, B, N>,
     memory: &mut Scratch,
 ) {
-    let stride = tile.model.stride();
     let outer = i + stride;
     let Some(rows) = tile.spans.get(outer) else { return };
     let force = load(simd, &rows[span::FORCE]);
@@ -164,11 +164,11 @@ pub fn press_between<S: Simd, const B: usize, const N: usize>(
     let block = Sym3::outer(normal, k - rub).add_identity(rub);
     let push = normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub;
     let share = one - at;
-    band.add_diagonal(1, block * (share * share));
-    band.add_diagonal(1 + stride, block * (at * at));
-    band.add_block(1, 1 + stride, &(block * (share * at)).full());
-    band.add_force(1, push * share);
-    band.add_force(1 + stride, push * at);
+    band.add_diagonal(0, block * (share * share));
+    band.add_diagonal(stride, block * (at * at));
+    band.add_block(0, stride, &(block * (share * at)).full());
+    band.add_force(0, push * share);
+    band.add_force(stride, push * at);
 }
 
 /// The force that presses the segment from point `i` once the solve has moved its ends by `moved`.

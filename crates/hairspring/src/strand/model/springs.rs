@@ -46,13 +46,10 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
         let [e1, e2, e3] = edges.each_ref().map(|e| V3::load(simd, e));
         // From this particle to the three after it.
         let p = [e1, e1 + e2, e1 + e2 + e3];
-        let v = match tile.state[i..].first_chunk::<4>() {
-            Some(rows) => rows.each_ref().map(|row| V3::load(simd, &row[state::V..])),
-            // Beyond the tip nothing is stiff.
-            None => [0, 1, 2, 3]
-                .map(|k| V3::load(simd, &tile.state[(i + k).min(tile.rest.len() - 1)][state::V..])),
-        };
-        let drift = |far: usize| v[far] - v[0];
+        // Beyond the tip nothing is stiff.
+        let tip = tile.rest.len() - 1;
+        let v = |k: usize| V3::load(simd, &tile.state[(i + k).min(tip)][state::V..]);
+        let drift = |far: usize| v(far) - v(0);
         add_altitude(simd, at, (p, &drift), rest, band);
 
         // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
