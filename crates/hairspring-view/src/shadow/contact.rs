@@ -114,3 +114,47 @@ impl Contact {
         mix(mix(row[0], row[1], share.x), mix(row[w], row[w + 1], share.x), share.y)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        frame::{MeshDraw, Quality},
+        ground::Ground,
+        lighting::{Background, Lighting},
+    };
+    use hairspring::scene::Camera;
+
+    /// The sky from places of the ground under and beside a plate of 2 m at a height [m].
+    fn under(height: f32, places: [f32; 3]) -> [f32; 3] {
+        let corner = |x: f32, z: f32| Vec3::new(x, height, z);
+        let positions = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        let triangles = [[0, 1, 2], [0, 2, 3]];
+        let bodies = [MeshDraw { positions: &positions, normals: &[], triangles: &triangles, parts: &[] }];
+        let mut contact = Contact::default();
+        contact.fill(&Frame {
+            hair: &[],
+            bodies: &bodies,
+            camera: Camera { position: Vec3::ONE, ..Camera::default() },
+            lighting: Lighting::default(),
+            background: Background::default(),
+            ground: Some(Ground { height: 0.0, color: None }),
+            quality: Quality::default(),
+        });
+        places.map(|x| contact.open(Vec3::new(x, 0.0, 0.1)))
+    }
+
+    #[test]
+    fn a_plate_takes_all_of_the_sky_under_it_and_half_at_its_edge() {
+        let reach = REACH * 2.0;
+        let close = |found: [f32; 3], right: [f32; 3]| {
+            assert!(found.iter().zip(right).all(|(a, b)| (a - b).abs() < 0.03), "{found:?} for {right:?}");
+        };
+        close(under(0.0, [0.0, 1.0, 1.01 + LEAST * reach]), [0.0, 0.5, 1.0]);
+        // Through the ground, as on it.
+        close(under(-0.5, [0.0, 1.0, 1.01 + LEAST * reach]), [0.0, 0.5, 1.0]);
+        // Half way up, a quarter counts, and is felt farther.
+        close(under(0.5 * reach, [0.0, 1.0, 1.0 + 0.5 * LEAST * reach]), [0.75, 0.875, 0.916]);
+        close(under(reach, [0.0, 1.0, 1.1]), [1.0; 3]);
+    }
+}
