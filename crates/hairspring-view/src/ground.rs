@@ -6,7 +6,7 @@
 use crate::{
     body::{SAMPLES, skin::HAIR_SHADE},
     camera::View,
-    frame::Frame,
+    frame::{Frame, Quality},
     shadow::{Shadow, place},
 };
 use fearless_simd::Level;
@@ -57,14 +57,17 @@ pub(crate) struct Floor {
     /// Middle of bodies and hair, X and Z, and the longest edge of the box that holds them [m].
     pub middle: Vec2,
     pub extent: f32,
+    /// The box on the ground, X and Z, that holds all shadow of the key lamp: low and high [m].
+    pub shade: [Vec2; 2],
 }
 
 impl Floor {
     /// `bounds`: the box of the hair, if there is any. `None`: there is no ground, or it is not seen from above.
     pub fn new(frame: &Frame, view: &View, bounds: Option<(Vec3, Vec3)>) -> Option<Self> {
         let Ground { height, color } = frame.ground_seen()?;
+        let bodies = place(frame);
         let corners = bounds.into_iter().flat_map(|(low, high)| [low, high]);
-        let (low, high) = place(frame)
+        let (low, high) = bodies
             .into_iter()
             .flat_map(|(low, high)| [low, high])
             .chain(corners)
@@ -73,7 +76,26 @@ impl Floor {
         let lamps = &frame.lighting;
         // What is no number gives no light.
         let finite = |light: Vec3| if light.is_finite() { light.max(Vec3::ZERO) } else { Vec3::ZERO };
-        let key = finite(lamps.key.color) * lamps.key.direction.normalize_or(Vec3::Y).y.max(0.0);
+        let toward = lamps.key.direction.normalize_or(Vec3::Y);
+        let key = finite(lamps.key.color) * toward.y.max(0.0);
+        // Around either box lies what softens its shadow: padding of the grid, windows in the map.
+        let Quality { shadow_voxels, shadow_texels, .. } = frame.quality;
+        let wider = |(low, high): (Vec3, Vec3), by: f32| {
+            let room = (high - low).max_element() * by;
+            (low - Vec3::splat(room), high + Vec3::splat(room))
+        };
+        let boxes = bounds
+            .map(|b| wider(b, 10.0 / shadow_voxels.clamp(16, 256) as f32))
+            .into_iter()
+            .chain(bodies.map(|b| wider(b, 40.0 / shadow_texels.clamp(64, 8192) as f32)));
+        let slope = toward.xz() / toward.y.max(1e-3);
+        let cast = boxes.flat_map(|(low, high)| {
+            let near = slope * (low.y.max(height) - height);
+            let far = slope * (high.y.max(height) - height);
+            [low.xz() - near, low.xz() - far, high.xz() - near, high.xz() - far]
+        });
+        let none = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        let shade = cast.fold(none, |(low, high), p| (low.min(p), high.max(p)));
         Some(Self {
             height,
             color: color.map(finite),
@@ -81,6 +103,7 @@ impl Floor {
             sky: finite(lamps.sky) + key * ROOM,
             middle: if there { 0.5 * (low + high).xz() } else { view.eye.xz() },
             extent: if there { (high - low).max_element().max(1e-3) } else { 1.0 },
+            shade: [shade.0, shade.1],
         })
     }
 
@@ -98,7 +121,9 @@ impl Floor {
         let key = |p: Vec3| shadow.on_skin(level, p) * (-HAIR_SHADE * shadow.key_around(p)).exp();
         // A pixel that is longer on the ground than shadow is soft has samples, as outlines of bodies have.
         let length = p.distance(view.eye) / view.focal * ray.length() / -ray.y;
-        let key = if length < shadow.softness() {
+        let key = if !self.shaded(p, length) {
+            1.0
+        } else if length < shadow.softness() {
             key(p)
         } else {
             let [across, down] = SAMPLES;
@@ -113,6 +138,12 @@ impl Floor {
         let own = self.color.map_or(wall, |color| wall.lerp(color * whole, fade(far, POOL)));
         let taken = (self.key * (1.0 - key) + self.sky * (1.0 - open)) / whole.max(Vec3::splat(1e-6));
         own * (Vec3::ONE - taken * fade(far, FADE))
+    }
+
+    /// Whether the key lamp's shadow may reach into a pixel of a length around a place.
+    fn shaded(&self, p: Vec3, length: f32) -> bool {
+        let [low, high] = self.shade;
+        p.xz().cmpge(low - Vec2::splat(length)).all() && p.xz().cmple(high + Vec2::splat(length)).all()
     }
 
     /// How far along a ray the ground lies.

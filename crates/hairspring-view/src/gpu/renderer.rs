@@ -127,10 +127,10 @@ impl GpuRenderer {
         let middle = (0.5 * (low + high) - view.eye).dot(view.forward);
         let reach = 0.5 * (high - low).dot(view.forward.abs()) + 1e-3;
         let depths = [(middle - reach).max(0.0), middle.max(0.0) + reach];
-        let (grid_there, triangles) = (grid.as_ref(), self.meshes.count);
+        let (grid_there, counts) = (grid.as_ref(), [slots, self.meshes.count as usize]);
         let floor = Floor::new(frame, &view, bounds);
         let ground = (floor.as_ref(), self.develop.send(gpu, frame, &mut self.generation));
-        let uniforms = Uniforms::new(frame, &view, depths, grid_there, &map, ground, slots, triangles);
+        let uniforms = Uniforms::new(frame, &view, depths, grid_there, &map, ground, counts);
         self.uniforms.write(gpu, 0, &[uniforms]);
         let sent = Instant::now();
 

@@ -67,6 +67,8 @@ pub(super) struct Uniforms {
     contact_size: [f32; 2],
     contact_texel: f32,
     softness: f32,
+    shade_low: [f32; 2],
+    shade_high: [f32; 2],
 }
 
 /// The bodies' depth map: how it lies, as in `DepthMap::fill`.
@@ -118,8 +120,7 @@ impl Uniforms {
         grid: Option<&Grid>,
         map: &Map,
         (floor, contact): (Option<&Floor>, &Contact),
-        slots: usize,
-        triangles: u32,
+        [slots, triangles]: [usize; 2],
     ) -> Self {
         // What is no number gives no light, and not a picture of none.
         let finite = |v: Vec3| if v.is_finite() { v.to_array() } else { [0.0; 3] };
@@ -159,7 +160,7 @@ impl Uniforms {
             grid_origin: grid.map_or([0.0; 3], |g| g.origin.to_array()),
             map_range: map.range,
             grid_size: grid.map_or([1.0; 3], |g| g.size.map(|n| n as f32)),
-            triangles,
+            triangles: triangles as u32,
             floor_key: floor.map_or([0.0; 3], |f| f.key.to_array()),
             floor_height: floor.map_or(0.0, |f| f.height),
             floor_sky: floor.map_or([0.0; 3], |f| f.sky.to_array()),
@@ -171,6 +172,8 @@ impl Uniforms {
             contact_size: contact.size.map(|n| n as f32),
             contact_texel: contact.texel.max(1e-6),
             softness: shadow::softness(map.scale, grid.map_or(0.0, |g| g.voxel)),
+            shade_low: floor.map_or([0.0; 2], |f| f.shade[0].to_array()),
+            shade_high: floor.map_or([0.0; 2], |f| f.shade[1].to_array()),
         }
     }
 }

@@ -73,6 +73,9 @@ struct Frame {
     contact_texel: f32,
     /// `shadow::softness` [m].
     softness: f32,
+    /// Box around all shadow of the key lamp, X and Z [m].
+    shade_low: vec2f,
+    shade_high: vec2f,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -49,10 +49,13 @@ fn over_ground(wall: vec3f, at: vec2f) -> vec3f {
     if !(far < FADE_TO) {
         return wall;
     }
-    var key: f32;
-    if distance(p, frame.eye) / frame.focal * length(ray) / -ray.y < frame.softness {
+    var key = 1.0;
+    let long = distance(p, frame.eye) / frame.focal * length(ray) / -ray.y;
+    let shaded = all(p.xz >= frame.shade_low - long) && all(p.xz <= frame.shade_high + long);
+    if shaded && long < frame.softness {
         key = key_light(p);
-    } else {
+    } else if shaded {
+        key = 0.0;
         for (var k = 0; k < 8; k++) {
             key += key_light(met(ray_of(at + OUTLINE[k] - 0.5))) * 0.125;
         }
