@@ -57,6 +57,7 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
         ("volume", value(&scene.volume)),
         ("neighbours", value(&scene.neighbours)),
         ("hand", value(&scene.hands)),
+        ("ground", value(&scene.ground)),
     ] {
         all.insert(name.into(), value);
     }

@@ -251,6 +251,9 @@ pub const ALL: &[Parameter] = parameters! {
         Groom "look.shadow", "Shadow", "×", number(0.0, 4.0), "How strongly strands shade what is behind them.";
         Scene "body.color", "Skin", "", Kind::MaybeColor([0.5, 0.3, 0.23]), "Colour of the body's whole surface, in place of its file's.";
         Scene "body.roughness", "Roughness of skin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5 }, "Glossy to matt, in place of the body's file's.";
+        Scene "ground.on", "Ground", "", Kind::Switch, "Whether a level floor takes the shadow of body and hair. It is a matter of the picture: hair meets colliders.";
+        Scene "ground.height", "… lies at", "m", Kind::Maybe { min: -2.0, max: 2.0, from: 0.0 }, "On the axis that points up. Left out, at the lowest point of the body at rest. What is below it is hidden.";
+        Scene "ground.color", "… is of colour", "", Kind::MaybeColor([0.4, 0.37, 0.33]), "A floor's own, which fades into the backdrop; left out, shadow alone is seen.";
     }
     Camera {
         Scene "camera.position", "Stands at", "m", Kind::Vector { reach: 10.0 }, "The scene's own camera, which looks when it is opened and rendered. The window's is turned by hand.";

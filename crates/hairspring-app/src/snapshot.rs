@@ -10,7 +10,7 @@ use hairspring::{
     simulation::{Energy, Measure, MovingObstacle, VolumeReport},
     stage::{FrameReport, Picked, Stage, StrandFigures, Value},
 };
-use hairspring_view::{Background, Frame, HairDraw, Lighting, MeshDraw, Quality};
+use hairspring_view::{Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality};
 use std::{sync::Arc, time::Duration};
 
 /// What does not move: made once a scene.
@@ -90,6 +90,8 @@ pub struct Scenery {
     pub positions: Vec<Vec3>,
     /// See `positions`.
     pub normals: Vec<Vec3>,
+    /// What the body stands on.
+    ground: Option<Ground>,
     /// Colliders.
     pub obstacles: Vec<MovingObstacle>,
     /// The frame that roots move with.
@@ -115,6 +117,7 @@ impl Scenery {
             values: Vec::new(),
             positions: Vec::new(),
             normals: Vec::new(),
+            ground: None,
             obstacles: Vec::new(),
             anchor: Rigid::default(),
             measure: Measure::default(),
@@ -156,6 +159,7 @@ impl Scenery {
             self.positions.extend_from_slice(body.positions);
             self.normals.extend_from_slice(body.normals);
         }
+        self.ground = Ground::of(stage.scene());
         self.obstacles.clear();
         self.obstacles.extend_from_slice(stage.obstacles());
         self.anchor = stage.body_anchor();
@@ -259,6 +263,7 @@ impl Scenery {
             camera: sight.camera,
             lighting: Lighting { exposure: sight.exposure, ..Lighting::facing(&sight.lit_for) },
             background: Background::default(),
+            ground: self.ground,
             quality: sight.quality,
         })
     }

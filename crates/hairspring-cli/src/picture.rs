@@ -5,7 +5,7 @@ use clap::Args;
 use glam::{Quat, Vec3};
 use hairspring::{scene::Camera, stage::Stage};
 use hairspring_view::{
-    Background, Frame, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, Timings, frame_camera,
+    Background, Frame, Ground, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, Timings, frame_camera,
     gpu::{Gpu, GpuRenderer},
 };
 use std::time::Instant;
@@ -131,6 +131,7 @@ impl Studio {
             camera: self.camera,
             lighting: Lighting::facing(&self.camera),
             background: Background::default(),
+            ground: Ground::of(stage.scene()),
             quality: Quality::default(),
         };
         match &mut self.painter {

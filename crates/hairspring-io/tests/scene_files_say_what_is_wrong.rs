@@ -50,6 +50,9 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
         (format!("{GROOM}[groom.look]\ndye = [0, 0, 2]\n"), &["line 4", "`dye` must be three numbers"]),
         (format!("{GROOM}[solver]\nsubsteps = 0\n"), &["line 4", "1 to 64"]),
         (format!("{GROOM}[camera]\nfov = 200\n"), &["line 4", "1 to 170"]),
+        (format!("{GROOM}[ground]\nheight = nan\n"), &["line 4", "`height` must be a finite number"]),
+        (format!("{GROOM}[ground]\ncolor = [0, 2, 0]\n"), &["line 4", "`color` must be three numbers"]),
+        (format!("{GROOM}[ground]\ncolour = [0, 1, 0]\n"), &["line 4", "did you mean `color`?"]),
         (format!("{GROOM}material = \"a\"\n[material.a]\nfriction = 7\n"), &["line 5", "0 to 1"]),
         (
             format!("{GROOM}material = \"a\"\n[material.a]\nbend = 2\nmass_profile = [1, 0, 2]\n"),

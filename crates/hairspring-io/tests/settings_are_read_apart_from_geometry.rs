@@ -138,6 +138,7 @@ fn what_a_stage_takes_up_is_no_geometry() {
             "[solver]\n",
             "[[collider]]\nshape.hull = { file = \"no.obj\" }\n[camera]\nfov = 3\n[volume]\ncell = 0.1\n",
         ),
+        ("[solver]\n", "[ground]\non = true\nheight = 1\n"),
         ("[builtin]\n", "name = \"other\"\ngravity = [0, 0, 0]\n[builtin]\n"),
     ] {
         assert!(
@@ -199,10 +200,11 @@ fn a_stage_takes_up_what_is_read() {
     let path = folder.path().join("scene.toml");
     let mut stage = hairspring::stage::Stage::new(read_scene_text(&path, BUILTIN).unwrap().value).unwrap();
     stage.step(1.0 / 60.0);
-    let text = format!("gravity = [0, -1.6, 0]\n{BUILTIN}[wind]\nvelocity = [0, 0, 3]\n");
+    let text =
+        format!("gravity = [0, -1.6, 0]\n{BUILTIN}[wind]\nvelocity = [0, 0, 3]\n[ground]\non = true\n");
     assert!(same_geometry(BUILTIN, &text));
     stage.retune(read_settings(&path, &text).unwrap()).unwrap();
     assert_eq!((stage.scene().gravity, stage.scene().wind.velocity), (Vec3::Y * -1.6, Vec3::Z * 3.0));
-    assert!(stage.body().is_some());
+    assert!(stage.body().is_some() && stage.scene().ground.on);
     stage.step(1.0 / 60.0);
 }

@@ -8,7 +8,7 @@ use hairspring::{
     around::charge::Charged,
     groom::{Growth, Thicken},
     material::Material,
-    scene::{Camera, Collider, Effects, HairLook, Hand, Neighbours, Solver, Volume, Wind},
+    scene::{Camera, Collider, Effects, Ground, HairLook, Hand, Neighbours, Solver, Volume, Wind},
 };
 use hairspring_io::scene::check_text;
 use serde::{Serialize, de::DeserializeOwned};
@@ -25,7 +25,7 @@ const SOURCE: &str = include_str!("../../hairspring/src/air/source.rs");
 const CHARGE: &str = include_str!("../../hairspring/src/around/charge.rs");
 
 /// What a parameter's name begins with, and the struct (or variant) whose fields follow.
-const STRUCTS: [(&str, &str, &str); 40] = [
+const STRUCTS: [(&str, &str, &str); 41] = [
     ("", FILE, "SceneFile"),
     ("builtin.", FILE, "BuiltinFile"),
     ("body.", FILE, "BodyFile"),
@@ -62,6 +62,7 @@ const STRUCTS: [(&str, &str, &str); 40] = [
     ("volume.", SETTINGS, "Volume"),
     ("neighbours.", SETTINGS, "Neighbours"),
     ("camera.", include_str!("../../hairspring/src/scene/camera.rs"), "Camera"),
+    ("ground.", include_str!("../../hairspring/src/scene/ground.rs"), "Ground"),
     // Tables that have a page's heading as a whole, besides those of their fields.
     ("collision.", "", ""),
     ("sheet.", "", ""),
@@ -239,6 +240,7 @@ fn defaults() -> BTreeMap<String, Value> {
     defaults_of::<Volume>("volume", "", &mut all);
     defaults_of::<Neighbours>("neighbours", "", &mut all);
     defaults_of::<Camera>("camera", "position = [1, 0, 0]\ntarget = [0, 0, 0]", &mut all);
+    defaults_of::<Ground>("ground", "", &mut all);
     let place = "center = [0, 0, 0]\nradius = 1\n";
     let ring = format!("{place}axis = [0, 1, 0]\n");
     defaults_of::<WindSource>("wind_source", &format!("[shape.fan]\n{ring}speed = 1"), &mut all);

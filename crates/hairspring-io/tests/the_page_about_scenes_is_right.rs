@@ -40,6 +40,11 @@ fn the_page_leaves_no_setting_out() {
     let material = hairspring::material::Material { radius: Some(1.0), ..Default::default() };
     let volume = hairspring::scene::Volume { cell: Some(1.0), ..Default::default() };
     let neighbours = hairspring::scene::Neighbours { radius: Some(1.0), ..Default::default() };
+    let ground = hairspring::scene::Ground {
+        height: Some(1.0),
+        color: Some(Default::default()),
+        ..Default::default()
+    };
     for (name, fields) in [
         ("look", toml::Table::try_from(hairspring::scene::HairLook::default())),
         ("effects", toml::Table::try_from(hairspring::scene::Effects::default())),
@@ -50,6 +55,7 @@ fn the_page_leaves_no_setting_out() {
         ("volume", toml::Table::try_from(volume)),
         ("neighbours", toml::Table::try_from(neighbours)),
         ("camera", toml::Table::try_from(hairspring::scene::Camera::default())),
+        ("ground", toml::Table::try_from(ground)),
         ("material", toml::Table::try_from(material)),
     ] {
         for key in fields.unwrap().keys() {

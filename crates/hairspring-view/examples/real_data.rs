@@ -19,7 +19,7 @@ use hairspring::{
 };
 use hairspring_io::read_scene;
 use hairspring_view::{
-    Background, Frame, HairDraw, Lighting, MeshDraw, Quality, Renderer, frame_camera, write_png,
+    Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality, Renderer, frame_camera, write_png,
 };
 use std::{
     error::Error,
@@ -217,6 +217,7 @@ fn draw(stage: &mut Stage, time: f32, size: [u32; 2], path: &Path) -> Result<(),
         camera,
         lighting: Lighting::facing(&camera),
         background: Background::default(),
+        ground: Ground::of(stage.scene()),
         quality: Quality::default(),
     };
     let image = Renderer::new(size[0], size[1]).draw(&frame).clone();

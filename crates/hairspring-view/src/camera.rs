@@ -19,10 +19,15 @@ pub(crate) struct View {
     pub center: [f32; 2],
 }
 
+/// Where a camera stands; the default one if its place is no place.
+pub(crate) fn eye(camera: &Camera) -> Vec3 {
+    if camera.position.is_finite() { camera.position } else { Camera::default().position }
+}
+
 impl View {
     /// Broken settings (no distance, not finite) give the default camera's direction rather than no picture.
     pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
-        let eye = if camera.position.is_finite() { camera.position } else { Camera::default().position };
+        let eye = eye(camera);
         let forward = (camera.target - eye).try_normalize().unwrap_or(Vec3::NEG_Z);
         let side = if forward.y.abs() > 0.9999 { Vec3::Z } else { Vec3::Y };
         let right = forward.cross(side).normalize();

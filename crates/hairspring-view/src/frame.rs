@@ -1,6 +1,10 @@
 //! What one picture shows: borrowed arrays and settings, no state.
 
-use crate::lighting::{Background, Lighting};
+use crate::{
+    camera,
+    ground::Ground,
+    lighting::{Background, Lighting},
+};
 use glam::Vec3;
 use hairspring::{
     body::Part,
@@ -72,8 +76,17 @@ pub struct Frame<'a> {
     pub lighting: Lighting,
     /// Backdrop.
     pub background: Background,
+    /// What everything stands on; `None`: the backdrop is all there is.
+    pub ground: Option<Ground>,
     /// Work to spend.
     pub quality: Quality,
+}
+
+impl Frame<'_> {
+    /// The ground, if the camera stands above it.
+    pub(crate) fn ground_seen(&self) -> Option<Ground> {
+        self.ground.filter(|ground| ground.height.is_finite() && camera::eye(&self.camera).y > ground.height)
+    }
 }
 
 impl<'a> HairDraw<'a> {

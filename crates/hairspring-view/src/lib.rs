@@ -7,7 +7,7 @@
 //! | --- | --- | --- |
 //! | `shadow` | hair is splatted into a density grid, swept along each lamp; bodies are drawn into a depth map | Yuksel & Keyser 2008, Reeves et al. 1987 |
 //! | `hair` | strands are projected and filed by tile; what a tile sees of them is lit at its points and smoothed | Marschner et al. 2003, Karis 2016 |
-//! | `tile` | a tile's segments are laid nearest first over one another, over the body, over the backdrop, until nothing shows through | exact area coverage |
+//! | `tile` | a tile's segments are laid nearest first over one another, over the body, over ground and backdrop, until nothing shows through | exact area coverage |
 //! | `tonemap` | filmic curve, sRGB, ordered dither | ACES |
 //!
 //! Coverage is exact area, not samples, so there is no noise and nothing flickers; order is by depth, so nothing is guessed. Where half of
@@ -28,6 +28,7 @@ mod body;
 mod camera;
 mod frame;
 pub mod gpu;
+mod ground;
 mod hair;
 mod image;
 mod lighting;
@@ -41,6 +42,7 @@ mod work;
 
 pub use camera::frame_camera;
 pub use frame::{Frame, HairDraw, MeshDraw, Quality};
+pub use ground::Ground;
 pub use image::Image;
 pub use lighting::{Background, Light, Lighting};
 pub use output::{ClipWriter, OutputError, encode_png, read_png, sequence_path, write_jpeg, write_png};

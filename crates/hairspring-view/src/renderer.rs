@@ -4,6 +4,7 @@ use crate::{
     body::Bodies,
     camera::View,
     frame::{Frame, HairDraw},
+    ground::Floor,
     hair::{
         color::{self, Colors},
         order::Order,
@@ -74,6 +75,7 @@ impl Renderer {
         let (low, high) = bounds.unwrap_or_default();
         let middle = (0.5 * (low + high) - view.eye).dot(view.forward);
         let reach = 0.5 * (high - low).dot(view.forward.abs()) + 1e-3;
+        let floor = Floor::new(frame, &view, bounds);
         let setup = Setup {
             frame,
             view,
@@ -84,7 +86,9 @@ impl Renderer {
             shader: Shader::new(&frame.lighting, view.eye),
             pigments: frame.hair.iter().map(|h| color::ends(h.look).map(shade::pigment)).collect(),
             depths: [(middle - reach).max(0.0), middle.max(0.0) + reach],
+            floor,
         };
+        let low = setup.low();
         let runs = &self.order.runs;
         self.chunks.resize_with(runs.len(), Chunk::default);
         self.dots.resize(self.order.slots(), Dot::END);
@@ -100,7 +104,7 @@ impl Renderer {
                     .with_max_len(1)
                     .for_each(|((chunk, run), dots)| chunk.fill(&setup, run, dots))
             },
-            || bodies.project(frame, &view, width, height),
+            || bodies.project(frame, &view, [width, height], low),
         );
         let cut = Instant::now();
 

@@ -266,7 +266,7 @@ impl Brush {
         Work { filed: strands.chunks.iter().map(|c| c.tile(tile).len() as u64).sum(), ..self.canvas.work }
     }
 
-    /// Backdrop, exposure, tone curve, 8 bits.
+    /// Ground and backdrop, exposure, tone curve, 8 bits.
     #[inline(always)]
     fn develop(&self, setup: &Setup, encoder: &Encoder, corner: [usize; 2], out: &mut [[u8; 3]; PIXELS]) {
         let [w, h] = setup.tiles.size().map(|n| n as f32);
@@ -279,7 +279,12 @@ impl Brush {
             let down = pool((corner[1] + y) as f32 / h - 0.42);
             for (x, out) in row.iter_mut().enumerate() {
                 let pixel: Vec4 = self.canvas.pixels[y * SIDE + x];
-                let behind = backdrop.edge.lerp(backdrop.center, columns[x] * down);
+                let mut behind = backdrop.edge.lerp(backdrop.center, columns[x] * down);
+                // What nothing shows through to needs no light.
+                if let Some(floor) = setup.floor.filter(|_| pixel.w > CLOSED) {
+                    let at = Vec2::new((corner[0] + x) as f32 + 0.5, (corner[1] + y) as f32 + 0.5);
+                    behind = floor.over(behind, &setup.view, at, setup.shadow, setup.level);
+                }
                 let light = pixel.truncate() + behind * pixel.w;
                 *out = encoder.encode(filmic(light * gain), corner[0] + x, corner[1] + y);
             }

@@ -48,6 +48,7 @@ fn draw(points: &[Vec3], width: f32, wall: f32) -> Image {
             exposure: 0.0,
         },
         background: Background { center: Vec3::splat(wall), edge: Vec3::splat(wall) },
+        ground: None,
         quality: Quality::default(),
     };
     let mut renderer = Renderer::new(SIDE, SIDE);

@@ -17,7 +17,7 @@ use hairspring::{
     stage::Stage,
 };
 use hairspring_view::{
-    Frame, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, gpu::GpuRenderer, write_png,
+    Frame, Ground, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, gpu::GpuRenderer, write_png,
 };
 use image_compare::{Algorithm, gray_similarity_structure};
 
@@ -230,6 +230,35 @@ fn slivers_have_no_speckles() {
         let camera = Camera { position: far + Vec3::new(0.05, y, 0.5), target: far, fov: 26.0 };
         compare_everywhere(&mut gpu, name, &Frame { camera, ..support::frame(&[], &bodies) }, 200, 150);
     }
+}
+
+/// On the backdrop and on a colour, cut by the ground and above it: pixel by pixel where there are bodies alone, and hair as everywhere.
+#[test]
+fn the_ground_is_alike() {
+    let Some(mut gpu) = support::card() else { return };
+    let ball = support::ball();
+    let bodies = [support::body(&ball)];
+    let groom = support::groom(support::Style { strands: 8000, points: 20, ..support::STRAIGHT });
+    let look = HairLook::from(HairColor::Brown);
+    let hair = [HairDraw { width_scale: 4.0, ..support::hair(&groom, &look) }];
+    let camera =
+        Camera { position: Vec3::new(0.3, 0.35, 1.2), target: Vec3::new(0.1, -0.12, 0.0), fov: 36.0 };
+    let card = Some(Vec3::new(0.5, 0.45, 0.4));
+    for (height, color) in [(-0.12, None), (-0.11, card), (-0.05, card), (0.0, None)] {
+        let ground = Some(Ground { height, color });
+        let frame = Frame { camera, ground, ..support::frame(&[], &bodies) };
+        let name = format!("ground{height}");
+        // Where it cuts a body, both are darker in that pixel than around it, and four samples are not eight.
+        match height < -0.1 {
+            true => compare_everywhere(&mut gpu, &name, &frame, 200, 150),
+            false => compare(&mut gpu, &name, &frame, 200, 150),
+        }
+        compare(&mut gpu, &format!("hair-on-ground{height}"), &Frame { hair: &hair, ..frame }, 200, 150);
+    }
+    // From below.
+    let under =
+        Frame { camera, ground: Some(Ground { height: 1.0, color: None }), ..support::frame(&hair, &bodies) };
+    compare(&mut gpu, "under-ground", &under, 200, 150);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::{document::builtin_text, session::Action};
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Ui, vec2};
 use hairspring::stage::Stage;
-use hairspring_view::{Background, Frame, HairDraw, Lighting, MeshDraw, Quality, Renderer};
+use hairspring_view::{Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality, Renderer};
 use std::sync::mpsc::{Receiver, channel};
 
 /// Size of a small picture [pixels].
@@ -132,6 +132,7 @@ fn still(stage: &Stage, renderer: &mut Renderer) -> hairspring_view::Image {
         camera,
         lighting: Lighting::facing(&camera),
         background: Background::default(),
+        ground: Ground::of(stage.scene()),
         quality: Quality { shadow_voxels: 48, ..Quality::default() },
     };
     renderer.draw(&frame).clone()

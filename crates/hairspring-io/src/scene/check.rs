@@ -191,6 +191,12 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         ];
         first_failure(text, section("[camera]"), &cameras)?;
     }
+    let ground = &scene.ground;
+    let grounds = [
+        (ground.height.is_none_or(f32::is_finite), "height", "a finite number [m]"),
+        (ground.color.is_none_or(color), "color", "three numbers from 0 to 1"),
+    ];
+    first_failure(text, section("[ground]"), &grounds)?;
     let starts = text.match_indices("[[hand]]").map(|(at, _)| line_at(text, at));
     for (hand, from) in scene.hand.iter().zip(starts.chain(std::iter::repeat(1))) {
         hand_ranges(text, from, hand)?;

@@ -6,7 +6,9 @@ use hairspring::{
     around::charge::Charged,
     body::{Key, Travel},
     groom::{Growth, Thicken},
-    scene::{Camera, Collider, Effects, Guides, HairLook, Hand, Neighbours, Shape, Solver, Volume, Wind},
+    scene::{
+        Camera, Collider, Effects, Ground, Guides, HairLook, Hand, Neighbours, Shape, Solver, Volume, Wind,
+    },
 };
 use serde::{Deserialize, Deserializer, de};
 use std::{collections::BTreeMap, path::PathBuf};
@@ -72,6 +74,9 @@ pub(super) struct SceneFile {
     pub neighbours: Neighbours,
     /// Where the scene is seen from. Default: framed automatically.
     pub camera: Option<Camera>,
+    /// What it stands on in the picture.
+    #[serde(default)]
+    pub ground: Ground,
     /// What hands hold to the hair.
     #[serde(default)]
     pub hand: Vec<Hand>,

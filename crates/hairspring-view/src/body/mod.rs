@@ -14,8 +14,8 @@ use glam::{Vec2, Vec3};
 use raster::{Bins, ScreenTriangle};
 use rayon::prelude::*;
 
-/// Samples of a pixel for the outlines of bodies: one in each of eight columns and rows. Shape `[axis][sample]`.
-const SAMPLES: [[f32; 8]; 2] = [
+/// Samples of a pixel for the outlines of bodies, and of shadow where it is as sharp: one in each of eight columns and rows. Shape `[axis][sample]`.
+pub(crate) const SAMPLES: [[f32; 8]; 2] = [
     [0.5625, 0.4375, 0.8125, 0.3125, 0.1875, 0.0625, 0.6875, 0.9375],
     [0.3125, 0.6875, 0.5625, 0.1875, 0.8125, 0.4375, 0.9375, 0.0625],
 ];
@@ -65,8 +65,8 @@ impl Default for Samples {
 }
 
 impl Bodies {
-    /// Projects the frame's triangles.
-    pub fn project(&mut self, frame: &Frame, view: &View, width: usize, height: usize) {
+    /// Projects the frame's triangles, as far as they lie above a height [m].
+    pub fn project(&mut self, frame: &Frame, view: &View, [width, height]: [usize; 2], low: f32) {
         self.screen.clear();
         self.first.clear();
         let mut count = 0u32;
@@ -75,12 +75,13 @@ impl Bodies {
             body.positions.par_iter().map(|p| view.project(*p)).collect_into_vec(&mut self.vertices);
             let vertices = &self.vertices;
             let near = |p: Vec3| p.with_z(1.0 / p.z);
+            let above = |t: &[u32; 3]| t.iter().all(|i| body.positions[*i as usize].y >= low);
             let triangles = body.triangles.par_iter().enumerate().with_min_len(4096);
             self.screen.par_extend(triangles.flat_map_iter(|(i, t)| {
                 let source = count + i as u32;
                 let fan = match corners(vertices, t) {
-                    Some(c) if c.iter().all(|p| p.z > NEAR) => [Some(c.map(near)), None],
-                    _ => cut(body, t, view).map(|fan| fan.map(|c| c.map(near))),
+                    Some(c) if c.iter().all(|p| p.z > NEAR) && above(t) => [Some(c.map(near)), None, None],
+                    _ => cut(body, t, view, low).map(|fan| fan.map(|c| c.map(near))),
                 };
                 fan.into_iter().flatten().filter_map(move |c| ScreenTriangle::new(c, source, width, height))
             }));
@@ -177,23 +178,24 @@ pub(crate) fn corners(vertices: &[Vec3], t: &[u32; 3]) -> Option<[Vec3; 3]> {
     Some([at(t[0])?, at(t[1])?, at(t[2])?])
 }
 
-/// A triangle cut at the near plane, in pixels and depth: a fan of up to two triangles.
-fn cut(body: &MeshDraw, t: &[u32; 3], view: &View) -> [Option<[Vec3; 3]>; 2] {
-    let Some(corner) = corners(body.positions, t) else { return [None; 2] };
-    let (polygon, n) = clip(corner, |p| (p - view.eye).dot(view.forward) - NEAR);
-    [3, 4].map(|k| (k <= n).then(|| [0, k - 2, k - 1].map(|i| view.project(polygon[i]))))
+/// A triangle cut at the near plane and at a height, in pixels and depth: a fan of up to three triangles.
+fn cut(body: &MeshDraw, t: &[u32; 3], view: &View, low: f32) -> [Option<[Vec3; 3]>; 3] {
+    let Some(corner) = corners(body.positions, t) else { return [None; 3] };
+    let (above, n) = clip(&corner, |p| p.y - low);
+    let (polygon, n) = clip(&above[..n], |p| (p - view.eye).dot(view.forward) - NEAR);
+    [3, 4, 5].map(|k| (k <= n).then(|| [0, k - 2, k - 1].map(|i| view.project(polygon[i]))))
 }
 
-/// The part of a triangle where `side` is above 0, as a polygon (Sutherland & Hodgman 1974), and its corner count.
-fn clip(corner: [Vec3; 3], side: impl Fn(Vec3) -> f32) -> ([Vec3; 4], usize) {
-    let mut out = [Vec3::ZERO; 4];
+/// The part of a triangle, or of one that was cut once, where `side` is above 0, as a polygon (Sutherland & Hodgman 1974), and its corner count.
+fn clip(corner: &[Vec3], side: impl Fn(Vec3) -> f32) -> ([Vec3; 5], usize) {
+    let mut out = [Vec3::ZERO; 5];
     let mut n = 0;
     let mut push = |p| {
         out[n] = p;
         n += 1;
     };
-    for i in 0..3 {
-        let (a, b) = (corner[i], corner[(i + 1) % 3]);
+    for i in 0..corner.len() {
+        let (a, b) = (corner[i], corner[(i + 1) % corner.len()]);
         let (da, db) = (side(a), side(b));
         if da > 0.0 {
             push(a);

@@ -3,8 +3,8 @@
 
 use super::{Gpu, follow};
 use crate::{
-    body::skin,
-    camera,
+    body::{self, skin},
+    camera, ground,
     hair::{color, project, ribbon, segment, shade},
     shadow::{self, density, depth_map, splat},
     tonemap,
@@ -43,7 +43,7 @@ pub(super) const SETTLE: Source = source!("settle": "frame", "settle");
 pub(super) const POINTS: Source = source!("points": "frame", "light", "fibre", "strands", "points");
 pub(super) const SORT: Source = source!("sort": "frame", "curve", "sort");
 pub(super) const RIBBON: Source = source!("ribbon": "frame", "fibre", "curve", "ribbon");
-pub(super) const DEVELOP: Source = source!("develop": "frame", "develop");
+pub(super) const DEVELOP: Source = source!("develop": "frame", "light", "ground", "develop");
 
 impl Source {
     /// The whole text.
@@ -107,6 +107,10 @@ fn constants() -> String {
         ("SKIN_LOBE", skin::LOBES.0),
         ("SKIN_SHARP", skin::LOBES.1),
         ("SHEEN", skin::SHEEN),
+        ("FADE_FROM", ground::FADE[0]),
+        ("FADE_TO", ground::FADE[1]),
+        ("POOL_FROM", ground::POOL[0]),
+        ("POOL_TO", ground::POOL[1]),
         ("FILM_A", tonemap::FILM[0]),
         ("FILM_B", tonemap::FILM[1]),
         ("FILM_C", tonemap::FILM[2]),
@@ -137,6 +141,11 @@ fn constants() -> String {
     let bounce = vector(skin::SKIN.0 * shade::KEY_BOUNCE);
     let _ = writeln!(out, "const HAIR_KEY_BOUNCE: vec3f = {bounce};");
     let _ = writeln!(out, "const WRAP: vec3f = {};", vector(skin::WRAP));
+    let outline: [String; 8] = std::array::from_fn(|k| {
+        let [x, y] = body::SAMPLES.map(|axis| axis[k]);
+        format!("vec2f({x:e}f, {y:e}f)")
+    });
+    let _ = writeln!(out, "const OUTLINE: array<vec2f, 8> = array({});", outline.join(", "));
     let _ = writeln!(out, "const SKY: array<vec3f, {}> = array({});", sky.len(), sky.join(", "));
     let _ = writeln!(out, "const FILM_IN: mat3x3f = {};", matrix(&tonemap::FILM_IN));
     let _ = writeln!(out, "const FILM_OUT: mat3x3f = {};", matrix(&tonemap::FILM_OUT));

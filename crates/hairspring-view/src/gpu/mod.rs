@@ -12,7 +12,7 @@
 //! | every point of every strand is projected and lit | `points`, `fibre`, `light` |
 //! | segments are smoothed, cut into pieces, and sorted by depth | `curve`, `sort` |
 //! | pieces are laid over one another, farthest first | `ribbon` |
-//! | hair before the body, body, hair behind it, backdrop; tone curve | `develop` |
+//! | hair before the body, body, hair behind it, ground and backdrop; tone curve | `ground`, `develop` |
 //!
 //! **Why pieces are sorted.** The CPU lays pieces over one another by depth, each by the exact share of a pixel that it covers. Samples
 //! (coverage as a mask of four) know four shares only, and hair is a tenth of a pixel wide: noise, or hair that comes and goes. Blending

@@ -3,11 +3,13 @@
 use super::{
     Gpu, GpuError,
     constants::{DEVELOP, SAMPLES},
-    memory::{Bound, mapped},
+    memory::{Bound, Generation, Store, mapped},
     renderer::Job,
+    surfaces::Surfaces,
+    volume::Volume,
 };
-use crate::image::Image;
-use wgpu::{BindingResource, Extent3d, TextureFormat, TextureUsages, TextureView};
+use crate::{frame::Frame, image::Image, shadow::contact::Contact};
+use wgpu::{BindingResource, BufferUsages, Extent3d, TextureFormat, TextureUsages, TextureView};
 
 /// Linear light, and covering.
 pub(super) const LIGHT: TextureFormat = TextureFormat::Rgba16Float;
@@ -118,6 +120,8 @@ pub(super) fn clear(view: &TextureView) -> Option<wgpu::RenderPassColorAttachmen
 pub(super) struct Develop {
     pipeline: wgpu::RenderPipeline,
     bound: Bound,
+    contact: Contact,
+    sky: Store,
 }
 
 impl Develop {
@@ -125,16 +129,35 @@ impl Develop {
         let module = DEVELOP.module(gpu);
         let targets = [Some(CODES.into())];
         let pipeline = pipeline(gpu, &module, ["everywhere", "develop"], &targets, None, 1);
-        Self { pipeline, bound: Bound::default() }
+        let sky = Store::new(gpu, "contact", BufferUsages::STORAGE);
+        Self { pipeline, bound: Bound::default(), contact: Contact::default(), sky }
     }
 
-    pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
+    /// Sends what a frame's bodies leave of the sky to the ground.
+    pub fn send(&mut self, gpu: &Gpu, frame: &Frame, generation: &mut Generation) -> &Contact {
+        self.contact.fill(frame);
+        self.sky.fill(gpu, &self.contact.sky, generation);
+        &self.contact
+    }
+
+    /// Draws the finished picture.
+    pub fn record(
+        &mut self,
+        job: &Job,
+        encoder: &mut wgpu::CommandEncoder,
+        volume: &Volume,
+        surfaces: &Surfaces,
+    ) {
         let Job { gpu, generation, uniforms, targets, .. } = *job;
         let entries = [
             (0, uniforms.all()),
             (1, BindingResource::TextureView(&targets.before)),
             (2, BindingResource::TextureView(&targets.behind)),
             (3, BindingResource::TextureView(&targets.body)),
+            (4, self.sky.all()),
+            (10, BindingResource::TextureView(&volume.light)),
+            (12, BindingResource::Sampler(&surfaces.sampler)),
+            (13, BindingResource::TextureView(&surfaces.heights)),
         ];
         let group = self.bound.group(gpu, generation, self.pipeline.get_bind_group_layout(0), &entries);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

@@ -15,6 +15,7 @@ use super::{
 use crate::{
     camera::View,
     frame::{Frame, HairDraw},
+    ground::Floor,
     image::Image,
     shadow,
 };
@@ -126,8 +127,10 @@ impl GpuRenderer {
         let middle = (0.5 * (low + high) - view.eye).dot(view.forward);
         let reach = 0.5 * (high - low).dot(view.forward.abs()) + 1e-3;
         let depths = [(middle - reach).max(0.0), middle.max(0.0) + reach];
-        let (grid_there, triangles) = (grid.as_ref(), self.meshes.count);
-        let uniforms = Uniforms::new(frame, &view, depths, grid_there, &map, slots, triangles);
+        let (grid_there, counts) = (grid.as_ref(), [slots, self.meshes.count as usize]);
+        let floor = Floor::new(frame, &view, bounds);
+        let ground = (floor.as_ref(), self.develop.send(gpu, frame, &mut self.generation));
+        let uniforms = Uniforms::new(frame, &view, depths, grid_there, &map, ground, counts);
         self.uniforms.write(gpu, 0, &[uniforms]);
         let sent = Instant::now();
 
@@ -145,14 +148,14 @@ impl GpuRenderer {
         if grid.is_some() {
             self.volume.record(&job, &mut encoder);
         }
-        self.surfaces.record(&job, &mut encoder, &self.volume);
+        self.surfaces.record(&job, &mut encoder, &self.volume, floor.is_some());
         if slots > 0 {
             self.ribbons.record_sort(&job, &mut encoder, &self.volume, &self.surfaces);
             self.ribbons.record(&job, &mut encoder);
         } else {
             Ribbons::record_none(&job, &mut encoder);
         }
-        self.develop.record(&job, &mut encoder);
+        self.develop.record(&job, &mut encoder, &self.volume, &self.surfaces);
         gpu.queue.submit([encoder.finish()]);
         let bytes = gpu.sent.swap(0, Relaxed);
         self.timings = GpuTimings { send: sent - start, record: sent.elapsed(), bytes };

@@ -77,8 +77,8 @@ impl Surfaces {
         pass.draw(0..3 * meshes.count, 0..1);
     }
 
-    /// Draws what the camera sees, in the shadow of `volume`.
-    pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder, volume: &Volume) {
+    /// Draws what the camera sees, in the shadow of `volume`; `cut`: as far as it lies above the ground.
+    pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder, volume: &Volume, cut: bool) {
         let Job { gpu, generation, uniforms, meshes, targets, .. } = *job;
         let entries = [
             (0, uniforms.all()),
@@ -106,7 +106,7 @@ impl Surfaces {
         });
         pass.set_pipeline(&self.surface);
         pass.set_bind_group(0, group, &[]);
-        pass.draw(0..3 * meshes.count, 0..1);
+        pass.draw(0..if cut { 6 } else { 3 } * meshes.count, 0..1);
         drop(pass);
 
         let entries = [(0, uniforms.all()), (1, BindingResource::TextureView(&targets.nearness))];

@@ -4,12 +4,13 @@ use super::{constants::DIRECTIONS, ribbons::most_pieces};
 use crate::{
     camera::View,
     frame::{Frame, HairDraw, MeshDraw},
+    ground::Floor,
     hair::{
         color,
         shade::{Fibre, VARIES, pigment},
     },
     lighting::Light,
-    shadow::{self, density::Grid, splat::UNIT, sweep},
+    shadow::{self, contact::Contact, density::Grid, depth_map, splat::UNIT, sweep},
 };
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
@@ -55,6 +56,19 @@ pub(super) struct Uniforms {
     map_range: f32,
     grid_size: [f32; 3],
     triangles: u32,
+    floor_key: [f32; 3],
+    floor_height: f32,
+    floor_sky: [f32; 3],
+    floor_extent: f32,
+    floor_color: [f32; 3],
+    floor_colored: f32,
+    floor_middle: [f32; 2],
+    contact_low: [f32; 2],
+    contact_size: [f32; 2],
+    contact_texel: f32,
+    softness: f32,
+    shade_low: [f32; 2],
+    shade_high: [f32; 2],
 }
 
 /// The bodies' depth map: how it lies, as in `DepthMap::fill`.
@@ -86,26 +100,27 @@ impl Map {
             true => frame.quality.shadow_texels.clamp(64, 8192).min(most),
             false => 0,
         };
-        let scale = if side > 0 { (side as f32 - 8.0) / extent } else { 0.0 };
+        let border = depth_map::border(frame);
+        let scale = if side > 0 { (side as f32 - 2.0 * border) / extent } else { 0.0 };
         // Depth 0 is where nothing is: the lowest place lies a little above.
         let room = 1e-3 + 0.01 * (high.z - low.z);
         let (low_z, range) = if side > 0 { (low.z - room, high.z - low.z + 2.0 * room) } else { (0.0, 1.0) };
-        let origin = if side > 0 { Vec2::splat(4.0) - low.truncate() * scale } else { Vec2::ZERO };
+        let origin = if side > 0 { Vec2::splat(border) - low.truncate() * scale } else { Vec2::ZERO };
         Self { side, right, up, toward, scale, origin, low: low_z, range }
     }
 }
 
 impl Uniforms {
-    /// `depths`: nearest and farthest depth of hair [m]; `grid`: of its shadow, if there is hair; `slots`: points of strands; `triangles`: of
-    /// bodies.
+    /// `depths`: nearest and farthest depth of hair [m]; `grid`: of its shadow, if there is hair; `floor`: the ground that is seen, and what bodies leave it of
+    /// the sky; `slots`: points of strands; `triangles`: of bodies.
     pub fn new(
         frame: &Frame,
         view: &View,
         depths: [f32; 2],
         grid: Option<&Grid>,
         map: &Map,
-        slots: usize,
-        triangles: u32,
+        (floor, contact): (Option<&Floor>, &Contact),
+        [slots, triangles]: [usize; 2],
     ) -> Self {
         // What is no number gives no light, and not a picture of none.
         let finite = |v: Vec3| if v.is_finite() { v.to_array() } else { [0.0; 3] };
@@ -145,7 +160,20 @@ impl Uniforms {
             grid_origin: grid.map_or([0.0; 3], |g| g.origin.to_array()),
             map_range: map.range,
             grid_size: grid.map_or([1.0; 3], |g| g.size.map(|n| n as f32)),
-            triangles,
+            triangles: triangles as u32,
+            floor_key: floor.map_or([0.0; 3], |f| f.key.to_array()),
+            floor_height: floor.map_or(0.0, |f| f.height),
+            floor_sky: floor.map_or([0.0; 3], |f| f.sky.to_array()),
+            floor_extent: floor.map_or(0.0, |f| f.extent),
+            floor_color: floor.and_then(|f| f.color).unwrap_or_default().to_array(),
+            floor_colored: floor.and_then(|f| f.color).map_or(0.0, |_| 1.0),
+            floor_middle: floor.map_or([0.0; 2], |f| f.middle.to_array()),
+            contact_low: contact.low.to_array(),
+            contact_size: contact.size.map(|n| n as f32),
+            contact_texel: contact.texel.max(1e-6),
+            softness: shadow::softness(map.scale, grid.map_or(0.0, |g| g.voxel)),
+            shade_low: floor.map_or([0.0; 2], |f| f.shade[0].to_array()),
+            shade_high: floor.map_or([0.0; 2], |f| f.shade[1].to_array()),
         }
     }
 }

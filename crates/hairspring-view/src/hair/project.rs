@@ -42,6 +42,8 @@ pub(crate) struct Projection {
     pub depths: [f32; 2],
     /// Pixels at a distance of 1 m that a radius of 1 m takes.
     pub scale: f32,
+    /// Height below which a strand has no width, so that it ends in the ground [m].
+    pub low: f32,
 }
 
 impl Track {
@@ -74,6 +76,7 @@ impl Track {
                 f32x8::simd_from(simd, p[1]) - eye.y,
                 f32x8::simd_from(simd, p[2]) - eye.z,
             ];
+            let above = f32x8::simd_from(simd, p[1]).simd_ge(by.low);
             let z = dot(from, forward);
             let closeness = f32x8::splat(simd, 1.0) / z;
             let at_x = dot(from, right) * closeness * focal + center[0];
@@ -85,7 +88,8 @@ impl Track {
                 & at_y.abs().simd_lt(MAX_PLACE)
                 & width.simd_ge(0.0);
             let depth = ((z - (ROOT_BIAS + near)) * per_depth).max(0.0).min(1.0);
-            let width = there.select(width.min(MAX_WIDTH), f32x8::splat(simd, -1.0));
+            let width = above.select(width.min(MAX_WIDTH), f32x8::splat(simd, 0.0));
+            let width = there.select(width, f32x8::splat(simd, -1.0));
             at_x.store_slice(&mut self.x[first + 1..][..LANES]);
             at_y.store_slice(&mut self.y[first + 1..][..LANES]);
             depth.store_slice(&mut self.depth[first + 1..][..LANES]);
@@ -137,7 +141,7 @@ mod tests {
     #[test]
     fn points_fall_where_the_camera_sees_them() {
         let view = View::new(&Camera::default(), 640, 480);
-        let by = Projection { view, depths: [0.5, 3.0], scale: 2.0 * view.focal };
+        let by = Projection { view, depths: [0.5, 3.0], scale: 2.0 * view.focal, low: f32::NEG_INFINITY };
         let mut points: Vec<Vec3> =
             (0..21).map(|i| Vec3::new(0.01 * i as f32, 0.1 - 0.003 * (i * i) as f32, 0.02)).collect();
         points[4].y = f32::NAN;

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     camera::View,
     frame::Frame,
+    ground::Floor,
     shadow::Shadow,
     tile::{PATCH, PATCHES, SIDE, Tiles},
 };
@@ -29,6 +30,14 @@ pub(crate) struct Setup<'a> {
     pub level: fearless_simd::Level,
     /// Nearest and farthest depth of hair [m].
     pub depths: [f32; 2],
+    pub floor: Option<Floor>,
+}
+
+impl Setup<'_> {
+    /// The height below which the ground hides everything [m]; −∞ where none is seen.
+    pub fn low(&self) -> f32 {
+        self.floor.map_or(f32::NEG_INFINITY, |floor| floor.height)
+    }
 }
 
 /// A segment in a tile, packed so that order by number is order by depth: 16 bits of depth at its middle, 32 of the slot of its first point,
@@ -93,7 +102,7 @@ impl Chunk {
         (self.reach, self.widest) = (0.0, 0.0);
         let hair = &setup.frame.hair[run.hair];
         let scale = 2.0 * hair.width_scale * setup.view.focal;
-        let projection = Projection { view: setup.view, depths: setup.depths, scale };
+        let projection = Projection { view: setup.view, depths: setup.depths, scale, low: setup.low() };
         let mut slot = 0;
         for s in setup.order.strands(run) {
             let range = hair.range(s);

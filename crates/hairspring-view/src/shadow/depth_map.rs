@@ -14,6 +14,12 @@ pub(crate) const RADIUS: usize = 4;
 /// Rows that are drawn by one thread.
 const BAND: usize = SIDE;
 
+/// Texels that are left free around the bodies. Light on the ground beside their shadow is softened over some of them: no window of it that touches a body
+/// may reach over the map's edge. On bodies none does.
+pub(crate) fn border(frame: &Frame) -> f32 {
+    if frame.ground_seen().is_some() { 2.0 * RADIUS as f32 + 1.0 } else { 4.0 }
+}
+
 /// Depth along the light's rays, as an orthographic picture. Nearer the lamp is greater.
 #[derive(Debug, Default)]
 pub(crate) struct DepthMap {
@@ -50,8 +56,9 @@ impl DepthMap {
             return;
         }
         self.side = frame.quality.shadow_texels.clamp(64, 8192) as usize;
-        self.scale = (self.side as f32 - 8.0) / extent;
-        self.origin = Vec2::splat(4.0) - low * self.scale;
+        let border = border(frame);
+        self.scale = (self.side as f32 - 2.0 * border) / extent;
+        self.origin = Vec2::splat(border) - low * self.scale;
         let side = self.side;
         for body in frame.bodies {
             let mut vertices = std::mem::take(&mut self.vertices);
@@ -75,6 +82,11 @@ impl DepthMap {
                 });
             }
         });
+    }
+
+    /// Texels in a metre; 0 without bodies.
+    pub fn scale(&self) -> f32 {
+        if self.side > 0 { self.scale } else { 0.0 }
     }
 
     /// Texel coordinates and height of a place.

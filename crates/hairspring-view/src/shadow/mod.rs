@@ -1,5 +1,6 @@
 //! Shadow: how much of each lamp reaches a place.
 
+pub(crate) mod contact;
 pub(crate) mod density;
 pub(crate) mod depth_map;
 pub(crate) mod splat;
@@ -12,9 +13,10 @@ use crate::{
         shade::{LANES, Row},
     },
 };
+use contact::Contact;
 pub(crate) use density::bounds;
 use density::{Cell, Density, Grid};
-use depth_map::DepthMap;
+use depth_map::{DepthMap, RADIUS};
 use fearless_simd::{Level, dispatch, f32x8, i32x8, prelude::*};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -29,6 +31,7 @@ pub(crate) struct Shadow {
     light: Vec<Vec4>,
     grid: Grid,
     map: DepthMap,
+    contact: Contact,
     /// Unit directions towards key, rim and fill.
     lamps: [Vec3; 3],
 }
@@ -44,6 +47,22 @@ pub(crate) const SKY: [Vec3; 5] = [
 
 /// What is found where nothing stands in the way.
 const CLEAR: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
+
+/// The box of a frame's bodies [m]; `None` where there are none, or where one reaches farther than a building.
+pub(crate) fn place(frame: &Frame) -> Option<(Vec3, Vec3)> {
+    let points = frame.bodies.iter().flat_map(|b| b.positions).filter(|p| p.is_finite());
+    let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let found = points.fold(none, |(low, high), p| (low.min(*p), high.max(*p)));
+    (found.0.cmple(found.1).all() && (found.1 - found.0).max_element() < 1e4).then_some(found)
+}
+
+/// Over what length the sharpest shadow has an edge [m], by the texels of the bodies' map in a metre and the side of a voxel of hair [m]; either is 0 where there
+/// are none.
+pub(crate) fn softness(scale: f32, voxel: f32) -> f32 {
+    let bodies = if scale > 0.0 { RADIUS as f32 / scale } else { f32::INFINITY };
+    let hair = if voxel > 0.0 { voxel } else { f32::INFINITY };
+    bodies.min(hair).min(1e9)
+}
 
 /// How many of the swept depths belong to lamps; those of [`SKY`] follow.
 const LAMPS: usize = 3;
@@ -73,13 +92,27 @@ where
     mix(face(cell.first), face(cell.first + cell.strides[1]), cell.share.z)
 }
 
+fn holds((low, high): (Vec3, Vec3), p: Vec3) -> bool {
+    p.cmpge(low).all() && p.cmple(high).all()
+}
+
+/// Where a ray enters a box; `None`: nowhere.
+fn entry((low, high): (Vec3, Vec3), p: Vec3, toward: Vec3) -> Option<Vec3> {
+    let (a, b) = ((low - p) / toward, (high - p) / toward);
+    let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
+    (enter >= 0.0 && enter < leave).then(|| (p + toward * enter).clamp(low, high))
+}
+
 impl Shadow {
     /// Works out the shadow of a frame whose hair lies in `bounds`; `None`: no hair.
     pub fn fill(&mut self, frame: &Frame, bounds: Option<(Vec3, Vec3)>, order: &Order) {
         self.light.clear();
-        let Some(bounds) = bounds else { return self.map.fill(frame) };
-        let (map, density) = (&mut self.map, &mut self.density);
-        rayon::join(|| density.fill(frame, bounds, order), || map.fill(frame));
+        let (map, contact, density) = (&mut self.map, &mut self.contact, &mut self.density);
+        let mut bodies = || {
+            rayon::join(|| map.fill(frame), || contact.fill(frame));
+        };
+        let Some(bounds) = bounds else { return bodies() };
+        rayon::join(|| density.fill(frame, bounds, order), bodies);
         let density = &self.density;
         let grid = density.grid;
         self.grid = grid;
@@ -124,29 +157,38 @@ impl Shadow {
         if self.light.is_empty() {
             return self.light(p);
         }
-        // The outermost voxels are padding, which the sweeps leave clear.
-        let margin = Vec3::splat(2.0 * self.grid.voxel);
-        let size = Vec3::from_array(self.grid.size.map(|n| (n - 1) as f32)) * self.grid.voxel;
-        let (low, high) = (self.grid.origin + margin, self.grid.origin + size - margin);
-        if p.cmpge(low).all() && p.cmple(high).all() {
+        let within = self.within();
+        if holds(within, p) {
             return self.light(p);
         }
-        let entry = |toward: Vec3| {
-            let (a, b) = ((low - p) / toward, (high - p) / toward);
-            let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
-            (enter >= 0.0 && enter < leave).then(|| (p + toward * enter).clamp(low, high))
-        };
         let mut found = Vec4::ZERO;
         for (k, toward) in self.lamps.iter().enumerate() {
-            found[k] = entry(*toward).map_or(0.0, |q| self.light(q)[k]);
+            found[k] = entry(within, p, *toward).map_or(0.0, |q| self.light(q)[k]);
         }
         for (toward, depth) in SKY.into_iter().zip(&self.depths[LAMPS..]) {
-            let open = entry(toward)
+            let open = entry(within, p, toward)
                 .and_then(|q| self.grid.cell(q))
                 .map_or(1.0, |cell| trilinear(cell, |at| sky_open(depth[at])));
             found.w += open / SKY.len() as f32;
         }
         found
+    }
+
+    /// Of [`Shadow::around`], the depth towards the key lamp alone.
+    pub fn key_around(&self, p: Vec3) -> f32 {
+        if self.light.is_empty() {
+            return 0.0;
+        }
+        let within = self.within();
+        let place = if holds(within, p) { Some(p) } else { entry(within, p, self.lamps[0]) };
+        place.map_or(0.0, |q| self.light(q).x)
+    }
+
+    /// The grid's box without the outermost voxels: they are padding, which the sweeps leave clear.
+    fn within(&self) -> (Vec3, Vec3) {
+        let margin = Vec3::splat(2.0 * self.grid.voxel);
+        let size = Vec3::from_array(self.grid.size.map(|n| (n - 1) as f32)) * self.grid.voxel;
+        (self.grid.origin + margin, self.grid.origin + size - margin)
     }
 
     /// For eight points of hair: [`Shadow::light`], and the share of the key lamp that bodies let through. Call it inside a `dispatch!`.
@@ -187,6 +229,16 @@ impl Shadow {
     /// Share of the key lamp that bodies let through to a place on their surface.
     pub fn on_skin(&self, level: Level, p: Vec3) -> f32 {
         self.map.soft_light(level, p, SKIN_BIAS)
+    }
+
+    /// Over what length the sharpest shadow has an edge [m]; infinite where there is none.
+    pub fn softness(&self) -> f32 {
+        softness(self.map.scale(), self.voxel())
+    }
+
+    /// What bodies leave of the sky to the ground.
+    pub fn contact(&self) -> &Contact {
+        &self.contact
     }
 
     /// Side of a voxel of the hair's grid [m]; 0 without hair.

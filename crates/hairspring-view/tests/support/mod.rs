@@ -180,6 +180,7 @@ pub fn frame<'a>(hair: &'a [HairDraw<'a>], bodies: &'a [MeshDraw<'a>]) -> Frame<
         camera: camera(),
         lighting: Lighting::default(),
         background: Background::default(),
+        ground: None,
         quality: Quality::default(),
     }
 }

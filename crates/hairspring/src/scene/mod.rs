@@ -3,12 +3,14 @@
 pub mod bench;
 pub mod builtin;
 mod camera;
+mod ground;
 mod hand;
 mod look;
 mod settings;
 pub mod swing;
 
 pub use camera::Camera;
+pub use ground::Ground;
 pub use hand::Hand;
 pub use look::{HairColor, HairLook};
 pub use settings::{
@@ -92,6 +94,8 @@ pub struct Scene {
     pub neighbours: Neighbours,
     /// Where it is seen from; `None`: framed automatically.
     pub camera: Option<Camera>,
+    /// What it stands on in the picture.
+    pub ground: Ground,
     /// What hands hold to the hair.
     pub hands: Vec<Hand>,
 }

@@ -34,22 +34,56 @@ fn known(p: vec3f) -> bool {
     return finite(p.x) && finite(p.y) && finite(p.z);
 }
 
+/// Of what a triangle is above the ground, up to four corners, corner number `k`; the last again where it has fewer. `body::clip`.
+fn above_ground(corners: mat3x3f, k: u32) -> vec3f {
+    var n = 0u;
+    var found: vec3f;
+    for (var i = 0u; i < 3u && n <= k; i++) {
+        let a = corners[i];
+        let b = corners[(i + 1u) % 3u];
+        let over_a = a.y - frame.floor_height;
+        let over_b = b.y - frame.floor_height;
+        if over_a > 0.0 {
+            found = a;
+            n++;
+        }
+        if (over_a > 0.0) != (over_b > 0.0) && n <= k {
+            found = mix(a, b, over_a / (over_a - over_b));
+            n++;
+        }
+    }
+    return found;
+}
+
+/// Three vertices a triangle; where there is ground, six, of the two that may be left of it.
 @vertex
 fn surface(@builtin(vertex_index) vertex: u32) -> Vertex {
     var out: Vertex;
     out.at = vec4f(-2.0, -2.0, 0.0, 1.0);
-    let triangle = triangles[vertex / 3u];
+    let cut = frame.floor_extent > 0.0;
+    let number = vertex / select(3u, 6u, cut);
+    let triangle = triangles[number];
     let a = position(triangle.x);
     let b = position(triangle.y);
     let c = position(triangle.z);
     if !(known(a) && known(b) && known(c)) {
         return out;
     }
-    let d = position(triangle[vertex % 3u]) - frame.eye;
+    var p = position(triangle[vertex % 3u]);
+    let lowest = min(a.y, min(b.y, c.y));
+    if cut && (lowest < frame.floor_height || vertex % 6u > 2u) {
+        if max(a.y, max(b.y, c.y)) <= frame.floor_height || lowest >= frame.floor_height {
+            return out;
+        }
+        // Corners 0, 1, 2, and 0, 2, 3.
+        let k = array(0u, 1u, 2u, 0u, 2u, 3u)[vertex % 6u];
+        p = above_ground(mat3x3f(a, b, c), k);
+    }
+    let d = p - frame.eye;
     let slope = vec2f(dot(d, frame.right), dot(d, frame.up)) * frame.focal;
     // Depth is nearness: NEAR / distance.
     out.at = vec4f(slope / (0.5 * frame.size), NEAR, dot(d, frame.forward));
-    out.triangle = vertex / 3u;
+    out.triangle = number;
     return out;
 }
 

@@ -1,4 +1,4 @@
-// Hair before the body, body, hair behind it, backdrop; exposure, tone curve, 8 bits: `Brush::develop` and `tonemap.rs`.
+// Hair before the body, body, hair behind it, ground and backdrop; exposure, tone curve, 8 bits: `Brush::develop` and `tonemap.rs`.
 
 @group(0) @binding(1) var before: texture_2d<f32>;
 @group(0) @binding(2) var behind: texture_2d<f32>;
@@ -31,7 +31,7 @@ fn develop(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let back = textureLoad(behind, pixel, 0);
     let place = corner / frame.size - vec2f(0.5, 0.42);
     let wall = mix(frame.edge, frame.center, exp(-3.2 * place.x * place.x) * exp(-3.2 * place.y * place.y));
-    var light = back.xyz + wall * (1.0 - back.w);
+    var light = back.xyz + over_ground(wall, at.xy) * (1.0 - back.w);
     light = surface.xyz + light * (1.0 - surface.w);
     light = front.xyz + light * (1.0 - front.w);
     // `Encoder::encode`.

@@ -53,6 +53,29 @@ struct Frame {
     grid_size: vec3f,
     /// Triangles of bodies.
     triangles: u32,
+    /// `Floor`. What a white card on the ground reflects of the key lamp.
+    floor_key: vec3f,
+    /// [m]
+    floor_height: f32,
+    /// The same of sky and room.
+    floor_sky: vec3f,
+    /// How large what stands on it is [m]; 0: there is no ground to be seen.
+    floor_extent: f32,
+    floor_color: vec3f,
+    /// 1: the ground has that colour; 0: it is the backdrop.
+    floor_colored: f32,
+    floor_middle: vec2f,
+    /// `Contact`. X and Z of the first texel's corner [m].
+    contact_low: vec2f,
+    /// Texels along X and Z; 0: none.
+    contact_size: vec2f,
+    /// Side of a texel [m].
+    contact_texel: f32,
+    /// `shadow::softness` [m].
+    softness: f32,
+    /// Box around all shadow of the key lamp, X and Z [m].
+    shade_low: vec2f,
+    shade_high: vec2f,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -70,6 +70,21 @@ fn shadow_around(p: vec3f) -> vec4f {
     return found;
 }
 
+/// `Shadow::key_around`.
+fn key_around(p: vec3f) -> f32 {
+    if frame.voxel <= 0.0 {
+        return 0.0;
+    }
+    let margin = vec3f(2.0 * frame.voxel);
+    let low = frame.grid_origin + margin;
+    let high = frame.grid_origin + (frame.grid_size - 1.0) * frame.voxel - margin;
+    if all(p >= low) && all(p <= high) {
+        return shadow_light(p).x;
+    }
+    let q = entry(p, frame.lamps[0].direction, low, high);
+    return select(0.0, shadow_light(q.xyz).x, q.w > 0.0);
+}
+
 /// `DepthMap::texel`: texel coordinates and height of a place.
 fn texel(p: vec3f) -> vec3f {
     let xy = vec2f(dot(p, frame.map_right), dot(p, frame.map_up)) * frame.map_scale;

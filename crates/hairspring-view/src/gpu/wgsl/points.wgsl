@@ -16,7 +16,9 @@ fn dot_of(i: u32, scale: f32) -> vec4f {
         return vec4f(0.0, 0.0, 0.0, -1.0);
     }
     let depth = saturate((at.z - ROOT_BIAS - frame.depths.x) / (frame.depths.y - frame.depths.x));
-    return vec4f(at.xy, depth, min(width, MAX_WIDTH));
+    // A strand ends in the ground.
+    let under = frame.floor_extent > 0.0 && p.y < frame.floor_height;
+    return vec4f(at.xy, depth, select(min(width, MAX_WIDTH), 0.0, under));
 }
 
 /// `shade::pigment`.
