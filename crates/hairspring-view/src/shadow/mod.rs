@@ -109,6 +109,11 @@ impl Shadow {
         });
     }
 
+    /// Whether there is no shadow of hair.
+    pub fn is_empty(&self) -> bool {
+        self.light.is_empty()
+    }
+
     /// Optical depth of hair and far bodies towards key, rim and fill, and the share of sky seen; trilinear.
     #[inline(always)]
     pub fn light(&self, p: Vec3) -> Vec4 {
