@@ -66,8 +66,8 @@ impl Renderer {
         self.draw_in(frame, true)
     }
 
-    /// As [`Renderer::draw`], in the shadows of the frame before: for moving pictures in a hurry, where they are a fifth of the work. They lag by what has moved
-    /// since, and are of that frame's lamps.
+    /// As [`Renderer::draw`], in the shadow of the frame before's hair: for moving pictures in a hurry, where it is a seventh of the work. It lags by what has moved
+    /// since, which nobody sees of what is soft, and is of that frame's lamps. Bodies shade by where they are: a lag would be seen as spots on them.
     pub fn draw_on(&mut self, frame: &Frame) -> &Image {
         self.draw_in(frame, false)
     }
@@ -80,6 +80,8 @@ impl Renderer {
         self.order.fill(frame, bounds.unwrap_or_default());
         if shadows || self.shadow.is_empty() {
             self.shadow.fill(frame, bounds, &self.order);
+        } else {
+            self.shadow.fill_bodies(frame);
         }
         let shaded = Instant::now();
 

@@ -20,11 +20,14 @@ use std::{
 /// Longest that a picture of moving hair should take [s]: 20 a second, of which the window's own work leaves 15.
 const BUDGET: f32 = 0.05;
 
+/// How long nothing must have changed until it is drawn in full, at least.
+const REST: Duration = Duration::from_millis(300);
+
 /// How much of a picture is drawn.
 struct Level {
     /// Part of the full size.
     scale: f32,
-    /// Most hairs that are placed and lit, about; each stands for as many as it takes.
+    /// Most hairs that are placed and lit, about, unless each would stand for more than [`THINNEST`].
     strands: usize,
     /// Voxels and texels of the shadows.
     shadow: [u32; 2],
@@ -37,14 +40,17 @@ const fn level(scale: f32, strands: usize, shadow: [u32; 2]) -> Level {
 impl Level {
     /// Every how-manieth of so many hairs is placed.
     fn every(&self, hairs: usize) -> usize {
-        hairs.div_ceil(self.strands).max(1)
+        hairs.div_ceil(self.strands).clamp(1, THINNEST)
     }
 }
+
+/// Most hairs that one stands for: where one is left of more, a head of hair is tufts.
+const THINNEST: usize = 16;
 
 /// However many there are.
 const ALL: usize = usize::MAX;
 
-/// From the finest to the coarsest, each a fifth to a third quicker than the one before on a head of any number of hairs. Of the last, hairs are a third of the
+/// From the finest to the coarsest, each quicker than the one before. Of the last, on the built-in head, hairs are a third of the
 /// work: the rest is the body, its shadow, and pixels, so that fewer hairs would spare little. Shadows are blurred by a hair's neighbours anyway: half as fine, they
 /// look alike and take an eighth of the voxels.
 const LEVELS: [Level; 10] = [
@@ -57,14 +63,14 @@ const LEVELS: [Level; 10] = [
     level(0.5, 2_500, [48, 384]),
     level(0.45, 2_000, [40, 384]),
     level(0.4, 1_500, [32, 256]),
-    level(0.35, 1_000, [32, 256]),
+    level(0.35, 900, [32, 256]),
 ];
 
 /// Where a slow machine is quick; a fast one is finer within a second.
 const FIRST: usize = 5;
 
 /// Hairs that one is drawn as where it stands for as many or more. One hair eight times as wide is a ribbon; four beside each other are hair, and are drawn in a
-/// fifth of the time that it takes to place and light so many. More of them are finer than the pixels of the levels that want them.
+/// third of the time that it takes to place and light so many. More of them are finer than the pixels of the levels that want them.
 const WISP: usize = 4;
 
 /// How far hairs of wisps may stray from their curves [pixels]: they stray farther from each other.
@@ -88,13 +94,13 @@ struct Done {
 #[derive(Default)]
 struct Brush {
     renderer: Option<(Renderer, [u32; 2])>,
-    /// Scene, level and lamps of a picture whose shadows were its own, and which no other has been drawn in.
+    /// Scene, level and lamps of a picture whose hair's shadow was its own, and which no other has been drawn in.
     shadows: Option<(u64, usize, Camera)>,
 }
 
 impl Brush {
-    /// A picture; `None` where there is nothing to draw. Of moving hair, every second picture is drawn in the shadows of the one before: nobody sees that shadows
-    /// lag by a twentieth of a second, and they are a fifth of the work.
+    /// A picture; `None` where there is nothing to draw. Of moving hair, every second picture is drawn in the shadow of the hair before: nobody sees that it
+    /// lags by a twentieth of a second, and it is a seventh of the work.
     fn draw(&mut self, job: &Job) -> Option<Image> {
         if self.renderer.as_ref().is_none_or(|(_, size)| *size != job.size) {
             self.renderer = Some((Renderer::new(job.size[0], job.size[1]), job.size));
@@ -220,8 +226,9 @@ impl CpuPainter {
         if !same {
             self.moved = Instant::now();
         }
-        // What has stood still for a moment is drawn in full.
-        let rested = self.moved.elapsed() > Duration::from_millis(300);
+        // What has stood still for a moment is drawn in full; a play whose steps are long moves.
+        let rest = REST.max(3 * snapshot.took);
+        let rested = self.moved.elapsed() > rest;
         let level = if rested { 0 } else { self.level };
         if !self.busy.load(Relaxed) && (!same || (rested && self.seen > 0)) {
             let Level { scale, shadow: [shadow_voxels, shadow_texels], .. } = LEVELS[level];
@@ -244,7 +251,7 @@ impl CpuPainter {
             self.busy.store(self.jobs.send(job).is_ok(), Relaxed);
             self.shown = Some(wanted);
         } else if same && !rested {
-            ctx.request_repaint_after(Duration::from_millis(310));
+            ctx.request_repaint_after(rest + Duration::from_millis(10));
         }
     }
 
