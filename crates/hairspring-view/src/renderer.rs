@@ -66,7 +66,7 @@ impl Renderer {
         self.draw_in(frame, true)
     }
 
-    /// As [`Renderer::draw`], in the shadow of the frame before's hair: for moving pictures in a hurry, where it is a seventh of the work. It lags by what has moved
+    /// As [`Renderer::draw`], in the shadow of the frame before's hair: for moving pictures in a hurry, where it is a fifteenth of the work. It lags by what has moved
     /// since, which nobody sees of what is soft, and is of that frame's lamps. Bodies shade by where they are: a lag would be seen as spots on them.
     pub fn draw_on(&mut self, frame: &Frame) -> &Image {
         self.draw_in(frame, false)

@@ -100,7 +100,7 @@ struct Brush {
 
 impl Brush {
     /// A picture; `None` where there is nothing to draw. Of moving hair, every second picture is drawn in the shadow of the hair before: nobody sees that it
-    /// lags by a twentieth of a second, and it is a seventh of the work.
+    /// lags by a twentieth of a second, and it is a fifteenth of the work.
     fn draw(&mut self, job: &Job) -> Option<Image> {
         if self.renderer.as_ref().is_none_or(|(_, size)| *size != job.size) {
             self.renderer = Some((Renderer::new(job.size[0], job.size[1]), job.size));
