@@ -1,7 +1,8 @@
-//! Promise: the book leaves nothing out and points at nothing that is not there. Every parameter of a scene file has its heading in
-//! `docs/parameters`, with its unit, its range and the default that the code has; it has two pictures of values that the table of pictures
-//! names, or says why not. Every page is in the summary, every link of every page and of
-//! the README leads to a file, every picture is shown, and the scenes of the book can be read.
+//! Promise: the book leaves nothing out and points at nothing that is not there. Every parameter of a scene file has its page in the folder
+//! of its group in `docs/parameters`, with its unit, its range and the default that the code has; it has two pictures of values that the
+//! table of pictures names, or says why not. The group's page and the summary list its parameters in one order, and the group's page says of
+//! each what its page does. Every page is in the summary, once, every link of every page and of the README leads to a file, no page is led
+//! to by the summary alone, every picture is shown, and the scenes of the book can be read.
 
 use hairspring::{
     air::{Shelter, Turbulence, WindSource},
@@ -63,7 +64,7 @@ const STRUCTS: [(&str, &str, &str); 41] = [
     ("neighbours.", SETTINGS, "Neighbours"),
     ("camera.", include_str!("../../hairspring/src/scene/camera.rs"), "Camera"),
     ("ground.", include_str!("../../hairspring/src/scene/ground.rs"), "Ground"),
-    // Tables that have a page's heading as a whole, besides those of their fields.
+    // Tables that have a page as a whole, besides those of their fields.
     ("collision.", "", ""),
     ("sheet.", "", ""),
     ("charged.path.", "", ""),
@@ -75,7 +76,7 @@ const ELSEWHERE: [(&str, &str); 2] =
     [("body.joint", "collision.joint"), ("body.thickness", "sheet.thickness")];
 
 #[test]
-fn every_parameter_has_its_heading() {
+fn every_parameter_has_its_page() {
     let known: BTreeSet<String> = STRUCTS
         .iter()
         .flat_map(|(prefix, source, name)| {
@@ -86,11 +87,11 @@ fn every_parameter_has_its_heading() {
     let begins = |name: &str| STRUCTS.iter().any(|(prefix, ..)| prefix.starts_with(&format!("{name}.")));
     let said = parameters();
     for name in &known {
-        assert!(said.contains_key(name) || begins(name), "docs/parameters has no heading `{name}`");
+        assert!(said.contains_key(name) || begins(name), "docs/parameters has no page `{name}`");
     }
     for name in said.keys() {
         let there = known.contains(name) || begins(name) || name == "material.preset";
-        assert!(there, "docs/parameters has a heading `{name}`, which a scene file does not know");
+        assert!(there, "docs/parameters has a page `{name}`, which a scene file does not know");
     }
     // What borrows is not read from a file.
     let structs = FILE.lines().filter_map(|l| l.strip_prefix("pub(super) struct "));
@@ -135,10 +136,13 @@ fn every_parameter_is_shown_or_says_why_not() {
         let right = heads.len() == 2 && same(&heads[0], low) && same(&heads[1], high);
         assert!(right, "{name}: not its values, {low} and {high}");
         for side in ["low", "high"] {
-            assert!(text.contains(&format!("(../pictures/parameters/{name}-{side}.jpg)")), "{name}: {side}");
+            assert!(
+                text.contains(&format!("(../../pictures/parameters/{name}-{side}.jpg)")),
+                "{name}: {side}"
+            );
         }
         let (scene, frame) = (entry["scene"].as_str().unwrap(), &entry["frame"]);
-        assert!(text.contains(&format!("(scenes/{scene}.toml)")), "{name}: not its scene");
+        assert!(text.contains(&format!("(../scenes/{scene}.toml)")), "{name}: not its scene");
         assert!(text.contains(&format!("frame {frame}.")), "{name}: not its frame");
     }
     for (name, text) in said {
@@ -151,32 +155,56 @@ fn every_parameter_is_shown_or_says_why_not() {
 }
 
 #[test]
-fn every_page_is_in_the_summary() {
+fn a_group_lists_its_parameters_and_says_of_each_what_its_page_does() {
+    let said = parameters();
     let summary = read(&docs().join("SUMMARY.md"));
+    let mut listed = BTreeSet::new();
+    for page in files(&docs().join("parameters"), "md").iter().filter(|p| is_a_group(p)) {
+        let group = page.file_stem().unwrap().to_str().unwrap();
+        let text = read(page);
+        assert!(!text.contains("\n## "), "{}: a parameter has a page of its own", page.display());
+        let rows: Vec<&str> = text.lines().filter(|l| l.starts_with("| [`")).collect();
+        let mut entries = format!("](parameters/{group}.md)\n");
+        for row in rows {
+            let name = row.trim_start_matches("| [`").split('`').next().unwrap();
+            let text = said.get(name).unwrap_or_else(|| panic!("{group}: there is no page `{name}`"));
+            // A page's links begin in its own folder.
+            let [row, text] = [row, text].map(without_links);
+            let mut parts = text.lines().filter(|l| !l.is_empty());
+            let (unit, rest) =
+                parts.next().unwrap().trim_start_matches("Unit: ").split_once(". Range: ").unwrap();
+            let default = rest.split(" Default: ").nth(1).unwrap().trim_end_matches('.');
+            let what = parts.next().unwrap();
+            let first = what.split_inclusive(". ").next().unwrap().trim_end();
+            assert_eq!(row, format!("| `{name}` | {first} | {unit} | {default} |"), "{}", page.display());
+            entries += &format!("    - [{name}](parameters/{group}/{name}.md)\n");
+            listed.insert(name.to_owned());
+        }
+        assert!(summary.contains(&entries), "docs/SUMMARY.md does not list, in this order: {entries}");
+    }
+    assert!(
+        said.keys().eq(&listed),
+        "not on their group's page: {:?}",
+        said.keys().filter(|n| !listed.contains(*n))
+    );
+}
+
+#[test]
+fn every_page_is_in_the_summary_and_led_to() {
+    let summary = read(&docs().join("SUMMARY.md"));
+    let led_to = links(files(&docs(), "md").into_iter().filter(|page| !page.ends_with("SUMMARY.md")));
     for page in files(&docs(), "md") {
         let name = page.strip_prefix(docs()).unwrap().to_str().unwrap().replace('\\', "/");
-        let listed = summary.contains(&format!("]({name})"));
-        assert!(listed || name == "SUMMARY.md", "docs/SUMMARY.md does not list {name}");
+        if name != "SUMMARY.md" && name != "README.md" {
+            assert_eq!(summary.matches(&format!("]({name})")).count(), 1, "{name} in docs/SUMMARY.md");
+            assert!(led_to.contains(&page.canonicalize().unwrap()), "no page leads to {name}");
+        }
     }
 }
 
 #[test]
 fn every_link_leads_somewhere() {
-    let mut linked = BTreeSet::new();
-    for page in files(&docs(), "md").into_iter().chain([docs().join("../README.md")]) {
-        let mut code = false;
-        for line in read(&page).lines() {
-            code ^= line.starts_with("```");
-            for link in line.split("](").skip(1).filter(|_| !code).filter_map(|l| l.split(')').next()) {
-                let file = link.split('#').next().unwrap();
-                if !file.is_empty() && !link.contains("://") {
-                    let to = page.parent().unwrap().join(file);
-                    assert!(to.is_file(), "{}: {link} is not there", page.display());
-                    linked.insert(to.canonicalize().unwrap());
-                }
-            }
-        }
-    }
+    let linked = links(files(&docs(), "md").into_iter().chain([docs().join("../README.md")]));
     for picture in files(&docs(), "jpg") {
         assert!(linked.contains(&picture.canonicalize().unwrap()), "no page shows {}", picture.display());
     }
@@ -213,17 +241,52 @@ fn fields(source: &str, name: &str) -> Vec<String> {
     inside.filter(|l| indent(l) == outer + 4).filter_map(field).collect()
 }
 
-/// What is written under each heading of `docs/parameters`.
+/// What is written on each parameter's page, `docs/parameters/GROUP/NAME.md`, under its heading.
 fn parameters() -> BTreeMap<String, String> {
     let mut all = BTreeMap::new();
-    for page in files(&docs().join("parameters"), "md") {
-        for section in read(&page).split("\n## `").skip(1) {
-            let (name, text) = section.split_once("`\n").unwrap();
-            let before = all.insert(name.to_owned(), text.to_owned());
-            assert!(before.is_none(), "{name} has two headings");
-        }
+    let folder = docs().join("parameters");
+    for page in files(&folder, "md").iter().filter(|page| page.parent() != Some(&folder)) {
+        let name = page.file_name().unwrap().to_str().unwrap().trim_end_matches(".md");
+        let text = read(page);
+        let text = text.strip_prefix(&format!("# `{name}`\n"));
+        let text = text.unwrap_or_else(|| panic!("{}: not its heading", page.display()));
+        let before = all.insert(name.to_owned(), text.to_owned());
+        assert!(before.is_none(), "{name} has two pages");
     }
     all
+}
+
+/// Whether this page of `docs/parameters` is a group's.
+fn is_a_group(page: &Path) -> bool {
+    page.parent() == Some(&docs().join("parameters")) && !page.ends_with("index.md")
+}
+
+/// All files that these pages lead to or show; each is there.
+fn links(pages: impl Iterator<Item = PathBuf>) -> BTreeSet<PathBuf> {
+    let mut linked = BTreeSet::new();
+    for page in pages {
+        let mut code = false;
+        for line in read(&page).lines() {
+            code ^= line.starts_with("```");
+            for link in line.split("](").skip(1).filter(|_| !code).filter_map(|l| l.split(')').next()) {
+                let file = link.split('#').next().unwrap();
+                if !file.is_empty() && !link.contains("://") {
+                    let to = page.parent().unwrap().join(file);
+                    assert!(to.is_file(), "{}: {link} is not there", page.display());
+                    linked.insert(to.canonicalize().unwrap());
+                }
+            }
+        }
+    }
+    linked
+}
+
+/// A text with `` `name` `` for every `` [`name`](where it leads) ``.
+fn without_links(text: &str) -> String {
+    let (start, rest) = text.split_once("](").unwrap_or((text, ""));
+    let leads_to = |part: &str| part.split_once(')').map(|(_, behind)| behind.to_owned());
+    let rest: String = rest.split("](").filter_map(leads_to).collect();
+    format!("{start}{rest}").replace("[`", "`")
 }
 
 /// Defaults that the code has, by the names of the book.

@@ -55,11 +55,15 @@ pub struct Quality {
     pub shadow_texels: u32,
     /// How far a drawn strand may stray from the smooth curve through its points [pixels], above 0. Default 0.12.
     pub smoothness: f32,
+    /// Hairs that each strand is drawn as, 1 to 4: a wisp, in which they lie loosely beside each other and share the strand's light and depth. For pictures of few
+    /// strands that stand for many, where one as wide as all of them is a ribbon; such a hair costs a third of a strand. The processor's renderer alone: a
+    /// graphics card has time for all strands. Default 1.
+    pub wisp: u32,
 }
 
 impl Default for Quality {
     fn default() -> Self {
-        Self { shadow_voxels: 112, shadow_texels: 1024, smoothness: 0.12 }
+        Self { shadow_voxels: 112, shadow_texels: 1024, smoothness: 0.12, wisp: 1 }
     }
 }
 

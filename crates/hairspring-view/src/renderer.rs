@@ -11,6 +11,7 @@ use crate::{
         ribbon::{Chunk, Setup},
         segment::Dot,
         shade::{self, LANES, Shader},
+        wisp::Wisp,
     },
     image::Image,
     shadow::{self, Shadow},
@@ -63,12 +64,26 @@ impl Renderer {
 
     /// Draws a frame. The same frame gives the same bytes on any number of threads.
     pub fn draw(&mut self, frame: &Frame) -> &Image {
+        self.draw_in(frame, true)
+    }
+
+    /// As [`Renderer::draw`], in the shadow of the frame before's hair: for moving pictures in a hurry, where it is a fifteenth of the work. It lags by what has moved
+    /// since, which nobody sees of what is soft, and is of that frame's lamps. Bodies shade by where they are: a lag would be seen as spots on them.
+    pub fn draw_on(&mut self, frame: &Frame) -> &Image {
+        self.draw_in(frame, false)
+    }
+
+    fn draw_in(&mut self, frame: &Frame, shadows: bool) -> &Image {
         let start = Instant::now();
         let [width, height] = self.tiles.size();
         let view = View::new(&frame.camera, width as u32, height as u32);
         let bounds = shadow::bounds(&frame.hair.iter().map(|h| h.points).collect::<Vec<_>>());
         self.order.fill(frame, bounds.unwrap_or_default());
-        self.shadow.fill(frame, bounds, &self.order);
+        if shadows || self.shadow.is_empty() {
+            self.shadow.fill(frame, bounds, &self.order);
+        } else {
+            self.shadow.fill_bodies(frame);
+        }
         let shaded = Instant::now();
 
         // The view depths of the hair's box are the range of sort keys.
@@ -84,6 +99,7 @@ impl Renderer {
             shadow: &self.shadow,
             level: Level::new(),
             shader: Shader::new(&frame.lighting, view.eye),
+            wisp: Wisp::new(frame.quality.wisp),
             pigments: frame.hair.iter().map(|h| color::ends(h.look).map(shade::pigment)).collect(),
             depths: [(middle - reach).max(0.0), middle.max(0.0) + reach],
             floor,

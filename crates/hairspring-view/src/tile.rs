@@ -121,10 +121,15 @@ fn rank(slot: usize) -> f32 {
 fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut Buckets, origin: Vec2) {
     let tolerance = setup.frame.quality.smoothness.clamp(0.02, 4.0);
     let walls = walls(canvas);
+    let mut next_wall = nearest_from(&walls, f32::NEG_INFINITY);
     let mut fetched = [Fetched::default(); BATCH];
     let (mut drawn, mut bucket) = (0, Vec::new());
     while let Some((nearest, entries)) = buckets.next() {
-        lay_walls(canvas, &walls, nearest as f32 / DEPTHS - strands.reach);
+        let here = nearest as f32 / DEPTHS - strands.reach;
+        if next_wall < here {
+            lay_walls(canvas, &walls, here);
+            next_wall = nearest_from(&walls, here);
+        }
         if drawn >= SURVEY {
             canvas.survey();
             drawn = 0;
@@ -148,9 +153,27 @@ fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut
             for (from, e) in fetched.iter().zip(few) {
                 let wider = 1.0 / thinned(canvas.through_any(e.patches()), strands.widest);
                 let color = strands.colors.open(setup, e.slot(), from.colors);
-                for mut piece in Segment::new(&from.dots, origin).pieces(tolerance, color) {
+                let segment = Segment::new(&from.dots, origin);
+                let mut pieces = segment.pieces(tolerance, color);
+                if setup.wisp.is_one() {
+                    for mut piece in pieces {
+                        piece.width = piece.width.map(|w| w * wider);
+                        canvas.draw(&piece);
+                    }
+                    continue;
+                }
+                let owner = &setup.order.owners[e.slot() / LANES];
+                let points = setup.frame.hair[owner.hair as usize].range(owner.strand as usize).len();
+                let i = owner.first as usize + e.slot() % LANES;
+                let hairs = setup.wisp.hairs(&segment, owner.strand, i, points);
+                while let Some(mut piece) = pieces.next() {
                     piece.width = piece.width.map(|w| w * wider);
-                    canvas.draw(&piece);
+                    for hair in 0..hairs.count() {
+                        let hair = hairs.piece(hair, &piece, pieces.along());
+                        if canvas.is_open_to(&hair) {
+                            canvas.draw(&hair);
+                        }
+                    }
                 }
             }
         }
@@ -199,6 +222,12 @@ fn walls(canvas: &Canvas) -> [f32; PATCHES * PATCHES] {
         *wall = if filled { wall.max(canvas.body_depth[pixel]) } else { f32::INFINITY };
     }
     walls
+}
+
+/// The nearest of the walls that are not nearer than `depth`; infinite: none.
+#[inline(always)]
+fn nearest_from(walls: &[f32; PATCHES * PATCHES], depth: f32) -> f32 {
+    walls.iter().fold(f32::INFINITY, |nearest, wall| if *wall >= depth { wall.min(nearest) } else { nearest })
 }
 
 /// Closes the patches whose walls are nearer than `depth`.

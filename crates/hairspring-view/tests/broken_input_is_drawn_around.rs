@@ -92,7 +92,7 @@ fn arrays_that_disagree_are_cut_short() {
         Camera { position: Vec3::NAN, target: Vec3::INFINITY, fov: -3.0 },
         Camera { position: Vec3::Y * 0.1001, target: Vec3::ZERO, fov: 170.0 },
     ] {
-        let quality = Quality { shadow_voxels: 0, shadow_texels: 0, smoothness: f32::NAN };
+        let quality = Quality { shadow_voxels: 0, shadow_texels: 0, smoothness: f32::NAN, wisp: u32::MAX };
         for lighting in [
             Lighting::default(),
             Lighting { key: dark, fill: dark, rim: dark, exposure: f32::NAN, ..Lighting::default() },

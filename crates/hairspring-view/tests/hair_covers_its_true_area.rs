@@ -22,6 +22,11 @@ fn camera() -> Camera {
 }
 
 fn draw(points: &[Vec3], width: f32, wall: f32) -> Image {
+    draw_as(1, points, width, wall)
+}
+
+/// As wisps of so many hairs.
+fn draw_as(wisp: u32, points: &[Vec3], width: f32, wall: f32) -> Image {
     let dark = Light { direction: Vec3::Y, color: Vec3::ZERO };
     let radii = vec![0.5e-3 * width; points.len()];
     let look = HairLook::default();
@@ -49,7 +54,7 @@ fn draw(points: &[Vec3], width: f32, wall: f32) -> Image {
         },
         background: Background { center: Vec3::splat(wall), edge: Vec3::splat(wall) },
         ground: None,
-        quality: Quality::default(),
+        quality: Quality { wisp, ..Quality::default() },
     };
     let mut renderer = Renderer::new(SIDE, SIDE);
     renderer.draw(&frame);
@@ -130,6 +135,22 @@ fn a_moving_hair_does_not_flicker() {
                 assert!(jump < most * 0.16 + 0.006, "width {width}, {degrees}°: a pixel jumps by {jump}");
             }
         }
+    }
+}
+
+/// Its hairs cover what the strand does, less where they cross, wherever tiles meet: over 32 pixels, the side of a tile, it is the same.
+#[test]
+fn a_wisp_covers_what_its_strand_does() {
+    let curve = Curve::measure();
+    for (wisp, width, degrees) in [(2, 1.6, 0.0), (4, 3.0, 90.0), (4, 2.0, 33.0), (3, 4.0, 12.0)] {
+        let areas: Vec<f32> = (0..17)
+            .map(|k| strand(degrees, 2.0 * k as f32 - 16.0, 9))
+            .map(|strand| curve.area(&draw_as(wisp, &strand, width, WALL)))
+            .collect();
+        let (low, high) = areas.iter().fold((f32::MAX, 0.0f32), |b, a| (b.0.min(*a), b.1.max(*a)));
+        let (least, most) = (0.75 * 60.0 * width, 1.05 * 60.0 * width);
+        assert!(low > least && high < most, "{wisp} hairs, {degrees}°: {low} to {high} of {most}");
+        assert!(high - low < 0.04 * high, "{wisp} hairs, {degrees}°: between {low} and {high}");
     }
 }
 

@@ -5,7 +5,7 @@
 mod support;
 
 use hairspring::scene::HairLook;
-use hairspring_view::{Image, Renderer};
+use hairspring_view::{Frame, HairDraw, Image, Quality, Renderer};
 
 #[test]
 fn one_two_and_seven_threads() {
@@ -14,14 +14,15 @@ fn one_two_and_seven_threads() {
     let look = HairLook::default();
     let hair = [support::hair(&groom, &look)];
     let bodies = [support::body(&ball)];
-    let frame = support::frame(&hair, &bodies);
-    let draw = |threads: usize, warm: bool| -> Image {
+    let draw = |threads: usize, warm: bool, wisp: u32| -> Image {
+        let quality = Quality { wisp, ..Quality::default() };
+        let frame = Frame { quality, ..support::frame(&hair, &bodies) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut renderer = Renderer::new(321, 203);
             if warm {
                 let other = support::frame(&hair, &[]);
-                renderer.draw(&hairspring_view::Frame {
+                renderer.draw(&Frame {
                     camera: hairspring::scene::Camera { fov: 11.0, ..other.camera },
                     ..other
                 });
@@ -29,9 +30,27 @@ fn one_two_and_seven_threads() {
             renderer.draw(&frame).clone()
         })
     };
-    let one = draw(1, false);
-    assert!(one.rgb.chunks(3).any(|p| p[0] > p[2] + 20), "there is hair to see");
-    for (threads, warm) in [(2, false), (7, false), (1, true), (7, true)] {
-        assert!(draw(threads, warm) == one, "{threads} threads, warm: {warm}");
+    for wisp in [1, 4] {
+        let one = draw(1, false, wisp);
+        assert!(one.rgb.chunks(3).any(|p| p[0] > p[2] + 20), "there is hair to see");
+        for (threads, warm) in [(2, false), (7, false), (1, true), (7, true)] {
+            assert!(draw(threads, warm, wisp) == one, "{threads} threads, warm: {warm}, wisps of {wisp}");
+        }
     }
+}
+
+#[test]
+fn in_its_own_shadows_a_frame_is_the_same() {
+    let groom = support::groom(support::Style { strands: 2000, points: 14, ..support::WAVY });
+    let (ball, look) = (support::ball(), HairLook::default());
+    let (hair, bodies) = ([support::hair(&groom, &look)], [support::body(&ball)]);
+    let frame = support::frame(&hair, &bodies);
+    let dark = Frame { hair: &[HairDraw { width_scale: 40.0, ..hair[0] }], ..frame };
+    let mut renderer = Renderer::new(160, 120);
+    let own = renderer.draw(&frame).clone();
+    assert!(*renderer.draw_on(&frame) == own);
+    renderer.draw(&dark);
+    assert!(*renderer.draw_on(&frame) != own, "the shadows are those of the frame before");
+    assert!(*renderer.draw(&frame) == own);
+    assert!(*Renderer::new(160, 120).draw_on(&frame) == own, "where there was none before, its own");
 }

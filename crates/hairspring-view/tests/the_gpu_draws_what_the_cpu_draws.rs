@@ -409,7 +409,7 @@ fn broken_input_is_drawn_around() {
         Camera { position: Vec3::NAN, target: Vec3::INFINITY, fov: -3.0 },
         Camera { position: Vec3::Y * 0.1001, target: Vec3::ZERO, fov: 170.0 },
     ] {
-        let quality = Quality { shadow_voxels: 0, shadow_texels: 0, smoothness: f32::NAN };
+        let quality = Quality { shadow_voxels: 0, shadow_texels: 0, smoothness: f32::NAN, wisp: u32::MAX };
         gpu.draw(&Frame { camera, quality, ..support::frame(&hair, &bodies) }, 70, 40);
         gpu.read().unwrap();
     }

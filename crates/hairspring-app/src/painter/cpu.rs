@@ -6,6 +6,7 @@ use eframe::{
     egui::{self, ColorImage, TextureHandle, TextureOptions},
     egui_wgpu::RenderState,
 };
+use hairspring::scene::Camera;
 use hairspring_view::{Image, Quality, Renderer};
 use std::{
     sync::{
@@ -19,33 +20,61 @@ use std::{
 /// Longest that a picture of moving hair should take [s]: 20 a second, of which the window's own work leaves 15.
 const BUDGET: f32 = 0.05;
 
+/// How long nothing must have changed until it is drawn in full, at least.
+const REST: Duration = Duration::from_millis(300);
+
 /// How much of a picture is drawn.
 struct Level {
     /// Part of the full size.
     scale: f32,
-    /// Every how-manieth hair.
-    every: usize,
+    /// Most hairs that are placed and lit, about, unless each would stand for more than [`THINNEST`].
+    strands: usize,
     /// Voxels and texels of the shadows.
     shadow: [u32; 2],
 }
 
-const fn level(scale: f32, every: usize, shadow: [u32; 2]) -> Level {
-    Level { scale, every, shadow }
+const fn level(scale: f32, strands: usize, shadow: [u32; 2]) -> Level {
+    Level { scale, strands, shadow }
 }
 
-/// From the finest to the coarsest. Fewer hairs than the last are no picture of a head of hair. Shadows are blurred by a hair's neighbours anyway: half as fine, they
+impl Level {
+    /// Every how-manieth of so many hairs is placed.
+    fn every(&self, hairs: usize) -> usize {
+        hairs.div_ceil(self.strands).clamp(1, THINNEST)
+    }
+}
+
+/// Most hairs that one stands for: where one is left of more, a head of hair is tufts.
+const THINNEST: usize = 16;
+
+/// However many there are.
+const ALL: usize = usize::MAX;
+
+/// From the finest to the coarsest, each quicker than the one before. Of the last, on the built-in head, hairs are a third of the
+/// work: the rest is the body, its shadow, and pixels, so that fewer hairs would spare little. Shadows are blurred by a hair's neighbours anyway: half as fine, they
 /// look alike and take an eighth of the voxels.
-const LEVELS: [Level; 9] = [
-    level(1.0, 1, [112, 1024]),
-    level(0.85, 1, [80, 768]),
-    level(0.75, 1, [64, 512]),
-    level(0.65, 2, [56, 512]),
-    level(0.55, 2, [56, 512]),
-    level(0.5, 3, [48, 384]),
-    level(0.45, 4, [40, 384]),
-    level(0.4, 6, [32, 256]),
-    level(0.35, 8, [32, 256]),
+const LEVELS: [Level; 10] = [
+    level(1.0, ALL, [112, 1024]),
+    level(0.85, ALL, [80, 768]),
+    level(0.75, ALL, [64, 512]),
+    level(0.7, 20_000, [56, 512]),
+    level(0.65, 8_000, [56, 512]),
+    level(0.55, 4_000, [56, 512]),
+    level(0.5, 2_500, [48, 384]),
+    level(0.45, 2_000, [40, 384]),
+    level(0.4, 1_500, [32, 256]),
+    level(0.35, 900, [32, 256]),
 ];
+
+/// Where a slow machine is quick; a fast one is finer within a second.
+const FIRST: usize = 5;
+
+/// Hairs that one is drawn as where it stands for as many or more. One hair eight times as wide is a ribbon; four beside each other are hair, and are drawn in a
+/// third of the time that it takes to place and light so many. More of them are finer than the pixels of the levels that want them.
+const WISP: usize = 4;
+
+/// How far hairs of wisps may stray from their curves [pixels]: they stray farther from each other.
+const SMOOTHNESS: f32 = 0.3;
 
 struct Job {
     snapshot: Arc<Snapshot>,
@@ -57,9 +86,36 @@ struct Job {
 
 struct Done {
     image: Image,
-    snapshot: Arc<Snapshot>,
+    job: Job,
     took: f32,
-    level: usize,
+}
+
+/// What the thread draws with.
+#[derive(Default)]
+struct Brush {
+    renderer: Option<(Renderer, [u32; 2])>,
+    /// Scene, level and lamps of a picture whose hair's shadow was its own, and which no other has been drawn in.
+    shadows: Option<(u64, usize, Camera)>,
+}
+
+impl Brush {
+    /// A picture; `None` where there is nothing to draw. Of moving hair, every second picture is drawn in the shadow of the hair before: nobody sees that it
+    /// lags by a twentieth of a second, and it is a fifteenth of the work.
+    fn draw(&mut self, job: &Job) -> Option<Image> {
+        if self.renderer.as_ref().is_none_or(|(_, size)| *size != job.size) {
+            self.renderer = Some((Renderer::new(job.size[0], job.size[1]), job.size));
+            self.shadows = None;
+        }
+        let (renderer, _) = self.renderer.as_mut()?;
+        let scenery = job.snapshot.stages.get(job.stage)?;
+        let these = (job.snapshot.scene, job.level, job.sight.lit_for);
+        let again = job.level > 0 && self.shadows == Some(these);
+        self.shadows = (!again).then_some(these);
+        let image = scenery.draw(&job.sight, false, |frame| {
+            if again { renderer.draw_on(frame).clone() } else { renderer.draw(frame).clone() }
+        });
+        Some(image)
+    }
 }
 
 /// How a picture comes into the window.
@@ -88,8 +144,9 @@ pub struct CpuPainter {
     /// The moment of the picture that is seen.
     moment: Option<Arc<Snapshot>>,
     level: usize,
-    /// Level of the picture that is seen.
+    /// Level of the picture that is seen, and every how-manieth hair it shows.
     seen: usize,
+    every: usize,
     /// What a picture of this level takes, over some pictures [s].
     took: f32,
     pace: Pace,
@@ -105,18 +162,12 @@ impl CpuPainter {
         std::thread::spawn(move || {
             // Threads of its own: in one pool, a step of the simulation would wait behind a whole picture.
             let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { return };
-            let mut renderer: Option<(Renderer, [u32; 2])> = None;
+            let mut brush = Brush::default();
             for job in todo {
                 let began = Instant::now();
-                if renderer.as_ref().is_none_or(|(_, size)| *size != job.size) {
-                    renderer = Some((Renderer::new(job.size[0], job.size[1]), job.size));
-                }
-                let Some((renderer, _)) = &mut renderer else { continue };
-                let Some(scenery) = job.snapshot.stages.get(job.stage) else { continue };
-                let image =
-                    pool.install(|| scenery.draw(&job.sight, false, |frame| renderer.draw(frame).clone()));
+                let Some(image) = pool.install(|| brush.draw(&job)) else { continue };
                 let took = began.elapsed().as_secs_f32();
-                if finished.send(Done { image, snapshot: job.snapshot, took, level: job.level }).is_err() {
+                if finished.send(Done { image, job, took }).is_err() {
                     return;
                 }
                 once(&ctx);
@@ -129,9 +180,9 @@ impl CpuPainter {
             shows: Shows::new(window),
             shown: None,
             moment: None,
-            // From where a slow machine is quick; a fast one is finer within a second.
-            level: 4,
-            seen: 4,
+            level: FIRST,
+            seen: FIRST,
+            every: 1,
             took: 0.0,
             pace: Pace::new(),
             moved: Instant::now(),
@@ -175,18 +226,23 @@ impl CpuPainter {
         if !same {
             self.moved = Instant::now();
         }
-        // What has stood still for a moment is drawn in full.
-        let rested = self.moved.elapsed() > Duration::from_millis(300);
+        // What has stood still for a moment is drawn in full; a play whose steps are long moves.
+        let rest = REST.max(3 * snapshot.took);
+        let rested = self.moved.elapsed() > rest;
         let level = if rested { 0 } else { self.level };
         if !self.busy.load(Relaxed) && (!same || (rested && self.seen > 0)) {
-            let Level { scale, every, shadow: [shadow_voxels, shadow_texels] } = LEVELS[level];
+            let Level { scale, shadow: [shadow_voxels, shadow_texels], .. } = LEVELS[level];
             let side = |s: u32| ((s as f32 * scale) as u32).max(16);
+            let hairs = snapshot.stages.get(stage).map_or(0, |scenery| scenery.still.counts[1]);
+            let every = LEVELS[level].every(hairs).max(sight.every);
+            let smoothness = if every > 1 { SMOOTHNESS } else { sight.quality.smoothness };
+            let wisp = every.min(WISP) as u32;
             let job = Job {
                 snapshot: snapshot.clone(),
                 stage,
                 sight: Sight {
-                    every: every.max(sight.every),
-                    quality: Quality { shadow_voxels, shadow_texels, ..sight.quality },
+                    every,
+                    quality: Quality { shadow_voxels, shadow_texels, smoothness, wisp },
                     ..*sight
                 },
                 size: size.map(side),
@@ -195,7 +251,7 @@ impl CpuPainter {
             self.busy.store(self.jobs.send(job).is_ok(), Relaxed);
             self.shown = Some(wanted);
         } else if same && !rested {
-            ctx.request_repaint_after(Duration::from_millis(310));
+            ctx.request_repaint_after(rest + Duration::from_millis(10));
         }
     }
 
@@ -222,11 +278,12 @@ impl CpuPainter {
                 *texture = Some(ctx.load_texture("hair", image, TextureOptions::LINEAR));
             }
         }
-        self.pace.tick(done.level != self.level);
-        self.took = if done.level == self.seen { smooth(self.took, done.took) } else { done.took };
-        self.seen = done.level;
-        self.moment = Some(done.snapshot);
-        if done.level == self.level {
+        let Job { level, snapshot, sight, .. } = done.job;
+        self.pace.tick(level != self.level);
+        self.took = if level == self.seen { smooth(self.took, done.took) } else { done.took };
+        (self.seen, self.every) = (level, sight.every);
+        self.moment = Some(snapshot);
+        if level == self.level {
             // Finer only where that would surely fit: it must not go to and fro.
             if self.took > BUDGET {
                 self.level = (self.level + 1).min(LEVELS.len() - 1);
@@ -238,11 +295,11 @@ impl CpuPainter {
 
     /// What is left out of the picture that is seen, how long it took, and how many come in a second.
     pub fn note(&self) -> String {
-        let Level { scale, every, .. } = LEVELS[self.seen];
-        let part = match (scale, every) {
+        let scale = LEVELS[self.seen].scale;
+        let part = match (scale, self.every) {
             (1.0, 1) => "in full".to_owned(),
             (_, 1) => format!("at {:.0} % of the size", 100.0 * scale),
-            _ => format!("at {:.0} % of the size, 1 hair of {every}", 100.0 * scale),
+            (_, every) => format!("at {:.0} % of the size, 1 hair of {every}", 100.0 * scale),
         };
         format!("CPU: {part}, {:.0} ms{}", 1e3 * self.took, self.pace.words())
     }

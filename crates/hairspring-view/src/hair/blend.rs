@@ -91,6 +91,23 @@ impl Canvas {
         most
     }
 
+    /// Whether a piece may touch an open patch.
+    #[inline(always)]
+    pub fn is_open_to(&self, piece: &Piece) -> bool {
+        // A thin piece lies on two pixels, a wide one on half of its width over the cosine of its slope.
+        let reach = piece.width[0].max(piece.width[1]) + 1.0;
+        let (low, high) = (piece.a.min(piece.b) - reach, piece.a.max(piece.b) + reach);
+        let side = SIDE as f32;
+        if low.max_element() >= side || high.min_element() < 0.0 {
+            return false;
+        }
+        let patch = |at: f32| (at.clamp(0.0, side - 1.0) * (1.0 / PATCH as f32)) as u32;
+        let columns = (2u16 << patch(high.x)) - (1 << patch(low.x));
+        let rows = u16::MAX << (PATCHES as u32 * patch(low.y));
+        let rows = rows & u16::MAX >> (PATCHES as u32 * (PATCHES as u32 - 1 - patch(high.y)));
+        self.open & (columns * 0x1111) & rows != 0
+    }
+
     #[inline(always)]
     fn add(&mut self, pixel: usize, cover: f32, color: Vec4, depth: f32) {
         // It is less already; said so that it need not be asked for each array.

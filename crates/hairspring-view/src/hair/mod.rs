@@ -7,3 +7,4 @@ pub(crate) mod project;
 pub(crate) mod ribbon;
 pub(crate) mod segment;
 pub(crate) mod shade;
+pub(crate) mod wisp;

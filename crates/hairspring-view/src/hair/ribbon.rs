@@ -5,6 +5,7 @@ use super::{
     project::{Points, Projection, Track},
     segment::Dot,
     shade::{LANES, Shader},
+    wisp::Wisp,
 };
 use crate::{
     camera::View,
@@ -24,6 +25,7 @@ pub(crate) struct Setup<'a> {
     pub order: &'a Order,
     pub shadow: &'a Shadow,
     pub shader: Shader,
+    pub wisp: Wisp,
     /// Pigment at root and tip of each style.
     pub pigments: Vec<[Vec3; 2]>,
     /// Instruction set to use.
@@ -130,7 +132,7 @@ impl Chunk {
         let turns = turn(zero, way(simd, &z, &a).0, here) + turn(zero, way(simd, &b, &c).0, here);
         let bulge = length * (2.0 / 27.0) * turns;
         let widest = a.width.max(b.width);
-        let reach = widest * 0.5 + 1.0 + bulge;
+        let reach = widest * setup.wisp.reach() + 1.0 + bulge;
         let (low_x, high_x) = (a.x.min(b.x) - reach, a.x.max(b.x) + reach);
         let (low_y, high_y) = (a.y.min(b.y) - reach, a.y.max(b.y) + reach);
         let [w, h] = setup.tiles.size();

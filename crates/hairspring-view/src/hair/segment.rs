@@ -90,6 +90,12 @@ impl Segment {
         }
     }
 
+    /// Unit directions across the curve at both ends, alike on both sides of a joint.
+    #[inline(always)]
+    pub fn across(&self) -> [Vec2; 2] {
+        [self.before, self.next].map(|other| (other + self.here).normalize_or(self.here).perp())
+    }
+
     /// The straight pieces of the curve, which stray no farther than `tolerance` [pixels] from it.
     ///
     /// Tangents at the joints halve the angle there: a Catmull-Rom curve by chord length, which has no loops or overshoot where points
@@ -122,6 +128,14 @@ pub(crate) struct Pieces<'a> {
     done: f32,
     /// Where the last piece ended, and its colour there.
     last: (Dot, Vec4),
+}
+
+impl Pieces<'_> {
+    /// From where to where the last piece goes, as shares of the segment.
+    #[inline(always)]
+    pub fn along(&self) -> [f32; 2] {
+        [self.done - 1.0, self.done].map(|done| done / self.count)
+    }
 }
 
 impl Iterator for Pieces<'_> {

@@ -142,6 +142,16 @@ impl Shadow {
         });
     }
 
+    /// Works out the sharp shadow of bodies alone; that of hair stays as it was.
+    pub fn fill_bodies(&mut self, frame: &Frame) {
+        self.map.fill(frame);
+    }
+
+    /// Whether there is no shadow of hair.
+    pub fn is_empty(&self) -> bool {
+        self.light.is_empty()
+    }
+
     /// Optical depth of hair and far bodies towards key, rim and fill, and the share of sky seen; trilinear.
     #[inline(always)]
     pub fn light(&self, p: Vec3) -> Vec4 {
