@@ -7,12 +7,14 @@
 //! | `edit` | what a parameter's new value writes, and where |
 //! | `differ` | what two scenes that are compared differ in |
 //! | `player`, `snapshot` | the simulation on a thread of its own, and what that shows of a moment |
+//! | `pushed`, `pulled` | a ball and a hand to push through hair, and how the pointer moves whatever it moves |
 //! | `session`, `reading` | document and player together: whatever is done to them is an action; a scene that is read again meanwhile |
 //! | `view`, `orbit`, `overlay`, `axes`, `ramp` | camera and tools, and what is laid over the picture |
 //! | `handle`, `carried` | what can be taken in the picture, and where joints have carried it |
 //! | `painter` | who draws the hair |
 //! | `panel` | what stands around the picture |
 //! | `record`, `letters`, `script` | files of what is seen, and words on them; a session line by line |
+//! | `memory` | what is not needed any more goes back to the system |
 //! | `app`, `desktop` | all of it in a window, and what is said where there can be none |
 //!
 //! Data goes one way: panels read the session and say actions, the session edits the document and tells the player, the player shows snapshots, a painter draws them.
@@ -22,7 +24,6 @@
 
 mod app;
 mod axes;
-mod ball;
 mod carried;
 mod defaults;
 mod desktop;
@@ -37,12 +38,15 @@ mod followers;
 mod handle;
 mod key;
 mod letters;
+mod memory;
 mod orbit;
 mod overlay;
 mod painter;
 mod panel;
 mod parameter;
 mod player;
+mod pulled;
+mod pushed;
 mod ramp;
 mod reading;
 mod record;
@@ -55,6 +59,8 @@ pub use app::{App, Options};
 pub use document::Document;
 pub use error::AppError;
 pub use painter::Drawn;
+pub use pulled::Push;
+pub use pushed::Pushed;
 pub use script::Line;
 pub use script::parse as read_script;
 pub use session::{Action, Session};

@@ -87,9 +87,9 @@ pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picke
         scenery.obstacles.iter().for_each(|o| collider(pen, scenery, o, stroke));
     }
     if overlays.roots {
-        for (still, points) in scenery.still.grooms.iter().zip(scenery.points()) {
-            for root in still.roots().step_by(1 + still.strands() / 4000) {
-                if let Some(at) = points.get(root).and_then(|p| pen.at(*p)) {
+        for (groom, still) in scenery.still.grooms.iter().enumerate() {
+            for strand in (0..still.strands()).step_by(1 + still.strands() / 4000) {
+                if let Some(at) = scenery.root(groom, strand).and_then(|p| pen.at(p)) {
                     painter.circle_filled(at, 1.2, Color32::from_rgb(255, 200, 60));
                 }
             }
@@ -98,10 +98,10 @@ pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picke
     if overlays.frames {
         axes::draw(pen, scenery, picked);
     }
-    if let Some((center, radius)) = view.ball().filter(|_| view.hand == Hand::Grab) {
+    if let Some((center, radius)) = view.reached().filter(|_| view.hand == Hand::Grab) {
         pen.ball(center, radius, Stroke::new(1.5, Color32::from_white_alpha(170)));
     }
-    if let Some((center, radius)) = view.ball().filter(|_| view.hand == Hand::Comb) {
+    if let Some((center, radius)) = view.reached().filter(|_| view.hand == Hand::Comb) {
         fingers(pen, center, radius, Stroke::new(2.0, Color32::from_white_alpha(170)));
     }
     for (k, handle) in handles.iter().enumerate() {

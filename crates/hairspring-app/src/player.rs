@@ -2,6 +2,8 @@
 
 use crate::{
     error::AppError,
+    memory,
+    pulled::{FASTEST, FASTEST_HEAD, Pulled, Push, Pushing},
     snapshot::{Scenery, Snapshot, Still},
 };
 use glam::Vec3;
@@ -10,7 +12,7 @@ use hairspring::{
     collide::Rigid,
     scene::Scene,
     simulation::{Energy, Measure, ToolId},
-    stage::{FrameReport, Picked, Stage, Value},
+    stage::{FrameReport, Picked, PosedBody, Stage, Value},
 };
 use hairspring_view::gpu::Gpu;
 use std::{
@@ -29,12 +31,11 @@ const SHOWN: Duration = Duration::from_millis(33);
 /// Steps from one measurement of all strands to the next while it plays: figures that change faster cannot be read.
 const MEASURED: u64 = 15;
 
+/// How long after a scene was opened the one before has left all of the window.
+const LEFT: Duration = Duration::from_secs(1);
+
 /// Length of a step [s]: what a frame of most screens takes.
 pub const STEP: f32 = 1.0 / 60.0;
-
-/// Fastest that the pointer takes the head along, and a tool [m/s]: a head that is shaken hard, and a hand that throws. Where steps take longer than they last, the
-/// pointer is that much faster in the scene than on the desk.
-const FASTEST: [f32; 2] = [1.5, 4.0];
 
 /// What the thread is told.
 pub enum Order {
@@ -58,8 +59,8 @@ pub enum Order {
     Carry(Rigid),
     /// Lets go.
     LetGo,
-    /// The ball in the world, its middle and radius [m].
-    Ball(Option<(Vec3, f32)>),
+    /// What is pushed through hair, and where the pointer has it.
+    Push(Option<Push>),
     /// Where the body is carried besides its motion.
     Body(Rigid),
     /// Which number of each point is wanted.
@@ -143,28 +144,6 @@ impl Drop for Player {
     }
 }
 
-/// What the pointer pulls.
-#[derive(Clone, Copy, Default)]
-struct Pulled {
-    now: Rigid,
-    wanted: Rigid,
-}
-
-impl Pulled {
-    fn at(pose: Rigid) -> Self {
-        Self { now: pose, wanted: pose }
-    }
-
-    /// Goes on for a step, no faster than so many metres a second; whether it moved.
-    fn go(&mut self, fastest: f32) -> bool {
-        let way = self.wanted.translation - self.now.translation;
-        let moved = self.now != self.wanted;
-        let translation = self.now.translation + way.clamp_length_max(fastest * STEP);
-        self.now = Rigid { translation, ..self.wanted };
-        moved
-    }
-}
-
 /// What the thread works with.
 struct Work {
     inbox: Receiver<Order>,
@@ -176,10 +155,10 @@ struct Work {
     speed: f32,
     end: Option<f32>,
     tool: Option<Vec<Option<ToolId>>>,
-    /// Where the body is carried, a tool and the ball, and where the pointer has them.
+    /// Where the body is carried, and a tool, and what is pushed, and where the pointer has them.
     body: Pulled,
     carried: Pulled,
-    ball: Option<(Pulled, f32)>,
+    pushing: Option<Pushing>,
     show: Option<Value>,
     picked: Option<Picked>,
     scene: u64,
@@ -200,6 +179,8 @@ struct Work {
     due: Instant,
     /// Snapshots whose memory is used again once the window has left them.
     pool: Vec<Arc<Snapshot>>,
+    /// When what the last scene left behind is given back to the system.
+    tidy: Option<Instant>,
 }
 
 impl Work {
@@ -216,7 +197,7 @@ impl Work {
             tool: None,
             body: Pulled::default(),
             carried: Pulled::default(),
-            ball: None,
+            pushing: None,
             show: None,
             picked: None,
             scene: 0,
@@ -231,17 +212,20 @@ impl Work {
             shown: Instant::now(),
             due: Instant::now(),
             pool: Vec::new(),
+            tidy: None,
         }
     }
 
     fn run(&mut self) {
         loop {
+            if self.tidy.is_some_and(|tidy| tidy <= Instant::now()) {
+                self.tidy = None;
+                memory::give_back();
+            }
             let idle = !self.playing || self.stages.is_empty();
-            let wait = if idle {
-                Duration::from_secs(3600)
-            } else {
-                self.due.saturating_duration_since(Instant::now())
-            };
+            let until = if idle { self.tidy } else { Some(self.due) };
+            let wait = until
+                .map_or(Duration::from_secs(3600), |until| until.saturating_duration_since(Instant::now()));
             match self.inbox.recv_timeout(wait) {
                 Ok(order) => {
                     // What has come in meanwhile belongs to the same moment.
@@ -290,9 +274,11 @@ impl Work {
                 match stages {
                     Ok(stages) => {
                         self.stages = stages;
+                        self.pool.clear();
+                        self.tidy = Some(Instant::now() + LEFT);
                         (self.step, self.reset_strands) = (0, 0);
                         (self.tool, self.picked, self.unshown) = (None, None, false);
-                        (self.body, self.ball) = (Pulled::default(), None);
+                        (self.body, self.pushing) = (Pulled::default(), None);
                         self.due = Instant::now();
                     }
                     Err(why) => *lock(&self.shared.error) = Some(why),
@@ -345,15 +331,16 @@ impl Work {
                 self.let_go();
                 return false;
             }
-            Order::Ball(ball) => {
-                let fresh = self.ball.is_none();
-                self.ball = ball.map(|(at, radius)| {
-                    let wanted = Rigid { translation: at, ..Rigid::default() };
-                    (Pulled { wanted, ..self.ball.map_or(Pulled::at(wanted), |(pulled, _)| pulled) }, radius)
-                });
-                if fresh || ball.is_none() {
-                    self.stages.iter_mut().for_each(|(stage, _)| stage.set_ball(ball));
+            Order::Push(push) => {
+                match (push, &mut self.pushing) {
+                    (Some(push), Some(pushing)) => {
+                        pushing.want(push);
+                        return false;
+                    }
+                    (Some(push), none) => *none = Some(Pushing::new(push, body(&self.stages))),
+                    (None, pushing) => *pushing = None,
                 }
+                self.place_pushed();
             }
             Order::Body(by) => {
                 self.body.wanted = by;
@@ -382,20 +369,23 @@ impl Work {
 
     /// Takes what the pointer pulls along, for a step.
     fn pull(&mut self) {
-        if self.body.go(FASTEST[0]) {
+        if self.body.go(FASTEST_HEAD) {
             self.stages.iter_mut().for_each(|(stage, _)| stage.move_body(self.body.now));
         }
-        if self.tool.is_some() && self.carried.go(FASTEST[1]) {
+        if self.tool.is_some() && self.carried.go(FASTEST) {
             for ((stage, _), id) in self.stages.iter_mut().zip(self.tool.iter().flatten()) {
                 id.inspect(|id| stage.carry(*id, self.carried.now));
             }
         }
-        if let Some((ball, radius)) = &mut self.ball
-            && ball.go(FASTEST[1])
-        {
-            let now = Some((ball.now.translation, *radius));
-            self.stages.iter_mut().for_each(|(stage, _)| stage.set_ball(now));
+        if self.pushing.as_mut().is_some_and(|pushing| pushing.go(body(&self.stages))) {
+            self.place_pushed();
         }
+    }
+
+    /// Shows all stages where what is pushed is.
+    fn place_pushed(&mut self) {
+        let (shapes, pose) = self.pushing.as_ref().map(Pushing::placed).unwrap_or_default();
+        self.stages.iter_mut().for_each(|(stage, _)| stage.push_with(shapes, pose));
     }
 
     fn advance(&mut self) {
@@ -455,6 +445,7 @@ impl Work {
         {
             scenery.fill(stage, still, self.show);
             (scenery.measure, scenery.energy) = *measure;
+            scenery.pushed = self.pushing.as_ref().map(Pushing::shown);
         }
         let picked = self.picked;
         snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));
@@ -490,6 +481,11 @@ impl Work {
             })
         })
     }
+}
+
+/// The body of the first stage, over which a hand goes.
+fn body(stages: &[(Stage, Arc<Still>)]) -> Option<PosedBody<'_>> {
+    stages.first()?.0.body()
 }
 
 fn open(scene: Scene, card: Option<&Gpu>) -> Result<(Stage, Arc<Still>), AppError> {

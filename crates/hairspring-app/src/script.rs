@@ -4,7 +4,7 @@
 //! # from the picture's top left corner (0, 0) to its bottom right (1, 1)
 //! wait 30                          steps of the simulation
 //! set groom[0].look.roughness 0.5  a value by its key; `unset KEY` takes it away
-//! hand grab                        look, grab, ball, head, pick, comb
+//! hand grab                        look, grab, ball, head, pick, comb, hand
 //! drag 0.4 0.6 0.7 0.5 30          presses, moves in so many frames of the window, releases
 //! shot window.png                  the window as it is
 //! pace                             prints how it draws, how many pictures come in a second, and a step's time
@@ -143,7 +143,8 @@ fn read(line: &str) -> Result<Line, String> {
         "save" => Line::Save(path()?),
         "hand" => {
             let known = Hand::ALL.iter().find(|h| h.1.eq_ignore_ascii_case(rest));
-            Line::Hand(known.ok_or_else(|| format!("'{rest}' is no tool: look, grab, ball, head, pick"))?.0)
+            let names = || Hand::ALL.map(|h| h.1.to_lowercase()).join(", ");
+            Line::Hand(known.ok_or_else(|| format!("'{rest}' is no tool: {}", names()))?.0)
         }
         "drag" => match numbers()?[..] {
             [a, b, c, d, frames] => Line::Drag(Vec2::new(a, b), Vec2::new(c, d), frames.max(1.0) as u32),

@@ -7,6 +7,7 @@ use crate::{
     key::Key,
     parameter::Parameter,
     player::{Order, Player, STEP},
+    pulled::Push,
     reading::{Read, Reading, both},
     snapshot::Snapshot,
 };
@@ -74,12 +75,12 @@ pub enum Action {
     Grab(Vec3, f32),
     /// Puts spread fingers in around a place, half of their row [m], and how far they reach [m].
     Comb(Vec3, Vec3, f32),
-    /// Moves what took hold, or the ball's.
+    /// Moves what took hold.
     Carry(Vec3),
     /// Lets go.
     LetGo,
-    /// Where the ball is, if there is one.
-    Ball(Option<(Vec3, f32)>),
+    /// Pushes a ball or a hand through hair; `None`: it is gone.
+    Push(Option<Push>),
     /// How far the head is carried from where its motion takes it.
     Head(Vec3),
 }
@@ -251,7 +252,7 @@ impl Session {
                 self.held = false;
                 self.player.tell(Order::LetGo);
             }
-            Action::Ball(ball) => self.player.tell(Order::Ball(ball)),
+            Action::Push(push) => self.player.tell(Order::Push(push)),
             Action::Head(by) => self.player.tell(Order::Body(at(by))),
         }
         Ok(())

@@ -1,6 +1,10 @@
 //! What the simulation's thread shows of a moment: enough to draw it and to say how it is.
 
-use crate::{ball::Ball, carried::Carried, followers::Followers};
+use crate::{
+    carried::Carried,
+    followers::Followers,
+    pushed::{Placed, Pushed},
+};
 use glam::{Mat3, Vec3};
 use hairspring::{
     body::{Mesh, Part},
@@ -46,11 +50,6 @@ impl StillGroom {
             Some(&[from, to]) => from as usize..to as usize,
             _ => 0..0,
         }
-    }
-
-    /// Index of each strand's first point.
-    pub fn roots(&self) -> impl Iterator<Item = usize> + '_ {
-        self.offsets.iter().take(self.strands()).map(|o| *o as usize)
     }
 }
 
@@ -104,6 +103,8 @@ pub struct Scenery {
     pub volumes: Vec<Option<VolumeReport>>,
     /// Where what the scene lists has been carried.
     pub carried: Carried,
+    /// What is pushed through hair, and where it is.
+    pub pushed: Option<(Pushed, Rigid)>,
 }
 
 impl Scenery {
@@ -124,6 +125,7 @@ impl Scenery {
             energy: Energy::default(),
             volumes: Vec::new(),
             carried: Carried::default(),
+            pushed: None,
         }
     }
 
@@ -170,13 +172,24 @@ impl Scenery {
 
     /// The frame that a strand's root moves with: that of the skin's triangle (x along an edge, y along the normal), or the head's where no skin carries it.
     pub fn root_frame(&self, groom: usize, strand: usize) -> Mat3 {
-        let skin = || {
-            let binding = self.still.grooms.get(groom)?.bindings.get(strand)?;
-            let corners = self.still.body.as_ref()?.0.get(binding.triangle as usize)?;
-            let [a, b, c] = corners.map(|v| self.positions.get(v as usize).copied());
-            Some(Mat3::from_quat(binding.frame([a?, b?, c?])))
-        };
-        skin().unwrap_or(self.anchor.matrix().0)
+        let skin = self.skin_at(groom, strand);
+        skin.map_or(self.anchor.matrix().0, |(binding, corners)| Mat3::from_quat(binding.frame(corners)))
+    }
+
+    /// Where a strand's root is [m]: of a hair that is left to who draws it, the root alone is placed where skin carries it.
+    pub fn root(&self, groom: usize, strand: usize) -> Option<Vec3> {
+        match self.skin_at(groom, strand) {
+            Some((binding, corners)) => Some(binding.position(corners)),
+            None => self.points_of(groom).get(self.still.grooms[groom].strand(strand).start).copied(),
+        }
+    }
+
+    /// How the skin carries a strand, and the corners of its triangle [m]; `None` where no skin does.
+    fn skin_at(&self, groom: usize, strand: usize) -> Option<(&RootBinding, [Vec3; 3])> {
+        let binding = self.still.grooms.get(groom)?.bindings.get(strand)?;
+        let corners = self.still.body.as_ref()?.0.get(binding.triangle as usize)?;
+        let [a, b, c] = corners.map(|v| self.positions.get(v as usize).copied());
+        Some((binding, [a?, b?, c?]))
     }
 
     /// The box (min, max) of all hair [m]; `None` where no point is finite.
@@ -255,8 +268,8 @@ impl Scenery {
             triangles,
             parts,
         });
-        let ball = sight.ball.map(Ball::new);
-        let bodies: Vec<MeshDraw> = body.into_iter().chain(ball.as_ref().map(Ball::mesh)).collect();
+        let pushed = self.pushed.map(|(what, pose)| what.placed(pose));
+        let bodies: Vec<MeshDraw> = body.into_iter().chain(pushed.as_ref().map(Placed::mesh)).collect();
         draw(&Frame {
             hair: if sight.hair { &hair } else { &[] },
             bodies: &bodies,
@@ -331,8 +344,6 @@ pub struct Sight {
     pub hair: bool,
     /// Whether the body is drawn.
     pub body: bool,
-    /// The ball that is pushed through hair: middle and radius [m].
-    pub ball: Option<(Vec3, f32)>,
     /// Work to spend.
     pub quality: Quality,
 }
@@ -357,4 +368,31 @@ pub struct Snapshot {
     pub reset_strands: usize,
     /// The strand that was picked, as it is now.
     pub picked: Option<(Picked, StrandFigures)>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hairspring::scene::{
+        Guides,
+        builtin::{self, BuiltinOptions},
+    };
+
+    #[test]
+    fn a_root_that_is_placed_alone_is_where_its_hair_begins() {
+        let options = BuiltinOptions { strands: 300, guides: Guides::Count(40), ..BuiltinOptions::default() };
+        let mut stage = Stage::new(builtin::scene(&options)).unwrap();
+        stage.leave_follow_hairs(true);
+        (0..5).for_each(|_| _ = stage.step(1.0 / 60.0));
+        let still = Arc::new(Still::new(&stage));
+        let mut scenery = Scenery::new(still.clone());
+        scenery.fill(&stage, &still, None);
+        for (groom, points) in scenery.points().enumerate() {
+            for strand in 0..still.grooms[groom].strands() {
+                let root = scenery.root(groom, strand).unwrap();
+                let first = points[still.grooms[groom].strand(strand).start];
+                assert!(root.distance(first) < 2e-6, "groom {groom}, strand {strand}: {root}, {first}");
+            }
+        }
+    }
 }

@@ -3,11 +3,14 @@
 use crate::{
     handle::Handle,
     orbit::{Lens, Orbit},
+    pulled::Push,
+    pushed::Pushed,
     session::{Action, Session},
     snapshot::{Scenery, Sight, Snapshot},
 };
 use eframe::egui;
 use glam::{Vec2, Vec3};
+use hairspring::scene::builtin;
 use hairspring_view::{Quality, frame_camera};
 use std::path::PathBuf;
 
@@ -37,16 +40,18 @@ pub enum Hand {
     Pick,
     /// Goes through the hair with spread fingers.
     Comb,
+    /// Strokes it with an open hand.
+    Palm,
 }
 
 impl Hand {
-    /// Whether it has a size.
+    /// Whether it has a radius.
     pub fn reaches(self) -> bool {
         matches!(self, Self::Ball | Self::Grab | Self::Comb)
     }
 
     /// All of them, with their names, keys and what they do.
-    pub const ALL: [(Self, &'static str, egui::Key, &'static str); 6] = [
+    pub const ALL: [(Self, &'static str, egui::Key, &'static str); 7] = [
         (
             Self::Look,
             "Look",
@@ -72,6 +77,12 @@ impl Hand {
             "Comb",
             egui::Key::Num6,
             "Drag spread fingers through the hair: it goes with them across itself, and slides through along itself.",
+        ),
+        (
+            Self::Palm,
+            "Hand",
+            egui::Key::Num7,
+            "Drag to stroke the hair with an open hand: its palm is turned to the head, its fingers across the stroke.",
         ),
     ];
 }
@@ -120,6 +131,8 @@ pub struct View {
     pub hand: Hand,
     /// Radius of the ball and of a grab [m].
     pub reach: f32,
+    /// Length of the hand [m].
+    pub length: f32,
     /// What is laid over.
     pub overlays: Overlays,
     /// How much wider than they are hairs are drawn; `None`: by their number.
@@ -164,6 +177,7 @@ impl Default for View {
             orbit: None,
             hand: Hand::default(),
             reach: 0.02,
+            length: builtin::Hand::LENGTH,
             overlays: Overlays::default(),
             width: None,
             exposure: 0.0,
@@ -195,7 +209,6 @@ impl View {
             range: self.range,
             hair: self.overlays.hair,
             body: self.overlays.body,
-            ball: self.ball().filter(|_| self.hand == Hand::Ball),
             quality: Quality::default(),
         })
     }
@@ -272,7 +285,7 @@ impl View {
             self.drag = Some(Drag { depth, from: place, at: place });
             match self.hand {
                 Hand::Grab => actions.push(Action::Grab(place, self.reach)),
-                Hand::Ball => actions.push(Action::Ball(Some((place, self.reach)))),
+                Hand::Ball | Hand::Palm => actions.push(Action::Push(Some(self.push(&lens, place)))),
                 Hand::Comb => {
                     actions.push(Action::Comb(place, lens.right() * (FINGERS * self.reach), self.reach))
                 }
@@ -284,7 +297,10 @@ impl View {
             drag.at = from + way * drag.depth;
             match self.hand {
                 Hand::Grab | Hand::Comb => actions.push(Action::Carry(drag.at)),
-                Hand::Ball => actions.push(Action::Ball(Some((drag.at, self.reach)))),
+                Hand::Ball | Hand::Palm => {
+                    let at = drag.at;
+                    actions.push(Action::Push(Some(self.push(&lens, at))));
+                }
                 Hand::Head => {
                     // Farther than an arm, the head would leave the picture.
                     self.head = ((drag.at - drag.from).clamp_length_max(0.5), Vec3::ZERO);
@@ -296,7 +312,7 @@ impl View {
         if response.drag_stopped() && self.drag.take().is_some() {
             match self.hand {
                 Hand::Grab | Hand::Comb => actions.push(Action::LetGo),
-                Hand::Ball => actions.push(Action::Ball(None)),
+                Hand::Ball | Hand::Palm => actions.push(Action::Push(None)),
                 _ => {}
             }
         }
@@ -398,10 +414,16 @@ impl View {
         self.range = [0.0, if far { high } else { self.range[1] + 0.1 * (high - self.range[1]) }];
     }
 
-    /// The ball, what is grabbed or combed, while it is dragged: its middle and radius [m].
-    pub fn ball(&self) -> Option<(Vec3, f32)> {
-        let drag = self.drag.as_ref().filter(|_| self.hand.reaches())?;
+    /// What a grab or a comb reaches, while it is dragged: its middle and radius [m].
+    pub fn reached(&self) -> Option<(Vec3, f32)> {
+        let drag = self.drag.as_ref()?;
         Some((drag.at, self.reach))
+    }
+
+    /// What is pushed where the pointer has it at `at`.
+    fn push(&self, lens: &Lens, at: Vec3) -> Push {
+        let what = if self.hand == Hand::Palm { Pushed::Hand(self.length) } else { Pushed::Ball(self.reach) };
+        Push { what, at, axes: [lens.right(), lens.up()] }
     }
 }
 

@@ -3,6 +3,8 @@
 
 mod support;
 
+use egui::{Event, Event::PointerMoved, Modifiers, PointerButton::Primary};
+use egui_kittest::kittest::Queryable;
 use hairspring_app::{Document, Session};
 use support::{SMALL, sound, until, window};
 
@@ -16,7 +18,7 @@ fn a_session_opens_plays_changes_records_saves_and_opens_again() {
          set solver.substeps 3\nset solver.projections 2\nset volume.method \"density\"\nset volume.friction 5.0\n\
          set builtin.look.roughness 0.5\nset gravity [0.0, -5.0, 0.0]\nwait 10\n\
          set solver.inertia 0.5\nundo\nredo\nundo\n\
-         hand ball\ndrag 0.2 0.5 0.7 0.5 12\nhand grab\ndrag 0.5 0.5 0.7 0.7 12\nhand head\ndrag 0.5 0.4 0.6 0.4 8\nhand comb\ndrag 0.5 0.5 0.6 0.7 12\nhand look\ndrag 0.5 0.5 0.6 0.5 4\n\
+         hand ball\ndrag 0.2 0.5 0.7 0.5 12\nhand grab\ndrag 0.5 0.5 0.7 0.7 12\nhand head\ndrag 0.5 0.4 0.6 0.4 8\nhand comb\ndrag 0.5 0.5 0.6 0.7 12\nhand hand\ndrag 0.3 0.3 0.4 0.7 12\nhand look\ndrag 0.5 0.5 0.6 0.5 4\n\
          show tension\nslice on\nvolume on\ncolliders on\nroots on\nframes on\nwait 3\nshow natural\n\
          still {still}\nclip {clip} 0.5\nturntable {turn} 0.3\npictures {pictures} 0.1\n\
          save {saved}\nnew curly\nwait 2\nopen {saved}\nwait 3\n",
@@ -81,6 +83,10 @@ fn a_still_of_two_that_are_compared_shows_both_and_what_they_differ_in() {
     assert!(first.starts_with("Root: [") && second.contains("Tip: [0.9, 0, 0]"), "{first}; {second}");
 }
 
+fn press(pos: egui::Pos2, pressed: bool) -> Event {
+    Event::PointerButton { pos, button: Primary, pressed, modifiers: Modifiers::NONE }
+}
+
 #[test]
 fn what_cannot_be_done_is_said_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -89,6 +95,15 @@ fn what_cannot_be_done_is_said_and_changes_nothing() {
     let (said, wrong) = window.state().message().expect("something is said");
     assert!(wrong && said.contains("substeps"), "{said}");
     assert_eq!(window.state().session().document().text(), SMALL);
+    // Who has read it clicks it away.
+    let said = said.to_owned();
+    let at = window.get_by_label(&said).rect().center();
+    for event in [PointerMoved(at), press(at, true), press(at, false)] {
+        window.event(event);
+        window.step();
+    }
+    window.step();
+    assert_eq!(window.state().message(), None);
     for (line, word) in [
         ("open nowhere.toml", "nowhere.toml"),
         ("open picture.gif", "picture.gif"),

@@ -75,13 +75,21 @@ fn curtain() -> Stage {
     Stage::new(Scene { grooms: vec![groom], gravity: Vec3::NEG_Y * 9.81, ..Scene::default() }).unwrap()
 }
 
+fn sphere(radius: f32) -> Obstacle {
+    Obstacle::Sphere { center: Vec3::ZERO, radius }
+}
+
+fn at(place: Vec3) -> Rigid {
+    Rigid { translation: place, ..Rigid::default() }
+}
+
 #[test]
 fn a_ball_takes_hair_along_and_none_is_in_it() {
     let mut stage = curtain();
     let radius = 0.05;
     let ball = |frame: u32| Vec3::new(0.0, -0.35, 0.15 - (frame as f32 * FRAME).min(0.3));
     for frame in 0..40 {
-        stage.set_ball(Some((ball(frame), radius)));
+        stage.push_with(&[sphere(radius)], at(ball(frame)));
         stage.step(FRAME);
         let obstacle = stage.obstacles().last().unwrap();
         assert!(matches!(obstacle.shape, Obstacle::Sphere { radius: r, .. } if r == radius));
@@ -96,10 +104,10 @@ fn a_ball_takes_hair_along_and_none_is_in_it() {
     }
     let pushed = stage.strands().next().unwrap().points.iter().map(|p| -p.z).fold(0.0, f32::max);
     assert!(pushed > 0.1, "{pushed} m: the ball takes hair along");
-    stage.set_ball(None);
+    stage.push_with(&[], Rigid::default());
     assert!(stage.obstacles().is_empty());
     for wrong in [f32::NAN, 0.0, -1.0] {
-        stage.set_ball(Some((Vec3::ZERO, wrong)));
+        stage.push_with(&[sphere(wrong)], Rigid::default());
         assert!(stage.obstacles().is_empty(), "a radius of {wrong}");
     }
     (0..300).for_each(|_| _ = stage.step(FRAME));
@@ -111,7 +119,7 @@ fn a_ball_takes_hair_along_and_none_is_in_it() {
 fn a_ball_stays_where_other_settings_come() {
     let mut stage = curtain();
     let center = Vec3::new(0.0, -0.35, 0.03);
-    stage.set_ball(Some((center, 0.05)));
+    stage.push_with(&[sphere(0.05)], at(center));
     let sphere = hairspring::scene::Shape::Sphere { center: Vec3::X, radius: 0.1 };
     let colliders = vec![hairspring::scene::Collider { joint: None, shape: sphere }];
     let grooms = vec![SceneGroom { materials: vec![Material::default()], ..SceneGroom::default() }];

@@ -7,7 +7,7 @@ use crate::{
     AppError,
     document::{Document, builtin_text},
     finger::Finger,
-    handle,
+    handle, memory,
     overlay::{self, Pen},
     painter::{Drawn, Painter},
     panel::{
@@ -80,6 +80,7 @@ pub struct App {
 impl App {
     /// The window on a scene: this document's, or the built-in head with as many hairs as the machine draws well.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> Result<Self, AppError> {
+        memory::keep_little();
         let Options { document, script, drawn } = options;
         let ctx = creation.egui_ctx.clone();
         let painters = vec![Painter::new(creation, drawn)];

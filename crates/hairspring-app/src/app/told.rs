@@ -30,15 +30,20 @@ impl App {
             return;
         }
         let color = if *wrong { ctx.global_style().visuals.error_fg_color } else { Color32::LIGHT_GREEN };
-        egui::Area::new(egui::Id::unique("message"))
+        let shown = egui::Area::new(egui::Id::unique("message"))
             .anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0))
-            .interactable(false)
+            .sense(egui::Sense::click())
             .show(ctx, |ui| {
+                ui.style_mut().interaction.selectable_labels = false;
                 egui::Frame::popup(ui.style()).show(ui, |ui| {
                     ui.set_max_width(640.0);
                     ui.colored_label(color, text);
                 });
             });
+        // Who has read it may have it away.
+        if shown.response.on_hover_text("Click: away").clicked() {
+            self.message = None;
+        }
         ctx.request_repaint_after(MESSAGE);
     }
 }

@@ -64,6 +64,11 @@ pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<
                 egui::Slider::new(&mut view.reach, 0.002..=0.2).logarithmic(true).suffix(" m").text("Radius"),
             );
         }
+        if view.hand == Hand::Palm {
+            ui.add(
+                egui::Slider::new(&mut view.length, 0.02..=2.0).logarithmic(true).suffix(" m").text("Length"),
+            );
+        }
         ui.separator();
         let shown = session.shown();
         let name = shown.map_or("Natural", Value::name);

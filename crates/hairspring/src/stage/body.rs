@@ -29,7 +29,7 @@ pub(super) struct StagedBody {
     anchor: usize,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// Those made of meshes, the scene's colliders, its charged bodies, the app's ball.
+    /// Those made of meshes, the scene's colliders, its charged bodies, what the app pushes.
     obstacles: Vec<MovingObstacle>,
     /// What moves each obstacle of the first two kinds.
     carriers: Vec<Carrier>,
@@ -39,8 +39,8 @@ pub(super) struct StagedBody {
     surfaces: Vec<Deforming>,
     reach: Reach,
     charged: StagedCharged,
-    /// Where the app's ball goes next [m]; `None`: there is none.
-    ball: Option<Vec3>,
+    /// How many shapes the app pushes, and where their space goes next.
+    pushed: (usize, Rigid),
 }
 
 /// What moves an obstacle.
@@ -133,7 +133,7 @@ impl StagedBody {
             surfaces: Vec::new(),
             reach: Reach::new(scene),
             charged: StagedCharged::default(),
-            ball: None,
+            pushed: (0, Rigid::default()),
         };
         if let Some(body) = &scene.body {
             body.skinned(&staged.world, &mut staged.positions, &mut staged.normals);
@@ -166,7 +166,7 @@ impl StagedBody {
         }
     }
 
-    /// After all others but the app's ball: they move by themselves.
+    /// After all others but what the app pushes: they move by themselves.
     fn add_charged(&mut self, scene: &Scene, joints: &Joints) {
         self.charged = StagedCharged::new(&scene.charged, joints.charged.clone());
         self.obstacles.extend(self.charged.obstacles(&scene.charged));
@@ -174,7 +174,7 @@ impl StagedBody {
 
     /// Takes up other colliders and charged bodies in the midst of the play, at `time` [s]: where they are now, without motion.
     pub(super) fn retune(&mut self, scene: &Scene, joints: &Joints, time: f32) {
-        let ball = self.ball.and_then(|_| self.obstacles.pop());
+        let pushed = self.obstacles.split_off(self.obstacles.len() - self.pushed.0);
         self.obstacles.truncate(self.meshes);
         self.carriers.truncate(self.meshes);
         self.add_colliders(&scene.colliders, joints);
@@ -184,7 +184,7 @@ impl StagedBody {
         for obstacle in &mut self.obstacles[self.meshes..] {
             obstacle.start = obstacle.end;
         }
-        self.obstacles.extend(ball);
+        self.obstacles.extend(pushed);
     }
 
     /// See [`super::Stage::move_body`].
@@ -192,18 +192,17 @@ impl StagedBody {
         self.moved = by;
     }
 
-    /// See [`super::Stage::set_ball`].
-    pub(super) fn set_ball(&mut self, ball: Option<(Vec3, f32)>) {
-        let before = self.ball.and_then(|_| self.obstacles.pop());
-        self.ball = ball.map(|(center, _)| center);
-        self.obstacles.extend(ball.map(|(center, radius)| {
-            let shape = Obstacle::Sphere { center: Vec3::ZERO, radius };
-            let here = Rigid { translation: center, ..Rigid::default() };
-            before.map_or(MovingObstacle::at_rest(shape.clone(), here), |before| MovingObstacle {
-                shape,
-                ..before
-            })
-        }));
+    /// See [`super::Stage::push_with`].
+    pub(super) fn push_with<'a>(&mut self, shapes: impl Iterator<Item = &'a Obstacle> + Clone, pose: Rigid) {
+        let (count, first) = (shapes.clone().count(), self.obstacles.len() - self.pushed.0);
+        if count == self.pushed.0 {
+            // The same, perhaps of another size: it goes on as it moved.
+            self.obstacles[first..].iter_mut().zip(shapes).for_each(|(o, shape)| o.shape.clone_from(shape));
+        } else {
+            self.obstacles.truncate(first);
+            self.obstacles.extend(shapes.map(|shape| MovingObstacle::at_rest(shape.clone(), pose)));
+        }
+        self.pushed = (count, pose);
     }
 
     /// A joint of the body, if there is any.
@@ -287,10 +286,10 @@ impl StagedBody {
         }
     }
 
-    /// Where obstacles and charged bodies are in the current pose, at `time` [s], and the ball where it goes.
+    /// Where obstacles and charged bodies are in the current pose, at `time` [s], and what the app pushes where that goes.
     fn repose(&mut self, scene: &Scene, time: f32) {
         let anchor = self.anchor();
-        let Self { world, rest, obstacles, carriers, charged, .. } = self;
+        let Self { world, rest, obstacles, carriers, charged, pushed: (count, pose), .. } = self;
         let carried = |joint: Option<usize>| carried(world, rest, joint);
         for (obstacle, carrier) in obstacles.iter_mut().zip(&*carriers) {
             obstacle.end = match *carrier {
@@ -300,9 +299,7 @@ impl StagedBody {
             };
         }
         charged.advance(&scene.charged, time, carried, &mut obstacles[carriers.len()..]);
-        if let (Some(center), Some(ball)) = (self.ball, self.obstacles.last_mut()) {
-            ball.end.translation = center;
-        }
+        obstacles.iter_mut().rev().take(*count).for_each(|pushed| pushed.end = *pose);
     }
 
     /// Where what a joint carries has gone since rest; nowhere without a joint.

@@ -14,7 +14,7 @@ pub use values::{Picked, StrandFigures, Value};
 
 use crate::{
     around::Tool,
-    collide::Rigid,
+    collide::{Obstacle, Rigid},
     follow::Followed,
     groom::{Groom, bind_roots},
     scene::{HairLook, Scene},
@@ -143,7 +143,7 @@ impl Stage {
         Ok(stage)
     }
 
-    /// Back to time 0; no tool is in use, and the body goes by its clip alone. The ball of [`Stage::set_ball`] stays where it is.
+    /// Back to time 0; no tool is in use, and the body goes by its clip alone. What [`Stage::push_with`] brought stays where it is.
     pub fn reset(&mut self) {
         self.time = 0.0;
         self.body.place(&self.scene, 0.0);
@@ -178,12 +178,16 @@ impl Stage {
         self.body.move_to(by);
     }
 
-    /// A ball in the world (middle, radius above 0 [m]) that an app moves: a collider of all hair, drawn by nobody here. It goes from where it was to its
-    /// middle in the next step and passes on that velocity; it has none where it appears. `None`, or what is not finite: there is no ball.
-    pub fn set_ball(&mut self, ball: Option<(Vec3, f32)>) {
-        self.body.set_ball(
-            ball.filter(|(center, radius)| center.is_finite() && *radius > 0.0 && radius.is_finite()),
-        );
+    /// A body in the world that an app moves, a ball or a hand: closed shapes in a space of its own, which is at `pose`. They are colliders of all hair, the last of
+    /// [`Stage::obstacles`], and drawn by nobody here. It goes from where it was to `pose` in the next step and passes on that velocity; it has none where it
+    /// appears, which it does with another number of shapes. What is not finite or has no inside is left out; without shapes, there is nothing.
+    pub fn push_with(&mut self, shapes: &[Obstacle], pose: Rigid) {
+        let place = pose.translation.is_finite() && pose.rotation.is_finite();
+        let solid = |shape: &&Obstacle| {
+            let (center, radius) = shape.bounds();
+            place && center.is_finite() && radius.is_finite() && shape.half_thickness() > 0.0
+        };
+        self.body.push_with(shapes.iter().filter(solid), pose);
     }
 
     /// The colliders as they are now, and how they moved in the last step.

@@ -6,6 +6,7 @@ mod bust;
 mod field;
 mod groom;
 mod grow;
+mod hand;
 mod motion;
 mod nets;
 mod random;
@@ -14,6 +15,7 @@ mod sdf;
 mod shape;
 mod style;
 
+pub use hand::{Hand, hand};
 pub use style::Style;
 
 use super::{Camera, Guides, HairLook, Scene, SceneGroom};

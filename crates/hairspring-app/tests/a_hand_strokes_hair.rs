@@ -1,0 +1,87 @@
+//! A person strokes a head of hair with the hand: hair gives way and none is in it, neither what is simulated nor what follows; it is met where it is seen, goes no faster than an arm, and is gone when it
+//! is let go of. Where it has been, hair comes back.
+
+mod support;
+
+use glam::Vec3;
+use hairspring::collide::Rigid;
+use hairspring_app::{Action, Document, Push, Pushed, Session};
+use support::SMALL;
+
+const LENGTH: f32 = hairspring::scene::builtin::Hand::LENGTH;
+
+/// A moment: where what is pushed is, all points [m], how deep the deepest of them is in it [m], and the number of colliders.
+struct Seen {
+    pushed: Option<(Pushed, Rigid)>,
+    points: Vec<Vec3>,
+    depth: f32,
+    colliders: usize,
+}
+
+/// A session that stands still but for its steps.
+fn still() -> Session {
+    let document = Document::new("scene.toml".as_ref(), SMALL.into()).unwrap();
+    let mut session = Session::new(document, 2, None, || ()).unwrap();
+    session.act(Action::Play(false)).unwrap();
+    // Opened anew by who does not play, it is at its first moment.
+    session.act(Action::New(SMALL.into())).unwrap();
+    session
+}
+
+/// Steps with that pushed.
+fn step(session: &mut Session, number: u64, push: Option<Push>) -> Seen {
+    session.act(Action::Push(push)).unwrap();
+    session.act(Action::Step).unwrap();
+    for _ in 0..6000 {
+        let Some(now) = session.latest().filter(|s| s.scene == session.begun() && s.step == number) else {
+            std::thread::sleep(std::time::Duration::from_millis(2));
+            continue;
+        };
+        let stage = &now.stages[0];
+        let own = stage.pushed.map_or(0, |(what, _)| what.shapes().len());
+        let hand: Vec<_> = stage.obstacles[stage.obstacles.len() - own..].iter().map(|o| o.now()).collect();
+        let points: Vec<Vec3> = stage.points().flatten().copied().collect();
+        let deep = |p: &Vec3| hand.iter().map(|s| -s.distance(*p)).fold(0.0, f32::max);
+        let depth = points.iter().map(deep).fold(0.0, f32::max);
+        return Seen { pushed: stage.pushed, points, depth, colliders: stage.obstacles.len() };
+    }
+    panic!("step {number} was not reached");
+}
+
+#[test]
+fn hair_gives_way_to_a_hand_and_none_is_in_it() {
+    let [mut stroked, mut alone] = [still(), still()];
+    // Along the hair beside the face, from the temple to the shoulder.
+    let way = |k: u64| Vec3::new(-0.075, 0.05 - 0.005 * k as f32, 0.075);
+    let push = |k: u64| Push { what: Pushed::Hand(LENGTH), at: way(k), axes: [Vec3::X, Vec3::Y] };
+    let bare = step(&mut alone, 1, None).colliders;
+    let mut last: Option<Rigid> = None;
+    let (mut deepest, mut moved) = (0f32, 0f32);
+    for k in 1..=40 {
+        let seen = step(&mut stroked, k, Some(push(k)));
+        let other = if k == 1 { None } else { Some(step(&mut alone, k, None)) };
+        let (what, pose) = seen.pushed.expect("there is a hand");
+        assert_eq!(what, Pushed::Hand(LENGTH));
+        assert_eq!(seen.colliders, bare + what.shapes().len());
+        if let Some(last) = last {
+            let way = pose.translation.distance(last.translation);
+            assert!(way < 4.0 / 60.0 + 1e-6, "step {k}: {way} m");
+        }
+        deepest = deepest.max(seen.depth);
+        if let Some(other) = other {
+            let off = seen.points.iter().zip(&other.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+            moved = moved.max(off);
+        }
+        last = Some(pose);
+    }
+    assert!(deepest < 1e-4, "{deepest} m in the hand");
+    assert!(moved > 0.1, "hair gave way by {moved} m");
+    let mut left = 0.0;
+    for k in 41..=160 {
+        let (seen, other) = (step(&mut stroked, k, None), step(&mut alone, k, None));
+        assert!(seen.pushed.is_none() && seen.colliders == bare, "it is gone");
+        left = seen.points.iter().zip(&other.points).map(|(a, b)| a.distance(*b)).sum::<f32>()
+            / seen.points.len() as f32;
+    }
+    assert!(left < 1e-3, "{left} m off in the mean, two seconds later");
+}
