@@ -10,19 +10,22 @@ use glam::{Quat, Vec3};
 
 /// Whether every number of these rows is finite.
 pub(super) fn all_finite(level: Level, points: &[StateRows]) -> bool {
-    let mut total = Row::default();
-    dispatch!(level, simd => {
-        // x·0 is 0 for finite x and NaN otherwise; sums have no branch, and so many do not wait for each other.
-        let zero = F::splat(simd, 0.0);
-        let mut sums = [zero; state::ROWS];
-        for rows in points {
-            for (sum, row) in sums.iter_mut().zip(rows) {
-                *sum = load(simd, row).mul_add(zero, *sum);
-            }
+    let mut sum = Row::default();
+    dispatch!(level, simd => store(sum_of_noughts(simd, points), &mut sum));
+    sum.0 == [0.0; LANES]
+}
+
+/// The sum of x·0, which is 0 for finite x and NaN otherwise: it has no branch. Each row of a point has its own, so that none waits for another.
+#[inline(always)]
+fn sum_of_noughts<S: Simd>(simd: S, points: &[StateRows]) -> F<S> {
+    let zero = F::splat(simd, 0.0);
+    let mut sums = [zero; state::ROWS];
+    for rows in points {
+        for (sum, row) in sums.iter_mut().zip(rows) {
+            *sum = load(simd, row).mul_add(zero, *sum);
         }
-        store(sums.into_iter().fold(zero, |all, sum| all + sum), &mut total);
-    });
-    total.0 == [0.0; LANES]
+    }
+    sums.into_iter().fold(zero, |all, sum| all + sum)
 }
 
 impl Simulation {
