@@ -22,8 +22,8 @@ mod shelter;
 mod source;
 mod turbulence;
 
+pub(crate) use shelter::Shade;
 pub use shelter::Shelter;
-pub(crate) use shelter::{Bodies, Shade};
 pub use source::{Flow, Source, WindSource};
 pub(crate) use turbulence::Noise;
 pub use turbulence::Turbulence;

@@ -13,7 +13,7 @@
 //! Hair of one groom does not shelter another's. Air that is kept out goes nowhere: there is no wind around an edge. Followers shelter as their guides.
 
 use super::Moment;
-use crate::{collide::Rigid, simulation::MovingObstacle, volume::Density};
+use crate::{simulation::Bodies, volume::Density};
 use glam::Vec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -77,7 +77,7 @@ impl Shade {
             for (k, left) in left.iter_mut().enumerate() {
                 let node = z * slab + k;
                 if hair.is_near(node) {
-                    let from = bodies.out(hair.place(node));
+                    let from = bodies.out(hair.place(node), 0.0);
                     *left = (-depth(shelter, air, bodies, hair, from)).exp();
                 }
             }
@@ -87,34 +87,6 @@ impl Shade {
     /// What is left of the wind at `place` in the world [1].
     pub fn left(&self, hair: &Density, place: Vec3) -> f32 {
         hair.between_nodes(place, &self.left).unwrap_or(1.0)
-    }
-}
-
-/// What may stand in the wind, where it is at the start of a frame.
-pub(crate) struct Bodies<'a> {
-    obstacles: &'a [MovingObstacle],
-    carried: Option<&'a Rigid>,
-}
-
-impl<'a> Bodies<'a> {
-    /// These obstacles, for hair that was `carried` along before the frame.
-    pub fn new((obstacles, carried): (&'a [MovingObstacle], Option<&'a Rigid>)) -> Self {
-        Self { obstacles, carried }
-    }
-
-    /// `place`, or where it leaves the body that it is in: a node under the skin stands for the points above it.
-    fn out(&self, place: Vec3) -> Vec3 {
-        self.obstacles.iter().fold(place, |place, o| {
-            let start = o.start(self.carried);
-            let (distance, normal) = o.shape.distance_and_normal(start.inverse_point(place));
-            place - start.rotation * normal * distance.min(0.0)
-        })
-    }
-
-    /// Distance from `place` to the nearest body, below 0 inside [m].
-    fn clearance(&self, place: Vec3) -> f32 {
-        let distance = |o: &MovingObstacle| o.shape.distance(o.start(self.carried).inverse_point(place));
-        self.obstacles.iter().map(distance).fold(f32::INFINITY, f32::min)
     }
 }
 

@@ -4,10 +4,11 @@
 //! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf,   |T − x| ω² no more than FIRMEST at the start of a frame
 //! ```
 //!
-//! T goes straight from where it is at the start of the frame to where it is at its end.
+//! T goes straight from where it is at the start of the frame to where it is at its end. Where what holds it is inside of a body, T is at the nearest place
+//! outside: hair is pulled around a head and not into it.
 
 use super::Surrounded;
-use crate::collide::Rigid;
+use crate::{collide::Rigid, simulation::Bodies};
 use glam::Vec3;
 
 /// Most that a bond pulls for what a point is off at the start of a frame [m/s²]: a thousand times its weight, ten times what whipping hair needs. What
@@ -60,7 +61,14 @@ impl Bonds {
     }
 
     /// Pulls the bound points of a strand while what holds them goes between two `poses` and its ramp between two `shares`.
-    pub fn act(&self, spring: Spring, poses: [Rigid; 2], shares: [f32; 2], strand: &mut Surrounded) {
+    pub fn act(
+        &self,
+        spring: Spring,
+        poses: [Rigid; 2],
+        shares: [f32; 2],
+        bodies: &Bodies,
+        strand: &mut Surrounded,
+    ) {
         let number = strand.strand as u32;
         let first = self.0.partition_point(|b| b.strand < number);
         if self.0.get(first).is_none_or(|b| b.strand != number) {
@@ -78,7 +86,10 @@ impl Bonds {
                 reached += 1;
                 x += strand.step(reached as usize).0;
             }
-            let [from, to] = [0, 1].map(|k| poses[k].point(bond.at(shares[k])) - roots[k].translation);
+            let clearance = strand.clearance(bond.point as usize);
+            let [from, to] = [0, 1].map(|k| poses[k].point(bond.at(shares[k])));
+            let from = bodies.out(from, clearance) - roots[0].translation;
+            let to = bodies.out_at_end(to, clearance) - roots[1].translation;
             let way = (to - from).clamp_length_max(FASTEST * dt);
             let from = x + (from - x).clamp_length_max(farthest);
             strand.pull(bond.point as usize, [from, from + way], stiffness);

@@ -62,6 +62,11 @@ impl<'a> Surrounded<'a> {
         self.rest[i * self.stride][rest::MASS].0[self.lane]
     }
 
+    /// How deep point `i` may be inside a collider, 0 or less [m].
+    pub fn clearance(&self, i: usize) -> f32 {
+        self.rest[i * self.stride][rest::CLEARANCE].0[self.lane]
+    }
+
     /// From point `i − 1` to point `i` at the start of the frame [m], and the velocity of point `i` [m/s]; `i` is 1 or more.
     pub fn step(&self, i: usize) -> (Vec3, Vec3) {
         let vector = |i: usize, at: usize| Vec3::from([0, 1, 2].map(|k| self.state[i][at + k].0[self.lane]));

@@ -95,12 +95,18 @@ impl Tie {
     }
 
     /// Lets the next segment of `points`, which are those of the strand in the space of the ring [m], take the place of the bound one where that is held
-    /// back; false where the strand has none left and is out of the ring.
-    pub(super) fn slip(&self, time: f32, points: &[Vec3], bonds: &mut [Bond]) -> bool {
+    /// back; false where the strand has none left and is out of the ring. `out` says where a place is that hair is pulled to, outside of bodies.
+    pub(super) fn slip(
+        &self,
+        time: f32,
+        points: &[Vec3],
+        out: impl Fn(Vec3) -> Vec3,
+        bonds: &mut [Bond],
+    ) -> bool {
         let share = self.gathered(time);
         let first = bonds[0].point as usize;
         let length = points[first].distance(points[first + 1]);
-        if points[first].distance(bonds[0].at(share)) <= SLIPS * length {
+        if points[first].distance(out(bonds[0].at(share))) <= SLIPS * length {
             return true;
         }
         if first + 2 >= points.len() {

@@ -7,7 +7,7 @@ use super::{
     grab::Grab,
     tie::Tie,
 };
-use crate::collide::Rigid;
+use crate::{collide::Rigid, simulation::Bodies};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -56,14 +56,14 @@ impl Tool {
 }
 
 impl Used {
-    /// Acts on a strand of so many `points`.
-    pub fn act(&self, strand: &mut Surrounded, points: usize) {
+    /// Acts on a strand of so many `points` among `bodies`.
+    pub fn act(&self, bodies: &Bodies, strand: &mut Surrounded, points: usize) {
         match &self.tool {
-            Tool::Grab(grab) => self.bonds.act(grab.spring(), self.poses, [1.0; 2], strand),
+            Tool::Grab(grab) => self.bonds.act(grab.spring(), self.poses, [1.0; 2], bodies, strand),
             Tool::Comb(comb) => comb.act(self.poses, strand, points),
             Tool::Tie(tie) => {
                 let shares = [0.0, strand.frame.dt].map(|after| tie.gathered(self.time + after));
-                self.bonds.act(tie.spring(), self.poses, shares, strand);
+                self.bonds.act(tie.spring(), self.poses, shares, bodies, strand);
             }
         }
     }
@@ -76,8 +76,8 @@ impl Used {
         }
     }
 
-    /// Where the tool is a tie that still gathers, lets hair slip through it; `read` writes into `points` those of a strand [m] in the world, by its lane.
-    pub fn slip(&mut self, points: &mut Vec<Vec3>, read: impl Fn(u32, &mut Vec<Vec3>)) {
+    /// Where the tool is a tie that still gathers among `bodies`, lets hair slip through it; `read` writes into `points` those of a strand [m] in the world, by its lane.
+    pub fn slip(&mut self, bodies: &Bodies, points: &mut Vec<Vec3>, read: impl Fn(u32, &mut Vec<Vec3>)) {
         let Tool::Tie(tie) = &self.tool else { return };
         if !tie.settles(self.time) {
             return;
@@ -86,7 +86,8 @@ impl Used {
         for bonds in self.bonds.0.chunks_exact_mut(2) {
             read(bonds[0].place, points);
             points.iter_mut().for_each(|p| *p = pose.inverse_point(*p));
-            if !tie.slip(self.time, points, bonds) {
+            let out = |place: Vec3| pose.inverse_point(bodies.out(pose.point(place), 0.0));
+            if !tie.slip(self.time, points, out, bonds) {
                 bonds.iter_mut().for_each(|bond| bond.point = u32::MAX);
             }
         }

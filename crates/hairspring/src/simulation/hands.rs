@@ -1,6 +1,6 @@
 //! Hands on the hair: tools that an app takes, moves and lets go of between steps.
 
-use super::Simulation;
+use super::{Bodies, Simulation};
 use crate::{
     around::{Tool, Used, bond::Bonds},
     collide::Rigid,
@@ -74,11 +74,11 @@ impl Simulation {
     }
 
     /// Tools that went along with carried hair start with it; hair slips through ties that gather.
-    pub(super) fn begin_tools(&mut self) {
+    pub(super) fn begin_tools(&mut self, bodies: &Bodies) {
         let mut tools = std::mem::take(&mut self.tools);
         for used in &mut tools.used {
             used.go_along();
-            used.slip(&mut tools.points, |place, points| self.strand_points(place as usize, points));
+            used.slip(bodies, &mut tools.points, |place, points| self.strand_points(place as usize, points));
         }
         self.tools = tools;
     }

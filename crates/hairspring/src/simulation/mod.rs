@@ -1,6 +1,7 @@
 //! Strands in motion: the state of all simulated strands, and one step of it.
 
 mod authored;
+mod bodies;
 mod build;
 mod carry;
 mod crowd;
@@ -21,6 +22,7 @@ pub use crate::air::Air;
 pub use crate::neighbours::NeighboursReport;
 pub use crate::strand::rest_shape::Start;
 pub use crate::volume::VolumeReport;
+pub(crate) use bodies::Bodies;
 pub use energy::Energy;
 pub use hands::ToolId;
 pub use hold::Hold;

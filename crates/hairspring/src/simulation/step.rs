@@ -1,6 +1,6 @@
 //! One step: a frame of root motion, cut into substeps, every tile through all of them.
 
-use super::{Simulation, TilePlace, reset};
+use super::{Bodies, Simulation, TilePlace, reset};
 use crate::{
     air::Air,
     collide::{Obstacle, ObstaclePose, Rigid},
@@ -120,7 +120,7 @@ impl Simulation {
             .clamp(1, MAX_SUBSTEPS);
         let mut interval = std::mem::take(&mut self.interval);
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
-        self.begin_tools();
+        self.begin_tools(&Bodies::new((drive.obstacles, carried.as_ref())));
         self.exchange(drive, carried.as_ref());
         self.settings.anchor = drive.anchor;
         let reset_strands = match self.neighbours.take() {

@@ -1,8 +1,7 @@
 //! What acts on points from outside in a frame: the hair volume first, then each effect.
 
-use super::{Drive, Simulation};
+use super::{Bodies, Drive, Simulation};
 use crate::{
-    air::Bodies,
     around::{Blow, Charges, Frame, Kinds, Strands, Surrounded},
     collide::Rigid,
 };
@@ -21,6 +20,7 @@ impl Simulation {
         self.around.prepare(self.state.len(), kinds, pressed);
         let anchor = self.settings.anchor;
         let obstacles = (drive.obstacles, carried);
+        let bodies = Bodies::new(obstacles);
         if let Some(volume) = self.volume.as_mut().filter(|_| pressed || sheltered) {
             let hair = (&self.strand[..], &self.state[..]);
             volume.measure(hair, &anchor);
@@ -41,7 +41,7 @@ impl Simulation {
         let shade = self.volume.as_ref().filter(|_| sheltered).map(|volume| {
             let hair = volume.density(anchor);
             self.shade.reserve(volume.most_nodes());
-            self.shade.cast(&self.shelter, &air, &Bodies::new(obstacles), &hair);
+            self.shade.cast(&self.shelter, &air, &bodies, &hair);
             (&self.shade, hair)
         });
         let blow = Blow { air, shade };
@@ -58,7 +58,7 @@ impl Simulation {
                 charges.add(*charge, strand);
             }
             for used in tools {
-                used.act(strand, groom.range(s).len());
+                used.act(&bodies, strand, groom.range(s).len());
             }
             if blown {
                 blow.add(strand);
