@@ -26,12 +26,13 @@ const SOURCE: &str = include_str!("../../hairspring/src/air/source.rs");
 const CHARGE: &str = include_str!("../../hairspring/src/around/charge.rs");
 
 /// What a parameter's name begins with, and the struct (or variant) whose fields follow.
-const STRUCTS: [(&str, &str, &str); 41] = [
+const STRUCTS: [(&str, &str, &str); 43] = [
     ("", FILE, "SceneFile"),
     ("builtin.", FILE, "BuiltinFile"),
     ("body.", FILE, "BodyFile"),
     ("clip.", FILE, "ClipFile"),
     ("clip.keys.", FILE, "KeyFile"),
+    ("prop.", FILE, "PropFile"),
     ("groom.", FILE, "GroomFile"),
     ("groom.grow.", FILE, "GrowFile"),
     ("groom.transform.", FILE, "Placement"),
@@ -69,6 +70,7 @@ const STRUCTS: [(&str, &str, &str); 41] = [
     ("sheet.", "", ""),
     ("charged.path.", "", ""),
     ("clip.keys.", "", ""),
+    ("prop.mesh.", "", ""),
 ];
 
 /// Fields that the body's other meshes have and it has not, by the name that the book gives them.

@@ -15,6 +15,7 @@ pub mod scene;
 pub mod simulation;
 pub mod stage;
 pub(crate) mod strand;
+pub(crate) mod timed;
 pub mod validate;
 pub(crate) mod volume;
 

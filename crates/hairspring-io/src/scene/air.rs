@@ -79,7 +79,7 @@ fn goes_on(charged: &Charged) -> bool {
 }
 
 /// Lines of the tables with this header; the first line for those that are written otherwise.
-fn lines<'a>(text: &'a str, header: &'a str) -> impl Iterator<Item = usize> + 'a {
+pub(super) fn lines<'a>(text: &'a str, header: &'a str) -> impl Iterator<Item = usize> + 'a {
     text.match_indices(header).map(|(at, _)| line_at(text, at)).chain(std::iter::repeat(1))
 }
 

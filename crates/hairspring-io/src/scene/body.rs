@@ -121,7 +121,7 @@ impl Reader<'_> {
 
 /// Adds a piece to a body: its joints are the body's of the same names, and new ones where there is none; a piece without
 /// a skin, or with a named `carrier`, follows that joint as a whole.
-fn join(body: &mut Body, piece: Body, carrier: Option<u16>) {
+pub(super) fn join(body: &mut Body, piece: Body, carrier: Option<u16>) {
     let vertices = piece.mesh.positions.len();
     let follow = |joint: u16, vertices: usize| {
         (vec![[joint, 0, 0, 0]; vertices], vec![[1.0, 0.0, 0.0, 0.0]; vertices])

@@ -3,6 +3,7 @@
 use super::{
     air,
     file::{BodyFile, KeyFile, SceneFile},
+    props,
     sentence::{line_at, line_of_key},
 };
 use crate::Problem;
@@ -86,12 +87,11 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     }
     if let Some(clip) = &scene.clip {
         let keys = &clip.keys;
-        let ordered = keys.windows(2).all(|w| w[0].time < w[1].time);
-        let inside = |key: &KeyFile| (0.0..=3600.0).contains(&key.time);
+        let [ordered, of_numbers] = way(keys);
         let checks = [
             (keys.is_empty() || clip.file.is_none(), "keys", "left out where there is a `file`"),
-            (ordered && keys.iter().all(inside), "keys", "in order of `time`, from 0 to 3600 [s]"),
-            (keys.iter().all(|k| finite(k.position) && finite(k.rotation)), "keys", "of finite numbers"),
+            ordered,
+            of_numbers,
             (above_0(clip.scale), "scale", "above 0 [m a unit]"),
             (clip.pivot.is_none_or(finite), "pivot", "three finite numbers [m]"),
             (clip.facing.is_none_or(f32::is_finite), "facing", "a finite number [degrees]"),
@@ -115,6 +115,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         ];
         first_failure(text, section("[clip]"), &checks)?;
     }
+    props::ranges(text, scene)?;
     for groom in &scene.groom {
         let t = &groom.transform;
         let checks = [
@@ -204,6 +205,16 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     Ok(())
 }
 
+/// The checks of a way by keys.
+pub(super) fn way(keys: &[KeyFile]) -> [Check; 2] {
+    let ordered = keys.windows(2).all(|w| w[0].time < w[1].time);
+    let inside = |key: &KeyFile| (0.0..=3600.0).contains(&key.time);
+    [
+        (ordered && keys.iter().all(inside), "keys", "in order of `time`, from 0 to 3600 [s]"),
+        (keys.iter().all(|k| finite(k.position) && finite(k.rotation)), "keys", "of finite numbers"),
+    ]
+}
+
 /// What is expected of a shape.
 const SOUND: &str = "finite, with a radius or edges above 0 [m], a normal that is not 0, or `points` that span a volume or a `file` of them";
 
@@ -223,7 +234,7 @@ fn sound(shape: &Shape) -> bool {
     }
 }
 
-fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
+pub(super) fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
     let checks = [
         (above_0(body.scale), "scale", "above 0 [m a unit]"),
         (body.color.is_none_or(color), "color", "three numbers from 0 to 1"),

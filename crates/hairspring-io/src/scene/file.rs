@@ -42,6 +42,9 @@ pub(super) struct SceneFile {
     pub collider: Vec<Collider>,
     /// Motion of the body.
     pub clip: Option<ClipFile>,
+    /// Things beside the body that move by themselves.
+    #[serde(default)]
+    pub prop: Vec<PropFile>,
     /// The hairstyles; one is needed, or `builtin`.
     #[serde(default)]
     pub groom: Vec<GroomFile>,
@@ -166,13 +169,29 @@ pub(super) struct ClipFile {
     pub facing: Option<f32>,
 }
 
-/// A key of `[clip]`.
+/// One `[[prop]]`: a thing beside the body that moves by itself.
+#[derive(PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PropFile {
+    /// The joint that it adds to the body's: what colliders, hands and the like name to go with it; needed.
+    pub name: String,
+    /// How it looks, where it is before it moves: any field of `body`. Default: nothing is seen of it.
+    pub mesh: Option<BodyFile>,
+    /// Its way, as that of `clip`. Default: it rests.
+    #[serde(default)]
+    pub keys: Vec<KeyFile>,
+    /// The point of it that it turns about [m]. Default 0.
+    #[serde(default)]
+    pub pivot: Vec3,
+}
+
+/// A key of `[clip]` and of `[[prop]]`.
 #[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct KeyFile {
     /// When [s]; needed, and after that of the key before.
     pub time: f32,
-    /// How far from its rest the body is [m]. Default 0.
+    /// How far from its rest it is [m]. Default 0.
     #[serde(default)]
     pub position: Vec3,
     /// How it is turned about `pivot`: about X, then Y, then Z [degrees]. Default 0.

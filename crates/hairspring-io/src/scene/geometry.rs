@@ -2,8 +2,9 @@
 
 use super::{
     Reader, body, builtin,
-    file::{BodyFile, ClipFile, GroomGeometry, SceneFile},
+    file::{BodyFile, ClipFile, GroomGeometry, PropFile, SceneFile},
     material,
+    props::{beside_props, with_props},
     sentence::unknown,
 };
 use crate::{Character, Problem, Result};
@@ -21,6 +22,7 @@ pub(super) struct Asked<'a> {
     collision: &'a Option<BodyFile>,
     sheets: &'a [BodyFile],
     clip: &'a Option<ClipFile>,
+    props: &'a [PropFile],
     collide_body: bool,
     grooms: Vec<GroomGeometry<'a>>,
     /// Radii that the materials of each groom set [m].
@@ -45,6 +47,7 @@ pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<
         collision: &file.collision,
         sheets: &file.sheet,
         clip: &file.clip,
+        props: &file.prop,
         collide_body: file.solver.collide_body,
         grooms: file.groom.iter().map(|groom| groom.geometry()).collect(),
         radii,
@@ -78,8 +81,11 @@ impl Reader<'_> {
         for (groom, made) in scene.grooms.iter_mut().zip(made.grooms) {
             groom.groom = made.groom;
         }
+        let props = self.props(&file.prop, character.as_ref().map(|c| &c.body))?;
+        // Hair grows on the body's own joints, which a motion of one joint does away with, and on props.
+        let whole = character.as_ref().map(|c| with_props(c.body.clone(), &props));
         for (groom, named) in scene.grooms[grown..].iter_mut().zip(&file.groom) {
-            groom.groom = self.groom(named, &groom.materials, character.as_ref().map(|c| &c.body))?;
+            groom.groom = self.groom(named, &groom.materials, whole.as_ref())?;
         }
         let (body, clip) = self.motion(file.clip.as_ref(), character, file.builtin.is_some())?;
         // The built-in collision mesh has the joints of the built-in body, as long as that has them.
@@ -90,6 +96,8 @@ impl Reader<'_> {
             (Some(collision), Some(body), Some(named)) => Some(self.carried(collision, body, named)?),
             (collision, ..) => collision,
         };
+        let clip = beside_props(clip, body.as_ref(), &props);
+        let body = body.map(|body| with_props(body, &props));
         for sheet in &file.sheet {
             let open = self.body(sheet, "sheet")?.body;
             let body = body.as_ref().map_or(Ok(open.clone()), |body| self.carried(open, body, sheet))?;

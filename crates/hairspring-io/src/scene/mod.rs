@@ -10,6 +10,7 @@ mod groom;
 mod grow;
 mod material;
 mod motion;
+mod props;
 mod sentence;
 mod settings;
 

@@ -17,7 +17,7 @@
 //! one groom does not repel another's.
 
 use super::{HairField, Surrounded};
-use crate::collide::Rigid;
+use crate::{collide::Rigid, timed::between};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -65,15 +65,10 @@ pub struct Waypoint {
 impl Charged {
     /// Its middle at `time` [s], where what carries it is at rest [m].
     pub fn center(&self, time: f32) -> Vec3 {
-        let mut from = Waypoint { time: 0.0, center: self.center };
-        for to in &self.path {
-            if time < to.time {
-                let way = ((time - from.time) / (to.time - from.time)).clamp(0.0, 1.0);
-                return from.center.lerp(to.center, way);
-            }
-            from = *to;
-        }
-        from.center
+        let start = Waypoint { time: 0.0, center: self.center };
+        let key = |k: usize| k.checked_sub(1).map_or(start, |k| self.path[k]);
+        let way = between(1 + self.path.len(), |k| key(k).time, time);
+        way.map_or(self.center, |(a, b, share)| key(a).center.lerp(key(b).center, share))
     }
 }
 

@@ -1,6 +1,7 @@
-//! Motion by hand: a body that goes from key to key as one rigid piece.
+//! Motion by hand: a body, or a thing beside it, that goes from key to key as one rigid piece.
 
 use super::{Clip, Trs};
+use crate::timed::between;
 use glam::{Quat, Vec3};
 
 /// Frames a second of the clip [Hz].
@@ -17,8 +18,8 @@ pub struct Key {
     pub rotation: Quat,
 }
 
-/// The motion of a body's only joint through keys in order of time, of which there is one at least; it turns about `pivot` [m]. Before the first key it
-/// is as at the first.
+/// The motion of a body's only joint through keys in order of time; it turns about `pivot` [m]. Before the first key it is as at the first, and without keys
+/// it rests.
 pub fn keyed(keys: &[Key], pivot: Vec3) -> Clip {
     let end = keys.last().map_or(0.0, |key| key.time);
     let frames = (end * RATE).ceil() as usize + 1;
@@ -26,11 +27,24 @@ pub fn keyed(keys: &[Key], pivot: Vec3) -> Clip {
     Clip { name: "keys".into(), rate: RATE, joint_count: 1, samples }
 }
 
+/// The motion of all joints of a body where things beside it go by themselves: `own` is that of its first joints (`None`: they are at `rest`), and each of `others`
+/// that of one more joint. It lasts as long as the longest of them, the others being at rest at their end.
+pub fn beside(own: Option<Clip>, rest: &[Trs], others: &[Clip]) -> Clip {
+    let still = || Clip { name: "keys".into(), rate: RATE, joint_count: rest.len(), samples: rest.to_vec() };
+    let own = own.unwrap_or_else(still);
+    let end = others.iter().map(Clip::duration).fold(own.duration(), f32::max);
+    // Not one more for what is rounded.
+    let frames = (end * own.rate - 1e-3).ceil() as usize + 1;
+    let all = || std::iter::once(&own).chain(others);
+    let frame = |f: usize| all().flat_map(move |clip| clip.sample(f as f32 / own.rate));
+    let (joint_count, samples) =
+        (all().map(|clip| clip.joint_count).sum(), (0..frames).flat_map(frame).collect());
+    Clip { name: own.name.clone(), rate: own.rate, joint_count, samples }
+}
+
 fn at(keys: &[Key], pivot: Vec3, time: f32) -> Trs {
-    let next = keys.partition_point(|key| key.time <= time);
-    let [from, to] = [next.saturating_sub(1), next.min(keys.len() - 1)].map(|k| &keys[k]);
-    let span = to.time - from.time;
-    let t = if span > 0.0 { ease(((time - from.time) / span).clamp(0.0, 1.0)) } else { 0.0 };
+    let Some((from, to, share)) = between(keys.len(), |k| keys[k].time, time) else { return Trs::default() };
+    let (from, to, t) = (&keys[from], &keys[to], ease(share));
     let rotation = from.rotation.slerp(to.rotation, t);
     let moved = from.position.lerp(to.position, t);
     Trs { translation: moved + pivot - rotation * pivot, rotation, scale: Vec3::ONE }
@@ -64,5 +78,33 @@ mod tests {
             assert!(pose.rotation.angle_between(Quat::from_rotation_z(turn)) < 1e-3, "{time} s");
         }
         assert_eq!(keyed(&[key(0.0, 1.0, 0.0)], pivot).frame_count(), 1);
+        assert_eq!(keyed(&[], pivot).sample(1.0), [Trs::default()]);
+    }
+
+    #[test]
+    fn what_goes_by_itself_goes_beside_the_body() {
+        let way = |end: f32| {
+            let key = |time: f32, x: f32| Key { time, position: Vec3::X * x, rotation: Quat::IDENTITY };
+            keyed(&[key(0.0, 0.0), key(end, end)], Vec3::ZERO)
+        };
+        let rest = [Trs { translation: Vec3::Y, ..Trs::default() }];
+        let own = Clip { name: "own".into(), rate: 30.0, joint_count: 1, samples: [rest[0]; 16].into() };
+        for own in [None, Some(own)] {
+            let clip = beside(own, &rest, &[way(1.0), way(2.0)]);
+            assert_eq!(
+                (clip.joint_count, clip.frame_count()),
+                (3, 1 + (2.0 * clip.rate) as usize),
+                "{}",
+                clip.name
+            );
+            for (time, x) in [(0.0, [0.0, 0.0]), (0.5, [0.5, 0.207]), (1.5, [1.0, 1.793]), (9.0, [1.0, 2.0])]
+            {
+                let pose = clip.sample(time);
+                assert_eq!(pose[0], rest[0]);
+                for (k, x) in x.into_iter().enumerate() {
+                    assert!((pose[k + 1].translation.x - x).abs() < 2e-3, "{k} at {time} s: {pose:?}");
+                }
+            }
+        }
     }
 }

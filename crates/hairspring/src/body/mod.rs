@@ -9,7 +9,7 @@ mod retarget;
 
 pub use clip::{Clip, Trs};
 pub(crate) use keyed::ease;
-pub use keyed::{Key, keyed};
+pub use keyed::{Key, beside, keyed};
 pub use mesh::{Mesh, Part};
 pub use nearest::{NearestPlace, NearestTree};
 pub(crate) use nearest::{at as place_on, nearest_on_triangle};

@@ -1,6 +1,6 @@
 //! Hands of a scene: what is held to the hair, from when to when, and how it moves.
 
-use crate::around::Tool;
+use crate::{around::Tool, timed::between};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -33,13 +33,9 @@ impl Hand {
 
     /// How far it has moved at `time` [s].
     pub fn moved(&self, time: f32) -> Vec3 {
-        let next = self.path.partition_point(|key| key[0] <= time);
-        let place = |key: &[f32; 4]| Vec3::new(key[1], key[2], key[3]);
-        match (next.checked_sub(1).map(|k| &self.path[k]), self.path.get(next)) {
-            (Some(a), Some(b)) => place(a).lerp(place(b), (time - a[0]) / (b[0] - a[0])),
-            (Some(only), None) | (None, Some(only)) => place(only),
-            (None, None) => Vec3::ZERO,
-        }
+        let place = |k: usize| Vec3::from_slice(&self.path[k][1..]);
+        let way = between(self.path.len(), |k| self.path[k][0], time);
+        way.map_or(Vec3::ZERO, |(a, b, share)| place(a).lerp(place(b), share))
     }
 }
 

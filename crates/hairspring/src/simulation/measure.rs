@@ -1,10 +1,14 @@
 //! What a simulation is judged by: stretch, depth inside colliders, non-finite values.
 
 use super::{MovingObstacle, Simulation};
-use crate::strand::{
-    lanes::LANES,
-    tile::{rest, state},
+use crate::{
+    collide::Rigid,
+    strand::{
+        lanes::LANES,
+        tile::{rest, state},
+    },
 };
+use glam::Vec3;
 use rayon::prelude::*;
 
 /// Figures over all simulated points at the end of a step.
@@ -56,17 +60,13 @@ impl Simulation {
         Measure { stretch_mean: sum / segments.max(1) as f64, ..figures }
     }
 
-    fn measure_strand(
-        &self,
-        place: usize,
-        poses: &[(&MovingObstacle, crate::collide::Rigid)],
-    ) -> (f64, usize, Measure) {
+    fn measure_strand(&self, place: usize, poses: &[(&MovingObstacle, Rigid)]) -> (f64, usize, Measure) {
         let mut out = Measure::default();
         let (mut sum, mut segments) = (0.0, 0);
         let root = self.root_position(place);
         let n = self.simulated_points(place);
         let stride = self.tiles[place / LANES].model.stride();
-        let mut before = glam::Vec3::ZERO;
+        let mut before = Vec3::ZERO;
         for (i, x) in self.particles(place).enumerate() {
             let v = self.vector(place, i, state::V);
             out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
@@ -82,16 +82,14 @@ impl Simulation {
             }
             if i % stride == 0 && i >= 2 * stride {
                 let clearance = self.rest(place, i, rest::CLEARANCE);
-                let depth = poses
-                    .iter()
+                let depth = near(poses, root + x, clearance)
                     .map(|(o, pose)| clearance - o.shape.distance(pose.inverse_point(root + x)))
                     .fold(0.0, f32::max) as f64;
                 out.max_depth = out.max_depth.max(depth);
                 out.inside_points += (depth > 1e-6) as usize;
                 let sunk = self.sunk(place, i);
                 let [a, b] = [root + before, root + x];
-                let depth = poses
-                    .iter()
+                let depth = near(poses, a.midpoint(b), sunk + 0.5 * a.distance(b))
                     .map(|(o, pose)| {
                         sunk - o.shape.least_distance(pose.inverse_point(a), pose.inverse_point(b))
                     })
@@ -106,4 +104,17 @@ impl Simulation {
         }
         (sum, segments, out)
     }
+}
+
+/// The obstacles that may be nearer to `p` than `reach` [m], by the balls around them.
+fn near<'a>(
+    poses: &'a [(&MovingObstacle, Rigid)],
+    p: Vec3,
+    reach: f32,
+) -> impl Iterator<Item = &'a (&'a MovingObstacle, Rigid)> {
+    poses.iter().filter(move |(o, pose)| {
+        let (center, radius) = o.shape.bounds();
+        // The ball is known to rounding.
+        pose.point(center).distance(p) <= 1.0001 * (radius + reach.max(0.0))
+    })
 }

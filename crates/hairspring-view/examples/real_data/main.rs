@@ -8,8 +8,14 @@
 //!
 //! With `--contact` it is the table of `docs/contact.md` instead: what is inside of colliders.
 //!
-//! A scene plays to the end of its motion, but at most 10 s (2 s without one). Pictures are taken at the start, halfway and at
+//! Beside scene files it takes two kinds of file that the library does not read: a motion of DeepMimic (`.txt`), done by the body that walks in
+//! `straight-walk.toml`, and `face.bin`, the woman whose hair is stroked.
+//!
+//! A scene plays to the end of its motion, but at most 30 s (2 s without one). Pictures are taken at the start, halfway and at
 //! the moment when hair is fastest.
+
+mod deepmimic;
+mod woman;
 
 use glam::Vec3;
 use hairspring::{
@@ -52,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if arguments.contact {
         println!("{CONTACT}");
         for path in &arguments.scenes {
-            let scene = read_scene(path)?.value;
+            let scene = read(path)?;
             let name = scene.name.clone();
             let (played, stage) = play(scene)?;
             println!("| {name} | {} |", played.contact(&stage));
@@ -64,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |");
     for path in &arguments.scenes {
-        let scene = read_scene(path)?.value;
+        let scene = read(path)?;
         let name = scene.name.clone();
         let (played, mut stage) = play(scene.clone())?;
         println!("| {name} | {} | {:.4} |", played.row(&stage), at_rest(scene)? * 1e3);
@@ -95,6 +101,15 @@ fn arguments() -> Result<Arguments, String> {
         }
     }
     if out.scenes.is_empty() { Err("name one scene file or more".into()) } else { Ok(out) }
+}
+
+/// The scene that a file describes, or stands for.
+fn read(path: &Path) -> Result<Scene, Box<dyn Error>> {
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("txt") => deepmimic::scene(path),
+        Some("bin") => woman::scene(path),
+        _ => Ok(read_scene(path)?.value),
+    }
 }
 
 /// What was seen while a scene played.
@@ -153,7 +168,7 @@ impl Played {
 }
 
 fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
-    let duration = scene.clip.as_ref().map_or(2.0, |c| c.duration().clamp(1.0, 10.0));
+    let duration = scene.clip.as_ref().map_or(2.0, |c| c.duration().clamp(1.0, 30.0));
     let mut stage = Stage::new(scene)?;
     let mut played = Played { duration, ..Played::default() };
     while stage.time() < duration {

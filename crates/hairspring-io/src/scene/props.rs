@@ -1,0 +1,95 @@
+//! `[[prop]]`: things beside the body that move by themselves. Each is a joint that comes after the body's, and goes by keys of its own; its mesh is part of the
+//! body's.
+
+use super::{
+    Reader,
+    air::lines,
+    body::join,
+    check::{body_ranges, finite, first_failure, way},
+    file::{KeyFile, PropFile, SceneFile},
+};
+use crate::{Problem, Result};
+use hairspring::body::{Body, Clip, Joint, Trs, beside, keyed};
+
+/// Header of a prop's table.
+const HEADER: &str = "[[prop]]";
+
+/// A prop as it is read.
+pub(super) struct Prop {
+    name: String,
+    mesh: Option<Body>,
+    clip: Clip,
+}
+
+/// Checks all `[[prop]]`.
+pub(super) fn ranges(text: &str, scene: &SceneFile) -> std::result::Result<(), Problem> {
+    for (k, (prop, line)) in scene.prop.iter().zip(lines(text, HEADER)).enumerate() {
+        let alone = scene.prop[..k].iter().all(|other| !other.name.eq_ignore_ascii_case(&prop.name));
+        let [ordered, of_numbers] = way(&prop.keys);
+        let checks = [
+            (alone && !prop.name.is_empty(), "name", "not empty, and of no other prop"),
+            ordered,
+            of_numbers,
+            (finite(prop.pivot), "pivot", "three finite numbers [m]"),
+        ];
+        first_failure(text, line, &checks)?;
+        if let Some(mesh) = &prop.mesh {
+            body_ranges(text, mesh)?;
+            let bare = [
+                (mesh.thickness.is_none(), "thickness", "left out of all but [[sheet]]"),
+                (mesh.joint.is_none(), "joint", "left out: it goes with its prop"),
+            ];
+            first_failure(text, line, &bare)?;
+        }
+    }
+    Ok(())
+}
+
+impl Reader<'_> {
+    /// The props that are named, to go beside `body`.
+    pub(super) fn props(&mut self, named: &[PropFile], body: Option<&Body>) -> Result<Vec<Prop>> {
+        let near = self.text.find(HEADER).unwrap_or(0);
+        let mut props = Vec::with_capacity(named.len());
+        for prop in named {
+            let Some(body) = body else {
+                let text = "[[prop]] goes beside a body, but there is no [body]".into();
+                return Err(self.wrong(near, "name", text));
+            };
+            if body.joint(&prop.name).is_some() {
+                let text =
+                    format!("the body has a joint {:?} of its own: name the prop otherwise", prop.name);
+                return Err(self.wrong(near, "name", text));
+            }
+            let mesh = prop.mesh.as_ref().map(|mesh| self.body(mesh, "prop")).transpose()?.map(|c| c.body);
+            let keys: Vec<_> = prop.keys.iter().map(KeyFile::key).collect();
+            props.push(Prop { name: prop.name.clone(), mesh, clip: keyed(&keys, prop.pivot) });
+        }
+        Ok(props)
+    }
+}
+
+/// The body with the meshes and the joints of `props` after its own.
+pub(super) fn with_props(mut body: Body, props: &[Prop]) -> Body {
+    for prop in props {
+        let joint = body.joints.len() as u16;
+        body.joints.push(Joint { name: prop.name.clone(), parent: None, rest: Trs::default() });
+        if let Some(skin) = &mut body.skin {
+            skin.inverse_bind.push(Default::default());
+        }
+        if let Some(mesh) = &prop.mesh {
+            join(&mut body, mesh.clone(), Some(joint));
+        }
+    }
+    body
+}
+
+/// The motion of `body` with the ways of `props` beside it.
+pub(super) fn beside_props(clip: Option<Clip>, body: Option<&Body>, props: &[Prop]) -> Option<Clip> {
+    match body {
+        Some(body) if !props.is_empty() => {
+            let ways: Vec<Clip> = props.iter().map(|prop| prop.clip.clone()).collect();
+            Some(beside(clip, &body.rest_pose(), &ways))
+        }
+        _ => clip,
+    }
+}
