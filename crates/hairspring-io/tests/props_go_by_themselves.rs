@@ -1,8 +1,6 @@
 //! Promise: a thing beside the body goes by its own keys, whatever moves the body, and all that names it goes with it: its mesh, hair that grows on it,
 //! colliders and hands. Its keys are those of `[clip]`, and what cannot be is refused in a sentence.
 
-mod common;
-
 #[path = "common/scenes.rs"]
 mod scenes;
 
