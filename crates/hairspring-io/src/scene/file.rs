@@ -4,7 +4,7 @@ use glam::{EulerRot, Quat, Vec3};
 use hairspring::{
     air::{Shelter, Turbulence, WindSource},
     around::charge::Charged,
-    body::{Key, Travel},
+    body::Key,
     groom::{Growth, Thicken},
     scene::{
         Camera, Collider, Effects, Ground, Guides, HairLook, Hand, Neighbours, Shape, Solver, Volume, Wind,
@@ -127,8 +127,7 @@ pub(super) struct BodyFile {
     pub color: Option<Vec3>,
     /// 0 (glossy) to 1 (matt), of the whole surface. Default: the file's.
     pub roughness: Option<f32>,
-    /// `[collision]`, `[[sheet]]` and `more` only: the body's joint that carries a mesh without joints of its own. Default: the body's
-    /// first.
+    /// `[collision]`, `[[sheet]]` and `more` only: the body's joint that carries a mesh without joints of its own. Default: the body's first.
     pub joint: Option<String>,
     /// Further files of the same body: eyes, clothes, hands. They move with it, by the joints of the same names or `joint`.
     #[serde(default)]
@@ -152,15 +151,13 @@ pub(super) struct ClipFile {
     /// First frame that is used, counted from 0. Default 0.
     #[serde(default)]
     pub start: usize,
-    /// A joint of the motion, such as "Head", that drives the whole body as one rigid piece. Default: joints move the
-    /// body's joints of the same names.
+    /// A joint of the motion, such as "Head", that drives the whole body as one rigid piece. Default: joints move the body's joints of the same names.
     pub joint: Option<String>,
     /// With `joint`, needed: the point of the body that it turns about [m].
     pub pivot: Option<Vec3>,
     /// With `joint`: the frame in which the joint counts as being at rest, counted from 0. Default: `start`.
     pub rest_frame: Option<usize>,
-    /// With `joint`: what is kept of the way through the world: "keep", "in-place" (bobbing only) or "none".
-    /// Default "in-place".
+    /// With `joint`: what is kept of the way through the world: "keep", "in-place" (bobbing only) or "none". Default "in-place".
     pub travel: Option<TravelName>,
     /// In place of `file`: the body is one rigid piece that goes from key to key, and is at rest at each.
     #[serde(default)]
@@ -219,16 +216,6 @@ pub(super) enum TravelName {
     Keep,
     InPlace,
     None,
-}
-
-impl From<TravelName> for Travel {
-    fn from(name: TravelName) -> Self {
-        match name {
-            TravelName::Keep => Travel::Keep,
-            TravelName::InPlace => Travel::InPlace,
-            TravelName::None => Travel::None,
-        }
-    }
 }
 
 /// One `[[groom]]`.

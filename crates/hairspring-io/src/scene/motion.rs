@@ -3,11 +3,11 @@
 use super::{
     Reader,
     body::rigid,
-    file::{ClipFile, KeyFile},
+    file::{ClipFile, KeyFile, TravelName},
     sentence::unknown,
 };
 use crate::{Character, ReadOptions, Result, load::pick_clip, read_motion};
-use hairspring::body::{Body, Clip, HeadMotion, Key, head_motion, keyed, retarget};
+use hairspring::body::{Body, Clip, HeadMotion, Key, Travel, head_motion, keyed, retarget};
 
 impl Reader<'_> {
     /// The body as it is simulated, and its motion.
@@ -87,5 +87,15 @@ impl Reader<'_> {
             return Err(self.wrong(near, "start", text));
         }
         Ok(clip.from_frame(named.start))
+    }
+}
+
+impl From<TravelName> for Travel {
+    fn from(name: TravelName) -> Self {
+        match name {
+            TravelName::Keep => Travel::Keep,
+            TravelName::InPlace => Travel::InPlace,
+            TravelName::None => Travel::None,
+        }
     }
 }
