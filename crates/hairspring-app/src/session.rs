@@ -1,7 +1,9 @@
 //! What the window works on, without the window: the scene, the one beside it, and the simulation. Whatever a person, a script or a monkey does comes in as an [`Action`].
 
 use crate::{
-    AppError, differ,
+    AppError,
+    destination::settled,
+    differ,
     document::{Change, Document},
     edit,
     key::Key,
@@ -261,7 +263,7 @@ impl Session {
     /// Opens a file: a scene; or a groom or a body, which are put in a scene of their own, or in place of the open one's.
     fn open(&mut self, path: &std::path::Path) -> Result<(), AppError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let whole = settled(path);
         let name = toml::Value::String(whole.to_string_lossy().into_owned());
         let document = match extension.as_str() {
             "toml" => Document::open(&whole)?,

@@ -1,13 +1,14 @@
 //! Entries of lists: colliders, hands, sources of wind, charged bodies; and the keys of a motion made by hand. Each is shown with all that its text or its defaults say of it, every
-//! number with its unit, what it does and a reset.
+//! number with its unit, what it does and, where it was changed, a reset.
 
 use super::{Labelled, keys};
 use crate::{
+    edit,
     field::{Field, Kind, of, place},
     key::Key,
     session::{Action, Session},
 };
-use eframe::egui::{self, DragValue, Ui};
+use eframe::egui::{self, DragValue, RichText, Ui};
 use glam::Vec3;
 use toml_edit::{DocumentMut, TableLike, Value};
 
@@ -208,14 +209,21 @@ impl Rows<'_> {
     /// One field.
     fn field(&mut self, ui: &mut Ui, key: &Key, name: &str, value: Option<&toml::Value>) {
         let Some(field) = of(self.list, name) else { return };
-        let said = key.look_up(self.session.edited().said()).is_some();
+        let document = self.session.edited();
+        let said = key.look_up(document.said()).is_some();
+        // Of what was added there is no other value to go back to than that before the last step.
+        let before = document.first(key).filter(|[_, counted]| *counted != key.look_up(document.effective()));
+        let back = before.map(|[said, _]| said.and_then(edit::written));
         if let Kind::Keys(keys) = field.kind {
             // The corners of a hull may be a file's: the text says none then.
             if name == "points" && !said {
                 return;
             }
             ui.push_id(name, |ui| {
-                ui.horizontal(|ui| self.name(ui, key, field, said));
+                ui.horizontal(|ui| {
+                    ui.label(name_of(field, &back)).on_hover_text(tip(field));
+                    self.reset(ui, key, back);
+                });
                 let first = self.first_key(key, name);
                 keys::show(ui, (key, field, keys), value, (&first, self.list == "clip"), self.actions);
             });
@@ -227,24 +235,21 @@ impl Rows<'_> {
                 let left = egui::Layout::left_to_right(egui::Align::Center);
                 ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
                     ui.set_min_width(LABEL);
-                    ui.add(egui::Label::new(field.label).truncate()).on_hover_text(tip(field));
+                    ui.add(egui::Label::new(name_of(field, &back)).truncate()).on_hover_text(tip(field));
                 });
                 if let Some(new) = self.control(ui, field, value) {
                     self.actions.push(Action::Set(key.clone(), new));
                 }
-                self.reset(ui, key, field, said);
+                self.reset(ui, key, back);
             });
         });
     }
 
-    fn name(&mut self, ui: &mut Ui, key: &Key, field: &Field, said: bool) {
-        ui.label(field.label).on_hover_text(tip(field));
-        self.reset(ui, key, field, said);
-    }
-
-    fn reset(&mut self, ui: &mut Ui, key: &Key, field: &Field, said: bool) {
-        if field.optional && said && ui.small_button("reset").on_hover_text("Back to the default").clicked() {
-            self.actions.push(Action::Set(key.clone(), None));
+    /// What brings a field back, where it was changed since the scene was opened.
+    fn reset(&mut self, ui: &mut Ui, key: &Key, back: Option<Option<Value>>) {
+        let Some(back) = back else { return };
+        if ui.small_button("reset").on_hover_text("Back to how the scene was opened").clicked() {
+            self.actions.push(Action::Set(key.clone(), back));
         }
     }
 
@@ -283,12 +288,12 @@ impl Rows<'_> {
                 combo.response.labelled(ui, field.label).on_hover_text(tip(field));
                 new
             }
-            (Kind::Maybe(from), None) => {
-                let mut never = true;
-                ui.checkbox(&mut never, "never")
-                    .on_hover_text(tip(field))
-                    .changed()
-                    .then(|| Some(from.into()))
+            (Kind::Maybe(from), value) => {
+                let mut never = value.is_none();
+                if ui.checkbox(&mut never, "never").on_hover_text(tip(field)).changed() {
+                    return Some((!never).then(|| from.into()));
+                }
+                number(ui, as_number(value?)?, field.unit, &tip(field)).map(|x| Some(x.into()))
             }
             (_, Some(toml::Value::Boolean(on))) => {
                 let mut on = *on;
@@ -321,6 +326,12 @@ impl Rows<'_> {
 fn kind(entry: &toml::Value) -> Option<&str> {
     let shape = entry.get("shape").or_else(|| entry.get("tool"))?;
     shape.as_table()?.keys().next().map(String::as_str)
+}
+
+/// Its name, which stands out where it was changed.
+fn name_of(field: &Field, back: &Option<Option<Value>>) -> RichText {
+    let name = RichText::new(field.label);
+    if back.is_some() { name.strong() } else { name }
 }
 
 fn tip(field: &Field) -> String {
@@ -359,8 +370,8 @@ mod tests {
         [[charged]]\ncenter = [0.3, 1.8, 0.0]\nradius = 0.13\ncharge = -2e-7\n";
 
     /// The lists of a scene, and what has been done to it.
-    fn panel() -> (Harness<'static>, Rc<RefCell<Session>>) {
-        let document = Document::new("scene.toml".as_ref(), SCENE.into()).unwrap();
+    fn panel(text: &str) -> (Harness<'static>, Rc<RefCell<Session>>) {
+        let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
         let session = Rc::new(RefCell::new(Session::new(document, 1, None, || ()).unwrap()));
         let shown = session.clone();
         let harness = Harness::builder().with_size([500.0, 1600.0]).build_ui(move |ui| {
@@ -383,7 +394,7 @@ mod tests {
 
     #[test]
     fn keys_are_added_and_taken_out_by_buttons_and_undo_leads_back() {
-        let (mut harness, session) = panel();
+        let (mut harness, session) = panel(SCENE);
         let says = |text: &str| session.borrow().document().text().contains(text);
         // In the order of the panel: the charged body's, the hand's, the motion's.
         press(&mut harness, "Add a key", 0);
@@ -414,7 +425,7 @@ mod tests {
         assert_eq!(text.trim(), "shape.sphere = { center = [0.1, 0.8, 0.25], radius = 0.08 }");
         for list in AIR.iter().chain(&COLLISION) {
             for (name, fields) in list.kinds {
-                let (_, session) = panel();
+                let (_, session) = panel(SCENE);
                 let added = session.borrow_mut().act(Action::Add(list.name, placed(fields, Vec3::X)));
                 assert!(added.is_ok(), "{name}: {added:?}");
             }
@@ -422,12 +433,43 @@ mod tests {
     }
 
     #[test]
-    fn what_may_be_left_out_is_switched_on_and_reset() {
-        let (mut harness, session) = panel();
+    fn what_may_be_left_out_is_switched_on_and_off() {
+        let (mut harness, session) = panel(SCENE);
         let says = |text: &str| session.borrow().document().text().contains(text);
         press(&mut harness, "never", 0);
         assert!(says("until = 2.0"));
-        press(&mut harness, "reset", 0);
+        press(&mut harness, "never", 0);
         assert!(!says("until"));
+    }
+
+    #[test]
+    fn an_entry_goes_back_to_what_it_was_opened_with_wherever_it_has_moved() {
+        let scene =
+            format!("{SCENE}\n[[charged]]\ncenter = [-0.3, 1.8, 0.0]\nradius = 0.14\ncharge = 2e-7\n");
+        let (mut harness, session) = panel(&scene);
+        let resets = |harness: &Harness| harness.query_all_by_label("reset").count();
+        let text = || session.borrow().document().text().to_owned();
+        let act = |action| session.borrow_mut().act(action).unwrap();
+        harness.run_steps(3);
+        assert_eq!(resets(&harness), 0, "just opened");
+        act(Action::Set("charged[1].radius".parse().unwrap(), Some(0.2.into())));
+        harness.run_steps(3);
+        assert_eq!(resets(&harness), 1);
+        // The entry before it goes, and one is added behind.
+        act(Action::Remove("charged", 0));
+        act(Action::Add("charged", "center = [0.0, 2.0, 0.0]\nradius = 0.3\ncharge = 1e-7\n".into()));
+        harness.run_steps(3);
+        assert_eq!(resets(&harness), 1, "what was added has nothing to go back to");
+        press(&mut harness, "reset", 0);
+        assert!(text().contains("radius = 0.14") && !text().contains("radius = 0.2"), "{}", text());
+        assert_eq!(resets(&harness), 0);
+        for _ in 0..4 {
+            act(Action::Undo);
+        }
+        assert_eq!(text(), scene);
+        // What is written as it counts anyway is no change.
+        act(Action::Set("charged[0].solid".parse().unwrap(), Some(true.into())));
+        harness.run_steps(3);
+        assert_eq!(resets(&harness), 0);
     }
 }
