@@ -153,6 +153,8 @@ pub struct View {
     /// Number of the scene that the camera was set for, and its file.
     framed: u64,
     file: Option<PathBuf>,
+    /// What the scene's text said of its camera last, and of which of two scenes: when it says something else, the window looks from there.
+    said: (bool, Option<toml::Value>),
     /// Whether the next scene is another one, to be looked at anew.
     pub forget: bool,
 }
@@ -189,6 +191,7 @@ impl Default for View {
             head: (Vec3::ZERO, Vec3::ZERO),
             framed: 0,
             file: None,
+            said: (false, None),
             forget: false,
         }
     }
@@ -213,7 +216,7 @@ impl View {
         })
     }
 
-    /// Sets the camera where a scene has just been opened: as its file says, else where all hair is seen.
+    /// Sets the camera where a scene has just been opened: as its file says, else where all hair is seen; and where the scene's camera is changed.
     pub fn meet(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
         if self.framed != snapshot.scene {
             self.framed = snapshot.scene;
@@ -221,8 +224,16 @@ impl View {
             // An edit that begins the same scene anew leaves the camera where it is.
             if self.orbit.is_none() || self.file != file || self.forget {
                 self.frame(session, snapshot, aspect);
+                self.said = said_of_camera(session);
             }
             (self.file, self.forget) = (file, false);
+        }
+        let said = said_of_camera(session);
+        if said != self.said {
+            if let Some(camera) = session.edited().settings().camera.filter(|_| said.0 == self.said.0) {
+                self.orbit = Some(Orbit::new(&camera));
+            }
+            self.said = said;
         }
     }
 
@@ -427,6 +438,11 @@ impl View {
     }
 }
 
+/// Which of two scenes is changed, and what its text says of its camera.
+fn said_of_camera(session: &Session) -> (bool, Option<toml::Value>) {
+    (session.on_second(), session.edited().said().get("camera").cloned())
+}
+
 /// Some thousand of the values of each groom, however many points its strands have: every so-manieth would be the root of each.
 fn scattered(values: &[Vec<f32>]) -> impl Iterator<Item = f32> {
     // Multiples of the golden ratio are spread evenly over 0 to 1 (Weyl 1916).
@@ -454,6 +470,7 @@ fn depth_of_hair(snapshot: &Snapshot, lens: &Lens, at: Vec2) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{document::Document, parameter};
 
     #[test]
     fn values_are_taken_from_all_along_strands_of_any_number_of_points() {
@@ -466,5 +483,35 @@ mod tests {
             assert!((mean - 0.5).abs() < 0.02, "{points} points: {mean}");
             assert!(some.len() <= 2 * 4096);
         }
+    }
+
+    #[test]
+    fn the_view_goes_where_the_scenes_camera_is_put_and_stays_where_a_hand_turned_it() {
+        let text = "[builtin]\nstrands = 10\nguides = 5\n";
+        let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
+        let mut session = Session::new(document, 1, None, || ()).unwrap();
+        let snapshot = (0..12_000).find_map(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+            session.latest()
+        });
+        let (snapshot, mut view) = (snapshot.unwrap(), View::default());
+        view.meet(&session, &snapshot, 1.5);
+        let turned = Orbit { turn: 1.0, ..view.orbit.unwrap() };
+        view.orbit = Some(turned);
+        let put = |session: &mut Session, name: &str, value: toml_edit::Value| {
+            let parameter = parameter::ALL.iter().find(|p| p.name == name).unwrap();
+            session.act(Action::Parameter(parameter, Some(value))).unwrap();
+        };
+        put(&mut session, "gravity", [0.0, -1.0, 0.0].into_iter().collect());
+        view.meet(&session, &snapshot, 1.5);
+        assert_eq!(view.orbit, Some(turned), "nothing was said of the camera");
+        put(&mut session, "camera.fov", 40.0.into());
+        view.meet(&session, &snapshot, 1.5);
+        let own = session.document().settings().camera.unwrap();
+        assert_eq!((view.orbit.unwrap().fov, view.orbit), (40.0, Some(Orbit::new(&own))));
+        view.orbit = Some(turned);
+        session.act(Action::Undo).unwrap();
+        view.meet(&session, &snapshot, 1.5);
+        assert_eq!(view.orbit.unwrap().fov, session.document().settings().camera.unwrap().fov);
     }
 }

@@ -68,7 +68,8 @@ pub struct App {
     /// The step that the script waits for.
     waits: u64,
     finger: Finger,
-    /// Where the picture was drawn last.
+    /// Where the picture was drawn last, both sides of it, and the first.
+    whole: egui::Rect,
     rect: egui::Rect,
     /// A picture of the window that is being made: what writing it came to.
     shot: Option<Receiver<Result<(), AppError>>>,
@@ -108,6 +109,7 @@ impl App {
             script,
             waits: 0,
             finger: Finger::new(&ctx),
+            whole: egui::Rect::NOTHING,
             rect: egui::Rect::NOTHING,
             shot: None,
             hairs,
@@ -140,8 +142,14 @@ impl App {
 
     fn act(&mut self, action: Action) {
         let another = matches!(action, Action::New(_) | Action::Open(_));
+        let saves = matches!(action, Action::Save(_));
         match self.session.act(action) {
-            Ok(()) => self.view.forget |= another,
+            Ok(()) => {
+                self.view.forget |= another;
+                if let Some(file) = self.session.document().file().filter(|_| saves) {
+                    self.say(format!("saved {}", file.display()), false);
+                }
+            }
             Err(why) => self.say(why.to_string(), true),
         }
     }
@@ -278,6 +286,7 @@ impl App {
     /// The picture, or two side by side, with what is laid over them.
     fn picture(&mut self, ui: &mut Ui, snapshot: Option<&Arc<Snapshot>>, actions: &mut Vec<Action>) {
         let whole = ui.available_rect_before_wrap();
+        self.whole = whole;
         let Some(snapshot) = snapshot else {
             ui.centered_and_justified(|ui| ui.spinner());
             return;
@@ -349,14 +358,7 @@ impl App {
 
     fn windows(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         match self.files.show(ctx) {
-            Some(Decision::Do(action)) => {
-                let saved = matches!(action, Action::Save(_));
-                self.act(action);
-                if saved && self.message.as_ref().is_none_or(|m| !m.1) {
-                    let file = self.session.document().file().map(|p| p.display().to_string());
-                    self.say(format!("saved {}", file.unwrap_or_default()), false);
-                }
-            }
+            Some(Decision::Do(action)) => self.act(action),
             Some(Decision::Record(wish)) => self.record(ctx, wish),
             None => {}
         }
@@ -403,8 +405,8 @@ impl eframe::App for App {
                 egui::Panel::bottom("graphs").show(ui, |ui| self.history.show(ui));
             }
             egui::Panel::right("parameters").default_size(360.0).show(ui, |ui| {
-                let at = self.view.orbit.map_or(glam::Vec3::ZERO, |orbit| orbit.target);
-                parameters::show(ui, &self.session, &mut self.filter, at, &mut actions);
+                let camera = self.view.orbit.map(|orbit| orbit.camera());
+                parameters::show(ui, &self.session, &mut self.filter, camera, &mut actions);
             });
         }
         let notes: Vec<String> = self.painters.iter().map(Painter::note).collect();

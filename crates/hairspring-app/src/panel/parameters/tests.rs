@@ -37,7 +37,7 @@ fn panel(text: &str, sought: &str) -> Panel {
     let harness = Harness::builder().with_size([800.0, 4000.0]).build_ui(move |ui| {
         let mut actions = Vec::new();
         let panel = egui::Panel::right("parameters").default_size(360.0).show(ui, |ui| {
-            show(ui, &shown.borrow(), &mut typed.borrow_mut(), Vec3::ZERO, &mut actions);
+            show(ui, &shown.borrow(), &mut typed.borrow_mut(), Some(Camera::default()), &mut actions);
         });
         *wide.borrow_mut() = panel.response.rect.width();
         actions.into_iter().for_each(|action| shown.borrow_mut().act(action).unwrap());
@@ -71,7 +71,7 @@ fn every_parameter_has_a_value_and_a_default() {
     let (whole, head) = (document(WHOLE), document(HEAD));
     for parameter in parameter::ALL {
         let key = parameter.key(0, 0);
-        let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor(_));
+        let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor { .. });
         let here = |table: &toml::Table| key.look_up(table).is_some();
         assert!(
             maybe || here(whole.effective()) || here(head.effective()),
@@ -214,7 +214,7 @@ fn what_begins_the_scene_anew_is_known_of_each_parameter() {
             .into_iter()
             .find(|d| {
                 let key = parameter.key(0, 0);
-                let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor(_));
+                let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor { .. });
                 key.look_up(d.effective()).is_some()
                     || (maybe && key.parent().look_up(d.effective()).is_some())
             })
@@ -229,7 +229,7 @@ fn what_begins_the_scene_anew_is_known_of_each_parameter() {
             Kind::Choice(words) => {
                 (*words.iter().find(|w| Some(**w) != now.as_ref().unwrap().as_str()).unwrap()).into()
             }
-            Kind::Color | Kind::MaybeColor(_) => [0.25, 0.5, 0.75].into_iter().collect(),
+            Kind::Color | Kind::MaybeColor { .. } => [0.25, 0.5, 0.75].into_iter().collect(),
             Kind::Vector { .. } => [0.5, 1.5, 2.5].into_iter().collect(),
             Kind::Profile => [1.0, 2.0].into_iter().collect(),
         };
@@ -250,7 +250,7 @@ fn pigment_takes_the_place_of_colours_in_one_step_and_gives_it_back() {
         document.set_all(edits).unwrap();
     }
     assert!(document.text().contains("melanin = 0.6") && !document.text().contains("color"));
-    let idle = |document: &Document, name: &str| parameter(name).idle(document, 0).is_some();
+    let idle = |document: &Document, name: &str| parameter(name).idle(document, (0, 0)).is_some();
     assert!(idle(&document, "look.root_color") && idle(&document, "look.tip_color"));
     assert!(!idle(&document, "look.melanin_redness"));
     document.undo().unwrap();
@@ -327,7 +327,7 @@ fn hairs_are_counted_anew_when_the_slider_is_let_go_of() {
 fn a_tooltip_names_range_unit_and_default() {
     let of = |name: &str| {
         let (parameter, head) = (parameter(name), document(HEAD));
-        tip(parameter, parameter.idle(&head, 0), parameter.key(0, 0).look_up(head.defaults()))
+        tip(parameter, parameter.idle(&head, (0, 0)), parameter.key(0, 0).look_up(head.defaults()))
     };
     for (name, line) in [
         ("damping", "0 to 0.2 s; default 0.015 s\n"),
@@ -387,4 +387,45 @@ fn the_colour_picker_opens_and_its_letters_are_known() {
     // A letter that no font has ends the test.
     panel.harness.run_steps(3);
     assert!(panel.harness.query_by_label("📋").is_some());
+}
+
+#[test]
+fn no_name_is_cut_off() {
+    let panel = panel(HEAD, "nothing is called so");
+    let font = egui::TextStyle::Body.resolve(&panel.harness.ctx.global_style());
+    let width = |text: &str| {
+        let text = text.to_owned();
+        panel
+            .harness
+            .ctx
+            .fonts_mut(|f| f.layout_no_wrap(text, font.clone(), egui::Color32::WHITE))
+            .rect
+            .width()
+    };
+    let cut: Vec<_> = parameter::ALL.iter().map(|p| p.label).filter(|label| width(label) > LABEL).collect();
+    assert!(cut.is_empty(), "wider than {LABEL} points: {cut:?}");
+}
+
+#[test]
+fn a_group_is_found_by_its_name() {
+    let mut panel = panel(HEAD, "collision");
+    let named = |panel: &Panel, name: &str| panel.harness.query_all_by_label(name).next().is_some();
+    assert!(named(&panel, "Colliders") && named(&panel, "Friction"));
+    panel.filter.replace("camera".into());
+    panel.harness.run_steps(3);
+    assert!(named(&panel, "Stands at"));
+}
+
+#[test]
+fn what_the_window_sees_becomes_the_scenes_camera_in_one_step() {
+    let mut panel = panel(HEAD, "camera");
+    panel.harness.get_by_label(TAKE_VIEW).click();
+    panel.harness.run_steps(3);
+    let camera = panel.session.borrow().document().settings().camera.unwrap();
+    assert!(
+        camera.position.distance(Camera::default().position) < 1e-3
+            && camera.target == Camera::default().target
+    );
+    panel.session.borrow_mut().act(Action::Undo).unwrap();
+    assert_eq!(panel.text(), HEAD);
 }
