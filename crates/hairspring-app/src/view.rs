@@ -218,7 +218,8 @@ impl View {
 
     /// Sets the camera where a scene has just been opened: as its file says, else where all hair is seen; and where the scene's camera is changed.
     pub fn meet(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
-        if self.framed != snapshot.scene {
+        // A moment of the scene before is not what was opened.
+        if self.framed != snapshot.scene && snapshot.scene >= session.begun() {
             self.framed = snapshot.scene;
             let file = session.document().file().map(Into::into);
             // An edit that begins the same scene anew leaves the camera where it is.
@@ -513,5 +514,31 @@ mod tests {
         session.act(Action::Undo).unwrap();
         view.meet(&session, &snapshot, 1.5);
         assert_eq!(view.orbit.unwrap().fov, session.document().settings().camera.unwrap().fov);
+    }
+
+    #[test]
+    fn what_is_opened_at_once_is_looked_at_all_the_same() {
+        let head = |y: f64| {
+            format!(
+                "[builtin]\nstrands = 10\nguides = 5\n[camera]\nposition = [0.0, {y}, 2.0]\ntarget = [0.0, {y}, 0.0]\nfov = 30.0\n"
+            )
+        };
+        let document = Document::new("scene.toml".as_ref(), head(1.0)).unwrap();
+        let mut session = Session::new(document, 1, None, || ()).unwrap();
+        let seen = |session: &Session, scene: u64| {
+            let mut moments = (0..12_000).map(|_| {
+                std::thread::sleep(std::time::Duration::from_millis(5));
+                session.latest().filter(|s| s.scene == scene)
+            });
+            moments.find_map(|moment| moment).unwrap()
+        };
+        let (first, mut view) = (seen(&session, 1), View::default());
+        // Before the window has drawn the first.
+        session.act(Action::New(head(5.0))).unwrap();
+        view.forget = true;
+        view.meet(&session, &first, 1.5);
+        assert!(view.forget, "what was opened is still to come");
+        view.meet(&session, &seen(&session, 2), 1.5);
+        assert_eq!(view.orbit.unwrap().target.y, 5.0);
     }
 }

@@ -17,6 +17,10 @@ impl Document {
     /// The text with another body, at rest; what belonged to the old one goes. Where no hair is left then, a short coat grows from it.
     pub fn with_body(&self, file: &str) -> Result<String, AppError> {
         let mut edited = parsed(self.text())?;
+        if edited.contains_key("builtin") {
+            // It is called after what it is no more.
+            edited.remove("name");
+        }
         for gone in ["builtin", "body", "collision", "clip"] {
             edited.remove(gone);
         }
@@ -123,14 +127,14 @@ mod tests {
 
     #[test]
     fn a_body_that_takes_the_place_of_the_built_in_head_has_a_coat_and_leaves_other_hair() {
-        let head = "[builtin]\nstyle = \"wavy\"\n\n[[collider]]\nshape.sphere = { center = [0.0, 1.0, 0.0], radius = 0.1 }\n";
+        let head = "name = \"Built-in head\"\n[builtin]\nstyle = \"wavy\"\n\n[[collider]]\nshape.sphere = { center = [0.0, 1.0, 0.0], radius = 0.1 }\n";
         for (text, coat) in [(head, true), (SCENE, false)] {
             let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
             let text = document.with_body("\"b.obj\"").unwrap();
             let other = Document::new("scene.toml".as_ref(), text.clone()).unwrap();
             assert_eq!(other.settings().grooms.len(), 1, "{text}");
             assert_eq!(text.contains("[groom.grow]"), coat, "{text}");
-            assert!(text.contains("collider") && !text.contains("builtin"), "{text}");
+            assert!(text.contains("collider") && !text.contains("uilt"), "{text}");
         }
     }
 }

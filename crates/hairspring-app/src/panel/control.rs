@@ -3,6 +3,7 @@
 use super::Labelled;
 use crate::parameter::{Kind, Parameter};
 use eframe::egui::{self, DragValue, Slider, Ui};
+use std::ops::RangeInclusive;
 use toml_edit::Value;
 
 /// Width of a slider's number with its unit [points].
@@ -130,7 +131,7 @@ pub fn control(
             ui.spacing_mut().item_spacing.x = 4.0;
             for (axis, x) in ["x", "y", "z"].into_iter().zip(&mut vector) {
                 let drag = DragValue::new(x).speed(reach / 200.0).range(-reach..=reach).max_decimals(2);
-                let drag = drag.custom_formatter(|x, digits| plain(x, *digits.end()));
+                let drag = drag.custom_formatter(plain);
                 let drag = ui.add(drag).on_hover_text(format!("{axis} [{}]", parameter.unit));
                 changed |= drag.changed();
             }
@@ -217,10 +218,10 @@ pub fn far_off(x: f64) -> String {
     if x == 0.0 { "0".into() } else { format!("{x:.2e}") }
 }
 
-/// A number in so many digits behind the point, where nothing has no sign.
-fn plain(x: f64, digits: usize) -> String {
-    let half = 0.5 * 0.1_f64.powi(digits as i32);
-    format!("{:.digits$}", if x.abs() < half { 0.0 } else { x })
+/// A number in as many digits behind the point as it takes, where what shows as nothing has no sign.
+fn plain(x: f64, digits: RangeInclusive<usize>) -> String {
+    let half = 0.5 * 0.1_f64.powi(*digits.end() as i32);
+    egui::emath::format_with_decimals_in_range(if x.abs() < half { 0.0 } else { x }, digits)
 }
 
 /// A number, whether it is written as a whole one or not.
@@ -249,6 +250,6 @@ mod tests {
     #[test]
     fn nothing_is_written_as_plain_0() {
         assert_eq!([far_off(0.0), far_off(-2e-7)], ["0", "-2.00e-7"]);
-        assert_eq!([plain(-0.004, 2), plain(-0.006, 2), plain(1.5, 1)], ["0.00", "-0.01", "1.5"]);
+        assert_eq!([-0.004, -0.006, 1.5].map(|x| plain(x, 1..=2)), ["0.0", "-0.01", "1.5"]);
     }
 }
