@@ -99,7 +99,7 @@ mod tests {
     fn what_is_saved_elsewhere_names_its_files_from_there_and_so_does_what_is_undone() {
         let folder = tempfile::tempdir().unwrap();
         let [from, to] = ["from", "to"].map(|name| folder.path().join(name));
-        [&from, &to].map(|path| std::fs::create_dir(path).unwrap());
+        [&from, &to].into_iter().for_each(|path| std::fs::create_dir(path).unwrap());
         let mut document = Document::new(&from.join("scene.toml"), SCENE.into()).unwrap();
         document.set(&"gravity".parse().unwrap(), Some(Value::from_iter([0.0, -1.0, 0.0]))).unwrap();
         document.save(&from.join("../to/scene.toml")).unwrap();
