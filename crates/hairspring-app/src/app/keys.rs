@@ -101,7 +101,7 @@ impl App {
                     }
                 }
             });
-            let (back, forth) = self.session.edited().history();
+            let (back, forth) = self.session.steps();
             if ui.add_enabled(back, egui::Button::new("Undo")).clicked() {
                 actions.push(Action::Undo);
             }

@@ -140,11 +140,11 @@ impl App {
     }
 
     fn act(&mut self, action: Action) {
-        let another = matches!(action, Action::New(_) | Action::Open(_));
+        let before = self.session.opened();
         let saves = matches!(action, Action::Save(_));
         match self.session.act(action) {
             Ok(()) => {
-                self.view.forget |= another;
+                self.view.forget |= self.session.opened() != before;
                 if let Some(file) = self.session.document().file().filter(|_| saves) {
                     self.say(format!("saved {}", file.display()), false);
                 }
@@ -246,7 +246,7 @@ impl eframe::App for App {
             self.act(action);
         }
         if let (Some(mut recorder), Some(snapshot)) = (self.recorder.take(), &snapshot) {
-            let sights = snapshot.stages.iter().map_while(|s| self.view.sight(s)).collect();
+            let sights = snapshot.stages.iter().map_while(|s| self.view.sight(s, 1.0)).collect();
             let ended = recorder.advance(&mut self.session, snapshot, sights);
             match ended {
                 Some(Ok(said)) => self.say(said, false),

@@ -58,7 +58,7 @@ impl App {
                 _ => Vec::new(),
             };
             self.view.touch(ui, &response, snapshot, &handles, actions);
-            let (Some(sight), Some(lens)) = (self.view.sight(scenery), self.view.lens(rect)) else {
+            let (Some(sight), Some(lens)) = (self.view.sight(scenery, aspect), self.view.lens(rect)) else {
                 continue;
             };
             let pixels = ui.ctx().pixels_per_point();

@@ -29,6 +29,11 @@ use std::{
 /// The scene, the one beside it and the simulation.
 pub struct Session {
     document: Document,
+    /// Scenes that were open before, as they were left, and after.
+    before: Vec<Document>,
+    after: Vec<Document>,
+    /// How often another scene was gone over to.
+    opened: u64,
     /// What it is compared with.
     second: Option<Document>,
     /// Whether parameters are those of the second.
@@ -78,6 +83,9 @@ impl Session {
         });
         let mut session = Self {
             document,
+            before: Vec::new(),
+            after: Vec::new(),
+            opened: 0,
             second: None,
             on_second: false,
             player,
@@ -126,33 +134,27 @@ impl Session {
                 let document = self.edited_mut();
                 let edits = edit::of(document, parameter, value, chosen)?;
                 let change = document.set_all(edits)?;
-                self.follow(change);
+                self.edited_by(change);
             }
             Action::Set(key, value) => {
                 let change = self.edited_mut().set(&key, value)?;
-                self.follow(change);
+                self.edited_by(change);
             }
             Action::SetAll(values) => {
                 let change = self.edited_mut().set_all(values)?;
-                self.follow(change);
+                self.edited_by(change);
             }
             Action::Rest => self.edited_mut().rest(),
             Action::Add(list, fields) => {
                 let change = self.edited_mut().add(list, &fields)?;
-                self.follow(change);
+                self.edited_by(change);
             }
             Action::Remove(list, place) => {
                 let change = self.edited_mut().remove(list, place)?;
-                self.follow(change);
+                self.edited_by(change);
             }
-            Action::Undo => {
-                let change = self.edited_mut().undo()?;
-                self.follow(change);
-            }
-            Action::Redo => {
-                let change = self.edited_mut().redo()?;
-                self.follow(change);
-            }
+            Action::Undo => self.back()?,
+            Action::Redo => self.forth()?,
             Action::Choose(groom, group) => self.chosen = (groom, group),
             Action::New(text) => self.take(Document::new(&folder().join("scene.toml"), text)?)?,
             Action::Open(path) => self.open(&path)?,
@@ -211,6 +213,14 @@ impl Session {
         self.player.tell(Order::Loop(self.length.filter(|_| self.repeat)));
     }
 
+    /// After a new edit there is no scene to go forth to.
+    fn edited_by(&mut self, change: Change) {
+        if change != Change::None {
+            self.after.clear();
+        }
+        self.follow(change);
+    }
+
     /// Brings the simulation up to an edit.
     fn follow(&mut self, change: Change) {
         self.compare();
@@ -238,6 +248,18 @@ impl Session {
     /// The document that is saved.
     pub fn document(&self) -> &Document {
         &self.document
+    }
+
+    /// Whether there is a step to go back, and one to go forth.
+    pub fn steps(&self) -> (bool, bool) {
+        let (back, forth) = self.edited().history();
+        let others = |scenes: &[Document]| !self.on_second && !scenes.is_empty();
+        (back || others(&self.before), forth || others(&self.after))
+    }
+
+    /// How often another scene was gone over to.
+    pub fn opened(&self) -> u64 {
+        self.opened
     }
 
     /// What it is compared with.

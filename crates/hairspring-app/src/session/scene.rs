@@ -10,6 +10,9 @@ use crate::{
 };
 use std::path::PathBuf;
 
+/// Most scenes that are kept to go back to: texts, not hair.
+const MOST_SCENES: usize = 8;
+
 impl Session {
     /// Opens a file: a scene; or a groom or a body, which are put in a scene of their own, or in place of the open one's.
     pub(super) fn open(&mut self, path: &std::path::Path) -> Result<(), AppError> {
@@ -40,8 +43,18 @@ impl Session {
         self.take(document)
     }
 
-    /// Goes over to another document, if its scene can be read.
+    /// Goes over to another document, if its scene can be read: a step as any other.
     pub(super) fn take(&mut self, document: Document) -> Result<(), AppError> {
+        let old = self.change_to(document)?;
+        self.before.push(old);
+        let many = self.before.len().saturating_sub(MOST_SCENES);
+        self.before.drain(..many);
+        self.after.clear();
+        Ok(())
+    }
+
+    /// Goes over to another document, if its scene can be read, from this one.
+    fn change_to(&mut self, document: Document) -> Result<Document, AppError> {
         let old = std::mem::replace(&mut self.document, document);
         let second = self.second.take();
         if let Err(why) = self.begin() {
@@ -50,6 +63,39 @@ impl Session {
         }
         self.on_second = false;
         self.chosen = (0, 0);
+        self.opened += 1;
+        Ok(old)
+    }
+
+    /// A step back: within the scene, and from its first to the scene that was open before, as that was left.
+    pub(super) fn back(&mut self) -> Result<(), AppError> {
+        let (back, _) = self.edited().history();
+        if !back
+            && !self.on_second
+            && let Some(document) = self.before.pop()
+        {
+            let old = self.change_to(document)?;
+            self.after.push(old);
+            return Ok(());
+        }
+        let change = self.edited_mut().undo()?;
+        self.follow(change);
+        Ok(())
+    }
+
+    /// A step forth again.
+    pub(super) fn forth(&mut self) -> Result<(), AppError> {
+        let (_, forth) = self.edited().history();
+        if !forth
+            && !self.on_second
+            && let Some(document) = self.after.pop()
+        {
+            let old = self.change_to(document)?;
+            self.before.push(old);
+            return Ok(());
+        }
+        let change = self.edited_mut().redo()?;
+        self.follow(change);
         Ok(())
     }
 
@@ -109,4 +155,39 @@ impl Session {
 /// The folder that scenes without a file are in.
 pub(super) fn folder() -> PathBuf {
     std::env::current_dir().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::Action;
+
+    #[test]
+    fn undo_leads_back_to_the_scene_that_was_open_before() {
+        let text = |style: &str| format!("[builtin]\nstyle = \"{style}\"\nstrands = 10\nguides = 5\n");
+        let document = Document::new("scene.toml".as_ref(), text("wavy")).unwrap();
+        let mut session = Session::new(document, 1, None, || ()).unwrap();
+        let now = |session: &Session| session.document().text().to_owned();
+        let act = |session: &mut Session, action| session.act(action).unwrap();
+        act(
+            &mut session,
+            Action::Set("gravity".parse().unwrap(), Some([0.0, -1.0, 0.0].into_iter().collect())),
+        );
+        let left = now(&session);
+        act(&mut session, Action::New(text("curly")));
+        assert_eq!((now(&session), session.steps(), session.opened()), (text("curly"), (true, false), 1));
+        act(&mut session, Action::Undo);
+        assert_eq!((now(&session), session.steps(), session.opened()), (left.clone(), (true, true), 2));
+        act(&mut session, Action::Redo);
+        assert_eq!(now(&session), text("curly"));
+        act(&mut session, Action::Undo);
+        // Back in it, its own steps lead further back.
+        act(&mut session, Action::Undo);
+        assert_eq!((now(&session), session.steps()), (text("wavy"), (false, true)));
+        act(&mut session, Action::Redo);
+        assert_eq!(now(&session), left);
+        // What is changed here leads to no other scene any more.
+        act(&mut session, Action::Set("gravity".parse().unwrap(), None));
+        assert_eq!(session.steps(), (true, false));
+    }
 }

@@ -7,7 +7,7 @@ mod touch;
 pub use hand::{FINGERS, Hand};
 
 use crate::{
-    orbit::{Lens, Orbit},
+    orbit::{Lens, NARROW, Orbit},
     session::Session,
     snapshot::{Scenery, Sight, Snapshot},
 };
@@ -120,10 +120,10 @@ impl Default for View {
 }
 
 impl View {
-    /// How the scene is looked at.
-    pub fn sight(&self, scenery: &Scenery) -> Option<Sight> {
+    /// How the scene is looked at in a picture so many times as wide as high.
+    pub fn sight(&self, scenery: &Scenery, aspect: f32) -> Option<Sight> {
         let orbit = self.orbit?;
-        let camera = orbit.camera();
+        let camera = orbit.seen(aspect);
         let strands = scenery.still.counts[1] as f32;
         Some(Sight {
             camera,
@@ -165,13 +165,15 @@ impl View {
         let own = session.document().settings().camera;
         let bounds = snapshot.stages.first().and_then(Scenery::bounds).unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
         let room = Vec3::splat(0.06 * (bounds.1 - bounds.0).length());
-        let camera = own.unwrap_or_else(|| frame_camera((bounds.0 - room, bounds.1 + room), aspect));
+        let camera =
+            own.unwrap_or_else(|| frame_camera((bounds.0 - room, bounds.1 + room), aspect.max(NARROW)));
         self.orbit = Some(Orbit::new(&camera));
     }
 
     /// The lens through which the picture at `rect` is seen.
     pub fn lens(&self, rect: egui::Rect) -> Option<Lens> {
-        Some(Lens::new(&self.orbit?.camera(), rect.width() / rect.height().max(1.0)))
+        let aspect = rect.width() / rect.height().max(1.0);
+        Some(Lens::new(&self.orbit?.seen(aspect), aspect))
     }
 }
 

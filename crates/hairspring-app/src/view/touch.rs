@@ -47,14 +47,15 @@ impl View {
             orbit.zoom((scroll * 0.003).exp() * zoom);
         }
         use egui::PointerButton::{Middle, Primary, Secondary};
+        let aspect = rect.width() / rect.height().max(1.0);
         let moved = part(response.drag_delta());
         let look = self.hand == Hand::Look || self.hand == Hand::Pick;
         if response.dragged_by(Middle) || (look && shift && response.dragged_by(Primary)) {
-            orbit.pan(moved);
+            orbit.pan(moved, aspect);
         } else if response.dragged_by(Secondary) || (look && response.dragged_by(Primary)) {
             orbit.drag(moved);
         }
-        let lens = Lens::new(&orbit.camera(), rect.width() / rect.height().max(1.0));
+        let lens = Lens::new(&orbit.seen(aspect), aspect);
         let pointer = response.interact_pointer_pos().map(place);
         if self.hand == Hand::Pick
             && response.clicked()
