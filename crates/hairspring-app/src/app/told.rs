@@ -60,6 +60,8 @@ pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2,
     let inside = rect.shrink2(egui::vec2(10.0, 10.0));
     egui::Area::new(egui::Id::unique(("figures", align.y() == egui::Align::TOP)))
         .fixed_pos(align.pos_in_rect(&inside))
+        // Lines end where the picture does, not before.
+        .default_width(inside.width())
         .pivot(align)
         .show(ctx, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
