@@ -60,11 +60,11 @@ pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2,
     let inside = rect.shrink2(egui::vec2(10.0, 10.0));
     egui::Area::new(egui::Id::unique(("figures", align.y() == egui::Align::TOP)))
         .fixed_pos(align.pos_in_rect(&inside))
-        // Lines end where the picture does, not before.
-        .default_width(inside.width())
         .pivot(align)
         .show(ctx, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
+            // A figure stays in the line of its name.
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             egui::Frame::new()
                 .fill(Color32::from_black_alpha(120))
                 .corner_radius(4.0)
