@@ -52,6 +52,6 @@ pub fn reset(document: &Document, parameter: &Parameter, (groom, group): (usize,
 }
 
 /// A value as the text has it.
-fn written(value: &toml::Value) -> Option<Value> {
+pub fn written(value: &toml::Value) -> Option<Value> {
     value.to_string().parse().ok()
 }

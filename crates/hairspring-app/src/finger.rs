@@ -6,9 +6,22 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// Events that are due, one batch a frame of the window.
+/// What the finger is doing.
+#[derive(Default)]
+struct Move {
+    /// Events that are due, one batch a frame of the window.
+    due: VecDeque<Vec<Event>>,
+    /// Where it ends.
+    at: Pos2,
+}
+
+/// A finger that a script moves.
 #[derive(Clone, Default)]
-pub struct Finger(Arc<Mutex<VecDeque<Vec<Event>>>>);
+pub struct Finger(Arc<Mutex<Move>>);
+
+fn button(pos: Pos2, pressed: bool) -> Event {
+    Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
+}
 
 impl Finger {
     /// A finger on this window.
@@ -18,32 +31,33 @@ impl Finger {
         finger
     }
 
-    fn due(&self) -> std::sync::MutexGuard<'_, VecDeque<Vec<Event>>> {
+    fn moves(&self) -> std::sync::MutexGuard<'_, Move> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Presses at `from`, goes to `to` in so many frames, and lets go.
-    pub fn drag(&self, from: Pos2, to: Pos2, frames: u32) {
-        let button = |pos, pressed| Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        };
-        let mut due = self.due();
-        due.push_back(vec![Event::PointerMoved(from)]);
-        due.push_back(vec![button(from, true)]);
+    /// Presses at `from` and goes to `to` in so many frames.
+    pub fn hold(&self, from: Pos2, to: Pos2, frames: u32) {
+        let mut moves = self.moves();
+        moves.due.push_back(vec![Event::PointerMoved(from)]);
+        moves.due.push_back(vec![button(from, true)]);
         for k in 1..=frames {
             let share = k as f32 / frames as f32;
-            due.push_back(vec![Event::PointerMoved(from + (to - from) * share)]);
+            moves.due.push_back(vec![Event::PointerMoved(from + (to - from) * share)]);
         }
-        due.push_back(vec![button(to, false)]);
-        due.push_back(vec![Event::PointerGone]);
+        moves.at = to;
+    }
+
+    /// Lets go.
+    pub fn release(&self) {
+        let mut moves = self.moves();
+        let at = moves.at;
+        moves.due.push_back(vec![button(at, false)]);
+        moves.due.push_back(vec![Event::PointerGone]);
     }
 
     /// Whether nothing is due.
     pub fn rests(&self) -> bool {
-        self.due().is_empty()
+        self.moves().due.is_empty()
     }
 }
 
@@ -53,7 +67,8 @@ impl egui::Plugin for Finger {
     }
 
     fn input_hook(&mut self, ctx: &egui::Context, input: &mut RawInput) {
-        if let Some(events) = self.due().pop_front() {
+        let events = self.moves().due.pop_front();
+        if let Some(events) = events {
             input.events.extend(events);
             ctx.request_repaint();
         }

@@ -55,6 +55,23 @@ impl Key {
         Self(steps)
     }
 
+    /// The list at the top of the file, and the place in it, of the entry that this key belongs to, if it does.
+    pub fn listed(&self) -> Option<(&str, usize)> {
+        match &self.0[..] {
+            [Step::Field(list), Step::Place(place), ..] => Some((list, *place)),
+            _ => None,
+        }
+    }
+
+    /// The same of the entry at another place of that list.
+    pub fn relisted(&self, place: usize) -> Self {
+        let mut key = self.clone();
+        if let [Step::Field(_), Step::Place(old), ..] = &mut key.0[..] {
+            *old = place;
+        }
+        key
+    }
+
     /// What a table of effective values says here.
     pub fn look_up<'a>(&self, table: &'a toml::Table) -> Option<&'a toml::Value> {
         let Some((Step::Field(first), rest)) = self.0.split_first() else { return None };

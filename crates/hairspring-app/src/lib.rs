@@ -3,8 +3,10 @@
 //! | file | what is in it |
 //! | --- | --- |
 //! | `document`, `effective`, `defaults` | the scene's text, edited in place; undo, save; what counts in it, and what would had nobody changed it |
+//! | `destination` | where a file goes that a person names |
 //! | `key`, `parameter`, `field` | names of its values; every parameter, and every field of a list's entries, with its unit, range and what it does |
 //! | `edit` | what a parameter's new value writes, and where |
+//! | `idle` | what does not count as the scene stands, and why |
 //! | `differ` | what two scenes that are compared differ in |
 //! | `player`, `snapshot` | the simulation on a thread of its own, and what that shows of a moment |
 //! | `pushed`, `pulled` | a ball and a hand to push through hair, and how the pointer moves whatever it moves |
@@ -27,6 +29,7 @@ mod axes;
 mod carried;
 mod defaults;
 mod desktop;
+mod destination;
 mod differ;
 mod document;
 mod edit;
@@ -36,6 +39,7 @@ mod field;
 mod finger;
 mod followers;
 mod handle;
+mod idle;
 mod key;
 mod letters;
 mod memory;

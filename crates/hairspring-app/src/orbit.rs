@@ -10,6 +10,9 @@ const FARTHEST: f32 = 100.0;
 /// Steepest look from above or below [rad]: straight down has no way up.
 const STEEPEST: f32 = 1.5;
 
+/// A picture narrower than this, over its height, takes in as much across as one that is not: of two heads side by side, the hair of both is seen.
+pub const NARROW: f32 = 0.85;
+
 /// A camera about a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
@@ -41,15 +44,22 @@ impl Orbit {
         Camera { position: self.target + back * self.distance, target: self.target, fov: self.fov }
     }
 
+    /// The camera through which a picture so many times as wide as high is seen.
+    pub fn seen(&self, aspect: f32) -> Camera {
+        let slope = (0.5 * self.fov.to_radians()).tan() * (NARROW / aspect).max(1.0);
+        let fov = if aspect < NARROW { 2.0 * slope.atan().to_degrees() } else { self.fov };
+        Camera { fov, ..self.camera() }
+    }
+
     /// Turns by a drag of so many parts of the picture's height.
     pub fn drag(&mut self, by: Vec2) {
         self.turn -= by.x * 3.0;
         self.rise = (self.rise + by.y * 3.0).clamp(-STEEPEST, STEEPEST);
     }
 
-    /// Moves across, so that the target stays under the pointer; `by` in parts of the picture's height.
-    pub fn pan(&mut self, by: Vec2) {
-        let lens = Lens::new(&self.camera(), 1.0);
+    /// Moves across, so that the target stays under the pointer in a picture so many times as wide as high; `by` in parts of its height.
+    pub fn pan(&mut self, by: Vec2, aspect: f32) {
+        let lens = Lens::new(&self.seen(aspect), aspect);
         let size = 2.0 * self.distance * lens.slope;
         self.target += (lens.up * by.y - lens.right * by.x) * size;
     }
@@ -151,10 +161,23 @@ mod tests {
 
     #[test]
     fn what_is_panned_stays_under_the_pointer() {
-        let mut orbit = Orbit::new(&Camera::default());
-        let p = orbit.target;
-        orbit.pan(Vec2::new(0.2, 0.1));
-        let (at, _) = Lens::new(&orbit.camera(), 1.0).project(p).unwrap();
-        assert!(at.distance(Vec2::new(0.7, 0.6)) < 1e-3, "{at}");
+        for aspect in [1.0, 0.5] {
+            let mut orbit = Orbit::new(&Camera::default());
+            let p = orbit.target;
+            orbit.pan(Vec2::new(0.2 * aspect, 0.1), aspect);
+            let (at, _) = Lens::new(&orbit.seen(aspect), aspect).project(p).unwrap();
+            assert!(at.distance(Vec2::new(0.7, 0.6)) < 1e-3, "{at}");
+        }
+    }
+
+    #[test]
+    fn a_narrow_picture_shows_as_much_across() {
+        let orbit = Orbit::new(&Camera::default());
+        let across = |aspect: f32| {
+            let (_, way) = Lens::new(&orbit.seen(aspect), aspect).ray(Vec2::new(1.0, 0.5));
+            way.distance(Lens::new(&orbit.camera(), 1.0).ray(Vec2::new(0.5, 0.5)).1)
+        };
+        assert!((across(0.4) - across(NARROW)).abs() < 1e-5);
+        assert!(across(1.6) > 1.8 * across(NARROW) && orbit.seen(1.6).fov == orbit.fov);
     }
 }

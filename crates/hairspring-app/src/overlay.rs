@@ -104,6 +104,11 @@ pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picke
     if let Some((center, radius)) = view.reached().filter(|_| view.hand == Hand::Comb) {
         fingers(pen, center, radius, Stroke::new(2.0, Color32::from_white_alpha(170)));
     }
+    if let Some((center, radius)) = view.reached().filter(|_| view.hand == Hand::Ball) {
+        // A ball behind hair or in the head is not lost.
+        let [x, y] = [pen.lens.right(), pen.lens.up()].map(|axis| axis * radius);
+        pen.circle(center, x, y, Stroke::new(1.0, Color32::from_white_alpha(90)));
+    }
     for (k, handle) in handles.iter().enumerate() {
         handle_at(pen, handle, view.touched() == Some(k));
     }

@@ -92,6 +92,8 @@ pub enum Kind {
         max: f64,
         /// Where it starts when it is switched on.
         from: f64,
+        /// What counts while it is left out.
+        without: &'static str,
     },
     /// A whole number of guides, or a word for them.
     Guides {
@@ -111,8 +113,13 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// Linear red, green, blue.
     Color,
-    /// A colour that may be left out, with what to begin from.
-    MaybeColor([f64; 3]),
+    /// A colour that may be left out.
+    MaybeColor {
+        /// Where it starts when it is switched on.
+        from: [f64; 3],
+        /// What counts while it is left out.
+        without: &'static str,
+    },
     /// Three numbers.
     Vector {
         /// Farthest from 0 of each.
@@ -195,15 +202,15 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "gravity", "Gravity", "m/s²", Kind::Vector { reach: 30.0 }, "Which way things fall, and how fast. Hair that starts in balance is put in balance under every gravity anew: it keeps its shape, and swings otherwise. To see it give way, switch off \"Starts in balance\" (Solver).";
         Material "density", "Density", "kg/m³", number(100.0, 5000.0), "Of the fibre. Dry human hair: 1310.";
         Material "mass_profile", "Mass along it", "", Kind::Profile, "Weights from root to tip, linear in between; only their ratios count: 1, 3 is three times as heavy at the tip.";
-        Material "radius", "Fibre radius", "m", Kind::Maybe { min: 1e-5, max: 2e-4, from: 3.5e-5 }, "Of the fibre, in place of the groom's own. Human hair: 25e-6 to 50e-6. It begins the scene anew.";
+        Material "radius", "Fibre radius", "m", Kind::Maybe { min: 1e-5, max: 2e-4, from: 3.5e-5, without: "as the groom has it" }, "Of the fibre, in place of the groom's own. Human hair: 25e-6 to 50e-6. It begins the scene anew.";
     }
     Motion {
         Groom "motion", "Moves by itself", "", Kind::Switch, "Whether the built-in head nods, turns and shakes where the scene has no motion of its own.";
         Scene "clip.start", "Begins at frame", "", Kind::Count { min: 0, max: 500 }, "First frame of the motion's file that is used.";
         Scene "clip.rest_frame", "Rests in frame", "", Kind::Count { min: 0, max: 500 }, "The frame in which the joint that drives the body counts as being at rest.";
-        Scene "clip.travel", "Way through the world", "", Kind::Choice(&["keep", "in-place", "none"]), "What is kept of it. in-place: bobbing only.";
+        Scene "clip.travel", "Travels", "", Kind::Choice(&["keep", "in-place", "none"]), "What is kept of it. in-place: bobbing only.";
         Scene "clip.facing", "Faces", "°", number(-180.0, 180.0), "Direction of the body, about the vertical from +Z.";
-        Scene "solver.inertia", "Inertia of the head", "×", number(0.0, 1.0), "How much of the head's motion hair feels: 0, and it moves as if the head stood still.";
+        Scene "solver.inertia", "Head's inertia", "×", number(0.0, 1.0), "How much of the head's motion hair feels: 0, and it moves as if the head stood still.";
     }
     Air {
         Scene "wind.velocity", "Wind", "m/s", Kind::Vector { reach: 20.0 }, "Mean velocity of the air, everywhere.";
@@ -221,7 +228,7 @@ pub const ALL: &[Parameter] = parameters! {
     Collision {
         Scene "solver.collide_body", "Meets the body", "", Kind::Switch, "Whether hair collides with the body's mesh. It begins the scene anew.";
         Scene "solver.contact", "Answered by", "", Kind::Choice(&["both", "penalty", "projection"]), "What keeps hair out of bodies: a force in the solve (penalty: soft), the move to the nearest free place (projection: hard), or both.";
-        Scene "solver.segments", "Segments meet bodies", "", Kind::Switch, "Whether hair stays out of bodies between its points too.";
+        Scene "solver.segments", "Between points", "", Kind::Switch, "Whether hair stays out of bodies between its points too.";
         Material "friction", "Friction", "", number(0.0, 1.0), "Coulomb friction on bodies. Hair on skin: 0.1 to 0.3.";
         Scene "solver.jump", "A jump is", "m", scale(0.05, 10.0), "A head that moves farther in a frame, over how it moved before, has jumped, and hair goes with it as it is.";
     }
@@ -230,16 +237,16 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "volume.friction", "Friction in hair", "1/s", number(0.0, 30.0), "How fast hair takes on the velocity of the hair around it.";
         Scene "volume.pressure", "Pressure", "m/s", number(0.0, 3.0), "density: speed with which a crowd spreads.";
         Scene "volume.regain", "Regain", "1/s", number(0.0, 100.0), "incompressible: share of lost volume that is regained a second.";
-        Scene "volume.cell", "Cell", "m", Kind::Maybe { min: 0.002, max: 0.1, from: 0.015 }, "Edge of a cell of the lattice; left out, the smallest that holds eight points at rest.";
+        Scene "volume.cell", "Cell", "m", Kind::Maybe { min: 0.002, max: 0.1, from: 0.015, without: "found by itself" }, "Edge of a cell of the lattice; left out, the smallest that holds eight points at rest.";
         Scene "neighbours.on", "Strand on strand", "", Kind::Switch, "Whether simulated strands meet each other one by one: exact, and slow. For guides and small scenes.";
-        Scene "neighbours.radius", "Radius of a strand", "m", Kind::Maybe { min: 0.0002, max: 0.02, from: 0.002 }, "With the hairs that it stands for; nowhere more than half of the way to the next at rest. Left out, half of that way in the mean.";
+        Scene "neighbours.radius", "Radius of a strand", "m", Kind::Maybe { min: 0.0002, max: 0.02, from: 0.002, without: "found by itself" }, "With the hairs that it stands for; nowhere more than half of the way to the next at rest. Left out, half of that way in the mean.";
         Scene "neighbours.friction", "Friction of strands", "", number(0.0, 1.0), "Coulomb friction of strands on each other.";
         Scene "neighbours.stiction", "Stiction", "N", number(0.0, 1e-4), "Force that touching segments hold together with until more pulls. A hair of 25 cm weighs 1.6e-5.";
     }
     Look {
         Groom "look.root_color", "Root", "", Kind::Color, "What a thick lock of it looks like at the root.";
         Groom "look.tip_color", "Tip", "", Kind::Color, "And at the tip.";
-        Groom "look.melanin", "Melanin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5 }, "Pigment in place of the two colours: 0 is white, 1 is black.";
+        Groom "look.melanin", "Melanin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "the two colours" }, "Pigment in place of the two colours: 0 is white, 1 is black.";
         Groom "look.melanin_redness", "Redness", "", number(0.0, 1.0), "Share of the pigment that is the reddish one: brown to red.";
         Groom "look.dye", "Dye", "", Kind::Color, "What white hair would be dyed, over melanin or the colours; white is no dye.";
         Groom "look.variation", "Variation", "", number(0.0, 1.0), "How much pigment differs from strand to strand.";
@@ -249,11 +256,11 @@ pub const ALL: &[Parameter] = parameters! {
         Groom "look.backlight", "Backlight", "×", number(0.0, 4.0), "Strength of light that shines through from behind.";
         Groom "look.scatter", "Scatter", "×", number(0.0, 4.0), "Strength of light from strand to strand.";
         Groom "look.shadow", "Shadow", "×", number(0.0, 4.0), "How strongly strands shade what is behind them.";
-        Scene "body.color", "Skin", "", Kind::MaybeColor([0.5, 0.3, 0.23]), "Colour of the body's whole surface, in place of its file's.";
-        Scene "body.roughness", "Roughness of skin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5 }, "Glossy to matt, in place of the body's file's.";
+        Scene "body.color", "Skin", "", Kind::MaybeColor { from: [0.5, 0.3, 0.23], without: "as its file has it" }, "Colour of the body's whole surface, in place of its file's.";
+        Scene "body.roughness", "Roughness of skin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "as its file has it" }, "Glossy to matt, in place of the body's file's.";
         Scene "ground.on", "Ground", "", Kind::Switch, "Whether a level floor takes the shadow of body and hair. It is a matter of the picture: hair meets colliders.";
-        Scene "ground.height", "… lies at", "m", Kind::Maybe { min: -2.0, max: 2.0, from: 0.0 }, "On the axis that points up. Left out, at the lowest point of the body at rest. What is below it is hidden.";
-        Scene "ground.color", "… is of colour", "", Kind::MaybeColor([0.4, 0.37, 0.33]), "A floor's own, which fades into the backdrop; left out, shadow alone is seen.";
+        Scene "ground.height", "… lies at", "m", Kind::Maybe { min: -2.0, max: 2.0, from: 0.0, without: "under the body" }, "On the axis that points up. Left out, at the lowest point of the body at rest. What is below it is hidden.";
+        Scene "ground.color", "… is of colour", "", Kind::MaybeColor { from: [0.4, 0.37, 0.33], without: "shadow alone" }, "A floor's own, which fades into the backdrop; left out, shadow alone is seen.";
     }
     Camera {
         Scene "camera.position", "Stands at", "m", Kind::Vector { reach: 10.0 }, "The scene's own camera, which looks when it is opened and rendered. The window's is turned by hand.";
@@ -285,19 +292,6 @@ impl Parameter {
         const NAMES: [&str; 6] = ["style", "strands", "guides", "motion", "radius", "solver.collide_body"];
         const TABLES: [&str; 5] = ["grow", "thicken", "transform", "clip", "body"];
         NAMES.contains(&self.name) || self.name.split_once('.').is_some_and(|(t, _)| TABLES.contains(&t))
-    }
-
-    /// Why it does not count in this scene beside another that does, if so.
-    pub fn idle(&self, document: &Document, groom: usize) -> Option<&'static str> {
-        let melanin = Key::top("groom").place(groom).field("look.melanin");
-        let pigment = melanin.look_up(document.effective()).is_some();
-        match self.name {
-            "look.root_color" | "look.tip_color" if pigment => {
-                Some("Does not count while Melanin is ticked, which takes its place.")
-            }
-            "look.melanin_redness" if !pigment => Some("Counts only while Melanin is ticked."),
-            _ => None,
-        }
     }
 
     /// Where the text may say it; `None` where it has no place for it yet.

@@ -11,6 +11,9 @@ use hairspring::{
 /// faster in the scene than on the desk.
 pub const FASTEST: f32 = 4.0;
 
+/// The same of an open hand [m/s]: a quick stroke. Where steps take long, four metres a second would be a blow, which ruffles a head of hair.
+pub const FASTEST_STROKE: f32 = 1.5;
+
 /// The same of the head [m/s]: one that is shaken hard.
 pub const FASTEST_HEAD: f32 = 1.5;
 
@@ -113,7 +116,7 @@ impl Pushing {
         self.pulled.wanted = Rigid { translation: self.push.at, ..before };
         if let Pushed::Hand(length) = self.push.what {
             // In steps that are not longer than it may go: it comes to no other side of the head.
-            let way = (self.push.at - before.translation).clamp_length_max(FASTEST * STEP);
+            let way = (self.push.at - before.translation).clamp_length_max(FASTEST_STROKE * STEP);
             let back = back(&self.push, length, before.translation + way, body);
             let speed = self.stroke.length();
             let across = back.cross(self.stroke).normalize_or_zero();
@@ -129,7 +132,8 @@ impl Pushing {
             self.lift = (self.lift * (1.0 - soon(TURN))).max(lift(&self.shapes, place, length, body));
             self.pulled.wanted = Rigid { translation: place.translation + back * self.lift, ..place };
         }
-        let moved = self.pulled.go(FASTEST);
+        let fastest = if let Pushed::Hand(_) = self.push.what { FASTEST_STROKE } else { FASTEST };
+        let moved = self.pulled.go(fastest);
         self.stroke += STROKE * ((self.pulled.now.translation - before.translation) / STEP - self.stroke);
         moved
     }
@@ -244,7 +248,7 @@ mod tests {
             pushing.go(Some(posed(&head)));
             let now = pushing.pulled.now;
             let way = now.translation.distance(last.translation);
-            assert!(way < FASTEST * STEP * 1.001, "step {step}: {way} m");
+            assert!(way < FASTEST_STROKE * STEP * 1.001, "step {step}: {way} m");
             let turn = now.rotation.angle_between(last.rotation);
             assert!(turn * 0.7 * LENGTH < FASTEST * STEP, "step {step}: {turn} rad");
             let off = now.translation.length() - 0.09;

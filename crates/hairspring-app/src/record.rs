@@ -2,6 +2,7 @@
 
 use crate::{
     AppError,
+    destination::destination,
     letters::Letters,
     orbit::Orbit,
     session::{Action, Session},
@@ -119,12 +120,13 @@ pub struct Recorder {
 impl Recorder {
     /// Begins; the play is paused and goes on by what is recorded. It is drawn by `gpu`, if there is one, else by the CPU.
     pub fn new(
-        wish: Wish,
+        mut wish: Wish,
         session: &mut Session,
         snapshot: &Snapshot,
         gpu: Option<Gpu>,
         wake: impl Fn() + Send + 'static,
     ) -> Result<Self, AppError> {
+        wish.path = destination(&wish.path)?;
         let sink = Sink::new(&wish, gpu)?;
         let frames = match wish.kind {
             Kind::Still => 1,

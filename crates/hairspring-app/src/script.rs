@@ -6,7 +6,8 @@
 //! set groom[0].look.roughness 0.5  a value by its key; `unset KEY` takes it away
 //! hand grab                        look, grab, ball, head, pick, comb, hand
 //! drag 0.4 0.6 0.7 0.5 30          presses, moves in so many frames of the window, releases
-//! shot window.png                  the window as it is
+//! hold 0.4 0.6 0.7 0.5 30          the same, and holds on until `release`: to see what a tool does
+//! shot window.png                  the window as it is; paused, once it is drawn in full
 //! pace                             prints how it draws, how many pictures come in a second, and a step's time
 //! ```
 //!
@@ -47,6 +48,10 @@ pub enum Line {
     Hand(Hand),
     /// Drags from a place of the picture to another in so many frames.
     Drag(Vec2, Vec2, u32),
+    /// The same, but holds on.
+    Hold(Vec2, Vec2, u32),
+    /// Lets go.
+    Release,
     /// What colours show.
     Show(Option<Value>),
     /// Finds parameters, whose groups open.
@@ -146,10 +151,14 @@ fn read(line: &str) -> Result<Line, String> {
             let names = || Hand::ALL.map(|h| h.1.to_lowercase()).join(", ");
             Line::Hand(known.ok_or_else(|| format!("'{rest}' is no tool: {}", names()))?.0)
         }
-        "drag" => match numbers()?[..] {
-            [a, b, c, d, frames] => Line::Drag(Vec2::new(a, b), Vec2::new(c, d), frames.max(1.0) as u32),
-            _ => return Err("`drag` needs five numbers: from x y, to x y, frames".into()),
+        "drag" | "hold" => match numbers()?[..] {
+            [a, b, c, d, frames] => {
+                let (from, to, frames) = (Vec2::new(a, b), Vec2::new(c, d), frames.max(1.0) as u32);
+                if word == "drag" { Line::Drag(from, to, frames) } else { Line::Hold(from, to, frames) }
+            }
+            _ => return Err(format!("`{word}` needs five numbers: from x y, to x y, frames")),
         },
+        "release" => Line::Release,
         "show" if rest == "natural" => Line::Show(None),
         "show" => {
             let known = Value::ALL.into_iter().find(|v| v.name().eq_ignore_ascii_case(rest));
@@ -187,9 +196,9 @@ mod tests {
 
     #[test]
     fn every_line_of_the_help_is_read_and_others_are_refused_by_their_number() {
-        let text = "wait 30\nset groom[0].look.roughness 0.5\nunset wind.gust\nhand grab\ndrag 0.4 0.6 0.7 0.5 30\n# no\n\nshot a b.png\n\
+        let text = "wait 30\nset groom[0].look.roughness 0.5\nunset wind.gust\nhand grab\ndrag 0.4 0.6 0.7 0.5 30\nhold 0.4 0.6 0.7 0.5 30\nrelease\n# no\n\nshot a b.png\n\
                     overlay slice on\ncompare off\nshow natural\nshow speed\nclip x.mp4 2\nfind wind\nquit";
-        assert_eq!(parse(text).unwrap().len(), 13);
+        assert_eq!(parse(text).unwrap().len(), 15);
         for wrong in [
             "fly",
             "set a",

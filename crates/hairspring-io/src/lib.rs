@@ -29,7 +29,7 @@ pub use error::{Error, ErrorKind, Place, Problem, Result};
 pub use gltf::Character;
 pub use load::{Format, Loaded, read_body, read_bones, read_groom, read_motion};
 pub use motion::Motion;
-pub use save::{write_groom, write_strands};
+pub use save::{atomically, write_groom, write_strands};
 pub use scene::{read_scene, read_scene_text, read_settings, same_geometry};
 pub use strands::Strands;
 pub use units::{Axis, ReadOptions};

@@ -73,8 +73,11 @@ fn varies_along(groom: &Groom) -> bool {
     })
 }
 
-/// Has `write` fill a temporary file in the folder of `path`, then renames it.
-fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+/// Has `write` fill a temporary file in the folder of `path`, then renames it: a file is there whole or not at all, with the rights that new files have.
+///
+/// # Errors
+/// What `write` or the system says; nothing is left behind then.
+pub fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hairspring-");

@@ -1,5 +1,7 @@
 //! The window: panels around the picture, keys, files that are dropped, and what a script does.
 
+mod keys;
+mod picture;
 mod scripted;
 mod told;
 
@@ -7,26 +9,23 @@ use crate::{
     AppError,
     document::{Document, builtin_text},
     finger::Finger,
-    handle, memory,
-    overlay::{self, Pen},
+    memory,
     painter::{Drawn, Painter},
     panel::{
-        files::{Decision, Files, For},
+        files::{Decision, Files},
         help, inspect, parameters,
         presets::Presets,
         transport,
     },
-    record::{Kind, Recorder, Wish},
+    record::{Recorder, Wish},
     script::Line,
     session::{Action, Session},
-    snapshot::Snapshot,
-    view::{Hand, View},
+    view::View,
 };
-use eframe::egui::{self, Color32, Key, Modifiers, RichText, Sense, Ui};
-use hairspring::stage::Value;
+use eframe::egui::{self, Color32, Ui};
 use std::{
     collections::VecDeque,
-    sync::{Arc, mpsc::Receiver},
+    sync::mpsc::Receiver,
     time::{Duration, Instant},
 };
 
@@ -68,7 +67,8 @@ pub struct App {
     /// The step that the script waits for.
     waits: u64,
     finger: Finger,
-    /// Where the picture was drawn last.
+    /// Where the picture was drawn last, both sides of it, and the first.
+    whole: egui::Rect,
     rect: egui::Rect,
     /// A picture of the window that is being made: what writing it came to.
     shot: Option<Receiver<Result<(), AppError>>>,
@@ -108,6 +108,7 @@ impl App {
             script,
             waits: 0,
             finger: Finger::new(&ctx),
+            whole: egui::Rect::NOTHING,
             rect: egui::Rect::NOTHING,
             shot: None,
             hairs,
@@ -139,9 +140,15 @@ impl App {
     }
 
     fn act(&mut self, action: Action) {
-        let another = matches!(action, Action::New(_) | Action::Open(_));
+        let before = self.session.opened();
+        let saves = matches!(action, Action::Save(_));
         match self.session.act(action) {
-            Ok(()) => self.view.forget |= another,
+            Ok(()) => {
+                self.view.forget |= self.session.opened() != before;
+                if let Some(file) = self.session.document().file().filter(|_| saves) {
+                    self.say(format!("saved {}", file.display()), false);
+                }
+            }
             Err(why) => self.say(why.to_string(), true),
         }
     }
@@ -156,207 +163,9 @@ impl App {
         }
     }
 
-    /// Keys that are not a widget's.
-    fn keys(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
-        if ctx.egui_wants_keyboard_input() {
-            return;
-        }
-        let pressed = |m: Modifiers, k: Key| ctx.input_mut(|i| i.consume_key(m, k));
-        if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
-            actions.push(Action::Redo);
-        } else if pressed(Modifiers::COMMAND, Key::Z) {
-            actions.push(Action::Undo);
-        }
-        if pressed(Modifiers::COMMAND, Key::O) {
-            self.files.ask(For::Open, None);
-        }
-        if pressed(Modifiers::COMMAND, Key::S) {
-            self.save(actions);
-        }
-        if pressed(Modifiers::NONE, Key::Space) {
-            actions.push(Action::Play(!self.session.playing()));
-        }
-        if pressed(Modifiers::NONE, Key::ArrowRight) && !self.session.playing() {
-            actions.push(Action::Step);
-        }
-        if pressed(Modifiers::NONE, Key::R) {
-            actions.push(Action::Reset);
-        }
-        if pressed(Modifiers::NONE, Key::C) {
-            actions.push(Action::Compare(self.session.second().is_none()));
-        }
-        if pressed(Modifiers::NONE, Key::Home) {
-            actions.push(Action::Head(glam::Vec3::ZERO));
-        }
-        if pressed(Modifiers::NONE, Key::F12) {
-            self.files.ask(For::Record(Kind::Still), None);
-        }
-        if pressed(Modifiers::NONE, Key::F) {
-            self.view.orbit = None;
-        }
-        for (key, open) in [
-            (Key::G, &mut self.open.graphs),
-            (Key::P, &mut self.open.presets),
-            (Key::Tab, &mut self.open.panels),
-            (Key::Questionmark, &mut self.open.help),
-        ] {
-            *open ^= pressed(Modifiers::NONE, key);
-        }
-        // On many keyboards the question mark is on a shifted key.
-        self.open.help ^=
-            pressed(Modifiers::SHIFT, Key::Questionmark) || pressed(Modifiers::SHIFT, Key::Slash);
-        for (hand, _, key, _) in Hand::ALL {
-            if pressed(Modifiers::NONE, key) {
-                self.view.hand = hand;
-            }
-        }
-        if pressed(Modifiers::NONE, Key::Escape) {
-            (self.open.help, self.open.presets) = (false, false);
-            self.files.close();
-            actions.push(Action::Unpick);
-        }
-    }
-
-    fn save(&mut self, actions: &mut Vec<Action>) {
-        match self.session.document().file() {
-            Some(_) => actions.push(Action::Save(None)),
-            None => self.files.ask(For::Save, None),
-        }
-    }
-
-    /// The bar at the top.
-    fn menu(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        egui::MenuBar::new().ui(ui, |ui| {
-            ui.menu_button("File", |ui| {
-                if ui.button("Presets…").clicked() {
-                    self.open.presets = true;
-                }
-                if ui.button("Open…").clicked() {
-                    self.files.ask(For::Open, None);
-                }
-                if ui.button("Save").clicked() {
-                    self.save(actions);
-                }
-                if ui.button("Save as…").clicked() {
-                    self.files.ask(For::Save, self.session.document().file());
-                }
-                ui.separator();
-                if ui.button("Quit").clicked() {
-                    ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
-                }
-            });
-            ui.menu_button("Record", |ui| {
-                for kind in Kind::ALL {
-                    if ui.button(format!("{}…", kind.title())).clicked() {
-                        self.files.ask(For::Record(kind), None);
-                    }
-                }
-            });
-            let (back, forth) = self.session.edited().history();
-            if ui.add_enabled(back, egui::Button::new("Undo")).clicked() {
-                actions.push(Action::Undo);
-            }
-            if ui.add_enabled(forth, egui::Button::new("Redo")).clicked() {
-                actions.push(Action::Redo);
-            }
-            ui.toggle_value(&mut self.open.graphs, "Graphs");
-            ui.toggle_value(&mut self.open.help, "?");
-            let document = self.session.document();
-            let star = if document.is_changed() { " *" } else { "" };
-            let file = document.file();
-            let name = file.and_then(|p| p.file_name()).map(|n| n.to_string_lossy());
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(RichText::new(format!("{}{star}", document.settings().name)).strong());
-                let shown = ui.weak(name.unwrap_or("not saved".into()));
-                if let Some(file) = file {
-                    shown.on_hover_text(file.display().to_string());
-                }
-            });
-        });
-    }
-
-    /// The picture, or two side by side, with what is laid over them.
-    fn picture(&mut self, ui: &mut Ui, snapshot: Option<&Arc<Snapshot>>, actions: &mut Vec<Action>) {
-        let whole = ui.available_rect_before_wrap();
-        let Some(snapshot) = snapshot else {
-            ui.centered_and_justified(|ui| ui.spinner());
-            return;
-        };
-        let count = snapshot.stages.len().max(1);
-        while self.painters.len() < count {
-            let another = self.painters[0].another(ui.ctx());
-            self.painters.push(another);
-        }
-        self.painters.truncate(count);
-        let width = whole.width() / count as f32;
-        let aspect = width / whole.height().max(1.0);
-        self.view.meet(&self.session, snapshot, aspect);
-        if self.view.orbit.is_none() {
-            self.view.frame(&self.session, snapshot, aspect);
-        }
-        let guides = self.session.shown() == Some(Value::Guide);
-        for (k, scenery) in snapshot.stages.iter().enumerate() {
-            let left = whole.left() + width * k as f32;
-            let rect =
-                egui::Rect::from_min_size(egui::pos2(left, whole.top()), egui::vec2(width, whole.height()));
-            let response = ui.interact(rect, ui.scope_id().with(("picture", k)), Sense::click_and_drag());
-            if k == 0 {
-                self.rect = rect;
-                self.view.follow_range(scenery, guides);
-            }
-            let moment = self.painters[k].moment(ui.ctx(), snapshot);
-            let seen = moment.stages.get(k).unwrap_or(scenery);
-            // Handles are the scene's whose parameters are shown.
-            let own = (k == 1) == self.session.on_second() && self.view.overlays.handles;
-            let handles = match (self.view.lens(rect), self.view.orbit) {
-                (Some(lens), Some(orbit)) if own => {
-                    handle::all(self.session.edited(), seen, &lens, orbit.distance)
-                }
-                _ => Vec::new(),
-            };
-            self.view.touch(ui, &response, snapshot, &handles, actions);
-            let (Some(sight), Some(lens)) = (self.view.sight(scenery), self.view.lens(rect)) else {
-                continue;
-            };
-            let pixels = ui.ctx().pixels_per_point();
-            let size = [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(16, 8192));
-            let painter = ui.painter_at(rect);
-            if let Some(shape) = self.painters[k].draw(ui.ctx(), snapshot, k, &sight, (rect, size)) {
-                painter.add(shape);
-            }
-            let picked =
-                snapshot.picked.as_ref().map(|(p, f)| [p.strand, f.guide as usize].map(|s| [p.groom, s]));
-            let picked = picked.as_ref().map_or(&[][..], |picked| &picked[..]);
-            overlay::draw(&Pen { painter: &painter, lens, rect }, seen, &self.view, &handles, picked);
-            if count > 1 {
-                painter.text(
-                    rect.left_top() + egui::vec2(10.0, 8.0),
-                    egui::Align2::LEFT_TOP,
-                    format!(
-                        "{} · {}",
-                        if k == 0 { "Left" } else { "Right" },
-                        self.session.captions()[k.min(1)]
-                    ),
-                    egui::FontId::proportional(16.0),
-                    Color32::from_white_alpha(200),
-                );
-            }
-            if let Some(value) = self.session.shown() {
-                told::legend(&painter, rect, value, &self.view, seen);
-            }
-        }
-    }
-
     fn windows(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         match self.files.show(ctx) {
-            Some(Decision::Do(action)) => {
-                let saved = matches!(action, Action::Save(_));
-                self.act(action);
-                if saved && self.message.as_ref().is_none_or(|m| !m.1) {
-                    let file = self.session.document().file().map(|p| p.display().to_string());
-                    self.say(format!("saved {}", file.unwrap_or_default()), false);
-                }
-            }
+            Some(Decision::Do(action)) => self.act(action),
             Some(Decision::Record(wish)) => self.record(ctx, wish),
             None => {}
         }
@@ -403,8 +212,8 @@ impl eframe::App for App {
                 egui::Panel::bottom("graphs").show(ui, |ui| self.history.show(ui));
             }
             egui::Panel::right("parameters").default_size(360.0).show(ui, |ui| {
-                let at = self.view.orbit.map_or(glam::Vec3::ZERO, |orbit| orbit.target);
-                parameters::show(ui, &self.session, &mut self.filter, at, &mut actions);
+                let camera = self.view.orbit.map(|orbit| orbit.camera());
+                parameters::show(ui, &self.session, &mut self.filter, camera, &mut actions);
             });
         }
         let notes: Vec<String> = self.painters.iter().map(Painter::note).collect();
@@ -437,7 +246,7 @@ impl eframe::App for App {
             self.act(action);
         }
         if let (Some(mut recorder), Some(snapshot)) = (self.recorder.take(), &snapshot) {
-            let sights = snapshot.stages.iter().map_while(|s| self.view.sight(s)).collect();
+            let sights = snapshot.stages.iter().map_while(|s| self.view.sight(s, 1.0)).collect();
             let ended = recorder.advance(&mut self.session, snapshot, sights);
             match ended {
                 Some(Ok(said)) => self.say(said, false),

@@ -48,13 +48,22 @@ impl App {
             Line::Save(path) => self.act(Action::Save(Some(path))),
             Line::Hand(hand) => self.view.hand = hand,
             Line::Drag(from, to, frames) => {
-                let place = |v: glam::Vec2| self.rect.min + egui::vec2(v.x, v.y) * self.rect.size();
-                self.finger.drag(place(from), place(to), frames);
+                self.finger.hold(self.place(from), self.place(to), frames);
+                self.finger.release();
             }
+            Line::Hold(from, to, frames) => self.finger.hold(self.place(from), self.place(to), frames),
+            Line::Release => self.finger.release(),
             Line::Find(text) => self.filter = text,
             Line::Show(value) => self.act(Action::Show(value)),
             Line::Switch(name, on) => self.switch(&name, on),
             Line::Record(kind, path, seconds) => self.record(ctx, Wish { kind, path, seconds }),
+            // A moment that stands still is soon drawn in full.
+            Line::Shot(path)
+                if !self.session.playing() && !self.painters.iter().all(|p| p.is_whole(snapshot)) =>
+            {
+                self.script.push_front(Line::Shot(path));
+                return ctx.request_repaint_after(Duration::from_millis(50));
+            }
             Line::Shot(path) => {
                 let (send, receive) = channel();
                 self.shot = Some(receive);
@@ -75,6 +84,11 @@ impl App {
             Line::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
         }
         ctx.request_repaint_after(Duration::from_millis(1));
+    }
+
+    /// Where a place of the picture is in the window.
+    fn place(&self, at: glam::Vec2) -> egui::Pos2 {
+        self.rect.min + egui::vec2(at.x, at.y) * self.rect.size()
     }
 
     fn switch(&mut self, name: &str, on: bool) {

@@ -5,6 +5,11 @@ use crate::{snapshot::Scenery, view::View};
 use eframe::egui::{self, Color32, Ui};
 use hairspring::stage::Value;
 
+/// How far a message stands below the picture's upper edge [points].
+const MESSAGE_TOP: f32 = 66.0;
+/// Width of what says what colours stand for, and its distance from the edge [points].
+const LEGEND: f32 = 190.0;
+
 impl App {
     /// Progress of a record, and the last message.
     pub(super) fn tell(&mut self, ctx: &egui::Context) {
@@ -29,14 +34,16 @@ impl App {
             self.message = None;
             return;
         }
-        let color = if *wrong { ctx.global_style().visuals.error_fg_color } else { Color32::LIGHT_GREEN };
+        let color = if *wrong { Color32::LIGHT_RED } else { Color32::LIGHT_GREEN };
         let shown = egui::Area::new(egui::Id::unique("message"))
-            .anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0))
+            // In the middle of the picture, below what colours stand for and beside what is said of a strand.
+            .pivot(egui::Align2::CENTER_TOP)
+            .fixed_pos(self.whole.center_top() + egui::vec2(0.0, MESSAGE_TOP))
             .sense(egui::Sense::click())
             .show(ctx, |ui| {
                 ui.style_mut().interaction.selectable_labels = false;
                 egui::Frame::popup(ui.style()).show(ui, |ui| {
-                    ui.set_max_width(640.0);
+                    ui.set_max_width((self.whole.width() - 2.0 * LEGEND).max(240.0));
                     ui.colored_label(color, text);
                 });
             });
@@ -56,6 +63,8 @@ pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2,
         .pivot(align)
         .show(ctx, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
+            // A figure stays in the line of its name.
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             egui::Frame::new()
                 .fill(Color32::from_black_alpha(120))
                 .corner_radius(4.0)
@@ -72,7 +81,7 @@ pub(super) fn legend(
     view: &View,
     scenery: &Scenery,
 ) {
-    let at = rect.right_top() + egui::vec2(-190.0, 14.0);
+    let at = rect.right_top() + egui::vec2(-LEGEND, 14.0);
     let text = |place: egui::Pos2, align, text: String| {
         painter.text(place, align, text, egui::FontId::proportional(13.0), Color32::from_white_alpha(220));
     };
@@ -85,7 +94,8 @@ pub(super) fn legend(
         return;
     }
     if value == Value::Density && scenery.volumes.iter().all(Option::is_none) {
-        text(at + egui::vec2(0.0, 18.0), egui::Align2::LEFT_TOP, "known with hair on hair: Volume".into());
+        let right = at + egui::vec2(LEGEND - 20.0, 18.0);
+        text(right, egui::Align2::RIGHT_TOP, "known with Hair on hair (Volume)".into());
         return;
     }
     let (bar, height) =

@@ -260,6 +260,11 @@ impl CpuPainter {
         self.moment.as_ref()
     }
 
+    /// Whether the picture that is seen is of this moment and leaves nothing out.
+    pub fn is_whole(&self, now: &Snapshot) -> bool {
+        self.seen == 0 && self.moment.as_ref().is_some_and(|m| (m.scene, m.number) == (now.scene, now.number))
+    }
+
     /// The last picture, laid in at `rect`.
     pub fn shape(&self, rect: egui::Rect) -> Option<egui::Shape> {
         match &self.shows {

@@ -124,6 +124,14 @@ impl Painter {
         }
     }
 
+    /// Whether the picture that is seen is of this moment and leaves nothing out.
+    pub fn is_whole(&self, now: &Snapshot) -> bool {
+        match self {
+            Self::Gpu(_) => true,
+            Self::Cpu(painter) => painter.is_whole(now),
+        }
+    }
+
     /// How it draws, in words.
     pub fn note(&self) -> String {
         match self {

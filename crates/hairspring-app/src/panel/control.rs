@@ -3,6 +3,7 @@
 use super::Labelled;
 use crate::parameter::{Kind, Parameter};
 use eframe::egui::{self, DragValue, Slider, Ui};
+use std::ops::RangeInclusive;
 use toml_edit::Value;
 
 /// Width of a slider's number with its unit [points].
@@ -34,12 +35,15 @@ pub fn control(
             fit(ui, parameter.unit);
             Some(ui.add(written(slider, parameter)).labelled(ui, name))
         }
-        Kind::Maybe { min, max, from } => {
+        Kind::Maybe { min, max, from, without } => {
             let mut on = number.is_some();
             if ui.checkbox(&mut on, "").labelled(ui, name).changed() {
                 edit(on.then(|| tidy(from)));
             }
-            let mut value = number?;
+            let Some(mut value) = number else {
+                ui.weak(without);
+                return None;
+            };
             let slider = Slider::from_get_set(min..=max, |new| {
                 if let Some(new) = new {
                     value = new;
@@ -104,12 +108,16 @@ pub fn control(
             }
             Some(response)
         }
-        Kind::MaybeColor(from) => {
+        Kind::MaybeColor { from, without } => {
             let mut on = now.is_some();
             if ui.checkbox(&mut on, "").labelled(ui, name).changed() {
                 edit(on.then(|| from.into_iter().collect()));
             }
-            let mut color = numbers::<3>(Some(now?));
+            let Some(now) = now else {
+                ui.weak(without);
+                return None;
+            };
+            let mut color = numbers::<3>(Some(now));
             let response = ui.color_edit_button_rgb(&mut color);
             if response.changed() {
                 edit(Some(color.iter().map(|c| tidy_f64(f64::from(*c))).collect()));
@@ -119,10 +127,16 @@ pub fn control(
         Kind::Vector { reach } => {
             let mut vector = numbers::<3>(now);
             let mut changed = false;
+            // Three numbers of a hand's breadth and their unit are one line.
+            ui.spacing_mut().item_spacing.x = 4.0;
             for (axis, x) in ["x", "y", "z"].into_iter().zip(&mut vector) {
                 let drag = DragValue::new(x).speed(reach / 200.0).range(-reach..=reach).max_decimals(2);
+                let drag = drag.custom_formatter(plain);
                 let drag = ui.add(drag).on_hover_text(format!("{axis} [{}]", parameter.unit));
                 changed |= drag.changed();
+            }
+            if !parameter.unit.is_empty() {
+                ui.weak(parameter.unit);
             }
             if parameter.name == "wind.velocity" {
                 changed |= super::wind::pad(ui, &mut vector, reach as f32);
@@ -192,11 +206,22 @@ fn written<'a>(slider: Slider<'a>, parameter: &Parameter) -> Slider<'a> {
         }
         _ => false,
     };
-    let slider = if far { slider.custom_formatter(|x, _| format!("{x:.2e}")) } else { slider };
+    let slider = if far { slider.custom_formatter(|x, _| far_off(x)) } else { slider };
     match unit {
         "" => slider,
         unit => slider.suffix(format!(" {unit}")),
     }
+}
+
+/// A very large or very small number as a power of ten; nothing is plain 0.
+pub fn far_off(x: f64) -> String {
+    if x == 0.0 { "0".into() } else { format!("{x:.2e}") }
+}
+
+/// A number in as many digits behind the point as it takes, where what shows as nothing has no sign.
+fn plain(x: f64, digits: RangeInclusive<usize>) -> String {
+    let half = 0.5 * 0.1_f64.powi(*digits.end() as i32);
+    egui::emath::format_with_decimals_in_range(if x.abs() < half { 0.0 } else { x }, digits)
 }
 
 /// A number, whether it is written as a whole one or not.
@@ -216,4 +241,15 @@ fn tidy(x: f64) -> Value {
 
 fn tidy_f64(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_written_as_plain_0() {
+        assert_eq!([far_off(0.0), far_off(-2e-7)], ["0", "-2.00e-7"]);
+        assert_eq!([-0.004, -0.006, 1.5].map(|x| plain(x, 1..=2)), ["0.0", "-0.01", "1.5"]);
+    }
 }

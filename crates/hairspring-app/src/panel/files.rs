@@ -97,7 +97,15 @@ impl Files {
                     });
                 }
             });
-            ui.weak("A file may also be dropped on the window.");
+            ui.weak(match what {
+                For::Open => "A file may also be dropped on the window.",
+                For::Save => "As TOML; the files that it names stay where they are.",
+                For::Record(Kind::Still) => "1280 × 720 pixels, as PNG or JPEG by the name's end.",
+                For::Record(Kind::Pictures) => {
+                    "1280 × 720 pixels, 30 a second; # stands for the digits of the frame."
+                }
+                For::Record(Kind::Clip | Kind::Turntable) => "1280 × 720 pixels, 30 frames a second.",
+            });
         });
         if decision.is_some() || !stays {
             self.open = None;

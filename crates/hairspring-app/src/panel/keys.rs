@@ -109,8 +109,8 @@ pub fn show(
         Action::Set(key.clone(), Some(list.into()))
     };
     let columns = keys.columns();
-    // What does not fit in one line has a line for each column.
-    let (first_line, others) = columns.split_at(if columns.len() > 2 { 1 } else { columns.len() });
+    // A time stands over what is where then: four numbers and two buttons are wider than the panel.
+    let (first_line, others) = columns.split_at(1);
     for (k, row) in rows.iter().enumerate() {
         let cell = |ui: &mut Ui, (column, at): (&'static str, usize), actions: &mut Vec<Action>| {
             let mut own = row[at..at + Keys::width(column)].to_vec();

@@ -9,6 +9,7 @@ use crate::{
 };
 use eframe::egui::{self, RichText, Ui};
 use glam::Vec3;
+use hairspring::scene::Camera;
 use toml_edit::Value;
 
 /// Width of names [points].
@@ -16,8 +17,15 @@ const LABEL: f32 = 106.0;
 /// Width of what brings a parameter back, which has its room whether it is there or not [points].
 const RESET: f32 = 42.0;
 
-/// Shows all groups; what is added to the scene stands about `at` [m].
-pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actions: &mut Vec<Action>) {
+/// Shows all groups, beside a picture that is seen from `camera`: what is added to the scene stands where that looks.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    filter: &mut String,
+    camera: Option<Camera>,
+    actions: &mut Vec<Action>,
+) {
+    let at = camera.map_or(Vec3::ZERO, |camera| camera.target);
     choose(ui, session, actions);
     ui.horizontal(|ui| {
         if session.is_reading() {
@@ -32,14 +40,17 @@ pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actio
         for group in Group::ALL {
             let found = |p: &&Parameter| {
                 sought.is_empty()
-                    || [p.label, p.name, p.tip].iter().any(|t| t.to_lowercase().contains(&sought))
+                    || [p.label, p.name, p.tip, group.name()]
+                        .iter()
+                        .any(|t| t.to_lowercase().contains(&sought))
             };
             let parameters: Vec<_> = parameter::ALL
                 .iter()
                 .filter(|p| p.group == group && has_place(session, p))
                 .filter(found)
                 .collect();
-            let listed = lists(group).iter().any(|name| name.to_lowercase().contains(&sought));
+            let named = |name: &str| name.to_lowercase().contains(&sought);
+            let listed = lists(group).iter().any(|name| named(name) || named(group.name()));
             if parameters.is_empty() && !listed {
                 continue;
             }
@@ -61,6 +72,9 @@ pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actio
                     if group == Group::Motion {
                         super::list::motion(ui, session, actions);
                     }
+                    if group == Group::Camera {
+                        take_view(ui, camera, actions);
+                    }
                 });
         }
         if none {
@@ -69,12 +83,34 @@ pub fn show(ui: &mut Ui, session: &Session, filter: &mut String, at: Vec3, actio
     });
 }
 
-/// Lists that stand in a group besides its parameters.
+/// Name of what makes the window's camera the scene's.
+const TAKE_VIEW: &str = "Take what is seen here";
+
+/// The scene's camera where the window's is.
+fn take_view(ui: &mut Ui, camera: Option<Camera>, actions: &mut Vec<Action>) {
+    let Some(camera) = camera else { return };
+    let button = ui.small_button(TAKE_VIEW);
+    if button.on_hover_text("The scene is opened and rendered from where the window looks now.").clicked() {
+        let key = Key::top("camera");
+        // A tenth of a millimetre: no file needs more.
+        let tidy = |x: f32| (f64::from(x) * 1e4).round() / 1e4;
+        let place = |at: Vec3| Value::from_iter(at.to_array().map(tidy));
+        actions.push(Action::SetAll(vec![
+            (key.field("position"), Some(place(camera.position))),
+            (key.field("target"), Some(place(camera.target))),
+            (key.field("fov"), Some(tidy(camera.fov).into())),
+        ]));
+        actions.push(Action::Rest);
+    }
+}
+
+/// What stands in a group besides its parameters.
 fn lists(group: Group) -> &'static [&'static str] {
     match group {
         Group::Motion => &["Keys"],
         Group::Air => &["Sources of wind", "Charged bodies"],
         Group::Collision => &["Colliders", "Sheets", "Hands"],
+        Group::Camera => &[TAKE_VIEW],
         _ => &[],
     }
 }
@@ -115,7 +151,7 @@ fn choose(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 fn has_place(session: &Session, parameter: &Parameter) -> bool {
     let (groom, group) = session.chosen();
     let (key, effective) = (parameter.key(groom, group), session.edited().effective());
-    let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor(_));
+    let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor { .. });
     key.look_up(effective).is_some() || (maybe && key.parent().look_up(effective).is_some())
 }
 
@@ -131,7 +167,7 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
         let shown: Option<toml::Value> =
             held.as_ref().and_then(|value| value.to_string().trim().parse().ok());
         let now = shown.as_ref().or_else(|| key.look_up(document.effective()));
-        let idle = parameter.idle(document, chosen.0);
+        let idle = parameter.idle(document, chosen);
         let changed = idle.is_none() && now != key.look_up(document.opened().values());
         let listed = document.groom_key(chosen.0).is_none_or(|key| key != Key::top("builtin"));
         let mut edited = None;
@@ -192,7 +228,7 @@ fn tip(parameter: &Parameter, idle: Option<&str>, default: Option<&toml::Value>)
         Kind::Guides { max } => format!("1 to {max}, or a word"),
         Kind::Switch => "on or off".into(),
         Kind::Choice(words) => words.join(", "),
-        Kind::Color | Kind::MaybeColor(_) => "red, green, blue, 0 to 1 each".into(),
+        Kind::Color | Kind::MaybeColor { .. } => "red, green, blue, 0 to 1 each".into(),
         Kind::Vector { reach } => format!("{} to {}{unit} each", short(-reach), short(reach)),
         Kind::Profile => "numbers above 0".into(),
     };

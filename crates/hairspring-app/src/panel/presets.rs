@@ -79,7 +79,7 @@ impl Presets {
                     }
                 }
             });
-            ui.weak("Each replaces the scene. Save first what you want to keep.");
+            ui.weak("Each takes the place of the scene, which Undo brings back.");
         });
         if let Some(k) = chosen {
             actions.push(Action::New(text(k, hairs.0, hairs.1)));

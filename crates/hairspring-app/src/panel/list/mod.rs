@@ -1,18 +1,16 @@
 //! Entries of lists: colliders, hands, sources of wind, charged bodies; and the keys of a motion made by hand. Each is shown with all that its text or its defaults say of it, every
-//! number with its unit, what it does and a reset.
+//! number with its unit, what it does and, where it was changed, a reset.
 
-use super::{Labelled, keys};
+mod rows;
+
 use crate::{
-    field::{Field, Kind, of, place},
     key::Key,
     session::{Action, Session},
 };
-use eframe::egui::{self, DragValue, Ui};
+use eframe::egui::Ui;
 use glam::Vec3;
+use rows::Rows;
 use toml_edit::{DocumentMut, TableLike, Value};
-
-/// Width of names [points].
-const LABEL: f32 = 86.0;
 
 /// Fields that an entry may have though neither its text nor its defaults say so, by the list.
 const MORE: [(&str, &[&str]); 5] = [
@@ -184,168 +182,10 @@ pub fn motion(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.weak("Keys take the place of the scene's own motion, and each change begins the scene anew.");
 }
 
-/// Rows of the fields of an entry of a list.
-struct Rows<'a> {
-    session: &'a Session,
-    list: &'static str,
-    actions: &'a mut Vec<Action>,
-}
-
-impl Rows<'_> {
-    /// The fields of a table: those of a table in it first, then its own in the order in which they are told of.
-    fn fields(&mut self, ui: &mut Ui, key: &Key, value: &toml::Value) {
-        let Some(table) = value.as_table() else { return };
-        for (name, inner) in table.iter().filter(|(_, value)| value.is_table()) {
-            self.fields(ui, &key.entry(name), inner);
-        }
-        let mut own: Vec<_> = table.iter().filter(|(_, value)| !value.is_table()).collect();
-        own.sort_by_key(|(name, _)| place(name));
-        for (name, value) in own {
-            self.field(ui, &key.entry(name), name, Some(value));
-        }
-    }
-
-    /// One field.
-    fn field(&mut self, ui: &mut Ui, key: &Key, name: &str, value: Option<&toml::Value>) {
-        let Some(field) = of(self.list, name) else { return };
-        let said = key.look_up(self.session.edited().said()).is_some();
-        if let Kind::Keys(keys) = field.kind {
-            // The corners of a hull may be a file's: the text says none then.
-            if name == "points" && !said {
-                return;
-            }
-            ui.push_id(name, |ui| {
-                ui.horizontal(|ui| self.name(ui, key, field, said));
-                let first = self.first_key(key, name);
-                keys::show(ui, (key, field, keys), value, (&first, self.list == "clip"), self.actions);
-            });
-            return;
-        }
-        ui.push_id(name, |ui| {
-            // What is too long for the panel goes on below: it does not grow.
-            ui.horizontal_wrapped(|ui| {
-                let left = egui::Layout::left_to_right(egui::Align::Center);
-                ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
-                    ui.set_min_width(LABEL);
-                    ui.add(egui::Label::new(field.label).truncate()).on_hover_text(tip(field));
-                });
-                if let Some(new) = self.control(ui, field, value) {
-                    self.actions.push(Action::Set(key.clone(), new));
-                }
-                self.reset(ui, key, field, said);
-            });
-        });
-    }
-
-    fn name(&mut self, ui: &mut Ui, key: &Key, field: &Field, said: bool) {
-        ui.label(field.label).on_hover_text(tip(field));
-        self.reset(ui, key, field, said);
-    }
-
-    fn reset(&mut self, ui: &mut Ui, key: &Key, field: &Field, said: bool) {
-        if field.optional && said && ui.small_button("reset").on_hover_text("Back to the default").clicked() {
-            self.actions.push(Action::Set(key.clone(), None));
-        }
-    }
-
-    /// What the first key says: where a charged body is, a second later; elsewhere 0.
-    fn first_key(&self, key: &Key, name: &str) -> Vec<f64> {
-        let effective = self.session.edited().effective();
-        let center = key.sibling("center").look_up(effective).and_then(toml::Value::as_array);
-        match (self.list, name, center) {
-            ("charged", "path", Some(center)) => {
-                std::iter::once(1.0).chain(center.iter().filter_map(toml::Value::as_float)).collect()
-            }
-            ("clip", ..) => vec![0.0; 7],
-            _ => vec![0.0; 4],
-        }
-    }
-
-    /// The widget of a field: `Some(None)` takes it away. What lies in range is known to the reader of the file, which refuses the rest.
-    fn control(&self, ui: &mut Ui, field: &Field, value: Option<&toml::Value>) -> Option<Option<Value>> {
-        match (field.kind, value) {
-            (Kind::Joint, value) => {
-                let none = if self.list == "collider" { "the head" } else { "nothing" };
-                let chosen = value.and_then(toml::Value::as_str);
-                let mut new = None;
-                let combo = egui::ComboBox::from_id_salt(field.name)
-                    .selected_text(chosen.unwrap_or(none))
-                    .show_ui(ui, |ui| {
-                        if ui.selectable_label(chosen.is_none(), none).clicked() {
-                            new = Some(None);
-                        }
-                        for joint in self.session.joints() {
-                            if ui.selectable_label(chosen == Some(joint), joint).clicked() {
-                                new = Some(Some(joint.as_str().into()));
-                            }
-                        }
-                    });
-                combo.response.labelled(ui, field.label).on_hover_text(tip(field));
-                new
-            }
-            (Kind::Maybe(from), None) => {
-                let mut never = true;
-                ui.checkbox(&mut never, "never")
-                    .on_hover_text(tip(field))
-                    .changed()
-                    .then(|| Some(from.into()))
-            }
-            (_, Some(toml::Value::Boolean(on))) => {
-                let mut on = *on;
-                let response = ui.checkbox(&mut on, "").labelled(ui, field.label);
-                response.on_hover_text(tip(field)).changed().then(|| Some(on.into()))
-            }
-            (_, Some(toml::Value::Array(list))) => {
-                let mut changed = false;
-                let mut out = Vec::with_capacity(list.len());
-                for (axis, x) in ["x", "y", "z"].into_iter().zip(list) {
-                    let x = as_number(x).unwrap_or(0.0);
-                    let new = number(ui, x, "", &format!("{axis}: {}", tip(field)));
-                    changed |= new.is_some();
-                    out.push(new.unwrap_or(x));
-                }
-                if !field.unit.is_empty() {
-                    ui.weak(field.unit);
-                }
-                changed.then(|| Some(Value::from_iter(out)))
-            }
-            (_, Some(value)) => {
-                number(ui, as_number(value)?, field.unit, &tip(field)).map(|x| Some(x.into()))
-            }
-            (_, None) => None,
-        }
-    }
-}
-
 /// What kind of collider or tool an entry is, if there are kinds of it.
 fn kind(entry: &toml::Value) -> Option<&str> {
     let shape = entry.get("shape").or_else(|| entry.get("tool"))?;
     shape.as_table()?.keys().next().map(String::as_str)
-}
-
-fn tip(field: &Field) -> String {
-    match field.unit {
-        "" => field.tip.to_owned(),
-        unit => format!("{} [{unit}]", field.tip),
-    }
-}
-
-fn as_number(value: &toml::Value) -> Option<f64> {
-    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
-}
-
-fn number(ui: &mut Ui, x: f64, unit: &str, tip: &str) -> Option<f64> {
-    let mut new = x;
-    // A hundredth of the number a point, or a centimetre's hundredth near 0.
-    let speed = (x.abs() * 0.01).max(if x == 0.0 || x.abs() > 1e-4 { 1e-3 } else { 0.0 });
-    let drag = DragValue::new(&mut new).speed(speed);
-    let drag = if unit.is_empty() { drag } else { drag.suffix(format!(" {unit}")) };
-    let drag = if x != 0.0 && x.abs() < 1e-3 {
-        drag.custom_formatter(|x, _| format!("{x:.2e}"))
-    } else {
-        drag.max_decimals(3)
-    };
-    ui.add(drag).on_hover_text(tip).changed().then_some(new)
 }
 
 #[cfg(test)]
@@ -359,8 +199,8 @@ mod tests {
         [[charged]]\ncenter = [0.3, 1.8, 0.0]\nradius = 0.13\ncharge = -2e-7\n";
 
     /// The lists of a scene, and what has been done to it.
-    fn panel() -> (Harness<'static>, Rc<RefCell<Session>>) {
-        let document = Document::new("scene.toml".as_ref(), SCENE.into()).unwrap();
+    fn panel(text: &str) -> (Harness<'static>, Rc<RefCell<Session>>) {
+        let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
         let session = Rc::new(RefCell::new(Session::new(document, 1, None, || ()).unwrap()));
         let shown = session.clone();
         let harness = Harness::builder().with_size([500.0, 1600.0]).build_ui(move |ui| {
@@ -383,7 +223,7 @@ mod tests {
 
     #[test]
     fn keys_are_added_and_taken_out_by_buttons_and_undo_leads_back() {
-        let (mut harness, session) = panel();
+        let (mut harness, session) = panel(SCENE);
         let says = |text: &str| session.borrow().document().text().contains(text);
         // In the order of the panel: the charged body's, the hand's, the motion's.
         press(&mut harness, "Add a key", 0);
@@ -414,7 +254,7 @@ mod tests {
         assert_eq!(text.trim(), "shape.sphere = { center = [0.1, 0.8, 0.25], radius = 0.08 }");
         for list in AIR.iter().chain(&COLLISION) {
             for (name, fields) in list.kinds {
-                let (_, session) = panel();
+                let (_, session) = panel(SCENE);
                 let added = session.borrow_mut().act(Action::Add(list.name, placed(fields, Vec3::X)));
                 assert!(added.is_ok(), "{name}: {added:?}");
             }
@@ -422,12 +262,43 @@ mod tests {
     }
 
     #[test]
-    fn what_may_be_left_out_is_switched_on_and_reset() {
-        let (mut harness, session) = panel();
+    fn what_may_be_left_out_is_switched_on_and_off() {
+        let (mut harness, session) = panel(SCENE);
         let says = |text: &str| session.borrow().document().text().contains(text);
         press(&mut harness, "never", 0);
         assert!(says("until = 2.0"));
-        press(&mut harness, "reset", 0);
+        press(&mut harness, "never", 0);
         assert!(!says("until"));
+    }
+
+    #[test]
+    fn an_entry_goes_back_to_what_it_was_opened_with_wherever_it_has_moved() {
+        let scene =
+            format!("{SCENE}\n[[charged]]\ncenter = [-0.3, 1.8, 0.0]\nradius = 0.14\ncharge = 2e-7\n");
+        let (mut harness, session) = panel(&scene);
+        let resets = |harness: &Harness| harness.query_all_by_label("reset").count();
+        let text = || session.borrow().document().text().to_owned();
+        let act = |action| session.borrow_mut().act(action).unwrap();
+        harness.run_steps(3);
+        assert_eq!(resets(&harness), 0, "just opened");
+        act(Action::Set("charged[1].radius".parse().unwrap(), Some(0.2.into())));
+        harness.run_steps(3);
+        assert_eq!(resets(&harness), 1);
+        // The entry before it goes, and one is added behind.
+        act(Action::Remove("charged", 0));
+        act(Action::Add("charged", "center = [0.0, 2.0, 0.0]\nradius = 0.3\ncharge = 1e-7\n".into()));
+        harness.run_steps(3);
+        assert_eq!(resets(&harness), 1, "what was added has nothing to go back to");
+        press(&mut harness, "reset", 0);
+        assert!(text().contains("radius = 0.14") && !text().contains("radius = 0.2"), "{}", text());
+        assert_eq!(resets(&harness), 0);
+        for _ in 0..4 {
+            act(Action::Undo);
+        }
+        assert_eq!(text(), scene);
+        // What is written as it counts anyway is no change.
+        act(Action::Set("charged[0].solid".parse().unwrap(), Some(true.into())));
+        harness.run_steps(3);
+        assert_eq!(resets(&harness), 0);
     }
 }

@@ -1,15 +1,13 @@
-//! The simulation on a thread of its own, at a fixed step: the picture never waits for it, and what hair does depends on no frame rate.
+//! What the thread does: it obeys orders between steps, and steps when one is due.
 
+use super::{Order, STEP, Shared, lock};
 use crate::{
     error::AppError,
     memory,
-    pulled::{FASTEST, FASTEST_HEAD, Pulled, Push, Pushing},
-    snapshot::{Scenery, Snapshot, Still},
+    pulled::{FASTEST, FASTEST_HEAD, Pulled, Pushing},
+    snapshot::{Snapshot, Still},
 };
-use glam::Vec3;
 use hairspring::{
-    around::Tool,
-    collide::Rigid,
     scene::Scene,
     simulation::{Energy, Measure, ToolId},
     stage::{FrameReport, Picked, PosedBody, Stage, Value},
@@ -17,174 +15,60 @@ use hairspring::{
 use hairspring_view::gpu::Gpu;
 use std::{
     sync::{
-        Arc, Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering::Relaxed},
-        mpsc::{Receiver, RecvTimeoutError, Sender, channel},
+        Arc,
+        atomic::Ordering::Relaxed,
+        mpsc::{Receiver, RecvTimeoutError, channel},
     },
-    thread::JoinHandle,
     time::{Duration, Instant},
 };
 
 /// Steps are shown at least so often [s] while nobody asks for them: a window that draws slower than the play finds a moment that is not older.
 const SHOWN: Duration = Duration::from_millis(33);
 
-/// Steps from one measurement of all strands to the next while it plays: figures that change faster cannot be read.
-const MEASURED: u64 = 15;
-
 /// How long after a scene was opened the one before has left all of the window.
 const LEFT: Duration = Duration::from_secs(1);
 
-/// Length of a step [s]: what a frame of most screens takes.
-pub const STEP: f32 = 1.0 / 60.0;
-
-/// What the thread is told.
-pub enum Order {
-    /// Opens a scene and, to compare, a second one beside it, at time 0.
-    Open(Box<Scene>, Option<Box<Scene>>),
-    /// Takes up settings in the midst of the play.
-    Retune(Box<Scene>, Option<Box<Scene>>),
-    /// Plays or pauses.
-    Play(bool),
-    /// Steps once.
-    Step,
-    /// Back to time 0.
-    Reset,
-    /// Seconds of the scene in a second, above 0.
-    Speed(f32),
-    /// Begins anew after so many seconds; `None`: plays on.
-    Loop(Option<f32>),
-    /// Takes a tool, which moves at once with every `Carry`.
-    Take(Tool, Rigid),
-    /// Moves it.
-    Carry(Rigid),
-    /// Lets go.
-    LetGo,
-    /// What is pushed through hair, and where the pointer has it.
-    Push(Option<Push>),
-    /// Where the body is carried besides its motion.
-    Body(Rigid),
-    /// Which number of each point is wanted.
-    Show(Option<Value>),
-    /// Picks the strand on a ray; `None`: none.
-    Pick(Option<(Vec3, Vec3)>),
-}
-
-/// What the window and the thread share.
-#[derive(Default)]
-struct Shared {
-    latest: Mutex<Option<Arc<Snapshot>>>,
-    /// Whether the last moment has been seen, and another is wanted.
-    seen: AtomicBool,
-    error: Mutex<Option<AppError>>,
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    // What is behind it is replaced as a whole: a thread that panicked left nothing half done.
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The window's hold on the thread. Dropped, it ends it.
-pub struct Player {
-    orders: Option<Sender<Order>>,
-    shared: Arc<Shared>,
-    thread: Option<JoinHandle<()>>,
-}
-
-impl Player {
-    /// A thread that calls `wake` whenever there is something new to see, and steps on so many threads: fewer than processors where another pool draws,
-    /// for a step would wait at each of its ends for a thread that is not given a processor. Follow hairs are left to who draws
-    /// them: a `card` where it can place them, or else the picture by the CPU, which has no use for all of them.
-    pub fn new(threads: usize, card: Option<Gpu>, wake: impl Fn() + Send + 'static) -> Self {
-        let (orders, inbox) = channel();
-        let shared = Arc::new(Shared::default());
-        let own = shared.clone();
-        let thread = std::thread::Builder::new().name("simulation".into()).spawn(move || {
-            let mut work = Work { inbox, shared: own, card, wake: Box::new(wake), ..Work::new() };
-            match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-                Ok(pool) => pool.install(|| work.run()),
-                // The pool of all is there in any case.
-                Err(_) => work.run(),
-            }
-        });
-        Self { orders: Some(orders), shared, thread: thread.ok() }
-    }
-
-    /// Tells it something. Nothing where it has ended.
-    pub fn tell(&self, order: Order) {
-        if let Some(orders) = &self.orders {
-            // It ended by a panic, which was reported.
-            let _ = orders.send(order);
-        }
-    }
-
-    /// The last moment.
-    pub fn latest(&self) -> Option<Arc<Snapshot>> {
-        self.shared.seen.store(true, Relaxed);
-        lock(&self.shared.latest).clone()
-    }
-
-    /// Why the last order could not be done, once.
-    pub fn error(&self) -> Option<AppError> {
-        lock(&self.shared.error).take()
-    }
-
-    /// Whether the thread ended by itself.
-    pub fn is_dead(&self) -> bool {
-        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
-    }
-}
-
-impl Drop for Player {
-    fn drop(&mut self) {
-        self.orders = None;
-        if let Some(thread) = self.thread.take() {
-            // Its panic was reported when it happened.
-            let _ = thread.join();
-        }
-    }
-}
-
 /// What the thread works with.
-struct Work {
-    inbox: Receiver<Order>,
-    shared: Arc<Shared>,
-    card: Option<Gpu>,
-    wake: Box<dyn Fn() + Send>,
-    stages: Vec<(Stage, Arc<Still>)>,
-    playing: bool,
-    speed: f32,
-    end: Option<f32>,
-    tool: Option<Vec<Option<ToolId>>>,
+pub(super) struct Work {
+    pub(super) inbox: Receiver<Order>,
+    pub(super) shared: Arc<Shared>,
+    pub(super) card: Option<Gpu>,
+    pub(super) wake: Box<dyn Fn() + Send>,
+    pub(super) stages: Vec<(Stage, Arc<Still>)>,
+    pub(super) playing: bool,
+    pub(super) speed: f32,
+    pub(super) end: Option<f32>,
+    pub(super) tool: Option<Vec<Option<ToolId>>>,
     /// Where the body is carried, and a tool, and what is pushed, and where the pointer has them.
-    body: Pulled,
-    carried: Pulled,
-    pushing: Option<Pushing>,
-    show: Option<Value>,
-    picked: Option<Picked>,
-    scene: u64,
-    step: u64,
-    published: u64,
-    reset_strands: usize,
-    report: FrameReport,
+    pub(super) body: Pulled,
+    pub(super) carried: Pulled,
+    pub(super) pushing: Option<Pushing>,
+    pub(super) show: Option<Value>,
+    pub(super) picked: Option<Picked>,
+    pub(super) scene: u64,
+    pub(super) step: u64,
+    pub(super) published: u64,
+    pub(super) reset_strands: usize,
+    pub(super) report: FrameReport,
     /// Of each stage, at the last measurement, and the scene and step of that.
-    measures: Vec<(Measure, Energy)>,
-    measured: (u64, u64),
+    pub(super) measures: Vec<(Measure, Energy)>,
+    pub(super) measured: (u64, u64),
     /// Steps are played whose follow hairs have not been placed.
-    unshown: bool,
+    pub(super) unshown: bool,
     /// What a step takes, all that belongs to it included, over some steps.
-    took: Duration,
+    pub(super) took: Duration,
     /// When something was shown last.
-    shown: Instant,
+    pub(super) shown: Instant,
     /// When the next step is due.
-    due: Instant,
+    pub(super) due: Instant,
     /// Snapshots whose memory is used again once the window has left them.
-    pool: Vec<Arc<Snapshot>>,
+    pub(super) pool: Vec<Arc<Snapshot>>,
     /// When what the last scene left behind is given back to the system.
-    tidy: Option<Instant>,
+    pub(super) tidy: Option<Instant>,
 }
 
 impl Work {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             inbox: channel().1,
             shared: Arc::default(),
@@ -216,7 +100,7 @@ impl Work {
         }
     }
 
-    fn run(&mut self) {
+    pub(super) fn run(&mut self) {
         loop {
             if self.tidy.is_some_and(|tidy| tidy <= Instant::now()) {
                 self.tidy = None;
@@ -405,81 +289,6 @@ impl Work {
         }
         self.unshown = true;
         self.step += 1;
-    }
-
-    /// Brings all strands of the stages up to date.
-    fn show(&mut self) {
-        if std::mem::take(&mut self.unshown) {
-            for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
-                let took = stage.show();
-                if k == 0 {
-                    self.report.follow = took;
-                }
-            }
-        }
-    }
-
-    /// Shows the stages as they are.
-    fn publish(&mut self) {
-        if self.stages.is_empty() {
-            return;
-        }
-        self.show();
-        let measured = self.measured.0 == self.scene && self.measures.len() == self.stages.len();
-        if !(self.playing && measured && self.step < self.measured.1 + MEASURED) {
-            self.measured = (self.scene, self.step);
-            self.measures.clear();
-            self.measures.extend(self.stages.iter().map(|(stage, _)| (stage.measure(), stage.energy())));
-        }
-        let mut next = self.spare();
-        // Nobody else has it: `spare` saw to that.
-        let (Some(snapshot), Some((first, _))) = (Arc::get_mut(&mut next), self.stages.first()) else {
-            return;
-        };
-        let fresh = |(_, still): &(Stage, Arc<Still>)| Scenery::new(still.clone());
-        if snapshot.scene != self.scene || snapshot.stages.len() != self.stages.len() {
-            snapshot.stages = self.stages.iter().map(fresh).collect();
-        }
-        for ((scenery, (stage, still)), measure) in
-            snapshot.stages.iter_mut().zip(&self.stages).zip(&self.measures)
-        {
-            scenery.fill(stage, still, self.show);
-            (scenery.measure, scenery.energy) = *measure;
-            scenery.pushed = self.pushing.as_ref().map(Pushing::shown);
-        }
-        let picked = self.picked;
-        snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));
-        (snapshot.step, snapshot.scene, snapshot.time) = (self.step, self.scene, first.time());
-        self.published += 1;
-        snapshot.number = self.published;
-        (snapshot.report, snapshot.took, snapshot.reset_strands) =
-            (self.report, self.took, self.reset_strands);
-        self.shown = Instant::now();
-        self.shared.seen.store(false, Relaxed);
-        if let Some(old) = lock(&self.shared.latest).replace(next) {
-            self.pool.push(old);
-        }
-        (self.wake)();
-    }
-
-    /// A snapshot that nobody looks at.
-    fn spare(&mut self) -> Arc<Snapshot> {
-        // The window holds one or two: more would be a leak.
-        self.pool.truncate(8);
-        let free = self.pool.iter_mut().position(|s| Arc::get_mut(s).is_some());
-        free.map(|k| self.pool.swap_remove(k)).unwrap_or_else(|| {
-            Arc::new(Snapshot {
-                number: 0,
-                step: 0,
-                scene: 0,
-                time: 0.0,
-                stages: Vec::new(),
-                report: FrameReport::default(),
-                took: Duration::ZERO,
-                reset_strands: 0,
-                picked: None,
-            })
-        })
     }
 }
 

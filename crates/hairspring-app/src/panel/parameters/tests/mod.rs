@@ -1,10 +1,9 @@
 //! The panel has every parameter of the scene file, says what each takes and which were changed, and writes what was meant.
 
+mod complete;
+
 use super::*;
-use crate::{
-    document::{Change, Document},
-    field,
-};
+use crate::document::{Change, Document};
 use egui_kittest::{Harness, kittest::Queryable};
 use std::{cell::RefCell, path::Path, rc::Rc};
 
@@ -37,7 +36,7 @@ fn panel(text: &str, sought: &str) -> Panel {
     let harness = Harness::builder().with_size([800.0, 4000.0]).build_ui(move |ui| {
         let mut actions = Vec::new();
         let panel = egui::Panel::right("parameters").default_size(360.0).show(ui, |ui| {
-            show(ui, &shown.borrow(), &mut typed.borrow_mut(), Vec3::ZERO, &mut actions);
+            show(ui, &shown.borrow(), &mut typed.borrow_mut(), Some(Camera::default()), &mut actions);
         });
         *wide.borrow_mut() = panel.response.rect.width();
         actions.into_iter().for_each(|action| shown.borrow_mut().act(action).unwrap());
@@ -63,99 +62,6 @@ impl Panel {
 
     fn text(&self) -> String {
         self.session.borrow().document().text().to_owned()
-    }
-}
-
-#[test]
-fn every_parameter_has_a_value_and_a_default() {
-    let (whole, head) = (document(WHOLE), document(HEAD));
-    for parameter in parameter::ALL {
-        let key = parameter.key(0, 0);
-        let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor(_));
-        let here = |table: &toml::Table| key.look_up(table).is_some();
-        assert!(
-            maybe || here(whole.effective()) || here(head.effective()),
-            "{} is in no scene",
-            parameter.name
-        );
-        for document in [&whole, &head] {
-            let camera = parameter.name.starts_with("camera.");
-            assert!(here(document.effective()) == here(document.defaults()) || camera, "{}", parameter.name);
-        }
-        assert!(parameter.tip.ends_with('.'), "{}", parameter.name);
-    }
-}
-
-/// Fields of the scene file that the panel does not have, and why.
-const ELSEWHERE: &[(&str, &str)] = &[
-    ("name", "what the scene is called, and nothing that is seen"),
-    ("builtin.material", "a name of a table: the panel chooses its preset, and has all its fields"),
-    ("groom.material", "as `builtin.material`"),
-    ("body.file", "a file is opened by File or dropped on the window"),
-    ("body.scale", "how a file is read, which belongs to the file"),
-    ("body.up", "as `body.scale`"),
-    ("body.parts", "names of what is in a file"),
-    ("body.rig", "a file"),
-    ("body.weights", "a file"),
-    ("body.more", "further files"),
-    ("collision", "a file"),
-    ("collision.joint", "belongs to that file"),
-    ("sheet", "a file"),
-    ("collider.shape.hull.file", "a file"),
-    ("collider.shape.hull.scale", "how that file is read"),
-    ("clip.file", "a file is opened by File or dropped on the window"),
-    ("clip.name", "names what is in a file"),
-    ("clip.scale", "how a file is read"),
-    ("clip.up", "how a file is read"),
-    ("clip.joint", "names a joint of the motion's file, which no window opens"),
-    ("prop.name", "names what is carried; it stands beside its file"),
-    ("prop.mesh", "a file"),
-    ("prop.pivot", "belongs to its keys"),
-    ("prop.keys", "the way of a file's mesh, which is written beside it"),
-    ("groom.file", "a file is opened by File or dropped on the window"),
-    ("groom.scale", "how a file is read"),
-    ("groom.up", "how a file is read"),
-    ("groom.bones", "a file"),
-    ("groom.grow.parts", "names of parts of the body's file"),
-    ("groom.grow.joint", "where hair grows is said with its parts"),
-    ("groom.grow.inside", "where hair grows is said with its parts"),
-];
-
-/// The book has a page for every field of the scene file: `the_book_is_whole` sees to that.
-#[test]
-fn every_field_of_the_scene_file_is_in_the_panel_or_is_said_why_not() {
-    let known: Vec<String> = parameter::ALL
-        .iter()
-        .flat_map(|p| match p.of {
-            parameter::Of::Scene => vec![p.name.to_owned()],
-            parameter::Of::Groom => vec![format!("groom.{}", p.name), format!("builtin.{}", p.name)],
-            parameter::Of::Material => vec![format!("material.{}", p.name)],
-        })
-        .collect();
-    let lists = ["collider", "sheet", "hand", "wind_source", "charged"];
-    let shown = |field: &str| {
-        let (list, name) = (field.split('.').next().unwrap(), field.rsplit('.').next().unwrap());
-        known.iter().any(|k| k == field || k.strip_prefix(field).is_some_and(|rest| rest.starts_with('.')))
-            || field == "clip.pivot"
-            || field.starts_with("clip.keys")
-            || (lists.contains(&list) && field != list && field::of(list, name).is_some())
-    };
-    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/parameters");
-    let mut fields = Vec::new();
-    let inside = |folder: &Path| std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    for page in inside(&book).filter(|path| path.is_dir()).flat_map(|group| inside(&group)) {
-        let name = page.file_name().unwrap().to_str().unwrap();
-        fields.extend(name.strip_suffix(".md").map(str::to_owned));
-    }
-    assert!(fields.len() > 150, "{} fields", fields.len());
-    let missing: Vec<_> =
-        fields.iter().filter(|f| !shown(f) && ELSEWHERE.iter().all(|(name, _)| name != f)).collect();
-    assert!(missing.is_empty(), "neither in the panel nor said why not: {missing:?}");
-    for (name, why) in ELSEWHERE {
-        assert!(fields.iter().any(|f| f == name) && !shown(name) && !why.is_empty(), "{name}");
-    }
-    for known in known.iter().filter(|k| !k.starts_with("builtin.") && !k.starts_with("groom.")) {
-        assert!(fields.contains(known), "{known} is no field of the scene file");
     }
 }
 
@@ -218,7 +124,7 @@ fn what_begins_the_scene_anew_is_known_of_each_parameter() {
             .into_iter()
             .find(|d| {
                 let key = parameter.key(0, 0);
-                let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor(_));
+                let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor { .. });
                 key.look_up(d.effective()).is_some()
                     || (maybe && key.parent().look_up(d.effective()).is_some())
             })
@@ -233,7 +139,7 @@ fn what_begins_the_scene_anew_is_known_of_each_parameter() {
             Kind::Choice(words) => {
                 (*words.iter().find(|w| Some(**w) != now.as_ref().unwrap().as_str()).unwrap()).into()
             }
-            Kind::Color | Kind::MaybeColor(_) => [0.25, 0.5, 0.75].into_iter().collect(),
+            Kind::Color | Kind::MaybeColor { .. } => [0.25, 0.5, 0.75].into_iter().collect(),
             Kind::Vector { .. } => [0.5, 1.5, 2.5].into_iter().collect(),
             Kind::Profile => [1.0, 2.0].into_iter().collect(),
         };
@@ -254,7 +160,7 @@ fn pigment_takes_the_place_of_colours_in_one_step_and_gives_it_back() {
         document.set_all(edits).unwrap();
     }
     assert!(document.text().contains("melanin = 0.6") && !document.text().contains("color"));
-    let idle = |document: &Document, name: &str| parameter(name).idle(document, 0).is_some();
+    let idle = |document: &Document, name: &str| parameter(name).idle(document, (0, 0)).is_some();
     assert!(idle(&document, "look.root_color") && idle(&document, "look.tip_color"));
     assert!(!idle(&document, "look.melanin_redness"));
     document.undo().unwrap();
@@ -331,7 +237,7 @@ fn hairs_are_counted_anew_when_the_slider_is_let_go_of() {
 fn a_tooltip_names_range_unit_and_default() {
     let of = |name: &str| {
         let (parameter, head) = (parameter(name), document(HEAD));
-        tip(parameter, parameter.idle(&head, 0), parameter.key(0, 0).look_up(head.defaults()))
+        tip(parameter, parameter.idle(&head, (0, 0)), parameter.key(0, 0).look_up(head.defaults()))
     };
     for (name, line) in [
         ("damping", "0 to 0.2 s; default 0.015 s\n"),
@@ -391,4 +297,45 @@ fn the_colour_picker_opens_and_its_letters_are_known() {
     // A letter that no font has ends the test.
     panel.harness.run_steps(3);
     assert!(panel.harness.query_by_label("📋").is_some());
+}
+
+#[test]
+fn no_name_is_cut_off() {
+    let panel = panel(HEAD, "nothing is called so");
+    let font = egui::TextStyle::Body.resolve(&panel.harness.ctx.global_style());
+    let width = |text: &str| {
+        let text = text.to_owned();
+        panel
+            .harness
+            .ctx
+            .fonts_mut(|f| f.layout_no_wrap(text, font.clone(), egui::Color32::WHITE))
+            .rect
+            .width()
+    };
+    let cut: Vec<_> = parameter::ALL.iter().map(|p| p.label).filter(|label| width(label) > LABEL).collect();
+    assert!(cut.is_empty(), "wider than {LABEL} points: {cut:?}");
+}
+
+#[test]
+fn a_group_is_found_by_its_name() {
+    let mut panel = panel(HEAD, "collision");
+    let named = |panel: &Panel, name: &str| panel.harness.query_all_by_label(name).next().is_some();
+    assert!(named(&panel, "Colliders") && named(&panel, "Friction"));
+    panel.filter.replace("camera".into());
+    panel.harness.run_steps(3);
+    assert!(named(&panel, "Stands at"));
+}
+
+#[test]
+fn what_the_window_sees_becomes_the_scenes_camera_in_one_step() {
+    let mut panel = panel(HEAD, "camera");
+    panel.harness.get_by_label(TAKE_VIEW).click();
+    panel.harness.run_steps(3);
+    let camera = panel.session.borrow().document().settings().camera.unwrap();
+    assert!(
+        camera.position.distance(Camera::default().position) < 1e-3
+            && camera.target == Camera::default().target
+    );
+    panel.session.borrow_mut().act(Action::Undo).unwrap();
+    assert_eq!(panel.text(), HEAD);
 }

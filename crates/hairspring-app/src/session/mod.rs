@@ -1,14 +1,16 @@
 //! What the window works on, without the window: the scene, the one beside it, and the simulation. Whatever a person, a script or a monkey does comes in as an [`Action`].
 
+mod action;
+mod scene;
+
+pub use action::Action;
+
 use crate::{
     AppError, differ,
     document::{Change, Document},
     edit,
-    key::Key,
-    parameter::Parameter,
-    player::{Order, Player, STEP},
-    pulled::Push,
-    reading::{Read, Reading, both},
+    player::{Order, Player},
+    reading::Reading,
     snapshot::Snapshot,
 };
 use glam::Vec3;
@@ -18,76 +20,20 @@ use hairspring::{
     stage::Value,
 };
 use hairspring_view::gpu::Gpu;
+use scene::folder;
 use std::{
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
 };
-use toml_edit::Value as Toml;
-
-/// What can be done.
-#[derive(Clone, Debug)]
-pub enum Action {
-    /// Plays or pauses.
-    Play(bool),
-    /// Steps once.
-    Step,
-    /// Back to time 0.
-    Reset,
-    /// Seconds of the scene in a second.
-    Speed(f32),
-    /// Whether the motion begins anew at its end.
-    Repeat(bool),
-    /// Writes a parameter; `None`: its default counts.
-    Parameter(&'static Parameter, Option<Toml>),
-    /// Writes a value by its key.
-    Set(Key, Option<Toml>),
-    /// Writes several values by their keys, which are one step to go back.
-    SetAll(Vec<(Key, Option<Toml>)>),
-    /// What was dragged is let go of.
-    Rest,
-    /// Adds an entry to a list, by the text of its fields.
-    Add(&'static str, String),
-    /// Takes one out.
-    Remove(&'static str, usize),
-    /// A step back.
-    Undo,
-    /// A step forth.
-    Redo,
-    /// Another groom and group of it are shown and changed.
-    Choose(usize, usize),
-    /// A scene that is not saved yet.
-    New(String),
-    /// A scene, groom or body file.
-    Open(PathBuf),
-    /// Saves the scene; `None`: where it was opened.
-    Save(Option<PathBuf>),
-    /// Opens a second scene beside it, which starts out the same, or closes it.
-    Compare(bool),
-    /// Whether parameters are those of the second.
-    Second(bool),
-    /// What colours show.
-    Show(Option<Value>),
-    /// Picks the strand on a ray.
-    Pick(Vec3, Vec3),
-    /// Forgets what was picked.
-    Unpick,
-    /// Takes hold of the hair in a ball.
-    Grab(Vec3, f32),
-    /// Puts spread fingers in around a place, half of their row [m], and how far they reach [m].
-    Comb(Vec3, Vec3, f32),
-    /// Moves what took hold.
-    Carry(Vec3),
-    /// Lets go.
-    LetGo,
-    /// Pushes a ball or a hand through hair; `None`: it is gone.
-    Push(Option<Push>),
-    /// How far the head is carried from where its motion takes it.
-    Head(Vec3),
-}
 
 /// The scene, the one beside it and the simulation.
 pub struct Session {
     document: Document,
+    /// Scenes that were open before, as they were left, and after.
+    before: Vec<Document>,
+    after: Vec<Document>,
+    /// How often another scene was gone over to.
+    opened: u64,
     /// What it is compared with.
     second: Option<Document>,
     /// Whether parameters are those of the second.
@@ -137,6 +83,9 @@ impl Session {
         });
         let mut session = Self {
             document,
+            before: Vec::new(),
+            after: Vec::new(),
+            opened: 0,
             second: None,
             on_second: false,
             player,
@@ -185,33 +134,27 @@ impl Session {
                 let document = self.edited_mut();
                 let edits = edit::of(document, parameter, value, chosen)?;
                 let change = document.set_all(edits)?;
-                self.follow(change);
+                self.edited_by(change);
             }
             Action::Set(key, value) => {
                 let change = self.edited_mut().set(&key, value)?;
-                self.follow(change);
+                self.edited_by(change);
             }
             Action::SetAll(values) => {
                 let change = self.edited_mut().set_all(values)?;
-                self.follow(change);
+                self.edited_by(change);
             }
             Action::Rest => self.edited_mut().rest(),
             Action::Add(list, fields) => {
                 let change = self.edited_mut().add(list, &fields)?;
-                self.follow(change);
+                self.edited_by(change);
             }
             Action::Remove(list, place) => {
                 let change = self.edited_mut().remove(list, place)?;
-                self.follow(change);
+                self.edited_by(change);
             }
-            Action::Undo => {
-                let change = self.edited_mut().undo()?;
-                self.follow(change);
-            }
-            Action::Redo => {
-                let change = self.edited_mut().redo()?;
-                self.follow(change);
-            }
+            Action::Undo => self.back()?,
+            Action::Redo => self.forth()?,
             Action::Choose(groom, group) => self.chosen = (groom, group),
             Action::New(text) => self.take(Document::new(&folder().join("scene.toml"), text)?)?,
             Action::Open(path) => self.open(&path)?,
@@ -258,100 +201,6 @@ impl Session {
         Ok(())
     }
 
-    /// Opens a file: a scene; or a groom or a body, which are put in a scene of their own, or in place of the open one's.
-    fn open(&mut self, path: &std::path::Path) -> Result<(), AppError> {
-        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        let name = toml::Value::String(whole.to_string_lossy().into_owned());
-        let document = match extension.as_str() {
-            "toml" => Document::open(&whole)?,
-            "hair" | "tfx" | "data" => {
-                let text = format!("[[groom]]\nfile = {name}\nmaterial = \"wavy\"\n");
-                Document::new(&folder().join("scene.toml"), text)?
-            }
-            "obj" | "glb" | "gltf" | "tfxmesh" => {
-                let text = self.document.with_body(&name.to_string())?;
-                Document::new(&self.base(), text)?
-            }
-            "bvh" => {
-                let text = self.document.with_motion(&name.to_string())?;
-                Document::new(&self.base(), text)?
-            }
-            _ => {
-                return Err(AppError::new(format!(
-                    "{} is no scene (.toml), groom (.hair, .tfx, .data), body (.glb, .gltf, .obj, .tfxmesh) or motion (.bvh)",
-                    path.display()
-                )));
-            }
-        };
-        self.take(document)
-    }
-
-    /// Goes over to another document, if its scene can be read.
-    fn take(&mut self, document: Document) -> Result<(), AppError> {
-        let old = std::mem::replace(&mut self.document, document);
-        let second = self.second.take();
-        if let Err(why) = self.begin() {
-            (self.document, self.second) = (old, second);
-            return Err(why);
-        }
-        self.on_second = false;
-        self.chosen = (0, 0);
-        Ok(())
-    }
-
-    /// Where files are named from.
-    fn base(&self) -> PathBuf {
-        self.document.file().map_or_else(|| folder().join("scene.toml"), PathBuf::from)
-    }
-
-    /// Reads the scene, and the second, and begins at time 0.
-    fn begin(&mut self) -> Result<(), AppError> {
-        let read = both(&self.document, self.second.as_ref())?;
-        self.reading = None;
-        self.play(read);
-        Ok(())
-    }
-
-    /// As [`Session::begin`], but for who waits: what plays goes on until it is read.
-    fn begin_soon(&mut self) {
-        match &mut self.reading {
-            // One reader at a time: it is begun again when it comes to its end.
-            Some(reading) => reading.stale = true,
-            None => {
-                let wake = self.wake.clone();
-                let second = self.second.as_ref();
-                self.reading = Some(Reading::new(&self.document, second, self.threads, move || rouse(&wake)));
-            }
-        }
-    }
-
-    /// Takes up what has been read meanwhile.
-    fn hear(&mut self) -> Option<AppError> {
-        let outcome = self.reading.as_ref()?.outcome()?;
-        if self.reading.take().is_some_and(|reading| reading.stale) {
-            self.begin_soon();
-            return None;
-        }
-        let why = outcome.map(|read| self.play(read)).err();
-        // Settings may have changed while it was read.
-        self.retune();
-        why
-    }
-
-    /// Begins what was read at time 0.
-    fn play(&mut self, (loaded, second): Read) {
-        self.length = loaded.value.clip.as_ref().map(|clip| clip.duration()).filter(|d| *d > STEP);
-        self.notes = loaded.notes;
-        let joints = loaded.value.body.iter().flat_map(|body| &body.joints);
-        self.joints = joints.map(|joint| joint.name.clone()).collect();
-        self.held = false;
-        self.begun += 1;
-        self.player.tell(Order::Open(Box::new(loaded.value), second.map(|s| Box::new(s.value))));
-        self.tell_length();
-        self.compare();
-    }
-
     /// Finds what the two that are compared differ in.
     fn compare(&mut self) {
         self.captions = match &self.second {
@@ -362,6 +211,14 @@ impl Session {
 
     fn tell_length(&self) {
         self.player.tell(Order::Loop(self.length.filter(|_| self.repeat)));
+    }
+
+    /// After a new edit there is no scene to go forth to.
+    fn edited_by(&mut self, change: Change) {
+        if change != Change::None {
+            self.after.clear();
+        }
+        self.follow(change);
     }
 
     /// Brings the simulation up to an edit.
@@ -391,6 +248,18 @@ impl Session {
     /// The document that is saved.
     pub fn document(&self) -> &Document {
         &self.document
+    }
+
+    /// Whether there is a step to go back, and one to go forth.
+    pub fn steps(&self) -> (bool, bool) {
+        let (back, forth) = self.edited().history();
+        let others = |scenes: &[Document]| !self.on_second && !scenes.is_empty();
+        (back || others(&self.before), forth || others(&self.after))
+    }
+
+    /// How often another scene was gone over to.
+    pub fn opened(&self) -> u64 {
+        self.opened
     }
 
     /// What it is compared with.
@@ -476,9 +345,4 @@ impl Session {
 
 fn at(place: Vec3) -> Rigid {
     Rigid { translation: place, ..Rigid::default() }
-}
-
-/// The folder that scenes without a file are in.
-fn folder() -> PathBuf {
-    std::env::current_dir().unwrap_or_default()
 }

@@ -1,0 +1,126 @@
+//! Keys that are not a widget's, and the bar at the top: what is asked of the window as a whole.
+
+use super::App;
+use crate::{panel::files::For, record::Kind, session::Action, view::Hand};
+use eframe::egui::{self, Key, Modifiers, RichText, Ui};
+
+impl App {
+    /// Keys that are not a widget's.
+    pub(super) fn keys(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        if ctx.egui_wants_keyboard_input() {
+            return;
+        }
+        let pressed = |m: Modifiers, k: Key| ctx.input_mut(|i| i.consume_key(m, k));
+        if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
+            actions.push(Action::Redo);
+        } else if pressed(Modifiers::COMMAND, Key::Z) {
+            actions.push(Action::Undo);
+        }
+        if pressed(Modifiers::COMMAND, Key::O) {
+            self.files.ask(For::Open, None);
+        }
+        if pressed(Modifiers::COMMAND, Key::S) {
+            self.save(actions);
+        }
+        if pressed(Modifiers::NONE, Key::Space) {
+            actions.push(Action::Play(!self.session.playing()));
+        }
+        if pressed(Modifiers::NONE, Key::ArrowRight) && !self.session.playing() {
+            actions.push(Action::Step);
+        }
+        if pressed(Modifiers::NONE, Key::R) {
+            actions.push(Action::Reset);
+        }
+        if pressed(Modifiers::NONE, Key::C) {
+            actions.push(Action::Compare(self.session.second().is_none()));
+        }
+        if pressed(Modifiers::NONE, Key::Home) {
+            actions.push(Action::Head(glam::Vec3::ZERO));
+        }
+        if pressed(Modifiers::NONE, Key::F12) {
+            self.files.ask(For::Record(Kind::Still), None);
+        }
+        if pressed(Modifiers::NONE, Key::F) {
+            self.view.orbit = None;
+        }
+        for (key, open) in [
+            (Key::G, &mut self.open.graphs),
+            (Key::P, &mut self.open.presets),
+            (Key::Tab, &mut self.open.panels),
+            (Key::Questionmark, &mut self.open.help),
+        ] {
+            *open ^= pressed(Modifiers::NONE, key);
+        }
+        // On many keyboards the question mark is on a shifted key.
+        self.open.help ^=
+            pressed(Modifiers::SHIFT, Key::Questionmark) || pressed(Modifiers::SHIFT, Key::Slash);
+        for (hand, _, key, _) in Hand::ALL {
+            if pressed(Modifiers::NONE, key) {
+                self.view.hand = hand;
+            }
+        }
+        if pressed(Modifiers::NONE, Key::Escape) {
+            (self.open.help, self.open.presets) = (false, false);
+            self.files.close();
+            actions.push(Action::Unpick);
+        }
+    }
+
+    fn save(&mut self, actions: &mut Vec<Action>) {
+        match self.session.document().file() {
+            Some(_) => actions.push(Action::Save(None)),
+            None => self.files.ask(For::Save, None),
+        }
+    }
+
+    /// The bar at the top.
+    pub(super) fn menu(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        egui::MenuBar::new().ui(ui, |ui| {
+            ui.menu_button("File", |ui| {
+                if ui.button("Presets…").clicked() {
+                    self.open.presets = true;
+                }
+                if ui.button("Open…").clicked() {
+                    self.files.ask(For::Open, None);
+                }
+                if ui.button("Save").clicked() {
+                    self.save(actions);
+                }
+                if ui.button("Save as…").clicked() {
+                    self.files.ask(For::Save, self.session.document().file());
+                }
+                ui.separator();
+                if ui.button("Quit").clicked() {
+                    ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+                }
+            });
+            ui.menu_button("Record", |ui| {
+                for kind in Kind::ALL {
+                    if ui.button(format!("{}…", kind.title())).clicked() {
+                        self.files.ask(For::Record(kind), None);
+                    }
+                }
+            });
+            let (back, forth) = self.session.steps();
+            if ui.add_enabled(back, egui::Button::new("Undo")).clicked() {
+                actions.push(Action::Undo);
+            }
+            if ui.add_enabled(forth, egui::Button::new("Redo")).clicked() {
+                actions.push(Action::Redo);
+            }
+            ui.toggle_value(&mut self.open.graphs, "Graphs");
+            ui.toggle_value(&mut self.open.help, "?");
+            let document = self.session.document();
+            let star = if document.is_changed() { " *" } else { "" };
+            let file = document.file();
+            let name = file.and_then(|p| p.file_name()).map(|n| n.to_string_lossy());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.label(RichText::new(format!("{}{star}", document.settings().name)).strong());
+                let shown = ui.weak(name.unwrap_or("not saved".into()));
+                if let Some(file) = file {
+                    shown.on_hover_text(file.display().to_string());
+                }
+            });
+        });
+    }
+}

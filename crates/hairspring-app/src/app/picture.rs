@@ -1,0 +1,92 @@
+//! The picture, or two side by side, with what is laid over them.
+
+use super::{App, told};
+use crate::{
+    handle,
+    overlay::{self, Pen},
+    session::Action,
+    snapshot::Snapshot,
+};
+use eframe::egui::{self, Color32, Sense, Ui};
+use hairspring::stage::Value;
+use std::sync::Arc;
+
+impl App {
+    /// The picture, or two side by side, with what is laid over them.
+    pub(super) fn picture(
+        &mut self,
+        ui: &mut Ui,
+        snapshot: Option<&Arc<Snapshot>>,
+        actions: &mut Vec<Action>,
+    ) {
+        let whole = ui.available_rect_before_wrap();
+        self.whole = whole;
+        let Some(snapshot) = snapshot else {
+            ui.centered_and_justified(|ui| ui.spinner());
+            return;
+        };
+        let count = snapshot.stages.len().max(1);
+        while self.painters.len() < count {
+            let another = self.painters[0].another(ui.ctx());
+            self.painters.push(another);
+        }
+        self.painters.truncate(count);
+        let width = whole.width() / count as f32;
+        let aspect = width / whole.height().max(1.0);
+        self.view.meet(&self.session, snapshot, aspect);
+        if self.view.orbit.is_none() {
+            self.view.frame(&self.session, snapshot, aspect);
+        }
+        let guides = self.session.shown() == Some(Value::Guide);
+        for (k, scenery) in snapshot.stages.iter().enumerate() {
+            let left = whole.left() + width * k as f32;
+            let rect =
+                egui::Rect::from_min_size(egui::pos2(left, whole.top()), egui::vec2(width, whole.height()));
+            let response = ui.interact(rect, ui.scope_id().with(("picture", k)), Sense::click_and_drag());
+            if k == 0 {
+                self.rect = rect;
+                self.view.follow_range(scenery, guides);
+            }
+            let moment = self.painters[k].moment(ui.ctx(), snapshot);
+            let seen = moment.stages.get(k).unwrap_or(scenery);
+            // Handles are the scene's whose parameters are shown.
+            let own = (k == 1) == self.session.on_second() && self.view.overlays.handles;
+            let handles = match (self.view.lens(rect), self.view.orbit) {
+                (Some(lens), Some(orbit)) if own => {
+                    handle::all(self.session.edited(), seen, &lens, orbit.distance)
+                }
+                _ => Vec::new(),
+            };
+            self.view.touch(ui, &response, snapshot, &handles, actions);
+            let (Some(sight), Some(lens)) = (self.view.sight(scenery, aspect), self.view.lens(rect)) else {
+                continue;
+            };
+            let pixels = ui.ctx().pixels_per_point();
+            let size = [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(16, 8192));
+            let painter = ui.painter_at(rect);
+            if let Some(shape) = self.painters[k].draw(ui.ctx(), snapshot, k, &sight, (rect, size)) {
+                painter.add(shape);
+            }
+            let picked =
+                snapshot.picked.as_ref().map(|(p, f)| [p.strand, f.guide as usize].map(|s| [p.groom, s]));
+            let picked = picked.as_ref().map_or(&[][..], |picked| &picked[..]);
+            overlay::draw(&Pen { painter: &painter, lens, rect }, seen, &self.view, &handles, picked);
+            if count > 1 {
+                painter.text(
+                    rect.left_top() + egui::vec2(10.0, 8.0),
+                    egui::Align2::LEFT_TOP,
+                    format!(
+                        "{} · {}",
+                        if k == 0 { "Left" } else { "Right" },
+                        self.session.captions()[k.min(1)]
+                    ),
+                    egui::FontId::proportional(16.0),
+                    Color32::from_white_alpha(200),
+                );
+            }
+            if let Some(value) = self.session.shown() {
+                told::legend(&painter, rect, value, &self.view, seen);
+            }
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Grooms and materials in the text: where each stands, and a material of its own for a group that has a preset.
+
+use super::{Document, parsed};
+use crate::{AppError, key::Key};
+use toml_edit::{Item, Table, Value};
+
+impl Document {
+    /// Where to write `field` of a material of its own that group `group` of groom `groom` has. It is made if there is none, and is one step to go back
+    /// with the value that is written to it next.
+    pub fn own_material(&mut self, groom: usize, group: usize, field: &str) -> Result<Key, AppError> {
+        let key = |name: &str| Key::top("material").entry(name).field(field);
+        let mut edited = parsed(self.text())?;
+        let Some(place) = self.groom_key(groom).map(|key| key.field("material")) else {
+            return Err(AppError::new(format!("the scene says nothing of groom {groom}")));
+        };
+        let text = &self.said;
+        let list = self.materials_of(groom);
+        let at = group.min(list.len().saturating_sub(1));
+        if let Some(name) = self.material_of(groom, group) {
+            return Ok(key(&name));
+        }
+        let known = |name: &str| text.get("material").is_some_and(|m| m.get(name).is_some());
+        // A preset, the built-in style's or the default: a material of its own begins from it.
+        let style = text
+            .get("builtin")
+            .filter(|_| groom == 0)
+            .map(|b| b.get("style").and_then(toml::Value::as_str).unwrap_or("wavy").to_owned());
+        let base = list.get(at).cloned().or(style);
+        let name = (1..)
+            .map(|k| if k == 1 { "hair".into() } else { format!("hair-{k}") })
+            .find(|n: &String| !known(n));
+        let name = name.unwrap_or_default();
+        let materials = edited.entry("material").or_insert(Item::Table(implicit()));
+        if let Some(materials) = materials.as_table_like_mut() {
+            let mut table = Table::new();
+            if let Some(base) = base {
+                table.insert("preset", Item::Value(base.into()));
+            }
+            materials.insert(&name, Item::Table(table));
+        }
+        let value: Value = if list.len() > 1 {
+            let mut names = list;
+            names[at].clone_from(&name);
+            Value::from_iter(names)
+        } else {
+            name.clone().into()
+        };
+        if !place.write(edited.as_table_mut(), Some(value)) {
+            return Err(AppError::new(format!("the scene has no {place}")));
+        }
+        self.take(self.draft.with(edited.to_string()), true)?;
+        self.dragged = vec![key(&name)];
+        Ok(key(&name))
+    }
+
+    /// Names of the materials of groom `groom`, as the text says them.
+    fn materials_of(&self, groom: usize) -> Vec<String> {
+        match self.groom_key(groom).and_then(|key| key.field("material").look_up(&self.said)) {
+            Some(toml::Value::String(name)) => vec![name.clone()],
+            Some(toml::Value::Array(names)) => {
+                names.iter().filter_map(|n| n.as_str().map(str::to_owned)).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Name of the material that the text has for group `group` of groom `groom`; `None` where that has a preset, or none.
+    pub fn material_of(&self, groom: usize, group: usize) -> Option<String> {
+        let mut list = self.materials_of(groom);
+        let name = (!list.is_empty()).then(|| list.swap_remove(group.min(list.len() - 1)))?;
+        self.said.get("material")?.get(&name).map(|_| name)
+    }
+
+    /// Where the text says what groom `groom` is; `None` for the built-in head's brows, of which it says nothing.
+    pub fn groom_key(&self, groom: usize) -> Option<Key> {
+        let made = self.settings.grooms.len().saturating_sub(self.listed_grooms());
+        match (groom, groom.checked_sub(made)) {
+            (_, Some(place)) => Some(Key::top("groom").place(place)),
+            (0, None) => Some(Key::top("builtin")),
+            _ => None,
+        }
+    }
+
+    /// Grooms that the text says something of.
+    pub fn grooms(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.settings.grooms.len()).filter(|g| self.groom_key(*g).is_some())
+    }
+
+    fn listed_grooms(&self) -> usize {
+        self.said.get("groom").and_then(toml::Value::as_array).map_or(0, Vec::len)
+    }
+}
+
+/// A table that is written only by what is in it.
+fn implicit() -> Table {
+    let mut table = Table::new();
+    table.set_implicit(true);
+    table
+}

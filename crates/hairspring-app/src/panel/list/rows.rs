@@ -1,0 +1,182 @@
+//! An entry's fields as rows, every number with its unit, what it does and, where it was changed, a reset.
+
+use super::super::{Labelled, keys};
+use crate::{
+    edit,
+    field::{Field, Kind, of, place},
+    key::Key,
+    session::{Action, Session},
+};
+use eframe::egui::{self, DragValue, RichText, Ui};
+use toml_edit::Value;
+
+/// Width of names [points].
+const LABEL: f32 = 86.0;
+
+/// Rows of the fields of an entry of a list.
+pub(super) struct Rows<'a> {
+    pub(super) session: &'a Session,
+    pub(super) list: &'static str,
+    pub(super) actions: &'a mut Vec<Action>,
+}
+
+impl Rows<'_> {
+    /// The fields of a table: those of a table in it first, then its own in the order in which they are told of.
+    pub(super) fn fields(&mut self, ui: &mut Ui, key: &Key, value: &toml::Value) {
+        let Some(table) = value.as_table() else { return };
+        for (name, inner) in table.iter().filter(|(_, value)| value.is_table()) {
+            self.fields(ui, &key.entry(name), inner);
+        }
+        let mut own: Vec<_> = table.iter().filter(|(_, value)| !value.is_table()).collect();
+        own.sort_by_key(|(name, _)| place(name));
+        for (name, value) in own {
+            self.field(ui, &key.entry(name), name, Some(value));
+        }
+    }
+
+    /// One field.
+    pub(super) fn field(&mut self, ui: &mut Ui, key: &Key, name: &str, value: Option<&toml::Value>) {
+        let Some(field) = of(self.list, name) else { return };
+        let document = self.session.edited();
+        let said = key.look_up(document.said()).is_some();
+        // Of what was added there is no other value to go back to than that before the last step.
+        let before = document.first(key).filter(|[_, counted]| *counted != key.look_up(document.effective()));
+        let back = before.map(|[said, _]| said.and_then(edit::written));
+        if let Kind::Keys(keys) = field.kind {
+            // The corners of a hull may be a file's: the text says none then.
+            if name == "points" && !said {
+                return;
+            }
+            ui.push_id(name, |ui| {
+                ui.horizontal(|ui| {
+                    ui.label(name_of(field, &back)).on_hover_text(tip(field));
+                    self.reset(ui, key, back);
+                });
+                let first = self.first_key(key, name);
+                keys::show(ui, (key, field, keys), value, (&first, self.list == "clip"), self.actions);
+            });
+            return;
+        }
+        ui.push_id(name, |ui| {
+            // What is too long for the panel goes on below: it does not grow.
+            ui.horizontal_wrapped(|ui| {
+                let left = egui::Layout::left_to_right(egui::Align::Center);
+                ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
+                    ui.set_min_width(LABEL);
+                    ui.add(egui::Label::new(name_of(field, &back)).truncate()).on_hover_text(tip(field));
+                });
+                if let Some(new) = self.control(ui, field, value) {
+                    self.actions.push(Action::Set(key.clone(), new));
+                }
+                self.reset(ui, key, back);
+            });
+        });
+    }
+
+    /// What brings a field back, where it was changed since the scene was opened.
+    fn reset(&mut self, ui: &mut Ui, key: &Key, back: Option<Option<Value>>) {
+        let Some(back) = back else { return };
+        if ui.small_button("reset").on_hover_text("Back to how the scene was opened").clicked() {
+            self.actions.push(Action::Set(key.clone(), back));
+        }
+    }
+
+    /// What the first key says: where a charged body is, a second later; elsewhere 0.
+    fn first_key(&self, key: &Key, name: &str) -> Vec<f64> {
+        let effective = self.session.edited().effective();
+        let center = key.sibling("center").look_up(effective).and_then(toml::Value::as_array);
+        match (self.list, name, center) {
+            ("charged", "path", Some(center)) => {
+                std::iter::once(1.0).chain(center.iter().filter_map(toml::Value::as_float)).collect()
+            }
+            ("clip", ..) => vec![0.0; 7],
+            _ => vec![0.0; 4],
+        }
+    }
+
+    /// The widget of a field: `Some(None)` takes it away. What lies in range is known to the reader of the file, which refuses the rest.
+    fn control(&self, ui: &mut Ui, field: &Field, value: Option<&toml::Value>) -> Option<Option<Value>> {
+        match (field.kind, value) {
+            (Kind::Joint, value) => {
+                let none = if self.list == "collider" { "the head" } else { "nothing" };
+                let chosen = value.and_then(toml::Value::as_str);
+                let mut new = None;
+                let combo = egui::ComboBox::from_id_salt(field.name)
+                    .selected_text(chosen.unwrap_or(none))
+                    .show_ui(ui, |ui| {
+                        if ui.selectable_label(chosen.is_none(), none).clicked() {
+                            new = Some(None);
+                        }
+                        for joint in self.session.joints() {
+                            if ui.selectable_label(chosen == Some(joint), joint).clicked() {
+                                new = Some(Some(joint.as_str().into()));
+                            }
+                        }
+                    });
+                combo.response.labelled(ui, field.label).on_hover_text(tip(field));
+                new
+            }
+            (Kind::Maybe(from), value) => {
+                let mut never = value.is_none();
+                if ui.checkbox(&mut never, "never").on_hover_text(tip(field)).changed() {
+                    return Some((!never).then(|| from.into()));
+                }
+                number(ui, as_number(value?)?, field.unit, &tip(field)).map(|x| Some(x.into()))
+            }
+            (_, Some(toml::Value::Boolean(on))) => {
+                let mut on = *on;
+                let response = ui.checkbox(&mut on, "").labelled(ui, field.label);
+                response.on_hover_text(tip(field)).changed().then(|| Some(on.into()))
+            }
+            (_, Some(toml::Value::Array(list))) => {
+                let mut changed = false;
+                let mut out = Vec::with_capacity(list.len());
+                for (axis, x) in ["x", "y", "z"].into_iter().zip(list) {
+                    let x = as_number(x).unwrap_or(0.0);
+                    let new = number(ui, x, "", &format!("{axis}: {}", tip(field)));
+                    changed |= new.is_some();
+                    out.push(new.unwrap_or(x));
+                }
+                if !field.unit.is_empty() {
+                    ui.weak(field.unit);
+                }
+                changed.then(|| Some(Value::from_iter(out)))
+            }
+            (_, Some(value)) => {
+                number(ui, as_number(value)?, field.unit, &tip(field)).map(|x| Some(x.into()))
+            }
+            (_, None) => None,
+        }
+    }
+}
+
+/// Its name, which stands out where it was changed.
+fn name_of(field: &Field, back: &Option<Option<Value>>) -> RichText {
+    let name = RichText::new(field.label);
+    if back.is_some() { name.strong() } else { name }
+}
+
+fn tip(field: &Field) -> String {
+    match field.unit {
+        "" => field.tip.to_owned(),
+        unit => format!("{} [{unit}]", field.tip),
+    }
+}
+
+fn as_number(value: &toml::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
+}
+
+fn number(ui: &mut Ui, x: f64, unit: &str, tip: &str) -> Option<f64> {
+    let mut new = x;
+    // A hundredth of the number a point, or a centimetre's hundredth near 0.
+    let speed = (x.abs() * 0.01).max(if x == 0.0 || x.abs() > 1e-4 { 1e-3 } else { 0.0 });
+    let drag = DragValue::new(&mut new).speed(speed);
+    let drag = if unit.is_empty() { drag } else { drag.suffix(format!(" {unit}")) };
+    let drag = if x != 0.0 && x.abs() < 1e-3 {
+        drag.custom_formatter(|x, _| format!("{x:.2e}"))
+    } else {
+        drag.max_decimals(3)
+    };
+    ui.add(drag).on_hover_text(tip).changed().then_some(new)
+}

@@ -1,0 +1,92 @@
+//! Moments for the window: what is shown of the stages, in memory that is used again.
+
+use super::{lock, work::Work};
+use crate::{
+    pulled::Pushing,
+    snapshot::{Scenery, Snapshot, Still},
+};
+use hairspring::stage::{FrameReport, Stage};
+use std::{
+    sync::{Arc, atomic::Ordering::Relaxed},
+    time::{Duration, Instant},
+};
+
+/// Steps from one measurement of all strands to the next while it plays: figures that change faster cannot be read.
+const MEASURED: u64 = 15;
+
+impl Work {
+    /// Brings all strands of the stages up to date.
+    pub(super) fn show(&mut self) {
+        if std::mem::take(&mut self.unshown) {
+            for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
+                let took = stage.show();
+                if k == 0 {
+                    self.report.follow = took;
+                }
+            }
+        }
+    }
+
+    /// Shows the stages as they are.
+    pub(super) fn publish(&mut self) {
+        if self.stages.is_empty() {
+            return;
+        }
+        self.show();
+        let measured = self.measured.0 == self.scene && self.measures.len() == self.stages.len();
+        if !(self.playing && measured && self.step < self.measured.1 + MEASURED) {
+            self.measured = (self.scene, self.step);
+            self.measures.clear();
+            self.measures.extend(self.stages.iter().map(|(stage, _)| (stage.measure(), stage.energy())));
+        }
+        let mut next = self.spare();
+        // Nobody else has it: `spare` saw to that.
+        let (Some(snapshot), Some((first, _))) = (Arc::get_mut(&mut next), self.stages.first()) else {
+            return;
+        };
+        let fresh = |(_, still): &(Stage, Arc<Still>)| Scenery::new(still.clone());
+        if snapshot.scene != self.scene || snapshot.stages.len() != self.stages.len() {
+            snapshot.stages = self.stages.iter().map(fresh).collect();
+        }
+        for ((scenery, (stage, still)), measure) in
+            snapshot.stages.iter_mut().zip(&self.stages).zip(&self.measures)
+        {
+            scenery.fill(stage, still, self.show);
+            (scenery.measure, scenery.energy) = *measure;
+            scenery.pushed = self.pushing.as_ref().map(Pushing::shown);
+        }
+        let picked = self.picked;
+        snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));
+        (snapshot.step, snapshot.scene, snapshot.time) = (self.step, self.scene, first.time());
+        self.published += 1;
+        snapshot.number = self.published;
+        (snapshot.report, snapshot.took, snapshot.reset_strands) =
+            (self.report, self.took, self.reset_strands);
+        self.shown = Instant::now();
+        self.shared.seen.store(false, Relaxed);
+        if let Some(old) = lock(&self.shared.latest).replace(next) {
+            self.pool.push(old);
+        }
+        (self.wake)();
+    }
+
+    /// A snapshot that nobody looks at.
+    fn spare(&mut self) -> Arc<Snapshot> {
+        // The window holds one or two: more would be a leak.
+        self.pool.truncate(8);
+        let free = self.pool.iter_mut().position(|s| Arc::get_mut(s).is_some());
+        free.map(|k| self.pool.swap_remove(k)).unwrap_or_else(|| {
+            Arc::new(Snapshot {
+                number: 0,
+                step: 0,
+                scene: 0,
+                time: 0.0,
+                stages: Vec::new(),
+                report: FrameReport::default(),
+                took: Duration::ZERO,
+                reset_strands: 0,
+                picked: None,
+            })
+        })
+    }
+}

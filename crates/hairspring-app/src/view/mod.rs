@@ -1,0 +1,245 @@
+//! What is seen and by which hand it is touched: the camera, what is laid over the picture; the tools are in `hand`, what the pointer does with them in `touch`.
+
+mod hand;
+mod range;
+mod touch;
+
+pub use hand::{FINGERS, Hand};
+
+use crate::{
+    orbit::{Lens, NARROW, Orbit},
+    session::Session,
+    snapshot::{Scenery, Sight, Snapshot},
+};
+use eframe::egui;
+use glam::Vec3;
+use hairspring::scene::builtin;
+use hairspring_view::{Quality, frame_camera};
+use std::path::PathBuf;
+use touch::{Drag, Held};
+
+/// Hairs on a human head.
+const HEAD: f32 = 100_000.0;
+/// Widest that a hair is drawn by default, times its own width.
+const WIDEST: f32 = 10.0;
+
+/// What is laid over the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overlays {
+    /// Outlines of colliders.
+    pub colliders: bool,
+    /// A slice through all colliders' distance.
+    pub slice: bool,
+    /// Cells of the hair's volume.
+    pub volume: bool,
+    /// Frames of the head, of roots, and along the strand that is picked.
+    pub frames: bool,
+    /// Where strands begin.
+    pub roots: bool,
+    /// Handles of the wind and of what the scene lists.
+    pub handles: bool,
+    /// Whether hair is drawn.
+    pub hair: bool,
+    /// Whether the body is drawn.
+    pub body: bool,
+}
+
+impl Default for Overlays {
+    fn default() -> Self {
+        Self {
+            colliders: false,
+            slice: false,
+            volume: false,
+            frames: false,
+            roots: false,
+            handles: true,
+            hair: true,
+            body: true,
+        }
+    }
+}
+
+/// The view's own state.
+pub struct View {
+    /// Camera; `None` until there is something to look at.
+    pub orbit: Option<Orbit>,
+    /// Tool.
+    pub hand: Hand,
+    /// Radius of the ball and of a grab [m].
+    pub reach: f32,
+    /// Length of the hand [m].
+    pub length: f32,
+    /// What is laid over.
+    pub overlays: Overlays,
+    /// How much wider than they are hairs are drawn; `None`: by their number.
+    pub width: Option<f32>,
+    /// Brightness [stops].
+    pub exposure: f32,
+    /// Height of the slice, over the hair's box [1].
+    pub slice: f32,
+    /// Range of colours, and the scene and value that it was found for.
+    pub range: [f32; 2],
+    /// What is being dragged.
+    drag: Option<Drag>,
+    held: Option<Held>,
+    /// The handle that the pointer is on.
+    over: Option<usize>,
+    /// How far the head is from where it should be, and how fast it goes back [m], [m/s].
+    head: (Vec3, Vec3),
+    /// Number of the scene that the camera was set for, and its file.
+    framed: u64,
+    file: Option<PathBuf>,
+    /// What the scene's text said of its camera last, and of which of two scenes: when it says something else, the window looks from there.
+    said: (bool, Option<toml::Value>),
+    /// Whether the next scene is another one, to be looked at anew.
+    pub forget: bool,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            orbit: None,
+            hand: Hand::default(),
+            reach: 0.02,
+            length: builtin::Hand::LENGTH,
+            overlays: Overlays::default(),
+            width: None,
+            exposure: 0.0,
+            slice: 0.5,
+            range: [0.0, 1.0],
+            drag: None,
+            held: None,
+            over: None,
+            head: (Vec3::ZERO, Vec3::ZERO),
+            framed: 0,
+            file: None,
+            said: (false, None),
+            forget: false,
+        }
+    }
+}
+
+impl View {
+    /// How the scene is looked at in a picture so many times as wide as high.
+    pub fn sight(&self, scenery: &Scenery, aspect: f32) -> Option<Sight> {
+        let orbit = self.orbit?;
+        let camera = orbit.seen(aspect);
+        let strands = scenery.still.counts[1] as f32;
+        Some(Sight {
+            camera,
+            lit_for: Orbit { turn: 0.3, ..orbit }.camera(),
+            exposure: self.exposure,
+            width: self.width.unwrap_or((HEAD / strands.max(1.0)).clamp(1.0, WIDEST)),
+            every: 1,
+            range: self.range,
+            hair: self.overlays.hair,
+            body: self.overlays.body,
+            quality: Quality::default(),
+        })
+    }
+
+    /// Sets the camera where a scene has just been opened: as its file says, else where all hair is seen; and where the scene's camera is changed.
+    pub fn meet(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
+        // A moment of the scene before is not what was opened.
+        if self.framed != snapshot.scene && snapshot.scene >= session.begun() {
+            self.framed = snapshot.scene;
+            let file = session.document().file().map(Into::into);
+            // An edit that begins the same scene anew leaves the camera where it is.
+            if self.orbit.is_none() || self.file != file || self.forget {
+                self.frame(session, snapshot, aspect);
+                self.said = said_of_camera(session);
+            }
+            (self.file, self.forget) = (file, false);
+        }
+        let said = said_of_camera(session);
+        if said != self.said {
+            if let Some(camera) = session.edited().settings().camera.filter(|_| said.0 == self.said.0) {
+                self.orbit = Some(Orbit::new(&camera));
+            }
+            self.said = said;
+        }
+    }
+
+    /// Looks at all hair.
+    pub fn frame(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
+        let own = session.document().settings().camera;
+        let bounds = snapshot.stages.first().and_then(Scenery::bounds).unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+        let room = Vec3::splat(0.06 * (bounds.1 - bounds.0).length());
+        let camera =
+            own.unwrap_or_else(|| frame_camera((bounds.0 - room, bounds.1 + room), aspect.max(NARROW)));
+        self.orbit = Some(Orbit::new(&camera));
+    }
+
+    /// The lens through which the picture at `rect` is seen.
+    pub fn lens(&self, rect: egui::Rect) -> Option<Lens> {
+        let aspect = rect.width() / rect.height().max(1.0);
+        Some(Lens::new(&self.orbit?.seen(aspect), aspect))
+    }
+}
+
+/// Which of two scenes is changed, and what its text says of its camera.
+fn said_of_camera(session: &Session) -> (bool, Option<toml::Value>) {
+    (session.on_second(), session.edited().said().get("camera").cloned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{document::Document, parameter, session::Action};
+
+    #[test]
+    fn the_view_goes_where_the_scenes_camera_is_put_and_stays_where_a_hand_turned_it() {
+        let text = "[builtin]\nstrands = 10\nguides = 5\n";
+        let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
+        let mut session = Session::new(document, 1, None, || ()).unwrap();
+        let snapshot = (0..12_000).find_map(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+            session.latest()
+        });
+        let (snapshot, mut view) = (snapshot.unwrap(), View::default());
+        view.meet(&session, &snapshot, 1.5);
+        let turned = Orbit { turn: 1.0, ..view.orbit.unwrap() };
+        view.orbit = Some(turned);
+        let put = |session: &mut Session, name: &str, value: toml_edit::Value| {
+            let parameter = parameter::ALL.iter().find(|p| p.name == name).unwrap();
+            session.act(Action::Parameter(parameter, Some(value))).unwrap();
+        };
+        put(&mut session, "gravity", [0.0, -1.0, 0.0].into_iter().collect());
+        view.meet(&session, &snapshot, 1.5);
+        assert_eq!(view.orbit, Some(turned), "nothing was said of the camera");
+        put(&mut session, "camera.fov", 40.0.into());
+        view.meet(&session, &snapshot, 1.5);
+        let own = session.document().settings().camera.unwrap();
+        assert_eq!((view.orbit.unwrap().fov, view.orbit), (40.0, Some(Orbit::new(&own))));
+        view.orbit = Some(turned);
+        session.act(Action::Undo).unwrap();
+        view.meet(&session, &snapshot, 1.5);
+        assert_eq!(view.orbit.unwrap().fov, session.document().settings().camera.unwrap().fov);
+    }
+
+    #[test]
+    fn what_is_opened_at_once_is_looked_at_all_the_same() {
+        let head = |y: f64| {
+            format!(
+                "[builtin]\nstrands = 10\nguides = 5\n[camera]\nposition = [0.0, {y}, 2.0]\ntarget = [0.0, {y}, 0.0]\nfov = 30.0\n"
+            )
+        };
+        let document = Document::new("scene.toml".as_ref(), head(1.0)).unwrap();
+        let mut session = Session::new(document, 1, None, || ()).unwrap();
+        let seen = |session: &Session, scene: u64| {
+            let mut moments = (0..12_000).map(|_| {
+                std::thread::sleep(std::time::Duration::from_millis(5));
+                session.latest().filter(|s| s.scene == scene)
+            });
+            moments.find_map(|moment| moment).unwrap()
+        };
+        let (first, mut view) = (seen(&session, 1), View::default());
+        // Before the window has drawn the first.
+        session.act(Action::New(head(5.0))).unwrap();
+        view.forget = true;
+        view.meet(&session, &first, 1.5);
+        assert!(view.forget, "what was opened is still to come");
+        view.meet(&session, &seen(&session, 2), 1.5);
+        assert_eq!(view.orbit.unwrap().target.y, 5.0);
+    }
+}
