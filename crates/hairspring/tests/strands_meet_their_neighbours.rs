@@ -378,3 +378,36 @@ fn a_shaken_head_keeps_its_volume_as_strands_and_by_the_lattice() {
     println!("kept: without {without}, strands {strands}, incompressible {lattice}, density {soft}");
     assert!(strands > without + 0.1, "strands keep {strands}, of which {without} is left without");
 }
+
+/// A strand that falls across a web of strands stretched side by side: where its tip is two seconds later [m].
+fn dropped_on_a_web(volume: VolumeMethod, on: bool) -> Vec3 {
+    let web = (0..16).map(|k| {
+        let x = 0.004 * (k as f32 - 7.5);
+        line(Vec3::new(x, 0.0, -0.05), Vec3::new(x, 0.0, 0.05), 11)
+    });
+    let fallen = line(Vec3::new(-0.06, 0.005, 0.0), Vec3::new(0.14, 0.005, 0.0), 21);
+    let neighbours = Neighbours { on, radius: Some(0.001), ..Neighbours::default() };
+    let mut strands = Strands::new(&web.chain([fallen]).collect::<Vec<_>>(), limp(), GRAVITY, neighbours);
+    strands.simulation.set_volume(&Volume { method: volume, ..Volume::default() });
+    // The web is held at both of its sides.
+    let held = |strand: u32| Hold {
+        strand,
+        point: 10,
+        target: Some(strands.groom.strand(strand as usize)[10]),
+        ..Hold::default()
+    };
+    let holds: Vec<Hold> = (0..16).map(held).collect();
+    strands.simulation.set_holds(&holds);
+    strands.play(2.0);
+    strands.points()[16][20]
+}
+
+#[test]
+fn a_web_holds_what_the_volume_alone_lets_through() {
+    for volume in VolumeMethod::ALL {
+        let [through, held] = [false, true].map(|on| dropped_on_a_web(volume, on));
+        println!("{volume:?}: the tip is at {through} by itself, at {held} with neighbours");
+        assert!(through.x < -0.03, "{volume:?}: it did not fall through: {through}");
+        assert!(held.x > 0.02, "{volume:?}: it fell through the web: {held}");
+    }
+}

@@ -166,7 +166,8 @@ fn held<S: Simd>(
         let world = in_world(e);
         let (distance, normal) = contact(simd, pose, world);
         let depth = (clearance - distance).max(0.0);
-        if depth.simd_gt(0.0).any_true() {
+        let inside = depth.simd_gt(0.0);
+        if inside.any_true() {
             // Out along the normal; then back along the surface, at most μ times as far.
             let pushed = e + normal * depth;
             let carried = surface_displacement(simd, pose, world);
@@ -184,10 +185,16 @@ fn held<S: Simd>(
             let mut q = link.clamp(held);
             for _ in 0..CORRECTIONS {
                 let (distance, normal) = contact(simd, pose, in_world(q));
-                q = link.clamp(link.swing_out(q, normal, (clearance - distance).max(0.0)));
+                let left = (clearance - distance).max(0.0);
+                let still = inside & left.simd_gt(0.0);
+                if !still.any_true() {
+                    break;
+                }
+                // What is out keeps its bits, whatever its neighbours in the tile do.
+                q = V3::select(still, link.clamp(link.swing_out(q, normal, left)), q);
             }
             if finish.project {
-                e = V3::select(depth.simd_gt(0.0), q, e);
+                e = V3::select(inside, q, e);
             }
         }
         if !tile.spans.is_empty() {

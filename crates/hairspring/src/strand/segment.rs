@@ -18,7 +18,7 @@ use super::{
     lanes::{F, Row, Sym3, V3, load, store},
     limit::{Finish, Link, Particle},
     model::stretch::STRETCH,
-    press::{Surface, nearest, scratch as contact, scratch::SEGMENT},
+    press::{STICK, Surface, nearest, scratch as contact, scratch::SEGMENT},
     root::Root,
     scratch::Scratch,
     tile::{Tile, rest, span, state},
@@ -160,7 +160,7 @@ pub fn press_between<S: Simd, const B: usize, const N: usize>(
     let k = shut.select(m_h2 * STRETCH, zero);
     let before = faster.mul_add(at, v) * h;
     let (slid, _) = along(before - carried).length_and_unit();
-    let rub = (Root::<S>::fibre(simd, tile.strand).2 * force / slid).min(k);
+    let rub = (Root::<S>::fibre(simd, tile.strand).2 * force / slid).min(k * STICK);
     let block = Sym3::outer(normal, k - rub).add_identity(rub);
     let push = normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub;
     let share = one - at;

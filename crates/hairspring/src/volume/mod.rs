@@ -14,7 +14,9 @@
 //! # The five steps of McAdams 2009 here
 //! - Steps 1 and 2, positions and velocities free of collision and what forces make of the velocities, are the strands' state and their solve.
 //! - Step 3, the volume's correction, comes before step 2 instead of after it: it goes into the implicit solve, so that it stretches no strand.
-//! - Steps 4 and 5, contact with the body and the new positions, end every substep as without it.
+//! - Step 4, contact strand by strand where the lattice is too coarse to see it, so that webs of straight hair are not gone through, is
+//!   `neighbours`, switched on beside it.
+//! - Contact with the body and step 5, the new positions, end every substep as without it.
 //!
 //! # Cost
 //! A point's 12 bytes of position are read for the window, its 24 of position and velocity and 8 of its own for the sums, 24 again for the
@@ -24,8 +26,7 @@
 //! the strands then find cold included. A node costs 1 to 3 ns; the solve of `incompressible`, 20,000 full cells, 4 to 8 ms on two cores.
 //!
 //! # Missing
-//! Hair of different grooms does not meet. The geometric correction that keeps webs of straight hair (McAdams 2009) is left out. Followers are moved by their
-//! guides alone.
+//! Hair of different grooms does not meet. Followers are moved by their guides alone.
 
 mod conjugate;
 mod density;
