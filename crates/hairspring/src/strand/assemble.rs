@@ -16,19 +16,20 @@
 //! Baraff & Witkin 1998, *Large Steps in Cloth Simulation*; BDF2 after Choi & Ko 2002, *Stable but Responsive Cloth*, eq. 17.
 
 use super::{
-    band::{Band, back_substitute, factor_rows, reach},
+    band::{back_substitute, factor_rows, reach},
+    elements::{Elements, Outset},
     lanes::{F, Row, Sym3, V3, load, store},
     model::{
-        At, Model, Solved,
-        stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2, stretch},
+        Model, Solved,
+        stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2},
     },
     prefetch::ask_beyond,
     press::{press, relieve},
     root::Root,
     scratch::Scratch,
-    segment::{press_between, relieve_between},
+    segment::relieve_between,
     tether,
-    tile::{Tile, grip, history, hold, rest, state, strand, tines},
+    tile::{Tile, grip, history, hold, rest, state, tines},
 };
 use crate::collide::ObstaclePose;
 use fearless_simd::prelude::*;
@@ -66,7 +67,7 @@ impl<S: Simd> Step<'_, S> {
 
     /// How much of a tense segment's sideways stiffness is left out of the matrix (see `stretch`).
     #[inline(always)]
-    fn explicit_tension(&self) -> f32 {
+    pub fn explicit_tension(&self) -> f32 {
         if self.second_order { EXPLICIT_TENSION_BDF2 } else { EXPLICIT_TENSION }
     }
 }
@@ -117,7 +118,7 @@ impl Sweep {
     }
 
     /// How long velocities act until where the solve begins, of a substep of `h` [s].
-    fn drift(self, h: f32) -> f32 {
+    pub fn drift(self, h: f32) -> f32 {
         if self == Self::First { h } else { 0.0 }
     }
 }
@@ -281,32 +282,6 @@ fn add_point<S, M, const B: usize, const N: usize>(
     }
 }
 
-/// Where the solve of a point begins, worked out where it is asked for. (Not closures: the compiler may leave those outside of what it builds for the instruction
-/// set, and then each operation in them is a call.)
-struct Outset<S: Simd> {
-    sweep: Sweep,
-    /// Its velocity less the root's [m/s].
-    faster: V3<S>,
-    /// See [`Sweep::drift`] [s].
-    share: f32,
-    /// How far it has gone since the start of the substep, of a sweep again [m].
-    way: V3<S>,
-}
-
-impl<S: Simd> Outset<S> {
-    /// From where the root takes it [m].
-    #[inline(always)]
-    fn drift(&self, simd: S) -> V3<S> {
-        self.faster * F::splat(simd, self.share)
-    }
-
-    /// From where the substep begins [m].
-    #[inline(always)]
-    fn way(&self, simd: S) -> V3<S> {
-        if self.sweep == Sweep::First { self.drift(simd) } else { self.way }
-    }
-}
-
 /// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took.
 #[inline(always)]
 pub fn substitute<S, M, const B: usize, const N: usize>(
@@ -365,140 +340,5 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
             let row = &mut tile.state[i][state::TENSION];
             store(load(simd, row) + solved.taken(M::STRIDE, length, solved.along), row);
         }
-    }
-}
-
-/// What the assembly says of the point after the walk's.
-pub struct Segment<S: Simd> {
-    /// Unit vector of the strand's segment from it.
-    pub u: V3<S>,
-    /// Its mass [kg].
-    pub mass: F<S>,
-    /// Force of still air on the half segments around it, over speed [N s/m].
-    pub air: F<S>,
-}
-
-/// What acts alike on all points of strands whose points all move as their roots did.
-struct Still<S: Simd> {
-    /// Gravity, and how the root's own motion changes [m/s²].
-    pull: V3<S>,
-    /// The wind that a point feels, where it moves as the root did, and its own velocity [m/s].
-    wind: V3<S>,
-}
-
-/// The walk down a strand that fills the band: elasticity only.
-pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
-    /// The window, which begins at the point that the walk is at.
-    pub band: Band<S, B, N>,
-    model: M,
-    at: At<S>,
-    /// The next particle, from the root [m].
-    x: V3<S>,
-    /// How far it has gone since the start of the substep, of a sweep again [m].
-    way: V3<S>,
-    /// Velocity of the root in the last substep [m/s].
-    root_velocity: V3<S>,
-    still: Still<S>,
-    /// Force of still air on half a unit of length, over speed [N s/m²].
-    half_drag: F<S>,
-    /// See [`stretch`].
-    explicit: F<S>,
-}
-
-impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
-    /// At the root.
-    #[inline(always)]
-    pub fn begin(simd: S, sweep: Sweep, step: &Step<S>, tile: &Tile, scratch: &Scratch) -> Self {
-        let (drag, damping, _) = Root::<S>::fibre(simd, tile.strand);
-        let zero = V3::zero(simd);
-        let mut first = V3::load(simd, &scratch.edges[1]);
-        if M::STRIDE == 2 {
-            first += V3::load(simd, &scratch.edges[2]);
-        }
-        let at = At {
-            i: 0,
-            phase: 0,
-            e: [first; 2],
-            u: [first.length_and_unit().1; 2],
-            inverse_length: [F::splat(simd, 0.0); 2],
-            damped: damping * (1.0 / step.h) + 1.0,
-            news: sweep.news(),
-            drift: [zero; 2],
-            drifting: F::splat(simd, sweep.drift(step.h)),
-            h: step.h,
-        };
-        let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
-        let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
-        let explicit = F::splat(simd, step.explicit_tension()) / stiffening;
-        let root_velocity = V3::load(simd, &tile.state[0][state::V..]);
-        let now = step.moved * F::splat(simd, 1.0 / step.h);
-        let still = Still {
-            pull: (root_velocity - now).mul_add(F::splat(simd, 1.0 / step.h), V3::splat(simd, step.gravity)),
-            wind: V3::splat(simd, step.wind) + (root_velocity - now),
-        };
-        Self { band, model, at, x: zero, way: zero, root_velocity, still, half_drag, explicit }
-    }
-
-    /// Adds contact of the segment from point `i`, the band's first.
-    #[inline(always)]
-    fn press_between(
-        &mut self,
-        simd: S,
-        (sweep, step): (Sweep, &Step<S>),
-        i: usize,
-        tile: &mut Tile,
-        scratch: &mut Scratch,
-    ) {
-        let faster = V3::load(simd, &tile.state[i][state::V..]) - self.root_velocity;
-        let outset = Outset { sweep, faster, share: sweep.drift(step.h), way: self.way };
-        let inner = (i, self.x, outset.drift(simd), outset.way(simd));
-        press_between(simd, (sweep, step, M::STRIDE), tile, inner, &mut self.band, scratch);
-    }
-
-    /// Adds what begins at the next point `i`: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i
-    /// modulo the model's stride. Both are known to the walk; it is for the compiler that they are told.
-    #[inline(always)]
-    pub fn add(&mut self, simd: S, i: usize, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
-        let Scratch { edges, fixed, .. } = scratch;
-        (self.at.i, self.at.phase) = (i, phase);
-        self.band.enter(simd);
-        let next = i + 1;
-        self.x += V3::load(simd, &edges[next]);
-        let row = &tile.rest[next];
-        let mass = load(simd, &row[rest::MASS]);
-        if phase + 1 < M::STRIDE {
-            self.model.add(simd, &self.at, scratch, tile, &mut self.band);
-            // Air does not meet what is no part of the fibre.
-            return Segment { u: self.at.u[1], mass, air: F::splat(simd, 0.0) };
-        }
-        // What the step before had in hand is read again: it would wait in memory all the same.
-        let (before, far) = (next - M::STRIDE, next + M::STRIDE);
-        let [v1, v2] =
-            [next, far.min(tile.rest.len() - 1)].map(|i| V3::load(simd, &tile.state[i][state::V..]));
-        let segment = |to: usize| {
-            let last = V3::load(simd, &edges[to]);
-            if M::STRIDE == 1 { last } else { V3::load(simd, &edges[to - 1]) + last }
-        };
-        let e = segment(far);
-        let (l, u) = e.length_and_unit();
-        let at = &mut self.at;
-        at.e = [segment(next), e];
-        at.drift = [at.drift[1], (v2 - v1) * at.drifting];
-        at.u = [at.u[1], u];
-        at.inverse_length = [before, next].map(|i| load(simd, &fixed[i].inverse_length));
-        self.model.add(simd, at, scratch, tile, &mut self.band);
-
-        let length = load(simd, &row[rest::LENGTH]);
-        let k = load(simd, &fixed[next].along);
-        let tension = load(simd, &tile.state[next][state::TENSION]);
-        let (force, block) = stretch((l, u), (l - length) * at.news, k, tension, self.explicit);
-        self.band.add_diagonal(1, block);
-        self.band.add_diagonal(1 + M::STRIDE, block);
-        self.band.add_block(1, 1 + M::STRIDE, &-block.full());
-        let force = force + block * at.drift[1];
-        self.band.add_force(1, force);
-        self.band.add_force(1 + M::STRIDE, -force);
-        let air = self.half_drag * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
-        Segment { u, mass, air }
     }
 }
