@@ -2,7 +2,8 @@
 //! spring, which all models share, is the gradient of its energy.
 
 use super::{
-    assemble::{Elements, Step, Sweep},
+    assemble::{Step, Sweep},
+    elements::Elements,
     fixed::fix,
     lanes::{F, LANES, Row},
     model::{
