@@ -1,5 +1,6 @@
 //! Promise: segments stay outside of colliders, not only points: a strand that falls over an edge does not cut the corner, one that falls on
-//! a ball or a rod smaller than its segments rests on it, and hair that lies so comes to rest and stays.
+//! a ball or a rod smaller than its segments rests on it, and hair that lies so comes to rest and stays. Ridges of a mesh are met wherever they
+//! cross a segment, and what falls into a crease between two walls is out of both.
 //!
 //! Segments may be inside by 1.5 % of their length, here 0.3 mm: those on a large round body always are. At rest they are by no more than 0.4 mm, and by 1 mm while they
 //! land. What lies so moves by less than 0.1 mm in a second (springs, which tremble on an edge, by 0.5 mm). Where nothing is near, none of it
@@ -7,7 +8,7 @@
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    collide::{Hull, Obstacle, ObstaclePose, Rigid, Sheet},
+    collide::{Hull, Obstacle, ObstaclePose, Rigid, Sheet, voxelize},
     groom::Groom,
     material::{Material, Model},
     scene::Solver,
@@ -125,6 +126,73 @@ fn hair_falls_over_edges_and_lies_on_them() {
             check(landing.stretch_max < 0.011, "a segment is too long");
             check(lowest < -0.1, "nothing hangs over");
             check(crept < if model == Model::Springs { 1.5e-4 } else { 1e-4 }, "hair at rest creeps");
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// The field of blocks that overlap: their middles, half edges and turns about x [rad].
+fn blocks(blocks: impl IntoIterator<Item = (Vec3, Vec3, f32)>, cell: f32) -> Obstacle {
+    // Quads around a block, seen from outside: corner k is on the far side along x, y, z by its bits.
+    const FACES: [[u32; 4]; 6] =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let (mut corners, mut triangles) = (Vec::new(), Vec::new());
+    for (middle, half, turn) in blocks {
+        let first = corners.len() as u32;
+        let side = |k: u32, bit: u32| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let corner = |k| half * Vec3::new(side(k, 0), side(k, 1), side(k, 2));
+        corners.extend((0..8).map(|k| middle + Mat3::from_rotation_x(turn) * corner(k)));
+        for [a, b, c, d] in FACES.map(|face| face.map(|k| first + k)) {
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    Obstacle::Field(Arc::new(voxelize(&corners, &triangles, cell)))
+}
+
+#[test]
+fn ridges_and_creases_are_met_wherever_they_cross_a_segment() {
+    // A board 6 mm below, with ridges of 4 mm every 34: most segments see nothing but the board from their middles.
+    let board = (Vec3::new(0.05, -0.016, 0.0), Vec3::new(0.17, 0.01, 0.06), 0.0);
+    let ridge = |k: i32| (Vec3::new(0.034 * k as f32, -0.01, 0.0), Vec3::new(0.002, 0.01, 0.06), 0.0);
+    // Two boards under the hair, along it, that come together at a right angle 5 cm below.
+    let wing = |side: f32| {
+        let turn = -side * std::f32::consts::FRAC_PI_4;
+        let along = Mat3::from_rotation_x(turn) * Vec3::Z * side;
+        (Vec3::new(0.1, -0.065, 0.0) + along * 0.035, Vec3::new(0.17, 0.01, 0.045), turn)
+    };
+    let shapes = [
+        ("ridges", blocks((-2..=6).map(ridge).chain([board]), 0.002)),
+        ("crease", blocks([wing(1.0), wing(-1.0)], 0.004)),
+    ];
+    let mut failures = Vec::new();
+    for (name, shape) in shapes {
+        for model in Model::ALL {
+            let obstacles = still(&shape);
+            let (mut simulation, roots) = hair(model, &[]);
+            let (mut all, mut inside) = (Measure::default(), 0);
+            for _ in 0..300 {
+                let measure = step(&mut simulation, &roots, &obstacles);
+                inside += measure.inside_points;
+                all = worst(all, measure);
+            }
+            let touched = points(&simulation).iter().filter(|p| shape.distance(**p) < 1e-3).count();
+            println!(
+                "{name}, {model:?}: segments {:.3} mm deep, points {:.3} mm, {inside} inside in all frames, {touched} touch; {:.4} longer",
+                all.segment_depth * 1e3,
+                all.max_depth * 1e3,
+                all.stretch_max,
+            );
+            let mut check = |fine: bool, what: &str| {
+                if !fine {
+                    failures.push(format!("{name}, {model:?}: {what}"));
+                }
+            };
+            check(all.segment_depth < 1e-3, "a segment is deep");
+            check(all.max_depth < 1e-4, "a point is deep");
+            check(all.stretch_max < 0.011, "a segment is too long");
+            // What comes into the crease is between two walls at once: in one frame of fifty, no more.
+            check(inside * 50 < 300 * points(&simulation).len(), "points stay inside");
+            check(touched > 10, "hair does not lie there");
         }
     }
     assert!(failures.is_empty(), "{failures:#?}");

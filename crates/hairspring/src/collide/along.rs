@@ -53,13 +53,19 @@ pub(crate) struct Deepest<S: Simd> {
 /// Least cosine between the segment's normal and the surface's: what is steeper comes out end first.
 pub(crate) const STEEP: f32 = 0.02;
 
-/// How much nearer to a field a segment may come than its middle and its tangent there say, over by how much it is longer than a cell [1].
-const BUMP: f32 = 0.1;
+/// Pieces between whose ends a segment is looked at: quarters, and no longer than half a cell of a field where that takes no more than the second [1].
+/// Between its nodes a field bends within a cell. Both even, so that the middle is one of the places.
+const PIECES: [usize; 2] = [4, 12];
+
+/// How fast a field's distance may change with place [1]: by 1 where it is smooth, and by twice that between two nodes on the two sides of a thin wall,
+/// as each is told the way to its own.
+const STEEPEST: f32 = 2.0;
 
 /// Which of the segments from `a` to `a + e` (world) have a place between their ends that is `within` so much of the surface, less than 0 for places
-/// inside [m], and where. The middle is looked at and both quarters, and then beside the deepest of them where tangents say that it is deeper.
+/// inside [m], and where. The middle is looked at and both quarters, more places where a field is finer than that, and then beside
+/// the deepest of them where tangents say that it is deeper.
 ///
-/// `None` where the middle says that none has: for a convex shape distance lies above its tangent; others are looked at more closely.
+/// `None` where the middle says that none has: for a convex shape distance lies above its tangent; others are nearer by no more than the way there.
 #[inline(always)]
 pub(crate) fn deepest<S: Simd>(
     simd: S,
@@ -69,38 +75,51 @@ pub(crate) fn deepest<S: Simd>(
 ) -> Option<Deepest<S>> {
     let splat = |x: f32| F::<S>::splat(simd, x);
     let (l, u) = e.length_and_unit();
-    let nothing = Look { at: splat(0.0), distance: splat(0.0), normal: V3::zero(simd), slope: splat(0.0) };
-    // The first quarter, the middle and the last; the deepest of them and of what is beside it.
-    let (mut seen, mut best, mut found) = ([nothing; 3], nothing, mask32x8::splat(simd, false));
-    // In a loop, so that the code that looks is there once.
-    for k in 0..4 {
+    let spacing = match &pose.shape {
+        Obstacle::Field(grid) => 0.5 * grid.cell,
+        _ => f32::INFINITY,
+    };
+    let [mut pieces, most] = PIECES;
+    while pieces < most && l.simd_gt(splat(pieces as f32 * spacing)).any_true() {
+        pieces += 2;
+    }
+    let apart = 1.0 / pieces as f32;
+    let nothing =
+        Look { at: splat(-1.0), distance: splat(f32::MAX), normal: V3::zero(simd), slope: splat(0.0) };
+    let (mut middle, mut last, mut seen) =
+        (nothing, nothing, Seen { before: nothing, best: nothing, after: nothing });
+    let mut found = mask32x8::splat(simd, false);
+    // The middle, all from the first on, and what is beside the deepest: in a loop, so that the code that looks is there once.
+    for k in 0..=pieces {
         let at = match k {
             0 => splat(0.5),
-            1 => splat(0.25),
-            2 => splat(0.75),
-            _ => beside(simd, &seen, &best),
+            _ if k == pieces => beside(simd, &seen, apart),
+            _ => splat(k as f32 * apart),
         };
-        let (distance, normal) = contact(simd, pose, e.mul_add(at, a));
-        let here = Look { at, distance, normal, slope: normal.dot(e) };
+        let here = if 2 * k == pieces {
+            middle
+        } else {
+            let (distance, normal) = contact(simd, pose, e.mul_add(at, a));
+            Look { at, distance, normal, slope: normal.dot(e) }
+        };
         if k == 0 {
-            let bump = match &pose.shape {
-                Obstacle::Field(grid) => (l - grid.cell).max(0.0) * BUMP,
+            let nearer = match &pose.shape {
+                Obstacle::Field(_) => l * (0.5 * STEEPEST),
                 // What is farther off than the sheet is thick is not told how far.
                 Obstacle::Sheet(_) => splat(f32::INFINITY),
-                _ => splat(0.0),
+                _ => here.slope.abs() * 0.5,
             };
-            found = (distance - bump.max(here.slope.abs() * 0.5)).simd_lt(within);
+            found = (here.distance - nearer).simd_lt(within);
             if !found.any_true() {
                 return None;
             }
-            (seen, best) = ([here; 3], here);
+            middle = here;
         } else {
-            if k < 3 {
-                seen[2 * (k - 1)] = here;
-            }
-            best = here.nearer(best);
+            seen.see(here, last);
+            last = here;
         }
     }
+    let best = seen.best;
     let (slope, across) = (best.normal - u * best.normal.dot(u)).length_and_unit();
     let steep = slope.simd_lt(STEEP);
     Some(Deepest {
@@ -111,18 +130,36 @@ pub(crate) fn deepest<S: Simd>(
     })
 }
 
-/// Where the segment may be deeper than at `best`, the deepest of three places: between that and the place beside it toward which it falls, where their
-/// tangents cross; halfway where that place is not known, or it falls on beyond it.
+/// Where the segment may be deeper than at the deepest of the places that were looked at, which are `apart`: between that and the place beside it toward
+/// which it falls, where their tangents cross; halfway where that place is not known, or it falls on beyond it.
 #[inline(always)]
-fn beside<S: Simd>(simd: S, seen: &[Look<S>; 3], best: &Look<S>) -> F<S> {
+fn beside<S: Simd>(simd: S, seen: &Seen<S>, apart: f32) -> F<S> {
     let splat = |x: f32| F::<S>::splat(simd, x);
-    let toward = best.slope.simd_lt(0.0).select(splat(0.25), splat(-0.25));
-    let next = Look::select(toward.simd_gt(0.0), seen[2], seen[0]);
-    let next = Look::select(best.at.simd_eq(0.5), next, seen[1]);
+    let best = &seen.best;
+    let toward = best.slope.simd_lt(0.0).select(splat(apart), splat(-apart));
+    let next = Look::select(toward.simd_gt(0.0), seen.after, seen.before);
     let (f, f_next) = (best.slope * toward, next.slope * toward);
-    let known = (best.at + toward - next.at).abs().simd_lt(0.1) & f_next.simd_gt(0.0);
+    let known = (best.at + toward - next.at).abs().simd_lt(0.5 * apart) & f_next.simd_gt(0.0);
     let cross = (f_next + best.distance - next.distance) / (f_next - f).max(1e-30);
     known.select(cross.max(0.0).min(1.0), splat(0.5)).mul_add(toward, best.at)
+}
+
+/// The deepest place that was seen on eight segments, and the places before and after it, where those were looked at.
+struct Seen<S: Simd> {
+    before: Look<S>,
+    best: Look<S>,
+    after: Look<S>,
+}
+
+impl<S: Simd> Seen<S> {
+    /// Takes up the place after `last`.
+    #[inline(always)]
+    fn see(&mut self, here: Look<S>, last: Look<S>) {
+        self.after = Look::select(self.best.at.simd_eq(last.at), here, self.after);
+        let nearer = here.distance.simd_lt(self.best.distance);
+        self.before = Look::select(nearer, last, self.before);
+        self.best = Look::select(nearer, here, self.best);
+    }
 }
 
 /// What is seen at a place of eight segments.
@@ -145,11 +182,5 @@ impl<S: Simd> Look<S> {
             normal: V3::select(mask, a.normal, b.normal),
             slope: mask.select(a.slope, b.slope),
         }
-    }
-
-    /// Of the two, what is nearer to the surface.
-    #[inline(always)]
-    fn nearer(self, other: Self) -> Self {
-        Self::select(self.distance.simd_lt(other.distance), self, other)
     }
 }

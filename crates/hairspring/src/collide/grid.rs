@@ -177,7 +177,10 @@ impl Grid {
             z: y[1] - y[0],
         };
         let beyond = out.dot(out).sqrt() * self.cell;
-        (mix(y[0], y[1], fz) + beyond, gradient.length_and_unit().1)
+        // Where none is nearest, halfway through, there is no way out that is shorter: up, as of one point.
+        let level = gradient.dot(gradient).simd_lt(1e-30);
+        let normal = V3::select(level, V3::splat(simd, Vec3::Y), gradient.length_and_unit().1);
+        (mix(y[0], y[1], fz) + beyond, normal)
     }
 }
 
@@ -200,6 +203,7 @@ mod tests {
         },
         simulation::{Air, Drive, MovingObstacle, Simulation},
     };
+    use fearless_simd::{Level, dispatch};
     use glam::Quat;
     use std::sync::Arc;
 
@@ -266,6 +270,26 @@ mod tests {
         let head =
             builtin::scene(&BuiltinOptions { strands: 3, ..Default::default() }).collision.unwrap().mesh;
         assert_marked(&voxelize(&head.positions, &head.triangles, 0.004), "the built-in head");
+    }
+
+    /// Halfway through a wall the distance has no slope: a point there is led out all the same.
+    #[test]
+    fn the_middle_of_a_wall_has_a_way_out() {
+        let grid = Grid {
+            cell: 0.01,
+            size: UVec3::new(3, 3, 3),
+            distances: vec![-0.02; 27],
+            nearest: vec![0; 27],
+            ..Grid::default()
+        };
+        let p = Vec3::new(0.012, 0.007, 0.003);
+        let (distance, normal) = grid.distance_and_normal(p);
+        let [lanes, up] = dispatch!(Level::new(), simd => {
+            let (d, n) = grid.distance_lanes(simd, V3::splat(simd, p));
+            [d[3], n.y[3]]
+        });
+        assert_eq!((distance, normal), (-0.02, Vec3::Y));
+        assert_eq!((lanes, up), (-0.02, 1.0));
     }
 
     #[test]

@@ -16,7 +16,7 @@ use super::{
     assemble::{Step, Sweep},
     band::Band,
     lanes::{F, Row, Sym3, V3, load, store},
-    limit::{Finish, Link, Particle},
+    limit::{CORRECTIONS, Finish, Link, Particle, out_of},
     model::stretch::STRETCH,
     press::{STICK, Surface, nearest, scratch as contact, scratch::SEGMENT},
     root::Root,
@@ -34,8 +34,8 @@ const SAG: f32 = 0.015;
 /// end, in the next solve: a lever that short would throw the outer one.
 const NEAREST: f32 = 0.125;
 
-/// Times that a segment swings out; a curved surface leaves a little the first time.
-const CORRECTIONS: usize = 2;
+/// How deep a segment may be that is not corrected again, over how deep it may be at all [1].
+const ENOUGH: f32 = 1.02;
 
 /// How much deeper than the surface the segment to point `i` may be between its ends [m]: as deep as it was authored, and what a smooth body takes.
 #[inline(always)]
@@ -62,15 +62,26 @@ pub fn clear<S: Simd>(
     if !may.any_true() {
         return e;
     }
-    let (mut q, mut cuts) = (e, may);
-    for correction in 0..CORRECTIONS {
-        let Some(place) = deepest(simd, pose, (a, q), clear) else { break };
+    let (mut q, mut cuts, mut wall) = (e, may, V3::zero(simd));
+    let (mut best, mut least) = (e, F::<S>::splat(simd, f32::MAX));
+    for correction in 0..=CORRECTIONS {
+        let asked = if correction == 0 { clear } else { clear * ENOUGH };
+        let Some(place) = deepest(simd, pose, (a, q), asked) else { break };
         cuts &= place.found;
         if !cuts.any_true() {
             break;
         }
         let depth = cuts.select(clear - place.distance, zero);
-        let mut out = link.clamp(link.swing_out(q, place.normal, depth / place.at.max(NEAREST)));
+        let better = depth.simd_lt(least);
+        (best, least) = (V3::select(better, q, best), better.select(depth, least));
+        if correction == CORRECTIONS {
+            // Caught: the least deep that it was.
+            q = V3::select(cuts, best, q);
+            break;
+        }
+        let (way_out, far) = out_of(simd, place.normal, wall);
+        wall = place.normal;
+        let mut out = link.clamp(link.swing_out(q, way_out, depth * far / place.at.max(NEAREST)));
         if correction == 0 {
             // What of the depth did not stop an approach presses on in the next solve, as of points.
             let carried = surface_displacement(simd, pose, e.mul_add(place.at, a));
