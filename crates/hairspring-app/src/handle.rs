@@ -274,7 +274,7 @@ mod tests {
         assert!(
             document.text().contains("axis = [1.0, 0.0, 0.0]") && document.text().contains("speed = 9.0")
         );
-        document.undo().unwrap();
+        document.step(crate::document::Way::Back).unwrap();
         assert_eq!(document.text(), SCENE);
         let wind = &handles[0];
         let Action::Set(key, value) = wind.pulled(wind.arrow().unwrap()) else { panic!() };
