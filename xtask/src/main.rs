@@ -13,6 +13,7 @@ const HELP: &str = "cargo xtask NAME
   window         draws the pictures of docs/window.md anew, on a desktop; Sintel's from ../shared/data
   monkey [MINUTES] random presses in the window, so long (default 10)
   golden         writes the golden pictures anew (look at them before you commit)
+  meshes         makes the meshes of the example scenes anew (draw the scenes that show them, and look)
   pictures [NAME] draws the pictures of the book anew, all or those whose name contains NAME (look at them too); needs no build where
                  HAIRSPRING names the program
   ci             lint, fuzz (half a minute each), test: what CI runs";
@@ -31,6 +32,11 @@ fn main() {
         ["window"] => window("docs/tour.txt").and_then(|()| window("docs/tour-sintel.txt")),
         ["monkey"] => monkey("10"),
         ["monkey", minutes] => monkey(minutes),
+        ["meshes"] => {
+            let test =
+                ["test", "--release", "-p", "hairspring-io", "--test", "the_example_meshes_are_made_by_code"];
+            run::cargo(&test, &[("HAIRSPRING_MESHES", "write")])
+        }
         ["golden"] => {
             run::cargo(&["test", "--release", "-p", "hairspring-view"], &[("HAIRSPRING_GOLDEN", "write")])
         }

@@ -193,7 +193,7 @@ fn list(v: Vec3, parts: f64) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::snapshot::Still;
+    use crate::{document::Way, snapshot::Still};
     use hairspring::scene::Camera;
     use std::sync::Arc;
 
@@ -274,7 +274,7 @@ mod tests {
         assert!(
             document.text().contains("axis = [1.0, 0.0, 0.0]") && document.text().contains("speed = 9.0")
         );
-        document.undo().unwrap();
+        document.step(Way::Back).unwrap();
         assert_eq!(document.text(), SCENE);
         let wind = &handles[0];
         let Action::Set(key, value) = wind.pulled(wind.arrow().unwrap()) else { panic!() };

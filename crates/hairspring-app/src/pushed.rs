@@ -43,7 +43,7 @@ static BALL: LazyLock<Mesh> = LazyLock::new(|| {
 });
 
 /// A hand of its natural size.
-static HAND: LazyLock<Hand> = LazyLock::new(hand);
+static HAND: LazyLock<Hand> = LazyLock::new(|| hand(Hand::CELL));
 
 impl Pushed {
     /// As it is made, and how many times as large it is.

@@ -1,11 +1,11 @@
 //! A person opens the window, plays, changes parameters, throws the ball, grabs a lock, records, saves and opens again. Here a script does so, and what comes out is looked at: the file says what was
-//! changed and nothing else, the record plays, undo leads back, and no line was refused.
+//! changed and nothing else, the record plays, undo leads back, and no line was refused. A step back or forth that cannot be taken is still there once it can.
 
 mod support;
 
 use egui::{Event, Event::PointerMoved, Modifiers, PointerButton::Primary};
 use egui_kittest::kittest::Queryable;
-use hairspring_app::{Document, Session};
+use hairspring_app::{Action, Document, Session};
 use support::{SMALL, sound, until, window};
 
 #[test]
@@ -148,17 +148,15 @@ fn settings_change_while_hair_moves_and_the_play_goes_on() {
     };
     let before = wait(&session, 5);
     let key = "wind.velocity".parse().unwrap();
-    session
-        .act(hairspring_app::Action::Set(key, Some(toml_edit::Value::from_iter([5.0, 0.0, 0.0]))))
-        .unwrap();
+    session.act(Action::Set(key, Some(toml_edit::Value::from_iter([5.0, 0.0, 0.0])))).unwrap();
     let after = wait(&session, before.step + 30);
     assert_eq!(after.scene, before.scene, "a setting does not begin the scene anew");
     assert!(after.time > before.time);
     // Paused, a change is something else to see though time stands still: what is ordered after the pause meets a scene that stands.
-    session.act(hairspring_app::Action::Play(false)).unwrap();
+    session.act(Action::Play(false)).unwrap();
     let mut seen = |roughness: f64| {
         let key = "builtin.look.roughness".parse().unwrap();
-        session.act(hairspring_app::Action::Set(key, Some(roughness.into()))).unwrap();
+        session.act(Action::Set(key, Some(roughness.into()))).unwrap();
         for _ in 0..6000 {
             let shown = session.latest().filter(|s| s.stages[0].looks[0].roughness == roughness as f32);
             if let Some(snapshot) = shown {
@@ -170,4 +168,45 @@ fn settings_change_while_hair_moves_and_the_play_goes_on() {
     };
     let (first, second) = (seen(0.875), seen(0.75));
     assert!(second.0 > first.0 && second.1 == first.1, "{first:?}, {second:?}");
+}
+
+#[test]
+fn a_step_that_cannot_be_taken_is_not_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let stone = folder.path().join("stone.obj");
+    let away = folder.path().join("away.obj");
+    std::fs::write(&stone, "v 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n")
+        .unwrap();
+    let text = format!("{SMALL}[[collider]]\nshape.hull = {{ file = \"stone.obj\", scale = 1.0 }}\n");
+    let document = Document::new(&folder.path().join("scene.toml"), text.clone()).unwrap();
+    let mut session = Session::new(document, 1, None, || ()).unwrap();
+    let now = |session: &Session| session.document().text().to_owned();
+    let set = |speed: f64| {
+        let key = "wind.velocity".parse().unwrap();
+        Action::Set(key, Some(toml_edit::Value::from_iter([speed, 0.0, 0.0])))
+    };
+    for action in [set(1.0), Action::Rest, set(2.0), Action::New(SMALL.into())] {
+        session.act(action).unwrap();
+    }
+    // Back to the other scene, back within it twice, and forth all the way again.
+    let steps = [Action::Undo, Action::Undo, Action::Undo, Action::Redo, Action::Redo, Action::Redo];
+    let mut seen = vec![now(&session)];
+    for (k, step) in steps.into_iter().enumerate() {
+        let (left, more) = (now(&session), session.steps());
+        // The last leads to a scene that names no file.
+        if k < 5 {
+            std::fs::rename(&stone, &away).unwrap();
+            for _ in 0..2 {
+                let why = session.act(step.clone()).unwrap_err().to_string();
+                assert!(why.contains("stone.obj"), "step {k}: {why}");
+                assert_eq!((now(&session), session.steps()), (left.clone(), more), "step {k}");
+            }
+            std::fs::rename(&away, &stone).unwrap();
+        }
+        session.act(step).unwrap();
+        seen.push(now(&session));
+    }
+    assert_eq!((&*seen[0], &*seen[3]), (SMALL, &*text), "{seen:?}");
+    assert!(seen[1].contains("2.0") && seen[2].contains("1.0"), "{seen:?}");
+    assert!(seen.iter().eq(seen.iter().rev()), "the way forth is the way back: {seen:?}");
 }

@@ -4,29 +4,14 @@
 //! on another processor passes, a moved highlight or a lost shadow does not. After a change that is meant, run with
 //! `HAIRSPRING_GOLDEN=write`, look at the pictures in `tests/golden`, and commit them.
 
+#[path = "support/alike.rs"]
+mod alike;
 mod support;
 
+use alike::{ALIKE, similarity};
 use hairspring::scene::{HairColor, HairLook};
 use hairspring_view::{Frame, Image, Quality, Renderer, read_png, write_png};
-use image_compare::{Algorithm, gray_similarity_structure};
 use std::path::PathBuf;
-
-/// Similarity below which a picture counts as changed; 1 is equal.
-const ALIKE: f64 = 0.99;
-
-fn luma(image: &Image) -> image_compare::prelude::GrayImage {
-    let grey = |p: &[u8]| (0.2126 * p[0] as f32 + 0.7152 * p[1] as f32 + 0.0722 * p[2] as f32).round() as u8;
-    image_compare::prelude::GrayImage::from_raw(
-        image.width,
-        image.height,
-        image.rgb.chunks(3).map(grey).collect(),
-    )
-    .unwrap()
-}
-
-fn similarity(a: &Image, b: &Image) -> f64 {
-    gray_similarity_structure(&Algorithm::MSSIMSimple, &luma(a), &luma(b)).unwrap().score
-}
 
 fn draw(style: support::Style, color: HairColor) -> Image {
     // Fewer, thicker strands: the picture of a full head at a twentieth of the work.

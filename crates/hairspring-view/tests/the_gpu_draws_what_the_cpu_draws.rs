@@ -5,8 +5,11 @@
 //! of bodies have four samples instead of eight, and the CPU lets some strands stand for others where much is covered. Where there is no card, nor a
 //! driver that draws in software (Mesa's will do), the tests say so and pass.
 
+#[path = "support/alike.rs"]
+mod alike;
 mod support;
 
+use alike::{compare, compare_everywhere, mean};
 use glam::Vec3;
 use hairspring::{
     body::Mesh,
@@ -16,82 +19,7 @@ use hairspring::{
     },
     stage::Stage,
 };
-use hairspring_view::{
-    Frame, Ground, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, gpu::GpuRenderer, write_png,
-};
-use image_compare::{Algorithm, gray_similarity_structure};
-
-/// Least similarity of structure; 1 is equal.
-const ALIKE: f64 = 0.99;
-/// Greatest difference of a channel's mean [codes of 255].
-const BRIGHTNESS: f64 = 0.5;
-/// Greatest difference of a channel in any one pixel of a body, of codes around it [codes of 255].
-const BRIGHTNESS_HERE: i32 = 4;
-
-fn luma(image: &Image) -> image_compare::prelude::GrayImage {
-    let grey = |p: &[u8]| (0.2126 * p[0] as f32 + 0.7152 * p[1] as f32 + 0.0722 * p[2] as f32).round() as u8;
-    let grey = image.rgb.chunks(3).map(grey).collect();
-    image_compare::prelude::GrayImage::from_raw(image.width, image.height, grey).unwrap()
-}
-
-/// Means of red, green and blue.
-fn mean(image: &Image) -> [f64; 3] {
-    let n = (image.rgb.len() / 3) as f64;
-    [0, 1, 2].map(|c| image.rgb.iter().skip(c).step_by(3).map(|v| *v as f64).sum::<f64>() / n)
-}
-
-/// Draws by both and compares.
-fn compare(gpu: &mut GpuRenderer, name: &str, frame: &Frame, width: u32, height: u32) {
-    let cpu = Renderer::new(width, height).draw(frame).clone();
-    gpu.draw(frame, width, height);
-    let card = gpu.read().unwrap();
-    assert_eq!((card.width, card.height), (width, height));
-    let score = gray_similarity_structure(&Algorithm::MSSIMSimple, &luma(&cpu), &luma(&card)).unwrap().score;
-    let apart = mean(&cpu).into_iter().zip(mean(&card)).map(|(a, b)| b - a);
-    let apart: Vec<f64> = apart.collect();
-    println!("{name}: {score:.4} alike, means {apart:.2?} apart");
-    if std::env::var_os("HAIRSPRING_KEEP").is_some()
-        || score < ALIKE
-        || apart.iter().any(|a| a.abs() > BRIGHTNESS)
-    {
-        let mut both = Image::new(2 * width, height);
-        let rows = cpu.rgb.chunks(3 * width as usize).zip(card.rgb.chunks(3 * width as usize));
-        for (to, (a, b)) in both.rgb.chunks_mut(6 * width as usize).zip(rows) {
-            to[..a.len()].copy_from_slice(a);
-            to[a.len()..].copy_from_slice(b);
-        }
-        let seen = std::env::temp_dir().join(format!("hairspring-gpu-{name}.png"));
-        write_png(&seen, &both).unwrap();
-        println!("{name}: the CPU's picture and the card's: {}", seen.display());
-    }
-    assert!(score >= ALIKE, "{name} is {score:.4} alike, {ALIKE} is needed");
-    assert!(apart.iter().all(|a| a.abs() <= BRIGHTNESS), "{name}: means {apart:?} apart");
-}
-
-/// Draws bodies by both and compares pixel by pixel: no channel of the card's picture may lie farther than `BRIGHTNESS_HERE` from what the CPU has in
-/// the pixel and its eight neighbours. Means and structure forgive a row of dark dots; this does not. Outlines, where samples differ, have both sides
-/// among the neighbours.
-fn compare_everywhere(gpu: &mut GpuRenderer, name: &str, frame: &Frame, width: usize, height: usize) {
-    compare(gpu, name, frame, width as u32, height as u32);
-    let (cpu, card) = (Renderer::new(width as u32, height as u32).draw(frame).clone(), gpu.read().unwrap());
-    let (mut worst, mut place) = (0, [0; 2]);
-    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-        let rows = y.saturating_sub(1)..(y + 2).min(height);
-        let columns = x.saturating_sub(1)..(x + 2).min(width);
-        for c in 0..3 {
-            let around = rows.clone().flat_map(|y| columns.clone().map(move |x| 3 * (y * width + x) + c));
-            let codes = around.map(|i| cpu.rgb[i] as i32);
-            let (low, high) = codes.fold((255, 0), |b, v| (b.0.min(v), b.1.max(v)));
-            let here = card.rgb[3 * (y * width + x) + c] as i32;
-            let over = (low - here).max(here - high);
-            if over > worst {
-                (worst, place) = (over, [x, y]);
-            }
-        }
-    }
-    println!("{name}: {worst} codes apart at most, at {place:?}");
-    assert!(worst <= BRIGHTNESS_HERE, "{name}: {worst} codes apart at {place:?}");
-}
+use hairspring_view::{Frame, Ground, HairDraw, Lighting, MeshDraw, Quality, gpu::GpuRenderer};
 
 /// Strands of some points in a row.
 struct Few {

@@ -92,6 +92,7 @@ fn rename_files(table: &mut dyn toml_edit::TableLike, rename: &dyn Fn(&str) -> P
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::Way;
 
     const SCENE: &str = "[[groom]]\nfile = \"a.hair\"\n\n[[collider]]\nshape.sphere = { center = [0.0, 1.0, 0.0], radius = 0.1 }\n";
 
@@ -107,7 +108,7 @@ mod tests {
         assert_eq!(document.file(), Some(&*real.join("to/scene.toml")), "without `..`");
         let groom = real.join("from/a.hair").display().to_string();
         assert!(document.text().contains(&groom), "{}", document.text());
-        assert!(document.undo().is_ok() && !document.text().contains("gravity"));
+        assert!(document.step(Way::Back).is_ok() && !document.text().contains("gravity"));
         assert!(document.text().contains(&groom), "{}", document.text());
         document.save(&from.join("scene.toml")).unwrap();
         assert_eq!(document.text(), SCENE, "back where it was");

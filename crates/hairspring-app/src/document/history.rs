@@ -53,6 +53,15 @@ impl Draft {
     }
 }
 
+/// Which way a step leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// To what was before.
+    Back,
+    /// To what came after.
+    Forth,
+}
+
 /// Texts before and after the one that counts.
 #[derive(Default)]
 pub struct History {
@@ -69,18 +78,22 @@ impl History {
         self.forth.clear();
     }
 
-    /// The text before `now`.
-    pub fn back(&mut self, now: &Draft) -> Option<Draft> {
-        let draft = self.back.pop()?;
-        self.forth.push(now.clone());
-        Some(draft)
+    /// The text that a step this way leads to.
+    pub fn next(&self, way: Way) -> Option<&Draft> {
+        match way {
+            Way::Back => self.back.last(),
+            Way::Forth => self.forth.last(),
+        }
     }
 
-    /// The text after `now`.
-    pub fn forth(&mut self, now: &Draft) -> Option<Draft> {
-        let draft = self.forth.pop()?;
-        self.back.push(now.clone());
-        Some(draft)
+    /// Takes the step, away from `left`.
+    pub fn step(&mut self, way: Way, left: Draft) {
+        let (from, to) = match way {
+            Way::Back => (&mut self.back, &mut self.forth),
+            Way::Forth => (&mut self.forth, &mut self.back),
+        };
+        from.pop();
+        to.push(left);
     }
 
     /// Whether there is a text to go back to, and one to go forth to.

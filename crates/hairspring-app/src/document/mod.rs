@@ -7,6 +7,8 @@ mod files;
 mod history;
 mod material;
 
+pub use history::Way;
+
 use crate::{defaults::Reference, effective::effective, error::AppError, key::Key};
 use hairspring::scene::Scene;
 use hairspring_io::{Loaded, read_scene_text, read_settings, same_geometry};
@@ -213,22 +215,14 @@ impl Document {
         self.take(self.draft.removed(edited.to_string(), list, had, place), true)
     }
 
-    /// Goes one step back.
-    pub fn undo(&mut self) -> Result<Change, AppError> {
+    /// Goes one step this way, if there is one and its text can be read.
+    pub fn step(&mut self, way: Way) -> Result<Change, AppError> {
         self.rest();
-        match self.history.back(&self.draft) {
-            Some(draft) => self.put(draft),
-            None => Ok(Change::None),
-        }
-    }
-
-    /// Goes one step forth again.
-    pub fn redo(&mut self) -> Result<Change, AppError> {
-        self.rest();
-        match self.history.forth(&self.draft) {
-            Some(draft) => self.put(draft),
-            None => Ok(Change::None),
-        }
+        let Some(draft) = self.history.next(way).cloned() else { return Ok(Change::None) };
+        let left = self.draft.clone();
+        let change = self.put(draft)?;
+        self.history.step(way, left);
+        Ok(change)
     }
 
     /// Takes up a new text if it can be read; `step`: as a step to go back.

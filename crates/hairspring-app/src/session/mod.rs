@@ -7,7 +7,7 @@ pub use action::Action;
 
 use crate::{
     AppError, differ,
-    document::{Change, Document},
+    document::{Change, Document, Way},
     edit,
     player::{Order, Player},
     reading::Reading,
@@ -153,8 +153,8 @@ impl Session {
                 let change = self.edited_mut().remove(list, place)?;
                 self.edited_by(change);
             }
-            Action::Undo => self.back()?,
-            Action::Redo => self.forth()?,
+            Action::Undo => self.step(Way::Back)?,
+            Action::Redo => self.step(Way::Forth)?,
             Action::Choose(groom, group) => self.chosen = (groom, group),
             Action::New(text) => self.take(Document::new(&folder().join("scene.toml"), text)?)?,
             Action::Open(path) => self.open(&path)?,

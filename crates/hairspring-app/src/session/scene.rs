@@ -4,7 +4,7 @@ use super::{Session, rouse};
 use crate::{
     AppError,
     destination::settled,
-    document::Document,
+    document::{Document, Way},
     player::{Order, STEP},
     reading::{Read, Reading, both},
 };
@@ -12,6 +12,9 @@ use std::path::PathBuf;
 
 /// Most scenes that are kept to go back to: texts, not hair.
 const MOST_SCENES: usize = 8;
+
+/// Scenes on one side of the open one.
+type Scenes = fn(&mut Session) -> &mut Vec<Document>;
 
 impl Session {
     /// Opens a file: a scene; or a groom or a body, which are put in a scene of their own, or in place of the open one's.
@@ -44,57 +47,47 @@ impl Session {
     }
 
     /// Goes over to another document, if its scene can be read: a step as any other.
-    pub(super) fn take(&mut self, document: Document) -> Result<(), AppError> {
-        let old = self.change_to(document)?;
-        self.before.push(old);
+    pub(super) fn take(&mut self, mut document: Document) -> Result<(), AppError> {
+        self.change_with(&mut document)?;
+        self.before.push(document);
         let many = self.before.len().saturating_sub(MOST_SCENES);
         self.before.drain(..many);
         self.after.clear();
         Ok(())
     }
 
-    /// Goes over to another document, if its scene can be read, from this one.
-    fn change_to(&mut self, document: Document) -> Result<Document, AppError> {
-        let old = std::mem::replace(&mut self.document, document);
+    /// Goes over to another document, if its scene can be read, and leaves this one in its place.
+    fn change_with(&mut self, other: &mut Document) -> Result<(), AppError> {
+        std::mem::swap(&mut self.document, other);
         let second = self.second.take();
         if let Err(why) = self.begin() {
-            (self.document, self.second) = (old, second);
+            std::mem::swap(&mut self.document, other);
+            self.second = second;
             return Err(why);
         }
         self.on_second = false;
         self.chosen = (0, 0);
         self.opened += 1;
-        Ok(old)
-    }
-
-    /// A step back: within the scene, and from its first to the scene that was open before, as that was left.
-    pub(super) fn back(&mut self) -> Result<(), AppError> {
-        let (back, _) = self.edited().history();
-        if !back
-            && !self.on_second
-            && let Some(document) = self.before.pop()
-        {
-            let old = self.change_to(document)?;
-            self.after.push(old);
-            return Ok(());
-        }
-        let change = self.edited_mut().undo()?;
-        self.follow(change);
         Ok(())
     }
 
-    /// A step forth again.
-    pub(super) fn forth(&mut self) -> Result<(), AppError> {
-        let (_, forth) = self.edited().history();
-        if !forth
+    /// A step within the scene, and from its first or last to the scene that was open before or after it, as that was left.
+    pub(super) fn step(&mut self, way: Way) -> Result<(), AppError> {
+        let (back, forth) = self.edited().history();
+        let (within, from, to): (_, Scenes, Scenes) = match way {
+            Way::Back => (back, |session| &mut session.before, |session| &mut session.after),
+            Way::Forth => (forth, |session| &mut session.after, |session| &mut session.before),
+        };
+        if !within
             && !self.on_second
-            && let Some(document) = self.after.pop()
+            && let Some(mut document) = from(self).pop()
         {
-            let old = self.change_to(document)?;
-            self.before.push(old);
-            return Ok(());
+            let changed = self.change_with(&mut document);
+            // What cannot be read stays where it was: its files may come back.
+            if changed.is_ok() { to(self) } else { from(self) }.push(document);
+            return changed;
         }
-        let change = self.edited_mut().redo()?;
+        let change = self.edited_mut().step(way)?;
         self.follow(change);
         Ok(())
     }

@@ -9,7 +9,7 @@
 //! leaves does not push itself, and momentum is kept. Charge is counted in electrons, whole numbers, so that threads may add in any order.
 
 use super::{
-    Surrounded,
+    Frame, Strands, Surrounded,
     charge::{BREAKDOWN, COULOMB},
 };
 use glam::Vec3;
@@ -43,15 +43,29 @@ pub(crate) struct HairField {
 }
 
 impl HairField {
+    /// Finds the field of strands with so much `charge` [C/m] each, every one for `hairs` hairs.
+    pub fn find(
+        &mut self,
+        strands: &mut Strands,
+        frame: &Frame,
+        (charge, hairs): (impl Fn(usize) -> f32 + Sync, f32),
+    ) {
+        self.clear();
+        strands.each(frame, &|strand| self.reach(strand));
+        self.lay_out();
+        strands.each(frame, &|strand| self.load(charge(strand.strand), hairs, strand));
+        self.solve();
+    }
+
     /// No hair.
-    pub fn clear(&mut self) {
+    fn clear(&mut self) {
         self.lo = [i32::MAX; 3].map(AtomicI32::new);
         self.hi = [i32::MIN; 3].map(AtomicI32::new);
         self.dims = [0; 3];
     }
 
     /// Makes the lattice reach around a strand.
-    pub fn reach(&self, strand: &Surrounded) {
+    fn reach(&self, strand: &Surrounded) {
         let root = strand.roots()[0].translation;
         let places = || strand.points().map(|(x, _)| root + x).filter(|p| p.is_finite());
         let lo = places().fold(Vec3::INFINITY, Vec3::min).to_array();
@@ -63,7 +77,7 @@ impl HairField {
     }
 
     /// Lays out the lattice around all strands that it reaches around.
-    pub fn lay_out(&mut self) {
+    fn lay_out(&mut self) {
         let [lo, hi] =
             [&self.lo, &self.hi].map(|k| Vec3::from([0, 1, 2].map(|i| number(k[i].load(Relaxed)))));
         let size = hi - lo;
@@ -84,7 +98,7 @@ impl HairField {
     }
 
     /// Lays `charge` [C/m] of a strand on the lattice, for `hairs` hairs alike.
-    pub fn load(&self, charge: f32, hairs: f32, strand: &Surrounded) {
+    fn load(&self, charge: f32, hairs: f32, strand: &Surrounded) {
         let root = strand.roots()[0].translation;
         for (i, (x, _)) in strand.points().enumerate() {
             let electrons = f64::from(charge * strand.length(i)) * f64::from(hairs) / ELECTRON;
@@ -95,7 +109,7 @@ impl HairField {
     }
 
     /// Finds the field of what lies on the lattice.
-    pub fn solve(&mut self) {
+    fn solve(&mut self) {
         let nodes: usize = self.dims.iter().product();
         let ([nx, ny, _], origin, cell) = (self.dims, self.origin, self.cell);
         let place =

@@ -116,10 +116,10 @@ const TILES_PER_TASK: usize = 32;
 
 impl Strands<'_> {
     /// Shows every strand to `act`, on all threads.
-    pub fn each(self, frame: &Frame, act: &(impl Fn(&mut Surrounded) + Sync)) {
+    pub fn each(&mut self, frame: &Frame, act: &(impl Fn(&mut Surrounded) + Sync)) {
         let count = self.tiles.len();
         if count > TILES_PER_TASK {
-            let (a, b) = self.split(count / 2);
+            let (mut a, mut b) = self.split(count / 2);
             rayon::join(|| a.each(frame, act), || b.each(frame, act));
             return;
         }
@@ -152,7 +152,7 @@ impl Strands<'_> {
     }
 
     /// The first `count` tiles, and the others.
-    fn split(self, count: usize) -> (Self, Self) {
+    fn split(&mut self, count: usize) -> (Strands<'_>, Strands<'_>) {
         let points = (self.tiles[count].first - self.tiles[0].first) as usize;
         let (tiles, more_tiles) = self.tiles.split_at(count);
         let (lanes, more_lanes) = self.lanes.split_at(count * LANES);

@@ -2,10 +2,12 @@
 //! a rigid piece; sheets and fields may deform besides.
 
 mod along;
+mod deep;
 mod grid;
 mod hull;
 mod lattice;
 mod obstacle;
+mod pose;
 mod rigid;
 mod sheet;
 mod voxelize;
@@ -13,8 +15,9 @@ mod voxelize;
 pub(crate) use along::{STEEP, deepest};
 pub use grid::Grid;
 pub use hull::Hull;
-pub use obstacle::{Obstacle, ObstaclePose};
-pub(crate) use obstacle::{contact, surface_displacement};
+pub use obstacle::Obstacle;
+pub use pose::ObstaclePose;
+pub(crate) use pose::{contact, surface_displacement};
 pub use rigid::Rigid;
 pub use sheet::Sheet;
 pub use voxelize::{Voxelizer, voxelize};

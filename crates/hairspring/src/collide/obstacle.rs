@@ -1,21 +1,15 @@
-//! Colliders as the kernel sees them: a distance and a normal for eight points at once, in the collider's own space.
+//! Shapes that hair meets: a distance and a normal, for one point and for eight at once, in the shape's own space.
 
 use super::{Grid, Hull, Sheet};
 use crate::strand::{
-    lanes::{F, LANES, Row, V3},
+    lanes::{F, V3},
     root::transform,
 };
-use fearless_simd::{mask32x8, prelude::*};
+use fearless_simd::prelude::*;
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
-/// Cells between places that a segment is looked at on its way past a field [1]: it cannot cross what is a cell thick unseen.
-const LOOK: f32 = 1.5;
-
-/// Most such places [1].
-const MOST_LOOKS: u32 = 7;
-
-/// One collider: a shape in its own space, and how that space moves.
+/// One collider: a shape in its own space.
 #[derive(Clone, Debug)]
 pub enum Obstacle {
     /// A ball around `center` [m].
@@ -56,143 +50,6 @@ pub enum Obstacle {
     Hull(Arc<Hull>),
     /// All places nearer to an open mesh than its thickness.
     Sheet(Arc<Sheet>),
-}
-
-/// An obstacle during one substep.
-#[derive(Clone)]
-pub struct ObstaclePose {
-    /// The shape.
-    pub shape: Obstacle,
-    /// Pose at the end of the substep.
-    pub end: (Mat3, Vec3),
-    /// Pose at its start.
-    pub start: (Mat3, Vec3),
-    /// Fraction of an interval that the substep lasts: a deforming field's displacement is for a whole interval.
-    pub share: f32,
-    /// A ball that holds all of it at the end: its middle in the world and its radius [m], which is infinite for a plane.
-    bounds: (Vec3, f32),
-}
-
-impl ObstaclePose {
-    /// A shape that moves from `start` to `end` in a substep that lasts `share` of an interval.
-    pub fn new(shape: Obstacle, start: (Mat3, Vec3), end: (Mat3, Vec3), share: f32) -> Self {
-        let (center, radius) = shape.bounds();
-        let bounds = (end.0 * center + end.1, radius);
-        Self { shape, start, end, share, bounds }
-    }
-
-    /// Which of eight points may be inside at the end of the substep; the others are not.
-    #[inline(always)]
-    pub(crate) fn near<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
-        let d = p - V3::splat(simd, self.bounds.0);
-        let near = d.dot(d).simd_le(F::splat(simd, self.bounds.1 * self.bounds.1));
-        if !near.any_true() {
-            return near;
-        }
-        match &self.shape {
-            Obstacle::Field(grid) => near & grid.may_be_inside(simd, self.local(simd, p)),
-            Obstacle::Hull(hull) => near & hull.may_be_inside(simd, self.local(simd, p), V3::zero(simd)),
-            Obstacle::Sheet(sheet) => near & sheet.may_be_inside(simd, self.local(simd, p)),
-            _ => near,
-        }
-    }
-
-    /// Which of eight segments that end at `p` (world) and are `e` long may have a place between their ends that is deeper than `sag` [m] and than
-    /// both of them; the others have none that counts.
-    ///
-    /// ```text
-    ///   ●─────────●    on a round shape of radius R a segment of length L is deeper between its ends by L²/8R at most:
-    ///  ╱  sag ↕    ╲   where that is below what it may, nothing need be looked at
-    /// ```
-    #[inline(always)]
-    pub(crate) fn may_cut<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> mask32x8<S> {
-        let none = mask32x8::splat(simd, false);
-        let size = e.dot(e);
-        let rounded = match &self.shape {
-            Obstacle::Plane { .. } => return none,
-            Obstacle::Sphere { radius, .. } | Obstacle::Capsule { radius, .. } => *radius,
-            _ => 0.0,
-        };
-        let mut may = size.simd_gt(sag * (8.0 * rounded));
-        if !may.any_true() {
-            return none;
-        }
-        let half = F::splat(simd, -0.5);
-        let d = e.mul_add(half, p) - V3::splat(simd, self.bounds.0);
-        // A little over half of its length.
-        let reach = size.sqrt().mul_add(0.5001, F::splat(simd, self.bounds.1));
-        may &= d.dot(d).simd_le(reach * reach);
-        if !may.any_true() {
-            return none;
-        }
-        match &self.shape {
-            Obstacle::Hull(hull) => {
-                let turned = transform(simd, &self.end.0.transpose(), e);
-                may & hull.may_be_inside(simd, self.local(simd, p), turned)
-            }
-            Obstacle::Field(grid) => {
-                let spacing = LOOK * grid.cell;
-                self.between(
-                    simd,
-                    (p, e),
-                    (size, spacing),
-                    may,
-                    #[inline(always)]
-                    |at| grid.may_be_inside(simd, at),
-                )
-            }
-            Obstacle::Sheet(sheet) => {
-                let spacing = LOOK * sheet.cell();
-                self.between(
-                    simd,
-                    (p, e),
-                    (size, spacing),
-                    may,
-                    #[inline(always)]
-                    |at| sheet.may_be_inside(simd, at),
-                )
-            }
-            _ => may,
-        }
-    }
-
-    /// Of the segments in `may`, those with a place between their ends for which `holds` is true, of places that are no farther than `spacing` [m] from each
-    /// other.
-    #[inline(always)]
-    fn between<S: Simd>(
-        &self,
-        simd: S,
-        (p, e): (V3<S>, V3<S>),
-        (size, spacing): (F<S>, f32),
-        may: mask32x8<S>,
-        holds: impl Fn(V3<S>) -> mask32x8<S>,
-    ) -> mask32x8<S> {
-        // As many places as the longest of the eight needs.
-        let mut pieces = 2;
-        while pieces <= MOST_LOOKS
-            && size.simd_gt(F::splat(simd, (pieces as f32 * spacing).powi(2))).any_true()
-        {
-            pieces += 1;
-        }
-        let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
-        let mut held = mask32x8::splat(simd, false);
-        for k in 1..pieces {
-            held |= holds(e.mul_add(F::splat(simd, -(k as f32) / pieces as f32), p));
-        }
-        may & held
-    }
-
-    /// Eight world points in the shape's own space at the end of the substep.
-    #[inline(always)]
-    fn local<S: Simd>(&self, simd: S, p: V3<S>) -> V3<S> {
-        transform(simd, &self.end.0.transpose(), p - V3::splat(simd, self.end.1))
-    }
-
-    /// The distance from `p` [m] (world) to the surface at the end of the substep, negative inside; one point, for
-    /// checks and for follow hairs.
-    pub fn distance(&self, p: Vec3) -> f32 {
-        self.shape.distance(self.end.0.transpose() * (p - self.end.1))
-    }
 }
 
 impl Obstacle {
@@ -258,8 +115,9 @@ impl Obstacle {
         }
     }
 
+    /// [`Obstacle::distance_and_normal`] of eight points.
     #[inline(always)]
-    fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
+    pub(super) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         match self {
             Obstacle::Sphere { center, radius } => ball_lanes(p - V3::splat(simd, *center), *radius),
             Obstacle::Capsule { a, b, radius } => {
@@ -282,37 +140,6 @@ impl Obstacle {
             Obstacle::Hull(hull) => hull.distance_lanes(simd, p),
             Obstacle::Sheet(sheet) => sheet.distance_lanes(simd, p),
         }
-    }
-}
-
-/// World distance to the surface, and normal, of eight points at the end of a substep.
-#[inline(always)]
-pub(crate) fn contact<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>, V3<S>) {
-    let (distance, normal) = pose.shape.distance_lanes(simd, pose.local(simd, p));
-    (distance, transform(simd, &pose.end.0, normal))
-}
-
-/// How far the surface at `p` (world, end of the substep) moved in the substep [m].
-#[inline(always)]
-pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> V3<S> {
-    let local = pose.local(simd, p);
-    let before = transform(simd, &pose.start.0, local) + V3::splat(simd, pose.start.1);
-    let rigid = p - before;
-    let own = |displacement: &dyn Fn(Vec3) -> Vec3| {
-        let mut rows = [Row::default(); 3];
-        for lane in 0..LANES {
-            let at = Vec3::new(local.x[lane], local.y[lane], local.z[lane]);
-            let d = pose.end.0 * (displacement(at) * pose.share);
-            for (row, d) in rows.iter_mut().zip(d.to_array()) {
-                row.0[lane] = d;
-            }
-        }
-        V3::load(simd, &rows)
-    };
-    match &pose.shape {
-        Obstacle::Field(grid) if grid.deforms() => rigid + own(&|at| grid.displacement(at)),
-        Obstacle::Sheet(sheet) if sheet.deforms() => rigid + own(&|at| sheet.displacement(at)),
-        _ => rigid,
     }
 }
 
@@ -346,6 +173,7 @@ fn cuboid_lanes<S: Simd>(simd: S, l: V3<S>, half: Vec3) -> (F<S>, V3<S>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::collide::{ObstaclePose, contact};
     use crate::strand::lanes::{LANES, Row};
     use fearless_simd::{Level, dispatch};
     use glam::Quat;

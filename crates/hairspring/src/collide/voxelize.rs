@@ -1,12 +1,12 @@
 //! From a closed triangle mesh to its signed distance field, fast enough to do anew each frame for a skinned body.
 //!
 //! Exact distances in a band around the surface (each triangle visits the nodes near it), the sign by counting oriented
-//! crossings along x, so that overlapping closed pieces unite; deep inside, distances are extended by fast sweeping
-//! (Zhao 2005), so that a point that got there still knows the way out; far outside they stay at the band's width.
+//! crossings along x, so that overlapping closed pieces unite; deep inside, distances are extended ([`deep`]), so that a
+//! point that got there still knows the way out; far outside they stay at the band's width.
 //! The layout follows Bridson's SDFGen (*Fluid Simulation for Computer Graphics*, 2nd ed., §4).
 
 use super::{
-    Grid,
+    Grid, deep,
     lattice::{self, Lattice},
 };
 use crate::strand::lanes::{F, LANES, V3};
@@ -99,7 +99,7 @@ impl Voxelizer {
                 }
             },
         );
-        sweep_inside(grid, &self.benches);
+        deep::extend(grid, self.benches.iter().flat_map(|bench| &bench.deep).copied());
         grid.mark_inside();
     }
 }
@@ -259,78 +259,6 @@ impl Bench {
             }
             self.deep.extend(deep.map(|first| [z, y, first, nx].map(|i| i as u32)));
         }
-    }
-}
-
-/// Extends distances through the inside beyond the band: one round of fast sweeping for |∇d| = 1 (Zhao 2005) over every second node along
-/// each axis, and means between those. So deep, the way out is all that is asked for.
-fn sweep_inside(grid: &mut Grid, benches: &[Bench]) {
-    let Grid { distances: d, size, cell, .. } = grid;
-    let [nx, ny, nz] = size.to_array().map(|n| n as usize);
-    let h = 2.0 * *cell;
-    // Deeper than any way out of the grid.
-    let far = -((nx + ny + nz) as f32 * *cell);
-    let runs = || benches.iter().flat_map(|bench| &bench.deep).map(|run| run.map(|i| i as usize));
-    for [z, y, first, end] in runs() {
-        let row = (z * ny + y) * nx;
-        d[row + first..row + end].fill(far);
-    }
-    let update = |d: &mut [f32], [z, y, x]: [usize; 3]| {
-        let i = (z * ny + y) * nx + x;
-        // The nearer of both neighbours on each axis, as positive depths; a grid that cuts through the mesh has inside
-        // nodes on its border, which have one.
-        let axis = |at: usize, n: usize, stride: usize| {
-            let before = if at >= 2 { d[i - 2 * stride] } else { far };
-            -before.max(if at + 2 < n { d[i + 2 * stride] } else { far })
-        };
-        let [a, b, c] = [axis(x, nx, 1), axis(y, ny, nx), axis(z, nz, nx * ny)];
-        let (low, high) = (a.min(b), a.max(b));
-        let [a, b, c] = [low.min(c), high.min(c).max(low), high.max(c)];
-        let mut u = a + h;
-        if u > b {
-            u = 0.5 * (a + b + (2.0 * h * h - (a - b) * (a - b)).max(0.0).sqrt());
-            if u > c {
-                let s = a + b + c;
-                let q = s * s - 3.0 * (a * a + b * b + c * c - h * h);
-                u = (s + q.max(0.0).sqrt()) * (1.0 / 3.0);
-            }
-        }
-        d[i] = d[i].max(-u);
-    };
-    let even = |first: usize, end: usize| (first.next_multiple_of(2)..end).step_by(2);
-    let coarse = |run: &[usize; 4]| run[0].is_multiple_of(2) && run[1].is_multiple_of(2);
-    for [z, y, first, end] in runs().filter(coarse) {
-        even(first, end).for_each(|x| update(d, [z, y, x]));
-    }
-    let back =
-        benches.iter().rev().flat_map(|bench| bench.deep.iter().rev()).map(|run| run.map(|i| i as usize));
-    for [z, y, first, end] in back.filter(coarse) {
-        even(first, end).rev().for_each(|x| update(d, [z, y, x]));
-    }
-
-    // Between them: along x, then along y, then along z. A deep node's neighbours are all inside.
-    for [z, y, first, end] in runs().filter(coarse) {
-        let row = (z * ny + y) * nx;
-        for x in (first | 1..end).step_by(2) {
-            d[row + x] = 0.5 * (d[row + x - 1] + d[row + (x + 1).min(nx - 1) / 2 * 2]);
-        }
-    }
-    let mut between = |z: usize, y: usize, first: usize, end: usize, [above, below]: [usize; 2]| {
-        let row = (z * ny + y) * nx;
-        for x in first..end {
-            d[row + x] = 0.5 * (d[above * nx + x] + d[below * nx + x]);
-        }
-    };
-    for [z, y, first, end] in runs().filter(|run| run[0].is_multiple_of(2) && run[1] % 2 == 1) {
-        between(z, y, first, end, [z * ny + y - 1, z * ny + (y + 1).min(ny - 1) / 2 * 2]);
-    }
-    for [z, y, first, end] in runs().filter(|run| run[0] % 2 == 1) {
-        between(z, y, first, end, [(z - 1) * ny + y, (z + 1).min(nz - 1) / 2 * 2 * ny + y]);
-    }
-    // None of these is nearer to the surface than the band is wide.
-    for [z, y, first, end] in runs() {
-        let row = (z * ny + y) * nx;
-        d[row + first..row + end].iter_mut().for_each(|d| *d = d.min(-BAND * *cell));
     }
 }
 

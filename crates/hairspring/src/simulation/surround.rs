@@ -33,38 +33,7 @@ impl Simulation {
             return;
         }
         let frame = Frame { anchor: [anchor, drive.anchor], dt: drive.dt };
-        if charged {
-            self.charged.iter_mut().for_each(|ball| ball.carry(carried));
-            self.find_hair_field(&frame);
-        }
-        let air = drive.air.moment(drive.dt, &mut self.noise);
-        let shade = self.volume.as_ref().filter(|_| sheltered).map(|volume| {
-            let hair = volume.density(anchor);
-            self.shade.reserve(volume.most_nodes());
-            self.shade.cast(&self.shelter, &air, &bodies, &hair);
-            (&self.shade, hair)
-        });
-        let blow = Blow { air, shade };
-        let charges = Charges { balls: &self.charged, hair: &self.hair_field };
-        let (groom, ghost_of, charge_of) = (&self.groom, &self.ghosts, &self.charges);
-        let tools = &self.tools.used;
-        let act = |strand: &mut Surrounded| {
-            let s = strand.strand;
-            let group = groom.group(s) as usize;
-            if let Some(ghost) = of_group(ghost_of, group).filter(|_| ghosts) {
-                ghost.add(groom.scale(s).ghost, groom.strand(s), strand);
-            }
-            if let Some(charge) = of_group(charge_of, group).filter(|_| charged) {
-                charges.add(*charge, strand);
-            }
-            for used in tools {
-                used.act(&bodies, strand, groom.range(s).len());
-            }
-            if blown {
-                blow.add(strand);
-            }
-        };
-        let strands = Strands {
+        let mut strands = Strands {
             tiles: &self.tiles,
             lanes: &self.lanes,
             strand: &self.strand,
@@ -75,36 +44,43 @@ impl Simulation {
             tines: &mut self.around.tines,
             air: &mut self.around.air,
         };
-        strands.each(&frame, &act);
-    }
-
-    /// Finds the field of the hair's own charge at the start of the frame.
-    fn find_hair_field(&mut self, frame: &Frame) {
-        let Self { groom, charges, hair_field, .. } = self;
-        // Those that follow are charged as their guides.
-        let hairs = groom.strand_count() as f32 / self.places.len() as f32;
-        let mut each = |act: &(dyn Fn(&mut Surrounded) + Sync)| {
-            let strands = Strands {
-                tiles: &self.tiles,
-                lanes: &self.lanes,
-                strand: &self.strand,
-                rest: &self.rest,
-                state: &self.state,
-                push: &mut self.around.push,
-                grip: &mut self.around.grip,
-                tines: &mut self.around.tines,
-                air: &mut self.around.air,
-            };
-            strands.each(frame, &act);
+        let charge_of = |strand: usize| {
+            of_group(&self.charges, self.groom.group(strand) as usize).copied().unwrap_or(0.0)
         };
-        hair_field.clear();
-        each(&|strand| hair_field.reach(strand));
-        hair_field.lay_out();
-        each(&|strand| {
-            let charge = of_group(charges, groom.group(strand.strand) as usize).copied().unwrap_or(0.0);
-            hair_field.load(charge, hairs, strand);
+        if charged {
+            self.charged.iter_mut().for_each(|ball| ball.carry(carried));
+            // Those that follow are charged as their guides.
+            let hairs = self.groom.strand_count() as f32 / self.places.len() as f32;
+            self.hair_field.find(&mut strands, &frame, (charge_of, hairs));
+        }
+        let air = drive.air.moment(drive.dt, &mut self.noise);
+        let shade = self.volume.as_ref().filter(|_| sheltered).map(|volume| {
+            let hair = volume.density(anchor);
+            self.shade.reserve(volume.most_nodes());
+            self.shade.cast(&self.shelter, &air, &bodies, &hair);
+            (&self.shade, hair)
         });
-        hair_field.solve();
+        let blow = Blow { air, shade };
+        let charges = Charges { balls: &self.charged, hair: &self.hair_field };
+        let (groom, ghost_of) = (&self.groom, &self.ghosts);
+        let tools = &self.tools.used;
+        let act = |strand: &mut Surrounded| {
+            let s = strand.strand;
+            let group = groom.group(s) as usize;
+            if let Some(ghost) = of_group(ghost_of, group).filter(|_| ghosts) {
+                ghost.add(groom.scale(s).ghost, groom.strand(s), strand);
+            }
+            if charged {
+                charges.add(charge_of(s), strand);
+            }
+            for used in tools {
+                used.act(&bodies, strand, groom.range(s).len());
+            }
+            if blown {
+                blow.add(strand);
+            }
+        };
+        strands.each(&frame, &act);
     }
 }
 

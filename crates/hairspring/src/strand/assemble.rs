@@ -195,7 +195,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
         let [new, old] = [&scratch.edges[i + 1][..], &tile.state[i + 1][state::EDGE..]];
         elements.way += V3::load(simd, new) - V3::load(simd, old);
     }
-    let Elements { x, way, root_velocity, ref still, ref mut band, .. } = *elements;
+    let Elements { x, way, root_velocity, ref ambient, ref mut band, .. } = *elements;
     ask_beyond(tile.rest, i, step.number);
     ask_beyond(tile.state, i, 2 * step.number);
     ask_beyond(tile.state, i, 2 * step.number + 1);
@@ -219,9 +219,9 @@ fn add_point<S, M, const B: usize, const N: usize>(
                 * F::splat(simd, 0.25 * inv_h2)
             - outset.way(simd) * F::splat(simd, a * inv_h2)
     } else if sweep == Sweep::First {
-        still.pull
+        ambient.pull
     } else {
-        still.pull + (v - root_velocity - outset.way(simd) * F::splat(simd, inv_h)) * F::splat(simd, inv_h)
+        ambient.pull + (v - root_velocity - outset.way(simd) * F::splat(simd, inv_h)) * F::splat(simd, inv_h)
     };
     if let Some(push) = tile.push.get(i + 1) {
         p += V3::load(simd, push);
@@ -239,9 +239,9 @@ fn add_point<S, M, const B: usize, const N: usize>(
     if on_strand {
         let across = segment.air * inv_h;
         let mut slip = if sweep == Sweep::First {
-            still.wind - v
+            ambient.wind - v
         } else {
-            still.wind - root_velocity - outset.way(simd) * F::splat(simd, inv_h)
+            ambient.wind - root_velocity - outset.way(simd) * F::splat(simd, inv_h)
         };
         if let Some(air) = tile.air.get(i + 1) {
             slip += V3::load(simd, air);

@@ -25,7 +25,7 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
     /// Velocity of the root in the last substep [m/s].
     pub root_velocity: V3<S>,
     /// What acts alike on all points.
-    pub still: Still<S>,
+    pub ambient: Ambient<S>,
     /// Force of still air on half a unit of length, over speed [N s/m²].
     half_drag: F<S>,
     /// See [`stretch`].
@@ -59,11 +59,11 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let explicit = F::splat(simd, step.explicit_tension()) / stiffening;
         let root_velocity = V3::load(simd, &tile.state[0][state::V..]);
         let now = step.moved * F::splat(simd, 1.0 / step.h);
-        let still = Still {
+        let ambient = Ambient {
             pull: (root_velocity - now).mul_add(F::splat(simd, 1.0 / step.h), V3::splat(simd, step.gravity)),
             wind: V3::splat(simd, step.wind) + (root_velocity - now),
         };
-        Self { band, model, at, x: zero, way: zero, root_velocity, still, half_drag, explicit }
+        Self { band, model, at, x: zero, way: zero, root_velocity, ambient, half_drag, explicit }
     }
 
     /// Adds contact of the segment from point `i`, the band's first.
@@ -141,7 +141,7 @@ pub struct Segment<S: Simd> {
 }
 
 /// What acts alike on all points of strands whose points all move as their roots did.
-pub struct Still<S: Simd> {
+pub struct Ambient<S: Simd> {
     /// Gravity, and how the root's own motion changes [m/s²].
     pub pull: V3<S>,
     /// The wind that a point feels, where it moves as the root did, and its own velocity [m/s].

@@ -1,6 +1,10 @@
 //! The bust as a body: meshes with coloured parts, skeleton and skin weights.
 
-use super::{borders, nets, sdf::smoothstep, shape};
+use super::{
+    borders, nets,
+    sdf::{self, smoothstep},
+    shape,
+};
 use crate::body::{Body, Joint, Mesh, Part, Skin, Trs};
 use glam::{Affine3A, Vec3, vec3};
 
@@ -55,11 +59,24 @@ pub fn collision() -> Body {
         nets::planes(-0.16, 0.14, |_| 0.0115),
     ];
     let distance = |p: Vec3| shape::plain_distance(p) + INSET;
-    let normal = |p: Vec3| {
-        let along = |axis: Vec3| distance(p + axis * 1e-3) - distance(p - axis * 1e-3);
-        vec3(along(Vec3::X), along(Vec3::Y), along(Vec3::Z)).normalize_or(Vec3::Y)
-    };
-    rigged(nets::mesh(&axes, distance, normal))
+    rigged(nets::mesh(&axes, distance, |p| sdf::normal(distance, p, 1e-3)))
+}
+
+/// The bust's head alone, on its neck and asleep: a closed mesh of some thousand vertices, small enough for a file. Its parts are "skin", "lips" and "scalp".
+pub fn head() -> Mesh {
+    let axes = [
+        nets::planes(-0.09, 0.09, |x| 0.0042 + 0.25 * (x.abs() - 0.036).clamp(0.0, 0.04)),
+        nets::planes(-0.165, 0.125, |y| 0.0040 + 0.35 * ((y + 0.036).abs() - 0.046).clamp(0.0, 0.03)),
+        nets::planes(-0.115, 0.11, |z| 0.0040 + 0.25 * (0.07 - z).clamp(0.0, 0.04)),
+    ];
+    let normal = |p: Vec3| sdf::normal(shape::head_distance, p, 5e-4);
+    let mut mesh = nets::mesh(&axes, shape::head_distance, normal);
+    borders::cut_along(&mut mesh, shape::lips);
+    borders::cut_along(&mut mesh, shape::scalp);
+    nets::settle(&mut mesh, shape::head_distance, normal);
+    color(&mut mesh);
+    mesh.parts.retain(|part| !part.triangles.is_empty());
+    mesh
 }
 
 /// Skeleton and weights for any mesh of the bust.

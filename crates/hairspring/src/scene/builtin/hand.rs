@@ -10,7 +10,7 @@
 
 use super::{
     nets,
-    sdf::{limb, union},
+    sdf::{self, limb, union},
 };
 use crate::body::{Mesh, Part};
 use glam::{Quat, Vec3, vec3};
@@ -28,9 +28,6 @@ const FAR: f32 = 1e4;
 
 /// How much thinner a finger is at its next joint [1].
 const THINNER: f32 = 0.93;
-
-/// Edge of a cell that the skin is meshed in [m].
-const CELL: f32 = 0.0022;
 
 /// Where a finger begins, its radius there, how far it is turned to the little finger's side and bent at its first joint [degrees], its three bones, and how far
 /// the two joints between these bend.
@@ -104,6 +101,9 @@ pub struct Hand {
 impl Hand {
     /// From the wrist's fold to the tip of the middle finger [m]: between the means of women and of men.
     pub const LENGTH: f32 = 0.177;
+
+    /// Edge of a cell of the skin that the window shows [m].
+    pub const CELL: f32 = 0.0022;
 }
 
 /// A piece: from where with which radius, to where with which [mm].
@@ -140,8 +140,9 @@ fn parts() -> [Vec<Piece>; 6] {
     [palm, thumb.collect(), finger(a), finger(b), finger(c), finger(d)]
 }
 
-/// Makes the hand: the same bits for any number of threads.
-pub fn hand() -> Hand {
+/// Makes the hand: the same bits for any number of threads. `cell` is the edge of a cell that its skin is meshed in [m], up to 0.005, where fingers are still round;
+/// [`Hand::CELL`] is fine enough to be looked at closely.
+pub fn hand(cell: f32) -> Hand {
     let parts = parts();
     let distance = |p: Vec3| {
         let piece = |(a, ra, b, rb): &Piece| limb(p * MM, *a, *ra, *b, *rb);
@@ -150,13 +151,9 @@ pub fn hand() -> Hand {
         let fingers = fingers.iter().map(|bones| bones.iter().map(piece).fold(FAR, f32::min));
         fingers.fold(palm, |a, b| union(a, b, BLEND)) / MM
     };
-    let normal = |p: Vec3| {
-        let along = |axis: Vec3| distance(p + axis * 2e-4) - distance(p - axis * 2e-4);
-        vec3(along(Vec3::X), along(Vec3::Y), along(Vec3::Z)).normalize_or(Vec3::Y)
-    };
-    let planes = |from: f32, to: f32| nets::planes(from, to, |_| CELL);
+    let planes = |from: f32, to: f32| nets::planes(from, to, |_| cell);
     let axes = [planes(-0.090, 0.075), planes(-0.098, 0.150), planes(-0.070, 0.030)];
-    let mut mesh = nets::mesh(&axes, distance, normal);
+    let mut mesh = nets::mesh(&axes, distance, |p| sdf::normal(distance, p, 2e-4));
     // Linear RGB; matt, so that hair is what shines.
     let (color, all) = (vec3(0.50, 0.36, 0.29), 0..mesh.triangles.len() as u32);
     mesh.parts.push(Part { name: "hand".into(), triangles: all, color, roughness: 0.7 });
@@ -170,7 +167,7 @@ mod tests {
 
     #[test]
     fn a_hand_is_closed_and_as_large_as_one_and_its_capsules_hold_it() {
-        let Hand { mesh, capsules } = hand();
+        let Hand { mesh, capsules } = hand(Hand::CELL);
         let (low, high) = mesh.bounds().unwrap();
         assert!((high.y + 0.001 * -WRIST[0] - Hand::LENGTH).abs() < 0.002, "{} m above the palm", high.y);
         assert!(low.cmpgt(vec3(-0.088, -0.096, -0.068)).all(), "{low}");

@@ -15,6 +15,7 @@ mod sdf;
 mod shape;
 mod style;
 
+pub use bust::head;
 pub use hand::{Hand, hand};
 pub use style::Style;
 

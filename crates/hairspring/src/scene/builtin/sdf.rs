@@ -3,7 +3,7 @@
 //!
 //! Unitless: whatever the lengths are in, so are the distances. Negative inside.
 
-use glam::{Quat, Vec2, Vec3, Vec3Swizzles};
+use glam::{Quat, Vec2, Vec3, Vec3Swizzles, vec3};
 
 /// Smooth union: the smaller of `a` and `b`, rounded where they differ by less than `k` (quadratic polynomial).
 pub fn union(a: f32, b: f32, k: f32) -> f32 {
@@ -19,6 +19,12 @@ pub fn cut(a: f32, b: f32, k: f32) -> f32 {
 /// Smooth intersection of `a` and `b`, the edge rounded over `k`.
 pub fn both(a: f32, b: f32, k: f32) -> f32 {
     -union(-a, -b, k)
+}
+
+/// Unit outward normal of a distance at `p`, by central differences over `step` each way.
+pub fn normal(distance: impl Fn(Vec3) -> f32, p: Vec3, step: f32) -> Vec3 {
+    let along = |axis: Vec3| distance(p + axis * step) - distance(p - axis * step);
+    vec3(along(Vec3::X), along(Vec3::Y), along(Vec3::Z)).normalize_or(Vec3::Y)
 }
 
 /// 0 below `lo`, 1 above `hi`, an S between (`lo` may be above `hi`: then it falls).

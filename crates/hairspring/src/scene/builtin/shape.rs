@@ -6,7 +6,7 @@
 //! The head is symmetric: everything is modelled for x ≥ 0.
 
 use super::sdf::{
-    almond, both, cut, ellipsoid, elliptic_ring, limb, smoothstep, sphere, turned_ellipsoid, union,
+    self, almond, both, cut, ellipsoid, elliptic_ring, limb, smoothstep, sphere, turned_ellipsoid, union,
 };
 use glam::{Quat, Vec2, Vec3, vec2, vec3};
 
@@ -22,6 +22,9 @@ pub const EYE_RADIUS: f32 = 0.0142;
 /// Where the bust is cut off flat [m].
 pub const BASE: f32 = -0.30;
 
+/// Where the head alone is cut off flat [m].
+pub const NECK: f32 = -0.155;
+
 /// Signed distance to the skin and the clothes [m] at `p` [m]. Slightly below the true distance where shapes blend.
 pub fn distance(p: Vec3) -> f32 {
     bust(p, ear)
@@ -34,6 +37,12 @@ pub fn plain_distance(p: Vec3) -> f32 {
         union(d, turned_ellipsoid(q, EAR - vec3(2.0, 0.0, 0.0), vec3(15.0, 28.0, 7.0), ear_turn()), 8.0)
     };
     bust(p, ear).min(eye)
+}
+
+/// [`plain_distance`] of the head alone, asleep: its lids are shut, and its neck is cut off flat.
+pub fn head_distance(p: Vec3) -> f32 {
+    let lid = sphere(vec3(p.x.abs(), p.y, p.z) * MM, EYE_CENTER * MM, EYE_RADIUS * MM + LID);
+    both(union(plain_distance(p) * MM, lid, 3.0), NECK * MM - p.y * MM, 12.0) / MM
 }
 
 /// The bust with ears that `ear` adds to the head.
@@ -58,9 +67,7 @@ fn mirrored(p: Vec3) -> Vec3 {
 /// Unit outward normal of [`distance`] at `p` [m], by central differences.
 pub fn normal(p: Vec3) -> Vec3 {
     // 0.2 mm: well under the smallest feature, well over the rounding of f32 at these sizes.
-    const E: f32 = 2e-4;
-    let along = |axis: Vec3| distance(p + axis * E) - distance(p - axis * E);
-    vec3(along(Vec3::X), along(Vec3::Y), along(Vec3::Z)).normalize_or(Vec3::Y)
+    sdf::normal(distance, p, 2e-4)
 }
 
 /// Cranium and face.
@@ -91,7 +98,7 @@ fn face(q: Vec3, d: f32) -> f32 {
 fn eyes(q: Vec3, d: f32) -> f32 {
     let c = EYE_CENTER * MM;
     let d = cut(d, ellipsoid(q, c + vec3(0.0, 1.5, 27.0), vec3(19.0, 11.0, 15.0)), 16.0);
-    let lids = sphere(q, c, EYE_RADIUS * MM + 1.7);
+    let lids = sphere(q, c, EYE_RADIUS * MM + LID);
     let d = union(d, lids, 7.0);
     // The fold above the upper lid.
     let across = vec2(q.x - c.x, q.y - c.y);
@@ -103,6 +110,8 @@ fn eyes(q: Vec3, d: f32) -> f32 {
     cut(d, opening, 1.6)
 }
 
+/// How thick the lids are [mm].
+const LID: f32 = 1.7;
 /// How far the outer corner of the lids lies higher than the inner [rad].
 const LID_TILT: f32 = 0.09;
 /// Half the width and the height of the opening between the lids [mm].

@@ -3,7 +3,7 @@
 mod complete;
 
 use super::*;
-use crate::document::{Change, Document};
+use crate::document::{Change, Document, Way};
 use egui_kittest::{Harness, kittest::Queryable};
 use std::{cell::RefCell, path::Path, rc::Rc};
 
@@ -163,10 +163,10 @@ fn pigment_takes_the_place_of_colours_in_one_step_and_gives_it_back() {
     let idle = |document: &Document, name: &str| parameter(name).idle(document, (0, 0)).is_some();
     assert!(idle(&document, "look.root_color") && idle(&document, "look.tip_color"));
     assert!(!idle(&document, "look.melanin_redness"));
-    document.undo().unwrap();
+    document.step(Way::Back).unwrap();
     assert_eq!(document.text(), text, "one step");
     assert!(!idle(&document, "look.root_color") && idle(&document, "look.melanin_redness"));
-    document.redo().unwrap();
+    document.step(Way::Forth).unwrap();
     let edits = edit::of(&mut document, melanin, None, (0, 0)).unwrap();
     document.set_all(edits).unwrap();
     assert!(document.text().contains("0.22") && !document.text().contains("melanin"), "{}", document.text());
