@@ -18,8 +18,8 @@ const GOLDEN: [(Model, Integrator, [u64; 2]); 7] = [
     (Model::Rod, Integrator::BackwardEuler, [0xa56f3d0eeb826ddc, 0xa086cb37bda9e2da]),
     (Model::Rod, Integrator::Bdf2, [0x41ee731d4928f678, 0xe415fcc4c4bba2b1]),
     (Model::Curvature, Integrator::LocalGlobal, [0xf9456ebe4ad528de, 0x821e78f89233f590]),
-    (Model::Curvature, Integrator::Ftl, [0x0f1a719608ca4720, 0x46514eba2072a478]),
-    (Model::Curvature, Integrator::Dftl, [0xf771b97674523004, 0x95f013ec023610ba]),
+    (Model::Curvature, Integrator::Ftl, [0xd0cf2a8be32ccad0, 0xac16455f7315803d]),
+    (Model::Curvature, Integrator::Dftl, [0x023d682dd10da054, 0x7bfa08682f9c2865]),
 ];
 
 fn hash(set: &str, model: Model, integrator: Integrator, threads: usize) -> Option<u64> {

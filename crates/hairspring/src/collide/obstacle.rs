@@ -145,7 +145,7 @@ impl Obstacle {
 
 /// Distance and normal of a ball of `radius`, `d` from its middle.
 #[inline(always)]
-fn ball_lanes<S: Simd>(d: V3<S>, radius: f32) -> (F<S>, V3<S>) {
+pub(super) fn ball_lanes<S: Simd>(d: V3<S>, radius: f32) -> (F<S>, V3<S>) {
     let (length, normal) = d.length_and_unit();
     (length - radius, normal)
 }

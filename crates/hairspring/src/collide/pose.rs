@@ -1,6 +1,6 @@
 //! A collider as the kernel sees it during a substep: where its shape is, who is near it, and how its surface moves, for eight points in the world at once.
 
-use super::Obstacle;
+use super::{Obstacle, obstacle::ball_lanes};
 use crate::strand::{
     lanes::{F, LANES, Row, V3},
     root::transform,
@@ -27,6 +27,8 @@ pub struct ObstaclePose {
     pub share: f32,
     /// A ball that holds all of it at the end: its middle in the world and its radius [m], which is infinite for a plane.
     bounds: (Vec3, f32),
+    /// How far its places move in the substep: a matrix, by where each is from the pose's end, and what is the same for all [m].
+    motion: (Mat3, Vec3),
 }
 
 impl ObstaclePose {
@@ -34,7 +36,9 @@ impl ObstaclePose {
     pub fn new(shape: Obstacle, start: (Mat3, Vec3), end: (Mat3, Vec3), share: f32) -> Self {
         let (center, radius) = shape.bounds();
         let bounds = (end.0 * center + end.1, radius);
-        Self { shape, start, end, share, bounds }
+        // What does not move does so to the last bit, which a rotation and its inverse do not.
+        let turned = if start.0 == end.0 { Mat3::ZERO } else { Mat3::IDENTITY - start.0 * end.0.transpose() };
+        Self { shape, start, end, share, bounds, motion: (turned, end.1 - start.1) }
     }
 
     /// Which of eight points may be inside at the end of the substep; the others are not.
@@ -154,6 +158,10 @@ impl ObstaclePose {
 /// World distance to the surface, and normal, of eight points at the end of a substep.
 #[inline(always)]
 pub(crate) fn contact<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>, V3<S>) {
+    if let Obstacle::Sphere { radius, .. } = pose.shape {
+        // However it is turned.
+        return ball_lanes(p - V3::splat(simd, pose.bounds.0), radius);
+    }
     let (distance, normal) = pose.shape.distance_lanes(simd, pose.local(simd, p));
     (distance, transform(simd, &pose.end.0, normal))
 }
@@ -161,10 +169,10 @@ pub(crate) fn contact<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>,
 /// How far the surface at `p` (world, end of the substep) moved in the substep [m].
 #[inline(always)]
 pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> V3<S> {
-    let local = pose.local(simd, p);
-    let before = transform(simd, &pose.start.0, local) + V3::splat(simd, pose.start.1);
-    let rigid = p - before;
+    let (turned, moved) = &pose.motion;
+    let rigid = transform(simd, turned, p - V3::splat(simd, pose.end.1)) + V3::splat(simd, *moved);
     let own = |displacement: &dyn Fn(Vec3) -> Vec3| {
+        let local = pose.local(simd, p);
         let mut rows = [Row::default(); 3];
         for lane in 0..LANES {
             let at = Vec3::new(local.x[lane], local.y[lane], local.z[lane]);

@@ -18,12 +18,12 @@ use super::{
     lanes::{F, Row, Sym3, V3, load, store},
     limit::{CORRECTIONS, Finish, Link, Particle, out_of},
     model::stretch::STRETCH,
-    press::{STICK, Surface, nearest, scratch as contact, scratch::SEGMENT},
+    press::{STICK, Surface, nearest, scratch, scratch::SEGMENT},
     root::Root,
     scratch::Scratch,
     tile::{Tile, rest, span, state},
 };
-use crate::collide::{ObstaclePose, STEEP, deepest, surface_displacement};
+use crate::collide::{ObstaclePose, STEEP, contact, deepest, surface_displacement};
 use fearless_simd::prelude::*;
 
 /// How deep a segment may be between its ends, over its length [1]. On a smooth body it is always a little inside: by L/8R of its length over a
@@ -107,7 +107,15 @@ pub fn clear<S: Simd>(
         }
         q = V3::select(cuts, out, q);
     }
-    q
+    // A swing may have led the end itself inside, around an edge: that comes first.
+    let swung = (q - e).dot(q - e).simd_gt(0.0);
+    if !swung.any_true() {
+        return q;
+    }
+    let (distance, normal) = contact(simd, pose, a + q);
+    let left = load(simd, &tile.rest[i][rest::CLEARANCE]) - distance;
+    let inside = swung & left.simd_gt(0.0);
+    V3::select(inside, link.clamp(link.swing_out(q, normal, left)), q)
 }
 
 /// Adds contact to the segment from point `i`, the first of the band's window, to the strand's next, which is in it too. Point `i` is at `x` from the
@@ -156,8 +164,8 @@ pub fn press_between<S: Simd, const B: usize, const N: usize>(
     let normal = V3::select(size.simd_lt(STEEP), normal, across);
     let normal = V3::select(shut, normal, V3::zero(simd));
     let work = &mut memory.contacts[outer][SEGMENT..];
-    normal.store(&mut work[contact::NORMAL..]);
-    store(gap, &mut work[contact::GAP]);
+    normal.store(&mut work[scratch::NORMAL..]);
+    store(gap, &mut work[scratch::GAP]);
 
     // What the outer end does besides what the inner one does.
     let v = V3::load(simd, &tile.state[i][state::V..]);
@@ -189,7 +197,7 @@ pub fn relieve_between<S: Simd>(
     step: &Step<S>,
     tile: &mut Tile,
     (i, moved): (usize, [V3<S>; 2]),
-    contacts: &[[Row; contact::ROWS]],
+    contacts: &[[Row; scratch::ROWS]],
 ) {
     let outer = i + tile.model.stride();
     let Some(rows) = tile.spans.get_mut(outer) else { return };
@@ -201,6 +209,6 @@ pub fn relieve_between<S: Simd>(
     let work = &contacts[outer][SEGMENT..];
     let delta = (moved[1] - moved[0]).mul_add(load(simd, &rows[span::AT]), moved[0]);
     let k = load(simd, &tile.rest[outer][rest::MASS]) * (STRETCH / (step.h * step.h));
-    let gap = load(simd, &work[contact::GAP]) + V3::load(simd, &work[contact::NORMAL..]).dot(delta);
+    let gap = load(simd, &work[scratch::GAP]) + V3::load(simd, &work[scratch::NORMAL..]).dot(delta);
     store(shut.select((force - k * gap).max(0.0), force), &mut rows[span::FORCE]);
 }
