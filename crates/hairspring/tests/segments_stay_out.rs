@@ -2,8 +2,8 @@
 //! a ball or a rod smaller than its segments rests on it, and hair that lies so comes to rest and stays. Ridges of a mesh are met wherever they
 //! cross a segment, and what falls into a crease between two walls is out of both.
 //!
-//! Segments may be inside by 1.5 % of their length, here 0.3 mm: those on a large round body always are. At rest they are by no more than 0.4 mm, and by 1 mm while they
-//! land. What lies so moves by less than 0.1 mm in a second (springs, which tremble on an edge, by 0.5 mm). Where nothing is near, none of it
+//! Segments may be inside by 1.5 % of their length, here 0.3 mm: those on a large round body always are. At rest they are by no more than 0.32 mm, and by 1 mm while they
+//! land. What lies so moves by less than 0.1 mm in a second (springs, which tremble on an edge, by 0.15 mm). Where nothing is near, none of it
 //! shows.
 
 use glam::{Mat3, Vec3};
