@@ -284,7 +284,7 @@ fn slice(pen: &Pen, scenery: &Scenery, height: f32) {
 
 /// Cells of the volume's lattice with hair in them, the fuller the warmer.
 fn volume(pen: &Pen, scenery: &Scenery) {
-    let cell = scenery.volumes.iter().flatten().map(|v| v.cell).next().unwrap_or(0.015);
+    let cell = scenery.volume.map_or(0.015, |v| v.cell);
     let anchor = scenery.anchor;
     let mut cells: HashMap<[i32; 3], u32> = HashMap::new();
     for p in scenery.points().flatten().filter(|p| p.is_finite()) {

@@ -99,8 +99,8 @@ pub struct Scenery {
     pub measure: Measure,
     /// Energy of the same moment.
     pub energy: Energy,
-    /// Volume of each groom's hair.
-    pub volumes: Vec<Option<VolumeReport>>,
+    /// What is known of the hair's volume, where strands do not pass through each other.
+    pub volume: Option<VolumeReport>,
     /// Where what the scene lists has been carried.
     pub carried: Carried,
     /// What is pushed through hair, and where it is.
@@ -123,7 +123,7 @@ impl Scenery {
             anchor: Rigid::default(),
             measure: Measure::default(),
             energy: Energy::default(),
-            volumes: Vec::new(),
+            volume: None,
             carried: Carried::default(),
             pushed: None,
         }
@@ -165,8 +165,7 @@ impl Scenery {
         self.obstacles.clear();
         self.obstacles.extend_from_slice(stage.obstacles());
         self.anchor = stage.body_anchor();
-        self.volumes.clear();
-        self.volumes.extend(stage.volumes());
+        self.volume = stage.volume();
         self.carried.fill(stage);
     }
 

@@ -252,7 +252,7 @@ fn a_scenes_hands_begin_move_and_end_as_they_say() {
     assert!(apart < 1e-5, "a reset lets go of everything: {apart} m apart");
     // An app's hand does the same.
     stage.reset();
-    let id = stage.take(Tool::Grab(ball), Rigid::default()).unwrap();
+    let id = stage.take(Tool::Grab(ball), Rigid::default());
     for frame in 1..=20 {
         stage.carry(
             id,

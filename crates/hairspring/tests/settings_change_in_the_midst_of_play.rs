@@ -79,7 +79,7 @@ fn the_same_settings_change_no_bit() {
         Tool::Grab(Grab { center: Vec3::new(0.08, -0.05, 0.0), radius: 0.05, pull: 60.0, damping: 1.0 });
     for stage in &mut stages {
         play(stage, 20);
-        let id = stage.take(hold, Rigid::default()).unwrap();
+        let id = stage.take(hold, Rigid::default());
         stage.carry(id, Rigid { translation: Vec3::X * 0.01, ..Rigid::default() });
         play(stage, 5);
     }

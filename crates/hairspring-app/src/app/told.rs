@@ -93,7 +93,7 @@ pub(super) fn legend(
     if value == Value::Guide {
         return;
     }
-    if value == Value::Density && scenery.volumes.iter().all(Option::is_none) {
+    if value == Value::Density && scenery.volume.is_none() {
         let right = at + egui::vec2(LEGEND - 20.0, 18.0);
         text(right, egui::Align2::RIGHT_TOP, "known with Hair on hair (Volume)".into());
         return;

@@ -119,8 +119,7 @@ pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) 
             _ if k == 0 => "left: ",
             _ => "right: ",
         };
-        let volume =
-            scenery.volumes.iter().flatten().map(|v| format!(", volume {:.0} %", 100.0 * v.share)).next();
+        let volume = scenery.volume.map(|v| format!(", volume {:.0} %", 100.0 * v.share));
         ui.label(format!(
             "{side}stretch {:.2} % mean, {:.2} % worst; {} points and {} segments inside{}",
             100.0 * m.stretch_mean,

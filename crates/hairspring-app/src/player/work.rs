@@ -38,7 +38,7 @@ pub(super) struct Work {
     pub(super) playing: bool,
     pub(super) speed: f32,
     pub(super) end: Option<f32>,
-    pub(super) tool: Option<Vec<Option<ToolId>>>,
+    pub(super) tool: Option<Vec<ToolId>>,
     /// Where the body is carried, and a tool, and what is pushed, and where the pointer has them.
     pub(super) body: Pulled,
     pub(super) carried: Pulled,
@@ -241,7 +241,7 @@ impl Work {
 
     fn let_go(&mut self) {
         for ((stage, _), id) in self.stages.iter_mut().zip(self.tool.take().into_iter().flatten()) {
-            id.inspect(|id| stage.let_go(*id));
+            stage.let_go(id);
         }
     }
 
@@ -258,7 +258,7 @@ impl Work {
         }
         if self.tool.is_some() && self.carried.go(FASTEST) {
             for ((stage, _), id) in self.stages.iter_mut().zip(self.tool.iter().flatten()) {
-                id.inspect(|id| stage.carry(*id, self.carried.now));
+                stage.carry(*id, self.carried.now);
             }
         }
         if self.pushing.as_mut().is_some_and(|pushing| pushing.go(body(&self.stages))) {

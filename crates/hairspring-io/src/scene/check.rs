@@ -161,6 +161,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     let solvers = [
         ((1..=64).contains(&solver.substeps), "substeps", "1 to 64"),
         ((0..=20).contains(&solver.projections), "projections", "0 to 20"),
+        ((0.0..=60.0).contains(&solver.settle), "settle", "0 to 60 [s]"),
         ((0.0..=1.0).contains(&solver.inertia), "inertia", "0 to 1"),
         (above_0(Some(solver.jump)), "jump", "above 0 [m]"),
     ];

@@ -24,6 +24,7 @@ pub(super) struct Asked<'a> {
     clip: &'a Option<ClipFile>,
     props: &'a [PropFile],
     collide_body: bool,
+    settle: f32,
     grooms: Vec<GroomGeometry<'a>>,
     /// Radii that the materials of each groom set [m].
     radii: Vec<Vec<Option<f32>>>,
@@ -49,6 +50,7 @@ pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<
         clip: &file.clip,
         props: &file.prop,
         collide_body: file.solver.collide_body,
+        settle: file.solver.settle,
         grooms: file.groom.iter().map(|groom| groom.geometry()).collect(),
         radii,
     })

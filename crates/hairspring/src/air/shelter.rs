@@ -10,7 +10,7 @@
 //! lee fades to nothing at `reach`, as a wake fills up, is ours. Wind is found so at the nodes of the lattice, and taken by points between them.
 //!
 //! # Missing
-//! Hair of one groom does not shelter another's. Air that is kept out goes nowhere: there is no wind around an edge. Followers shelter as their guides.
+//! Air that is kept out goes nowhere: there is no wind around an edge. Followers shelter as their guides.
 
 use super::Moment;
 use crate::{simulation::Bodies, volume::Density};

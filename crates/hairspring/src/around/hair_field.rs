@@ -43,17 +43,12 @@ pub(crate) struct HairField {
 }
 
 impl HairField {
-    /// Finds the field of strands with so much `charge` [C/m] each, every one for `hairs` hairs.
-    pub fn find(
-        &mut self,
-        strands: &mut Strands,
-        frame: &Frame,
-        (charge, hairs): (impl Fn(usize) -> f32 + Sync, f32),
-    ) {
+    /// Finds the field of strands with so much `charge` [C/m] each, that of all the hairs that it stands for.
+    pub fn find(&mut self, strands: &mut Strands, frame: &Frame, charge: impl Fn(usize) -> f32 + Sync) {
         self.clear();
         strands.each(frame, &|strand| self.reach(strand));
         self.lay_out();
-        strands.each(frame, &|strand| self.load(charge(strand.strand), hairs, strand));
+        strands.each(frame, &|strand| self.load(charge(strand.strand), strand));
         self.solve();
     }
 
@@ -97,11 +92,11 @@ impl HairField {
         self.charges.iter_mut().for_each(|charge| *charge.get_mut() = 0);
     }
 
-    /// Lays `charge` [C/m] of a strand on the lattice, for `hairs` hairs alike.
-    fn load(&self, charge: f32, hairs: f32, strand: &Surrounded) {
+    /// Lays `charge` [C/m] of a strand on the lattice.
+    fn load(&self, charge: f32, strand: &Surrounded) {
         let root = strand.roots()[0].translation;
         for (i, (x, _)) in strand.points().enumerate() {
-            let electrons = f64::from(charge * strand.length(i)) * f64::from(hairs) / ELECTRON;
+            let electrons = f64::from(charge) * f64::from(strand.length(i)) / ELECTRON;
             for (node, weight) in self.around(root + x).into_iter().flatten() {
                 self.charges[node].fetch_add((electrons * f64::from(weight)) as i64, Relaxed);
             }

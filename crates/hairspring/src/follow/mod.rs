@@ -136,9 +136,16 @@ impl Follow {
         Self { layout: Arc::new(layout), effects, carriers }
     }
 
-    /// Lays other effects over the follow hairs from now on; whether they are other ones.
-    pub fn set_effects(&mut self, effects: Effects) -> bool {
-        std::mem::replace(&mut self.effects, effects) != effects
+    /// The same hairs, following the same guides, in another rest pose: that of `groom`, among `obstacles`.
+    pub(crate) fn of(&self, groom: Arc<Groom>, obstacles: &[ObstaclePose]) -> Self {
+        let FollowLayout { guides, weights, .. } = &*self.layout;
+        let name = |w: &GuideWeights| GuideWeights { guides: w.guides.map(|g| guides[g as usize]), ..*w };
+        Self::new(groom, guides, &weights.iter().map(name).collect::<Vec<_>>(), self.effects, obstacles)
+    }
+
+    /// Lays other effects over the follow hairs from now on; returns those before.
+    pub fn set_effects(&mut self, effects: Effects) -> Effects {
+        std::mem::replace(&mut self.effects, effects)
     }
 
     /// Finds how the guides carry the hairs around them now.

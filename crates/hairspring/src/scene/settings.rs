@@ -57,6 +57,10 @@ pub struct Solver {
     pub substeps: u32,
     /// Whether rest shapes are solved so that the groom starts in balance under gravity. Default true.
     pub sag_free: bool,
+    /// How long hair falls from where its groom has it before the scene begins [s], 0 to 60. Where it lies then is its groom from there on: what
+    /// [`Solver::sag_free`] puts in balance, and what a reset goes back to. Default 0: grooms are as they are made. For hair that is grown by a rule, 3: it stands
+    /// off the skin, and long hair lies still by then.
+    pub settle: f32,
     /// Whether hair collides with the body's mesh. Default true.
     pub collide_body: bool,
     /// What keeps hair out of colliders. Default `both`.
@@ -163,6 +167,7 @@ impl Default for Solver {
         Self {
             substeps: 4,
             sag_free: true,
+            settle: 0.0,
             collide_body: true,
             contact: Response::Both,
             segments: true,
@@ -176,7 +181,7 @@ impl Default for Solver {
     }
 }
 
-/// How hair meets hair (DESIGN §5). For each groom by itself, between its simulated strands.
+/// How hair meets hair (DESIGN §5): the simulated strands of all grooms, each weighing what the hairs weigh that follow it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Volume {
@@ -203,8 +208,7 @@ impl Default for Volume {
     }
 }
 
-/// How strands meet their neighbours, one by one: the reference for the volume, for guides and small scenes. For each groom by itself, between its simulated
-/// strands.
+/// How strands meet their neighbours, one by one: the reference for the volume, for guides and small scenes. Between the simulated strands of all grooms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Neighbours {

@@ -20,13 +20,16 @@ impl Simulation {
     pub fn set_volume(&mut self, settings: &scene::Volume) {
         let mut mass = vec![Row::default(); self.rest.len()];
         let (mut segments, mut sum, mut longest) = (0_usize, 0.0_f64, 0.0_f32);
+        // A strand weighs what the hairs weigh that it stands for; only what it is to the others' counts.
+        let most = self.strands().map(|s| self.hairs[s as usize]).fold(0.0, f32::max);
         for (place, strand) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let (tile, lane) = (self.tiles[place / LANES], place % LANES);
             let points = self.groom.range(*strand as usize).len();
             let mut length = 0.0;
+            let share = self.hairs[*strand as usize] / most;
             for i in (0..points).map(|i| i * tile.model.stride()) {
                 let at = tile.first as usize + i;
-                mass[at].0[lane] = self.rest[at][rest::MASS].0[lane];
+                mass[at].0[lane] = share * self.rest[at][rest::MASS].0[lane];
                 length += self.rest[at][rest::LENGTH].0[lane];
             }
             (segments, sum, longest) = (segments + points - 1, sum + f64::from(length), longest.max(length));

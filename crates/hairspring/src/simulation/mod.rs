@@ -44,7 +44,7 @@ use crate::{
 use fearless_simd::Level;
 use glam::Vec3;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 /// Simulated strands: mass-spring chains stepped by backward Euler with a direct banded solver.
 ///
@@ -71,6 +71,8 @@ pub struct Simulation {
     tethers: Vec<Row>,
     /// Length of the longest strand [m].
     longest: f32,
+    /// How many hairs each strand of the groom stands for; shape `[strands of the groom]`.
+    hairs: Vec<f32>,
     /// As long as `state` for the integrator of second order, else empty.
     history: Vec<HistoryRows>,
     /// What holds points from outside, for each tile; empty where nothing does.
@@ -151,7 +153,7 @@ impl Simulation {
             + self.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
             + self.volume.as_ref().map_or(0, |volume| volume.bytes())
             + self.neighbours.as_ref().map_or(0, |neighbours| neighbours.bytes())
-            + (self.lanes.len() + self.places.len()) * size_of::<u32>()
+            + (self.lanes.len() + self.places.len() + self.hairs.len()) * size_of::<u32>()
             + self.tiles.len() * size_of::<TilePlace>()
     }
 
@@ -174,6 +176,16 @@ impl Simulation {
         found.is_some()
     }
 
+    /// Says how many hairs each strand of the groom stands for, itself among them (more than 0): those that follow it. It counts where hair meets hair as a volume,
+    /// from the next [`Simulation::set_volume`] on, and for charge. Where nothing is said, those that are simulated stand for all of the groom, each for as many.
+    ///
+    /// # Panics
+    /// If there is not one number for each strand of the groom.
+    pub fn set_hairs(&mut self, hairs: Vec<f32>) {
+        assert_eq!(hairs.len(), self.groom.strand_count(), "a number for each strand of the groom");
+        self.hairs = hairs;
+    }
+
     /// What charged bodies act on charged hair in the next frame.
     pub fn set_charged(&mut self, balls: impl IntoIterator<Item = ChargedBall>) {
         self.charged.clear();
@@ -188,9 +200,17 @@ impl Simulation {
     /// Writes the points of every simulated strand, in the order given to [`Simulation::new`], one after the other [m];
     /// `out` has the shape `[point_count]`.
     pub fn write_points(&self, out: &mut [Vec3]) {
+        self.write_points_of(0..self.places.len(), out);
+    }
+
+    /// The same of some of the strands, by their places in that order.
+    ///
+    /// # Panics
+    /// If there are no such strands, or `out` is too short for their points.
+    pub fn write_points_of(&self, strands: Range<usize>, out: &mut [Vec3]) {
         let mut rest = out;
-        let mut pieces = Vec::with_capacity(self.places.len());
-        for &place in &self.places {
+        let mut pieces = Vec::with_capacity(strands.len());
+        for &place in &self.places[strands] {
             let (piece, more) =
                 rest.split_at_mut(self.groom.range(self.lanes[place as usize] as usize).len());
             pieces.push((place as usize, piece));

@@ -50,8 +50,8 @@ impl Simulation {
         if charged {
             self.charged.iter_mut().for_each(|ball| ball.carry(carried));
             // Those that follow are charged as their guides.
-            let hairs = self.groom.strand_count() as f32 / self.places.len() as f32;
-            self.hair_field.find(&mut strands, &frame, (charge_of, hairs));
+            let of_all = |strand: usize| charge_of(strand) * self.hairs[strand];
+            self.hair_field.find(&mut strands, &frame, of_all);
         }
         let air = drive.air.moment(drive.dt, &mut self.noise);
         let shade = self.volume.as_ref().filter(|_| sheltered).map(|volume| {

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     around::charge::ChargedBall,
-    body::{Body, Trs},
+    body::{self, Body, Trs},
     collide::{Obstacle, ObstaclePose, Rigid},
     scene::{Collider, Scene},
     simulation::MovingObstacle,
@@ -23,6 +23,8 @@ pub(super) struct StagedBody {
     /// Model-space matrix of each joint, at rest and now.
     rest: Vec<Affine3A>,
     world: Vec<Affine3A>,
+    /// Whether what moves by itself is elsewhere at the start than at rest.
+    apart: bool,
     /// Where all of it is carried besides its clip.
     moved: Rigid,
     /// The joint that most of the head moves with: hair and fields are kept in its space.
@@ -116,12 +118,14 @@ impl Reach {
 }
 
 impl StagedBody {
-    /// The body at rest, and what follows the joints that were found.
+    /// The body as hair is made on it: at rest, and what moves by itself beside it where it is at the start. With what follows the joints that were found.
     pub(super) fn new(scene: &Scene, joints: &Joints) -> Self {
         let rest = scene.body.as_ref().map(|b| b.world(&b.rest_pose())).unwrap_or_default();
         let anchor = scene.body.as_ref().map_or(0, |b| anchor_joint(b, scene));
+        let world = scene.body.as_ref().map(|b| first_pose(b, anchor, scene)).unwrap_or_default();
         let mut staged = Self {
-            world: rest.clone(),
+            apart: world != rest,
+            world,
             rest,
             moved: Rigid::default(),
             anchor,
@@ -312,6 +316,19 @@ impl StagedBody {
         self.charged.balls()
     }
 
+    /// Whether what moves by itself is elsewhere at the start than at rest.
+    pub(super) fn stands_apart(&self) -> bool {
+        self.apart
+    }
+
+    /// Corners of a triangle of the skin as hair is made on it, of a body that has just been made.
+    pub(super) fn first_corners(&self, mesh: &body::Mesh, triangle: usize) -> [Vec3; 3] {
+        match self.apart {
+            true => mesh.triangles[triangle].map(|i| self.positions[i as usize]),
+            false => mesh.corners(triangle),
+        }
+    }
+
     /// The frame that roots move with.
     pub(super) fn anchor(&self) -> Rigid {
         self.world.get(self.anchor).map_or(Rigid::default(), Rigid::from_affine)
@@ -346,6 +363,24 @@ impl StagedBody {
 /// Where what a joint carries has gone since `rest`, now that joints are at `world`; nowhere without a joint.
 fn carried(world: &[Affine3A], rest: &[Affine3A], joint: Option<usize>) -> Rigid {
     joint.map_or(Rigid::default(), |j| Rigid::from_affine(&(world[j] * rest[j].inverse())))
+}
+
+/// Model-space matrix of each joint as hair is made on the body: the joints that hang together with `anchor` at rest, and all others, each a thing by
+/// itself, where the clip begins. At rest they may be in each other.
+fn first_pose(body: &Body, anchor: usize, scene: &Scene) -> Vec<Affine3A> {
+    let mut pose = body.rest_pose();
+    let top = |mut joint: usize| {
+        while let Some(parent) = body.joints[joint].parent {
+            joint = parent as usize;
+        }
+        joint
+    };
+    if let Some(clip) = &scene.clip {
+        let begin = clip.sample(0.0);
+        let others = (0..pose.len()).filter(|joint| top(*joint) != top(anchor));
+        others.for_each(|joint| pose[joint] = begin[joint]);
+    }
+    body.world(&pose)
 }
 
 /// The joint that carries most of the vertices near the roots; joint 0 of a rigid body.

@@ -1,18 +1,18 @@
-//! One groom of the scene: its simulated strands and the hairs that follow them.
+//! One groom of the scene: which of its strands are simulated, where their roots are, and the hairs that follow them.
 
-use super::{FrameReport, Strands, body::StagedBody};
+use super::{Strands, body::StagedBody};
 use crate::{
-    around::Tool,
+    body::Mesh,
     collide::{ObstaclePose, Rigid},
     follow::{Follow, Followed, assign_guides, choose_guides, split_by},
-    groom::Groom,
+    groom::{Groom, GuideWeights},
     material::Material,
-    scene::{Guides, HairLook, Scene, SceneGroom},
-    simulation::{Air, Drive, Simulation, ToolId},
+    scene::{Effects, Guides, HairLook, Scene, SceneGroom},
+    simulation::Simulation,
 };
 use glam::{Quat, Vec3};
 use rayon::prelude::*;
-use std::{sync::Arc, time::Instant};
+use std::sync::Arc;
 
 /// Guides of a groom that names none and a scene that asks for no number.
 const DEFAULT_GUIDES: usize = 2_000;
@@ -21,7 +21,10 @@ pub(super) struct StagedHair {
     groom: Arc<Groom>,
     materials: Vec<Material>,
     look: HairLook,
-    simulation: Simulation,
+    /// The simulated strands, as indices of the groom.
+    strands: Vec<u32>,
+    /// The first of them among those of all grooms.
+    first: usize,
     /// `None` where every strand is simulated.
     follow: Option<Follow>,
     /// Orientation of each simulated root's triangle at rest, inverted; empty while the roots are bound to nothing.
@@ -37,36 +40,37 @@ pub(super) struct StagedHair {
 }
 
 impl StagedHair {
-    pub(super) fn new(groom: SceneGroom, scene: &Scene, body: &StagedBody) -> Self {
+    /// The hair of `groom` at rest on the body as it is at the start; its first simulated strand is the `first` of those of all grooms.
+    pub(super) fn new(groom: SceneGroom, first: usize, scene: &Scene, body: &StagedBody) -> Self {
         let SceneGroom { groom, materials, guides, effects, look } = groom;
-        let groom = Arc::new(groom);
-        let (simulated, weights) = roles(&groom, guides);
-        let obstacles = body.poses();
-        let simulation = simulation(&groom, &simulated, &materials, scene, body.anchor(), &obstacles);
-        let follow = weights.map(|w| Follow::new(groom.clone(), &simulated, &w, effects, &obstacles));
         let mesh = scene.body.as_ref().map(|b| &b.mesh).filter(|_| !groom.roots.is_empty());
+        let groom = Arc::new(match mesh {
+            Some(mesh) if body.stands_apart() => stand(groom, body, mesh),
+            _ => groom,
+        });
+        let (strands, weights) = roles(&groom, guides);
+        let follow = weights.map(|w| Follow::new(groom.clone(), &strands, &w, effects, &body.poses()));
+        let triangle = |s: &u32| groom.roots[*s as usize].triangle as usize;
         let rest_frames = mesh.map_or(Vec::new(), |mesh| {
-            let frame = |s: &u32| {
-                let root = &groom.roots[*s as usize];
-                root.frame(mesh.corners(root.triangle as usize)).inverse()
-            };
-            simulated.iter().map(frame).collect()
+            let frame =
+                |s: &u32| groom.roots[*s as usize].frame(body.first_corners(mesh, triangle(s))).inverse();
+            strands.iter().map(frame).collect()
         });
-        let triangles = mesh.map_or(Vec::new(), |mesh| {
-            simulated.iter().map(|s| mesh.triangles[groom.roots[*s as usize].triangle as usize]).collect()
-        });
-        let roots = simulated
+        let triangles =
+            mesh.map_or(Vec::new(), |mesh| strands.iter().map(|s| mesh.triangles[triangle(s)]).collect());
+        let roots = strands
             .iter()
             .map(|s| Rigid { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
             .collect();
         Self {
-            turns: vec![Quat::IDENTITY; simulated.len()],
-            guide_points: vec![Vec3::ZERO; simulation.point_count()],
+            turns: vec![Quat::IDENTITY; strands.len()],
+            guide_points: vec![Vec3::ZERO; strands.iter().map(|s| groom.range(*s as usize).len()).sum()],
             points: groom.points.clone(),
             groom,
             materials,
             look,
-            simulation,
+            strands,
+            first,
             follow,
             rest_frames,
             triangles,
@@ -82,31 +86,23 @@ impl StagedHair {
         }
     }
 
-    /// Takes up other settings in the midst of the play; `fresh`: the scene's own are others than before.
-    pub(super) fn retune(&mut self, settings: SceneGroom, scene: &Scene, body: &StagedBody, fresh: bool) {
-        self.look = settings.look;
-        if fresh || settings.materials != self.materials {
-            let strands: Vec<u32> = self.simulation.strands().collect();
-            let mut new =
-                simulation(&self.groom, &strands, &settings.materials, scene, body.rest_anchor(), &[]);
-            new.take_over(&self.simulation);
-            self.simulation = new;
-            self.materials = settings.materials;
-        }
-        if let Some(follow) = &mut self.follow
-            && follow.set_effects(settings.effects)
-        {
-            self.show(body);
-        }
+    /// Takes up other settings in the midst of the play; whether the materials, and whether the effects are others than before.
+    pub(super) fn retune(&mut self, settings: SceneGroom) -> (bool, bool) {
+        let SceneGroom { materials, effects, look, .. } = settings;
+        self.look = look;
+        let laid = self.follow.as_mut().is_some_and(|follow| follow.set_effects(effects) != effects);
+        let made = materials != self.materials;
+        self.materials = materials;
+        (made, laid)
     }
 
     /// Where the roots are on the posed body.
-    fn pose_roots(&mut self, body: &StagedBody) {
+    pub(super) fn pose_roots(&mut self, body: &StagedBody) {
         if self.rest_frames.is_empty() {
             return;
         }
-        for (k, s) in self.simulation.strands().enumerate() {
-            let root = &self.groom.roots[s as usize];
+        for (k, s) in self.strands.iter().enumerate() {
+            let root = &self.groom.roots[*s as usize];
             let corners = self.triangles[k].map(|i| body.positions()[i as usize]);
             self.roots[k] = Rigid {
                 translation: root.position(corners),
@@ -115,37 +111,14 @@ impl StagedHair {
         }
     }
 
-    /// Puts the hair at rest on the posed body.
-    pub(super) fn place(&mut self, body: &StagedBody) {
-        self.pose_roots(body);
-        self.simulation.place(body.anchor(), &self.roots);
-        self.show(body);
-    }
-
-    /// Plays one frame of `dt` [s] of the simulated strands.
-    pub(super) fn step(&mut self, dt: f32, body: &StagedBody, air: Air, report: &mut FrameReport) {
-        let began = Instant::now();
-        self.pose_roots(body);
-        self.simulation.set_charged(body.charged().iter().copied());
-        let step = self.simulation.step(&Drive {
-            dt,
-            anchor: body.anchor(),
-            roots: &self.roots,
-            obstacles: body.obstacles(),
-            air,
-        });
-        report.step.substeps = report.step.substeps.max(step.substeps);
-        report.step.reset_strands += step.reset_strands;
-        report.simulate += began.elapsed();
-    }
-
     /// Brings the points of all strands up to date, but for follow hairs that are left to who draws them.
-    pub(super) fn show(&mut self, body: &StagedBody) {
+    pub(super) fn show(&mut self, simulation: &Simulation, body: &StagedBody) {
+        let own = self.first..self.first + self.strands.len();
         let Some(follow) = &mut self.follow else {
-            self.simulation.write_points(&mut self.points);
+            simulation.write_points_of(own, &mut self.points);
             return;
         };
-        self.simulation.write_points(&mut self.guide_points);
+        simulation.write_points_of(own, &mut self.guide_points);
         for (turn, root) in self.turns.iter_mut().zip(&self.roots) {
             *turn = root.rotation;
         }
@@ -194,26 +167,6 @@ impl StagedHair {
         }
     }
 
-    /// See [`Simulation::take`].
-    pub(super) fn take(&mut self, tool: Tool, pose: Rigid) -> ToolId {
-        self.simulation.take(tool, pose)
-    }
-
-    /// See [`Simulation::carry`].
-    pub(super) fn carry(&mut self, id: ToolId, pose: Rigid) {
-        self.simulation.carry(id, pose);
-    }
-
-    /// See [`Simulation::let_go`].
-    pub(super) fn let_go(&mut self, id: ToolId) {
-        self.simulation.let_go(id);
-    }
-
-    /// See [`Simulation::let_go_all`].
-    pub(super) fn let_go_all(&mut self) {
-        self.simulation.let_go_all();
-    }
-
     /// The place of a strand among the simulated ones, if it is one.
     pub(super) fn simulated(&self, strand: usize) -> Option<usize> {
         self.follow.as_ref().map_or(Some(strand), |follow| follow.guide(strand))
@@ -227,14 +180,13 @@ impl StagedHair {
     /// Writes one number a point of all strands: what `of_guide` writes for each simulated strand (its place among them, its number in the groom), and
     /// follow hairs by their first guide.
     pub(super) fn values(&self, of_guide: impl Fn(usize, usize, &mut [f32]) + Sync, out: &mut Vec<f32>) {
-        let strands: Vec<usize> = self.simulation.strands().map(|s| s as usize).collect();
         let mut offsets = vec![0];
-        for s in &strands {
-            offsets.push(offsets[offsets.len() - 1] + self.groom.range(*s).len() as u32);
+        for s in &self.strands {
+            offsets.push(offsets[offsets.len() - 1] + self.groom.range(*s as usize).len() as u32);
         }
-        let mut of_guides = vec![0.0; self.simulation.point_count()];
-        let pieces = split_by(&mut of_guides, &offsets).into_par_iter().zip(&strands).enumerate();
-        pieces.with_min_len(16).for_each(|(k, (piece, s))| of_guide(k, *s, piece));
+        let mut of_guides = vec![0.0; offsets[self.strands.len()] as usize];
+        let pieces = split_by(&mut of_guides, &offsets).into_par_iter().zip(&self.strands).enumerate();
+        pieces.with_min_len(16).for_each(|(k, (piece, s))| of_guide(k, *s as usize, piece));
         match &self.follow {
             None => *out = of_guides,
             Some(follow) => {
@@ -268,30 +220,59 @@ impl StagedHair {
         &self.groom
     }
 
-    pub(super) fn simulation(&self) -> &Simulation {
-        &self.simulation
+    pub(super) fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// Where the simulated roots are, and how they have turned since rest.
+    pub(super) fn roots(&self) -> &[Rigid] {
+        &self.roots
+    }
+
+    /// The simulated strands, as indices of the groom.
+    pub(super) fn simulated_strands(&self) -> &[u32] {
+        &self.strands
+    }
+
+    /// The first of them among those of all grooms.
+    pub(super) fn first(&self) -> usize {
+        self.first
+    }
+
+    /// How many hairs each of them stands for.
+    pub(super) fn hairs(&self) -> impl Iterator<Item = f32> + use<> {
+        let hairs = self.groom.strand_count() as f32 / self.strands.len() as f32;
+        std::iter::repeat_n(hairs, self.strands.len())
+    }
+
+    /// Takes the hair as it is in `simulation`, among `obstacles`, for its groom. Nothing is laid over follow hairs for that.
+    pub(super) fn rest_as(&mut self, simulation: &Simulation, body: &StagedBody, obstacles: &[ObstaclePose]) {
+        let effects = self.follow.as_mut().map(|follow| follow.set_effects(Effects::default()));
+        self.show(simulation, body);
+        let groom = Arc::new(Groom { points: self.points.clone(), ..(*self.groom).clone() });
+        if let (Some(follow), Some(effects)) = (&mut self.follow, effects) {
+            *follow = follow.of(groom.clone(), obstacles);
+            follow.set_effects(effects);
+        }
+        self.groom = groom;
     }
 }
 
-/// The `simulated` strands of a groom at rest, where the anchor is at `anchor` and colliders are as `obstacles`.
-fn simulation(
-    groom: &Arc<Groom>,
-    simulated: &[u32],
-    materials: &[Material],
-    scene: &Scene,
-    anchor: Rigid,
-    obstacles: &[ObstaclePose],
-) -> Simulation {
-    let mut simulation =
-        Simulation::new(groom.clone(), simulated, materials, scene.solver, scene.gravity, anchor, obstacles);
-    simulation.set_volume(&scene.volume);
-    simulation.set_shelter(&scene.shelter);
-    simulation.set_neighbours(&scene.neighbours);
-    simulation
+/// The strands of a groom where the body has their roots at the start, where it has other things than at rest.
+fn stand(groom: Groom, body: &StagedBody, mesh: &Mesh) -> Groom {
+    let mut points = groom.points.clone();
+    for (s, root) in groom.roots.iter().enumerate() {
+        let triangle = root.triangle as usize;
+        let (rest, now) = (mesh.corners(triangle), body.first_corners(mesh, triangle));
+        let turn = root.frame(now) * root.frame(rest).inverse();
+        let (from, to) = (root.position(rest), root.position(now));
+        points[groom.range(s)].iter_mut().for_each(|p| *p = to + turn * (*p - from));
+    }
+    Groom { points, ..groom }
 }
 
 /// Which strands are simulated, and what the others follow (`None`: there are no others).
-fn roles(groom: &Groom, guides: Guides) -> (Vec<u32>, Option<Vec<crate::groom::GuideWeights>>) {
+fn roles(groom: &Groom, guides: Guides) -> (Vec<u32>, Option<Vec<GuideWeights>>) {
     let all = || (0..groom.strand_count() as u32).collect::<Vec<_>>();
     let simulated = match guides {
         Guides::All => return (all(), None),

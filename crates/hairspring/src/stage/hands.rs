@@ -1,13 +1,17 @@
 //! The scene's hands at work: each takes hold, moves and lets go when its settings say so, at the start of a frame.
 
-use super::{body::StagedBody, hair::StagedHair};
-use crate::{collide::Rigid, scene::Hand, simulation::ToolId};
+use super::body::StagedBody;
+use crate::{
+    collide::Rigid,
+    scene::Hand,
+    simulation::{Simulation, ToolId},
+};
 
 /// Where a hand is in its work.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Work {
     Before,
-    /// With its tool in each groom's hair; grooms count alike.
+    /// With its tool in the hair.
     Now(ToolId),
     After,
 }
@@ -31,7 +35,7 @@ impl StagedHands {
         &mut self,
         (before, now): (&[Hand], &[Hand]),
         joints: Vec<Option<usize>>,
-        hair: &mut [StagedHair],
+        hair: &mut Simulation,
     ) {
         let mut old: Vec<(&Hand, Work)> = before.iter().zip(self.work.drain(..)).collect();
         let going_on = |hand: &Hand| {
@@ -42,7 +46,7 @@ impl StagedHands {
         self.joints = joints;
         for (_, work) in old {
             if let Work::Now(id) = work {
-                hair.iter_mut().for_each(|hair| hair.let_go(id));
+                hair.let_go(id);
             }
         }
     }
@@ -53,28 +57,27 @@ impl StagedHands {
     }
 
     /// Takes and lets go what is due at `time` [s], the body being posed for it.
-    pub(super) fn begin(&mut self, hands: &[Hand], time: f32, body: &StagedBody, hair: &mut [StagedHair]) {
+    pub(super) fn begin(&mut self, hands: &[Hand], time: f32, body: &StagedBody, hair: &mut Simulation) {
         for (k, hand) in hands.iter().enumerate() {
             if self.work[k] == Work::Before && hand.from <= time {
                 let pose = self.pose(k, hand, time, body);
-                let ids = hair.iter_mut().map(|hair| hair.take(hand.tool, pose));
-                self.work[k] = ids.last().map_or(Work::After, Work::Now);
+                self.work[k] = Work::Now(hair.take(hand.tool, pose));
             }
             if let (Work::Now(id), Some(until)) = (self.work[k], hand.until)
                 && until <= time
             {
-                hair.iter_mut().for_each(|hair| hair.let_go(id));
+                hair.let_go(id);
                 self.work[k] = Work::After;
             }
         }
     }
 
     /// Sends them to where they are at `time` [s], the end of a frame for which the body is posed.
-    pub(super) fn advance(&self, hands: &[Hand], time: f32, body: &StagedBody, hair: &mut [StagedHair]) {
+    pub(super) fn advance(&self, hands: &[Hand], time: f32, body: &StagedBody, hair: &mut Simulation) {
         for (k, hand) in hands.iter().enumerate() {
             if let Work::Now(id) = self.work[k] {
                 let pose = self.pose(k, hand, time, body);
-                hair.iter_mut().for_each(|hair| hair.carry(id, pose));
+                hair.carry(id, pose);
             }
         }
     }

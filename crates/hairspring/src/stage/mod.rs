@@ -6,7 +6,9 @@ mod hair;
 mod hands;
 mod joints;
 mod retune;
+mod settle;
 mod surface;
+mod together;
 mod values;
 mod wind;
 
@@ -18,7 +20,9 @@ use crate::{
     follow::Followed,
     groom::{Groom, bind_roots},
     scene::{HairLook, Scene},
-    simulation::{Air, Energy, Measure, MovingObstacle, Start, StepReport, ToolId, VolumeReport},
+    simulation::{
+        Air, Drive, Energy, Measure, MovingObstacle, Simulation, Start, StepReport, ToolId, VolumeReport,
+    },
 };
 use body::StagedBody;
 use glam::Vec3;
@@ -81,7 +85,7 @@ pub enum StageError {
 /// What a frame did and took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameReport {
-    /// Sums over the grooms.
+    /// Of the simulated strands.
     pub step: StepReport,
     /// Posing the body and rebuilding its distance field.
     pub body: Duration,
@@ -121,13 +125,17 @@ pub struct Stage {
     body: StagedBody,
     wind: StagedWind,
     hair: Vec<StagedHair>,
+    /// The simulated strands of all grooms, groom after groom.
+    simulation: Simulation,
+    /// Their roots.
+    roots: Vec<Rigid>,
     hands: StagedHands,
     time: f32,
 }
 
 impl Stage {
     /// Sets the scene up at time 0: the body in the first pose of its clip, the hair at rest on it. Roots without a binding are
-    /// bound to the nearest place of the body.
+    /// bound to the nearest place of the body. With `solver.settle`, hair falls here, and this takes as long as to play so much of the scene.
     pub fn new(mut scene: Scene) -> Result<Self, StageError> {
         check(&scene)?;
         if let Some(body) = &scene.body {
@@ -136,9 +144,17 @@ impl Stage {
         let joints = Joints::new(&scene, scene.body.as_ref())?;
         let body = StagedBody::new(&scene, &joints);
         let grooms = std::mem::take(&mut scene.grooms);
-        let hair = grooms.into_iter().map(|groom| StagedHair::new(groom, &scene, &body)).collect();
+        let mut hair: Vec<StagedHair> = Vec::with_capacity(grooms.len());
+        for groom in grooms {
+            let first = hair.last().map_or(0, |hair| hair.first() + hair.simulated_strands().len());
+            hair.push(StagedHair::new(groom, first, &scene, &body));
+        }
+        if scene.solver.settle > 0.0 {
+            settle::settle(&mut hair, &scene, &body);
+        }
+        let simulation = together::simulation(&hair, &scene, scene.solver, body.anchor(), &body.poses());
         let (wind, hands) = (StagedWind::new(joints.wind), StagedHands::new(joints.hands));
-        let mut stage = Self { body, wind, hair, hands, time: 0.0, scene };
+        let mut stage = Self { body, wind, hair, simulation, roots: Vec::new(), hands, time: 0.0, scene };
         stage.reset();
         Ok(stage)
     }
@@ -148,27 +164,35 @@ impl Stage {
         self.time = 0.0;
         self.body.place(&self.scene, 0.0);
         self.hands.reset();
+        self.simulation.let_go_all();
+        self.pose_roots();
+        self.simulation.place(self.body.anchor(), &self.roots);
+        self.show();
+    }
+
+    /// Where the roots are on the posed body.
+    fn pose_roots(&mut self) {
+        self.roots.clear();
         for hair in &mut self.hair {
-            hair.let_go_all();
-            hair.place(&self.body);
+            hair.pose_roots(&self.body);
+            self.roots.extend_from_slice(hair.roots());
         }
     }
 
     /// Takes a tool to the hair of all grooms as it is now, its space being at `pose` in the world, besides what the scene's hands do. It acts in every
     /// step until it is let go of, or until a reset.
-    pub fn take(&mut self, tool: Tool, pose: Rigid) -> Option<ToolId> {
-        // Every groom was shown the same tools, and so counts them alike.
-        self.hair.iter_mut().map(|hair| hair.take(tool, pose)).last()
+    pub fn take(&mut self, tool: Tool, pose: Rigid) -> ToolId {
+        self.simulation.take(tool, pose)
     }
 
     /// Moves a tool: its space goes to `pose` in the next step.
     pub fn carry(&mut self, id: ToolId, pose: Rigid) {
-        self.hair.iter_mut().for_each(|hair| hair.carry(id, pose));
+        self.simulation.carry(id, pose);
     }
 
     /// Lets go of a tool, and of what it holds.
     pub fn let_go(&mut self, id: ToolId) {
-        self.hair.iter_mut().for_each(|hair| hair.let_go(id));
+        self.simulation.let_go(id);
     }
 
     /// Carries the whole body by `by` besides its clip, from the next step on: a rotation about the world's origin, then a translation [m]. The last
@@ -213,17 +237,25 @@ impl Stage {
     pub fn advance(&mut self, dt: f32) -> FrameReport {
         let mut report = FrameReport::default();
         let began = Instant::now();
-        self.hands.begin(&self.scene.hands, self.time, &self.body, &mut self.hair);
+        self.hands.begin(&self.scene.hands, self.time, &self.body, &mut self.simulation);
         // Sources are where they are at the start, as points are.
         self.wind.advance(&self.scene, self.time + 0.5 * dt, &self.body);
         self.body.advance(&self.scene, self.time + dt);
-        self.hands.advance(&self.scene.hands, self.time + dt, &self.body, &mut self.hair);
+        self.hands.advance(&self.scene.hands, self.time + dt, &self.body, &mut self.simulation);
         report.body = began.elapsed();
+        let began = Instant::now();
+        self.pose_roots();
         let Scene { wind, turbulence, .. } = self.scene;
         let air = Air { wind, time: self.time, sources: self.wind.sources(), turbulence };
-        for hair in &mut self.hair {
-            hair.step(dt, &self.body, air, &mut report);
-        }
+        self.simulation.set_charged(self.body.charged().iter().copied());
+        report.step = self.simulation.step(&Drive {
+            dt,
+            anchor: self.body.anchor(),
+            roots: &self.roots,
+            obstacles: self.body.obstacles(),
+            air,
+        });
+        report.simulate = began.elapsed();
         self.time += dt;
         report
     }
@@ -231,7 +263,7 @@ impl Stage {
     /// Brings the points of all strands up to date after [`Stage::advance`]; how long it took.
     pub fn show(&mut self) -> Duration {
         let began = Instant::now();
-        self.hair.iter_mut().for_each(|hair| hair.show(&self.body));
+        self.hair.iter_mut().for_each(|hair| hair.show(&self.simulation, &self.body));
         began.elapsed()
     }
 
@@ -269,54 +301,38 @@ impl Stage {
     /// Strands that are simulated, of how many there are.
     pub fn simulated_strands(&self) -> (usize, usize) {
         let all = self.hair.iter().map(|h| h.groom().strand_count()).sum();
-        (self.hair.iter().map(|h| h.simulation().strand_count()).sum(), all)
+        (self.simulation.strand_count(), all)
     }
 
     /// Points that are simulated, of how many there are.
     pub fn simulated_points(&self) -> (usize, usize) {
         let all = self.hair.iter().map(|h| h.groom().point_count()).sum();
-        (self.hair.iter().map(|h| h.simulation().point_count()).sum(), all)
+        (self.simulation.point_count(), all)
     }
 
     /// Joints that the sag-free start had to make stiffer than the fibre, and those that are softer than they should be.
     pub fn start(&self) -> Start {
-        self.hair.iter().map(|h| h.simulation().start()).sum()
+        self.simulation.start()
     }
 
-    /// What is known of the volume of each groom's hair; `None` where its strands pass through each other.
-    pub fn volumes(&self) -> impl ExactSizeIterator<Item = Option<VolumeReport>> {
-        self.hair.iter().map(|h| h.simulation().volume())
+    /// What is known of the hair's volume; `None` where strands pass through each other.
+    pub fn volume(&self) -> Option<VolumeReport> {
+        self.simulation.volume()
     }
 
     /// Name of the instruction set that strands are simulated with.
     pub fn instruction_set(&self) -> String {
-        self.hair.first().map_or(String::new(), |h| h.simulation().instruction_set())
+        self.simulation.instruction_set()
     }
 
     /// Energy of all simulated strands at the end of the last step.
     pub fn energy(&self) -> Energy {
-        self.hair.iter().map(|h| h.simulation().energy()).fold(Energy::default(), |sum, e| sum + e)
+        self.simulation.energy()
     }
 
     /// Figures over all simulated strands at the end of the last step.
     pub fn measure(&self) -> Measure {
-        let parts: Vec<(Measure, f64)> = self
-            .hair
-            .iter()
-            .map(|h| (h.simulation().measure(self.body.obstacles()), h.simulation().point_count() as f64))
-            .collect();
-        let points: f64 = parts.iter().map(|p| p.1).sum();
-        parts.iter().fold(Measure::default(), |sum, (m, n)| Measure {
-            stretch_mean: sum.stretch_mean + m.stretch_mean * n / points.max(1.0),
-            stretch_max: sum.stretch_max.max(m.stretch_max),
-            inside_points: sum.inside_points + m.inside_points,
-            max_depth: sum.max_depth.max(m.max_depth),
-            inside_segments: sum.inside_segments + m.inside_segments,
-            deep_segments: sum.deep_segments + m.deep_segments,
-            segment_depth: sum.segment_depth.max(m.segment_depth),
-            non_finite: sum.non_finite + m.non_finite,
-            speed_max: sum.speed_max.max(m.speed_max),
-        })
+        self.simulation.measure(self.body.obstacles())
     }
 }
 

@@ -1,13 +1,13 @@
 //! Other settings in the midst of the play.
 
-use super::{Stage, StageError, joints::Joints, wind::StagedWind};
+use super::{Stage, StageError, joints::Joints, together, wind::StagedWind};
 use crate::scene::{Scene, Solver};
 
 impl Stage {
     /// Takes up the settings of `settings` in the midst of the play: hair stays where it is and goes on moving as it does, and from the next step on
     /// everything is as in a scene of these settings.
     ///
-    /// Geometry stays and is not looked at: `grooms[k].groom`, `grooms[k].guides`, `body`, `collision`, `sheets`, `clip` and `solver.collide_body`. All else
+    /// Geometry stays and is not looked at: `grooms[k].groom`, `grooms[k].guides`, `body`, `collision`, `sheets`, `clip`, `solver.collide_body` and `solver.settle`. All else
     /// is taken up. A material's `radius` is that of the simulated fibre alone: what is drawn has the groom's.
     ///
     /// - Where materials, gravity, solver, volume, neighbours or shelter change, rest shapes are found anew: with `solver.sag_free`, the groom is in balance under the
@@ -28,7 +28,11 @@ impl Stage {
             collision: before.collision,
             sheets: before.sheets,
             clip: before.clip,
-            solver: Solver { collide_body: before.solver.collide_body, ..settings.solver },
+            solver: Solver {
+                collide_body: before.solver.collide_body,
+                settle: before.solver.settle,
+                ..settings.solver
+            },
             ..settings
         };
         let grooms = std::mem::take(&mut self.scene.grooms);
@@ -40,14 +44,24 @@ impl Stage {
             self.wind = StagedWind::new(joints.wind);
         }
         if before.hands != scene.hands {
-            self.hands.retune((&before.hands, &scene.hands), joints.hands, &mut self.hair);
+            self.hands.retune((&before.hands, &scene.hands), joints.hands, &mut self.simulation);
         }
         let rests =
             |scene: &Scene| (scene.gravity, scene.solver, scene.volume, scene.shelter, scene.neighbours);
         let fresh =
             (before.gravity, before.solver, before.volume, before.shelter, before.neighbours) != rests(scene);
+        let [mut made, mut laid] = [fresh, false];
         for (hair, groom) in self.hair.iter_mut().zip(grooms) {
-            hair.retune(groom, scene, &self.body, fresh);
+            let other = hair.retune(groom);
+            (made, laid) = (made | other.0, laid | other.1);
+        }
+        if made {
+            let mut new = together::simulation(&self.hair, scene, scene.solver, self.body.rest_anchor(), &[]);
+            new.take_over(&self.simulation);
+            self.simulation = new;
+        }
+        if laid {
+            self.show();
         }
         Ok(())
     }

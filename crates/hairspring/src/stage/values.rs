@@ -119,7 +119,7 @@ impl Stage {
     pub fn values(&self, what: Value, groom: usize, out: &mut Vec<f32>) {
         out.clear();
         if let Some(hair) = self.hair.get(groom) {
-            hair.values(|k, strand, of_guide| write(hair, what, (k, strand), of_guide), out);
+            hair.values(|k, strand, of_guide| self.write(hair, what, (k, strand), of_guide), out);
         }
     }
 
@@ -154,8 +154,7 @@ impl Stage {
     /// If the scene has no such groom or the groom no such strand.
     pub fn guide_of(&self, groom: usize, strand: usize) -> u32 {
         let hair = &self.hair[groom];
-        let mut guides = hair.simulation().strands().skip(hair.first_guide(strand));
-        guides.next().unwrap_or(strand as u32)
+        hair.simulated_strands()[hair.first_guide(strand)]
     }
 
     /// Figures of a strand (index of the groom).
@@ -168,7 +167,7 @@ impl Stage {
         let groom = hair.groom();
         let mut values = vec![0.0; groom.range(guide as usize).len()];
         let mut most = |what: Value| {
-            write(hair, what, (k, guide as usize), &mut values);
+            self.write(hair, what, (k, guide as usize), &mut values);
             values.iter().copied().fold(f32::NEG_INFINITY, f32::max)
         };
         let depth = |p: &Vec3| {
@@ -186,30 +185,30 @@ impl Stage {
             speed_max: most(Value::Speed),
             contact_max: most(Value::Contact),
             stretch_max: {
-                let of = |i: usize| hair.simulation().stretch_at(k, i).abs();
+                let of = |i: usize| self.simulation.stretch_at(hair.first() + k, i).abs();
                 (0..groom.range(guide as usize).len()).map(of).fold(0.0, f32::max)
             },
             depth: hair.each_strand(&self.body, strand..strand + 1, deepest).sum(),
         }
     }
-}
 
-/// Writes one number for each point of a simulated strand: its place among them, and its number in the groom.
-fn write(hair: &StagedHair, what: Value, (k, strand): (usize, usize), out: &mut [f32]) {
-    let simulation = hair.simulation();
-    let each = |out: &mut [f32], of: &dyn Fn(usize) -> f32| {
-        out.iter_mut().enumerate().for_each(|(i, value)| *value = of(i));
-    };
-    match what {
-        Value::Guide => out.fill(strand as f32),
-        Value::Tension => each(out, &|i| simulation.tension_at(k, i)),
-        Value::Turn => hair.turns(k, strand, out),
-        Value::Stretch => each(out, &|i| simulation.stretch_at(k, i)),
-        Value::Speed => each(out, &|i| simulation.speed_at(k, i)),
-        Value::Density => {
-            let points = hair.guide_points(k, strand);
-            each(out, &|i| simulation.density_at(points[i]));
+    /// Writes one number for each point of a simulated strand: its place among its groom's, and its number in that.
+    fn write(&self, hair: &StagedHair, what: Value, (k, strand): (usize, usize), out: &mut [f32]) {
+        let (simulation, of_all) = (&self.simulation, hair.first() + k);
+        let each = |out: &mut [f32], of: &dyn Fn(usize) -> f32| {
+            out.iter_mut().enumerate().for_each(|(i, value)| *value = of(i));
+        };
+        match what {
+            Value::Guide => out.fill(strand as f32),
+            Value::Tension => each(out, &|i| simulation.tension_at(of_all, i)),
+            Value::Turn => hair.turns(k, strand, out),
+            Value::Stretch => each(out, &|i| simulation.stretch_at(of_all, i)),
+            Value::Speed => each(out, &|i| simulation.speed_at(of_all, i)),
+            Value::Density => {
+                let points = hair.guide_points(k, strand);
+                each(out, &|i| simulation.density_at(points[i]));
+            }
+            Value::Contact => each(out, &|i| simulation.contact_at(of_all, i)),
         }
-        Value::Contact => each(out, &|i| simulation.contact_at(k, i)),
     }
 }

@@ -26,7 +26,7 @@
 //! the strands then find cold included. A node costs 1 to 3 ns; the solve of `incompressible`, 20,000 full cells, 4 to 8 ms on two cores.
 //!
 //! # Missing
-//! Hair of different grooms does not meet. Followers are moved by their guides alone.
+//! Followers are moved by their guides alone.
 
 mod conjugate;
 mod density;
@@ -61,6 +61,12 @@ use window::{Chart, Window};
 /// Most nodes of a window: those of a head of long hair in every direction in cells of a centimetre, and 40 MB for each thread.
 const MOST_NODES: f32 = (1 << 21) as f32;
 
+/// Nodes of a window beyond its hair, along each axis [cells].
+const RING: f32 = 6.0;
+
+/// Farthest cell from the anchor: single precision knows places there to a quarter of one.
+const FARTHEST: f32 = (1 << 22) as f32;
+
 /// Most threads that sum by themselves: each has a grid to be added up.
 const MOST_GRIDS: usize = 8;
 
@@ -71,8 +77,10 @@ pub(crate) struct Volume {
     cell: f32,
     /// Whether the cell is larger than was asked for, so that their number stays bounded.
     grown: bool,
-    /// The box that hair can reach, in the anchor's space [m].
+    /// The box that hair can reach from where its roots are at rest, in the anchor's space [m].
     reach: (Vec3, Vec3),
+    /// Length of the longest strand [m].
+    length: f32,
     /// Index of each tile's first point, and of the first after the last.
     firsts: Vec<u32>,
     own: Vec<OwnRows>,
@@ -149,6 +157,7 @@ impl Volume {
             cell,
             grown: cell > asked,
             reach,
+            length: at.length,
             firsts: at.firsts,
             own: Vec::new(),
             points,
@@ -211,6 +220,20 @@ impl Volume {
         Density::new(&self.field, self.cell, anchor)
     }
 
+    /// The window of hair of this extent, as far as it can reach from its roots: what is beyond is lost. Where roots have gone so far from where they are at
+    /// rest in the anchor's space that nodes would be too many, it is what hair reaches from there; what is elsewhere then meets nothing.
+    fn window(&self, extent: &Extent) -> Window {
+        let rest = [self.reach.0 / self.cell, self.reach.1 / self.cell];
+        let within = |[lo, hi]: [Vec3; 2]| [extent.lo, extent.hi].map(|corner| corner.clamp(lo, hi));
+        let reach = rest::reach((extent.roots[0], extent.roots[1]), self.length / self.cell);
+        let [mut lo, mut hi] = within([rest[0].min(reach.0), rest[1].max(reach.1)]);
+        let far = lo.abs().max(hi.abs()).max_element();
+        if (hi - lo + RING).element_product() > MOST_NODES || far > FARTHEST {
+            [lo, hi] = within(rest);
+        }
+        Window::around(lo, hi)
+    }
+
     /// Measures where hair is, at the start of an interval, where the anchor is at `anchor`.
     pub fn measure(&mut self, (strand, state): (&[StrandRows], &[StateRows]), anchor: &Rigid) {
         self.reserve();
@@ -221,8 +244,7 @@ impl Volume {
             .into_par_iter()
             .map(|part| Extent::of(&tiles.part(part, parts), &chart))
             .reduce(|| Extent::NONE, Extent::with);
-        let (lo, hi) = (self.reach.0 / self.cell, self.reach.1 / self.cell);
-        let window = Window::around(extent.lo.clamp(lo, hi), extent.hi.clamp(lo, hi));
+        let window = self.window(&extent);
         let units = Units::new(self.points, self.total, extent.speed);
         let sums = &mut self.sums[..parts];
         sums.par_iter_mut().enumerate().for_each(|(part, sums)| {

@@ -64,27 +64,41 @@ impl<'a> Tiles<'a> {
     }
 }
 
-/// The box that points are in, and the fastest of them.
+/// The box that points are in, that of their roots, and the fastest of them.
 #[derive(Clone, Copy)]
 pub struct Extent {
     /// Lowest corner [cells].
     pub lo: Vec3,
     /// Highest corner [cells].
     pub hi: Vec3,
+    /// Lowest and highest corner of the roots' [cells].
+    pub roots: [Vec3; 2],
     /// Largest component of a velocity, at most [`FASTEST`] [m/s].
     pub speed: f32,
 }
 
 impl Extent {
     /// Of no points.
-    pub const NONE: Self = Self { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY, speed: 0.0 };
+    pub const NONE: Self = Self {
+        lo: Vec3::INFINITY,
+        hi: Vec3::NEG_INFINITY,
+        roots: [Vec3::INFINITY, Vec3::NEG_INFINITY],
+        speed: 0.0,
+    };
 
     /// Of these points; what is not finite does not count.
     pub fn of(tiles: &Tiles, chart: &Chart) -> Self {
         let (mut lo, mut hi) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
         let mut speed = [0.0_f32; LANES];
+        let mut roots = Self::NONE.roots;
         for (strand, state, own) in tiles.iter() {
             let mut places = chart.roots(strand, IVec3::ZERO);
+            for lane in (0..LANES).filter(|lane| own[0][own::MASS].0[*lane] > 0.0) {
+                let root = Vec3::from([0, 1, 2].map(|k: usize| places[k][lane]));
+                if root.is_finite() {
+                    roots = [roots[0].min(root), roots[1].max(root)];
+                }
+            }
             for (at, own) in state.iter().zip(own) {
                 chart.walk(&mut places, at);
                 for lane in 0..LANES {
@@ -102,12 +116,17 @@ impl Extent {
         }
         let least = |row: [f32; LANES]| row.into_iter().fold(f32::INFINITY, f32::min);
         let most = |row: [f32; LANES]| row.into_iter().fold(f32::NEG_INFINITY, f32::max);
-        Self { lo: lo.map(least).into(), hi: hi.map(most).into(), speed: most(speed).min(FASTEST) }
+        Self { lo: lo.map(least).into(), hi: hi.map(most).into(), roots, speed: most(speed).min(FASTEST) }
     }
 
     /// Of the points of both.
     pub fn with(self, other: Self) -> Self {
-        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), speed: self.speed.max(other.speed) }
+        Self {
+            lo: self.lo.min(other.lo),
+            hi: self.hi.max(other.hi),
+            roots: [self.roots[0].min(other.roots[0]), self.roots[1].max(other.roots[1])],
+            speed: self.speed.max(other.speed),
+        }
     }
 }
 

@@ -1,0 +1,200 @@
+//! Promise: hair of one groom meets that of another as it meets its own.
+//!
+//! A scene has a groom for the fringe and one for the length, or two heads with one each. Which strands an artist put into one groom is a matter of files
+//! and materials: strands are near each other or they are not. So hair that is cut into grooms moves to the bit as it did in one, whatever it is that lets
+//! strands meet: the volume by either method, contact strand by strand, or charge. A guide weighs what the hairs weigh that follow it,
+//! those of its own groom.
+//!
+//! What moves by itself beside the body, a second head, is at rest wherever its file has it, perhaps in the middle of the first. Hair is made on it where it
+//! is when the scene begins, as if its mesh had been there all along.
+
+use glam::{Quat, Vec3};
+use hairspring::{
+    body::{Body, Clip, Joint, Mesh, Skin, Trs},
+    groom::{Groom, bind_roots_where},
+    material::Material,
+    scene::{Collider, Guides, Neighbours, Scene, SceneGroom, Shape, Solver, Volume, VolumeMethod},
+    stage::Stage,
+};
+
+const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
+const POINTS: usize = 12;
+
+/// A strand of 12 cm from `root`, in `direction`.
+fn strand(root: Vec3, direction: Vec3) -> Vec<Vec3> {
+    (0..POINTS).map(|i| root + direction * (0.12 * i as f32 / (POINTS - 1) as f32)).collect()
+}
+
+/// Two patches of hair 4 cm apart that fall towards each other.
+fn patches() -> Vec<Vec<Vec3>> {
+    let patch = |side: f32| {
+        (0..64).map(move |k| {
+            let root = Vec3::new(side * (0.02 + 0.002 * (k % 8) as f32), 0.0, 0.002 * (k / 8) as f32);
+            strand(root, Vec3::new(-side, 0.3, 0.0).normalize())
+        })
+    };
+    patch(-1.0).chain(patch(1.0)).collect()
+}
+
+fn groom(strands: &[Vec<Vec3>]) -> SceneGroom {
+    SceneGroom {
+        groom: Groom::from_strands(strands, 35e-6),
+        materials: vec![Material::default()],
+        guides: Guides::All,
+        ..SceneGroom::default()
+    }
+}
+
+fn scene(grooms: Vec<SceneGroom>) -> Scene {
+    let solver = Solver { sag_free: false, ..Solver::default() };
+    Scene { grooms, gravity: GRAVITY, solver, ..Scene::default() }
+}
+
+/// All points of a scene after so many frames.
+fn after(scene: &Scene, frames: usize) -> Vec<Vec3> {
+    let mut stage = Stage::new(scene.clone()).unwrap();
+    for _ in 0..frames {
+        stage.step(1.0 / 60.0);
+    }
+    stage.strands().flat_map(|strands| strands.points.to_vec()).collect()
+}
+
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+}
+
+#[test]
+fn hair_cut_into_grooms_moves_to_the_bit_as_in_one() {
+    let strands = patches();
+    let (left, right) = strands.split_at(64);
+    let with = |method| Volume { method, ..Volume::default() };
+    let meetings: [(&str, &dyn Fn(&mut Scene)); 4] = [
+        ("density", &|s| s.volume = with(VolumeMethod::Density)),
+        ("incompressible", &|s| s.volume = with(VolumeMethod::Incompressible)),
+        ("neighbours", &|s| s.neighbours = Neighbours { on: true, ..Neighbours::default() }),
+        ("charge", &|s| s.grooms.iter_mut().for_each(|g| g.materials[0].charge = 3e-9)),
+    ];
+    for (name, meet) in meetings {
+        let (mut one, mut two) = (scene(vec![groom(&strands)]), scene(vec![groom(left), groom(right)]));
+        [&mut one, &mut two].into_iter().for_each(meet);
+        let (one, two) = (after(&one, 20), after(&two, 20));
+        assert!(one == two, "{name}: {} m apart", farthest(&one, &two));
+        // And it is a meeting: alone, the left one is elsewhere.
+        let mut alone = scene(vec![groom(left)]);
+        meet(&mut alone);
+        let apart = farthest(&after(&alone, 20), &one);
+        assert!(apart > 1e-4, "{name}: the other patch moves it by {apart} m");
+    }
+}
+
+#[test]
+fn a_guide_weighs_what_the_hairs_weigh_that_follow_it() {
+    // What the right patch does to the left one when every strand of it is simulated, and when each eighth is for all of them.
+    let strands = patches();
+    let (left, right) = strands.split_at(64);
+    let left_after = |guides: Guides, volume: VolumeMethod| {
+        let mut two = scene(vec![groom(left), SceneGroom { guides, ..groom(right) }]);
+        two.volume = Volume { method: volume, cell: Some(0.01), friction: 60.0, ..Volume::default() };
+        after(&two, 12)[..64 * POINTS].to_vec()
+    };
+    let free = left_after(Guides::All, VolumeMethod::Off);
+    let all = left_after(Guides::All, VolumeMethod::Density);
+    let few = left_after(Guides::Count(8), VolumeMethod::Density);
+    let (braked, differs) = (farthest(&free, &all), farthest(&all, &few));
+    println!("the right patch moves the left one by {braked:.4} m; by its guides, {differs:.4} m otherwise");
+    assert!(braked > 5e-3, "{braked} m");
+    assert!(differs < 0.5 * braked, "{differs} m of {braked} m");
+}
+
+/// A plate of 4 cm at `middle`, of two triangles.
+fn plate(mesh: &mut Mesh, middle: Vec3) {
+    let first = mesh.positions.len() as u32;
+    let corner = |x: f32, z: f32| middle + Vec3::new(0.02 * x, 0.0, 0.02 * z);
+    mesh.positions.extend([corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)]);
+    mesh.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|t| t.map(|k| first + k)));
+}
+
+/// Two plates with hair; the second has a joint of its own, rests `away` from the first, and goes from there to where it is 6 cm from the first.
+fn plates(away: Vec3) -> Scene {
+    let mut mesh = Mesh::default();
+    plate(&mut mesh, Vec3::ZERO);
+    plate(&mut mesh, away);
+    let joint = |name: &str| Joint { name: name.into(), parent: None, rest: Trs::default() };
+    let weights = vec![[1.0, 0.0, 0.0, 0.0]; 8];
+    let joints = (0..8).map(|v| [v / 4, 0, 0, 0]).collect();
+    let skin = Skin { joints, weights, inverse_bind: vec![Default::default(); 2] };
+    let mut body = Body { mesh, joints: vec![joint("body"), joint("other")], skin: Some(skin) };
+    body.mesh.normals = vec![Vec3::Y; 8];
+    let there = Trs { translation: Vec3::new(0.06, 0.0, 0.0) - away, ..Trs::default() };
+    let clip =
+        Clip { name: "still".into(), rate: 60.0, joint_count: 2, samples: vec![Trs::default(), there] };
+    let hair = |middle: Vec3, side: f32| {
+        let root = |k: usize| {
+            middle + Vec3::new(0.003 * (k % 6) as f32 - 0.009, 0.0, 0.003 * (k / 6) as f32 - 0.009)
+        };
+        groom(&(0..36).map(|k| strand(root(k), Vec3::new(side, 1.0, 0.0).normalize())).collect::<Vec<_>>())
+    };
+    let mut grooms = [hair(Vec3::ZERO, 0.5), hair(away, -0.5)];
+    for (k, groom) in grooms.iter_mut().enumerate() {
+        bind_roots_where(&mut groom.groom, &body.mesh, |_, triangle| triangle / 2 == k);
+    }
+    let mut scene = scene(grooms.into());
+    scene.volume = Volume { method: VolumeMethod::Density, ..Volume::default() };
+    scene.solver.collide_body = false;
+    let ball = Shape::Sphere { center: Vec3::new(0.03, 0.05, 0.0), radius: 0.02 };
+    scene.colliders = vec![Collider { shape: ball, joint: Some("body".into()) }];
+    Scene { body: Some(body), clip: Some(clip), ..scene }
+}
+
+#[test]
+fn hair_is_made_on_a_thing_beside_the_body_where_that_is_at_the_start() {
+    // In the middle of the first at rest, or there already.
+    let [moved, made] = [Vec3::ZERO, Vec3::new(0.06, 0.0, 0.0)].map(plates);
+    for frames in [0, 15] {
+        let apart = farthest(&after(&moved, frames), &after(&made, frames));
+        println!("{frames} frames: {apart:.1e} m apart");
+        assert!(apart < if frames == 0 { 1e-7 } else { 1e-4 }, "{apart} m after {frames} frames");
+    }
+    let mut stage = Stage::new(moved).unwrap();
+    stage.step(1.0 / 60.0);
+    let share = stage.volume().unwrap().share;
+    assert!((share - 1.0).abs() < 0.05, "hair has its room where it stands: {share}");
+}
+
+#[test]
+fn hair_that_falls_before_the_scene_begins_lies_still_in_it() {
+    // On a head, hair that stands straight off it.
+    let strands: Vec<Vec<Vec3>> = (0..80)
+        .map(|k| {
+            let around = Quat::from_rotation_y(2.4 * k as f32) * Vec3::new(1.0, 0.0, 0.0);
+            let out = (around * (0.1 + 0.9 * k as f32 / 80.0) + Vec3::Y * 0.8).normalize();
+            strand(out * 0.09, out)
+        })
+        .collect();
+    let falls = |settle: f32, guides: Guides, sag_free: bool| {
+        let mut scene = scene(vec![SceneGroom { guides, ..groom(&strands) }]);
+        scene.solver = Solver { settle, sag_free, ..Solver::default() };
+        scene.colliders =
+            vec![Collider { shape: Shape::Sphere { center: Vec3::ZERO, radius: 0.09 }, joint: None }];
+        scene
+    };
+    for guides in [Guides::All, Guides::Count(20)] {
+        let (stood, fell) = (falls(0.0, guides, false), falls(3.0, guides, true));
+        let way = farthest(&after(&stood, 0), &after(&stood, 30));
+        let lies = farthest(&after(&fell, 0), &after(&fell, 30));
+        println!("{guides:?}: falls by {way:.3} m in half a second, lies within {lies:.1e} m");
+        assert!(way > 0.05, "{way} m");
+        assert!(lies < 1e-3, "{lies} m");
+        // A reset goes back to where it lay.
+        let mut stage = Stage::new(fell.clone()).unwrap();
+        let points = |stage: &Stage| stage.strands().flat_map(|s| s.points.to_vec()).collect::<Vec<_>>();
+        let start = points(&stage);
+        for _ in 0..10 {
+            stage.step(1.0 / 60.0);
+        }
+        stage.reset();
+        assert!(points(&stage) == start);
+        let inside = start.iter().map(|p| 0.09 - p.length()).fold(0.0, f32::max);
+        assert!(inside < 5e-4, "{inside} m inside the head");
+    }
+}
