@@ -151,7 +151,14 @@ impl StagedBody {
         staged.add_colliders(&scene.colliders, joints);
         staged.add_charged(scene, joints);
         staged.repose(scene, 0.0);
+        staged.stand_still();
         staged
+    }
+
+    /// Colliders have not moved to where they are.
+    fn stand_still(&mut self) {
+        self.charged.rest();
+        self.obstacles.iter_mut().for_each(|obstacle| obstacle.start = obstacle.end);
     }
 
     fn add(&mut self, shape: Obstacle, carrier: Carrier) {
@@ -253,12 +260,9 @@ impl StagedBody {
 
     /// Poses the body for time `time` [s]; motion since the last pose is what colliders do in this frame.
     pub(super) fn advance(&mut self, scene: &Scene, time: f32) {
-        for obstacle in &mut self.obstacles {
-            obstacle.start = obstacle.end;
-        }
+        self.stand_still();
         self.pose(scene, time);
         self.rebuild_surfaces(scene, false);
-        self.charged.rest();
         self.repose(scene, time);
     }
 
@@ -268,10 +272,7 @@ impl StagedBody {
         self.pose(scene, time);
         self.rebuild_surfaces(scene, true);
         self.repose(scene, time);
-        self.charged.rest();
-        for obstacle in &mut self.obstacles {
-            obstacle.start = obstacle.end;
-        }
+        self.stand_still();
     }
 
     fn pose(&mut self, scene: &Scene, time: f32) {

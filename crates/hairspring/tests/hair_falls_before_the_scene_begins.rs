@@ -1,0 +1,100 @@
+//! Promise: hair that falls before the scene begins is where it would have fallen to in it, and lies still from there on.
+//!
+//! Grown hair stands off the skin. `solver.settle` lets it fall first: onto a body that stays, a skinned one whose head is not at the origin as well as a
+//! ball in the world. Where it lies then is the groom: the first frame shows it, balance holds it there as if it had been made so, follow hairs are at rest
+//! beside their guides, and every reset goes back to it.
+
+use glam::{Quat, Vec3};
+use hairspring::{
+    groom::{Groom, Growth, grow},
+    scene::{
+        Collider, Guides, Scene, SceneGroom, Shape, Solver,
+        builtin::{BuiltinOptions, scene as builtin},
+    },
+    stage::Stage,
+};
+
+const FRAME: f32 = 1.0 / 60.0;
+const HEAD: f32 = 0.09;
+
+/// Hair of 12 cm that stands straight off a ball.
+fn ball(guides: Guides) -> Scene {
+    let strands = (0..80).map(|k| {
+        let around = Quat::from_rotation_y(2.4 * k as f32) * Vec3::X;
+        let out = (around * (0.1 + 0.9 * k as f32 / 80.0) + Vec3::Y * 0.8).normalize();
+        (0..12).map(|i| out * (HEAD + 0.12 * i as f32 / 11.0)).collect::<Vec<_>>()
+    });
+    let groom = Groom::from_strands(strands, 35e-6);
+    let shape = Shape::Sphere { center: Vec3::ZERO, radius: HEAD };
+    Scene {
+        grooms: vec![SceneGroom { groom, guides, ..SceneGroom::default() }],
+        colliders: vec![Collider { shape, joint: None }],
+        gravity: Vec3::new(0.0, -9.81, 0.0),
+        ..Scene::default()
+    }
+}
+
+/// Hair grown on the built-in head, which stays.
+fn head() -> Scene {
+    let mut scene = builtin(&BuiltinOptions { strands: 1, ..BuiltinOptions::default() });
+    let mesh = &scene.body.as_ref().unwrap().mesh;
+    let scalp = mesh.parts.iter().find(|part| part.name == "scalp").unwrap().triangles.clone();
+    let growth = Growth { strands: 200, points: 16, length: 0.2, spread: 0.15, fall: 0.9 };
+    scene.grooms[0].groom = grow(mesh, &growth, |t| scalp.contains(&(t as u32)));
+    scene.grooms[0].guides = Guides::All;
+    scene.clip = None;
+    scene
+}
+
+fn with(scene: &Scene, settle: f32, sag_free: bool) -> Stage {
+    let solver = Solver { settle, sag_free, ..Solver::default() };
+    Stage::new(Scene { solver, ..scene.clone() }).unwrap()
+}
+
+fn points(stage: &Stage) -> Vec<Vec3> {
+    stage.strands().flat_map(|strands| strands.points.to_vec()).collect()
+}
+
+fn play(stage: &mut Stage, frames: usize) {
+    for _ in 0..frames {
+        stage.step(FRAME);
+    }
+}
+
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+}
+
+#[test]
+fn it_lies_where_it_would_have_fallen_to() {
+    for (name, scene) in [("ball", ball(Guides::All)), ("head", head())] {
+        let mut falling = with(&scene, 0.0, false);
+        let start = points(&falling);
+        play(&mut falling, 60);
+        let way = farthest(&start, &points(&falling));
+        let apart = farthest(&points(&falling), &points(&with(&scene, 1.0, true)));
+        println!("{name}: falls by {way:.3} m in a second; before the scene {apart:.1e} m elsewhere");
+        assert!(way > 0.05, "{name}: {way} m");
+        // Contact makes more of a rounding.
+        assert!(apart < 1e-3, "{name}: {apart} m");
+    }
+}
+
+#[test]
+fn it_lies_still() {
+    for (name, scene) in [("all", ball(Guides::All)), ("guides", ball(Guides::Count(20))), ("head", head())] {
+        let mut stage = with(&scene, 3.0, true);
+        let start = points(&stage);
+        play(&mut stage, 30);
+        let lies = farthest(&start, &points(&stage));
+        println!("{name}: within {lies:.1e} m for half a second");
+        assert!(lies < 1e-3, "{name}: {lies} m");
+        let measure = stage.measure();
+        assert_eq!((measure.inside_points, measure.non_finite), (0, 0), "{name}");
+        stage.reset();
+        assert!(points(&stage) == start, "{name}: a reset goes elsewhere");
+    }
+    let inside = |stage: Stage| points(&stage).iter().map(|p| HEAD - p.length()).fold(0.0, f32::max);
+    let deepest = inside(with(&ball(Guides::All), 3.0, true));
+    assert!(deepest < 1e-4, "{deepest} m inside the ball");
+}
