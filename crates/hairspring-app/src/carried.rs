@@ -22,8 +22,7 @@ impl Carried {
         let scene = stage.scene();
         self.colliders.clear();
         // After those that are made of meshes.
-        let obstacles = stage.obstacles().iter().skip(meshes(scene));
-        self.colliders.extend(obstacles.take(scene.colliders.len()).map(|obstacle| obstacle.end));
+        self.colliders.extend(stage.colliders().iter().map(|collider| collider.end));
         let joints = Joints::new(stage);
         let of = |list: &mut Vec<Rigid>, names: &mut dyn Iterator<Item = &Option<String>>| {
             list.clear();
@@ -33,12 +32,6 @@ impl Carried {
         of(&mut self.charged, &mut scene.charged.iter().map(|c| &c.joint));
         of(&mut self.hands, &mut scene.hands.iter().map(|h| &h.joint));
     }
-}
-
-/// Colliders made of the body and of sheets, which come first.
-fn meshes(scene: &Scene) -> usize {
-    let body = scene.collision.is_some() || (scene.body.is_some() && scene.solver.collide_body);
-    usize::from(body) + scene.sheets.len()
 }
 
 /// Joints of the body at rest and now.

@@ -13,7 +13,7 @@ use hairspring::{
     body::{Body, Clip, Joint, Mesh, Skin, Trs},
     groom::{Groom, bind_roots_where},
     material::Material,
-    scene::{Collider, Guides, Neighbours, Scene, SceneGroom, Shape, Solver, Volume, VolumeMethod},
+    scene::{Collider, Guides, Scene, SceneGroom, Shape, Solver, Volume, VolumeMethod},
     stage::Stage,
 };
 
@@ -67,12 +67,13 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
 fn hair_cut_into_grooms_moves_to_the_bit_as_in_one() {
     let strands = patches();
     let (left, right) = strands.split_at(64);
-    let with = |method| Volume { method, ..Volume::default() };
-    let meetings: [(&str, &dyn Fn(&mut Scene)); 4] = [
-        ("density", &|s| s.volume = with(VolumeMethod::Density)),
-        ("incompressible", &|s| s.volume = with(VolumeMethod::Incompressible)),
-        ("neighbours", &|s| s.neighbours = Neighbours { on: true, ..Neighbours::default() }),
-        ("charge", &|s| s.grooms.iter_mut().for_each(|g| g.materials[0].charge = 3e-9)),
+    /// Turns on what hair of two grooms meets by.
+    type Meet = fn(&mut Scene);
+    let meetings: [(&str, Meet); 4] = [
+        ("density", |s| s.volume.method = VolumeMethod::Density),
+        ("incompressible", |s| s.volume.method = VolumeMethod::Incompressible),
+        ("neighbours", |s| s.neighbours.on = true),
+        ("charge", |s| s.grooms.iter_mut().for_each(|g| g.materials[0].charge = 3e-9)),
     ];
     for (name, meet) in meetings {
         let (mut one, mut two) = (scene(vec![groom(&strands)]), scene(vec![groom(left), groom(right)]));

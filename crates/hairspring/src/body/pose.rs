@@ -59,6 +59,22 @@ impl Body {
                 .extend_from_slice(&old[part.triangles.start as usize..part.triangles.end as usize]);
             mesh.parts.push(Part { triangles: first..mesh.triangles.len() as u32, ..part });
         }
+        self.drop_unused();
+    }
+
+    /// The same body of some of its triangles, by their index, and of the vertices that those use; without parts.
+    pub(crate) fn of_triangles(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let mut body = self.clone();
+        body.mesh.parts.clear();
+        let mut index = 0..;
+        body.mesh.triangles.retain(|_| index.next().is_some_and(&keep));
+        body.drop_unused();
+        body
+    }
+
+    /// Drops vertices that no triangle uses.
+    fn drop_unused(&mut self) {
+        let mesh = &mut self.mesh;
         let mut used = vec![false; mesh.positions.len()];
         mesh.triangles.iter().flatten().for_each(|i| used[*i as usize] = true);
         let mut next = 0;

@@ -4,6 +4,7 @@ use super::{
     PosedBody,
     charged::StagedCharged,
     joints::Joints,
+    pieces,
     surface::{Making, Surface},
 };
 use crate::{
@@ -17,6 +18,9 @@ use glam::{Affine3A, Vec3};
 
 /// Cells along the longest side of the body's distance field, which is as much of the body as hair can reach: 4 mm for half a metre.
 const CELLS: f32 = 128.0;
+
+/// Longest piece of a body that has a field of its own, over the edge of the body's cells [1]: its field is of all of it, wherever hair is.
+const PIECE: f32 = 2.0 * CELLS;
 
 /// Pose and colliders of the scene's body now.
 pub(super) struct StagedBody {
@@ -60,6 +64,8 @@ enum Carrier {
 struct Deforming {
     surface: Surface,
     mesh: Mesh,
+    /// What is left of the mesh, where pieces of it are colliders of their own.
+    rest: Option<Body>,
     obstacle: usize,
 }
 
@@ -243,16 +249,26 @@ impl StagedBody {
             self.add(making.rigid(body, within), self.carrier(0));
             return;
         }
-        self.surfaces.push(Deforming { surface: Surface::new(making), mesh, obstacle: self.obstacles.len() });
+        let mut rest = body.clone();
+        let pieces = match making {
+            Making::Field(cell) => pieces::take(&mut rest, self.anchor, PIECE * cell),
+            Making::Sheet(_) => Vec::new(),
+        };
+        let rest = (!pieces.is_empty()).then_some(rest);
+        let obstacle = self.obstacles.len();
+        self.surfaces.push(Deforming { surface: Surface::new(making), mesh, rest, obstacle });
         self.add(making.nothing(), Carrier::Anchor);
+        for piece in pieces {
+            self.add(making.rigid(&piece.body, None), Carrier::Joint(piece.joint));
+        }
     }
 
     /// Makes the colliders of skinned meshes anew, in the anchor's space.
     fn rebuild_surfaces(&mut self, scene: &Scene, fresh: bool) {
         let anchor = self.anchor();
         let within = self.reach.bounds(&self.positions, |p| anchor.inverse_point(p));
-        for Deforming { surface, mesh, obstacle } in &mut self.surfaces {
-            let Some(body) = mesh.of(scene) else { continue };
+        for Deforming { surface, mesh, rest, obstacle } in &mut self.surfaces {
+            let Some(body) = rest.as_ref().or_else(|| mesh.of(scene)) else { continue };
             let shape = &mut self.obstacles[*obstacle].shape;
             surface.update(shape, (body, &self.world), anchor, within, fresh);
         }
@@ -343,6 +359,11 @@ impl StagedBody {
     /// The colliders and how they moved in the last frame.
     pub(super) fn obstacles(&self) -> &[MovingObstacle] {
         &self.obstacles
+    }
+
+    /// Those that are the scene's.
+    pub(super) fn colliders(&self) -> &[MovingObstacle] {
+        &self.obstacles[self.meshes..self.carriers.len()]
     }
 
     /// The colliders as they are now.

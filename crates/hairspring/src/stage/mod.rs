@@ -5,6 +5,7 @@ mod charged;
 mod hair;
 mod hands;
 mod joints;
+mod pieces;
 mod retune;
 mod settle;
 mod surface;
@@ -217,6 +218,11 @@ impl Stage {
     /// The colliders as they are now, and how they moved in the last step.
     pub fn obstacles(&self) -> &[MovingObstacle] {
         self.body.obstacles()
+    }
+
+    /// Those of them that are the scene's own colliders, in its order; hulls that span no volume are left out.
+    pub fn colliders(&self) -> &[MovingObstacle] {
+        self.body.colliders()
     }
 
     /// Where the frame is now that roots and fields move with: the joint that carries most of the skin around the roots (the head); the identity without a
