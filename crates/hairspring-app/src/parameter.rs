@@ -273,7 +273,7 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "solver.projections", "Projections", "", Kind::Count { min: 0, max: 20 }, "Iterations a substep that keep hair at its length.";
         Scene "solver.quality", "Quality", "", Kind::Choice(&["normal", "high"]), "normal: one linear solve a substep. high: Newton to the end.";
         Scene "solver.sag_free", "Starts in balance", "", Kind::Switch, "Whether rest shapes are solved so that the groom hangs as it was made.";
-        Scene "solver.settle", "Falls before it starts", "s", number(0.0, 10.0), "How long hair falls from where it was made before the scene begins; it rests where it lies then. For hair that is grown: 3. It begins the scene anew.";
+        Scene "solver.settle", "Falls first", "s", number(0.0, 10.0), "How long hair falls from where it was made before the scene begins; it rests where it lies then. For hair that is grown: 3. It begins the scene anew.";
         Scene "solver.ghost", "Ghost shapes", "", Kind::Switch, "Whether styles are kept by their materials' pull.";
     }
 };
