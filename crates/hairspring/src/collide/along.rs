@@ -65,7 +65,8 @@ const STEEPEST: f32 = 2.0;
 /// inside [m], and where. The middle is looked at and both quarters, more places where a field is finer than that, and then beside
 /// the deepest of them where tangents say that it is deeper.
 ///
-/// `None` where the middle says that none has: for a convex shape distance lies above its tangent; others are nearer by no more than the way there.
+/// `None` where the middle says that none has: for a convex shape distance lies above its tangent, and a field within a cell from the middle bends no
+/// other way that counts (five in ten thousand cuts are missed for it, none deeper than others); farther off it is nearer by no more than the way there.
 #[inline(always)]
 pub(crate) fn deepest<S: Simd>(
     simd: S,
@@ -104,7 +105,7 @@ pub(crate) fn deepest<S: Simd>(
         };
         if k == 0 {
             let nearer = match &pose.shape {
-                Obstacle::Field(_) => l * (0.5 * STEEPEST),
+                Obstacle::Field(_) if pieces > PIECES[0] => l * (0.5 * STEEPEST),
                 // What is farther off than the sheet is thick is not told how far.
                 Obstacle::Sheet(_) => splat(f32::INFINITY),
                 _ => here.slope.abs() * 0.5,
@@ -182,5 +183,86 @@ impl<S: Simd> Look<S> {
             normal: V3::select(mask, a.normal, b.normal),
             slope: mask.select(a.slope, b.slope),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collide::{grid::tests::balls, voxelize};
+    use fearless_simd::{Level, dispatch};
+    use glam::{Mat3, Quat};
+    use std::sync::Arc;
+
+    const CELL: f32 = 0.005;
+
+    /// Three numbers from 0 to 1 by chance (SplitMix64; Steele, Lea & Flood 2014).
+    fn vector(bits: &mut u64) -> Vec3 {
+        let mut next = || {
+            *bits = bits.wrapping_add(0x9E37_79B9_7F4A_7C15);
+            let z = (*bits ^ (*bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+            ((z ^ (z >> 31)) >> 40) as f32 / (1 << 24) as f32
+        };
+        Vec3::new(next(), next(), next())
+    }
+
+    /// Boxes that run through each other, turned, some of them thinner than a cell and a half.
+    fn boxes(bits: &mut u64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for first in (0..12).map(|k| 8 * k) {
+            let [middle, size, turn] = [(); 3].map(|()| vector(bits));
+            let turn = Quat::from_scaled_axis((turn - 0.5) * 6.0);
+            let corner = |k: u32| Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32) - 0.5;
+            positions.extend(
+                (0..8).map(|k| (10.0 * middle + turn * (corner(k) * (1.0 + 5.0 * size * size))) * CELL),
+            );
+            let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+            let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]].map(|t| t.map(|i| i + first));
+            triangles.extend(quads.into_iter().flat_map(halves));
+        }
+        (positions, triangles)
+    }
+
+    /// The few looks find what looks all along find: bodies that are round, and walls, ridges and creases of every angle.
+    #[test]
+    fn what_cuts_between_two_ends_that_are_outside_is_found() {
+        let (mut cuts, mut missed, mut worst) = (0, 0, 0f32);
+        for seed in 0..24u32 {
+            let mut bits = u64::from(seed);
+            let (positions, triangles) = if seed % 2 == 0 { balls(seed, true) } else { boxes(&mut bits) };
+            let grid = voxelize(&positions, &triangles, CELL);
+            let (still, top) = ((Mat3::IDENTITY, Vec3::ZERO), (grid.size - 1).as_vec3() * CELL);
+            let pose = ObstaclePose::new(Obstacle::Field(Arc::new(grid.clone())), still, still, 1.0);
+            for _ in 0..50_000 {
+                let [at, way, far] = [(); 3].map(|()| vector(&mut bits));
+                let p = grid.origin + at * top;
+                let (distance, normal) = grid.distance_and_normal(p);
+                // The middle from a little inside to a cell outside, up to two cells from end to end.
+                let middle = p - normal * (distance - CELL * (far.x * far.x - 0.05));
+                let half = (way - 0.5).normalize_or(Vec3::X) * (CELL * (0.25 + 0.75 * far.y));
+                let (a, b) = (middle - half, middle + half);
+                if pose.distance(a) < 0.0 || pose.distance(b) < 0.0 {
+                    continue;
+                }
+                let clear = -0.015 * a.distance(b);
+                let least = (1..64).map(|k| pose.distance(a.lerp(b, k as f32 / 64.0))).fold(0.0, f32::min);
+                if least >= clear {
+                    continue;
+                }
+                let found = dispatch!(Level::new(), simd => {
+                    let (a, e) = (V3::splat(simd, a), V3::splat(simd, b - a));
+                    deepest(simd, &pose, (a, e), F::splat(simd, clear)).is_some_and(|place| place.found.any_true())
+                });
+                cuts += 1;
+                if !found {
+                    missed += 1;
+                    worst = worst.max(clear - least);
+                }
+            }
+        }
+        println!("{missed} of {cuts} cuts are missed, at most {:.3} of a cell deep", worst / CELL);
+        // As with all four looks at each: what they pass over only grazes.
+        assert!(cuts > 1000 && worst < 0.05 * CELL, "of {cuts}: {} of a cell", worst / CELL);
     }
 }

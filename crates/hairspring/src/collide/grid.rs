@@ -191,7 +191,7 @@ fn mix<S: Simd>(a: F<S>, b: F<S>, t: F<S>) -> F<S> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::{
         collide::{Obstacle, Rigid, Voxelizer, voxelize},
@@ -208,7 +208,7 @@ mod tests {
     use std::sync::Arc;
 
     /// Balls of many triangles, turned and overlapping; `whole`: without holes.
-    fn balls(seed: u32, whole: bool) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    pub fn balls(seed: u32, whole: bool) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let hash = |k: u32| ((seed * 977 + k).wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32;
         let (mut positions, mut triangles) = (Vec::new(), Vec::new());
         for ball in 0..3 {
