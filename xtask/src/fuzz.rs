@@ -1,7 +1,10 @@
 //! Every fuzz target for a while, on stable Rust: libFuzzer needs no sanitizer to find a panic or a hang.
 
 use crate::run;
-use std::{path::Path, process::Child};
+use std::{
+    path::{Path, PathBuf},
+    process::Child,
+};
 
 /// Targets that run at the same time.
 const AT_ONCE: usize = 2;
@@ -12,8 +15,10 @@ pub const ALWAYS_THE_SAME: Option<u32> = Some(1);
 /// Builds all targets, fills their corpora with the seeds that are made by code, and runs each for `seconds`. Without a
 /// `seed` every run is another search.
 pub fn all(seconds: u32, seed: Option<u32>) -> Result<(), String> {
-    let seeds = ["run", "--release", "-p", "hairspring-io", "--example", "fuzz_seeds", "fuzz/corpus"];
-    run::cargo(&seeds, &[])?;
+    // With the features of the whole workspace, as the tests: for the example's package alone, libraries have fewer, and the kernels are compiled twice.
+    run::cargo(&["build", "--release", "--workspace", "--example", "fuzz_seeds"], &[])?;
+    let built = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
+    run::program(&built.join("release/examples/fuzz_seeds"), &["fuzz/corpus"])?;
     let unstable = [("RUSTC_BOOTSTRAP", "1")];
     run::cargo(&["fuzz", "build", "-s", "none"], &unstable)?;
     let mut running: Vec<(String, Child)> = Vec::new();

@@ -1,21 +1,35 @@
 //! Running other programs.
 
-use std::process::Command;
+use std::{
+    path::Path,
+    process::{Command, Stdio},
+};
 
 /// `cargo` with these arguments and environment, its output shown.
 pub fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), String> {
-    println!("$ cargo {}", arguments.join(" "));
-    let status = command(arguments, environment).status();
-    match status {
+    finish("cargo", arguments, command(arguments, environment))
+}
+
+/// A program that was built, its output shown.
+pub fn program(path: &Path, arguments: &[&str]) -> Result<(), String> {
+    let mut command = Command::new(path);
+    command.args(arguments).stdin(Stdio::null());
+    finish(&path.display().to_string(), arguments, command)
+}
+
+fn finish(name: &str, arguments: &[&str], mut command: Command) -> Result<(), String> {
+    let line = format!("{name} {}", arguments.join(" "));
+    println!("$ {line}");
+    match command.status() {
         Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(format!("cargo {} ended with {status}", arguments.join(" "))),
-        Err(why) => Err(format!("cargo {}: {why}", arguments.join(" "))),
+        Ok(status) => Err(format!("{line} ended with {status}")),
+        Err(why) => Err(format!("{line}: {why}")),
     }
 }
 
 /// The command without running it.
 pub fn command(arguments: &[&str], environment: &[(&str, &str)]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    command.args(arguments).envs(environment.iter().copied()).stdin(std::process::Stdio::null());
+    command.args(arguments).envs(environment.iter().copied()).stdin(Stdio::null());
     command
 }
