@@ -21,7 +21,6 @@ impl Carried {
     pub fn fill(&mut self, stage: &Stage) {
         let scene = stage.scene();
         self.colliders.clear();
-        // After those that are made of meshes.
         self.colliders.extend(stage.colliders().iter().map(|collider| collider.end));
         let joints = Joints::new(stage);
         let of = |list: &mut Vec<Rigid>, names: &mut dyn Iterator<Item = &Option<String>>| {

@@ -224,7 +224,7 @@ mod tests {
         (positions, triangles)
     }
 
-    /// The few looks find what looks all along find: bodies that are round, and walls, ridges and creases of every angle.
+    /// The few looks find what looks all along find, but for what only grazes: bodies that are round, and walls, ridges and creases of every angle.
     #[test]
     fn what_cuts_between_two_ends_that_are_outside_is_found() {
         let (mut cuts, mut missed, mut worst) = (0, 0, 0f32);
