@@ -26,11 +26,17 @@ pub struct Strand {
     pub h: f64,
 }
 
+/// `v` turned by the least rotation from `a` to `b`, both of length 1: Rodrigues' formula with a × b and a · b. Smooth where they are one, as
+/// differences across a joint need it; `DQuat::from_rotation_arc` rounds small angles away there.
+fn swung(a: DVec3, b: DVec3, v: DVec3) -> DVec3 {
+    let (c, s) = (a.dot(b), a.cross(b));
+    v * c + s.cross(v) + s * (s.dot(v) / (1.0 + c))
+}
+
 /// r of a joint: the rest turn swings with the first segment by the least rotation from where it was.
 pub fn residual(x: [DVec3; 3], lengths: [f64; 2], was: DVec3, turn: DVec3) -> DVec3 {
     let (e0, e1) = (x[1] - x[0], x[2] - x[1]);
-    let swing = DQuat::from_rotation_arc(was, e0.normalize());
-    e1 / lengths[1] - e0 / lengths[0] - swing * turn
+    e1 / lengths[1] - e0 / lengths[0] - swung(was, e0.normalize(), turn)
 }
 
 /// Bending energy of a joint [J].
@@ -54,13 +60,12 @@ fn strains(
     let was = [(x0[1] - x0[0]).normalize(), (x0[2] - x0[1]).normalize()];
     let (e0, e1) = (x[1] - x[0], x[2] - x[1]);
     let (u0, u1) = (e0.normalize(), e1.normalize());
-    let frame = |was: DVec3, u: DVec3, m: DVec3, angle: f64| {
-        DQuat::from_axis_angle(u, angle) * (DQuat::from_rotation_arc(was, u) * m)
-    };
+    let frame =
+        |was: DVec3, u: DVec3, m: DVec3, angle: f64| DQuat::from_axis_angle(u, angle) * swung(was, u, m);
     let (m0, m1) = (frame(was[0], u0, normals[0], angles[0]), frame(was[1], u1, normals[1], angles[1]));
     let d = m0 * turn.x + u0.cross(m0) * turn.y + u0 * turn.z;
     let r = e1 / lengths[1] - e0 / lengths[0] - d;
-    let carried = DQuat::from_rotation_arc(u0, u1) * m0;
+    let carried = swung(u0, u1, m0);
     let tau = 2.0 * (0.5 * carried.cross(m1).dot(u1).atan2(carried.dot(m1))).tan();
     [r.x, r.y, r.z, tau]
 }
