@@ -85,7 +85,7 @@ pub struct Options {
     #[arg(long, value_name = "SPEED", default_value_t = 0.0, value_parser = wind_speed)]
     wind: f32,
 
-    /// Instruction set, an older one of this processor (avx512, avx2, sse4_2, sse2) [default: its best]
+    /// Instruction set, an older one of this processor (avx512, avx2, sse2) [default: its best]
     #[arg(long, value_name = "NAME")]
     simd: Option<String>,
 

@@ -61,7 +61,6 @@ pub enum Absent {}
 pub enum Level {
     Scalar,
     Sse2(Absent),
-    Sse4_2(Absent),
     Avx2(Absent),
     Avx512(Absent),
 }
@@ -74,10 +73,6 @@ impl Level {
     }
 
     pub fn as_sse2(self) -> Option<Absent> {
-        None
-    }
-
-    pub fn as_sse4_2(self) -> Option<Absent> {
         None
     }
 

@@ -1,4 +1,4 @@
-//! Promise: a thing beside the body meets hair as it goes, however fast.
+//! Promise: a thing beside the body meets hair as it goes.
 //!
 //! A prop is a part of the body's mesh with a joint of its own. Hair must meet it as it meets a collider that was written as one: on its way through the frame and
 //! not where the frame ends, where a bar thrown at 10 m/s has jumped seventeen centimetres. So it takes with it what hangs in its way, and nothing is

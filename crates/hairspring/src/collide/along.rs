@@ -190,7 +190,8 @@ impl<S: Simd> Look<S> {
 mod tests {
     use super::*;
     use crate::collide::{grid::tests::balls, voxelize};
-    use fearless_simd::{Level, dispatch};
+    use crate::strand::dispatch::dispatch;
+    use fearless_simd::Level;
     use glam::{Mat3, Quat};
     use std::sync::Arc;
 

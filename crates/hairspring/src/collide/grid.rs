@@ -193,6 +193,7 @@ fn mix<S: Simd>(a: F<S>, b: F<S>, t: F<S>) -> F<S> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::strand::dispatch::dispatch;
     use crate::{
         collide::{Obstacle, Rigid, Voxelizer, voxelize},
         groom::Groom,
@@ -203,7 +204,7 @@ pub(super) mod tests {
         },
         simulation::{Air, Drive, MovingObstacle, Simulation},
     };
-    use fearless_simd::{Level, dispatch};
+    use fearless_simd::Level;
     use glam::Quat;
     use std::sync::Arc;
 

@@ -9,8 +9,9 @@ use super::{
     Grid, deep,
     lattice::{self, Lattice},
 };
+use crate::strand::dispatch::dispatch;
 use crate::strand::lanes::{F, LANES, V3};
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 use glam::{DVec2, UVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;

@@ -17,13 +17,14 @@ mod style;
 
 pub use choose::{assign_guides, choose_guides};
 
+use crate::strand::dispatch::dispatch;
 use crate::{
     collide::ObstaclePose,
     groom::{Groom, GuideWeights},
     scene::Effects,
     simulation::MovingObstacle,
 };
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use glam::{Affine3A, Quat, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;

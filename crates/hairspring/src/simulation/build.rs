@@ -122,7 +122,7 @@ impl Simulation {
             tiles,
             settings: Settings { solver, gravity, anchor },
             interval: Interval::default(),
-            level: Level::new(),
+            level: super::levels().next().unwrap_or_else(Level::new),
             places,
             start: Start::default(),
         };

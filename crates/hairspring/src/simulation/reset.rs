@@ -2,10 +2,11 @@
 
 use super::{Simulation, build::simulated_points};
 use crate::strand::{
+    dispatch::dispatch,
     lanes::{F, LANES, Row, load, store},
     tile::{Elastic, StateRows, springs, state, strand},
 };
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 use glam::{Quat, Vec3};
 
 /// Whether every number of these rows is finite.

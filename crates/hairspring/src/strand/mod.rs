@@ -5,6 +5,7 @@ mod each;
 
 pub(crate) mod assemble;
 pub(crate) mod band;
+pub(crate) mod dispatch;
 pub(crate) mod elements;
 pub(crate) mod fixed;
 pub(crate) mod integrate;

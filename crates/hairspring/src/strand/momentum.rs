@@ -3,6 +3,7 @@
 
 use super::{
     assemble::{Step, Sweep},
+    dispatch::dispatch,
     elements::Elements,
     fixed::fix,
     lanes::{F, LANES, Row},
@@ -16,7 +17,7 @@ use super::{
     tests::{lane, rows, splat, vector},
     tile::{Elastic, Tile, rest, springs, strand},
 };
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 use glam::{DVec3, Mat3, Vec3};
 use proptest::prelude::*;
 

@@ -3,6 +3,7 @@
 use super::{
     assemble::{Step, Sweep, assemble, substitute},
     band::{Band, back_substitute, factor_rows, reach},
+    dispatch::dispatch,
     fixed::fix,
     lanes::{F, LANES, Row, V3},
     model::{
@@ -19,7 +20,7 @@ use super::{
     tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
     truss::ASIDE,
 };
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 use glam::{DVec3, Mat3, Vec3};
 use proptest::prelude::*;
 

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::strand::{
     band::Band,
+    dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
@@ -14,7 +15,7 @@ use crate::strand::{
     scratch::{Memory, Scratch},
     tile::{Tile, rest},
 };
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 
 /// Bending in a frame that is carried along the strand by the least rotation and so knows no twist: right and cheapest for
 /// strands that are straight at rest, where no frame matters (see `straight`). A coil slowly forgets its shape in it, and swung curls gain energy, because

@@ -21,6 +21,7 @@ use super::{
 };
 use crate::strand::{
     band::Band,
+    dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
@@ -29,7 +30,7 @@ use crate::strand::{
     scratch::{Memory, Scratch},
     tile::{Tile, rest, state, strand},
 };
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 
 /// Largest turn of a frame about its segment in a substep [rad]: a Newton step is not to be believed beyond.
 const LARGEST_TURN: f32 = 0.5;

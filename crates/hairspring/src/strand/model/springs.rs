@@ -17,6 +17,7 @@
 use super::{At, Model, Solved};
 use crate::strand::{
     band::Band,
+    dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
@@ -25,7 +26,7 @@ use crate::strand::{
     scratch::{Memory, Scratch},
     tile::{Tile, springs, state, strand},
 };
-use fearless_simd::{Level, dispatch, mask32x8, prelude::*};
+use fearless_simd::{Level, mask32x8, prelude::*};
 
 /// A truss of distance springs, see above.
 pub struct Springs;

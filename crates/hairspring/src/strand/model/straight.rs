@@ -3,6 +3,7 @@
 use super::{At, Model, Solved};
 use crate::strand::{
     band::Band,
+    dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
@@ -11,7 +12,7 @@ use crate::strand::{
     scratch::{Memory, Scratch},
     tile::{Tile, rest},
 };
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 
 /// Bending by the curvature vector with d = 0: `bend` where P is the identity.
 pub struct Straight;
