@@ -161,7 +161,7 @@ const HEAD: f32 = 0.1;
 #[test]
 fn violence_is_survived_and_forgotten() {
     let all = cases(&[1e-4, 1.0, 1e4]);
-    // Those of a model step as eight strands at a time, which takes a fifth of the time.
+    // Those of a model step as eight strands at a time, which takes a third of the time.
     let of = |model: Model| all.iter().filter(|material| material.model == model).cloned().collect();
     violence(Model::ALL.map(|model| (of(model), VolumeMethod::Off)).into());
 }
