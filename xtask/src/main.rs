@@ -16,7 +16,7 @@ const HELP: &str = "cargo xtask NAME
   meshes         makes the meshes of the example scenes anew (draw the scenes that show them, and look)
   pictures [NAME] draws the pictures of the book anew, all or those whose name contains NAME (look at them too); needs no build where
                  HAIRSPRING names the program
-  ci             lint, fuzz (20 seconds each), test: what CI runs";
+  ci             lint, fuzz (half a minute each), test: what CI runs";
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -42,7 +42,7 @@ fn main() {
         }
         ["pictures"] => pictures::draw(""),
         ["pictures", part] => pictures::draw(part),
-        ["ci"] => lint().and_then(|()| fuzz::all(20, fuzz::ALWAYS_THE_SAME)).and_then(|()| test::all()),
+        ["ci"] => lint().and_then(|()| fuzz::all(30, fuzz::ALWAYS_THE_SAME)).and_then(|()| test::all()),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
             Ok(())

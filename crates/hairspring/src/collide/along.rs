@@ -189,8 +189,10 @@ impl<S: Simd> Look<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::collide::{grid::tests::balls, voxelize};
-    use crate::strand::dispatch::dispatch;
+    use crate::{
+        collide::{grid::tests::balls, voxelize},
+        strand::dispatch::dispatch,
+    };
     use fearless_simd::Level;
     use glam::{Mat3, Quat};
     use std::sync::Arc;

@@ -193,7 +193,6 @@ fn mix<S: Simd>(a: F<S>, b: F<S>, t: F<S>) -> F<S> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::strand::dispatch::dispatch;
     use crate::{
         collide::{Obstacle, Rigid, Voxelizer, voxelize},
         groom::Groom,
@@ -203,6 +202,7 @@ pub(super) mod tests {
             builtin::{self, BuiltinOptions},
         },
         simulation::{Air, Drive, MovingObstacle, Simulation},
+        strand::dispatch::dispatch,
     };
     use fearless_simd::Level;
     use glam::Quat;

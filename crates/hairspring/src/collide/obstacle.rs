@@ -174,8 +174,10 @@ fn cuboid_lanes<S: Simd>(simd: S, l: V3<S>, half: Vec3) -> (F<S>, V3<S>) {
 mod tests {
     use super::*;
     use crate::collide::{ObstaclePose, contact};
-    use crate::strand::dispatch::dispatch;
-    use crate::strand::lanes::{LANES, Row};
+    use crate::strand::{
+        dispatch::dispatch,
+        lanes::{LANES, Row},
+    };
     use fearless_simd::Level;
     use glam::Quat;
     use proptest::prelude::*;

@@ -9,8 +9,10 @@ use super::{
     Grid, deep,
     lattice::{self, Lattice},
 };
-use crate::strand::dispatch::dispatch;
-use crate::strand::lanes::{F, LANES, V3};
+use crate::strand::{
+    dispatch::dispatch,
+    lanes::{F, LANES, V3},
+};
 use fearless_simd::{Level, prelude::*};
 use glam::{DVec2, UVec3, Vec3};
 use rayon::prelude::*;

@@ -17,12 +17,12 @@ mod style;
 
 pub use choose::{assign_guides, choose_guides};
 
-use crate::strand::dispatch::dispatch;
 use crate::{
     collide::ObstaclePose,
     groom::{Groom, GuideWeights},
     scene::Effects,
     simulation::MovingObstacle,
+    strand::dispatch::dispatch,
 };
 use fearless_simd::Level;
 use glam::{Affine3A, Quat, Vec3};
