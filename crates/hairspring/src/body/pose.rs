@@ -25,6 +25,24 @@ pub struct Skin {
     pub inverse_bind: Vec<Affine3A>,
 }
 
+impl Skin {
+    /// From the rest pose to where each joint is whose matrix is in `world`.
+    pub(crate) fn matrices(&self, world: &[Affine3A]) -> Vec<Affine3A> {
+        world.iter().zip(&self.inverse_bind).map(|(w, b)| *w * *b).collect()
+    }
+
+    /// Where a vertex is that is at `rest` in the rest pose [m], by those matrices (linear blend skinning).
+    pub(crate) fn place(&self, vertex: usize, rest: Vec3, matrices: &[Affine3A]) -> Vec3 {
+        let mut at = Vec3A::ZERO;
+        for (j, w) in self.joints[vertex].iter().zip(self.weights[vertex]) {
+            if w > 0.0 {
+                at += matrices[*j as usize].transform_point3a(Vec3A::from(rest)) * w;
+            }
+        }
+        at.into()
+    }
+}
+
 /// A mesh with its skeleton. Without a skin the whole mesh is rigid and moves with joint 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Body {
@@ -121,16 +139,9 @@ impl Body {
             normals.extend(self.mesh.normals.iter().map(|n| m.transform_vector3(*n).normalize_or(Vec3::Y)));
             return;
         };
-        let matrices: Vec<Affine3A> = world.iter().zip(&skin.inverse_bind).map(|(w, b)| *w * *b).collect();
-        for ((p, joints), weights) in self.mesh.positions.iter().zip(&skin.joints).zip(&skin.weights) {
-            let mut at = Vec3A::ZERO;
-            for (j, w) in joints.iter().zip(weights) {
-                if *w > 0.0 {
-                    at += matrices[*j as usize].transform_point3a(Vec3A::from(*p)) * *w;
-                }
-            }
-            positions.push(at.into());
-        }
+        let matrices = skin.matrices(world);
+        let rest = self.mesh.positions.iter().enumerate();
+        positions.extend(rest.map(|(vertex, p)| skin.place(vertex, *p, &matrices)));
         *normals = vertex_normals(positions, &self.mesh.triangles);
     }
 }

@@ -6,6 +6,7 @@ use crate::strand::lanes::{F, LANES, Row, V3, load};
 use fearless_simd::{mask32x8, prelude::*};
 use glam::{UVec3, Vec3};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Signed distances at the nodes of a regular grid, negative inside; trilinear between them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +24,8 @@ pub struct Grid {
     /// Corners of the triangles, and how far they moved during the last interval, in the field's space [m]; empty: the surface is rigid.
     corners: Vec<[Vec3; 3]>,
     moved: Vec<[Vec3; 3]>,
+    /// What it was at equal parts of the last interval, before the last of them, where it moved far in that; empty: this all along.
+    pub(super) earlier: Vec<Arc<Grid>>,
     /// A bit for each cell that holds a place inside, at the index of its lower node; empty: any may.
     inside: Vec<u32>,
 }
@@ -46,6 +49,7 @@ impl Grid {
         self.nearest.resize(lattice.nodes(), 0);
         self.corners.clear();
         self.moved.clear();
+        self.earlier.clear();
         if let Some(before) = before {
             self.corners.extend(triangles.iter().map(|t| t.map(|i| positions[i as usize])));
             let moved = |i: u32| positions[i as usize] - before[i as usize];

@@ -90,6 +90,31 @@ impl Obstacle {
         }
     }
 
+    /// How many shapes it is in a frame, one after the other, in equal parts of it: 1 but for the field of a body with fast limbs.
+    pub(crate) fn parts(&self) -> usize {
+        match self {
+            Obstacle::Field(grid) => grid.earlier.len() + 1,
+            _ => 1,
+        }
+    }
+
+    /// The shape in one of its parts, numbered from 0 as time goes.
+    pub(crate) fn part(&self, number: usize) -> Obstacle {
+        match self {
+            Obstacle::Field(grid) => Obstacle::Field(grid.earlier.get(number).unwrap_or(grid).clone()),
+            _ => self.clone(),
+        }
+    }
+
+    /// Sets the shapes of all parts of a frame but the last, which this is. Only fields have any.
+    pub(crate) fn set_earlier(&mut self, earlier: Vec<Arc<Grid>>) {
+        if let Obstacle::Field(grid) = self
+            && !(earlier.is_empty() && grid.earlier.is_empty())
+        {
+            Arc::make_mut(grid).earlier = earlier;
+        }
+    }
+
     /// Half of how thick it is where it is thickest [m]: how far its deepest place is from the surface, about; infinite for a plane.
     pub(crate) fn half_thickness(&self) -> f32 {
         match self {

@@ -8,14 +8,14 @@
 //! All strands take them, so that none depends on which of them share a tile; a rod of 1 cm at 20 m/s asks for 133 in a frame, a hand at 5 m/s for
 //! some 20, and what moves with the head for none.
 //!
-//! # Missing
-//! A skinned body's own limbs: how far they move against the head is known only place by place.
+//! The limbs of a skinned body are one shape with it: where they are fast, they come as a shape for each part of the frame (`stage/limbs.rs`), and each part
+//! has as many substeps as the others.
 
 use super::{Simulation, step::Drive};
 use crate::collide::Rigid;
 
 /// Part of a body's half thickness that it may move by in a substep [1]: a strand that it presses is still on the side where it was met.
-const PART: f32 = 0.5;
+pub(crate) const PART: f32 = 0.5;
 
 /// Way in a frame, over the radius of the ball around a body, below which nothing is looked at [1]: what is so slow is not thinner.
 const SLOW: f32 = 0.005;

@@ -24,6 +24,7 @@ pub use crate::strand::rest_shape::Start;
 pub use crate::volume::VolumeReport;
 pub(crate) use bodies::Bodies;
 pub use energy::Energy;
+pub(crate) use fast::PART;
 pub use hands::ToolId;
 pub use hold::Hold;
 pub use measure::Measure;

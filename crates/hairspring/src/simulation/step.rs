@@ -115,9 +115,12 @@ impl Simulation {
         assert!(drive.dt > 0.0, "a step takes time");
         let solver = self.settings.solver;
         let carried = self.carry_along(drive);
+        // Of bodies with fast limbs each part has as many.
+        let parts = drive.obstacles.iter().map(|o| o.shape.parts() as u32).max().unwrap_or(1);
         let substeps = ((drive.dt / substep_length(&solver) as f32 - 1e-3).ceil() as u32)
             .max(self.substeps_past(drive, carried.as_ref()))
-            .clamp(1, MAX_SUBSTEPS);
+            .clamp(1, MAX_SUBSTEPS)
+            .next_multiple_of(parts);
         let mut interval = std::mem::take(&mut self.interval);
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
         self.begin_tools(&Bodies::new((drive.obstacles, carried.as_ref())));
@@ -206,7 +209,9 @@ impl Simulation {
             substep.obstacles.extend(drive.obstacles.iter().map(|o| {
                 let start = o.start(carried);
                 let at = |t: f32| start.lerp(&o.end, t).matrix();
-                ObstaclePose::new(o.shape.clone(), at(before), at(fraction), 1.0 / count as f32)
+                let (parts, count) = (o.shape.parts(), count as usize);
+                let shape = o.shape.part(k * parts / count);
+                ObstaclePose::new(shape, at(before), at(fraction), parts as f32 / count as f32)
             }));
         }
     }

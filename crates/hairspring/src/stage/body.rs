@@ -69,6 +69,13 @@ struct Deforming {
     obstacle: usize,
 }
 
+impl Deforming {
+    /// What it is made of.
+    fn body<'a>(rest: &'a Option<Body>, mesh: Mesh, scene: &'a Scene) -> Option<&'a Body> {
+        rest.as_ref().or_else(|| mesh.of(scene))
+    }
+}
+
 /// Which of the scene's meshes.
 #[derive(Clone, Copy)]
 enum Mesh {
@@ -153,7 +160,7 @@ impl StagedBody {
             staged.add_mesh(scene, Mesh::Sheet(k), Making::Sheet(sheet.thickness));
         }
         staged.meshes = staged.obstacles.len();
-        staged.rebuild_surfaces(scene, true);
+        staged.rebuild_surfaces(scene, None);
         staged.add_colliders(&scene.colliders, joints);
         staged.add_charged(scene, joints);
         staged.repose(scene, 0.0);
@@ -254,39 +261,55 @@ impl StagedBody {
             Making::Field(cell) => pieces::take(&mut rest, self.anchor, PIECE * cell),
             Making::Sheet(_) => Vec::new(),
         };
+        let surface = Surface::new(making, &rest);
         let rest = (!pieces.is_empty()).then_some(rest);
         let obstacle = self.obstacles.len();
-        self.surfaces.push(Deforming { surface: Surface::new(making), mesh, rest, obstacle });
+        self.surfaces.push(Deforming { surface, mesh, rest, obstacle });
         self.add(making.nothing(), Carrier::Anchor);
         for piece in pieces {
             self.add(making.rigid(&piece.body, None), Carrier::Joint(piece.joint));
         }
     }
 
-    /// Makes the colliders of skinned meshes anew, in the anchor's space.
-    fn rebuild_surfaces(&mut self, scene: &Scene, fresh: bool) {
+    /// Makes the colliders of skinned meshes anew, in the anchor's space; `since` the time [s] of the pose that they have moved from, where they have, and the time now.
+    fn rebuild_surfaces(&mut self, scene: &Scene, since: Option<(f32, f32)>) {
         let anchor = self.anchor();
         let within = self.reach.bounds(&self.positions, |p| anchor.inverse_point(p));
+        let parts = |Deforming { surface, mesh, rest, .. }: &Deforming| {
+            let body = Deforming::body(rest, *mesh, scene)?;
+            Some(surface.parts(body, (&self.world, anchor), within))
+        };
+        let mut poses = Vec::new();
+        if let (Some((from, to)), Some(body), Some(clip)) = (since, &scene.body, &scene.clip) {
+            let parts = self.surfaces.iter().filter_map(parts).max().unwrap_or(1);
+            // Wherever all of it is carried: what is made is in the anchor's space.
+            poses.extend((1..parts).map(|part| {
+                let time = from + (to - from) * (part as f32 / parts as f32);
+                let world = body.world(&clip.sample(time));
+                let anchor = Rigid::from_affine(&world[self.anchor]);
+                (world, anchor)
+            }));
+        }
+        poses.push((self.world.clone(), anchor));
         for Deforming { surface, mesh, rest, obstacle } in &mut self.surfaces {
-            let Some(body) = rest.as_ref().or_else(|| mesh.of(scene)) else { continue };
-            let shape = &mut self.obstacles[*obstacle].shape;
-            surface.update(shape, (body, &self.world), anchor, within, fresh);
+            let Some(body) = Deforming::body(rest, *mesh, scene) else { continue };
+            surface.update(&mut self.obstacles[*obstacle].shape, body, &poses, within, since.is_none());
         }
     }
 
-    /// Poses the body for time `time` [s]; motion since the last pose is what colliders do in this frame.
-    pub(super) fn advance(&mut self, scene: &Scene, time: f32) {
+    /// Poses the body for the time `to` [s], `from` the time of the last pose; motion since then is what colliders do in this frame.
+    pub(super) fn advance(&mut self, scene: &Scene, (from, to): (f32, f32)) {
         self.stand_still();
-        self.pose(scene, time);
-        self.rebuild_surfaces(scene, false);
-        self.repose(scene, time);
+        self.pose(scene, to);
+        self.rebuild_surfaces(scene, Some((from, to)));
+        self.repose(scene, to);
     }
 
     /// Poses the body for time `time` [s] without motion.
     pub(super) fn place(&mut self, scene: &Scene, time: f32) {
         self.moved = Rigid::default();
         self.pose(scene, time);
-        self.rebuild_surfaces(scene, true);
+        self.rebuild_surfaces(scene, None);
         self.repose(scene, time);
         self.stand_still();
     }

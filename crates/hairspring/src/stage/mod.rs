@@ -5,6 +5,7 @@ mod charged;
 mod hair;
 mod hands;
 mod joints;
+mod limbs;
 mod pieces;
 mod retune;
 mod settle;
@@ -246,7 +247,7 @@ impl Stage {
         self.hands.begin(&self.scene.hands, self.time, &self.body, &mut self.simulation);
         // Sources are where they are at the start, as points are.
         self.wind.advance(&self.scene, self.time + 0.5 * dt, &self.body);
-        self.body.advance(&self.scene, self.time + dt);
+        self.body.advance(&self.scene, (self.time, self.time + dt));
         self.hands.advance(&self.scene.hands, self.time + dt, &self.body, &mut self.simulation);
         report.body = began.elapsed();
         let began = Instant::now();

@@ -1,6 +1,7 @@
 //! What hair collides with that is made from meshes: a distance field of a closed one, sheets of open ones. One that deforms is made anew
 //! in the anchor's space, whenever it moved there.
 
+use super::limbs::Limbs;
 use crate::{
     body::Body,
     collide::{Grid, Obstacle, Rigid, Sheet, Voxelizer},
@@ -10,6 +11,9 @@ use std::sync::Arc;
 
 /// A surface that moved less than this in its anchor's space is rigid for this frame, as a share of its cells or its thickness.
 const STILL: f32 = 0.0025;
+
+/// Colliders that are kept for their memory: as many as viewers look at at once.
+const SPARE: usize = 4;
 
 /// What becomes of a mesh.
 #[derive(Clone, Copy)]
@@ -30,7 +34,12 @@ pub(super) struct Surface {
     now: Vec<Vec3>,
     before: Vec<Vec3>,
     normals: Vec<Vec3>,
+    /// `None` for a sheet.
+    limbs: Option<Limbs>,
 }
+
+/// A body's joints, and the anchor that its colliders are in the space of.
+pub(super) type Pose = (Vec<Affine3A>, Rigid);
 
 impl Making {
     /// A collider that is nowhere yet.
@@ -80,8 +89,14 @@ fn is_free(shape: &mut Obstacle) -> bool {
 }
 
 impl Surface {
-    pub(super) fn new(making: Making) -> Self {
+    /// Of a body that has a skin.
+    pub(super) fn new(making: Making, body: &Body) -> Self {
+        let limbs = match making {
+            Making::Field(cell) => Some(Limbs::new(&body.mesh, cell)),
+            Making::Sheet(_) => None,
+        };
         Self {
+            limbs,
             making,
             voxelizer: Voxelizer::default(),
             spare: Vec::new(),
@@ -91,12 +106,48 @@ impl Surface {
         }
     }
 
-    /// Makes `shape` the collider of `body` as its joints are in `world`, in the space of the `anchor`; `fresh`: without motion since the last time.
+    /// Into how many parts a frame is to be cut that ends with `body` in that pose, and was made a collider where it begins.
+    pub(super) fn parts(
+        &self,
+        body: &Body,
+        (world, anchor): (&[Affine3A], Rigid),
+        within: Option<(Vec3, Vec3)>,
+    ) -> usize {
+        let (Some(limbs), Some(skin)) = (&self.limbs, &body.skin) else { return 1 };
+        limbs.parts((&body.mesh, skin), &self.now, (world, anchor), within)
+    }
+
+    /// Makes `shape` the collider of `body` in the last of those poses, and a field in the others too, at equal parts of the frame before; `fresh`: without
+    /// motion since the last time.
     pub(super) fn update(
         &mut self,
         shape: &mut Obstacle,
-        (body, world): (&Body, &[Affine3A]),
-        anchor: Rigid,
+        body: &Body,
+        poses: &[Pose],
+        within: Option<(Vec3, Vec3)>,
+        fresh: bool,
+    ) {
+        shape.set_earlier(Vec::new());
+        let mut earlier = Vec::new();
+        let Some((now, parts)) = poses.split_last() else { return };
+        if let Making::Field(_) = self.making {
+            for pose in parts {
+                self.make(shape, body, pose, within, fresh);
+                if let Obstacle::Field(grid) = shape {
+                    earlier.push(grid.clone());
+                }
+            }
+        }
+        self.make(shape, body, now, within, fresh);
+        shape.set_earlier(earlier);
+    }
+
+    /// Makes `shape` the collider of `body` in a pose.
+    fn make(
+        &mut self,
+        shape: &mut Obstacle,
+        body: &Body,
+        (world, anchor): &Pose,
         within: Option<(Vec3, Vec3)>,
         fresh: bool,
     ) {
@@ -121,6 +172,7 @@ impl Surface {
         if !is_free(shape) {
             let free = self.spare.iter_mut().position(is_free).map(|k| self.spare.swap_remove(k));
             let last = std::mem::replace(shape, free.unwrap_or_else(|| self.making.nothing()));
+            self.spare.truncate(SPARE - 1);
             self.spare.push(last);
         }
         self.making.make(shape, &mut self.voxelizer, (&self.now, before), &body.mesh.triangles, within);
@@ -146,9 +198,10 @@ mod tests {
         let body = Body { mesh, joints: vec![joint("near"), joint("far")], skin: Some(skin) };
         let world = |up: f32| [Affine3A::IDENTITY, Affine3A::from_translation(Vec3::Y * up)];
         let making = Making::Sheet(0.002);
-        let (mut surface, mut shape) = (Surface::new(making), making.nothing());
+        let (mut surface, mut shape) = (Surface::new(making, &body), making.nothing());
         let mut play = |up: f32, fresh: bool| {
-            surface.update(&mut shape, (&body, &world(up)), Rigid::default(), None, fresh);
+            let pose = (world(up).to_vec(), Rigid::default());
+            surface.update(&mut shape, &body, &[pose], None, fresh);
             let Obstacle::Sheet(sheet) = &shape else { unreachable!("a sheet is made") };
             let at = |x: f32| {
                 let p = Vec3::new(x, up * x / 0.3, 0.05);

@@ -1,8 +1,8 @@
-//! Promise: a thing beside the body meets hair as it goes.
+//! Promise: a thing beside the body, and a limb of it, meets hair as it goes.
 //!
 //! A prop is a part of the body's mesh with a joint of its own. Hair must meet it as it meets a collider that was written as one: on its way through the frame and
 //! not where the frame ends, where a bar thrown at 10 m/s has jumped seventeen centimetres. So it takes with it what hangs in its way, and nothing is
-//! left inside of it or behind.
+//! left inside of it or behind. A limb is one surface with the body, which deforms: the same bar as an arm of the board must do the same.
 
 use glam::{Affine3A, Vec3};
 use hairspring::{
@@ -33,18 +33,18 @@ fn cuboid(mesh: &mut Mesh, middle: Vec3, half: Vec3) {
     mesh.triangles.extend(quads.into_iter().flat_map(halves));
 }
 
-/// A curtain that hangs from a board, and a bar that is thrown at it.
-fn scene() -> Scene {
+/// A curtain that hangs from a board, and a bar that is thrown at it: a thing by itself, or a child of the board's joint.
+fn scene(parent: Option<u32>) -> Scene {
     let mut mesh = Mesh::default();
     cuboid(&mut mesh, Vec3::Y * 0.01, Vec3::new(0.05, 0.01, 0.08));
     cuboid(&mut mesh, Vec3::new(LAST, -BELOW, 0.0), Vec3::new(0.01, 0.01, 0.08));
-    let joint = |name: &str| Joint { name: name.into(), parent: None, rest: Trs::default() };
+    let joint = |name: &str, parent| Joint { name: name.into(), parent, rest: Trs::default() };
     let skin = Skin {
         joints: (0..16).map(|v| [v / 8, 0, 0, 0]).collect(),
         weights: vec![[1.0, 0.0, 0.0, 0.0]; 16],
         inverse_bind: vec![Affine3A::IDENTITY; 2],
     };
-    let body = Body { mesh, joints: vec![joint("board"), joint("bar")], skin: Some(skin) };
+    let body = Body { mesh, joints: vec![joint("board", None), joint("bar", parent)], skin: Some(skin) };
     let bar =
         |frame: u32| Trs { translation: Vec3::X * (-STRIDE * (FRAMES - frame) as f32), ..Trs::default() };
     let samples = (0..=FRAMES).flat_map(|frame| [Trs::default(), bar(frame)]).collect();
@@ -75,7 +75,16 @@ fn scene() -> Scene {
 
 #[test]
 fn a_bar_that_is_thrown_takes_hair_with_it() {
-    let mut stage = Stage::new(scene()).unwrap();
+    throw(None);
+}
+
+#[test]
+fn an_arm_takes_hair_with_it() {
+    throw(Some(0));
+}
+
+fn throw(parent: Option<u32>) {
+    let mut stage = Stage::new(scene(parent)).unwrap();
     for _ in 0..FRAMES {
         stage.step(1.0 / 60.0);
     }
