@@ -59,6 +59,7 @@ impl Limbs {
             let (middle, Some(normal)) = (corners.iter().sum::<Vec3>() / 3.0, normal(corners)) else {
                 continue;
             };
+            // Truncated to −1, 0 or 1 along each axis: 26 ways at most.
             let faces = (normal * 1.999).as_ivec3();
             if seen.insert(((middle / (SPACING * cell)).floor().as_ivec3(), faces)) {
                 places.push((triangle as u32, middle, normal));
