@@ -16,20 +16,20 @@
 //! Baraff & Witkin 1998, *Large Steps in Cloth Simulation*; BDF2 after Choi & Ko 2002, *Stable but Responsive Cloth*, eq. 17.
 
 use super::{
-    band::{back_substitute, factor_rows, reach},
-    elements::{Elements, Outset},
-    lanes::{F, Row, Sym3, V3, load, store},
+    band::{Band, System, back_substitute, factor_rows, reach},
+    elements::{Elements, Outset, Walk},
+    lanes::{F, Sym3, V3, load, store},
     model::{
         Model, Solved,
         stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2},
     },
+    outside,
     prefetch::ask_beyond,
-    press::{press, relieve},
+    press::relieve,
     root::Root,
     scratch::Scratch,
     segment::relieve_between,
-    tether,
-    tile::{Tile, grip, history, hold, rest, state, tines},
+    tile::{Tile, history, rest, state},
 };
 use crate::collide::ObstaclePose;
 use fearless_simd::prelude::*;
@@ -72,12 +72,6 @@ impl<S: Simd> Step<'_, S> {
     }
 }
 
-/// Stiffness of a hold in the matrix, over the mass in it [1]: a held point gives way by a millionth of what it would move.
-const HOLD: f32 = 1e6;
-
-/// Stiffness of a held frame [N m]: far above any hair's, about 1e-6.
-const HOLD_FRAME: f32 = 1.0;
-
 /// Elastic forces of all points at `scratch.edges`, into `scratch.kick` [N].
 #[inline(always)]
 pub fn forces<S, M, const B: usize, const N: usize>(
@@ -94,9 +88,12 @@ pub fn forces<S, M, const B: usize, const N: usize>(
     for i in 0..n {
         if i + 1 < n {
             elements.add(simd, i, i % M::STRIDE, tile, scratch);
+        } else {
+            elements.band = Band::new(simd);
         }
+        elements.band.take_up(simd, M::HALF, i, scratch.factors);
         elements.band.force().store(&mut scratch.kick[i]);
-        elements.band.shift();
+        elements.band.pass(simd, M::HALF, i, scratch.factors);
     }
 }
 
@@ -137,42 +134,101 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
 {
     let n = tile.rest.len();
     let mut elements = Elements::<S, M, B, N>::begin(simd, sweep, step, tile, scratch);
-    let mut held = 0;
+    let acted = outside::any(tile);
     let first = M::DRIVEN.next_multiple_of(M::STRIDE);
-    // Before the first that is eliminated, nothing is.
-    let (eliminated, rows) = (if B > 3 { 1 } else { M::DRIVEN }, factor_rows(B, N, M::HALF));
-    scratch.factors[eliminated * rows..(eliminated + reach(B, N)) * rows].fill(Row::default());
     // The driven points and the last by themselves: one loop for all would carry the window through its branches.
     for i in 0..first {
-        add_point(simd, (sweep, i, i % M::STRIDE), step, tile, scratch, &mut elements, &mut held);
-        // An angle of the driven first segment is driven too, of the second it is not.
-        let angle = i == 1 && B > 3;
-        if angle {
-            for k in 0..3 {
-                elements.band.hold(simd, k);
-            }
-        }
-        if angle || i >= M::DRIVEN {
-            elements.band.eliminate(simd, M::HALF, i, scratch.factors);
-        } else {
-            elements.band.shift();
-        }
+        pass_point(simd, (sweep, i, i % M::STRIDE, true), step, tile, scratch, &mut elements, acted);
     }
     let mut i = first;
     // Not `i + STRIDE < n`, from which the compiler does not learn that i + 1 is below n.
     while i < n.saturating_sub(M::STRIDE) {
-        add_point(simd, (sweep, i, 0), step, tile, scratch, &mut elements, &mut held);
-        elements.band.eliminate(simd, M::HALF, i, scratch.factors);
+        pass_point(simd, (sweep, i, 0, false), step, tile, scratch, &mut elements, acted);
         if M::STRIDE == 2 {
-            add_point(simd, (sweep, i + 1, 1), step, tile, scratch, &mut elements, &mut held);
-            elements.band.eliminate(simd, M::HALF, i + 1, scratch.factors);
+            pass_point(simd, (sweep, i + 1, 1, false), step, tile, scratch, &mut elements, acted);
         }
         i += M::STRIDE;
     }
+    elements.band = Band::new(simd);
     elements.band.eliminate(simd, M::HALF, n - 1, scratch.factors);
 }
 
-/// Adds everything that begins at the walk's next point i, and what acts on point i+1; `phase` is i modulo the model's stride.
+/// Adds everything that begins at the walk's next point i, and what acts on point i+1, and eliminates point i; `phase` is i modulo the model's stride, and
+/// `driven` tells the points by the root.
+#[inline(always)]
+fn pass_point<S, M, const B: usize, const N: usize>(
+    simd: S,
+    (sweep, i, phase, driven): (Sweep, usize, usize, bool),
+    step: &Step<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+    elements: &mut Elements<S, M, B, N>,
+    acted: bool,
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    if M::falls_short(simd, i, tile, scratch) {
+        let mut whole = elements.whole(simd);
+        pass_whole(simd, (sweep, i, phase, driven), step, tile, scratch, &mut whole, acted);
+        elements.walk = whole.walk;
+        return;
+    }
+    add_point(simd, (sweep, i, phase), step, tile, scratch, elements, acted);
+    eliminate(simd, (i, driven), scratch, elements);
+}
+
+/// [`pass_point`] of the few that need the whole model, by itself.
+#[inline(never)]
+fn pass_whole<S, M, const B: usize, const N: usize>(
+    simd: S,
+    (sweep, i, phase, driven): (Sweep, usize, usize, bool),
+    step: &Step<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+    elements: &mut Elements<S, M, B, N>,
+    acted: bool,
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            add_point(simd, (sweep, i, phase), step, tile, scratch, elements, acted);
+            eliminate(simd, (i, driven), scratch, elements);
+        },
+    );
+}
+
+/// Eliminates point i, if the root does not drive it.
+#[inline(always)]
+fn eliminate<S, M, const B: usize, const N: usize>(
+    simd: S,
+    (i, driven): (usize, bool),
+    scratch: &mut Scratch,
+    elements: &mut Elements<S, M, B, N>,
+) where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    let band = &mut elements.band;
+    // An angle of the driven first segment is driven too, of the second it is not.
+    let angle = driven && i == 1 && B > 3;
+    if angle {
+        band.take_up(simd, M::HALF, i, scratch.factors);
+        for k in 0..3 {
+            band.hold(simd, k);
+        }
+    }
+    if driven && !angle && i < M::DRIVEN {
+        band.pass(simd, M::HALF, i, scratch.factors);
+    } else {
+        band.eliminate(simd, M::HALF, i, scratch.factors);
+    }
+}
+
+/// Adds what [`pass_point`] does; `phase` is i modulo the model's stride.
 #[inline(always)]
 fn add_point<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -181,21 +237,23 @@ fn add_point<S, M, const B: usize, const N: usize>(
     tile: &mut Tile,
     scratch: &mut Scratch,
     elements: &mut Elements<S, M, B, N>,
-    held: &mut usize,
+    acted: bool,
 ) where
     S: Simd,
     M: Model<S, B, N>,
 {
-    if phase == 0 && i > 0 && i + M::STRIDE < tile.rest.len() {
-        // Before anything is said of the window's last point: what is added where few tiles come by has to be in memory, and here all of it is.
-        elements.press_between(simd, (sweep, step), i, tile, scratch);
+    if acted || outside::pressed(simd, M::STRIDE, i, tile) {
+        let Walk { x, way, root_velocity, .. } = elements.walk;
+        let place = outside::Place { i, x, way, root_velocity };
+        outside::add::<S, M, B, N>(simd, (sweep, step), &place, tile, scratch);
     }
     let segment = elements.add(simd, i, phase, tile, scratch);
     if sweep == Sweep::Again {
         let [new, old] = [&scratch.edges[i + 1][..], &tile.state[i + 1][state::EDGE..]];
-        elements.way += V3::load(simd, new) - V3::load(simd, old);
+        elements.walk.way += V3::load(simd, new) - V3::load(simd, old);
     }
-    let Elements { x, way, root_velocity, ref ambient, ref mut band, .. } = *elements;
+    let Elements { band, walk: Walk { way, root_velocity, ambient, .. }, .. } = elements;
+    let (way, root_velocity) = (*way, *root_velocity);
     ask_beyond(tile.rest, i, step.number);
     ask_beyond(tile.state, i, 2 * step.number);
     ask_beyond(tile.state, i, 2 * step.number + 1);
@@ -226,60 +284,19 @@ fn add_point<S, M, const B: usize, const N: usize>(
     if let Some(push) = tile.push.get(i + 1) {
         p += V3::load(simd, push);
     }
-    if let Some(rows) = tile.grip.get(i + 1) {
-        let stiffness = load(simd, &rows[grip::STIFFNESS]);
-        let brake = load(simd, &rows[grip::BRAKE]) * inv_h;
-        let late = V3::load(simd, &rows[grip::WAY..]) * F::splat(simd, step.left);
-        p = p - late - (x + outset.drift(simd)) * stiffness - (outset.way(simd) + step.moved) * brake;
-        band.add_identity(1, mass * (stiffness + brake));
-    }
     let mut right = p * mass;
     band.add_identity(1, m_h2);
-    let on_strand = phase + 1 == M::STRIDE;
-    if on_strand {
+    if phase + 1 == M::STRIDE {
         let across = segment.air * inv_h;
-        let mut slip = if sweep == Sweep::First {
+        let slip = if sweep == Sweep::First {
             ambient.wind - v
         } else {
             ambient.wind - root_velocity - outset.way(simd) * F::splat(simd, inv_h)
         };
-        if let Some(air) = tile.air.get(i + 1) {
-            slip += V3::load(simd, air);
-        }
         right += (slip - segment.u * (segment.u.dot(slip) * 0.5)) * segment.air;
         band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5).add_identity(across));
-        if let Some(rows) = tile.tines.get(i + 1) {
-            let brake = load(simd, &rows[tines::BRAKE]) * inv_h;
-            let slip = V3::load(simd, &rows[tines::CARRY..]) - (outset.way(simd) + step.moved) * brake;
-            right += (slip - segment.u * segment.u.dot(slip)) * mass;
-            let across = brake * mass;
-            band.add_diagonal(1, Sym3::outer(segment.u, -across).add_identity(across));
-        }
     }
     band.add_force(1, right);
-
-    // What holds or pulls it from outside.
-    while *held < tile.holds.len() && tile.holds[*held].point as usize <= i + 1 {
-        let at = &tile.holds[*held];
-        if at.point as usize == i + 1 {
-            let pinned = load(simd, &at.rows[hold::PINNED]);
-            let way = V3::load(simd, &at.rows[hold::WAY..]) * F::splat(simd, step.left);
-            let target = V3::load(simd, &at.rows[hold::TARGET..]) - way - step.root.position;
-            let k = (pinned * HOLD).mul_add(m_h2, load(simd, &at.rows[hold::STIFFNESS]));
-            band.add_identity(1, k);
-            band.add_force(1, (target - x - outset.drift(simd)) * k);
-            band.add_force(1, V3::load(simd, &at.rows[hold::FORCE..]));
-            if B > 3 {
-                band.add((1, 3), (1, 3), load(simd, &at.rows[hold::CLAMPED]) * HOLD_FRAME);
-            }
-        }
-        *held += 1;
-    }
-    if on_strand {
-        tether::pull(simd, step, tile, (i + 1, x, outset.drift(simd)), band);
-        let work = &mut scratch.contacts[i + 1];
-        press(simd, step, tile, (i + 1, x, outset.drift(simd), outset.way(simd)), band, work);
-    }
 }
 
 /// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took.

@@ -38,6 +38,21 @@ const fn pivot_row(r: usize, block: usize, window: usize, half: usize) -> usize 
     factor_row(block, window, half) + r
 }
 
+/// Where entry (r, c) of the window is before its point is eliminated, from the rows of the window's first point on: where its factor will be.
+const fn said(r: usize, c: usize, block: usize, window: usize, half: usize) -> usize {
+    let (own, first) = (r % block, r / block * block);
+    let row =
+        if c > r { factor_row(own, window, half) + c - r - 1 } else { pivot_row(own, block, window, half) };
+    first / block * factor_rows(block, window, half) + row
+}
+
+/// The same of the right-hand side of unknown `r`.
+const fn said_right(r: usize, block: usize, window: usize, half: usize) -> usize {
+    let own = r % block;
+    r / block * factor_rows(block, window, half) + factor_row(own, window, half) + last_met(own, window, half)
+        - own
+}
+
 /// Points before a point that meet it.
 pub const fn reach(block: usize, window: usize) -> usize {
     (window - 1) / block
@@ -46,6 +61,101 @@ pub const fn reach(block: usize, window: usize) -> usize {
 /// The last unknown of the window that unknown `r` meets.
 const fn last_met(r: usize, window: usize, half: usize) -> usize {
     if r + half < window { r + half } else { window - 1 }
+}
+
+/// A part of the matrix and the right-hand side that elements add to, of eight strands: some points that follow each other, `B` unknowns each, of which the
+/// first three are its displacement. Upper triangle only: the first of two unknowns is never after the second.
+pub trait System<S: Simd, const B: usize> {
+    /// Adds to one entry: unknown `j` of point `p` with unknown `k` of point `q`.
+    fn add(&mut self, pj: (usize, usize), qk: (usize, usize), value: F<S>);
+
+    /// Adds to the right-hand side of unknown `k` of point `p`.
+    fn add_right(&mut self, pk: (usize, usize), value: F<S>);
+
+    /// Adds a symmetric block to the displacement of point `p`.
+    #[inline(always)]
+    fn add_diagonal(&mut self, p: usize, m: Sym3<S>) {
+        self.add((p, 0), (p, 0), m.xx);
+        self.add((p, 0), (p, 1), m.xy);
+        self.add((p, 0), (p, 2), m.xz);
+        self.add((p, 1), (p, 1), m.yy);
+        self.add((p, 1), (p, 2), m.yz);
+        self.add((p, 2), (p, 2), m.zz);
+    }
+
+    /// Adds `s` times the identity to the displacement of point `p`.
+    #[inline(always)]
+    fn add_identity(&mut self, p: usize, s: F<S>) {
+        self.add_identity_block(p, p, s);
+    }
+
+    /// Adds `s` times the identity to the block of the displacements of points `p` ≤ `q`.
+    #[inline(always)]
+    fn add_identity_block(&mut self, p: usize, q: usize, s: F<S>) {
+        for k in 0..3 {
+            self.add((p, k), (q, k), s);
+        }
+    }
+
+    /// Adds `m` to the block of the displacements of points `p` < `q`.
+    #[inline(always)]
+    fn add_block(&mut self, p: usize, q: usize, m: &M3<S>) {
+        for (r, row) in m.rows.into_iter().enumerate() {
+            self.add((p, r), (q, 0), row.x);
+            self.add((p, r), (q, 1), row.y);
+            self.add((p, r), (q, 2), row.z);
+        }
+    }
+
+    /// Adds a force to the displacement of point `p` [N].
+    #[inline(always)]
+    fn add_force(&mut self, p: usize, f: V3<S>) {
+        self.add_right((p, 0), f.x);
+        self.add_right((p, 1), f.y);
+        self.add_right((p, 2), f.z);
+    }
+}
+
+impl<S: Simd, const B: usize, const N: usize> System<S, B> for Band<S, B, N> {
+    #[inline(always)]
+    fn add(&mut self, (p, j): (usize, usize), (q, k): (usize, usize), value: F<S>) {
+        self.a[p * B + j][q * B + k] += value;
+    }
+
+    #[inline(always)]
+    fn add_right(&mut self, (p, k): (usize, usize), value: F<S>) {
+        self.b[p * B + k] += value;
+    }
+}
+
+/// What was said of the window's points before the walk comes to the first, and of the last nothing: in memory, for what acts on few points. Were it added to
+/// the window, all of that would have to be where both sides of a rare branch find it.
+pub struct Said<'a, const B: usize, const N: usize> {
+    rows: &'a mut [Row],
+    half: usize,
+}
+
+impl<'a, const B: usize, const N: usize> Said<'a, B, N> {
+    /// Of the points from the strand's `i`th on.
+    #[inline(always)]
+    pub fn new(half: usize, i: usize, factors: &'a mut [Row]) -> Self {
+        let rows = factor_rows(B, N, half);
+        Self { rows: &mut factors[(i + reach(B, N)) * rows..][..reach(B, N) * rows], half }
+    }
+}
+
+impl<S: Simd, const B: usize, const N: usize> System<S, B> for Said<'_, B, N> {
+    #[inline(always)]
+    fn add(&mut self, (p, j): (usize, usize), (q, k): (usize, usize), value: F<S>) {
+        let row = &mut self.rows[said(p * B + j, q * B + k, B, N, self.half)];
+        store(load(value.simd, row) + value, row);
+    }
+
+    #[inline(always)]
+    fn add_right(&mut self, (p, k): (usize, usize), value: F<S>) {
+        let row = &mut self.rows[said_right(p * B + k, B, N, self.half)];
+        store(load(value.simd, row) + value, row);
+    }
 }
 
 /// The part of the matrix that is being worked on, of eight strands: the unknowns of a point and of the half-bandwidth
@@ -58,73 +168,49 @@ pub struct Band<S: Simd, const B: usize, const N: usize> {
 }
 
 impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
-    /// An empty window.
+    /// A window of whose points nothing has been said.
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let nothing = F::<S>::splat(simd, NOTHING);
         Self { a: [[nothing; N]; N], b: [nothing; N] }
     }
 
-    /// Empties what belongs to the window's last point, of which nothing has been said yet. Apart from [`Band::eliminate`], so that the
-    /// compiler sees what the first addition adds to.
+    /// Takes up what was [left](Band::leave) of the window's first point, the strand's `i`th, which [`Band::eliminate`] does by itself.
     #[inline(always)]
-    pub fn enter(&mut self, simd: S) {
-        let nothing = F::<S>::splat(simd, NOTHING);
-        each!(c, {
-            if c + B >= N && c < N {
-                each!(r, {
-                    if r <= c {
-                        self.a[r][c] = nothing;
+    pub fn take_up(&mut self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
+        let rows = factor_rows(B, N, half);
+        let ahead = &mut factors[(i + reach(B, N)) * rows..][..rows];
+        each!(r of 0 1 2 3, {
+            if r < B {
+                each!(c, {
+                    if c >= r && c + B < N {
+                        self.a[r][c] += load(simd, &ahead[said(r, c, B, N, half)]);
                     }
                 });
-                self.b[c] = nothing;
+                self.b[r] += load(simd, &ahead[said_right(r, B, N, half)]);
             }
         });
+        ahead.fill(Row::default());
     }
 
-    /// Adds to one entry: unknown `j` of point `p` of the window with unknown `k` of point `q`, in the upper triangle.
+    /// Leaves what was said of the points after the window's first, the strand's `i`th, where their factors will be, with what was left of them before.
     #[inline(always)]
-    pub fn add(&mut self, (p, j): (usize, usize), (q, k): (usize, usize), value: F<S>) {
-        self.a[p * B + j][q * B + k] += value;
-    }
-
-    /// Adds a symmetric block to the displacement of point `p`.
-    #[inline(always)]
-    pub fn add_diagonal(&mut self, p: usize, m: Sym3<S>) {
-        let o = p * B;
-        self.a[o][o] += m.xx;
-        self.a[o][o + 1] += m.xy;
-        self.a[o][o + 2] += m.xz;
-        self.a[o + 1][o + 1] += m.yy;
-        self.a[o + 1][o + 2] += m.yz;
-        self.a[o + 2][o + 2] += m.zz;
-    }
-
-    /// Adds `s` times the identity to the displacement of point `p`.
-    #[inline(always)]
-    pub fn add_identity(&mut self, p: usize, s: F<S>) {
-        for k in 0..3 {
-            self.a[p * B + k][p * B + k] += s;
-        }
-    }
-
-    /// Adds `s` times the identity to the block of the displacements of points `p` < `q`.
-    #[inline(always)]
-    pub fn add_identity_block(&mut self, p: usize, q: usize, s: F<S>) {
-        for k in 0..3 {
-            self.a[p * B + k][q * B + k] += s;
-        }
-    }
-
-    /// Adds `m` to the block of the displacements of points `p` < `q`.
-    #[inline(always)]
-    pub fn add_block(&mut self, p: usize, q: usize, m: &M3<S>) {
-        for r in 0..3 {
-            let (row, o) = (m.rows[r], &mut self.a[p * B + r]);
-            o[q * B] += row.x;
-            o[q * B + 1] += row.y;
-            o[q * B + 2] += row.z;
-        }
+    fn leave(&self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
+        let rows = factor_rows(B, N, half);
+        let ahead = &mut factors[(i + 1 + reach(B, N)) * rows..][..reach(B, N) * rows];
+        let add = |value: F<S>, row: &mut Row, before: bool| {
+            store(if before { value + load(simd, row) } else { value }, row);
+        };
+        each!(r, {
+            if r + B < N {
+                each!(c, {
+                    if c >= r && c + B < N {
+                        add(self.a[r + B][c + B], &mut ahead[said(r, c, B, N, half)], c + 2 * B < N);
+                    }
+                });
+                add(self.b[r + B], &mut ahead[said_right(r, B, N, half)], r + 2 * B < N);
+            }
+        });
     }
 
     /// Adds `stiffness` times the square of a gradient, which is `c[p]` times `direction` at the displacement of point `p`.
@@ -152,20 +238,6 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
             let r = p * B + j;
             self.a[r.min(c)][r.max(c)] += value;
         }
-    }
-
-    /// Adds a force to the displacement of point `p` [N].
-    #[inline(always)]
-    pub fn add_force(&mut self, p: usize, f: V3<S>) {
-        self.b[p * B] += f.x;
-        self.b[p * B + 1] += f.y;
-        self.b[p * B + 2] += f.z;
-    }
-
-    /// Adds to the right-hand side of unknown `k` of point `p`.
-    #[inline(always)]
-    pub fn add_right(&mut self, (p, k): (usize, usize), value: F<S>) {
-        self.b[p * B + k] += value;
     }
 
     /// The right-hand side of the displacement of the window's first point.
@@ -206,18 +278,26 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         }
     }
 
-    /// Eliminates the window's first point, the strand's `i`th, and moves the window on by a point, which is to [`Band::enter`]. Its factors
-    /// follow in `factors` on those of the points before it, which begin with zeros for [`reach`] points that there are not. No unknown of the
-    /// matrix meets one more than `half` after it.
+    /// Eliminates the window's first point, the strand's `i`th, and [leaves](Band::leave) what was said of the others. Its factors
+    /// follow in `factors` on those of the points before it, which begin with zeros for twice [`reach`] points: as many that there are not, and as many of
+    /// which nothing has been said. No unknown of the matrix meets one more than `half` after it.
     #[inline(always)]
     #[allow(clippy::needless_range_loop, reason = "columns count in the row and in the factors")]
     pub fn eliminate(&mut self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
         let minus_one = F::<S>::splat(simd, -1.0);
+        let mut pivots = [minus_one; B];
         let (rows, reach) = (factor_rows(B, N, half), reach(B, N));
-        let factors = &mut factors[i * rows..][..(reach + 1) * rows];
+        let own = &mut factors[i * rows..][..(reach + 1) * rows];
         each!(r of 0 1 2 3, {
             if r < B {
                 let (mut row, mut right) = (self.a[r], self.b[r]);
+                // What the points before have said of it is read here, where it is added to, and not carried through the walk's loop: the compiler would
+                // move all of the window from one place of the stack to another at every point, an eighth of the instructions.
+                let ahead = &own[reach * rows..][..rows];
+                for c in r..N - B {
+                    row[c] += load(simd, &ahead[said(r, c, B, N, half)]);
+                }
+                right += load(simd, &ahead[said_right(r, B, N, half)]);
                 each!(back of 3 2 1 0, {
                     if back <= reach {
                         // Costs nothing by itself. Without it the compiler loads all factors long before they are used, and then has to
@@ -226,10 +306,11 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                         each!(k of 0 1 2 3, {
                             let last = last_met(k, N, half);
                             if k < B && back * B + r <= last && (back > 0 || k < r) {
-                                let point = &factors[(reach - back) * rows..][..rows];
+                                let point = &own[(reach - back) * rows..][..rows];
                                 let at = factor_row(k, N, half);
                                 let a = |c: usize| load(simd, &point[at + back * B + c - k - 1]);
-                                let l = a(r) * load(simd, &point[pivot_row(k, B, N, half)]);
+                                let pivot = if back == 0 { pivots[k] } else { load(simd, &point[pivot_row(k, B, N, half)]) };
+                                let l = a(r) * pivot;
                                 for c in r..N.min(last + 1 - back * B) {
                                     row[c] = l.mul_add(a(c), row[c]);
                                 }
@@ -238,31 +319,25 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                         });
                     }
                 });
-                let point = &mut factors[reach * rows..][..rows];
+                let point = &mut own[reach * rows..][..rows];
                 let (at, last) = (factor_row(r, N, half), last_met(r, N, half));
                 for c in r + 1..last + 1 {
                     store(row[c], &mut point[at + c - r - 1]);
                 }
                 store(right, &mut point[at + last - r]);
-                store(minus_one / row[r], &mut point[pivot_row(r, B, N, half)]);
+                pivots[r] = minus_one / row[r];
+                store(pivots[r], &mut point[pivot_row(r, B, N, half)]);
             }
         });
-        self.shift();
+        self.leave(simd, half, i, factors);
     }
 
-    /// Moves the window on by a point without eliminating the first.
+    /// Moves on past the strand's `i`th point without eliminating it: those after it meet nothing of it.
     #[inline(always)]
-    pub fn shift(&mut self) {
-        each!(r, {
-            if r + B < N {
-                each!(c, {
-                    if c >= r && c + B < N {
-                        self.a[r][c] = self.a[r + B][c + B];
-                    }
-                });
-                self.b[r] = self.b[r + B];
-            }
-        });
+    pub fn pass(&self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
+        let rows = factor_rows(B, N, half);
+        factors[(i + reach(B, N)) * rows..][..rows].fill(Row::default());
+        self.leave(simd, half, i, factors);
     }
 }
 

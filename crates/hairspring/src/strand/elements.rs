@@ -2,12 +2,11 @@
 
 use super::{
     assemble::{Step, Sweep},
-    band::Band,
-    lanes::{F, V3, load},
+    band::{Band, System, factor_rows, reach},
+    lanes::{F, Row, V3, load},
     model::{At, Model, stretch::stretch},
     root::Root,
     scratch::Scratch,
-    segment::press_between,
     tile::{Tile, rest, state, strand},
 };
 use fearless_simd::prelude::*;
@@ -17,6 +16,13 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
     /// The window, which begins at the point that the walk is at.
     pub band: Band<S, B, N>,
     model: M,
+    /// Where the walk is.
+    pub walk: Walk<S>,
+}
+
+/// Where a walk down a strand is, and what it knows of all of it.
+#[derive(Clone, Copy)]
+pub struct Walk<S: Simd> {
     at: At<S>,
     /// The next particle, from the root [m].
     pub x: V3<S>,
@@ -35,7 +41,7 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
     /// At the root.
     #[inline(always)]
-    pub fn begin(simd: S, sweep: Sweep, step: &Step<S>, tile: &Tile, scratch: &Scratch) -> Self {
+    pub fn begin(simd: S, sweep: Sweep, step: &Step<S>, tile: &Tile, scratch: &mut Scratch) -> Self {
         let (drag, damping, _) = Root::<S>::fibre(simd, tile.strand);
         let zero = V3::zero(simd);
         let mut first = V3::load(simd, &scratch.edges[1]);
@@ -54,6 +60,8 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             drifting: F::splat(simd, sweep.drift(step.h)),
             h: step.h,
         };
+        let rows = factor_rows(B, N, M::HALF);
+        scratch.factors[..2 * reach(B, N) * rows].fill(Row::default());
         let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
         let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
         let explicit = F::splat(simd, step.explicit_tension()) / stiffening;
@@ -63,23 +71,14 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             pull: (root_velocity - now).mul_add(F::splat(simd, 1.0 / step.h), V3::splat(simd, step.gravity)),
             wind: V3::splat(simd, step.wind) + (root_velocity - now),
         };
-        Self { band, model, at, x: zero, way: zero, root_velocity, ambient, half_drag, explicit }
+        let walk = Walk { at, x: zero, way: zero, root_velocity, ambient, half_drag, explicit };
+        Self { band, model, walk }
     }
 
-    /// Adds contact of the segment from point `i`, the band's first.
+    /// The same walk by the [whole](Model::Whole) model.
     #[inline(always)]
-    pub fn press_between(
-        &mut self,
-        simd: S,
-        (sweep, step): (Sweep, &Step<S>),
-        i: usize,
-        tile: &mut Tile,
-        scratch: &mut Scratch,
-    ) {
-        let faster = V3::load(simd, &tile.state[i][state::V..]) - self.root_velocity;
-        let outset = Outset { sweep, faster, share: sweep.drift(step.h), way: self.way };
-        let inner = (i, self.x, outset.drift(simd), outset.way(simd));
-        press_between(simd, (sweep, step, M::STRIDE), tile, inner, &mut self.band, scratch);
+    pub fn whole(&self, simd: S) -> Elements<S, M::Whole, B, N> {
+        Elements { band: Band::new(simd), model: self.model.whole(), walk: self.walk }
     }
 
     /// Adds what begins at the next point `i`: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i
@@ -87,16 +86,17 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     #[inline(always)]
     pub fn add(&mut self, simd: S, i: usize, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
         let Scratch { edges, fixed, .. } = scratch;
-        (self.at.i, self.at.phase) = (i, phase);
-        self.band.enter(simd);
+        let Self { band, model, walk } = self;
+        (walk.at.i, walk.at.phase) = (i, phase);
+        *band = Band::new(simd);
         let next = i + 1;
-        self.x += V3::load(simd, &edges[next]);
+        walk.x += V3::load(simd, &edges[next]);
         let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
         if phase + 1 < M::STRIDE {
-            self.model.add(simd, &self.at, scratch, tile, &mut self.band);
+            model.add(simd, &walk.at, scratch, tile, band);
             // Air does not meet what is no part of the fibre.
-            return Segment { u: self.at.u[1], mass, air: F::splat(simd, 0.0) };
+            return Segment { u: walk.at.u[1], mass, air: F::splat(simd, 0.0) };
         }
         // What the step before had in hand is read again: it would wait in memory all the same.
         let (before, far) = (next - M::STRIDE, next + M::STRIDE);
@@ -108,24 +108,24 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         };
         let e = segment(far);
         let (l, u) = e.length_and_unit();
-        let at = &mut self.at;
+        let at = &mut walk.at;
         at.e = [segment(next), e];
         at.drift = [at.drift[1], (v2 - v1) * at.drifting];
         at.u = [at.u[1], u];
         at.inverse_length = [before, next].map(|i| load(simd, &fixed[i].inverse_length));
-        self.model.add(simd, at, scratch, tile, &mut self.band);
+        model.add(simd, at, scratch, tile, band);
 
         let length = load(simd, &row[rest::LENGTH]);
         let k = load(simd, &fixed[next].along);
         let tension = load(simd, &tile.state[next][state::TENSION]);
-        let (force, block) = stretch((l, u), (l - length) * at.news, k, tension, self.explicit);
-        self.band.add_diagonal(1, block);
-        self.band.add_diagonal(1 + M::STRIDE, block);
-        self.band.add_block(1, 1 + M::STRIDE, &-block.full());
+        let (force, block) = stretch((l, u), (l - length) * at.news, k, tension, walk.explicit);
+        band.add_diagonal(1, block);
+        band.add_diagonal(1 + M::STRIDE, block);
+        band.add_block(1, 1 + M::STRIDE, &-block.full());
         let force = force + block * at.drift[1];
-        self.band.add_force(1, force);
-        self.band.add_force(1 + M::STRIDE, -force);
-        let air = self.half_drag * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
+        band.add_force(1, force);
+        band.add_force(1 + M::STRIDE, -force);
+        let air = walk.half_drag * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
         Segment { u, mass, air }
     }
 }
@@ -141,6 +141,7 @@ pub struct Segment<S: Simd> {
 }
 
 /// What acts alike on all points of strands whose points all move as their roots did.
+#[derive(Clone, Copy)]
 pub struct Ambient<S: Simd> {
     /// Gravity, and how the root's own motion changes [m/s²].
     pub pull: V3<S>,

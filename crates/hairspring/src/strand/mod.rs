@@ -14,7 +14,7 @@ pub(crate) mod lanes;
 pub(crate) mod limit;
 pub(crate) mod mass;
 pub(crate) mod model;
-
+pub(crate) mod outside;
 pub(crate) mod prefetch;
 pub(crate) mod press;
 pub(crate) mod project;

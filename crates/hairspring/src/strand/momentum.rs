@@ -3,6 +3,7 @@
 
 use super::{
     assemble::{Step, Sweep},
+    band::Band,
     dispatch::dispatch,
     elements::Elements,
     fixed::fix,
@@ -65,7 +66,7 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         Elastic::Straight => walk::<_, Straight, 3, 9>(simd, s, &mut tile),
         Elastic::Curvature => walk::<_, Curvature<_>, 3, 9>(simd, s, &mut tile),
         Elastic::Rod => walk::<_, Rod<_>, 4, 11>(simd, s, &mut tile),
-        Elastic::Springs => walk::<_, Springs, 3, 12>(simd, s, &mut tile),
+        Elastic::Springs => walk::<_, Springs<true>, 3, 12>(simd, s, &mut tile),
     })
 }
 
@@ -91,15 +92,18 @@ where
     let mut scratch = memory.scratch(s.x.len());
     fix(simd, step.h, Stretching::Moderate, tile, &mut scratch);
     scratch.begin(tile.state);
-    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, &step, tile, &scratch);
+    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, &step, tile, &mut scratch);
     let mut forces = Forces::default();
     for i in 0..s.x.len() {
         if i + 1 < s.x.len() {
             elements.add(simd, i, i % M::STRIDE, tile, &scratch);
+        } else {
+            elements.band = Band::new(simd);
         }
+        elements.band.take_up(simd, M::HALF, i, scratch.factors);
         forces.0.push(lane(elements.band.force()));
         forces.1.push(if B > 3 { elements.band.right(3)[3] as f64 } else { 0.0 });
-        elements.band.shift();
+        elements.band.pass(simd, M::HALF, i, scratch.factors);
     }
     forces
 }

@@ -19,7 +19,7 @@
 
 use super::{
     assemble::Step,
-    band::Band,
+    band::System,
     lanes::{F, Row, Sym3, V3, load, store},
     model::stretch::STRETCH,
     root::Root,
@@ -44,15 +44,15 @@ pub mod scratch {
 /// at which a strand over a cylinder slips (at μ = 1 high by 6 % at 1, by 10 % at 16).
 pub const STICK: f32 = 8.0;
 
-/// Adds contact to point `i`, the second of the band's window, which is at `x` from the root, drifts by
+/// Adds contact to point `i`, the second of the window, which is at `x` from the root, drifts by
 /// `drift` and is by then `way` from where the substep began.
 #[inline(always)]
-pub fn press<S: Simd, const B: usize, const N: usize>(
+pub fn press<S: Simd, const B: usize>(
     simd: S,
     step: &Step<S>,
     tile: &mut Tile,
     (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
-    band: &mut Band<S, B, N>,
+    system: &mut impl System<S, B>,
     work: &mut [Row; scratch::ROWS],
 ) {
     let zero = F::<S>::splat(simd, 0.0);
@@ -79,8 +79,8 @@ pub fn press<S: Simd, const B: usize, const N: usize>(
     let before = V3::load(simd, &tile.state[i][state::V..]) * F::splat(simd, step.h);
     let (slid, _) = along(before - carried).length_and_unit();
     let rub = (Root::<S>::fibre(simd, tile.strand).2 * force / slid).min(k * STICK);
-    band.add_diagonal(1, Sym3::outer(normal, k - rub).add_identity(rub));
-    band.add_force(
+    system.add_diagonal(1, Sym3::outer(normal, k - rub).add_identity(rub));
+    system.add_force(
         1,
         normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub,
     );

@@ -22,7 +22,7 @@ pub struct Memory {
 
 /// What one tile needs of it, cut to the tile's length, so that walks along the strand need no checks.
 pub struct Scratch<'a> {
-    /// Factors of the band, point after point, after zeros for those that the first would meet; other sweeps' rows lie over them.
+    /// Factors of the band, point after point, between those that the first and the last would meet; other sweeps' rows lie over them.
     pub factors: &'a mut [Row],
     /// From each particle's predecessor to it, anew, shape `[points + BEYOND]` [m]; see `state::EDGE`.
     pub edges: &'a mut [[Row; 3]],
@@ -52,7 +52,7 @@ impl Memory {
     pub fn scratch(&mut self, points: usize) -> Scratch<'_> {
         self.reserve(points);
         Scratch {
-            factors: &mut self.factors[..(points + MOST_REACH) * MOST_FACTORS],
+            factors: &mut self.factors[..(points + 2 * MOST_REACH) * MOST_FACTORS],
             edges: &mut self.edges[..points + BEYOND],
             kick: &mut self.kick[..points],
             change: &mut self.change[..points],
@@ -64,7 +64,7 @@ impl Memory {
     /// Room for a tile of `points`.
     fn reserve(&mut self, points: usize) {
         if self.fixed.len() < points {
-            self.factors.resize((points + MOST_REACH) * MOST_FACTORS, Row::default());
+            self.factors.resize((points + 2 * MOST_REACH) * MOST_FACTORS, Row::default());
             self.kick.resize(points, [Row::default(); 3]);
             self.change.resize(points, [Row::default(); 3]);
             self.edges.resize(points + BEYOND, [Row::default(); 3]);

@@ -14,13 +14,12 @@
 
 use super::{
     assemble::{Step, Sweep},
-    band::Band,
+    band::System,
     lanes::{F, Row, Sym3, V3, load, store},
     limit::{CORRECTIONS, Finish, Link, Particle, out_of},
     model::stretch::STRETCH,
     press::{STICK, Surface, nearest, scratch, scratch::SEGMENT},
     root::Root,
-    scratch::Scratch,
     tile::{Tile, rest, span, state},
 };
 use crate::collide::{ObstaclePose, STEEP, contact, deepest, surface_displacement};
@@ -118,17 +117,17 @@ pub fn clear<S: Simd>(
     V3::select(inside, link.clamp(link.swing_out(q, normal, left)), q)
 }
 
-/// Adds contact to the segment from point `i`, the first of the band's window, to the strand's next, which is in it too. Point `i` is at `x` from the
+/// Adds contact to the segment from point `i`, the first of the window, to the strand's next, which is in it too. Point `i` is at `x` from the
 /// root, drifts by `drift` and is by then `way` from where the substep began. `stride` is the model's, told and not looked up: the compiler has to know
 /// which entries these are, or all of the band stays in memory.
 #[inline(always)]
-pub fn press_between<S: Simd, const B: usize, const N: usize>(
+pub fn press_between<S: Simd, const B: usize>(
     simd: S,
     (sweep, step, stride): (Sweep, &Step<S>, usize),
     tile: &mut Tile,
     (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
-    band: &mut Band<S, B, N>,
-    memory: &mut Scratch,
+    system: &mut impl System<S, B>,
+    (edges, contacts): (&[[Row; 3]], &mut [[Row; scratch::ROWS]]),
 ) {
     let outer = i + stride;
     let Some(rows) = tile.spans.get(outer) else { return };
@@ -139,10 +138,10 @@ pub fn press_between<S: Simd, const B: usize, const N: usize>(
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let at = load(simd, &rows[span::AT]);
     // From this point to the next, now and where the substep began.
-    let mut e = V3::load(simd, &memory.edges[outer]);
+    let mut e = V3::load(simd, &edges[outer]);
     let mut old = V3::load(simd, &tile.state[outer][state::EDGE..]);
     if stride == 2 {
-        e += V3::load(simd, &memory.edges[i + 1]);
+        e += V3::load(simd, &edges[i + 1]);
         old += V3::load(simd, &tile.state[i + 1][state::EDGE..]);
     }
     let Surface { distance, normal, carried } =
@@ -163,7 +162,7 @@ pub fn press_between<S: Simd, const B: usize, const N: usize>(
     let (size, across) = (normal - u * normal.dot(u)).length_and_unit();
     let normal = V3::select(size.simd_lt(STEEP), normal, across);
     let normal = V3::select(shut, normal, V3::zero(simd));
-    let work = &mut memory.contacts[outer][SEGMENT..];
+    let work = &mut contacts[outer][SEGMENT..];
     normal.store(&mut work[scratch::NORMAL..]);
     store(gap, &mut work[scratch::GAP]);
 
@@ -183,11 +182,11 @@ pub fn press_between<S: Simd, const B: usize, const N: usize>(
     let block = Sym3::outer(normal, k - rub).add_identity(rub);
     let push = normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub;
     let share = one - at;
-    band.add_diagonal(0, block * (share * share));
-    band.add_diagonal(stride, block * (at * at));
-    band.add_block(0, stride, &(block * (share * at)).full());
-    band.add_force(0, push * share);
-    band.add_force(stride, push * at);
+    system.add_diagonal(0, block * (share * share));
+    system.add_diagonal(stride, block * (at * at));
+    system.add_block(0, stride, &(block * (share * at)).full());
+    system.add_force(0, push * share);
+    system.add_force(stride, push * at);
 }
 
 /// The force that presses the segment from point `i` once the solve has moved its ends by `moved`.

@@ -2,7 +2,7 @@
 
 use super::{
     assemble::{Step, Sweep, assemble, substitute},
-    band::{Band, back_substitute, factor_rows, reach},
+    band::{Band, System, back_substitute, factor_rows, reach},
     dispatch::dispatch,
     fixed::fix,
     lanes::{F, LANES, Row, V3},
@@ -46,10 +46,9 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
 ) -> Vec<f64> {
     let (n, rows) = (b.len() / B, factor_rows(B, N, half));
     let f = |v: f64| F::<S>::splat(simd, v as f32);
-    let mut factors = vec![Row::default(); (n + reach(B, N)) * rows];
-    let mut band = Band::<S, B, N>::new(simd);
+    let mut factors = vec![Row::default(); (n + 2 * reach(B, N)) * rows];
     for i in 0..n {
-        band.enter(simd);
+        let mut band = Band::<S, B, N>::new(simd);
         // Everything whose first point is i.
         for r in i * B..(i + 1) * B {
             for (c, value) in a[r].iter().enumerate().take(n * B).skip(r) {
@@ -356,8 +355,8 @@ fn solve_once<S: Simd>(simd: S, step: &Step<S>, tile: &mut Tile, scratch: &mut S
             substitute::<S, Rod<S>, 4, 11>(simd, Sweep::First, step, tile, scratch);
         }
         Elastic::Springs => {
-            assemble::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
+            assemble::<S, Springs<true>, 3, 12>(simd, Sweep::First, step, tile, scratch);
+            substitute::<S, Springs<true>, 3, 12>(simd, Sweep::First, step, tile, scratch);
         }
     }
 }

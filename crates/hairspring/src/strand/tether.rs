@@ -11,7 +11,7 @@
 
 use super::{
     assemble::Step,
-    band::Band,
+    band::System,
     lanes::{F, Sym3, V3, load},
     limit::{Link, Particle},
     model::stretch::STRETCH,
@@ -22,14 +22,14 @@ use fearless_simd::prelude::*;
 /// How far a spring may let a point be beyond its tether, over the tether's length [1].
 const SLACK: f32 = 1e-3;
 
-/// Adds the pull on point `i`, the second of the band's window, which is at `x` from the root and drifts by `drift`.
+/// Adds the pull on point `i`, the second of the window, which is at `x` from the root and drifts by `drift`.
 #[inline(always)]
-pub fn pull<S: Simd, const B: usize, const N: usize>(
+pub fn pull<S: Simd, const B: usize>(
     simd: S,
     step: &Step<S>,
     tile: &Tile,
     (i, x, drift): (usize, V3<S>, V3<S>),
-    band: &mut Band<S, B, N>,
+    system: &mut impl System<S, B>,
 ) {
     let Some(reach) = tile.tethers.get(i) else { return };
     let (size, out) = x.length_and_unit();
@@ -42,8 +42,8 @@ pub fn pull<S: Simd, const B: usize, const N: usize>(
     let k = load(simd, &tile.rest[i][rest::MASS]) * (STRETCH / (step.h * step.h));
     let zero = F::splat(simd, 0.0);
     let (k, beyond) = (far.select(k, zero), far.select(beyond, zero));
-    band.add_diagonal(1, Sym3::outer(out, k));
-    band.add_force(1, out * (k * -(beyond + out.dot(drift))));
+    system.add_diagonal(1, Sym3::outer(out, k));
+    system.add_force(1, out * (k * -(beyond + out.dot(drift))));
 }
 
 /// Where point `i` may be that is at `e` from the point before, which is `at`: no farther from the root than its tether is long, within the limits of its

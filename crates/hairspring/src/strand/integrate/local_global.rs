@@ -11,7 +11,7 @@
 use super::outside;
 use crate::strand::{
     assemble::Step,
-    band::{Band, factor_rows, reach},
+    band::{Band, System, factor_rows, reach},
     lanes::{F, Row, V3, load},
     model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
     scratch::Scratch,
@@ -31,10 +31,10 @@ const BEFORE: usize = reach(1, 3);
 #[inline(always)]
 pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
     let n = tile.rest.len();
-    let mut band = Band::<S, 1, 3>::new(simd);
-    scratch.factors[..BEFORE * ROWS].fill(Row::default());
+    scratch.factors[..2 * BEFORE * ROWS].fill(Row::default());
     for i in 0..n {
-        band.enter(simd);
+        let mut band = Band::<S, 1, 3>::new(simd);
+        band.take_up(simd, 2, i, scratch.factors);
         if i + 1 < n {
             let [alpha, beta, stretch, bend] = weights(simd, h, tile, i);
             let mass = load(simd, &tile.rest[i + 1][rest::MASS]);

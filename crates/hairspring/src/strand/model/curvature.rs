@@ -20,15 +20,23 @@ use fearless_simd::{Level, prelude::*};
 /// Bending in a frame that is carried along the strand by the least rotation and so knows no twist: right and cheapest for
 /// strands that are straight at rest, where no frame matters (see `straight`). A coil slowly forgets its shape in it, and swung curls gain energy, because
 /// the force does not know of its share in the frames beyond.
+#[derive(Clone, Copy)]
 pub struct Curvature<S: Simd> {
     /// The frame's normal on segment i.
     normal: V3<S>,
 }
 
 impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
+    type Whole = Self;
+
     #[inline(always)]
     fn begin(_: S, _: &Tile, root: &Root<S>) -> Self {
         Self { normal: root.normal }
+    }
+
+    #[inline(always)]
+    fn whole(&self) -> Self {
+        *self
     }
 
     #[inline(always)]

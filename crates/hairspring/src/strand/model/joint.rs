@@ -9,7 +9,7 @@
 //! ```
 
 use crate::strand::{
-    band::Band,
+    band::{Band, System},
     lanes::{F, M3, Sym3, V3},
 };
 use fearless_simd::prelude::*;

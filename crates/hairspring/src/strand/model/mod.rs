@@ -94,11 +94,23 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// Points at the root that are driven: its first segment.
     const DRIVEN: usize = Self::STRIDE + 1;
 
+    /// The model with what few points need: were that added to the window in a rare branch, all of it would have to be where both sides find it.
+    type Whole: Model<S, B, N>;
+
     /// Starts at the root of a strand.
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self;
 
     /// Adds all elements whose first point is `at.i`, which is the band's first.
     fn add(&mut self, simd: S, at: &At<S>, scratch: &Scratch, tile: &mut Tile, band: &mut Band<S, B, N>);
+
+    /// The same with what few points need, where the walk is.
+    fn whole(&self) -> Self::Whole;
+
+    /// Whether what begins at point `i` needs [`Model::Whole`].
+    #[inline(always)]
+    fn falls_short(_: S, _: usize, _: &Tile, _: &Scratch) -> bool {
+        false
+    }
 
     /// Takes what the solve found besides displacements.
     fn take(simd: S, solved: &Solved<S, N>, tile: &mut Tile, fixed: &[Fixed]);

@@ -20,7 +20,7 @@ use super::{
     curvature::turn_in_frame,
 };
 use crate::strand::{
-    band::Band,
+    band::{Band, System},
     dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
@@ -39,6 +39,7 @@ const LARGEST_TURN: f32 = 0.5;
 const INERTIA: f32 = 8e-10;
 
 /// Curvature and twist; see above.
+#[derive(Clone, Copy)]
 pub struct Rod<S: Simd> {
     /// The frame's normal on segment i.
     normal: V3<S>,
@@ -49,6 +50,8 @@ pub struct Rod<S: Simd> {
 }
 
 impl<S: Simd> Model<S, 4, 11> for Rod<S> {
+    type Whole = Self;
+
     #[inline(always)]
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self {
         Self {
@@ -56,6 +59,11 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
             twist_ratio: load(simd, &tile.strand[strand::TWIST_RATIO]),
             flat: load(simd, &tile.strand[strand::FLAT]),
         }
+    }
+
+    #[inline(always)]
+    fn whole(&self) -> Self {
+        *self
     }
 
     #[inline(always)]

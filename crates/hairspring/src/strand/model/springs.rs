@@ -16,7 +16,7 @@
 
 use super::{At, Model, Solved};
 use crate::strand::{
-    band::Band,
+    band::{Band, System},
     dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
@@ -28,30 +28,41 @@ use crate::strand::{
 };
 use fearless_simd::{Level, mask32x8, prelude::*};
 
-/// A truss of distance springs, see above.
-pub struct Springs;
+/// A truss of distance springs, see above; altitude springs if they are `ALTITUDES`, for what begins at points whose tetrahedron is flattened.
+pub struct Springs<const ALTITUDES: bool>;
 
-impl<S: Simd> Model<S, 3, 12> for Springs {
+impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
     const STRIDE: usize = 2;
+
+    type Whole = Springs<true>;
 
     #[inline(always)]
     fn begin(_: S, _: &Tile, _: &Root<S>) -> Self {
+        Self
+    }
+
+    #[inline(always)]
+    fn whole(&self) -> Springs<true> {
         Springs
+    }
+
+    #[inline(always)]
+    fn falls_short(simd: S, i: usize, tile: &Tile, scratch: &Scratch) -> bool {
+        !ALTITUDES && flattened(after(simd, i, scratch), &tile.rest[i]).any_true()
     }
 
     #[inline(always)]
     fn add(&mut self, simd: S, at: &At<S>, scratch: &Scratch, tile: &mut Tile, band: &mut Band<S, 3, 12>) {
         let i = at.i;
         let (rest, fixed) = (&tile.rest[i], &scratch.fixed[i]);
-        let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges go on past the tip");
-        let [e1, e2, e3] = edges.each_ref().map(|e| V3::load(simd, e));
-        // From this particle to the three after it.
-        let p = [e1, e1 + e2, e1 + e2 + e3];
+        let p = after(simd, i, scratch);
         // Beyond the tip nothing is stiff.
         let tip = tile.rest.len() - 1;
         let v = |k: usize| V3::load(simd, &tile.state[(i + k).min(tip)][state::V..]);
         let drift = |far: usize| v(far) - v(0);
-        add_altitude(simd, at, (p, &drift), rest, band);
+        if ALTITUDES {
+            add_altitude(simd, at, (p, &drift), rest, band);
+        }
 
         // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
         // much as along: kept where it pulls alone (Choi & Ko 2002), it would resist every turn of a segment; left out, it cancels.
@@ -93,7 +104,7 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
 
 /// One tile through an interval, on the widest lanes that there are.
 pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
-    dispatch!(level, simd => run_tile::<_, Springs, 3, 12>(simd, interval, tile, memory));
+    dispatch!(level, simd => run_tile::<_, Springs<false>, 3, 12>(simd, interval, tile, memory));
 }
 
 /// What a triangle's sides have besides the stiffness of all segments, for the triangle that begins at `point` (see `truss`) [N/m].
@@ -178,8 +189,24 @@ fn add_spring<S: Simd>(band: &mut Band<S, 3, 12>, far: usize, force: V3<S>, bloc
 /// Volume over the rest volume below which an altitude spring acts [1].
 const FLATTENED: f32 = 0.5;
 
+/// From particle `i` to the three after it.
+#[inline(always)]
+fn after<S: Simd>(simd: S, i: usize, scratch: &Scratch) -> [V3<S>; 3] {
+    let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges go on past the tip");
+    let [e1, e2, e3] = edges.each_ref().map(|e| V3::load(simd, e));
+    [e1, e1 + e2, e1 + e2 + e3]
+}
+
+/// Where the tetrahedron of a particle and the three after it, which are at `p` from it, is flattened.
+#[inline(always)]
+fn flattened<S: Simd>(p: [V3<S>; 3], rest: &[Row]) -> mask32x8<S> {
+    let volume = p[0].dot(p[1].cross(p[2]));
+    let kept = load(volume.simd, &rest[springs::VOLUME]) * FLATTENED;
+    (volume * kept).simd_lt(kept * kept)
+}
+
 /// Adds the altitude spring of a particle and the three after it, which are at `p` from it and drift with velocities `drift` against its, where their
-/// tetrahedron is flattened.
+/// tetrahedron is `flattened`.
 #[inline(always)]
 fn add_altitude<S: Simd>(
     simd: S,
@@ -188,12 +215,8 @@ fn add_altitude<S: Simd>(
     rest: &[Row],
     band: &mut Band<S, 3, 12>,
 ) {
+    let flattened = flattened(p, rest);
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
-    let volume = p[0].dot(p[1].cross(p[2]));
-    let flattened = (volume * kept).simd_lt(kept * kept);
-    if !flattened.any_true() {
-        return;
-    }
     let k = flattened.select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
     let (normal, c, strain) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
     band.add_rank_one(normal, c, k * at.damped);

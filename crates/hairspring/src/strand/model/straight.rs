@@ -2,7 +2,7 @@
 
 use super::{At, Model, Solved};
 use crate::strand::{
-    band::Band,
+    band::{Band, System},
     dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
@@ -15,15 +15,23 @@ use crate::strand::{
 use fearless_simd::{Level, prelude::*};
 
 /// Bending by the curvature vector with d = 0: `bend` where P is the identity.
+#[derive(Clone, Copy)]
 pub struct Straight;
 
 impl<S: Simd> Model<S, 3, 9> for Straight {
     // Points i and i+2 meet in bending alone, an axis by itself.
     const HALF: usize = 6;
 
+    type Whole = Self;
+
     #[inline(always)]
     fn begin(_: S, _: &Tile, _: &Root<S>) -> Self {
         Self
+    }
+
+    #[inline(always)]
+    fn whole(&self) -> Self {
+        *self
     }
 
     #[inline(always)]
