@@ -12,7 +12,7 @@ mod rigid;
 mod sheet;
 mod voxelize;
 
-pub(crate) use along::{STEEP, deepest};
+pub(crate) use along::{Deepest, STEEP, deepest};
 pub use grid::Grid;
 pub use hull::Hull;
 pub use obstacle::Obstacle;

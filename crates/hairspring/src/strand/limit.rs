@@ -190,7 +190,7 @@ fn held<S: Simd>(
             for _ in 0..CORRECTIONS {
                 let (distance, normal) = contact(simd, pose, in_world(q));
                 let left = (clearance - distance).max(0.0);
-                let still = inside & left.simd_gt(link.length * SLACK);
+                let still = inside & left.simd_gt(link.slack());
                 if !still.any_true() {
                     break;
                 }
@@ -298,6 +298,12 @@ impl<S: Simd> Link<S> {
     pub fn clamp(&self, e: V3<S>) -> V3<S> {
         let (l, u) = e.length_and_unit();
         V3::select(self.wrong(e), u * self.within(l), e)
+    }
+
+    /// How deep a point may be that is not corrected again [m].
+    #[inline(always)]
+    pub fn slack(&self) -> F<S> {
+        self.length * SLACK
     }
 
     /// The nearest length that is within the limit.
