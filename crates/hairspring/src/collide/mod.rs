@@ -4,6 +4,7 @@
 mod along;
 mod deep;
 mod grid;
+mod holes;
 mod hull;
 mod lattice;
 mod obstacle;
