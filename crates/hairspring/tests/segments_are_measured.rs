@@ -93,6 +93,25 @@ fn what_is_clear_is_not_counted() {
     }
 }
 
+#[test]
+fn what_begins_inside_where_the_root_holds_it_is_counted_apart() {
+    let ball = |x: f32, y: f32| Obstacle::Sphere { center: Vec3::new(SEGMENT + x, y, 0.0), radius: 0.008 };
+    for model in Model::ALL {
+        // The held end is the deepest place, 3 mm; at the first eighth it is √(5² + 2.5²) from the middle.
+        let found = measure(model, &ball(0.0, -0.005), false);
+        let counts = (found.inside_segments, found.deep_segments, found.held_segments);
+        assert_eq!(counts, (0, 0, 1), "{model:?}: {found:?}");
+        assert!((found.held_depth - 0.002_409_8).abs() < 1e-6, "{model:?}: {found:?}");
+        // A quarter on it is 6 mm deep, and its beginning √(5² + 2²) from the middle: what is deeper than that can be moved.
+        let found = measure(model, &ball(0.005, -0.002), false);
+        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: {found:?}");
+        assert!((found.segment_depth - 0.003_385_2).abs() < 1e-6, "{model:?}: {found:?}");
+        // Of one that begins outside nothing is held.
+        let found = measure(model, &ball(0.01, -0.005), false);
+        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: {found:?}");
+    }
+}
+
 proptest! {
     /// Of a ball the nearest place of a segment is known: what is found there is no deeper, by an eighth of the segment less deep at most,
     /// and on the right side of the surface where the whole segment is outside.

@@ -46,8 +46,8 @@ struct Arguments {
 
 /// Head of the table of `docs/contact.md`.
 const CONTACT: &str = "\
-| scene | substeps | frames | points that may meet | points inside | deepest point [mm] | segments inside | segments deeper than 1 mm | in so many frames | deepest segment [mm] | ms a frame, strands |
-| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |";
+| scene | substeps | frames | points that may meet | points inside | deepest point [mm] | segments inside | segments deeper than 1 mm | in so many frames | deepest segment [mm] | held ones deeper than 1 mm | deepest of them [mm] | ms a frame, strands |
+| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = arguments()?;
@@ -136,16 +136,25 @@ impl Played {
 
     /// Cells of the table of `docs/contact.md`, but the first.
     fn contact(&self, stage: &Stage) -> String {
-        let Measure { inside_points, max_depth, inside_segments, deep_segments, segment_depth, .. } =
-            self.worst;
+        let Measure {
+            inside_points,
+            max_depth,
+            inside_segments,
+            deep_segments,
+            segment_depth,
+            held_segments,
+            held_depth,
+            ..
+        } = self.worst;
         format!(
-            "{} | {} | {} | {inside_points} | {:.3} | {inside_segments} | {deep_segments} | {} | {:.3} | {:.1}",
+            "{} | {} | {} | {inside_points} | {:.3} | {inside_segments} | {deep_segments} | {} | {:.3} | {held_segments} | {:.3} | {:.1}",
             stage.scene().solver.substeps,
             self.frames.len(),
             stage.simulated_points().0,
             max_depth * 1e3,
             self.deep_frames,
             segment_depth * 1e3,
+            held_depth * 1e3,
             self.median(|f| f[1]),
         )
     }
@@ -187,6 +196,8 @@ fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
             inside_segments: worst.inside_segments.max(measure.inside_segments),
             deep_segments: worst.deep_segments.max(measure.deep_segments),
             segment_depth: worst.segment_depth.max(measure.segment_depth),
+            held_segments: worst.held_segments.max(measure.held_segments),
+            held_depth: worst.held_depth.max(measure.held_depth),
             non_finite: worst.non_finite + measure.non_finite + report.step.reset_strands,
             speed_max: worst.speed_max.max(measure.speed_max),
         };

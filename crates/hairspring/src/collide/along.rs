@@ -6,7 +6,7 @@
 //!       ╲╌╌╌╌╌╌╌╌╌╌╱
 //! ```
 
-use super::{Obstacle, ObstaclePose, contact};
+use super::{Obstacle, ObstaclePose, pose::slope};
 use crate::strand::lanes::{F, V3};
 use fearless_simd::{mask32x8, prelude::*};
 use glam::Vec3;
@@ -43,14 +43,25 @@ pub(crate) struct Deepest<S: Simd> {
     pub found: mask32x8<S>,
     /// Distance to the surface, negative inside [m].
     pub distance: F<S>,
-    /// Unit normal of the segment there, outward: that of the surface without what is along the segment. On an edge the surface's jumps between
-    /// two faces, this one does not.
+    /// The way out, a unit vector across the segment: that in which its least distance grows fastest.
     pub normal: V3<S>,
+    /// How much that distance grows for each metre along it [1].
+    pub gain: F<S>,
     /// Where it is: 0 at the segment's beginning, 1 at its end.
     pub at: F<S>,
 }
 
-/// Least cosine between the segment's normal and the surface's: what is steeper comes out end first.
+impl<S: Simd> Deepest<S> {
+    /// That none was found.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        let zero = F::splat(simd, 0.0);
+        let found = mask32x8::splat(simd, false);
+        Self { found, distance: zero, normal: V3::zero(simd), gain: zero, at: zero }
+    }
+}
+
+/// Least growth of the distance across the segment [1]: where there is less, it comes out end first.
 pub(crate) const STEEP: f32 = 0.02;
 
 /// Pieces between whose ends a segment is looked at: quarters, and no longer than half a cell of a field where that takes no more than the second [1].
@@ -85,10 +96,8 @@ pub(crate) fn deepest<S: Simd>(
         pieces += 2;
     }
     let apart = 1.0 / pieces as f32;
-    let nothing =
-        Look { at: splat(-1.0), distance: splat(f32::MAX), normal: V3::zero(simd), slope: splat(0.0) };
-    let (mut middle, mut last, mut seen) =
-        (nothing, nothing, Seen { before: nothing, best: nothing, after: nothing });
+    let mut seen = Seen::nothing(simd);
+    let (mut middle, mut last, mut refined) = (seen.best, seen.best, seen.best);
     let mut found = mask32x8::splat(simd, false);
     // The middle, all from the first on, and what is beside the deepest: in a loop, so that the code that looks is there once.
     for k in 0..=pieces {
@@ -100,8 +109,8 @@ pub(crate) fn deepest<S: Simd>(
         let here = if 2 * k == pieces {
             middle
         } else {
-            let (distance, normal) = contact(simd, pose, e.mul_add(at, a));
-            Look { at, distance, normal, slope: normal.dot(e) }
+            let (distance, rise) = slope(simd, pose, e.mul_add(at, a));
+            Look { at, distance, rise, slope: rise.dot(e) }
         };
         if k == 0 {
             let nearer = match &pose.shape {
@@ -115,18 +124,22 @@ pub(crate) fn deepest<S: Simd>(
                 return None;
             }
             middle = here;
+        } else if k == pieces {
+            refined = here;
         } else {
             seen.see(here, last);
             last = here;
         }
     }
-    let best = seen.best;
-    let (slope, across) = (best.normal - u * best.normal.dot(u)).length_and_unit();
-    let steep = slope.simd_lt(STEEP);
+    let (best, rise) = seen.out(simd, refined);
+    let (gain, across) = (rise - u * rise.dot(u)).length_and_unit();
+    let steep = gain.simd_lt(STEEP);
+    let (straight_gain, straight) = best.rise.length_and_unit();
     Some(Deepest {
         found: found & best.distance.simd_lt(within),
         distance: best.distance,
-        normal: V3::select(steep, best.normal, across),
+        normal: V3::select(steep, straight, across),
+        gain: steep.select(straight_gain, gain),
         at: best.at,
     })
 }
@@ -138,11 +151,11 @@ fn beside<S: Simd>(simd: S, seen: &Seen<S>, apart: f32) -> F<S> {
     let splat = |x: f32| F::<S>::splat(simd, x);
     let best = &seen.best;
     let toward = best.slope.simd_lt(0.0).select(splat(apart), splat(-apart));
-    let next = Look::select(toward.simd_gt(0.0), seen.after, seen.before);
+    let next = seen.next();
     let (f, f_next) = (best.slope * toward, next.slope * toward);
-    let known = (best.at + toward - next.at).abs().simd_lt(0.5 * apart) & f_next.simd_gt(0.0);
     let cross = (f_next + best.distance - next.distance) / (f_next - f).max(1e-30);
-    known.select(cross.max(0.0).min(1.0), splat(0.5)).mul_add(toward, best.at)
+    let cross = f_next.simd_gt(0.0).select(cross.max(0.0).min(1.0), splat(0.5));
+    cross.mul_add(toward, best.at)
 }
 
 /// The deepest place that was seen on eight segments, and the places before and after it, where those were looked at.
@@ -153,6 +166,13 @@ struct Seen<S: Simd> {
 }
 
 impl<S: Simd> Seen<S> {
+    #[inline(always)]
+    fn nothing(simd: S) -> Self {
+        let [at, distance, slope] = [-1.0, f32::MAX, 0.0].map(|x| F::splat(simd, x));
+        let nothing = Look { at, distance, rise: V3::zero(simd), slope };
+        Self { before: nothing, best: nothing, after: nothing }
+    }
+
     /// Takes up the place after `last`.
     #[inline(always)]
     fn see(&mut self, here: Look<S>, last: Look<S>) {
@@ -160,6 +180,35 @@ impl<S: Simd> Seen<S> {
         let nearer = here.distance.simd_lt(self.best.distance);
         self.before = Look::select(nearer, last, self.before);
         self.best = Look::select(nearer, here, self.best);
+        // Until the next place is seen.
+        self.after = Look::select(nearer, Self::nothing(here.at.simd).after, self.after);
+    }
+
+    /// The place beside the deepest toward which that falls.
+    #[inline(always)]
+    fn next(&self) -> Look<S> {
+        Look::select(self.best.slope.simd_lt(0.0), self.after, self.before)
+    }
+
+    /// The deepest place, with what was seen in a place `refined` between the deepest and the next, and how fast the least distance of the segment grows
+    /// as it is moved [1].
+    ///
+    /// ```text
+    ///   ╲ n₁     n₂ ╱     on both sides of a thin wall or an edge: w n₁ + (1 − w) n₂ with nothing in it along the segment. What is deepest moves
+    ///    ╲    │    ╱      along as the segment does, so that the depth is less by that for each metre, out over the wall's rim; along one
+    ///     ╲___│___╱       side's normal it would be less here and more beyond
+    /// ```
+    #[inline(always)]
+    fn out(&self, simd: S, refined: Look<S>) -> (Look<S>, V3<S>) {
+        let opposite = |a: &Look<S>, b: &Look<S>| (a.slope * b.slope).simd_lt(0.0);
+        let deeper = refined.distance.simd_lt(self.best.distance);
+        let best = Look::select(deeper, refined, self.best);
+        // The two sides of a place between are that which it falls from and that which it falls to.
+        let beyond = Look::select(opposite(&self.best, &refined), self.best, self.next());
+        let other = Look::select(deeper, beyond, refined);
+        let share = best.slope / (best.slope - other.slope);
+        let share = opposite(&best, &other).select(share, F::splat(simd, 0.0));
+        (best, (other.rise - best.rise).mul_add(share, best.rise))
     }
 }
 
@@ -169,7 +218,8 @@ struct Look<S: Simd> {
     /// The place: 0 at the segment's beginning, 1 at its end.
     at: F<S>,
     distance: F<S>,
-    normal: V3<S>,
+    /// How fast the distance changes with place [1].
+    rise: V3<S>,
     /// By how much the distance grows along the whole segment, by its tangent there [m].
     slope: F<S>,
 }
@@ -180,7 +230,7 @@ impl<S: Simd> Look<S> {
         Self {
             at: mask.select(a.at, b.at),
             distance: mask.select(a.distance, b.distance),
-            normal: V3::select(mask, a.normal, b.normal),
+            rise: V3::select(mask, a.rise, b.rise),
             slope: mask.select(a.slope, b.slope),
         }
     }

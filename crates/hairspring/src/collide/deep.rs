@@ -71,3 +71,16 @@ pub(super) fn extend(grid: &mut Grid, runs: impl DoubleEndedIterator<Item = [u32
         d[row + first..row + end].iter_mut().for_each(|d| *d = d.min(-BAND * *cell));
     }
 }
+
+/// Adds the runs of nodes that lie deeper than the band in the `distances` of a row (layer, row), before distances are known there.
+pub(super) fn push([z, y]: [u32; 2], distances: &[f32], cell: f32, deep: &mut Vec<[u32; 4]>) {
+    let known = -(BAND - 0.01) * cell;
+    let mut first = 0;
+    for run in distances.chunk_by(|a, b| (*a <= known) == (*b <= known)) {
+        let end = first + run.len() as u32;
+        if run[0] <= known {
+            deep.push([z, y, first, end]);
+        }
+        first = end;
+    }
+}

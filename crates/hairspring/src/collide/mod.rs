@@ -4,6 +4,7 @@
 mod along;
 mod deep;
 mod grid;
+mod holes;
 mod hull;
 mod lattice;
 mod obstacle;
@@ -12,7 +13,7 @@ mod rigid;
 mod sheet;
 mod voxelize;
 
-pub(crate) use along::{STEEP, deepest};
+pub(crate) use along::{Deepest, STEEP, deepest};
 pub use grid::Grid;
 pub use hull::Hull;
 pub use obstacle::Obstacle;

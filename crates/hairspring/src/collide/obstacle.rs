@@ -166,6 +166,15 @@ impl Obstacle {
             Obstacle::Sheet(sheet) => sheet.distance_lanes(simd, p),
         }
     }
+
+    /// The same, and in place of the normal how fast the distance changes with place [1].
+    #[inline(always)]
+    pub(super) fn slope_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
+        match self {
+            Obstacle::Field(grid) => grid.slope_lanes(simd, p),
+            _ => self.distance_lanes(simd, p),
+        }
+    }
 }
 
 /// Distance and normal of a ball of `radius`, `d` from its middle.

@@ -166,6 +166,13 @@ pub(crate) fn contact<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>,
     (distance, transform(simd, &pose.end.0, normal))
 }
 
+/// The same, and in place of the normal how fast the distance changes with place [1].
+#[inline(always)]
+pub(crate) fn slope<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>, V3<S>) {
+    let (distance, slope) = pose.shape.slope_lanes(simd, pose.local(simd, p));
+    (distance, transform(simd, &pose.end.0, slope))
+}
+
 /// How far the surface at `p` (world, end of the substep) moved in the substep [m].
 #[inline(always)]
 pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> V3<S> {

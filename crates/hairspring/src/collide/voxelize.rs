@@ -7,6 +7,7 @@
 
 use super::{
     Grid, deep,
+    holes::Holes,
     lattice::{self, Lattice},
 };
 use crate::strand::{
@@ -38,6 +39,7 @@ pub struct Voxelizer {
     /// Triangles that come near each layer of nodes in z.
     layers: Vec<Vec<u32>>,
     benches: Vec<Bench>,
+    holes: Holes,
 }
 
 impl Voxelizer {
@@ -90,6 +92,7 @@ impl Voxelizer {
         self.benches.par_iter_mut().zip(parts).enumerate().for_each(
             |(part, (bench, (distances, nearest)))| {
                 bench.deep.clear();
+                bench.open.clear();
                 let slabs = distances.chunks_mut(size.x * size.y).zip(nearest.chunks_mut(size.x * size.y));
                 for (z, (distances, nearest)) in (part * each..).zip(slabs) {
                     bench.begin(lattice.size);
@@ -102,7 +105,10 @@ impl Voxelizer {
                 }
             },
         );
-        deep::extend(grid, self.benches.iter().flat_map(|bench| &bench.deep).copied());
+        let (open, deep) =
+            (self.benches.iter().flat_map(|b| &b.open), self.benches.iter().flat_map(|b| &b.deep));
+        let deep = self.holes.mend(grid, open.copied(), deep.copied());
+        deep::extend(grid, deep.iter().copied());
         grid.mark_inside();
     }
 }
@@ -150,12 +156,14 @@ struct Bench {
     squared: Vec<f32>,
     /// Number of the nearest triangle, as the bits of an `f32`: it is only chosen, never reckoned with.
     nearest: Vec<f32>,
-    /// Entries (+) and exits (−) of the surface before each node, along x.
+    /// Entries (+) and exits (−) of the surface before each node, along x, and beyond the last one.
     crossings: Vec<i16>,
     /// Rows that any triangle is near to.
     seen: Vec<bool>,
     /// Runs of nodes in a row that lie deeper than the band: layer, row, first and end.
     deep: Vec<[u32; 4]>,
+    /// Rows that pass a hole: layer, row.
+    open: Vec<[u32; 2]>,
 }
 
 impl Bench {
@@ -168,7 +176,7 @@ impl Bench {
         // What is farther than the band is the nearest of none, and its number is not asked for.
         self.nearest.resize(places, 0.0);
         self.crossings.clear();
-        self.crossings.resize(nx * ny, 0);
+        self.crossings.resize((nx + 1) * ny, 0);
         self.seen.clear();
         self.seen.resize(ny, false);
     }
@@ -231,9 +239,8 @@ impl Bench {
     /// Signed distances [m] and nearest triangles of layer `z`, by winding along x: inside where more surfaces were entered than left.
     fn finish(&mut self, lattice: &Lattice, z: usize, distances: &mut [f32], nearest: &mut [u32]) {
         let nx = lattice.size.x as usize;
-        let known = -(BAND - 0.01) * lattice.cell;
         let rows = self.squared.chunks(nx + LANES).zip(self.nearest.chunks(nx + LANES));
-        let rows = rows.zip(self.crossings.chunks(nx)).enumerate();
+        let rows = rows.zip(self.crossings.chunks(nx + 1)).enumerate();
         let out = distances.chunks_mut(nx).zip(nearest.chunks_mut(nx));
         for ((y, ((squared, who), crossings)), (distances, nearest)) in rows.zip(out) {
             if self.seen[y] {
@@ -245,22 +252,20 @@ impl Bench {
             if crossings.iter().fold(0, |any, c| any | c) == 0 {
                 continue;
             }
-            let (mut winding, mut deep) = (0, None);
-            for (x, (d, crossing)) in distances.iter_mut().zip(crossings).enumerate() {
+            let mut winding = 0;
+            for (d, crossing) in distances.iter_mut().zip(crossings) {
                 winding += crossing;
                 if winding > 0 {
                     *d = -*d;
                 }
-                match (*d <= known, deep) {
-                    (true, None) => deep = Some(x),
-                    (false, Some(first)) => {
-                        self.deep.push([z, y, first, x].map(|i| i as u32));
-                        deep = None;
-                    }
-                    _ => {}
-                }
             }
-            self.deep.extend(deep.map(|first| [z, y, first, nx].map(|i| i as u32)));
+            // Of a closed mesh as many surfaces are entered as left.
+            let at = [z, y].map(|i| i as u32);
+            if winding + crossings[nx] == 0 {
+                deep::push(at, distances, lattice.cell, &mut self.deep);
+            } else {
+                self.open.push(at);
+            }
         }
     }
 }
@@ -289,11 +294,9 @@ fn count_crossings(c: &[Vec3; 3], z: usize, (nx, ny): (usize, usize), crossings:
             continue;
         }
         let x = (w[0].1 * c[0].x as f64 + w[1].1 * c[1].x as f64 + w[2].1 * c[2].x as f64) / sum;
-        let node = x.ceil().max(0.0) as usize;
-        if node < nx {
-            // The normal's x is the projected triangle's signed area: positive leaves, negative enters.
-            crossings[y * nx + node] += if all(true) { -1 } else { 1 };
-        }
+        let node = x.ceil().clamp(0.0, nx as f64) as usize;
+        // The normal's x is the projected triangle's signed area: positive leaves, negative enters.
+        crossings[y * (nx + 1) + node] += if all(true) { -1 } else { 1 };
     }
 }
 

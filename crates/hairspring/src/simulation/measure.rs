@@ -29,6 +29,11 @@ pub struct Measure {
     pub deep_segments: usize,
     /// Depth of the deepest of them [m].
     pub segment_depth: f64,
+    /// Segments that begin at what the root holds, inside of a collider, and are more than a millimetre deeper than they were authored, but no deeper
+    /// than they begin: nothing of the strand can move that. They count as inside by what is deeper than their beginning alone.
+    pub held_segments: usize,
+    /// Depth of the deepest of them [m].
+    pub held_depth: f64,
     /// Numbers of state that are NaN or infinite.
     pub non_finite: usize,
     /// Fastest point [m/s].
@@ -51,6 +56,8 @@ impl Simulation {
                         inside_segments: a.inside_segments + b.inside_segments,
                         deep_segments: a.deep_segments + b.deep_segments,
                         segment_depth: a.segment_depth.max(b.segment_depth),
+                        held_segments: a.held_segments + b.held_segments,
+                        held_depth: a.held_depth.max(b.held_depth),
                         non_finite: a.non_finite + b.non_finite,
                         speed_max: a.speed_max.max(b.speed_max),
                     };
@@ -89,14 +96,22 @@ impl Simulation {
                 out.inside_points += (depth > 1e-6) as usize;
                 let sunk = self.sunk(place, i);
                 let [a, b] = [root + before, root + x];
-                let depth = near(poses, a.midpoint(b), sunk + 0.5 * a.distance(b))
-                    .map(|(o, pose)| {
-                        sunk - o.shape.least_distance(pose.inverse_point(a), pose.inverse_point(b))
-                    })
-                    .fold(0.0, f32::max) as f64;
+                let begins_held = i == 2 * stride;
+                let (mut depth, mut held) = (0f64, 0f64);
+                for (o, pose) in near(poses, a.midpoint(b), sunk + 0.5 * a.distance(b)) {
+                    let [a, b] = [a, b].map(|p| pose.inverse_point(p));
+                    let least = o.shape.least_distance(a, b);
+                    let begins = if begins_held { o.shape.distance(a).min(sunk) } else { sunk };
+                    depth = depth.max(f64::from(begins - least));
+                    held = held.max(f64::from(sunk - least.max(begins)));
+                }
                 out.segment_depth = out.segment_depth.max(depth);
                 out.inside_segments += (depth > 1e-6) as usize;
                 out.deep_segments += (depth > 1e-3) as usize;
+                if held > 1e-3 && depth <= 1e-3 {
+                    out.held_segments += 1;
+                    out.held_depth = out.held_depth.max(held);
+                }
             }
             if i % stride == 0 {
                 before = x;

@@ -22,7 +22,7 @@ use super::{
     root::Root,
     tile::{Tile, rest, span, state},
 };
-use crate::collide::{ObstaclePose, STEEP, contact, deepest, surface_displacement};
+use crate::collide::{Deepest, ObstaclePose, STEEP, contact, deepest, surface_displacement};
 use fearless_simd::prelude::*;
 
 /// How deep a segment may be between its ends, over its length [1]. On a smooth body it is always a little inside: by L/8R of its length over a
@@ -54,23 +54,29 @@ pub fn clear<S: Simd>(
     (i, old, e): (usize, V3<S>, V3<S>),
     (inner, link): (&Particle<S>, &Link<S>),
 ) -> V3<S> {
-    let zero = F::<S>::splat(simd, 0.0);
+    let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let a = step.root.position + inner.x;
     let clear = -sag(simd, tile, i);
     let may = pose.may_cut(simd, (a + e, e), -clear);
     if !may.any_true() {
         return e;
     }
+    let allowed = load(simd, &tile.rest[i][rest::CLEARANCE]);
     let (mut q, mut cuts, mut wall) = (e, may, V3::zero(simd));
     let (mut best, mut least) = (e, F::<S>::splat(simd, f32::MAX));
     for correction in 0..=CORRECTIONS {
         let asked = if correction == 0 { clear } else { clear * ENOUGH };
-        let Some(place) = deepest(simd, pose, (a, q), asked) else { break };
-        cuts &= place.found;
+        let place = deepest(simd, pose, (a, q), asked).unwrap_or_else(|| Deepest::none(simd));
+        let (distance, normal) = contact(simd, pose, a + q);
+        let between = place.found.select(clear - place.distance, zero);
+        // A swing may have led the end itself inside, around an edge.
+        let end = if correction == 0 { zero } else { allowed - distance };
+        let end = end.simd_gt(link.slack()).select(end, zero);
+        let depth = between.max(end);
+        cuts &= depth.simd_gt(0.0);
         if !cuts.any_true() {
             break;
         }
-        let depth = cuts.select(clear - place.distance, zero);
         let better = depth.simd_lt(least);
         (best, least) = (V3::select(better, q, best), better.select(depth, least));
         if correction == CORRECTIONS {
@@ -78,9 +84,12 @@ pub fn clear<S: Simd>(
             q = V3::select(cuts, best, q);
             break;
         }
-        let (way_out, far) = out_of(simd, place.normal, wall);
-        wall = place.normal;
-        let mut out = link.clamp(link.swing_out(q, way_out, depth * far / place.at.max(NEAREST)));
+        let first = end.simd_lt(between);
+        let normal = V3::select(first, place.normal, normal);
+        let (way_out, far) = out_of(simd, normal, wall);
+        wall = normal;
+        let lever = first.select((place.at * place.gain).max(NEAREST), one);
+        let mut out = link.clamp(link.swing_out(q, way_out, depth * far / lever));
         if correction == 0 {
             // What of the depth did not stop an approach presses on in the next solve, as of points.
             let carried = surface_displacement(simd, pose, e.mul_add(place.at, a));
@@ -106,15 +115,7 @@ pub fn clear<S: Simd>(
         }
         q = V3::select(cuts, out, q);
     }
-    // A swing may have led the end itself inside, around an edge: that comes first.
-    let swung = (q - e).dot(q - e).simd_gt(0.0);
-    if !swung.any_true() {
-        return q;
-    }
-    let (distance, normal) = contact(simd, pose, a + q);
-    let left = load(simd, &tile.rest[i][rest::CLEARANCE]) - distance;
-    let inside = swung & left.simd_gt(0.0);
-    V3::select(inside, link.clamp(link.swing_out(q, normal, left)), q)
+    q
 }
 
 /// Adds contact to the segment from point `i`, the first of the window, to the strand's next, which is in it too. Point `i` is at `x` from the

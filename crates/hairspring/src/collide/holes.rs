@@ -1,0 +1,118 @@
+//! What is inside along rows of nodes that pass a hole of the mesh: counted along them, all of what is behind the hole would be.
+//!
+//! ```text
+//!     ┌──────┐  row beside: enters once, leaves once
+//!     │ ▓▓▓▓ │
+//!   ──│▓▓▓▓▓▓▓▓▓▓▓▓▓▓▓▓   row through a hole on the far side: never leaves, and would be a wall in the air
+//!     │ ▓▓▓▓ │
+//! ```
+//!
+//! Between two nodes of which either is more than half a cell from every triangle there is no surface: there both are inside, or neither is. Rows
+//! beside one that is told take after it, one after the other, and what is near a surface stays as it was counted.
+
+use super::{Grid, deep};
+
+/// Rows of a field that pass holes of its mesh; kept for the memory.
+#[derive(Default)]
+pub(super) struct Holes {
+    /// Rows that are not told yet: layer, row.
+    open: Vec<[u32; 2]>,
+    /// Whether a row is told, layer after layer.
+    told: Vec<bool>,
+    /// Runs of deep nodes: layer, row, first and end.
+    deep: Vec<[u32; 4]>,
+}
+
+impl Holes {
+    /// Tells the `open` rows of `grid` (layer, row) anew by those beside them; returns their runs of nodes deeper than the band and the `closed` ones, in order.
+    pub fn mend(
+        &mut self,
+        grid: &mut Grid,
+        open: impl Iterator<Item = [u32; 2]>,
+        closed: impl Iterator<Item = [u32; 4]>,
+    ) -> &[[u32; 4]] {
+        let Self { open: rows, told, deep: runs } = self;
+        rows.clear();
+        rows.extend(open);
+        runs.clear();
+        runs.extend(closed);
+        if rows.is_empty() {
+            return runs;
+        }
+        let [nx, ny, nz] = grid.size.to_array().map(|n| n as usize);
+        let row = |[z, y]: [u32; 2]| z as usize * ny + y as usize;
+        told.clear();
+        told.resize(ny * nz, true);
+        rows.iter().for_each(|at| told[row(*at)] = false);
+        let mut left = rows.len() + 1;
+        while rows.len() < left {
+            left = rows.len();
+            rows.retain(|&at| {
+                let [z, y] = at.map(|i| i as usize);
+                let beside = [
+                    (y > 0).then(|| z * ny + y - 1),
+                    (y + 1 < ny).then(|| z * ny + y + 1),
+                    (z > 0).then(|| (z - 1) * ny + y),
+                    (z + 1 < nz).then(|| (z + 1) * ny + y),
+                ];
+                let beside = beside.map(|row| row.filter(|row| told[*row]));
+                if beside == [None; 4] {
+                    return true;
+                }
+                take_after(grid, row(at) * nx, beside.map(|row| row.map(|row| row * nx)));
+                deep::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell, runs);
+                told[row(at)] = true;
+                false
+            });
+        }
+        for &at in &*rows {
+            deep::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell, runs);
+        }
+        runs.sort_unstable();
+        runs
+    }
+}
+
+/// Gives the nodes of the row that begins at node `row` the side that most of the rows `beside` are on.
+fn take_after(grid: &mut Grid, row: usize, beside: [Option<usize>; 4]) {
+    let far = 0.5 * grid.cell;
+    for x in 0..grid.size.x as usize {
+        let d = grid.distances[row + x].abs();
+        let sides = beside.iter().flatten().map(|row| grid.distances[row + x]);
+        let side: i32 = sides.filter(|d| d.abs() > far).map(|d| if d > 0.0 { 1 } else { -1 }).sum();
+        if d > far && side != 0 {
+            grid.distances[row + x] = d * side.signum() as f32;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::collide::voxelize;
+    use glam::Vec3;
+
+    /// A box of 10 cm with a slit of 3 mm in its far face, which one layer of nodes sees through.
+    #[test]
+    fn what_is_behind_a_slit_is_outside() {
+        let at = |x: f32, y: f32, z: f32| 0.1 * Vec3::new(x, y, z);
+        let (low, high) = (0.51, 0.54);
+        let quads = [
+            [at(0., 0., 0.), at(0., 0., 1.), at(0., 1., 1.), at(0., 1., 0.)],
+            [at(0., 0., 0.), at(1., 0., 0.), at(1., 0., 1.), at(0., 0., 1.)],
+            [at(0., 1., 0.), at(0., 1., 1.), at(1., 1., 1.), at(1., 1., 0.)],
+            [at(0., 0., 0.), at(0., 1., 0.), at(1., 1., 0.), at(1., 0., 0.)],
+            [at(0., 0., 1.), at(1., 0., 1.), at(1., 1., 1.), at(0., 1., 1.)],
+            [at(1., 0., 0.), at(1., 1., 0.), at(1., 1., low), at(1., 0., low)],
+            [at(1., 0., high), at(1., 1., high), at(1., 1., 1.), at(1., 0., 1.)],
+        ];
+        let triangles: Vec<[u32; 3]> =
+            (0..7).map(|q| 4 * q).flat_map(|q| [[q, q + 1, q + 2], [q, q + 2, q + 3]]).collect();
+        let grid = voxelize(&quads.concat(), &triangles, 0.005);
+        let z = 0.0525;
+        for x in [0.106, 0.108, 0.11] {
+            let d = grid.distance_and_normal(Vec3::new(x, 0.05, z)).0;
+            assert!(d > 0.004, "{d} m at {x} behind the slit");
+        }
+        assert!(grid.distance_and_normal(Vec3::new(0.05, 0.05, z)).0 < -0.02, "the box is hollow");
+    }
+}
