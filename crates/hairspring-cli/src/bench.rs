@@ -235,6 +235,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "deep_segments": measure.deep_segments,
             "segment_depth_m": measure.segment_depth,
             "segment_depth_m_ever": segment_ever,
+            "held_segments": measure.held_segments,
+            "held_depth_m": measure.held_depth,
             "volume": simulation.volume().map(|v| json!({
                 "method": method.name(),
                 "cell_m": v.cell,

@@ -143,6 +143,13 @@ impl Totals {
             grouped(contact.deep_segments),
             contact.segment_depth * 1e3
         ));
+        if contact.held_segments > 0 {
+            say(format_args!(
+                "         {} more begin inside where the root holds them, {:.3} mm deep the deepest",
+                grouped(contact.held_segments),
+                contact.held_depth * 1e3
+            ));
+        }
         if self.reset_strands > 0 {
             say(format_args!(
                 "reset    {} strands turned non-finite and were put back to rest",
@@ -177,6 +184,8 @@ impl Totals {
             "inside_segments": contact.inside_segments,
             "deep_segments": contact.deep_segments,
             "segment_depth_m": contact.segment_depth,
+            "held_segments": contact.held_segments,
+            "held_depth_m": contact.held_depth,
             "ms_per_frame": stages,
             "bytes_sent_per_frame": self.sent_a_frame(),
             "seconds": self.began.elapsed().as_secs_f64(),

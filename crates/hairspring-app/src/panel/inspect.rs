@@ -125,7 +125,7 @@ pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) 
             100.0 * m.stretch_mean,
             100.0 * m.stretch_max,
             m.inside_points,
-            m.deep_segments,
+            m.deep_segments + m.held_segments,
             volume.unwrap_or_default()
         ));
     }

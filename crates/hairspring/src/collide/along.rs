@@ -207,7 +207,9 @@ impl<S: Simd> Seen<S> {
         let beyond = Look::select(opposite(&self.best, &refined), self.best, self.next());
         let other = Look::select(deeper, beyond, refined);
         let share = best.slope / (best.slope - other.slope);
-        let share = opposite(&best, &other).select(share, F::splat(simd, 0.0));
+        // Walls that face away from each other; where an edge is blunter, the nearer side's normal across the segment is enough.
+        let apart = opposite(&best, &other) & best.rise.dot(other.rise).simd_lt(0.0);
+        let share = apart.select(share, F::splat(simd, 0.0));
         (best, (other.rise - best.rise).mul_add(share, best.rise))
     }
 }

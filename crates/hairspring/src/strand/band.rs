@@ -7,7 +7,8 @@
 //!   i+2  [       D ]                      d_r = u_rr;                    up again:   x_r = (y_r − Σ u_rc x_c) / d_r
 //! ```
 //!
-//! Left-looking: a row is assembled, meets all that were eliminated before it in registers, and is written once, as `u` and `y`. The matrix is never stored, and the window holds only what elements have said of the points ahead. By single unknowns
+//! Left-looking: a row is assembled, meets all that were eliminated before it in registers, and is written once, as `u` and `y`. What elements say of the
+//! points ahead waits in memory until then, where those points' factors will be: no window of the matrix is carried through the walk. By single unknowns
 //! rather than by inverted blocks: it is a third fewer operations, because all of the symmetry is used. Golub & Van Loan, *Matrix
 //! Computations*, 4th ed., §4.1.2, §4.3.5.
 

@@ -88,7 +88,9 @@ pub fn clear<S: Simd>(
         let normal = V3::select(first, place.normal, normal);
         let (way_out, far) = out_of(simd, normal, wall);
         wall = normal;
-        let lever = first.select((place.at * place.gain).max(NEAREST), one);
+        // The whole way only where one correction was not enough: springs on an edge would tremble with it, and the rest of a first is pressed in the next solve.
+        let gained = if correction == 0 { place.at } else { place.at * place.gain };
+        let lever = first.select(gained.max(NEAREST), one);
         let mut out = link.clamp(link.swing_out(q, way_out, depth * far / lever));
         if correction == 0 {
             // What of the depth did not stop an approach presses on in the next solve, as of points.
