@@ -136,7 +136,7 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
     let mut elements = Elements::<S, M, B, N>::begin(simd, sweep, step, tile, scratch);
     let acted = outside::any(tile);
     let first = M::DRIVEN.next_multiple_of(M::STRIDE);
-    // The driven points and the last by themselves: one loop for all would carry the window through its branches.
+    // The driven points and the last by themselves: the loop between knows nothing of them.
     for i in 0..first {
         pass_point(simd, (sweep, i, i % M::STRIDE, true), step, tile, scratch, &mut elements, acted);
     }
