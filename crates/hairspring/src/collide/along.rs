@@ -45,7 +45,7 @@ pub(crate) struct Deepest<S: Simd> {
     pub distance: F<S>,
     /// The way out, a unit vector across the segment: that in which its least distance grows fastest.
     pub normal: V3<S>,
-    /// How much that distance grows for each metre along it [1].
+    /// How much that distance grows for each metre along it, where the segment is across walls that face away from each other, else 1 [1].
     pub gain: F<S>,
     /// Where it is: 0 at the segment's beginning, 1 at its end.
     pub at: F<S>,
@@ -63,6 +63,9 @@ impl<S: Simd> Deepest<S> {
 
 /// Least growth of the distance across the segment [1]: where there is less, it comes out end first.
 pub(crate) const STEEP: f32 = 0.02;
+
+/// Largest product of the rises of two sides that face away from each other [1].
+const APART: f32 = -0.1;
 
 /// Pieces between whose ends a segment is looked at: quarters, and no longer than half a cell of a field where that takes no more than the second [1].
 /// Between its nodes a field bends within a cell. Both even, so that the middle is one of the places.
@@ -131,7 +134,7 @@ pub(crate) fn deepest<S: Simd>(
             last = here;
         }
     }
-    let (best, rise) = seen.out(simd, refined);
+    let (best, rise, thin) = seen.out(simd, refined);
     let (gain, across) = (rise - u * rise.dot(u)).length_and_unit();
     let steep = gain.simd_lt(STEEP);
     let (straight_gain, straight) = best.rise.length_and_unit();
@@ -139,7 +142,7 @@ pub(crate) fn deepest<S: Simd>(
         found: found & best.distance.simd_lt(within),
         distance: best.distance,
         normal: V3::select(steep, straight, across),
-        gain: steep.select(straight_gain, gain),
+        gain: thin.select(steep.select(straight_gain, gain), splat(1.0)),
         at: best.at,
     })
 }
@@ -190,8 +193,8 @@ impl<S: Simd> Seen<S> {
         Look::select(self.best.slope.simd_lt(0.0), self.after, self.before)
     }
 
-    /// The deepest place, with what was seen in a place `refined` between the deepest and the next, and how fast the least distance of the segment grows
-    /// as it is moved [1].
+    /// The deepest place, with what was seen in a place `refined` between the deepest and the next, how fast the least distance of the segment grows
+    /// as it is moved [1], and whether that is between walls that face away from each other.
     ///
     /// ```text
     ///   ╲ n₁     n₂ ╱     on both sides of a thin wall or an edge: w n₁ + (1 − w) n₂ with nothing in it along the segment. What is deepest moves
@@ -199,7 +202,7 @@ impl<S: Simd> Seen<S> {
     ///     ╲___│___╱       side's normal it would be less here and more beyond
     /// ```
     #[inline(always)]
-    fn out(&self, simd: S, refined: Look<S>) -> (Look<S>, V3<S>) {
+    fn out(&self, simd: S, refined: Look<S>) -> (Look<S>, V3<S>, mask32x8<S>) {
         let opposite = |a: &Look<S>, b: &Look<S>| (a.slope * b.slope).simd_lt(0.0);
         let deeper = refined.distance.simd_lt(self.best.distance);
         let best = Look::select(deeper, refined, self.best);
@@ -207,10 +210,11 @@ impl<S: Simd> Seen<S> {
         let beyond = Look::select(opposite(&self.best, &refined), self.best, self.next());
         let other = Look::select(deeper, beyond, refined);
         let share = best.slope / (best.slope - other.slope);
-        // Walls that face away from each other; where an edge is blunter, the nearer side's normal across the segment is enough.
-        let apart = opposite(&best, &other) & best.rise.dot(other.rise).simd_lt(0.0);
+        // Walls that face away from each other; where an edge is blunter, the nearer side's normal across the segment is enough. (At a right angle, by
+        // rounding, a box would be now one and now the other.)
+        let apart = opposite(&best, &other) & best.rise.dot(other.rise).simd_lt(APART);
         let share = apart.select(share, F::splat(simd, 0.0));
-        (best, (other.rise - best.rise).mul_add(share, best.rise))
+        (best, (other.rise - best.rise).mul_add(share, best.rise), apart)
     }
 }
 
