@@ -53,6 +53,15 @@ pub enum Obstacle {
 }
 
 impl Obstacle {
+    /// Radius of what is round everywhere [m], infinite for what is flat; 0 for a shape that may have edges.
+    pub(crate) fn roundness(&self) -> f32 {
+        match self {
+            Obstacle::Plane { .. } => f32::INFINITY,
+            Obstacle::Sphere { radius, .. } | Obstacle::Capsule { radius, .. } => *radius,
+            _ => 0.0,
+        }
+    }
+
     /// The distance from `p` [m] in the collider's own space, negative inside.
     pub fn distance(&self, p: Vec3) -> f32 {
         self.distance_and_normal(p).0

@@ -68,12 +68,7 @@ impl ObstaclePose {
     pub(crate) fn may_cut<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> mask32x8<S> {
         let none = mask32x8::splat(simd, false);
         let size = e.dot(e);
-        let rounded = match &self.shape {
-            Obstacle::Plane { .. } => return none,
-            Obstacle::Sphere { radius, .. } | Obstacle::Capsule { radius, .. } => *radius,
-            _ => 0.0,
-        };
-        let mut may = size.simd_gt(sag * (8.0 * rounded));
+        let mut may = size.simd_gt(sag * (8.0 * self.shape.roundness()));
         if !may.any_true() {
             return none;
         }

@@ -99,6 +99,10 @@ impl Simulation {
             sunk: Vec::new(),
             tethers: Vec::new(),
             longest: strands.iter().map(|s| groom.strand_length(*s as usize)).fold(0.0, f32::max),
+            longest_segment: strands
+                .iter()
+                .flat_map(|s| groom.strand(*s as usize).windows(2).map(|w| w[0].distance(w[1])))
+                .fold(0.0, f32::max),
             hairs: vec![groom.strand_count() as f32 / strands.len() as f32; groom.strand_count()],
             spans: vec![SpanRows::default(); if solver.segments { first as usize } else { 0 }],
             history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],

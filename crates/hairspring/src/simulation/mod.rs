@@ -72,6 +72,8 @@ pub struct Simulation {
     tethers: Vec<Row>,
     /// Length of the longest strand [m].
     longest: f32,
+    /// Length of the longest segment [m].
+    longest_segment: f32,
     /// How many hairs each strand of the groom stands for; shape `[strands of the groom]`.
     hairs: Vec<f32>,
     /// As long as `state` for the integrator of second order, else empty.

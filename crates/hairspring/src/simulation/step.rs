@@ -11,9 +11,10 @@ use crate::{
         lanes::{LANES, Row},
         model::{curvature, rod, springs, straight},
         scratch::Memory,
+        segment::may_be_left,
         tile::{
-            Elastic, HistoryRows, HoldRows, RestRows, SpanRows, StateRows, StrandRows, Tile, grip, strand,
-            tines,
+            Elastic, HistoryRows, HoldRows, RestRows, SpanRows, StateRows, StrandRows, Tile, grip, span,
+            strand, tines,
         },
     },
 };
@@ -122,7 +123,11 @@ impl Simulation {
             .clamp(1, MAX_SUBSTEPS)
             .next_multiple_of(parts);
         let mut interval = std::mem::take(&mut self.interval);
+        let looked_at = interval.segments;
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
+        if looked_at && !interval.segments {
+            self.spans.fill([Row::default(); span::ROWS]);
+        }
         self.begin_tools(&Bodies::new((drive.obstacles, carried.as_ref())));
         self.exchange(drive, carried.as_ref());
         self.settings.anchor = drive.anchor;
@@ -172,7 +177,7 @@ impl Simulation {
                 tines: &self.around.tines,
                 air: &self.around.air,
                 sunk: &self.sunk,
-                spans: &mut self.spans,
+                spans: if interval.segments { &mut self.spans } else { &mut [] },
                 tethers: &self.tethers,
                 holds: &self.holds,
             },
@@ -194,6 +199,8 @@ impl Simulation {
         };
         interval.continues = (interval.h / self.last_h - 1.0).abs() < 1e-3;
         interval.response = solver.contact;
+        let may_cut = |o: &MovingObstacle| !may_be_left(self.longest_segment, o.shape.roundness());
+        interval.segments = solver.segments && drive.obstacles.iter().any(may_cut);
         interval.projections = solver.projections;
         interval.gravity = self.settings.gravity;
         interval.anchor = from.matrix();

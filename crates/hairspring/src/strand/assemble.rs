@@ -26,6 +26,7 @@ use super::{
     outside,
     prefetch::ask_beyond,
     press::relieve,
+    project::Projection,
     root::Root,
     scratch::Scratch,
     segment::relieve_between,
@@ -170,6 +171,7 @@ fn pass_point<S, M, const B: usize, const N: usize>(
 {
     if M::falls_short(simd, i, tile, scratch) {
         let mut whole = elements.whole(simd);
+        let (tile, scratch) = (&mut tile.lent(), &mut scratch.lent());
         pass_whole(simd, (sweep, i, phase, driven), step, tile, scratch, &mut whole, acted);
         elements.walk = whole.walk;
         return;
@@ -245,7 +247,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
     if acted || outside::pressed(simd, M::STRIDE, i, tile) {
         let Walk { x, way, root_velocity, .. } = elements.walk;
         let place = outside::Place { i, x, way, root_velocity };
-        outside::add::<S, M, B, N>(simd, (sweep, step), &place, tile, scratch);
+        outside::add::<S, M, B, N>(simd, (sweep, step), &place, &mut tile.lent(), &mut scratch.lent());
     }
     let segment = elements.add(simd, i, phase, tile, scratch);
     if sweep == Sweep::Again {
@@ -299,7 +301,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
     band.add_force(1, right);
 }
 
-/// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took.
+/// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took. Projection meets the new segments on it.
 #[inline(always)]
 pub fn substitute<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -307,7 +309,8 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
     step: &Step<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
-) where
+) -> Projection<S>
+where
     S: Simd,
     M: Model<S, B, N>,
 {
@@ -322,6 +325,7 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
         along: F::splat(simd, 0.0),
         news: sweep.news(),
     };
+    let mut projection = Projection::begin(simd, tile, scratch.fixed);
     for i in (1..n).rev() {
         let mut delta = zero;
         if i >= M::DRIVEN || B > 3 {
@@ -356,6 +360,8 @@ pub fn substitute<S, M, const B: usize, const N: usize>(
             let length = [load(simd, &tile.rest[i][rest::LENGTH]), load(simd, &fixed.inverse_length)];
             let row = &mut tile.state[i][state::TENSION];
             store(load(simd, row) + solved.taken(M::STRIDE, length, solved.along), row);
+            projection.meet(simd, (M::STRIDE, i), tile, scratch);
         }
     }
+    projection
 }

@@ -20,6 +20,8 @@ pub struct Interval {
     pub continues: bool,
     /// What keeps hair out of colliders.
     pub response: Response,
+    /// Whether segments are looked at between their points, see `segment`.
+    pub segments: bool,
     /// Iterations of fast projection a substep.
     pub projections: u32,
     /// Gravity [m/s²].

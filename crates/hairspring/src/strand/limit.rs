@@ -84,13 +84,18 @@ pub fn limit<S: Simd>(
         let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
         let solved = if stride == 2 { extra + V3::load(simd, &scratch.edges[i]) } else { extra };
         let mut e = solved;
-        e = tethered(simd, tile, i, (&at, &link), e);
-        shift = e - solved;
+        shift = V3::zero(simd);
         // A branch, so that a segment waits for the one before it only where something is to be done.
         let world = step.root.position + (at.x + e);
-        if near(simd, step, tile, (i, world, e)) || link.wrong(e).any_true() {
+        if !tile.tethers.is_empty() || near(simd, step, tile, (i, world, e)) || link.wrong(e).any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
-            e = V3::select(free, place(simd, finish, step, tile, (i, stride, e), (&at, &link)), e);
+            // Copies are lent, as of the tile: what is lent itself would wait in memory at every point.
+            let (at, link) = (at, Link { ..link });
+            e = V3::select(
+                free,
+                place(simd, finish, step, &mut tile.lent(), (i, stride, e), (&at, &link)),
+                e,
+            );
             shift = e - solved;
             let press = &mut tile.state[i][state::PRESS];
             store(free.select(load(simd, press), F::splat(simd, 0.0)), press);
@@ -121,8 +126,14 @@ fn near<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, (i, world, e): (usize, V3
         if pose.near(simd, world).any_true() {
             return true;
         }
-        if !tile.spans.is_empty() && pose.may_cut(simd, (world, e), sag(simd, tile, i)).any_true() {
-            return true;
+    }
+    // A loop by itself: the compiler would take what the segment alone asks for out of one, and work it out where it is not asked for.
+    if !tile.spans.is_empty() {
+        let sag = sag(simd, tile, i);
+        for pose in step.obstacles {
+            if pose.may_cut(simd, (world, e), sag).any_true() {
+                return true;
+            }
         }
     }
     false
@@ -163,7 +174,7 @@ fn held<S: Simd>(
         old += V3::load(simd, &tile.state[i - 1][state::EDGE..]);
     }
     let mut press = load(simd, &tile.state[i][state::PRESS]);
-    let mut e = link.clamp(e);
+    let mut e = link.clamp(tethered(simd, tile, i, (at, link), e));
     // Summed from the root, like in `press`: far from the world's origin a sum there would lose digits at every point.
     let in_world = |e: V3<S>| step.root.position + (at.x + e);
     for pose in step.obstacles {
@@ -231,6 +242,7 @@ pub fn out_of<S: Simd>(simd: S, normal: V3<S>, wall: V3<S>) -> (V3<S>, F<S>) {
 }
 
 /// A particle on the walk from root to tip.
+#[derive(Clone, Copy)]
 pub struct Particle<S: Simd> {
     /// Where it is, from the root [m].
     pub x: V3<S>,

@@ -5,21 +5,26 @@
 //! ```
 //!
 //! Goldenthal et al. 2007, *Efficient Simulation of Inextensible Cloth*, §3 and §4: a scalar tridiagonal system for a strand, solved
-//! exactly by one sweep down and one up (Thomas). Their C needs no root and no unit vector. The root and the second point are driven.
+//! exactly by one sweep up and one down (Thomas), of which the first goes along with that of the solve. Their C needs no root and no unit vector. The root and the second point are driven.
 
 use super::{
+    fixed::Fixed,
     lanes::{F, Row, V3, load, store},
     scratch::Scratch,
     tile::{Tile, rest, state, strand},
 };
 use fearless_simd::{mask32x8, prelude::*};
+use scratch::{C, D};
 
-/// Rows of scratch a segment: the coefficient of the next λ, and λ without it.
-const ROWS: usize = 2;
-/// The first of them.
-const C: usize = 0;
-/// The second.
-const D: usize = 1;
+/// Rows of scratch a segment: the coefficient of the λ before it, and λ without that.
+pub mod scratch {
+    /// The first of them.
+    pub const C: usize = 0;
+    /// The second.
+    pub const D: usize = 1;
+    /// Rows a segment.
+    pub const ROWS: usize = 2;
+}
 
 /// Square of the relative length from which on down the gradient counts as if it were no shorter [1]: C's vanishes with the segment, and the
 /// step that it would ask for grows without end.
@@ -32,96 +37,144 @@ const ENOUGH: f32 = 1e-4;
 /// Points of a strand, see [`ENOUGH`].
 const SHORT_STRAND: f32 = 32.0;
 
-/// One iteration over `scratch.edges`, of every `stride`th particle, in the strands that are `asked`; false where all their lengths are
-/// right, before it or after. λ times `force` (a/h² of the integrator) goes into the tension.
-#[inline(always)]
-pub fn project<S: Simd>(
-    simd: S,
-    stride: usize,
-    (force, asked): (F<S>, mask32x8<S>),
-    tile: &mut Tile,
-    scratch: &mut Scratch,
-) -> bool {
-    let Scratch { factors, edges, fixed, .. } = scratch;
-    let zero = F::<S>::splat(simd, 0.0);
-    let points = tile.rest.len();
-    let segments = (points - 1) / stride;
-    let work = &mut factors.as_chunks_mut::<ROWS>().0[..segments];
-    let shorter = (F::splat(simd, SHORT_STRAND) / load(simd, &tile.strand[strand::POINTS])).min(1.0);
-    let enough = shorter * -ENOUGH;
-    // Error of a segment's length, from the square of its relative length, and by how much it is more than enough. Padding has neither length
-    // nor inverse length: all of its row is nought.
-    let error = |length: F<S>, size: F<S>, loose: mask32x8<S>| {
-        let error = loose.select(length * size.mul_add(0.5, F::splat(simd, -0.5)), zero);
-        (error, length.mul_add(enough, error.abs()))
-    };
-    let mut before = V3::zero(simd);
-    let (mut d_before, mut inv_before) = (zero, zero);
-    let mut worst = zero;
-    let mut w0 = zero;
-    for k in 1..segments {
-        let i = k * stride;
+/// An iteration on its way: what is known of the segments from one on to the tip.
+pub struct Projection<S: Simd> {
+    /// The segment's vector over its rest length [1].
+    u: V3<S>,
+    /// Inverse mass of its inner point [1/kg].
+    inner: F<S>,
+    /// Inverse of its row's pivot.
+    inverse: F<S>,
+    /// Its λ without what the λ before it adds.
+    d: F<S>,
+    /// By how much the most wrong of the lengths is more than that is enough [m]; not positive where all are right.
+    worst: F<S>,
+    enough: Enough<S>,
+}
+
+impl<S: Simd> Projection<S> {
+    /// Past the tip.
+    #[inline(always)]
+    pub fn begin(simd: S, tile: &Tile, fixed: &[Fixed]) -> Self {
+        let zero = F::<S>::splat(simd, 0.0);
+        let tip = load(simd, &fixed[tile.rest.len() - 1].inverse_mass);
+        let (u, enough) = (V3::zero(simd), Enough::of(simd, tile));
+        Self { u, inner: tip, inverse: zero, d: zero, worst: zero, enough }
+    }
+
+    /// Meets the segment from point `i` to the strand's next, as it is in `scratch.edges`. The first, which the root drives, is not met.
+    #[inline(always)]
+    pub fn meet(&mut self, simd: S, (stride, i): (usize, usize), tile: &Tile, scratch: &mut Scratch) {
+        let Scratch { pulls, edges, fixed, .. } = scratch;
         let length = load(simd, &tile.rest[i][rest::LENGTH]);
-        let w1 = load(simd, &fixed[i + stride].inverse_mass);
-        let u = segment(simd, stride, edges, i) * load(simd, &fixed[i].inverse_length);
+        let [inner, inverse_length] =
+            [&fixed[i].inverse_mass, &fixed[i].inverse_length].map(|r| load(simd, r));
+        let (outer, u) = (self.inner, segment(simd, stride, edges, i) * inverse_length);
         let size = u.dot(u);
         // Nothing to do between two points that are held.
-        let (error, excess) = error(length, size, (w0 + w1).simd_gt(0.0));
-        worst = worst.max(excess);
+        let (error, excess) = self.enough.error(length, size, (inner + outer).simd_gt(0.0));
+        self.worst = self.worst.max(excess);
         // Row i: −w0 (u·u₋) λ₋ + (w0 + w1) u·u λ − w1 (u·u₊) λ₊ = C
-        let coupling = w0 * before.dot(u);
-        let c_before = coupling * inv_before;
-        store(c_before, &mut work[k - 1][C]);
-        let inv = F::splat(simd, 1.0) / (-coupling).mul_add(c_before, (w0 + w1) * size.max(SHORT)).max(1e-30);
-        let d = coupling.mul_add(d_before, error) * inv;
-        store(d, &mut work[k][D]);
-        (before, d_before, inv_before, w0) = (u, d, inv, w1);
-    }
-    // Strands whose lengths are right keep their bits, whatever their neighbours in the tile do.
-    let active = asked & worst.simd_gt(0.0);
-    if !active.any_true() {
-        return false;
-    }
-    store(zero, &mut work[segments - 1][C]);
-    // Up: λ_i = d_i + c_i λ_{i+1};  Δx_{i+1} = −w (u_i λ_i − u_{i+1} λ_{i+1}). A segment has its length once both of its ends have moved.
-    let (mut lambda, mut pull) = (zero, V3::zero(simd));
-    let mut waiting = V3::zero(simd);
-    let mut w_outer = zero;
-    worst = zero;
-    for k in (1..segments).rev() {
-        let i = k * stride;
-        let s = segment(simd, stride, edges, i);
-        let u = s * load(simd, &fixed[i].inverse_length);
-        let d = load(simd, &work[k][D]);
-        lambda = load(simd, &work[k][C]).mul_add(lambda, d);
-        lambda = active.select(lambda, zero);
-        let own = u * lambda;
-        let w = load(simd, &fixed[i + stride].inverse_mass);
-        let move_outer = (pull - own) * w;
-        waiting -= move_outer;
-        // The edge into the point that moves, and the one out of it.
-        let last = V3::load(simd, &edges[i + stride]) + move_outer;
-        last.store(&mut edges[i + stride]);
-        let after = i + stride;
-        if after + stride < points {
-            let first = if stride == 1 { waiting } else { V3::load(simd, &edges[after + 1]) - move_outer };
-            first.store(&mut edges[after + 1]);
-            // Summed as the next sweep down would, to the bit: where the two differed, it would depend on a strand's neighbours in the tile
-            // whether it is asked again.
-            let now = if stride == 1 { waiting } else { segment(simd, stride, edges, after) };
-            let size = now * load(simd, &fixed[after].inverse_length);
-            let loose = (w + w_outer).simd_gt(0.0);
-            worst = worst.max(error(load(simd, &tile.rest[after][rest::LENGTH]), size.dot(size), loose).1);
+        let coupling = outer * u.dot(self.u);
+        let c = coupling * self.inverse;
+        if let Some(after) = pulls.get_mut(i + stride) {
+            store(c, &mut after[C]);
         }
-        waiting = s + move_outer;
-        w_outer = w;
-        let tension = &mut tile.state[i][state::TENSION];
-        store(lambda.mul_add(force, load(simd, tension)), tension);
-        pull = own;
+        let pivot = (-coupling).mul_add(c, (inner + outer) * size.max(SHORT));
+        let inverse = F::splat(simd, 1.0) / pivot.max(1e-30);
+        let d = coupling.mul_add(self.d, error) * inverse;
+        store(d, &mut pulls[i][D]);
+        (self.u, self.inner, self.inverse, self.d) = (u, inner, inverse, d);
     }
-    let size = segment(simd, stride, edges, stride) * load(simd, &fixed[stride].inverse_length);
-    let first = error(load(simd, &tile.rest[stride][rest::LENGTH]), size.dot(size), w_outer.simd_gt(0.0)).1;
-    (asked & worst.max(first).simd_gt(0.0)).any_true()
+
+    /// Meets all segments of `scratch.edges`.
+    #[inline(always)]
+    pub fn meet_all(simd: S, stride: usize, tile: &Tile, scratch: &mut Scratch) -> Self {
+        let mut projection = Self::begin(simd, tile, scratch.fixed);
+        for k in (1..(tile.rest.len() - 1) / stride).rev() {
+            projection.meet(simd, (stride, k * stride), tile, scratch);
+        }
+        projection
+    }
+
+    /// Moves the points, in the strands that are `asked`, once all segments are met; false where all their lengths are right, before it or after.
+    /// λ times `force` (a/h² of the integrator) goes into the tension.
+    #[inline(always)]
+    pub fn settle(
+        self,
+        simd: S,
+        stride: usize,
+        (force, asked): (F<S>, mask32x8<S>),
+        tile: &mut Tile,
+        scratch: &mut Scratch,
+    ) -> bool {
+        // Strands whose lengths are right keep their bits, whatever their neighbours in the tile do.
+        let active = asked & self.worst.simd_gt(0.0);
+        if !active.any_true() {
+            return false;
+        }
+        let n = tile.rest.len();
+        // Cut to one length that is known here: the loop needs no checks.
+        let (rest, state) = (&tile.rest[..n], &mut tile.state[..n]);
+        let (pulls, fixed, edges) = (&mut scratch.pulls[..n], &scratch.fixed[..n], &mut *scratch.edges);
+        let zero = F::<S>::splat(simd, 0.0);
+        store(zero, &mut pulls[stride][C]);
+        // No segment begins at the tip.
+        pulls[n - 1] = Default::default();
+        // Down: λ_i = d_i + c_i λ_{i−1};  Δx_i = w (u_i λ_i − u_{i−1} λ_{i−1}). A segment has its length once both of its ends have moved.
+        let (mut lambda, mut pull, mut worst) = (zero, V3::zero(simd), zero);
+        let (mut before, mut waiting) = (0, segment(simd, stride, edges, 0));
+        let mut i = stride;
+        while i < n {
+            let s = segment(simd, stride, edges, i);
+            let d = load(simd, &pulls[i][D]);
+            lambda = active.select(load(simd, &pulls[i][C]).mul_add(lambda, d), zero);
+            let own = s * load(simd, &fixed[i].inverse_length) * lambda;
+            let w = load(simd, &fixed[i].inverse_mass);
+            let moved = (own - pull) * w;
+            // The edge into the point that moves, and the one out of it.
+            let arriving = if stride == 1 { waiting } else { V3::load(simd, &edges[i]) } + moved;
+            arriving.store(&mut edges[i]);
+            if stride == 2 && i + 1 < n {
+                (V3::load(simd, &edges[i + 1]) - moved).store(&mut edges[i + 1]);
+            }
+            waiting = s - moved;
+            // Summed as the next sweep up would, to the bit: where the two differed, it would depend on a strand's neighbours in the tile whether it
+            // is asked again.
+            let now = if stride == 1 { arriving } else { segment(simd, stride, edges, before) };
+            let size = now * load(simd, &fixed[before].inverse_length);
+            let loose = (load(simd, &fixed[before].inverse_mass) + w).simd_gt(0.0);
+            let length = load(simd, &rest[before][rest::LENGTH]);
+            worst = worst.max(self.enough.error(length, size.dot(size), loose).1);
+            let tension = &mut state[i][state::TENSION];
+            store(lambda.mul_add(force, load(simd, tension)), tension);
+            pull = own;
+            before = i;
+            i += stride;
+        }
+        (asked & worst.simd_gt(0.0)).any_true()
+    }
+}
+
+/// What error of a length is enough, over the length [1].
+struct Enough<S: Simd>(F<S>);
+
+impl<S: Simd> Enough<S> {
+    /// Of the strands of a tile.
+    #[inline(always)]
+    fn of(simd: S, tile: &Tile) -> Self {
+        let shorter = F::splat(simd, SHORT_STRAND) / load(simd, &tile.strand[strand::POINTS]);
+        Self(shorter.min(1.0) * ENOUGH)
+    }
+
+    /// Error of a segment's length, from the square of its relative length, and by how much it is more than enough; none where it is not `loose`. Padding
+    /// has neither length nor inverse length: all of its row is nought.
+    #[inline(always)]
+    fn error(&self, length: F<S>, size: F<S>, loose: mask32x8<S>) -> (F<S>, F<S>) {
+        let half = F::splat(length.simd, -0.5);
+        let error = loose.select(length * size.mul_add(0.5, half), F::splat(length.simd, 0.0));
+        (error, length.mul_add(-self.0, error.abs()))
+    }
 }
 
 /// From particle `i` to the strand's next point.

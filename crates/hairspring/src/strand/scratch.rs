@@ -4,7 +4,7 @@ use super::{
     band::{factor_rows, reach},
     fixed::Fixed,
     lanes::Row,
-    press,
+    press, project,
     tile::StateRows,
     tile::state,
 };
@@ -17,12 +17,13 @@ pub struct Memory {
     kick: Vec<[Row; 3]>,
     change: Vec<[Row; 3]>,
     contacts: Vec<[Row; press::scratch::ROWS]>,
+    pulls: Vec<[Row; project::scratch::ROWS]>,
     fixed: Vec<Fixed>,
 }
 
 /// What one tile needs of it, cut to the tile's length, so that walks along the strand need no checks.
 pub struct Scratch<'a> {
-    /// Factors of the band, point after point, between those that the first and the last would meet; other sweeps' rows lie over them.
+    /// Factors of the band, point after point, between those that the first and the last would meet; `local_global`'s rows lie over them.
     pub factors: &'a mut [Row],
     /// From each particle's predecessor to it, anew, shape `[points + BEYOND]` [m]; see `state::EDGE`.
     pub edges: &'a mut [[Row; 3]],
@@ -33,6 +34,8 @@ pub struct Scratch<'a> {
     pub change: &'a mut [[Row; 3]],
     /// What the solve knows of contact, shape `[points]`; see `press::scratch`.
     pub contacts: &'a mut [[Row; press::scratch::ROWS]],
+    /// What projection has worked out of each segment, shape `[points]`; see `project::scratch`.
+    pub pulls: &'a mut [[Row; project::scratch::ROWS]],
     /// What stays as it is for an interval, shape `[points]`.
     pub fixed: &'a mut [Fixed],
 }
@@ -57,6 +60,7 @@ impl Memory {
             kick: &mut self.kick[..points],
             change: &mut self.change[..points],
             contacts: &mut self.contacts[..points],
+            pulls: &mut self.pulls[..points],
             fixed: &mut self.fixed[..points],
         }
     }
@@ -69,12 +73,22 @@ impl Memory {
             self.change.resize(points, [Row::default(); 3]);
             self.edges.resize(points + BEYOND, [Row::default(); 3]);
             self.contacts.resize(points, [Row::default(); press::scratch::ROWS]);
+            self.pulls.resize(points, [Row::default(); project::scratch::ROWS]);
             self.fixed.resize(points, Fixed::default());
         }
     }
 }
 
 impl Scratch<'_> {
+    /// The same, for a function that is no part of the walk: see [`Tile::lent`].
+    ///
+    /// [`Tile::lent`]: super::tile::Tile::lent
+    #[inline(always)]
+    pub fn lent(&mut self) -> Scratch<'_> {
+        let Self { factors, edges, kick, change, contacts, pulls, fixed } = self;
+        Scratch { factors, edges, kick, change, contacts, pulls, fixed }
+    }
+
     /// Fills `edges` from those in `state`, shape `[points]`.
     pub fn begin(&mut self, state: &[StateRows]) {
         for (edge, at) in self.edges.iter_mut().zip(state) {

@@ -16,7 +16,7 @@ use super::{
     assemble::{Step, Sweep},
     band::System,
     lanes::{F, Row, Sym3, V3, load, store},
-    limit::{CORRECTIONS, Finish, Link, Particle, out_of},
+    limit::{CORRECTIONS, Finish, LIMIT, Link, Particle, out_of},
     model::stretch::STRETCH,
     press::{STICK, Surface, nearest, scratch, scratch::SEGMENT},
     root::Root,
@@ -35,6 +35,12 @@ const NEAREST: f32 = 0.125;
 
 /// How deep a segment may be that is not corrected again, over how deep it may be at all [1].
 const ENOUGH: f32 = 1.02;
+
+/// Whether no segment of up to `length` [m] need be looked at beside what is round with this `radius` [m]: it lies within what it may, as long as the limit lets
+/// it become.
+pub fn may_be_left(length: f32, radius: f32) -> bool {
+    length * (1.0 + LIMIT).powi(2) <= 8.0 * SAG * radius
+}
 
 /// How much deeper than the surface the segment to point `i` may be between its ends [m]: as deep as it was authored, and what a smooth body takes.
 #[inline(always)]

@@ -234,6 +234,14 @@ impl Tile<'_> {
             ..*self
         }
     }
+
+    /// The same tile, for a function that is no part of the walk. Were the walk's own lent out, the compiler would look up in memory where its arrays are, and how
+    /// long, at every point again.
+    #[inline(always)]
+    pub fn lent(&mut self) -> Tile<'_> {
+        let Self { state, history, spans, .. } = self;
+        Tile { state, history, spans, ..*self }
+    }
 }
 
 /// The elastic model of a tile.

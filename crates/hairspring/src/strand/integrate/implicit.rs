@@ -6,7 +6,7 @@ use crate::strand::{
     interval::Interval,
     lanes::{F, V3, load},
     model::Model,
-    project::project,
+    project::Projection,
     scratch::Scratch,
     tile::{Tile, rest, strand},
 };
@@ -24,16 +24,17 @@ pub fn advance<S, M, const B: usize, const N: usize>(
     S: Simd,
     M: Model<S, B, N>,
 {
-    solve::<S, M, B, N>(simd, interval, step, tile, scratch);
+    let mut projection = solve::<S, M, B, N>(simd, interval, step, tile, scratch);
     // Where springs are stiffer they have taken more of a load in the solve, and projection's part is noise.
     let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
     let force = F::splat(simd, step.inertia() / (step.h * step.h)) / stiffening;
     let granted = granted(simd, interval.projections, tile);
     for iteration in 1.. {
         let asked = granted.simd_ge(iteration as f32);
-        if !asked.any_true() || !project(simd, M::STRIDE, (force, asked), tile, scratch) {
+        if !asked.any_true() || !projection.settle(simd, M::STRIDE, (force, asked), tile, scratch) {
             break;
         }
+        projection = Projection::meet_all(simd, M::STRIDE, tile, scratch);
     }
 }
 
@@ -59,25 +60,25 @@ fn solve<S, M, const B: usize, const N: usize>(
     step: &Step<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
-) where
+) -> Projection<S>
+where
     S: Simd,
     M: Model<S, B, N>,
 {
+    assemble::<S, M, B, N>(simd, Sweep::First, step, tile, scratch);
+    let projection = substitute::<S, M, B, N>(simd, Sweep::First, step, tile, scratch);
+    if interval.iterations == 1 {
+        return projection;
+    }
     // Newton: the linearisation again where the last one led. A correction that is larger than the one before tells of a step that went
     // too far, and the next goes half as far (the natural monotonicity test of Deuflhard 2004, *Newton Methods*, §3.3).
     let mut share = F::<S>::splat(simd, 1.0);
     let mut last = F::<S>::splat(simd, f32::INFINITY);
     let points = tile.rest.len();
-    for iteration in 0..interval.iterations {
-        let sweep = if iteration == 0 { Sweep::First } else { Sweep::Again };
-        if sweep == Sweep::Again {
-            scratch.kick[..points].copy_from_slice(&scratch.edges[..points]);
-        }
-        assemble::<S, M, B, N>(simd, sweep, step, tile, scratch);
-        substitute::<S, M, B, N>(simd, sweep, step, tile, scratch);
-        if sweep == Sweep::First {
-            continue;
-        }
+    for _ in 1..interval.iterations {
+        scratch.kick[..points].copy_from_slice(&scratch.edges[..points]);
+        assemble::<S, M, B, N>(simd, Sweep::Again, step, tile, scratch);
+        substitute::<S, M, B, N>(simd, Sweep::Again, step, tile, scratch);
         let (mut size, mut length) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 0.0));
         let mut change = V3::zero(simd);
         for i in M::DRIVEN..points {
@@ -101,4 +102,6 @@ fn solve<S, M, const B: usize, const N: usize>(
         }
         last = size;
     }
+    // Where a share of the step leads is not where the sweep up met the segments.
+    Projection::meet_all(simd, M::STRIDE, tile, scratch)
 }
