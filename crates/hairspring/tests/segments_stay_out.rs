@@ -22,6 +22,11 @@ const STRANDS: u32 = 10;
 
 /// Strands that stand out along X, 1 mm above the origin's height, and begin at each tenth of a segment, none of them with a point at the origin.
 fn hair(model: Model, rest: &[ObstaclePose]) -> (Simulation, Vec<Rigid>) {
+    hair_of(model, true, rest)
+}
+
+/// The same, whose segments are looked at between their points if `segments`.
+fn hair_of(model: Model, segments: bool, rest: &[ObstaclePose]) -> (Simulation, Vec<Rigid>) {
     let strands = (0..STRANDS).map(|s| {
         let root = Vec3::new(-0.09 - 0.1 * SEGMENT * (s as f32 + 0.5), 1e-3, 0.01 * (s as f32 - 4.5));
         (0..16).map(move |i| root + Vec3::X * (SEGMENT * i as f32)).collect::<Vec<_>>()
@@ -34,7 +39,7 @@ fn hair(model: Model, rest: &[ObstaclePose]) -> (Simulation, Vec<Rigid>) {
         groom,
         &all,
         &[Material { model, ..Material::default() }],
-        Solver { sag_free: false, ..Solver::default() },
+        Solver { sag_free: false, segments, ..Solver::default() },
         Vec3::NEG_Y * 9.81,
         Rigid::default(),
         rest,
@@ -229,5 +234,44 @@ fn where_nothing_is_near_nothing_changes() {
             }
             assert_eq!(points(&simulation), points(&free), "{name}, {model:?}");
         }
+    }
+}
+
+#[test]
+fn beside_what_is_round_for_their_length_points_alone_are_looked_at() {
+    // 12 % of a radius: beside the first ball 2 cm may be left, beside the second not.
+    let ball =
+        |radius: f32| still(&Obstacle::Sphere { center: Vec3::new(0.05, -radius - 0.01, 0.0), radius });
+    for model in Model::ALL {
+        let lie = |obstacles: &[MovingObstacle]| {
+            let lie = |segments: bool| {
+                let (mut simulation, roots) = hair_of(model, segments, &[]);
+                (0..60).for_each(|_| _ = step(&mut simulation, &roots, obstacles));
+                points(&simulation)
+            };
+            (lie(true), lie(false))
+        };
+        let (looked, left) = lie(&ball(0.2));
+        assert_eq!(looked, left, "{model:?}: a large ball");
+        let (looked, left) = lie(&ball(0.05));
+        assert_ne!(looked, left, "{model:?}: a small one");
+    }
+}
+
+#[test]
+fn what_pressed_segments_is_forgotten_where_none_is_looked_at() {
+    let rod =
+        Obstacle::Capsule { a: Vec3::new(0.03, -0.02, -1.0), b: Vec3::new(0.03, -0.02, 1.0), radius: 0.01 };
+    let away = |radius: f32| still(&Obstacle::Sphere { center: Vec3::Y * 9.0, radius });
+    for model in Model::ALL {
+        // Nothing is near in between: whether segments are looked at there or not, they begin anew.
+        let meet_again = |between: &[MovingObstacle]| {
+            let (mut simulation, roots) = hair(model, &[]);
+            for obstacles in [&still(&rod)[..], between, &still(&rod)[..]] {
+                (0..20).for_each(|_| _ = step(&mut simulation, &roots, obstacles));
+            }
+            points(&simulation)
+        };
+        assert_eq!(meet_again(&away(1.0)), meet_again(&away(0.01)), "{model:?}");
     }
 }
