@@ -264,14 +264,22 @@ fn what_pressed_segments_is_forgotten_where_none_is_looked_at() {
         Obstacle::Capsule { a: Vec3::new(0.03, -0.02, -1.0), b: Vec3::new(0.03, -0.02, 1.0), radius: 0.01 };
     let away = |radius: f32| still(&Obstacle::Sphere { center: Vec3::Y * 9.0, radius });
     for model in Model::ALL {
-        // Nothing is near in between: whether segments are looked at there or not, they begin anew.
-        let meet_again = |between: &[MovingObstacle]| {
+        // Nothing is near in between: whether segments are looked at there or not, they begin anew; also in a simulation that takes over in the midst.
+        let meet_again = |between: &[MovingObstacle], taken_over: bool| {
             let (mut simulation, roots) = hair(model, &[]);
             for obstacles in [&still(&rod)[..], between, &still(&rod)[..]] {
                 (0..20).for_each(|_| _ = step(&mut simulation, &roots, obstacles));
+                if taken_over {
+                    let (mut next, _) = hair(model, &[]);
+                    next.take_over(&simulation);
+                    simulation = next;
+                }
             }
             points(&simulation)
         };
-        assert_eq!(meet_again(&away(1.0)), meet_again(&away(0.01)), "{model:?}");
+        for taken_over in [false, true] {
+            let [left, looked] = [1.0, 0.01].map(|radius| meet_again(&away(radius), taken_over));
+            assert_eq!(left, looked, "{model:?}, taken over: {taken_over}");
+        }
     }
 }

@@ -126,6 +126,7 @@ impl Simulation {
         let looked_at = interval.segments;
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
         if looked_at && !interval.segments {
+            // What pressed segments is forgotten: nothing corrects it until they are looked at again.
             self.spans.fill([Row::default(); span::ROWS]);
         }
         self.begin_tools(&Bodies::new((drive.obstacles, carried.as_ref())));

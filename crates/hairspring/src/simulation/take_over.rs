@@ -32,6 +32,7 @@ impl Simulation {
         self.settings.anchor = old.settings.anchor;
         self.motion = old.motion;
         self.last_h = old.last_h;
+        self.interval.segments = old.interval.segments;
         self.charged.clone_from(&old.charged);
         self.sunk = if old.sunk.is_empty() { Vec::new() } else { vec![Row::default(); self.state.len()] };
         let mut lanes = vec![u32::MAX; old.lanes.len()];

@@ -12,7 +12,7 @@ use super::{
     root::Root,
     scratch::Scratch,
     segment::{clear, sag},
-    tether::tethered,
+    tether::{beyond, tethered},
     tile::{Tile, history, rest, span, state},
     truss::beside,
 };
@@ -87,7 +87,8 @@ pub fn limit<S: Simd>(
         shift = V3::zero(simd);
         // A branch, so that a segment waits for the one before it only where something is to be done.
         let world = step.root.position + (at.x + e);
-        if !tile.tethers.is_empty() || near(simd, step, tile, (i, world, e)) || link.wrong(e).any_true() {
+        let wrong = link.wrong(e) | beyond(simd, tile, i, at.x + e);
+        if near(simd, step, tile, (i, world, e)) || wrong.any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             // Copies are lent, as of the tile: what is lent itself would wait in memory at every point.
             let (at, link) = (at, Link { ..link });

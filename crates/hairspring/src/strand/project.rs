@@ -5,7 +5,8 @@
 //! ```
 //!
 //! Goldenthal et al. 2007, *Efficient Simulation of Inextensible Cloth*, §3 and §4: a scalar tridiagonal system for a strand, solved
-//! exactly by one sweep up and one down (Thomas), of which the first goes along with that of the solve. Their C needs no root and no unit vector. The root and the second point are driven.
+//! exactly by one sweep up and one down (Thomas), of which the first goes along with that of the solve. Their C needs no root and no unit vector.
+//! The root and the second point are driven.
 
 use super::{
     fixed::Fixed,
@@ -47,8 +48,9 @@ pub struct Projection<S: Simd> {
     inverse: F<S>,
     /// Its λ without what the λ before it adds.
     d: F<S>,
-    /// By how much the most wrong of the lengths is more than that is enough [m]; not positive where all are right.
+    /// By how much the most wrong of the lengths is more than is enough [m]; not positive where all are right.
     worst: F<S>,
+    /// What is enough.
     enough: Enough<S>,
 }
 
@@ -77,9 +79,7 @@ impl<S: Simd> Projection<S> {
         // Row i: −w0 (u·u₋) λ₋ + (w0 + w1) u·u λ − w1 (u·u₊) λ₊ = C
         let coupling = outer * u.dot(self.u);
         let c = coupling * self.inverse;
-        if let Some(after) = pulls.get_mut(i + stride) {
-            store(c, &mut after[C]);
-        }
+        store(c, &mut pulls[i + stride][C]);
         let pivot = (-coupling).mul_add(c, (inner + outer) * size.max(SHORT));
         let inverse = F::splat(simd, 1.0) / pivot.max(1e-30);
         let d = coupling.mul_add(self.d, error) * inverse;

@@ -17,7 +17,7 @@ use super::{
     model::stretch::STRETCH,
     tile::{Tile, rest},
 };
-use fearless_simd::prelude::*;
+use fearless_simd::{mask32x8, prelude::*};
 
 /// How far a spring may let a point be beyond its tether, over the tether's length [1].
 const SLACK: f32 = 1e-3;
@@ -46,6 +46,14 @@ pub fn pull<S: Simd, const B: usize>(
     system.add_force(1, out * (k * -(beyond + out.dot(drift))));
 }
 
+/// Whether point `i`, at `x` from the root, is beyond its tether.
+#[inline(always)]
+pub fn beyond<S: Simd>(simd: S, tile: &Tile, i: usize, x: V3<S>) -> mask32x8<S> {
+    let Some(reach) = tile.tethers.get(i) else { return mask32x8::splat(simd, false) };
+    let reach = load(simd, reach) * (1.0 + SLACK);
+    x.dot(x).simd_gt(reach * reach)
+}
+
 /// Where point `i` may be that is at `e` from the point before, which is `at`: no farther from the root than its tether is long, within the limits of its
 /// segment. Where not both can be, it points to the root.
 ///
@@ -59,13 +67,12 @@ pub fn tethered<S: Simd>(
     (at, link): (&Particle<S>, &Link<S>),
     e: V3<S>,
 ) -> V3<S> {
-    let Some(reach) = tile.tethers.get(i) else { return e };
-    let reach = load(simd, reach) * (1.0 + SLACK);
     let x = at.x + e;
-    let far = x.dot(x).simd_gt(reach * reach);
+    let far = beyond(simd, tile, i, x);
     if !far.any_true() {
         return e;
     }
+    let reach = load(simd, &tile.tethers[i]) * (1.0 + SLACK);
     let (size, out) = x.length_and_unit();
     let pulled = e - out * (size - reach);
     let l = link.within(pulled.length_and_unit().0);
