@@ -267,8 +267,9 @@ fn what_pressed_segments_is_forgotten_where_none_is_looked_at() {
         // Nothing is near in between: whether segments are looked at there or not, they begin anew; also in a simulation that takes over in the midst.
         let meet_again = |between: &[MovingObstacle], taken_over: bool| {
             let (mut simulation, roots) = hair(model, &[]);
-            for obstacles in [&still(&rod)[..], between, &still(&rod)[..]] {
-                (0..20).for_each(|_| _ = step(&mut simulation, &roots, obstacles));
+            // So short in between that what is forgotten would be pressed again.
+            for (obstacles, frames) in [(&still(&rod)[..], 60), (between, 1), (&still(&rod)[..], 20)] {
+                (0..frames).for_each(|_| _ = step(&mut simulation, &roots, obstacles));
                 if taken_over {
                     let (mut next, _) = hair(model, &[]);
                     next.take_over(&simulation);
