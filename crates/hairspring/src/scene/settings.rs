@@ -149,6 +149,11 @@ impl Integrator {
             Self::Dftl => "dftl",
         }
     }
+
+    /// Whether no segment leaves a substep more than 1 % longer or shorter than at rest; the others are shown as they are.
+    pub fn limits_strain(self) -> bool {
+        matches!(self, Self::BackwardEuler | Self::Bdf2)
+    }
 }
 
 /// How exactly a substep's equations are solved.

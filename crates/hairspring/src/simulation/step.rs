@@ -200,7 +200,10 @@ impl Simulation {
         };
         interval.continues = (interval.h / self.last_h - 1.0).abs() < 1e-3;
         interval.response = solver.contact;
-        let may_cut = |o: &MovingObstacle| !may_be_left(self.longest_segment, o.shape.roundness());
+        // As long as a segment may become: without a limit any is looked at.
+        let may_cut = |o: &MovingObstacle| {
+            !(solver.integrator.limits_strain() && may_be_left(self.longest_segment, o.shape.roundness()))
+        };
         interval.segments = solver.segments && drive.obstacles.iter().any(may_cut);
         interval.projections = solver.projections;
         interval.gravity = self.settings.gravity;

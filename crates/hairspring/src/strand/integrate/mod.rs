@@ -79,7 +79,8 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
             second_order,
             obstacles: &substep.obstacles,
         };
-        let mut finish = Finish { limit: LIMIT, press: 0.0, project: true, kicks: false };
+        let limit_of = if interval.integrator.limits_strain() { LIMIT } else { f32::INFINITY };
+        let mut finish = Finish { limit: limit_of, press: 0.0, project: true, kicks: false };
         match interval.integrator {
             Integrator::BackwardEuler | Integrator::Bdf2 => {
                 implicit::advance::<S, M, B, N>(simd, interval, &step, tile, scratch);
@@ -89,16 +90,13 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
                 finish.project = interval.response != Response::Penalty;
             }
             Integrator::ExplicitEuler | Integrator::Verlet => {
-                finish.limit = f32::INFINITY;
                 explicit::advance::<S, M, B, N>(simd, interval.integrator, &step, tile, scratch);
                 finish.kicks = true;
             }
             Integrator::LocalGlobal => {
-                finish.limit = f32::INFINITY;
                 local_global::advance(simd, interval.iterations, &step, tile, scratch);
             }
             Integrator::Ftl | Integrator::Dftl => {
-                finish.limit = f32::INFINITY;
                 ftl::advance(simd, interval.integrator, &step, tile, scratch);
                 finish.kicks = true;
             }
