@@ -310,8 +310,10 @@ mod tests {
                     continue;
                 }
                 let found = dispatch!(Level::new(), simd => {
-                    let (a, e) = (V3::splat(simd, a), V3::splat(simd, b - a));
-                    deepest(simd, &pose, (a, e), F::splat(simd, clear)).is_some_and(|place| place.found.any_true())
+                    let (a, b) = (V3::splat(simd, a), V3::splat(simd, b));
+                    let clear = F::splat(simd, clear);
+                    pose.may_cut(simd, (b, b - a), -clear).any_true()
+                        && deepest(simd, &pose, (a, b - a), clear).is_some_and(|place| place.found.any_true())
                 });
                 cuts += 1;
                 if !found {

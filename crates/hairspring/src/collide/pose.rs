@@ -1,6 +1,6 @@
 //! A collider as the kernel sees it during a substep: where its shape is, who is near it, and how its surface moves, for eight points in the world at once.
 
-use super::{Obstacle, obstacle::ball_lanes};
+use super::{Grid, Obstacle, obstacle::ball_lanes};
 use crate::strand::{
     lanes::{F, LANES, Row, V3},
     root::transform,
@@ -87,14 +87,20 @@ impl ObstaclePose {
             }
             Obstacle::Field(grid) => {
                 let spacing = LOOK * grid.cell;
-                self.between(
+                let may = self.between(
                     simd,
                     (p, e),
                     (size, spacing),
                     may,
                     #[inline(always)]
                     |at| grid.may_be_inside(simd, at),
-                )
+                );
+                // Longer ones are looked at in more places, by `deepest`.
+                let long = size.simd_gt(F::splat(simd, (2.0 * grid.cell).powi(2)));
+                if !may.any_true() || long.any_true() {
+                    return may;
+                }
+                may & self.dips(simd, grid, (p, e), sag)
             }
             Obstacle::Sheet(sheet) => {
                 let spacing = LOOK * sheet.cell();
@@ -109,6 +115,29 @@ impl ObstaclePose {
             }
             _ => may,
         }
+    }
+
+    /// Which of eight segments that end at `p` (world) and are `e` long may be deeper than `sag` [m] in a field, as the distances in their middle and at both
+    /// thirds tell: that of a convex shape lies above the line through two of them wherever the line goes on. (Where they end they are outside, or a point's
+    /// contact sees to it.) On a smooth body most of what lies on it is done with here.
+    ///
+    /// ```text
+    ///   d ●             ●       between a third and the middle no less than 2 d½ − d⅔, beyond the third
+    ///      ╲●         ●╱        no less than d⅓ + 2 (d⅓ − d½); the same from the other end
+    ///        ╲───●───╱
+    ///       ⅓    ½    ⅔
+    /// ```
+    #[inline(always)]
+    fn dips<S: Simd>(&self, simd: S, grid: &Grid, (p, e): (V3<S>, V3<S>), sag: F<S>) -> mask32x8<S> {
+        let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
+        let [third, half] = [1.0 / 3.0, 0.5].map(|back| F::splat(simd, back));
+        let outer = grid.distance_alone_lanes(simd, p - e * third);
+        let middle = grid.distance_alone_lanes(simd, p - e * half);
+        let inner = grid.distance_alone_lanes(simd, p - e * (third + third));
+        let (least, most) = (inner.min(outer), inner.max(outer));
+        let between = middle + (middle - most).min(0.0);
+        let beyond = least + (least - middle).min(0.0) * 2.0;
+        between.min(beyond).simd_lt(-sag)
     }
 
     /// Of the segments in `may`, those with a place between their ends for which `holds` is true, of places that are no farther than `spacing` [m] from each
