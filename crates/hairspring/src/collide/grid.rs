@@ -166,20 +166,16 @@ impl Grid {
         (distance, gradient * F::splat(simd, 1.0 / self.cell))
     }
 
-    /// The distance of eight points alone [m].
+    /// The distance of eight points alone [m]. (Nothing is worked out for the gradient, which is not asked for.)
     #[inline(always)]
     pub(crate) fn distance_alone_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> F<S> {
-        let (out, index, along) = self.lattice().locate_lanes(simd, p);
-        let k = self.corners_lanes(simd, index);
-        let V3 { x: fx, y: fy, z: fz } = along;
-        let x = [mix(k[0], k[1], fx), mix(k[2], k[3], fx), mix(k[4], k[5], fx), mix(k[6], k[7], fx)];
-        let y = [mix(x[0], x[1], fy), mix(x[2], x[3], fy)];
-        out.dot(out).sqrt().mul_add(self.cell, mix(y[0], y[1], fz))
+        self.between_nodes(simd, p).0
     }
 
-    /// [`Grid::corners`] of eight cells.
+    /// Distance [m], and its gradient over a cell [m].
     #[inline(always)]
-    fn corners_lanes<S: Simd>(&self, simd: S, index: [usize; LANES]) -> [F<S>; 8] {
+    fn between_nodes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
+        let (out, index, along) = self.lattice().locate_lanes(simd, p);
         let mut k = [Row::default(); 8];
         for (lane, index) in index.into_iter().enumerate() {
             for (row, corner) in k.iter_mut().zip(self.corners(index)) {
@@ -187,7 +183,7 @@ impl Grid {
             }
         }
         let [k0, k1, k2, k3, k4, k5, k6, k7] = k;
-        [
+        let k = [
             load(simd, &k0),
             load(simd, &k1),
             load(simd, &k2),
@@ -196,14 +192,7 @@ impl Grid {
             load(simd, &k5),
             load(simd, &k6),
             load(simd, &k7),
-        ]
-    }
-
-    /// Distance [m], and its gradient over a cell [m].
-    #[inline(always)]
-    fn between_nodes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
-        let (out, index, along) = self.lattice().locate_lanes(simd, p);
-        let k = self.corners_lanes(simd, index);
+        ];
         let V3 { x: fx, y: fy, z: fz } = along;
         let x = [mix(k[0], k[1], fx), mix(k[2], k[3], fx), mix(k[4], k[5], fx), mix(k[6], k[7], fx)];
         let y = [mix(x[0], x[1], fy), mix(x[2], x[3], fy)];

@@ -43,6 +43,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     if interval.integrator == Integrator::LocalGlobal {
         local_global::factor(simd, interval.h, tile, scratch);
     }
+    let largest_strain = if interval.integrator.limits_strain() { LIMIT } else { f32::INFINITY };
     let (fraction, anchor) = interval.begun();
     let mut root = Root::between(simd, tile.strand, fraction, anchor);
     // What the root drives drifts with it.
@@ -79,8 +80,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
             second_order,
             obstacles: &substep.obstacles,
         };
-        let limit_of = if interval.integrator.limits_strain() { LIMIT } else { f32::INFINITY };
-        let mut finish = Finish { limit: limit_of, press: 0.0, project: true, kicks: false };
+        let mut finish = Finish { limit: largest_strain, press: 0.0, project: true, kicks: false };
         match interval.integrator {
             Integrator::BackwardEuler | Integrator::Bdf2 => {
                 implicit::advance::<S, M, B, N>(simd, interval, &step, tile, scratch);
