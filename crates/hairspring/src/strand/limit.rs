@@ -16,7 +16,7 @@ use super::{
     tile::{Tile, history, rest, span, state},
     truss::beside,
 };
-use crate::collide::{contact, surface_displacement};
+use crate::collide::{STEEP, contact, surface_displacement};
 use fearless_simd::{mask32x8, prelude::*};
 
 /// What a substep leaves behind besides positions.
@@ -228,7 +228,7 @@ fn held<S: Simd>(
 const WEDGE: f32 = 0.25;
 
 /// The way out of a surface with that `normal`, a unit vector, and how far that is for each metre of depth; for what was moved out of another just before,
-/// whose normal `wall` is, 0 if there was none.
+/// whose normal `wall` is, 0 if there was none. Walls that face each other squarely have no way along both: straight out of the one it is.
 ///
 /// ```text
 ///    wall ╲   ↗╱ surface    straight out of one wall of a crease leads into the other, and back:
@@ -239,7 +239,8 @@ const WEDGE: f32 = 0.25;
 pub fn out_of<S: Simd>(simd: S, normal: V3<S>, wall: V3<S>) -> (V3<S>, F<S>) {
     let into = wall.dot(normal).min(0.0);
     let (size, way) = (normal - wall * into).length_and_unit();
-    (way, F::<S>::splat(simd, 1.0) / size.max(WEDGE))
+    let (squarely, one) = (size.simd_lt(STEEP), F::<S>::splat(simd, 1.0));
+    (V3::select(squarely, normal, way), one / squarely.select(one, size.max(WEDGE)))
 }
 
 /// A particle on the walk from root to tip.
@@ -293,7 +294,7 @@ fn write<S: Simd>(
 /// What holds a point to the one before it, from which it is at `e`.
 pub struct Link<S: Simd> {
     /// Rest length of the segment [m].
-    length: F<S>,
+    pub length: F<S>,
     /// Largest relative change of it.
     limit: f32,
 }

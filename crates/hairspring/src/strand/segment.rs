@@ -9,6 +9,9 @@
 //!
 //! The place is state, like the force: it moves where another is found that cuts, and so a force does not hop about between solves.
 //!
+//! Between walls that face each other, swings lead to and fro though there may be room beside. What they have not freed begins anew from one direction
+//! after another, ever farther aside, until it is out or much less deep than it was.
+//!
 //! # Missing
 //! A place near the inner end is for the next solve: a strand that is caught, or that lands at 30 m/s, cuts in for a moment.
 
@@ -24,6 +27,7 @@ use super::{
 };
 use crate::collide::{Deepest, ObstaclePose, STEEP, contact, deepest, surface_displacement};
 use fearless_simd::prelude::*;
+use glam::Vec3;
 
 /// How deep a segment may be between its ends, over its length [1]. On a smooth body it is always a little inside: by L/8R of its length over a
 /// radius of R. That is no contact: points alone hold it, and a head with segments of a centimetre is a smooth body.
@@ -35,6 +39,18 @@ const NEAREST: f32 = 0.125;
 
 /// How deep a segment may be that is not corrected again, over how deep it may be at all [1].
 const ENOUGH: f32 = 1.02;
+
+/// How much deeper than it may be a segment that swings to and fro is left, over its length [1]: what is no deeper is not worth being turned aside.
+const LEFT: f32 = 0.5 * SAG;
+
+/// Directions from which such a segment begins anew.
+const STARTS: usize = 48;
+
+/// Corrections from each of them: what has room there is out by then.
+const OF_EACH: usize = 3;
+
+/// How far aside the last of them is, over the segment's length, in each direction of space [1].
+const FARTHEST: f32 = 1.0;
 
 /// Whether no segment of up to `length` [m] need be looked at beside what is round with this `radius` [m]: it lies within what it may, as long as the limit lets
 /// it become.
@@ -70,7 +86,8 @@ pub fn clear<S: Simd>(
     let allowed = load(simd, &tile.rest[i][rest::CLEARANCE]);
     let (mut q, mut cuts, mut wall) = (e, may, V3::zero(simd));
     let (mut best, mut least) = (e, F::<S>::splat(simd, f32::MAX));
-    for correction in 0..=CORRECTIONS {
+    let last = CORRECTIONS + STARTS * OF_EACH;
+    for correction in 0..=last {
         let asked = if correction == 0 { clear } else { clear * ENOUGH };
         let place = deepest(simd, pose, (a, q), asked).unwrap_or_else(|| Deepest::none(simd));
         let (distance, normal) = contact(simd, pose, a + q);
@@ -83,12 +100,23 @@ pub fn clear<S: Simd>(
         if !cuts.any_true() {
             break;
         }
-        let better = depth.simd_lt(least);
+        // What is turned aside has to be worth it, or it would be thrown through thin walls for nothing.
+        let bar = if correction <= CORRECTIONS { 1.0 } else { 0.5 };
+        let better = depth.simd_lt(least * bar);
         (best, least) = (V3::select(better, q, best), better.select(depth, least));
-        if correction == CORRECTIONS {
-            // Caught: the least deep that it was.
+        if correction == CORRECTIONS || correction == last {
+            // Caught: the least deep that it was, unless that is too deep to be left.
             q = V3::select(cuts, best, q);
-            break;
+            cuts &= least.simd_gt(link.length * LEFT);
+            if correction == last || !cuts.any_true() {
+                break;
+            }
+        }
+        let anew = correction.checked_sub(CORRECTIONS).filter(|more| more % OF_EACH == 0);
+        if let Some(more) = anew {
+            q = V3::select(cuts, link.clamp(aside(simd, e, more / OF_EACH + 1)), q);
+            wall = V3::zero(simd);
+            continue;
         }
         let first = end.simd_lt(between);
         let normal = V3::select(first, place.normal, normal);
@@ -124,6 +152,18 @@ pub fn clear<S: Simd>(
         q = V3::select(cuts, out, q);
     }
     q
+}
+
+/// `e` turned aside for the `start`th time, from 1 on: each time in another direction, at first a little and at last by [`FARTHEST`].
+#[inline(always)]
+fn aside<S: Simd>(simd: S, e: V3<S>, start: usize) -> V3<S> {
+    // The additive recurrence R₃, which fills a cube evenly (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"): powers of the root
+    // of x⁴ = x + 1.
+    const STEPS: Vec3 = Vec3::new(0.819_172_5, 0.671_043_6, 0.549_700_5);
+    let turn = (STEPS * start as f32 + 0.5).fract() * 2.0 - 1.0;
+    let far = FARTHEST * (start as f32 / STARTS as f32).powi(2);
+    let (l, _) = e.length_and_unit();
+    V3::splat(simd, turn * far) * l + e
 }
 
 /// Adds contact to the segment from point `i`, the first of the window, to the strand's next, which is in it too. Point `i` is at `x` from the
