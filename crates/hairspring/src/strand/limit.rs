@@ -183,6 +183,7 @@ fn held<S: Simd>(
         let (distance, normal) = contact(simd, pose, world);
         let depth = (clearance - distance).max(0.0);
         let inside = depth.simd_gt(0.0);
+        let mut caught = mask32x8::splat(simd, false);
         if inside.any_true() {
             // Out along the normal; then back along the surface, at most μ times as far.
             let pushed = e + normal * depth;
@@ -200,11 +201,15 @@ fn held<S: Simd>(
             // ear) its length goes before its depth, so that it slips free in time.
             let mut q = link.clamp(held);
             let mut wall = V3::zero(simd);
-            for _ in 0..CORRECTIONS {
+            for correction in 0..=CORRECTIONS {
                 let (distance, normal) = contact(simd, pose, in_world(q));
                 let left = (clearance - distance).max(0.0);
                 let still = inside & left.simd_gt(link.slack());
                 if !still.any_true() {
+                    break;
+                }
+                if correction == CORRECTIONS {
+                    caught = still;
                     break;
                 }
                 let (way, far) = out_of(simd, normal, wall);
@@ -217,7 +222,7 @@ fn held<S: Simd>(
             }
         }
         if !tile.spans.is_empty() {
-            e = clear(simd, (finish, step, pose), tile, (i, old, e), (at, link));
+            e = clear(simd, (finish, step, pose), tile, (i, old, e), (at, link), caught);
         }
     }
     store(press, &mut tile.state[i][state::PRESS]);

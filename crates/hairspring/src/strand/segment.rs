@@ -26,7 +26,7 @@ use super::{
     tile::{Tile, rest, span, state},
 };
 use crate::collide::{Deepest, ObstaclePose, STEEP, contact, deepest, surface_displacement};
-use fearless_simd::prelude::*;
+use fearless_simd::{mask32x8, prelude::*};
 use glam::Vec3;
 
 /// How deep a segment may be between its ends, over its length [1]. On a smooth body it is always a little inside: by L/8R of its length over a
@@ -67,7 +67,7 @@ pub fn sag<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
 }
 
 /// Where point `i` may be, which is at `e` from the strand's point before and was at `old`, so that the segment between them is outside of `pose`. What
-/// held it out presses on in the next solve.
+/// held it out presses on in the next solve. Points that are `caught` are inside still.
 #[inline(always)]
 pub fn clear<S: Simd>(
     simd: S,
@@ -75,11 +75,12 @@ pub fn clear<S: Simd>(
     tile: &mut Tile,
     (i, old, e): (usize, V3<S>, V3<S>),
     (inner, link): (&Particle<S>, &Link<S>),
+    caught: mask32x8<S>,
 ) -> V3<S> {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let a = step.root.position + inner.x;
     let clear = -sag(simd, tile, i);
-    let may = pose.may_cut(simd, (a + e, e), -clear);
+    let may = caught | pose.may_cut(simd, (a + e, e), -clear);
     if !may.any_true() {
         return e;
     }
@@ -93,8 +94,9 @@ pub fn clear<S: Simd>(
         let (distance, normal) = contact(simd, pose, a + q);
         let between = place.found.select(clear - place.distance, zero);
         // A swing may have led the end itself inside, around an edge.
-        let end = if correction == 0 { zero } else { allowed - distance };
+        let end = allowed - distance;
         let end = end.simd_gt(link.slack()).select(end, zero);
+        let end = if correction == 0 { caught.select(end, zero) } else { end };
         let depth = between.max(end);
         cuts &= depth.simd_gt(0.0);
         if !cuts.any_true() {
@@ -136,9 +138,10 @@ pub fn clear<S: Simd>(
             let mass = load(simd, &tile.rest[i][rest::MASS]);
             let rows = &mut tile.spans[i];
             let force = load(simd, &rows[span::FORCE]);
-            let pressed = cuts.select(finish.pressed(force, mass, depth, approach), force);
+            let pressing = cuts & first;
+            let pressed = pressing.select(finish.pressed(force, mass, depth, approach), force);
             store(pressed, &mut rows[span::FORCE]);
-            store(cuts.select(place.at, load(simd, &rows[span::AT])), &mut rows[span::AT]);
+            store(pressing.select(place.at, load(simd, &rows[span::AT])), &mut rows[span::AT]);
             if !finish.project {
                 break;
             }
@@ -147,7 +150,7 @@ pub fn clear<S: Simd>(
             let slide = (out - old).mul_add(place.at, inner.way) - carried;
             let tangent = slide - place.normal * place.normal.dot(slide);
             let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
-            out = link.clamp(out - tangent * hold.min(1.0));
+            out = V3::select(first, link.clamp(out - tangent * hold.min(1.0)), out);
         }
         q = V3::select(cuts, out, q);
     }
