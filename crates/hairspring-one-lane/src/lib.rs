@@ -106,6 +106,14 @@ pub struct f32x8<S> {
     pub simd: S,
 }
 
+/// Four numbers: not of lanes, but as they lie in memory.
+#[expect(non_camel_case_types, reason = "fearless_simd's name")]
+#[derive(Clone, Copy, Debug)]
+pub struct f32x4<S> {
+    values: [f32; 4],
+    simd: S,
+}
+
 /// One lane of eight truth values.
 #[expect(non_camel_case_types, reason = "fearless_simd's name")]
 #[derive(Clone, Copy, Debug)]
@@ -231,6 +239,31 @@ impl<S: Simd> f32x8<S> {
     #[inline(always)]
     pub fn simd_eq(self, o: impl Number<S>) -> mask32x8<S> {
         self.is(self.value == o.number())
+    }
+}
+
+#[expect(missing_docs, reason = "fearless_simd says what they do")]
+impl<S: Simd> f32x4<S> {
+    #[inline(always)]
+    pub fn from_slice(simd: S, four: &[f32]) -> Self {
+        Self { values: [four[0], four[1], four[2], four[3]], simd }
+    }
+
+    #[inline(always)]
+    pub fn zip_low(self, o: Self) -> Self {
+        self.interleave(o).0
+    }
+
+    #[inline(always)]
+    pub fn interleave(self, o: Self) -> (Self, Self) {
+        let ([a, b, c, d], [e, f, g, h]) = (self.values, o.values);
+        (Self { values: [a, e, b, f], ..self }, Self { values: [c, g, d, h], ..self })
+    }
+
+    #[inline(always)]
+    pub fn combine(self, o: Self) -> f32x8<S> {
+        let ([a, b, c, d], [e, f, g, h]) = (self.values, o.values);
+        f32x8::simd_from(self.simd, [a, b, c, d, e, f, g, h])
     }
 }
 

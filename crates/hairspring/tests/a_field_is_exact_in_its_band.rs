@@ -44,10 +44,10 @@ fn every_node_of_the_band_is_as_far_off_as_its_nearest_triangle_and_moves_with_i
     let (mut grid, cell) = (Grid::default(), 0.011);
     Voxelizer::default().update(&mut grid, &mesh.positions, Some(&before), &triangles, None, cell);
     let mut near = 0;
-    for (i, d) in grid.distances.iter().enumerate() {
-        let (i, size) = (i as u32, grid.size);
+    for (i, d) in grid.distances().iter().enumerate() {
+        let (i, size) = (i as u32, grid.size());
         let at = [i % size.x, i / size.x % size.y, i / size.x / size.y];
-        let p = grid.origin + Vec3::from(at.map(|n| n as f32)) * grid.cell;
+        let p = grid.origin() + Vec3::from(at.map(|n| n as f32)) * grid.cell();
         let nearest = tree.nearest(p, |_| true).unwrap();
         let exact = nearest.distance_squared.sqrt();
         if exact > 0.98 * BAND * cell {

@@ -156,13 +156,13 @@ impl<'a> Shape<'a> {
             }
             Obstacle::Plane { point, normal } => planes(vec![normal.extend(normal.dot(*point))]),
             Obstacle::Hull(hull) => planes(hull.planes().map(|(n, offset)| n.extend(offset)).collect()),
-            Obstacle::Field(grid) if !grid.distances.is_empty() => Self {
+            Obstacle::Field(grid) if !grid.distances().is_empty() => Self {
                 collider: Collider {
-                    a: grid.origin.extend(grid.cell),
-                    size: grid.size.to_array(),
+                    a: grid.origin().extend(grid.cell()),
+                    size: grid.size().to_array(),
                     ..placed(turn, at, FIELD)
                 },
-                numbers: grid.distances[..].into(),
+                numbers: grid.distances().into(),
             },
             Obstacle::Field(_) | Obstacle::Sheet(_) => return None,
         })

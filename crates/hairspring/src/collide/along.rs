@@ -91,7 +91,7 @@ pub(crate) fn deepest<S: Simd>(
     let splat = |x: f32| F::<S>::splat(simd, x);
     let (l, u) = e.length_and_unit();
     let spacing = match &pose.shape {
-        Obstacle::Field(grid) => 0.5 * grid.cell,
+        Obstacle::Field(grid) => 0.5 * grid.cell(),
         _ => f32::INFINITY,
     };
     let [mut pieces, most] = PIECES;
@@ -291,11 +291,11 @@ mod tests {
             let mut bits = u64::from(seed);
             let (positions, triangles) = if seed % 2 == 0 { balls(seed, true) } else { boxes(&mut bits) };
             let grid = voxelize(&positions, &triangles, CELL);
-            let (still, top) = ((Mat3::IDENTITY, Vec3::ZERO), (grid.size - 1).as_vec3() * CELL);
+            let (still, top) = ((Mat3::IDENTITY, Vec3::ZERO), (grid.size() - 1).as_vec3() * CELL);
             let pose = ObstaclePose::new(Obstacle::Field(Arc::new(grid.clone())), still, still, 1.0);
             for _ in 0..50_000 {
                 let [at, way, far] = [(); 3].map(|()| vector(&mut bits));
-                let p = grid.origin + at * top;
+                let p = grid.origin() + at * top;
                 let (distance, normal) = grid.distance_and_normal(p);
                 // The middle from a little inside to a cell outside, up to two cells from end to end.
                 let middle = p - normal * (distance - CELL * (far.x * far.x - 0.05));

@@ -1,11 +1,11 @@
 //! Distances deep inside a closed mesh, farther from its surface than the band of exact ones is wide.
 
-use super::{Grid, voxelize::BAND};
+use super::{Grid, lattice::Lattice, voxelize::BAND};
 
 /// Extends distances beyond the band through `runs` of nodes in a row that lie deeper, in order (layer, row, first and end): one round of fast sweeping for
 /// |∇d| = 1 (Zhao 2005) over every second node along each axis, and means between those. So deep, the way out is all that is asked for.
 pub(super) fn extend(grid: &mut Grid, runs: impl DoubleEndedIterator<Item = [u32; 4]> + Clone) {
-    let Grid { distances: d, size, cell, .. } = grid;
+    let Grid { distances: d, lattice: Lattice { size, cell, .. }, .. } = grid;
     let [nx, ny, nz] = size.to_array().map(|n| n as usize);
     let h = 2.0 * *cell;
     // Deeper than any way out of the grid.

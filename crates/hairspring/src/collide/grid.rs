@@ -3,23 +3,21 @@
 use super::{lattice::Lattice, voxelize::BAND};
 use crate::body::nearest_on_triangle;
 use crate::strand::lanes::{F, LANES, Row, V3, load};
-use fearless_simd::{mask32x8, prelude::*};
+use fearless_simd::{f32x4, mask32x8, prelude::*};
 use glam::{UVec3, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
 
+/// Numbers after those of the nodes, so that four may be read from the last but one on.
+const BEYOND: usize = 2;
+
 /// Signed distances at the nodes of a regular grid, negative inside; trilinear between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Grid {
-    /// Position of node (0, 0, 0) [m].
-    pub origin: Vec3,
-    /// Distance between neighbouring nodes [m].
-    pub cell: f32,
-    /// Nodes along each axis, each 2 or more; 2²³ in all at most.
-    pub size: UVec3,
-    /// Distance at each node [m], x fastest; shape `[size.z][size.y][size.x]`.
-    pub distances: Vec<f32>,
-    /// Number of the nearest triangle at each node of the band, anything at others; the shape of `distances`.
+    pub(super) lattice: Lattice,
+    /// Distance at each node [m], and [`BEYOND`].
+    pub(super) distances: Vec<f32>,
+    /// Number of the nearest triangle at each node of the band, anything at others; as many as nodes.
     pub(super) nearest: Vec<u32>,
     /// Corners of the triangles, and how far they moved during the last interval, in the field's space [m]; empty: the surface is rigid.
     corners: Vec<[Vec3; 3]>,
@@ -31,6 +29,26 @@ pub struct Grid {
 }
 
 impl Grid {
+    /// Position of node (0, 0, 0) [m].
+    pub fn origin(&self) -> Vec3 {
+        self.lattice.origin
+    }
+
+    /// Distance between neighbouring nodes [m].
+    pub fn cell(&self) -> f32 {
+        self.lattice.cell
+    }
+
+    /// Nodes along each axis, each 2 or more; 2²³ in all at most.
+    pub fn size(&self) -> UVec3 {
+        self.lattice.size
+    }
+
+    /// Distance at each node [m], x fastest; shape `[size.z][size.y][size.x]`.
+    pub fn distances(&self) -> &[f32] {
+        &self.distances[..self.lattice.nodes().min(self.distances.len())]
+    }
+
     /// Whether the surface moved in the field's own space.
     pub fn deforms(&self) -> bool {
         !self.moved.is_empty()
@@ -44,8 +62,9 @@ impl Grid {
         before: Option<&[Vec3]>,
         triangles: &[[u32; 3]],
     ) {
-        (self.origin, self.cell, self.size) = (lattice.origin, lattice.cell, lattice.size);
-        self.distances.resize(lattice.nodes(), 0.0);
+        self.lattice = lattice;
+        self.distances.resize(lattice.nodes() + BEYOND, 0.0);
+        self.distances[lattice.nodes()..].fill(f32::MAX);
         self.nearest.resize(lattice.nodes(), 0);
         self.corners.clear();
         self.moved.clear();
@@ -64,14 +83,14 @@ impl Grid {
 
     /// The ball around the whole grid, outside of which nothing is inside: its middle and radius [m].
     pub fn bounds(&self) -> (Vec3, f32) {
-        let half = (self.size - UVec3::ONE).as_vec3() * (0.5 * self.cell);
-        (self.origin + half, half.length())
+        let half = (self.lattice.size - UVec3::ONE).as_vec3() * (0.5 * self.lattice.cell);
+        (self.lattice.origin + half, half.length())
     }
 
     /// Distance [m] and outward unit normal at `p` [m]; outside the grid, the distance to the grid is added.
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
-        let (out, cell, along) = self.lattice().locate(p);
-        let c00 = self.corners(self.lattice().index(cell));
+        let (out, cell, along) = self.lattice.locate(p);
+        let c00 = self.corners(self.lattice.index(cell));
         let [fx, fy, fz] = along.to_array();
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
         let x = [0, 2, 4, 6].map(|k| mix(c00[k], c00[k + 1], fx));
@@ -79,15 +98,15 @@ impl Grid {
         let gx =
             mix(mix(c00[1] - c00[0], c00[3] - c00[2], fy), mix(c00[5] - c00[4], c00[7] - c00[6], fy), fz);
         let gradient = Vec3::new(gx, mix(x[1] - x[0], x[3] - x[2], fz), y[1] - y[0]);
-        (mix(y[0], y[1], fz) + out.length() * self.cell, gradient.normalize_or(Vec3::Y))
+        (mix(y[0], y[1], fz) + out.length() * self.lattice.cell, gradient.normalize_or(Vec3::Y))
     }
 
     /// How far the surface nearest to `p` [m] moved in the last interval [m]; 0 for a rigid one, and beyond the band of exact distances.
     pub fn displacement(&self, p: Vec3) -> Vec3 {
-        let top = (self.size - UVec3::ONE).as_vec3();
-        let c = ((p - self.origin) / self.cell).max(Vec3::ZERO).min(top);
-        let node = self.lattice().index(c.round().as_uvec3());
-        let known = self.distances[node].abs() < 0.99 * BAND * self.cell;
+        let top = (self.lattice.size - UVec3::ONE).as_vec3();
+        let c = ((p - self.lattice.origin) / self.lattice.cell).max(Vec3::ZERO).min(top);
+        let node = self.lattice.index(c.round().as_uvec3());
+        let known = self.distances[node].abs() < 0.99 * BAND * self.lattice.cell;
         let triangle = self.nearest[node] as usize;
         let Some(moved) = self.moved.get(triangle).filter(|_| known) else { return Vec3::ZERO };
         let weights = nearest_on_triangle(p, self.corners[triangle]);
@@ -98,16 +117,24 @@ impl Grid {
         moved[0] * weights.x + moved[1] * weights.y + moved[2] * weights.z
     }
 
-    fn lattice(&self) -> Lattice {
-        Lattice { origin: self.origin, cell: self.cell, size: self.size }
-    }
-
     /// The eight distances around the cell with lower node `i`: x fastest, then y, then z.
     #[inline(always)]
     fn corners(&self, i: usize) -> [f32; 8] {
-        let (dy, dz) = (self.size.x as usize, (self.size.x * self.size.y) as usize);
+        let (dy, dz) = (self.lattice.size.x as usize, (self.lattice.size.x * self.lattice.size.y) as usize);
         let d = &self.distances[i..i + dz + dy + 2];
         [d[0], d[1], d[dy], d[dy + 1], d[dz], d[dz + 1], d[dz + dy], d[dz + dy + 1]]
+    }
+
+    /// [`Grid::corners`] of eight cells. Of four nodes that are read at once two are kept: that is fewer loads than of nodes, and none waits for eight stores.
+    #[inline(always)]
+    fn corners_lanes<S: Simd>(&self, simd: S, [a, b, c, d, e, f, g, h]: [usize; LANES]) -> [F<S>; 8] {
+        let (dy, dz) = (self.lattice.size.x as usize, (self.lattice.size.x * self.lattice.size.y) as usize);
+        // One check a cell: the compiler sees that all four times four nodes lie within.
+        let cell = |i: usize| &self.distances[i..i + dz + dy + 4];
+        let cells = [cell(a), cell(b), cell(c), cell(d), cell(e), cell(f), cell(g), cell(h)];
+        let ([k0, k1], [k2, k3]) = (pairs(simd, &cells, 0), pairs(simd, &cells, dy));
+        let ([k4, k5], [k6, k7]) = (pairs(simd, &cells, dz), pairs(simd, &cells, dz + dy));
+        [k0, k1, k2, k3, k4, k5, k6, k7]
     }
 
     /// Notes which cells hold a place inside: those with a corner that does, as distances are linear between corners.
@@ -127,8 +154,8 @@ impl Grid {
             })
             .collect_into_vec(&mut self.inside);
         // A cell reaches one node on along each axis. From the first word on: what is read is not yet written.
-        let (count, slab) = (self.inside.len(), self.size.x * self.size.y);
-        for step in [1, self.size.x, slab] {
+        let (count, slab) = (self.inside.len(), self.lattice.size.x * self.lattice.size.y);
+        for step in [1, self.lattice.size.x, slab] {
             let (words, bits) = ((step / u32::BITS) as usize, step % u32::BITS);
             for w in 0..count {
                 let next = |k: usize| u64::from(self.inside.get(w + words + k).copied().unwrap_or(0));
@@ -142,7 +169,7 @@ impl Grid {
     pub(crate) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
         let mut may = Row([1.0; LANES]);
         if !self.inside.is_empty() {
-            let (_, index, _) = self.lattice().locate_lanes(simd, p);
+            let (_, index, _) = self.lattice.locate_lanes(simd, p);
             for (may, index) in may.0.iter_mut().zip(index) {
                 let bits = self.inside[index / u32::BITS as usize] >> (index as u32 % u32::BITS);
                 *may = (bits & 1) as f32;
@@ -163,36 +190,14 @@ impl Grid {
     #[inline(always)]
     pub(crate) fn slope_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let (distance, gradient) = self.between_nodes(simd, p);
-        (distance, gradient * F::splat(simd, 1.0 / self.cell))
-    }
-
-    /// The distance of eight points alone [m]. (Nothing is worked out for the gradient, which is not asked for.)
-    #[inline(always)]
-    pub(crate) fn distance_alone_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> F<S> {
-        self.between_nodes(simd, p).0
+        (distance, gradient * F::splat(simd, 1.0 / self.lattice.cell))
     }
 
     /// Distance [m], and its gradient over a cell [m].
     #[inline(always)]
     fn between_nodes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
-        let (out, index, along) = self.lattice().locate_lanes(simd, p);
-        let mut k = [Row::default(); 8];
-        for (lane, index) in index.into_iter().enumerate() {
-            for (row, corner) in k.iter_mut().zip(self.corners(index)) {
-                row.0[lane] = corner;
-            }
-        }
-        let [k0, k1, k2, k3, k4, k5, k6, k7] = k;
-        let k = [
-            load(simd, &k0),
-            load(simd, &k1),
-            load(simd, &k2),
-            load(simd, &k3),
-            load(simd, &k4),
-            load(simd, &k5),
-            load(simd, &k6),
-            load(simd, &k7),
-        ];
+        let (out, index, along) = self.lattice.locate_lanes(simd, p);
+        let k = self.corners_lanes(simd, index);
         let V3 { x: fx, y: fy, z: fz } = along;
         let x = [mix(k[0], k[1], fx), mix(k[2], k[3], fx), mix(k[4], k[5], fx), mix(k[6], k[7], fx)];
         let y = [mix(x[0], x[1], fy), mix(x[2], x[3], fy)];
@@ -201,12 +206,32 @@ impl Grid {
             y: mix(x[1] - x[0], x[3] - x[2], fz),
             z: y[1] - y[0],
         };
-        let beyond = out.dot(out).sqrt() * self.cell;
-        // Where none is nearest, halfway through, there is no way out that is shorter: up, as of one point.
+        let beyond = out.dot(out).sqrt() * self.lattice.cell;
+        // Where none is nearest, halfway through or beyond the band, there is no way out that is shorter: up, as of one point.
         let level = gradient.dot(gradient).simd_lt(1e-30);
-        let gradient = V3::select(level, V3::splat(simd, Vec3::Y), gradient);
+        let gradient = V3::select(level, V3::splat(simd, Vec3::Y * self.lattice.cell), gradient);
         (mix(y[0], y[1], fz) + beyond, gradient)
     }
+}
+
+/// The numbers at an index of eight slices, and those after them. Two more after each are read.
+#[inline(always)]
+fn pairs<S: Simd>(simd: S, [a, b, c, d, e, f, g, h]: &[&[f32]; LANES], at: usize) -> [F<S>; 2] {
+    let (low, high) = (pairs_of_four(simd, [a, b, c, d], at), pairs_of_four(simd, [e, f, g, h], at));
+    [low.0.combine(high.0), low.1.combine(high.1)]
+}
+
+/// The same of four.
+#[inline(always)]
+fn pairs_of_four<S: Simd>(simd: S, [a, b, c, d]: [&[f32]; 4], at: usize) -> (f32x4<S>, f32x4<S>) {
+    let (a, b) = (four(simd, a, at), four(simd, b, at));
+    let (c, d) = (four(simd, c, at), four(simd, d, at));
+    a.zip_low(c).interleave(b.zip_low(d))
+}
+
+#[inline(always)]
+fn four<S: Simd>(simd: S, numbers: &[f32], first: usize) -> f32x4<S> {
+    f32x4::from_slice(simd, &numbers[first..first + 4])
 }
 
 /// `a` at `t` = 0, `b` at 1.
@@ -263,15 +288,15 @@ pub(super) mod tests {
     }
 
     fn assert_marked(grid: &Grid, what: &str) {
-        let lattice = grid.lattice();
+        let lattice = grid.lattice;
         let mut marked = 0;
-        for z in 0..grid.size.z - 1 {
-            for y in 0..grid.size.y - 1 {
-                for x in 0..grid.size.x - 1 {
+        for z in 0..grid.lattice.size.z - 1 {
+            for y in 0..grid.lattice.size.y - 1 {
+                for x in 0..grid.lattice.size.x - 1 {
                     let i = lattice.index(UVec3::new(x, y, z));
-                    let mark = grid.inside[i / 32] >> (i % 32) & 1 == 1;
                     let holds = grid.corners(i).iter().any(|d| *d <= 0.0);
-                    assert_eq!(mark, holds, "{what}: cell {x}, {y}, {z} of {}", grid.size);
+                    let mark = grid.inside[i / 32] >> (i % 32) & 1 == 1;
+                    assert_eq!(mark, holds, "{what}: cell {x}, {y}, {z} of {}", grid.lattice.size);
                     marked += u32::from(mark);
                 }
             }
@@ -302,9 +327,8 @@ pub(super) mod tests {
     #[test]
     fn the_middle_of_a_wall_has_a_way_out() {
         let grid = Grid {
-            cell: 0.01,
-            size: UVec3::new(3, 3, 3),
-            distances: vec![-0.02; 27],
+            lattice: Lattice::new(Vec3::ZERO, 0.01, UVec3::new(3, 3, 3)),
+            distances: vec![-0.02; 27 + BEYOND],
             nearest: vec![0; 27],
             ..Grid::default()
         };

@@ -39,7 +39,7 @@ impl Holes {
         if rows.is_empty() {
             return runs;
         }
-        let [nx, ny, nz] = grid.size.to_array().map(|n| n as usize);
+        let [nx, ny, nz] = grid.size().to_array().map(|n| n as usize);
         let row = |[z, y]: [u32; 2]| z as usize * ny + y as usize;
         told.clear();
         told.resize(ny * nz, true);
@@ -60,13 +60,13 @@ impl Holes {
                     return true;
                 }
                 take_after(grid, row(at) * nx, beside.map(|row| row.map(|row| row * nx)));
-                deep::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell, runs);
+                deep::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell(), runs);
                 told[row(at)] = true;
                 false
             });
         }
         for &at in &*rows {
-            deep::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell, runs);
+            deep::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell(), runs);
         }
         runs.sort_unstable();
         runs
@@ -75,8 +75,8 @@ impl Holes {
 
 /// Gives the nodes of the row that begins at node `row` the side that most of the rows `beside` are on.
 fn take_after(grid: &mut Grid, row: usize, beside: [Option<usize>; 4]) {
-    let far = 0.5 * grid.cell;
-    for x in 0..grid.size.x as usize {
+    let far = 0.5 * grid.cell();
+    for x in 0..grid.size().x as usize {
         let d = grid.distances[row + x].abs();
         let sides = beside.iter().flatten().map(|row| grid.distances[row + x]);
         let side: i32 = sides.filter(|d| d.abs() > far).map(|d| if d > 0.0 { 1 } else { -1 }).sum();

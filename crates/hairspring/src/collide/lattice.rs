@@ -8,7 +8,7 @@ use glam::{UVec3, Vec3};
 pub(super) const MAX_NODES: usize = 1 << 23;
 
 /// Nodes at equal distances; a cell goes by the index of its lower node.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lattice {
     /// Position of node (0, 0, 0) [m].
     pub origin: Vec3,
@@ -16,9 +16,20 @@ pub(super) struct Lattice {
     pub cell: f32,
     /// Nodes along each axis, each 2 or more.
     pub size: UVec3,
+    /// What `locate_lanes` would else work out at every call: the largest place inside, just below the last nodes [cells], the last cell, and how many
+    /// nodes a row has, and a slab rows.
+    top: Vec3,
+    last: Vec3,
+    rows: [f32; 2],
 }
 
 impl Lattice {
+    /// Of `size` nodes, each 2 or more.
+    pub fn new(origin: Vec3, cell: f32, size: UVec3) -> Self {
+        let (top, last) = ((size - UVec3::ONE).as_vec3() - Vec3::splat(1e-3), (size - 2).as_vec3());
+        Self { origin, cell, size, top, last, rows: [size.x as f32, size.y as f32] }
+    }
+
     /// Covers the box from `lo` to `hi` [m] and `margin` cells around it, in cells of `cell` [m], or of 1.1 to some power times that
     /// where there would be more than `most` nodes.
     pub fn covering(lo: Vec3, hi: Vec3, margin: f32, cell: f32, most: usize) -> Self {
@@ -28,7 +39,7 @@ impl Lattice {
         }
         let margin = Vec3::splat(margin * cell);
         let cells = ((hi - lo + 2.0 * margin) / cell).ceil().as_uvec3();
-        Self { origin: lo - margin, cell, size: cells.max(UVec3::ONE) + UVec3::ONE }
+        Self::new(lo - margin, cell, cells.max(UVec3::ONE) + UVec3::ONE)
     }
 
     /// Number of nodes.
@@ -45,7 +56,7 @@ impl Lattice {
     pub fn locate(&self, p: Vec3) -> (Vec3, UVec3, Vec3) {
         let g = (p - self.origin) / self.cell;
         // `max` first: a NaN becomes 0.
-        let c = g.max(Vec3::ZERO).min(self.top());
+        let c = g.max(Vec3::ZERO).min(self.top);
         let cell = c.as_uvec3().min(self.size - 2);
         (g - c, cell, c - cell.as_vec3())
     }
@@ -53,7 +64,7 @@ impl Lattice {
     /// [`Lattice::locate`] of eight points, the cells by their index.
     #[inline(always)]
     pub fn locate_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (V3<S>, [usize; LANES], V3<S>) {
-        let (top, last) = (self.top(), (self.size - 2).as_vec3());
+        let (top, last) = (self.top, self.last);
         let g = (p - V3::splat(simd, self.origin)) * F::splat(simd, 1.0 / self.cell);
         let c = V3 {
             x: g.x.max_precise(0.0).min(top.x),
@@ -61,16 +72,11 @@ impl Lattice {
             z: g.z.max_precise(0.0).min(top.z),
         };
         let cell = V3 { x: c.x.floor().min(last.x), y: c.y.floor().min(last.y), z: c.z.floor().min(last.z) };
-        let (nx, ny) = (self.size.x as f32, self.size.y as f32);
+        let [nx, ny] = self.rows;
         // From here on `f32` counts in ones, and the last bits of its pattern are the number: no conversion, lane by lane.
         let index = cell.z.mul_add(ny, cell.y).mul_add(nx, cell.x) + MAX_NODES as f32;
         let mut row = Row::default();
         store(index, &mut row);
         (g - c, row.0.map(|index| index.to_bits() as usize & (MAX_NODES - 1)), c - cell)
-    }
-
-    /// The largest place inside, just below the last nodes [cells].
-    fn top(&self) -> Vec3 {
-        (self.size - UVec3::ONE).as_vec3() - Vec3::splat(1e-3)
     }
 }

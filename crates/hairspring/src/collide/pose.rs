@@ -86,7 +86,7 @@ impl ObstaclePose {
                 may & hull.may_be_inside(simd, self.local(simd, p), turned)
             }
             Obstacle::Field(grid) => {
-                let spacing = LOOK * grid.cell;
+                let spacing = LOOK * grid.cell();
                 let may = self.between(
                     simd,
                     (p, e),
@@ -95,12 +95,11 @@ impl ObstaclePose {
                     #[inline(always)]
                     |at| grid.may_be_inside(simd, at),
                 );
-                // Longer ones are looked at in more places, by `deepest`.
-                let long = size.simd_gt(F::splat(simd, (2.0 * grid.cell).powi(2)));
-                if !may.any_true() || long.any_true() {
-                    return may;
+                if may.any_true() && !is_long(simd, grid, e) {
+                    may & self.dips(simd, grid, (p, e), sag)
+                } else {
+                    may
                 }
-                may & self.dips(simd, grid, (p, e), sag)
             }
             Obstacle::Sheet(sheet) => {
                 let spacing = LOOK * sheet.cell();
@@ -117,27 +116,39 @@ impl ObstaclePose {
         }
     }
 
-    /// Which of eight segments that end at `p` (world) and are `e` long may be deeper than `sag` [m] in a field, as the distances in their middle and at both
-    /// thirds tell: that of a convex shape lies above the line through two of them wherever the line goes on. (Where they end they are outside, or a point's
-    /// contact sees to it.) On a smooth body most of what lies on it is done with here.
+    /// The same of segments that end beside the surface, as most of those have a place in a cell that holds one inside: it is not asked first.
+    #[inline(always)]
+    pub(crate) fn may_lie_deep<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> mask32x8<S> {
+        match &self.shape {
+            Obstacle::Field(grid) if !is_long(simd, grid, e) => self.dips(simd, grid, (p, e), sag),
+            _ => self.may_cut(simd, (p, e), sag),
+        }
+    }
+
+    /// Which of eight segments that end at `p` (world) and are `e` long may be deeper than `sag` [m] in a field, as distance and slope at both thirds tell: that
+    /// of a convex shape lies above its tangents. (Where they end they are outside, or a point's contact sees to it.) On a smooth body most of what lies on
+    /// it is done with here: no tangent is deeper than 10/9 of its middle.
     ///
     /// ```text
-    ///   d ●             ●       between a third and the middle no less than 2 d½ − d⅔, beyond the third
-    ///      ╲●         ●╱        no less than d⅓ + 2 (d⅓ − d½); the same from the other end
-    ///        ╲───●───╱
-    ///       ⅓    ½    ⅔
+    ///   d ●                 ●
+    ///      ╲_             _╱
+    ///        ●╌_       _╌●
+    ///        ⅓   ╌╌_╌╌    ⅔
     /// ```
     #[inline(always)]
     fn dips<S: Simd>(&self, simd: S, grid: &Grid, (p, e): (V3<S>, V3<S>), sag: F<S>) -> mask32x8<S> {
         let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
-        let [third, half] = [1.0 / 3.0, 0.5].map(|back| F::splat(simd, back));
-        let outer = grid.distance_alone_lanes(simd, p - e * third);
-        let middle = grid.distance_alone_lanes(simd, p - e * half);
-        let inner = grid.distance_alone_lanes(simd, p - e * (third + third));
-        let (least, most) = (inner.min(outer), inner.max(outer));
-        let between = middle + (middle - most).min(0.0);
-        let beyond = least + (least - middle).min(0.0) * 2.0;
-        between.min(beyond).simd_lt(-sag)
+        let [third, two] = [1.0 / 3.0, 2.0 / 3.0].map(|part| F::<S>::splat(simd, part));
+        let (inner, rise) = grid.slope_lanes(simd, p - e * two);
+        let down = rise.dot(e);
+        let (outer, rise) = grid.slope_lanes(simd, p - e * third);
+        let up = rise.dot(e);
+        let [first, last] = [inner - down * third, outer + up * third];
+        let ends = first.min(inner).min(outer).min(last).simd_lt(-sag);
+        // Where they cross, both times how far they turn there.
+        let crossing = first * up - (outer - up * two) * down;
+        let between = down.simd_lt(0.0) & up.simd_gt(0.0) & crossing.simd_lt((down - up) * sag);
+        ends | between
     }
 
     /// Of the segments in `may`, those with a place between their ends for which `holds` is true, of places that are no farther than `spacing` [m] from each
@@ -177,6 +188,12 @@ impl ObstaclePose {
     pub fn distance(&self, p: Vec3) -> f32 {
         self.shape.distance(self.end.0.transpose() * (p - self.end.1))
     }
+}
+
+/// Whether any of the segments is longer than two of the field's cells: those are looked at in more places, by `deepest`.
+#[inline(always)]
+fn is_long<S: Simd>(simd: S, grid: &Grid, e: V3<S>) -> bool {
+    e.dot(e).simd_gt(F::splat(simd, (2.0 * grid.cell()).powi(2))).any_true()
 }
 
 /// World distance to the surface, and normal, of eight points at the end of a substep.

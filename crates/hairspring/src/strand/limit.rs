@@ -222,7 +222,7 @@ fn held<S: Simd>(
             }
         }
         if !tile.spans.is_empty() {
-            e = clear(simd, (finish, step, pose), tile, (i, old, e), (at, link), caught);
+            e = clear(simd, (finish, step, pose), tile, (i, old, e), (at, link), (distance, caught));
         }
     }
     store(press, &mut tile.state[i][state::PRESS]);

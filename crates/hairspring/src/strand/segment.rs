@@ -67,7 +67,7 @@ pub fn sag<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
 }
 
 /// Where point `i` may be, which is at `e` from the strand's point before and was at `old`, so that the segment between them is outside of `pose`. What
-/// held it out presses on in the next solve. Points that are `caught` are inside still.
+/// held it out presses on in the next solve. The point came in at that `distance` from the surface [m]; those that are `caught` are inside still.
 #[inline(always)]
 pub fn clear<S: Simd>(
     simd: S,
@@ -75,12 +75,17 @@ pub fn clear<S: Simd>(
     tile: &mut Tile,
     (i, old, e): (usize, V3<S>, V3<S>),
     (inner, link): (&Particle<S>, &Link<S>),
-    caught: mask32x8<S>,
+    (distance, caught): (F<S>, mask32x8<S>),
 ) -> V3<S> {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let a = step.root.position + inner.x;
     let clear = -sag(simd, tile, i);
-    let may = caught | pose.may_cut(simd, (a + e, e), -clear);
+    // What ends farther from the surface than it is long has no place inside.
+    let far = distance.max(0.0);
+    let mut may = caught | (far * far).simd_lt(e.dot(e));
+    if may.any_true() {
+        may = caught | pose.may_lie_deep(simd, (a + e, e), -clear);
+    }
     if !may.any_true() {
         return e;
     }
