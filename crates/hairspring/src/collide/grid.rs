@@ -334,12 +334,15 @@ pub(super) mod tests {
         };
         let p = Vec3::new(0.012, 0.007, 0.003);
         let (distance, normal) = grid.distance_and_normal(p);
-        let [lanes, up] = dispatch!(Level::new(), simd => {
-            let (d, n) = grid.distance_lanes(simd, V3::splat(simd, p));
-            [d[3], n.y[3]]
+        let [lanes, up, steep] = dispatch!(Level::new(), simd => {
+            let p = V3::splat(simd, p);
+            let ((d, n), (_, slope)) = (grid.distance_lanes(simd, p), grid.slope_lanes(simd, p));
+            [d[3], n.y[3], slope.y[3]]
         });
         assert_eq!((distance, normal), (-0.02, Vec3::Y));
         assert_eq!((lanes, up), (-0.02, 1.0));
+        // As steep as a distance is, and no more: a segment that lies there would seem to reach far in.
+        assert!((steep - 1.0).abs() < 1e-6, "{steep}");
     }
 
     #[test]
