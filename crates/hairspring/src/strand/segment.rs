@@ -80,7 +80,8 @@ pub fn clear<S: Simd>(
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let a = step.root.position + inner.x;
     let clear = -sag(simd, tile, i);
-    // What ends farther from the surface than it is long has no place inside.
+    // What ends farther from the surface than it is long has no place inside: a distance changes by no more than the way, but for a field between two
+    // nodes on the two sides of a thin wall, where a place near the inner end may be passed over.
     let far = distance.max(0.0);
     let mut may = caught | (far * far).simd_lt(e.dot(e));
     if may.any_true() {
