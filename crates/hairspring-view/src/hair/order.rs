@@ -8,6 +8,7 @@
 use super::shade::LANES;
 use crate::frame::Frame;
 use glam::Vec3;
+use hairspring::groom::Curve;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -52,14 +53,14 @@ impl Order {
         self.strands.clear();
         self.runs.clear();
         self.owners.clear();
-        let scale = 1023.0 / (bounds.1 - bounds.0).max_element().max(1e-9);
+        let curve = Curve::through(bounds.0, bounds.1);
         for (hair, h) in frame.hair.iter().enumerate() {
             let first = self.strands.len();
             // Strands are told apart by their middles: roots alone lie close together.
             self.strands.par_extend((0..h.strand_count()).into_par_iter().map(|s| {
                 let range = h.range(s);
                 let middle = h.points.get(range.start + range.len() / 2).copied().unwrap_or_default();
-                (curve((middle - bounds.0) * scale), s as u32)
+                (curve.along(middle), s as u32)
             }));
             self.strands[first..].par_sort_unstable();
             let (mut start, mut slot) = (first, self.owners.len() * LANES);
@@ -91,16 +92,4 @@ impl Order {
     pub fn strands(&self, run: &Run) -> impl Iterator<Item = usize> {
         self.strands[run.range.clone()].iter().map(|s| s.1 as usize)
     }
-}
-
-/// Place on the Z-order curve (Morton 1966) of a position in 0..1024 per axis.
-fn curve(p: Vec3) -> u32 {
-    let spread = |x: f32| {
-        let mut x = x.clamp(0.0, 1023.0) as u32;
-        x = (x | x << 16) & 0x0300_00ff;
-        x = (x | x << 8) & 0x0300_f00f;
-        x = (x | x << 4) & 0x030c_30c3;
-        (x | x << 2) & 0x0924_9249
-    };
-    spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
 }

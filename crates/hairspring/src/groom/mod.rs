@@ -1,11 +1,13 @@
 //! A groom: the strands of one hairstyle as flat arrays, as an artist made them.
 
 mod bind;
+mod curve;
 mod grow;
 mod sanitize;
 mod thicken;
 
 pub use bind::{RootBinding, bind_roots, bind_roots_where};
+pub use curve::Curve;
 pub use grow::{Growth, grow};
 pub use sanitize::{Repairs, sanitize};
 pub use thicken::{Thicken, thicken};

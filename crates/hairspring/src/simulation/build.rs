@@ -1,6 +1,6 @@
-//! From a groom to tiles: rest shapes, sag-free start, and the order of strands.
+//! From a groom to tiles: rest shapes and the sag-free start.
 
-use super::{Simulation, TilePlace};
+use super::{Simulation, TilePlace, order::Order};
 use crate::{
     air::{Noise, Shade, Shelter},
     around::{Around, HairField},
@@ -52,30 +52,11 @@ impl Simulation {
         let fallback = Material::default();
         let material =
             |s: usize| materials.get(groom.group(s) as usize).or(materials.last()).unwrap_or(&fallback);
-        // Strands of one model and of like counts share tiles; a stable sort keeps neighbours together.
         let elastic: Vec<Elastic> = strands
             .par_iter()
             .map(|s| elastic(material(*s as usize), groom.strand(*s as usize), &solver))
             .collect();
-        let mut order: Vec<u32> = (0..strands.len() as u32).collect();
-        order.sort_by_key(|k| {
-            let points = groom.range(strands[*k as usize] as usize).len();
-            (elastic[*k as usize], std::cmp::Reverse(points))
-        });
-        let mut places = vec![0; strands.len()];
-        let mut lanes: Vec<u32> = Vec::with_capacity(strands.len().next_multiple_of(LANES));
-        let mut models = Vec::new();
-        for k in order.iter().map(|k| *k as usize) {
-            if models.last().is_some_and(|last| *last != elastic[k]) {
-                lanes.resize(lanes.len().next_multiple_of(LANES), u32::MAX);
-            }
-            if lanes.len().is_multiple_of(LANES) {
-                models.push(elastic[k]);
-            }
-            places[k] = lanes.len() as u32;
-            lanes.push(strands[k]);
-        }
-        lanes.resize(lanes.len().next_multiple_of(LANES), u32::MAX);
+        let Order { lanes, places, models } = Order::new(&groom, strands, &elastic);
         let mut first = 0;
         let tiles: Vec<TilePlace> = lanes
             .chunks(LANES)

@@ -11,6 +11,7 @@ mod hands;
 mod hold;
 mod measure;
 mod meet;
+mod order;
 mod place;
 mod reset;
 mod step;

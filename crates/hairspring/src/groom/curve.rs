@@ -1,0 +1,76 @@
+//! Neighbours in space as neighbours in order.
+
+use glam::Vec3;
+
+/// A space-filling curve through a cube: places that are close on it are close in space (the Z-order curve, Morton 1966, *A Computer Oriented Geodetic
+/// Data Base and a New Technique in File Sequencing*).
+///
+/// Who works on strands along it finds what they read, and where they write, in the caches: files keep strands in any order.
+#[derive(Clone, Copy, Debug)]
+pub struct Curve {
+    lo: Vec3,
+    /// Steps of the curve a metre [1/m].
+    scale: f32,
+}
+
+/// Steps of the curve along each axis: three coordinates of ten bits make one number of 30.
+const STEPS: f32 = 1024.0;
+
+impl Curve {
+    /// The curve through the cube on the box from `lo` to `hi` [m].
+    pub fn through(lo: Vec3, hi: Vec3) -> Self {
+        Self { lo, scale: (STEPS - 1.0) / (hi - lo).max_element().max(1e-9) }
+    }
+
+    /// The curve through the cube around `places` [m].
+    pub fn around(places: impl Iterator<Item = Vec3>) -> Self {
+        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (lo, hi) = places.fold(none, |(lo, hi), place| (lo.min(place), hi.max(place)));
+        Self::through(lo, hi)
+    }
+
+    /// How far along the curve a place [m] is, 0 to 2³⁰ - 1; what is outside of the cube counts as on its surface.
+    pub fn along(&self, place: Vec3) -> u32 {
+        let [x, y, z] = ((place - self.lo) * self.scale).to_array().map(spread);
+        x | y << 1 | z << 2
+    }
+}
+
+/// Two zeros after each of ten bits.
+fn spread(x: f32) -> u32 {
+    let mut x = x.clamp(0.0, STEPS - 1.0) as u32;
+    x = (x | x << 16) & 0x0300_00ff;
+    x = (x | x << 8) & 0x0300_f00f;
+    x = (x | x << 4) & 0x030c_30c3;
+    (x | x << 2) & 0x0924_9249
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_eighth_of_the_cube_is_one_piece_of_the_curve() {
+        let curve = Curve::through(Vec3::splat(-1.0), Vec3::splat(1.0));
+        let mut seen: Vec<(u32, [bool; 3])> = (0..4096)
+            .map(|k| {
+                let place = Vec3::new((k % 16) as f32, (k / 16 % 16) as f32, (k / 256) as f32) / 7.5 - 1.0;
+                (curve.along(place), place.to_array().map(|x| x > 0.0))
+            })
+            .collect();
+        seen.sort_unstable();
+        assert!(seen.windows(2).all(|w| w[0].0 < w[1].0), "two places 13 cm apart are one");
+        let turns = seen.windows(2).filter(|w| w[0].1 != w[1].1).count();
+        assert_eq!(turns, 7, "the curve leaves an eighth and comes back");
+    }
+
+    #[test]
+    fn places_anywhere_are_on_it() {
+        let curve = Curve::around([Vec3::ZERO, Vec3::ONE].into_iter());
+        assert_eq!(curve.along(Vec3::splat(-5.0)), 0);
+        assert_eq!(curve.along(Vec3::splat(5.0)), (1 << 30) - 1);
+        assert_eq!(curve.along(Vec3::NAN), 0);
+        assert_eq!(Curve::around(std::iter::empty()).along(Vec3::ONE), 0);
+        assert_eq!(Curve::around(std::iter::once(Vec3::ONE)).along(Vec3::ONE), 0);
+    }
+}

@@ -1,0 +1,110 @@
+//! Which eight strands make a tile.
+//!
+//! Strands of one elastic model and of like counts of points, and of those neighbours: they meet the same things at the same time, so that what the kernel
+//! does for all eight as soon as one of them touches is done for few in vain, and they read and write the same part of a field and of the volume. It
+//! changes no result: no lane of a tile knows of another.
+
+use crate::{
+    groom::{Curve, Groom},
+    strand::{lanes::LANES, tile::Elastic},
+};
+use std::cmp::Reverse;
+
+/// Who lies where.
+pub(super) struct Order {
+    /// Number of the groom's strand in every lane, `u32::MAX` where there is none; shape `[tiles * LANES]`.
+    pub lanes: Vec<u32>,
+    /// The lane of each strand that was asked for; shape `[strands]`.
+    pub places: Vec<u32>,
+    /// The elastic model of each tile.
+    pub models: Vec<Elastic>,
+}
+
+impl Order {
+    /// Of `strands` (indices of `groom`) and the `elastic` model of each.
+    pub fn new(groom: &Groom, strands: &[u32], elastic: &[Elastic]) -> Self {
+        // Strands are told apart by their middles: roots alone lie close together.
+        let middle = |s: u32| {
+            let points = groom.strand(s as usize);
+            points[points.len() / 2]
+        };
+        let curve = Curve::around(strands.iter().map(|s| middle(*s)));
+        let mut order: Vec<u32> = (0..strands.len() as u32).collect();
+        order.sort_by_cached_key(|k| {
+            let strand = strands[*k as usize];
+            let points = groom.range(strand as usize).len();
+            (elastic[*k as usize], Reverse(points), curve.along(middle(strand)))
+        });
+        let mut places = vec![0; strands.len()];
+        let mut lanes: Vec<u32> = Vec::with_capacity(strands.len().next_multiple_of(LANES));
+        let mut models = Vec::new();
+        for k in order.iter().map(|k| *k as usize) {
+            if models.last().is_some_and(|last| *last != elastic[k]) {
+                lanes.resize(lanes.len().next_multiple_of(LANES), u32::MAX);
+            }
+            if lanes.len().is_multiple_of(LANES) {
+                models.push(elastic[k]);
+            }
+            places[k] = lanes.len() as u32;
+            lanes.push(strands[k]);
+        }
+        lanes.resize(lanes.len().next_multiple_of(LANES), u32::MAX);
+        Self { lanes, places, models }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// Strands of these counts of points, each at its place along x.
+    fn groom(strands: &[(usize, f32)]) -> Groom {
+        let strand = |(points, x): &(usize, f32)| {
+            let x = *x;
+            (0..*points).map(|i| Vec3::new(x, -0.01 * i as f32, 0.0)).collect::<Vec<_>>()
+        };
+        Groom::from_strands(strands.iter().map(strand), 35e-6)
+    }
+
+    #[test]
+    fn neighbours_of_like_counts_share_a_tile() {
+        // Back and forth between two places, as a file may have them, and one strand in nine has more points.
+        let strands: Vec<(usize, f32)> =
+            (0..36).map(|k| (if k % 9 == 0 { 12 } else { 8 }, if k % 2 == 0 { -0.1 } else { 0.1 })).collect();
+        let groom = groom(&strands);
+        let all: Vec<u32> = (0..36).collect();
+        let order = Order::new(&groom, &all, &[Elastic::Rod; 36]);
+        assert_eq!(order.models, [Elastic::Rod; 5]);
+        let tiles: Vec<&[u32]> = order.lanes.chunks(LANES).collect();
+        for s in [0, 9, 18, 27] {
+            assert!(tiles[0].contains(&s), "the four of 12 points come first: {:?}", tiles[0]);
+        }
+        for tile in &tiles[1..4] {
+            let sides = tile.iter().filter(|s| **s != u32::MAX).map(|s| s % 2);
+            assert!(sides.clone().min() == sides.max() || *tile == tiles[2], "{tile:?}");
+        }
+        for (k, place) in order.places.iter().enumerate() {
+            assert_eq!(order.lanes[*place as usize], k as u32);
+        }
+    }
+
+    #[test]
+    fn a_tile_has_one_model() {
+        let groom = groom(&[(8, 0.0); 5]);
+        let elastic = [Elastic::Rod, Elastic::Springs, Elastic::Rod, Elastic::Springs, Elastic::Rod];
+        let order = Order::new(&groom, &[4, 3, 2, 1, 0], &elastic);
+        assert_eq!(order.models.len(), 2);
+        for (k, strand) in [4, 3, 2, 1, 0].into_iter().enumerate() {
+            let place = order.places[k] as usize;
+            assert_eq!((order.lanes[place], order.models[place / LANES]), (strand, elastic[k]));
+        }
+        assert_eq!(order.lanes.iter().filter(|s| **s == u32::MAX).count(), 11);
+    }
+
+    #[test]
+    fn nothing_is_in_order() {
+        let order = Order::new(&Groom::default(), &[], &[]);
+        assert!(order.lanes.is_empty() && order.places.is_empty() && order.models.is_empty());
+    }
+}
