@@ -56,7 +56,7 @@ impl Simulation {
             .par_iter()
             .map(|s| elastic(material(*s as usize), groom.strand(*s as usize), &solver))
             .collect();
-        let Order { lanes, places, models } = Order::new(&groom, strands, &elastic);
+        let Order { lanes, asked, places, models } = Order::new(&groom, strands, &elastic);
         let mut first = 0;
         let tiles: Vec<TilePlace> = lanes
             .chunks(LANES)
@@ -104,6 +104,7 @@ impl Simulation {
             last_h: 0.0,
             groom,
             lanes,
+            asked,
             tiles,
             settings: Settings { solver, gravity, anchor },
             interval: Interval::default(),

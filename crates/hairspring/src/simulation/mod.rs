@@ -60,6 +60,8 @@ pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
     lanes: Vec<u32>,
+    /// Which of the strands that the caller named is in each lane; `u32::MAX` in lanes without one.
+    asked: Vec<u32>,
     tiles: Vec<TilePlace>,
     strand: Vec<StrandRows>,
     rest: Vec<RestRows>,
@@ -157,7 +159,7 @@ impl Simulation {
             + self.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
             + self.volume.as_ref().map_or(0, |volume| volume.bytes())
             + self.neighbours.as_ref().map_or(0, |neighbours| neighbours.bytes())
-            + (self.lanes.len() + self.places.len() + self.hairs.len()) * size_of::<u32>()
+            + (self.lanes.len() + self.asked.len() + self.places.len() + self.hairs.len()) * size_of::<u32>()
             + self.tiles.len() * size_of::<TilePlace>()
     }
 

@@ -14,6 +14,8 @@ use std::cmp::Reverse;
 pub(super) struct Order {
     /// Number of the groom's strand in every lane, `u32::MAX` where there is none; shape `[tiles * LANES]`.
     pub lanes: Vec<u32>,
+    /// Which of the strands that were asked for each lane has, `u32::MAX` where it has none; shape `[tiles * LANES]`.
+    pub asked: Vec<u32>,
     /// The lane of each strand that was asked for; shape `[strands]`.
     pub places: Vec<u32>,
     /// The elastic model of each tile.
@@ -36,20 +38,22 @@ impl Order {
             (elastic[*k as usize], Reverse(points), curve.along(middle(strand)))
         });
         let mut places = vec![0; strands.len()];
-        let mut lanes: Vec<u32> = Vec::with_capacity(strands.len().next_multiple_of(LANES));
+        let mut asked: Vec<u32> = Vec::with_capacity(strands.len().next_multiple_of(LANES));
         let mut models = Vec::new();
-        for k in order.iter().map(|k| *k as usize) {
-            if models.last().is_some_and(|last| *last != elastic[k]) {
-                lanes.resize(lanes.len().next_multiple_of(LANES), u32::MAX);
+        for k in order {
+            let model = elastic[k as usize];
+            if models.last().is_some_and(|last| *last != model) {
+                asked.resize(asked.len().next_multiple_of(LANES), u32::MAX);
             }
-            if lanes.len().is_multiple_of(LANES) {
-                models.push(elastic[k]);
+            if asked.len().is_multiple_of(LANES) {
+                models.push(model);
             }
-            places[k] = lanes.len() as u32;
-            lanes.push(strands[k]);
+            places[k as usize] = asked.len() as u32;
+            asked.push(k);
         }
-        lanes.resize(lanes.len().next_multiple_of(LANES), u32::MAX);
-        Self { lanes, places, models }
+        asked.resize(asked.len().next_multiple_of(LANES), u32::MAX);
+        let lanes = asked.iter().map(|k| strands.get(*k as usize).copied().unwrap_or(u32::MAX)).collect();
+        Self { lanes, asked, places, models }
     }
 }
 

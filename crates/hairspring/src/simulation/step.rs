@@ -19,6 +19,7 @@ use crate::{
     },
 };
 use fearless_simd::Level;
+use rayon::prelude::*;
 use std::cell::RefCell;
 
 /// A frame's input, all at the end of it; the start is where the last step ended.
@@ -230,22 +231,24 @@ impl Simulation {
     /// Last frame's root poses become the start, the drive's the end, both relative to the anchor.
     pub(super) fn move_roots(&mut self, drive: &Drive) {
         let turn = drive.anchor.rotation.inverse();
-        for (&place, root) in self.places.iter().zip(drive.roots) {
-            let (tile, lane) = (place as usize / LANES, place as usize % LANES);
-            let rows = &mut self.strand[tile];
+        let tiles = self.strand.par_iter_mut().zip(self.asked.par_chunks(LANES));
+        tiles.with_min_len(8 * TILES_PER_TASK).for_each(|(rows, asked)| {
             for k in 0..strand::ROOT_END {
-                rows[strand::ROOT_START + k].0[lane] = rows[strand::ROOT_END + k].0[lane];
+                rows[strand::ROOT_START + k] = rows[strand::ROOT_END + k];
             }
             let start = strand::TURN_START;
-            let before = glam::Quat::from_array([0, 1, 2, 3].map(|k| rows[start + k].0[lane]));
-            let p = drive.anchor.inverse_point(root.translation);
-            let q = turn * root.rotation;
-            // The near one of the two quaternions of a rotation, for `nlerp`.
-            let q = if q.dot(before) < 0.0 { -q } else { q };
-            for (k, v) in p.to_array().into_iter().chain(q.to_array()).enumerate() {
-                rows[strand::ROOT_END + k].0[lane] = v;
+            for (lane, k) in asked.iter().enumerate() {
+                let Some(root) = drive.roots.get(*k as usize) else { continue };
+                let before = glam::Quat::from_array([0, 1, 2, 3].map(|k| rows[start + k].0[lane]));
+                let p = drive.anchor.inverse_point(root.translation);
+                let q = turn * root.rotation;
+                // The near one of the two quaternions of a rotation, for `nlerp`.
+                let q = if q.dot(before) < 0.0 { -q } else { q };
+                for (k, v) in p.to_array().into_iter().chain(q.to_array()).enumerate() {
+                    rows[strand::ROOT_END + k].0[lane] = v;
+                }
             }
-        }
+        });
     }
 }
 
