@@ -99,10 +99,11 @@ impl Obstacle {
         }
     }
 
-    /// How many shapes it is in a frame, one after the other, in equal parts of it: 1 but for the field of a body with fast limbs.
+    /// How many shapes it is in a frame, one after the other, in equal parts of it: 1 but for skinned meshes that go fast across themselves.
     pub(crate) fn parts(&self) -> usize {
         match self {
             Obstacle::Field(grid) => grid.earlier.len() + 1,
+            Obstacle::Sheet(sheet) => sheet.earlier.len() + 1,
             _ => 1,
         }
     }
@@ -111,16 +112,28 @@ impl Obstacle {
     pub(crate) fn part(&self, number: usize) -> Obstacle {
         match self {
             Obstacle::Field(grid) => Obstacle::Field(grid.earlier.get(number).unwrap_or(grid).clone()),
+            Obstacle::Sheet(sheet) => Obstacle::Sheet(sheet.earlier.get(number).unwrap_or(sheet).clone()),
             _ => self.clone(),
         }
     }
 
-    /// Sets the shapes of all parts of a frame but the last, which this is. Only fields have any.
-    pub(crate) fn set_earlier(&mut self, earlier: Vec<Arc<Grid>>) {
-        if let Obstacle::Field(grid) = self
-            && !(earlier.is_empty() && grid.earlier.is_empty())
-        {
-            Arc::make_mut(grid).earlier = earlier;
+    /// Sets the shapes of all parts of a frame but the last, which this is: others of its kind. Only fields and sheets have any.
+    pub(crate) fn set_earlier(&mut self, earlier: Vec<Obstacle>) {
+        if self.parts() == 1 && earlier.is_empty() {
+            // A copy would be made of what someone looks at.
+            return;
+        }
+        let earlier = earlier.into_iter();
+        match self {
+            Obstacle::Field(grid) => {
+                let field = |shape| if let Obstacle::Field(grid) = shape { Some(grid) } else { None };
+                Arc::make_mut(grid).earlier = earlier.filter_map(field).collect();
+            }
+            Obstacle::Sheet(sheet) => {
+                let open = |shape| if let Obstacle::Sheet(sheet) = shape { Some(sheet) } else { None };
+                Arc::make_mut(sheet).earlier = earlier.filter_map(open).collect();
+            }
+            _ => {}
         }
     }
 

@@ -17,6 +17,7 @@ use crate::{
 };
 use fearless_simd::{mask32x8, prelude::*};
 use glam::{UVec3, Vec3};
+use std::sync::Arc;
 
 /// How far triangles are known, in thicknesses: far enough that a point that leaves is seen to leave.
 const REACH: f32 = 2.0;
@@ -30,7 +31,8 @@ const MAX_NODES: usize = 1 << 22;
 /// A mesh that need not be closed, with a thickness.
 ///
 /// # Missing
-/// - A point that moves by more than the thickness in a substep may come out on the other side: nothing here knows where it was.
+/// - A point that moves by more than the thickness in a substep may come out on the other side: nothing here knows where it was. (Of what the sheet itself moves,
+///   frames are cut into parts and substeps so that it does not.)
 /// - Between two layers nearer to each other than twice the thickness there is no room, and a point there is pushed from one to the other.
 #[derive(Clone, Debug, Default)]
 pub struct Sheet {
@@ -44,6 +46,8 @@ pub struct Sheet {
     first: Vec<u32>,
     /// Triangles that come within reach, cell after cell.
     triangles: Vec<u32>,
+    /// What it was at equal parts of the last interval, before the last of them, where it moved far in that; empty: this all along.
+    pub(super) earlier: Vec<Arc<Sheet>>,
 }
 
 impl Sheet {
@@ -80,6 +84,7 @@ impl Sheet {
         thickness: f32,
     ) {
         self.thickness = thickness;
+        self.earlier.clear();
         self.corners.clear();
         self.moved.clear();
         for t in triangles {

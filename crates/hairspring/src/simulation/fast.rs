@@ -8,8 +8,8 @@
 //! All strands take them, so that none depends on which of them share a tile; a rod of 1 cm at 20 m/s asks for 133 in a frame, a hand at 5 m/s for
 //! some 20, and what moves with the head for none.
 //!
-//! The limbs of a skinned body are one shape with it: where they are fast, they come as a shape for each part of the frame (`stage/limbs.rs`), and each part
-//! has as many substeps as the others.
+//! The limbs of a skinned body are one shape with it, and so is a skinned sheet: where they are fast, they come as a shape for each part of the frame
+//! (`stage/limbs.rs`), and each part has as many substeps as the others.
 
 use super::{Simulation, step::Drive};
 use crate::collide::Rigid;

@@ -276,12 +276,19 @@ impl StagedBody {
         let anchor = self.anchor();
         let within = self.reach.bounds(&self.positions, |p| anchor.inverse_point(p));
         let parts = |Deforming { surface, mesh, rest, .. }: &Deforming| {
-            let body = Deforming::body(rest, *mesh, scene)?;
-            Some(surface.parts(body, (&self.world, anchor), within))
+            let body = Deforming::body(rest, *mesh, scene);
+            body.map_or(1, |body| surface.parts(body, (&self.world, anchor), within))
         };
         let mut poses = Vec::new();
+        let mut shares = vec![1; self.surfaces.len()];
         if let (Some((from, to)), Some(body), Some(clip)) = (since, &scene.body, &scene.clip) {
-            let parts = self.surfaces.iter().filter_map(parts).max().unwrap_or(1);
+            shares = self.surfaces.iter().map(parts).collect();
+            let most = shares.iter().copied().max().unwrap_or(1);
+            if shares.iter().any(|share| *share != 1 && *share != most) {
+                // Each has a part of the most that there are, or as many.
+                shares.iter_mut().for_each(|share| *share = share.next_power_of_two());
+            }
+            let parts = shares.iter().copied().max().unwrap_or(1);
             // Wherever all of it is carried: what is made is in the anchor's space.
             poses.extend((1..parts).map(|part| {
                 let time = from + (to - from) * (part as f32 / parts as f32);
@@ -291,9 +298,11 @@ impl StagedBody {
             }));
         }
         poses.push((self.world.clone(), anchor));
-        for Deforming { surface, mesh, rest, obstacle } in &mut self.surfaces {
+        for (Deforming { surface, mesh, rest, obstacle }, share) in self.surfaces.iter_mut().zip(shares) {
             let Some(body) = Deforming::body(rest, *mesh, scene) else { continue };
-            surface.update(&mut self.obstacles[*obstacle].shape, body, &poses, within, since.is_none());
+            let every = poses.len() / share;
+            let poses = poses.iter().skip(every - 1).step_by(every);
+            surface.update(&mut self.obstacles[*obstacle].shape, body, poses, within, since.is_none());
         }
     }
 

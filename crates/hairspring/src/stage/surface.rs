@@ -34,8 +34,7 @@ pub(super) struct Surface {
     now: Vec<Vec3>,
     before: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// `None` for a sheet.
-    limbs: Option<Limbs>,
+    limbs: Limbs,
 }
 
 /// A body's joints, and the anchor that its colliders are in the space of.
@@ -92,8 +91,8 @@ impl Surface {
     /// Of a body that has a skin.
     pub(super) fn new(making: Making, body: &Body) -> Self {
         let limbs = match making {
-            Making::Field(cell) => Some(Limbs::new(&body.mesh, cell)),
-            Making::Sheet(_) => None,
+            Making::Field(cell) => Limbs::of_solid(&body.mesh, cell),
+            Making::Sheet(thickness) => Limbs::of_sheet(&body.mesh, thickness),
         };
         Self {
             limbs,
@@ -113,32 +112,28 @@ impl Surface {
         (world, anchor): (&[Affine3A], Rigid),
         within: Option<(Vec3, Vec3)>,
     ) -> usize {
-        let (Some(limbs), Some(skin)) = (&self.limbs, &body.skin) else { return 1 };
-        limbs.parts((&body.mesh, skin), &self.now, (world, anchor), within)
+        let Some(skin) = &body.skin else { return 1 };
+        self.limbs.parts((&body.mesh, skin), &self.now, (world, anchor), within)
     }
 
-    /// Makes `shape` the collider of `body` in the last of those poses, and a field in the others too, at equal parts of the frame before; `fresh`: without
-    /// motion since the last time.
-    pub(super) fn update(
+    /// Makes `shape` the collider of `body` in the last of those poses, and others in those before it, at equal parts of the frame; `fresh`: without motion
+    /// since the last time.
+    pub(super) fn update<'a>(
         &mut self,
         shape: &mut Obstacle,
         body: &Body,
-        poses: &[Pose],
+        poses: impl Iterator<Item = &'a Pose>,
         within: Option<(Vec3, Vec3)>,
         fresh: bool,
     ) {
         shape.set_earlier(Vec::new());
         let mut earlier = Vec::new();
-        let Some((now, parts)) = poses.split_last() else { return };
-        if let Making::Field(_) = self.making {
-            for pose in parts {
-                self.make(shape, body, pose, within, fresh);
-                if let Obstacle::Field(grid) = shape {
-                    earlier.push(grid.clone());
-                }
+        for (number, pose) in poses.enumerate() {
+            if number > 0 {
+                earlier.push(shape.clone());
             }
+            self.make(shape, body, pose, within, fresh);
         }
-        self.make(shape, body, now, within, fresh);
         shape.set_earlier(earlier);
     }
 
@@ -201,7 +196,7 @@ mod tests {
         let (mut surface, mut shape) = (Surface::new(making, &body), making.nothing());
         let mut play = |up: f32, fresh: bool| {
             let pose = (world(up).to_vec(), Rigid::default());
-            surface.update(&mut shape, &body, &[pose], None, fresh);
+            surface.update(&mut shape, &body, std::iter::once(&pose), None, fresh);
             let Obstacle::Sheet(sheet) = &shape else { unreachable!("a sheet is made") };
             let at = |x: f32| {
                 let p = Vec3::new(x, up * x / 0.3, 0.05);
