@@ -111,6 +111,9 @@ impl Parameter {
                 asked.blows() && sheltered.contains(&true),
                 "Counts only while bodies or hair shelter from moving air.",
             ),
+            "friction_kinetic" => {
+                (some(asked.material("friction")), "Counts only while Friction is above 0.")
+            }
             "charge" => (
                 asked.scene("charged").and_then(toml::Value::as_array).is_some_and(|list| !list.is_empty()),
                 "Counts only beside a charged body: add one below.",
@@ -214,6 +217,7 @@ mod tests {
             ("solver.projections", "[solver]\nintegrator = \"verlet\"\n"),
             ("solver.quality", "[solver]\nintegrator = \"ftl\"\n"),
             ("ghost.pull", "[solver]\nghost = false\n"),
+            ("friction_kinetic", "material = \"m\"\n[material.m]\nfriction = 0.0\n"),
             (
                 "motion",
                 "[clip]\nkeys = [{ time = 0.0, position = [0.0, 0.0, 0.0], rotation = [0.0, 0.0, 0.0] }]\n",

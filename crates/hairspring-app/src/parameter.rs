@@ -230,6 +230,7 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "solver.contact", "Answered by", "", Kind::Choice(&["both", "penalty", "projection"]), "What keeps hair out of bodies: a force in the solve (penalty: soft), the move to the nearest free place (projection: hard), or both.";
         Scene "solver.segments", "Between points", "", Kind::Switch, "Whether hair stays out of bodies between its points too.";
         Material "friction", "Friction", "", number(0.0, 1.0), "Coulomb friction on bodies. Hair on skin: 0.1 to 0.3.";
+        Material "friction_kinetic", "… of what slides", "×", number(0.0, 1.0), "Kinetic friction over static: below 1 hair that comes loose goes on sliding.";
         Scene "solver.jump", "A jump is", "m", scale(0.05, 10.0), "A head that moves farther in a frame, over how it moved before, has jumped, and hair goes with it as it is.";
     }
     Volume {

@@ -349,6 +349,7 @@ pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Prob
         (from_0(m.damping), "damping", "0 or more [s]"),
         (from_0(m.drag), "drag", "0 or more"),
         ((0.0..=1.0).contains(&m.friction), "friction", "0 to 1"),
+        ((0.0..=1.0).contains(&m.friction_kinetic), "friction_kinetic", "0 to 1"),
         (ghost(&m.ghost), "ghost", "`pull` 0 to 60 [Hz], `tip` 0 or more, `damping` 0 to 10"),
         (m.tether == 0.0 || (1.0..=10.0).contains(&m.tether), "tether", "0 (none), or 1 to 10"),
         ((-1e-6..=1e-6).contains(&m.charge), "charge", "-1e-6 to 1e-6 [C/m]"),

@@ -42,8 +42,11 @@ pub struct Material {
     /// Multiplier over the drag of the air on a lone fibre, 0 or more. Default 0.5: inside a head of hair the air
     /// moves along with it in part.
     pub drag: f32,
-    /// Coulomb friction against the body, 0 to 1. Default 0.3: hair on skin, 0.1 to 0.3 along the scales, higher against.
+    /// Coulomb friction against the body, 0 to 1: static, what holds. Default 0.3: hair on skin, 0.1 to 0.3 along the scales, higher against.
     pub friction: f32,
+    /// Kinetic friction over static, 0 to 1: what holds a strand back that slides faster than a millimetre a second. Default 1: one coefficient for both, with
+    /// which nothing jerks as it comes loose.
+    pub friction_kinetic: f32,
     /// Pull to the rest shape, carried by the root; switched by `Solver::ghost`. Default: none.
     pub ghost: Ghost,
     /// How far a point may get from its root, over how far it was at rest [1], 1 to 10 (a long range attachment); 0, the default: as far as it goes. Not physics:
@@ -99,6 +102,7 @@ impl Default for Material {
             damping: 0.01,
             drag: 0.5,
             friction: 0.3,
+            friction_kinetic: 1.0,
             ghost: Ghost::default(),
             tether: 0.0,
             charge: 0.0,

@@ -181,6 +181,7 @@ impl Simulation {
                     rows[strand::DRAG].0[lane] = material.drag * scale.drag * drag_per_length(radius);
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
                     rows[strand::FRICTION].0[lane] = material.friction;
+                    rows[strand::FRICTION_KINETIC].0[lane] = material.friction_kinetic;
                     rows[strand::TWIST_RATIO].0[lane] = section.twist_ratio;
                     rows[strand::FLAT].0[lane] = section.flat;
                     let points = groom.range(s).len();

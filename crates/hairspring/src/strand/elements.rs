@@ -42,7 +42,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     /// At the root.
     #[inline(always)]
     pub fn begin(simd: S, sweep: Sweep, step: &Step<S>, tile: &Tile, scratch: &mut Scratch) -> Self {
-        let (drag, damping, _) = Root::<S>::fibre(simd, tile.strand);
+        let (drag, damping) = Root::<S>::fibre(simd, tile.strand);
         let zero = V3::zero(simd);
         let mut first = V3::load(simd, &scratch.edges[1]);
         if M::STRIDE == 2 {

@@ -8,8 +8,8 @@
 
 use super::{
     assemble::Step,
+    friction::Friction,
     lanes::{F, V3, load, store},
-    root::Root,
     scratch::Scratch,
     segment::{clear, sag},
     tether::{beyond, tethered},
@@ -168,7 +168,7 @@ fn held<S: Simd>(
     (i, stride, e): (usize, usize, V3<S>),
     (at, link): (&Particle<S>, &Link<S>),
 ) -> V3<S> {
-    let friction = Root::<S>::fibre(simd, tile.strand).2;
+    let friction = Friction::of(simd, step.h, tile.strand);
     let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
     let mut old = V3::load(simd, &tile.state[i][state::EDGE..]);
     if stride == 2 {
@@ -190,8 +190,7 @@ fn held<S: Simd>(
             let carried = surface_displacement(simd, pose, world);
             let slide = at.way + (pushed - old) - carried;
             let tangent = slide - normal * normal.dot(slide);
-            let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
-            let held = pushed - tangent * hold.min(1.0);
+            let held = pushed - tangent * friction.share(depth, tangent.dot(tangent));
             // What of the push did not stop an approach presses on in the next solve (see `press`).
             let v = V3::load(simd, &tile.state[i][state::V..]);
             let approach = normal.dot(carried - v * F::splat(simd, step.h)).max(0.0);

@@ -8,6 +8,7 @@ pub(crate) mod band;
 pub(crate) mod dispatch;
 pub(crate) mod elements;
 pub(crate) mod fixed;
+pub(crate) mod friction;
 pub(crate) mod integrate;
 pub(crate) mod interval;
 pub(crate) mod lanes;

@@ -20,9 +20,9 @@
 use super::{
     assemble::Step,
     band::System,
+    friction::Friction,
     lanes::{F, Row, Sym3, V3, load, store},
     model::stretch::STRETCH,
-    root::Root,
     tile::{Tile, rest, state},
 };
 use crate::collide::{ObstaclePose, contact, surface_displacement};
@@ -78,7 +78,7 @@ pub fn press<S: Simd, const B: usize>(
     let k = shut.select(m_h2 * STRETCH, zero);
     let before = V3::load(simd, &tile.state[i][state::V..]) * F::splat(simd, step.h);
     let (slid, _) = along(before - carried).length_and_unit();
-    let rub = (Root::<S>::fibre(simd, tile.strand).2 * force / slid).min(k * STICK);
+    let rub = Friction::of(simd, step.h, tile.strand).secant(force, slid, k * STICK);
     system.add_diagonal(1, Sym3::outer(normal, k - rub).add_identity(rub));
     system.add_force(
         1,

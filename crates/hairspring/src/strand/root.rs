@@ -51,14 +51,10 @@ impl<S: Simd> Root<S> {
         transform(simd, &substep.anchor.0, turn.rotate(V3::load(simd, &rows[strand::THIRD..])))
     }
 
-    /// Damping, drag and friction of the strands.
+    /// Drag and damping of the strands.
     #[inline(always)]
-    pub fn fibre(simd: S, rows: &StrandRows) -> (F<S>, F<S>, F<S>) {
-        (
-            load(simd, &rows[strand::DRAG]),
-            load(simd, &rows[strand::DAMPING]),
-            load(simd, &rows[strand::FRICTION]),
-        )
+    pub fn fibre(simd: S, rows: &StrandRows) -> (F<S>, F<S>) {
+        (load(simd, &rows[strand::DRAG]), load(simd, &rows[strand::DAMPING]))
     }
 }
 

@@ -18,11 +18,11 @@
 use super::{
     assemble::{Step, Sweep},
     band::System,
+    friction::Friction,
     lanes::{F, Row, Sym3, V3, load, store},
     limit::{CORRECTIONS, Finish, LIMIT, Link, Particle, out_of},
     model::stretch::STRETCH,
     press::{STICK, Surface, nearest, scratch, scratch::SEGMENT},
-    root::Root,
     tile::{Tile, rest, span, state},
 };
 use crate::collide::{Deepest, ObstaclePose, STEEP, contact, deepest, surface_displacement};
@@ -152,11 +152,10 @@ pub fn clear<S: Simd>(
                 break;
             }
             // Back along the surface, at most μ times as far.
-            let friction = Root::<S>::fibre(simd, tile.strand).2;
             let slide = (out - old).mul_add(place.at, inner.way) - carried;
             let tangent = slide - place.normal * place.normal.dot(slide);
-            let hold = friction * depth / tangent.dot(tangent).max(1e-30).sqrt();
-            out = V3::select(first, link.clamp(out - tangent * hold.min(1.0)), out);
+            let hold = Friction::of(simd, step.h, tile.strand).share(depth, tangent.dot(tangent));
+            out = V3::select(first, link.clamp(out - tangent * hold), out);
         }
         q = V3::select(cuts, out, q);
     }
@@ -236,7 +235,7 @@ pub fn press_between<S: Simd, const B: usize>(
     let k = shut.select(m_h2 * STRETCH, zero);
     let before = faster.mul_add(at, v) * h;
     let (slid, _) = along(before - carried).length_and_unit();
-    let rub = (Root::<S>::fibre(simd, tile.strand).2 * force / slid).min(k * STICK);
+    let rub = Friction::of(simd, step.h, tile.strand).secant(force, slid, k * STICK);
     let block = Sym3::outer(normal, k - rub).add_identity(rub);
     let push = normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub;
     let share = one - at;

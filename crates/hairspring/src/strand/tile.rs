@@ -60,7 +60,7 @@ pub mod strand {
     pub const DRAG: usize = 20;
     /// Relaxation time of bending [s].
     pub const DAMPING: usize = 21;
-    /// Coulomb friction against the body.
+    /// Coulomb friction against the body, static.
     pub const FRICTION: usize = 22;
     /// Twisting over bending stiffness, GJ/EI [1].
     pub const TWIST_RATIO: usize = 23;
@@ -74,8 +74,10 @@ pub mod strand {
     pub const POINTS: usize = 29;
     /// How many times stiffer its segments are than most strands', see `stiffening` [1].
     pub const STIFFENING: usize = 30;
+    /// Kinetic friction over static [1].
+    pub const FRICTION_KINETIC: usize = 31;
     /// Rows a strand.
-    pub const ROWS: usize = 31;
+    pub const ROWS: usize = 32;
 }
 
 /// What rows hold in the springs model. The points of a strand are its even particles; what is said of a segment is said at them.
