@@ -8,11 +8,15 @@ use crate::strand::{
 use fearless_simd::{mask32x8, prelude::*};
 use glam::{Mat3, Vec3};
 
-/// Cells between places that a segment is looked at on its way past a field [1]: it cannot cross what is a cell thick unseen.
+/// Cells between places that a segment is looked at on its way past a field [1], and from the outer ones to its ends half of that: it cannot cross what is a
+/// cell thick unseen.
 const LOOK: f32 = 1.5;
 
 /// Most such places [1].
 const MOST_LOOKS: u32 = 7;
+
+/// Cells up to which a segment is looked at in its middle alone [1].
+const LONG: f32 = 2.0;
 
 /// An obstacle during one substep.
 #[derive(Clone)]
@@ -86,11 +90,10 @@ impl ObstaclePose {
                 may & hull.may_be_inside(simd, self.local(simd, p), turned)
             }
             Obstacle::Field(grid) => {
-                let spacing = LOOK * grid.cell();
                 let may = self.between(
                     simd,
                     (p, e),
-                    (size, spacing),
+                    (size, grid.cell()),
                     may,
                     #[inline(always)]
                     |at| grid.may_be_inside(simd, at),
@@ -101,17 +104,14 @@ impl ObstaclePose {
                     may
                 }
             }
-            Obstacle::Sheet(sheet) => {
-                let spacing = LOOK * sheet.cell();
-                self.between(
-                    simd,
-                    (p, e),
-                    (size, spacing),
-                    may,
-                    #[inline(always)]
-                    |at| sheet.may_be_inside(simd, at),
-                )
-            }
+            Obstacle::Sheet(sheet) => self.between(
+                simd,
+                (p, e),
+                (size, sheet.cell()),
+                may,
+                #[inline(always)]
+                |at| sheet.may_be_inside(simd, at),
+            ),
             _ => may,
         }
     }
@@ -151,28 +151,28 @@ impl ObstaclePose {
         ends | between
     }
 
-    /// Of the segments in `may`, those with a place between their ends for which `holds` is true, of places that are no farther than `spacing` [m] from each
-    /// other.
+    /// Of the segments in `may`, those with a place between their ends for which `holds` is true, of places that are no farther than [`LOOK`] cells of edge
+    /// `cell` [m] from each other.
     #[inline(always)]
     fn between<S: Simd>(
         &self,
         simd: S,
         (p, e): (V3<S>, V3<S>),
-        (size, spacing): (F<S>, f32),
+        (size, cell): (F<S>, f32),
         may: mask32x8<S>,
         holds: impl Fn(V3<S>) -> mask32x8<S>,
     ) -> mask32x8<S> {
         // As many places as the longest of the eight needs.
-        let mut pieces = 2;
-        while pieces <= MOST_LOOKS
-            && size.simd_gt(F::splat(simd, (pieces as f32 * spacing).powi(2))).any_true()
+        let mut looks = 1;
+        while looks < MOST_LOOKS
+            && size.simd_gt(F::splat(simd, (cell * LONG.max(looks as f32 * LOOK)).powi(2))).any_true()
         {
-            pieces += 1;
+            looks += 1;
         }
         let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
         let mut held = mask32x8::splat(simd, false);
-        for k in 1..pieces {
-            held |= holds(e.mul_add(F::splat(simd, -(k as f32) / pieces as f32), p));
+        for k in 0..looks {
+            held |= holds(e.mul_add(F::splat(simd, -(k as f32 + 0.5) / looks as f32), p));
         }
         may & held
     }
@@ -190,10 +190,10 @@ impl ObstaclePose {
     }
 }
 
-/// Whether any of the segments is longer than two of the field's cells: those are looked at in more places, by `deepest`.
+/// Whether any of the segments is longer than [`LONG`] of the field's cells: those are looked at in more places, by `deepest`.
 #[inline(always)]
 fn is_long<S: Simd>(simd: S, grid: &Grid, e: V3<S>) -> bool {
-    e.dot(e).simd_gt(F::splat(simd, (2.0 * grid.cell()).powi(2))).any_true()
+    e.dot(e).simd_gt(F::splat(simd, (LONG * grid.cell()).powi(2))).any_true()
 }
 
 /// World distance to the surface, and normal, of eight points at the end of a substep.
