@@ -8,12 +8,12 @@ use crate::strand::{
 use fearless_simd::{mask32x8, prelude::*};
 use glam::{Mat3, Vec3};
 
-/// Cells between places that a segment is looked at on its way past a field [1], and from the outer ones to its ends half of that: it cannot cross what is a
-/// cell thick unseen.
+/// Cells between places that a segment longer than [`LONG`] is looked at on its way past a field [1], and from the outer ones to its ends half of that: it
+/// cannot cross what is a cell thick unseen.
 const LOOK: f32 = 1.5;
 
 /// Most such places [1].
-const MOST_LOOKS: u32 = 7;
+const MOST_LOOKS: u32 = 8;
 
 /// Cells up to which a segment is looked at in its middle alone [1].
 const LONG: f32 = 2.0;
