@@ -16,21 +16,18 @@
 //! Baraff & Witkin 1998, *Large Steps in Cloth Simulation*; BDF2 after Choi & Ko 2002, *Stable but Responsive Cloth*, eq. 17.
 
 use super::{
-    band::{Band, System, back_substitute, factor_rows, reach},
+    band::{Band, System},
     elements::{Elements, Outset, Walk},
-    lanes::{F, Sym3, V3, load, store},
+    lanes::{F, Sym3, V3},
     model::{
-        Model, Solved,
+        Model,
         stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2},
     },
     outside,
     prefetch::ask_beyond,
-    press::relieve,
-    project::Projection,
     root::Root,
     scratch::Scratch,
-    segment::relieve_between,
-    tile::{Tile, history, rest, state},
+    tile::{Tile, history, state},
 };
 use crate::collide::ObstaclePose;
 use fearless_simd::prelude::*;
@@ -92,9 +89,9 @@ pub fn forces<S, M, const B: usize, const N: usize>(
         } else {
             elements.band = Band::new(simd);
         }
-        elements.band.take_up(simd, M::HALF, i, scratch.factors);
+        elements.band.take_up(simd, M::PROFILE, i, scratch.factors);
         elements.band.force().store(&mut scratch.kick[i]);
-        elements.band.pass(simd, M::HALF, i, scratch.factors);
+        elements.band.pass(simd, M::PROFILE, i, scratch.factors);
     }
 }
 
@@ -151,7 +148,7 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
         i += M::STRIDE;
     }
     elements.band = Band::new(simd);
-    elements.band.eliminate(simd, M::HALF, n - 1, scratch.factors);
+    elements.band.eliminate(simd, M::PROFILE, n - 1, scratch.factors);
 }
 
 /// Adds everything that begins at the walk's next point i, and what acts on point i+1, and eliminates point i; `phase` is i modulo the model's stride, and
@@ -169,18 +166,24 @@ fn pass_point<S, M, const B: usize, const N: usize>(
     S: Simd,
     M: Model<S, B, N>,
 {
+    if acted || outside::pressed(simd, M::STRIDE, i, tile) {
+        let Walk { x, way, root_velocity, .. } = elements.walk;
+        let place = outside::Place { i, x, way, root_velocity };
+        outside::add::<S, M, B, N>(simd, (sweep, step), &place, &mut tile.lent(), &mut scratch.lent());
+    }
+    // After that, so that what it looks at is at hand for what follows.
     if M::falls_short(simd, i, tile, scratch) {
         let mut whole = elements.whole(simd);
         let (tile, scratch) = (&mut tile.lent(), &mut scratch.lent());
-        pass_whole(simd, (sweep, i, phase, driven), step, tile, scratch, &mut whole, acted);
+        pass_whole(simd, (sweep, i, phase, driven), step, tile, scratch, &mut whole);
         elements.walk = whole.walk;
         return;
     }
-    add_point(simd, (sweep, i, phase), step, tile, scratch, elements, acted);
+    add_point(simd, (sweep, i, phase), step, tile, scratch, elements);
     eliminate(simd, (i, driven), scratch, elements);
 }
 
-/// [`pass_point`] of the few that need the whole model, by itself.
+/// What follows of [`pass_point`] for the few that need the whole model, by itself.
 #[inline(never)]
 fn pass_whole<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -189,7 +192,6 @@ fn pass_whole<S, M, const B: usize, const N: usize>(
     tile: &mut Tile,
     scratch: &mut Scratch,
     elements: &mut Elements<S, M, B, N>,
-    acted: bool,
 ) where
     S: Simd,
     M: Model<S, B, N>,
@@ -197,7 +199,7 @@ fn pass_whole<S, M, const B: usize, const N: usize>(
     simd.vectorize(
         #[inline(always)]
         || {
-            add_point(simd, (sweep, i, phase), step, tile, scratch, elements, acted);
+            add_point(simd, (sweep, i, phase), step, tile, scratch, elements);
             eliminate(simd, (i, driven), scratch, elements);
         },
     );
@@ -218,19 +220,19 @@ fn eliminate<S, M, const B: usize, const N: usize>(
     // An angle of the driven first segment is driven too, of the second it is not.
     let angle = driven && i == 1 && B > 3;
     if angle {
-        band.take_up(simd, M::HALF, i, scratch.factors);
+        band.take_up(simd, M::PROFILE, i, scratch.factors);
         for k in 0..3 {
             band.hold(simd, k);
         }
     }
     if driven && !angle && i < M::DRIVEN {
-        band.pass(simd, M::HALF, i, scratch.factors);
+        band.pass(simd, M::PROFILE, i, scratch.factors);
     } else {
-        band.eliminate(simd, M::HALF, i, scratch.factors);
+        band.eliminate(simd, M::PROFILE, i, scratch.factors);
     }
 }
 
-/// Adds what [`pass_point`] does; `phase` is i modulo the model's stride.
+/// Adds everything that begins at point i, and what acts on point i+1 but for what acts on few; `phase` is i modulo the model's stride.
 #[inline(always)]
 fn add_point<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -239,16 +241,10 @@ fn add_point<S, M, const B: usize, const N: usize>(
     tile: &mut Tile,
     scratch: &mut Scratch,
     elements: &mut Elements<S, M, B, N>,
-    acted: bool,
 ) where
     S: Simd,
     M: Model<S, B, N>,
 {
-    if acted || outside::pressed(simd, M::STRIDE, i, tile) {
-        let Walk { x, way, root_velocity, .. } = elements.walk;
-        let place = outside::Place { i, x, way, root_velocity };
-        outside::add::<S, M, B, N>(simd, (sweep, step), &place, &mut tile.lent(), &mut scratch.lent());
-    }
     let segment = elements.add(simd, i, phase, tile, scratch);
     if sweep == Sweep::Again {
         let [new, old] = [&scratch.edges[i + 1][..], &tile.state[i + 1][state::EDGE..]];
@@ -299,69 +295,4 @@ fn add_point<S, M, const B: usize, const N: usize>(
         band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5).add_identity(across));
     }
     band.add_force(1, right);
-}
-
-/// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took. Projection meets the new segments on it.
-#[inline(always)]
-pub fn substitute<S, M, const B: usize, const N: usize>(
-    simd: S,
-    sweep: Sweep,
-    step: &Step<S>,
-    tile: &mut Tile,
-    scratch: &mut Scratch,
-) -> Projection<S>
-where
-    S: Simd,
-    M: Model<S, B, N>,
-{
-    let zero = V3::zero(simd);
-    let n = tile.rest.len();
-    let root_velocity = V3::load(simd, &tile.state[0][state::V..]);
-    let mut solved = Solved {
-        i: n,
-        edges: [zero; 2],
-        moved: [zero; 3],
-        unknowns: [F::<S>::splat(simd, 0.0); N],
-        along: F::splat(simd, 0.0),
-        news: sweep.news(),
-    };
-    let mut projection = Projection::begin(simd, tile, scratch.fixed);
-    for i in (1..n).rev() {
-        let mut delta = zero;
-        if i >= M::DRIVEN || B > 3 {
-            let factors = &scratch.factors[(i + reach(B, N)) * factor_rows(B, N, M::HALF)..];
-            back_substitute::<S, B, N>(simd, M::HALF, factors, &mut solved.unknowns);
-        }
-        if i >= M::DRIVEN {
-            let unknowns = &solved.unknowns;
-            let drift = V3::load(simd, &tile.state[i][state::V..]) - root_velocity;
-            delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
-            delta = drift.mul_add(F::splat(simd, sweep.drift(step.h)), delta);
-            if i.is_multiple_of(M::STRIDE) {
-                relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
-            }
-        }
-        if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
-            // Before this point's is added: those of the points after it.
-            relieve_between(simd, step, tile, (i, [delta, solved.moved[M::STRIDE - 1]]), scratch.contacts);
-        }
-        solved.i = i;
-        let fixed = &scratch.fixed[i - i % M::STRIDE];
-        solved.along = load(simd, &fixed.along);
-        solved.moved = [delta, solved.moved[0], solved.moved[1]];
-        if i + 1 < n {
-            let edge = V3::load(simd, &scratch.edges[i + 1]);
-            solved.edges = [edge, solved.edges[0]];
-            (edge + (solved.moved[1] - delta)).store(&mut scratch.edges[i + 1]);
-            M::take(simd, &solved, tile, scratch.fixed);
-        }
-        if i.is_multiple_of(M::STRIDE) && i + M::STRIDE < n {
-            // Padding has no stiffness, and so takes nothing.
-            let length = [load(simd, &tile.rest[i][rest::LENGTH]), load(simd, &fixed.inverse_length)];
-            let row = &mut tile.state[i][state::TENSION];
-            store(load(simd, row) + solved.taken(M::STRIDE, length, solved.along), row);
-            projection.meet(simd, (M::STRIDE, i), tile, scratch);
-        }
-    }
-    projection
 }

@@ -10,59 +10,20 @@
 //! Left-looking: a row is assembled, meets all that were eliminated before it in registers, and is written once, as `u` and `y`. What elements say of the
 //! points ahead waits in memory until then, where those points' factors will be: no window of the matrix is carried through the walk. By single unknowns
 //! rather than by inverted blocks: it is a third fewer operations, because all of the symmetry is used. Golub & Van Loan, *Matrix
-//! Computations*, 4th ed., §4.1.2, §4.3.5.
+//! Computations*, 4th ed., §4.1.2, §4.3.5. Which unknowns meet is said by a [`Profile`].
 
-use super::lanes::{F, M3, Row, Sym3, V3, load, store};
+use super::{
+    lanes::{F, M3, Row, Sym3, V3, load, store},
+    profile::Profile,
+};
 use fearless_simd::{mask32x8, prelude::*};
-use std::sync::atomic::{Ordering, compiler_fence};
+use std::{
+    ops::Range,
+    sync::atomic::{Ordering, compiler_fence},
+};
 
 /// The zero that a sum begins with: adding to −0 is exact for every number, 0 and −0 included, and so costs nothing.
 const NOTHING: f32 = -0.0;
-
-/// Rows of factors that [`Band::eliminate`] writes for a point, where an unknown meets none more than `half` after it.
-pub const fn factor_rows(block: usize, window: usize, half: usize) -> usize {
-    pivot_row(0, block, window, half) + block
-}
-
-/// The first of them that belongs to unknown `r` of the point: its row after the diagonal, then its right-hand side.
-const fn factor_row(r: usize, window: usize, half: usize) -> usize {
-    let (mut row, mut k) = (0, 0);
-    while k < r {
-        row += last_met(k, window, half) - k + 1;
-        k += 1;
-    }
-    row
-}
-
-/// The one with −1/d of unknown `r`'s pivot d.
-const fn pivot_row(r: usize, block: usize, window: usize, half: usize) -> usize {
-    factor_row(block, window, half) + r
-}
-
-/// Where entry (r, c) of the window is before its point is eliminated, from the rows of the window's first point on: where its factor will be.
-const fn said(r: usize, c: usize, block: usize, window: usize, half: usize) -> usize {
-    let (own, first) = (r % block, r / block * block);
-    let row =
-        if c > r { factor_row(own, window, half) + c - r - 1 } else { pivot_row(own, block, window, half) };
-    first / block * factor_rows(block, window, half) + row
-}
-
-/// The same of the right-hand side of unknown `r`.
-const fn said_right(r: usize, block: usize, window: usize, half: usize) -> usize {
-    let own = r % block;
-    r / block * factor_rows(block, window, half) + factor_row(own, window, half) + last_met(own, window, half)
-        - own
-}
-
-/// Points before a point that meet it.
-pub const fn reach(block: usize, window: usize) -> usize {
-    (window - 1) / block
-}
-
-/// The last unknown of the window that unknown `r` meets.
-const fn last_met(r: usize, window: usize, half: usize) -> usize {
-    if r + half < window { r + half } else { window - 1 }
-}
 
 /// A part of the matrix and the right-hand side that elements add to, of eight strands: some points that follow each other, `B` unknowns each, of which the
 /// first three are its displacement. Upper triangle only: the first of two unknowns is never after the second.
@@ -133,28 +94,28 @@ impl<S: Simd, const B: usize, const N: usize> System<S, B> for Band<S, B, N> {
 /// the window, all of that would have to be where both sides of a rare branch find it.
 pub struct Said<'a, const B: usize, const N: usize> {
     rows: &'a mut [Row],
-    half: usize,
+    profile: Profile<B, N>,
 }
 
 impl<'a, const B: usize, const N: usize> Said<'a, B, N> {
     /// Of the points from the strand's `i`th on.
     #[inline(always)]
-    pub fn new(half: usize, i: usize, factors: &'a mut [Row]) -> Self {
-        let rows = factor_rows(B, N, half);
-        Self { rows: &mut factors[(i + reach(B, N)) * rows..][..reach(B, N) * rows], half }
+    pub fn new(profile: Profile<B, N>, i: usize, factors: &'a mut [Row]) -> Self {
+        let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
+        Self { rows: &mut factors[(i + reach) * rows..][..reach * rows], profile }
     }
 }
 
 impl<S: Simd, const B: usize, const N: usize> System<S, B> for Said<'_, B, N> {
     #[inline(always)]
     fn add(&mut self, (p, j): (usize, usize), (q, k): (usize, usize), value: F<S>) {
-        let row = &mut self.rows[said(p * B + j, q * B + k, B, N, self.half)];
+        let row = &mut self.rows[self.profile.said(p * B + j, q * B + k)];
         store(load(value.simd, row) + value, row);
     }
 
     #[inline(always)]
     fn add_right(&mut self, (p, k): (usize, usize), value: F<S>) {
-        let row = &mut self.rows[said_right(p * B + k, B, N, self.half)];
+        let row = &mut self.rows[self.profile.said_right(p * B + k)];
         store(load(value.simd, row) + value, row);
     }
 }
@@ -166,6 +127,21 @@ pub struct Band<S: Simd, const B: usize, const N: usize> {
     a: [[F<S>; N]; N],
     /// Right-hand side.
     b: [F<S>; N],
+    /// Between the first point and the last.
+    far: Far<S>,
+}
+
+/// A spring between the window's first point and its last, which nothing else couples: all that was eliminated before reaches less far. So their block of the
+/// matrix is −k u uᵀ, of rank one, and stays that: eliminating the first point makes −w uᵀ of it, with w = L⁻¹ k u. Three numbers stand for nine in all
+/// that meets the block, and on the last point, where nothing else of the first comes, the spring leaves (k − wᵀ D⁻¹ w) u uᵀ.
+#[derive(Clone, Copy)]
+struct Far<S: Simd> {
+    /// Its direction, a unit vector from the first point to the last; or zero.
+    u: V3<S>,
+    /// Its stiffness [N/m].
+    k: F<S>,
+    /// With how much it pulls [N].
+    pull: F<S>,
 }
 
 impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
@@ -173,60 +149,51 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let nothing = F::<S>::splat(simd, NOTHING);
-        Self { a: [[nothing; N]; N], b: [nothing; N] }
+        let far = Far { u: V3::zero(simd), k: nothing, pull: nothing };
+        Self { a: [[nothing; N]; N], b: [nothing; N], far }
+    }
+
+    /// Sets the spring between the window's first point and its last, of a [far](Profile::far) profile: it has direction `u` and stiffness `k`, and `pull`s.
+    #[inline(always)]
+    pub fn add_far(&mut self, u: V3<S>, k: F<S>, pull: F<S>) {
+        self.add_diagonal(0, Sym3::outer(u, k));
+        self.add_force(0, u * pull);
+        self.far = Far { u, k, pull };
     }
 
     /// Takes up what was [left](Band::leave) of the window's first point, the strand's `i`th, which [`Band::eliminate`] does by itself.
     #[inline(always)]
-    pub fn take_up(&mut self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
-        let rows = factor_rows(B, N, half);
-        let ahead = &mut factors[(i + reach(B, N)) * rows..][..rows];
+    pub fn take_up(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
+        let rows = profile.rows();
+        let ahead = &mut factors[(i + Profile::<B, N>::REACH) * rows..][..rows];
         each!(r of 0 1 2 3, {
             if r < B {
                 each!(c, {
                     if c >= r && c + B < N {
-                        self.a[r][c] += load(simd, &ahead[said(r, c, B, N, half)]);
+                        self.a[r][c] += load(simd, &ahead[profile.said(r, c)]);
                     }
                 });
-                self.b[r] += load(simd, &ahead[said_right(r, B, N, half)]);
+                self.b[r] += load(simd, &ahead[profile.said_right(r)]);
             }
         });
         ahead.fill(Row::default());
     }
 
-    /// Leaves what was said of the points after the window's first, the strand's `i`th, where their factors will be, with what was left of them before.
+    /// Leaves what was said of these `points` after the window's first where their factors will be, with what was left of them before: in the rows `ahead`,
+    /// which begin with the next point's.
     #[inline(always)]
-    fn leave(&self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
-        let rows = factor_rows(B, N, half);
-        let ahead = &mut factors[(i + 1 + reach(B, N)) * rows..][..reach(B, N) * rows];
+    fn leave(&self, simd: S, profile: Profile<B, N>, points: Range<usize>, ahead: &mut [Row]) {
         let add = |value: F<S>, row: &mut Row, before: bool| {
             store(if before { value + load(simd, row) } else { value }, row);
         };
         each!(r, {
-            if r + B < N {
+            if r + B < N && points.contains(&(r / B + 1)) {
                 each!(c, {
                     if c >= r && c + B < N {
-                        add(self.a[r + B][c + B], &mut ahead[said(r, c, B, N, half)], c + 2 * B < N);
+                        add(self.a[r + B][c + B], &mut ahead[profile.said(r, c)], c + 2 * B < N);
                     }
                 });
-                add(self.b[r + B], &mut ahead[said_right(r, B, N, half)], r + 2 * B < N);
-            }
-        });
-    }
-
-    /// Adds `stiffness` times the square of a gradient, which is `c[p]` times `direction` at the displacement of point `p`.
-    #[inline(always)]
-    pub fn add_rank_one<const P: usize>(&mut self, direction: V3<S>, c: [F<S>; P], stiffness: F<S>) {
-        let block = Sym3::outer(direction, stiffness);
-        each!(p, {
-            if p < P {
-                let scaled = block * c[p];
-                self.add_diagonal(p, scaled * c[p]);
-                each!(q, {
-                    if q > p && q < P {
-                        self.add_block(p, q, &(scaled * c[q]).full());
-                    }
-                });
+                add(self.b[r + B], &mut ahead[profile.said_right(r)], r + 2 * B < N);
             }
         });
     }
@@ -280,15 +247,23 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     }
 
     /// Eliminates the window's first point, the strand's `i`th, and [leaves](Band::leave) what was said of the others. Its factors
-    /// follow in `factors` on those of the points before it, which begin with zeros for twice [`reach`] points: as many that there are not, and as many of
-    /// which nothing has been said. No unknown of the matrix meets one more than `half` after it.
+    /// follow in `factors` on those of the points before it, which begin with zeros for twice [`Profile::REACH`] points: as many that there are not, and as many
+    /// of which nothing has been said.
     #[inline(always)]
     #[allow(clippy::needless_range_loop, reason = "columns count in the row and in the factors")]
-    pub fn eliminate(&mut self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
+    pub fn eliminate(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
         let minus_one = F::<S>::splat(simd, -1.0);
         let mut pivots = [minus_one; B];
-        let (rows, reach) = (factor_rows(B, N, half), reach(B, N));
-        let own = &mut factors[i * rows..][..(reach + 1) * rows];
+        let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
+        // A far spring's factors and all that is said of points ahead are too many for the registers: the sooner it is left, the better.
+        let late = if profile.is_far() { reach } else { 1 };
+        let (own, after) = factors[i * rows..][..(2 * reach + 1) * rows].split_at_mut((reach + 1) * rows);
+        self.leave(simd, profile, 1..late, after);
+        let Far { u, k: mut left, mut pull } = self.far;
+        let mut w = [F::<S>::splat(simd, NOTHING); B];
+        for (w, u) in w.iter_mut().zip([u.x, u.y, u.z]) {
+            *w = u * left;
+        }
         each!(r of 0 1 2 3, {
             if r < B {
                 let (mut row, mut right) = (self.a[r], self.b[r]);
@@ -296,49 +271,87 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                 // move all of the window from one place of the stack to another at every point, an eighth of the instructions.
                 let ahead = &own[reach * rows..][..rows];
                 for c in r..N - B {
-                    row[c] += load(simd, &ahead[said(r, c, B, N, half)]);
+                    row[c] += load(simd, &ahead[profile.said(r, c)]);
                 }
-                right += load(simd, &ahead[said_right(r, B, N, half)]);
+                right += load(simd, &ahead[profile.said_right(r)]);
                 each!(back of 3 2 1 0, {
                     if back <= reach {
                         // Costs nothing by itself. Without it the compiler loads all factors long before they are used, and then has to
                         // put them back into memory: a sixth more instructions.
                         compiler_fence(Ordering::SeqCst);
+                        let point = &own[(reach - back) * rows..][..rows];
+                        // What the far spring of the point before has of this row.
+                        let mut of_far = F::<S>::splat(simd, NOTHING);
                         each!(k of 0 1 2 3, {
-                            let last = last_met(k, N, half);
+                            let last = profile.last(k);
                             if k < B && back * B + r <= last && (back > 0 || k < r) {
-                                let point = &own[(reach - back) * rows..][..rows];
-                                let at = factor_row(k, N, half);
+                                let at = profile.row(k);
                                 let a = |c: usize| load(simd, &point[at + back * B + c - k - 1]);
-                                let pivot = if back == 0 { pivots[k] } else { load(simd, &point[pivot_row(k, B, N, half)]) };
+                                let pivot = if back == 0 { pivots[k] } else { load(simd, &point[profile.pivot(k)]) };
                                 let l = a(r) * pivot;
                                 for c in r..N.min(last + 1 - back * B) {
                                     row[c] = l.mul_add(a(c), row[c]);
                                 }
                                 right = l.mul_add(load(simd, &point[at + last - k]), right);
+                                if profile.is_far() {
+                                    if back == 0 {
+                                        w[r] = l.mul_add(w[k], w[r]);
+                                    } else {
+                                        of_far = l.mul_add(load(simd, &point[profile.far_row(k)]), of_far);
+                                    }
+                                }
                             }
                         });
+                        if profile.is_far() && back > 0 && back < reach {
+                            let at = (reach - back) * B;
+                            let u = V3::load(simd, &point[profile.far_row(B)..]);
+                            for (c, u) in [u.x, u.y, u.z].into_iter().enumerate() {
+                                row[at + c] = (-of_far).mul_add(u, row[at + c]);
+                            }
+                        }
                     }
                 });
                 let point = &mut own[reach * rows..][..rows];
-                let (at, last) = (factor_row(r, N, half), last_met(r, N, half));
+                let (at, last) = (profile.row(r), profile.last(r));
                 for c in r + 1..last + 1 {
                     store(row[c], &mut point[at + c - r - 1]);
                 }
                 store(right, &mut point[at + last - r]);
                 pivots[r] = minus_one / row[r];
-                store(pivots[r], &mut point[pivot_row(r, B, N, half)]);
+                store(pivots[r], &mut point[profile.pivot(r)]);
+                if profile.is_far() {
+                    store(w[r], &mut point[profile.far_row(r)]);
+                    let l = w[r] * pivots[r];
+                    left = l.mul_add(w[r], left);
+                    pull = l.mul_add(right, pull);
+                }
             }
         });
-        self.leave(simd, half, i, factors);
+        if profile.is_far() {
+            u.store(&mut own[reach * rows..][profile.far_row(B)..rows]);
+            self.leave_far(u, left, pull);
+        }
+        self.leave(simd, profile, late..reach + 1, after);
+    }
+
+    /// Says of the window's last point what is left of the far spring once the first has been eliminated or passed.
+    #[inline(always)]
+    fn leave_far(&mut self, u: V3<S>, left: F<S>, pull: F<S>) {
+        self.add_diagonal(Profile::<B, N>::REACH, Sym3::outer(u, left));
+        self.add_force(Profile::<B, N>::REACH, -(u * pull));
     }
 
     /// Moves on past the strand's `i`th point without eliminating it: those after it meet nothing of it.
     #[inline(always)]
-    pub fn pass(&self, simd: S, half: usize, i: usize, factors: &mut [Row]) {
-        let rows = factor_rows(B, N, half);
-        factors[(i + reach(B, N)) * rows..][..rows].fill(Row::default());
-        self.leave(simd, half, i, factors);
+    pub fn pass(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
+        let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
+        let (own, after) = factors[(i + reach) * rows..][..(reach + 1) * rows].split_at_mut(rows);
+        own.fill(Row::default());
+        if profile.is_far() {
+            let Far { u, k, pull } = self.far;
+            self.leave_far(u, k, pull);
+        }
+        self.leave(simd, profile, 1..reach + 1, after);
     }
 }
 
@@ -346,27 +359,36 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 #[inline(always)]
 pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
     simd: S,
-    half: usize,
+    profile: Profile<B, N>,
     factors: &[Row],
     x: &mut [F<S>; N],
 ) {
-    let factors = &factors[..factor_rows(B, N, half)];
+    let factors = &factors[..profile.rows()];
     let after = *x;
     each!(k, {
         if k >= B && k < N {
             x[k] = after[k - B];
         }
     });
+    let mut far = F::<S>::splat(simd, NOTHING);
+    if profile.is_far() {
+        let at = Profile::<B, N>::REACH * B;
+        let u = V3::load(simd, &factors[profile.far_row(B)..]);
+        far = -u.dot(V3 { x: x[at], y: x[at + 1], z: x[at + 2] });
+    }
     each!(back of 0 1 2 3, {
         if back < B {
             let r = B - 1 - back;
-            let (at, end) = (factor_row(r, N, half), last_met(r, N, half));
+            let (at, end) = (profile.row(r), profile.last(r));
             let mut sum = -load(simd, &factors[at + end - r]);
+            if profile.is_far() {
+                sum = load(simd, &factors[profile.far_row(r)]).mul_add(far, sum);
+            }
             // Those found last come last: the sums of three unknowns are one chain from tip to root.
             for c in (r + 1..end + 1).rev() {
                 sum = load(simd, &factors[at + c - r - 1]).mul_add(x[c], sum);
             }
-            x[r] = sum * load(simd, &factors[pivot_row(r, B, N, half)]);
+            x[r] = sum * load(simd, &factors[profile.pivot(r)]);
         }
     });
 }

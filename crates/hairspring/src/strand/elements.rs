@@ -2,9 +2,10 @@
 
 use super::{
     assemble::{Step, Sweep},
-    band::{Band, System, factor_rows, reach},
+    band::{Band, System},
     lanes::{F, Row, V3, load},
     model::{At, Model, stretch::stretch},
+    profile::Profile,
     root::Root,
     scratch::Scratch,
     tile::{Tile, rest, state, strand},
@@ -60,8 +61,8 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             drifting: F::splat(simd, sweep.drift(step.h)),
             h: step.h,
         };
-        let rows = factor_rows(B, N, M::HALF);
-        scratch.factors[..2 * reach(B, N) * rows].fill(Row::default());
+        let begin = 2 * Profile::<B, N>::REACH * M::PROFILE.rows();
+        scratch.factors[..begin].fill(Row::default());
         let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
         let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
         let explicit = F::splat(simd, step.explicit_tension()) / stiffening;

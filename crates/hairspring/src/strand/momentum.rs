@@ -100,10 +100,10 @@ where
         } else {
             elements.band = Band::new(simd);
         }
-        elements.band.take_up(simd, M::HALF, i, scratch.factors);
+        elements.band.take_up(simd, M::PROFILE, i, scratch.factors);
         forces.0.push(lane(elements.band.force()));
         forces.1.push(if B > 3 { elements.band.right(3)[3] as f64 } else { 0.0 });
-        elements.band.pass(simd, M::HALF, i, scratch.factors);
+        elements.band.pass(simd, M::PROFILE, i, scratch.factors);
     }
     forces
 }

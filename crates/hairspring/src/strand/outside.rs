@@ -82,7 +82,7 @@ fn act<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let Scratch { factors, edges, contacts, .. } = scratch;
-    let said = &mut Said::<B, N>::new(M::HALF, i, factors);
+    let said = &mut Said::<B, N>::new(M::PROFILE, i, factors);
     let (next, share) = (i + 1, sweep.drift(step.h));
     let velocity = |tile: &Tile, i: usize| V3::load(simd, &tile.state[i][state::V..]) - root_velocity;
     if i.is_multiple_of(M::STRIDE) && i > 0 && i + M::STRIDE < tile.rest.len() {

@@ -1,13 +1,6 @@
 //! Working memory of one thread, reused by every tile that it runs.
 
-use super::{
-    band::{factor_rows, reach},
-    fixed::Fixed,
-    lanes::Row,
-    press, project,
-    tile::StateRows,
-    tile::state,
-};
+use super::{fixed::Fixed, lanes::Row, press, profile::Profile, project, tile::StateRows, tile::state};
 
 /// Working memory of one thread, as large as the longest tile that it ran.
 #[derive(Default)]
@@ -41,10 +34,10 @@ pub struct Scratch<'a> {
 }
 
 /// Most rows of factors a point, those of the rod.
-const MOST_FACTORS: usize = factor_rows(4, 11, 10);
+const MOST_FACTORS: usize = Profile::<4, 11>::within(10).rows();
 
 /// Most points that meet a point from before it, those of the springs.
-const MOST_REACH: usize = reach(3, 12);
+const MOST_REACH: usize = Profile::<3, 12>::REACH;
 
 /// Edges after the last, so that three that follow each other can be read at any: they are finite and nothing depends on them.
 const BEYOND: usize = 3;

@@ -174,12 +174,14 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     RestShape { points: rest, start }
 }
 
-/// An extra particle at `p`, put where its triangle over the segment `e` of rest length `length` has it; from the segment's start.
+/// An extra particle at `p`, put where its triangle over the segment `e` has it, whose rest length and the inverse of that are given; from the segment's start.
 #[inline(always)]
-pub fn beside<S: Simd>(simd: S, p: V3<S>, e: V3<S>, length: F<S>) -> V3<S> {
+pub fn beside<S: Simd>(simd: S, p: V3<S>, e: V3<S>, [length, inverse]: [F<S>; 2]) -> V3<S> {
     let middle = e * F::splat(simd, 0.5);
     let way = p - middle;
-    let aside = (way - e * (e.dot(way) / e.dot(e).max(1e-30))).length_and_unit().1;
+    // Which way aside, that is enough: w (u·u) − u (u·w), which needs no division, and by the rest length, so that squares of short segments are no zeros.
+    let u = e * inverse;
+    let (_, aside) = (way * u.dot(u) - u * u.dot(way)).length_and_unit();
     aside.mul_add(length * ASIDE as f32, middle)
 }
 

@@ -2,12 +2,13 @@
 //! or, for high quality, Newton iterations with a line search.
 
 use crate::strand::{
-    assemble::{Step, Sweep, assemble, substitute},
+    assemble::{Step, Sweep, assemble},
     interval::Interval,
     lanes::{F, V3, load},
     model::Model,
     project::Projection,
     scratch::Scratch,
+    substitute::substitute,
     tile::{Tile, rest, strand},
 };
 use fearless_simd::prelude::*;

@@ -11,21 +11,25 @@
 use super::outside;
 use crate::strand::{
     assemble::Step,
-    band::{Band, System, factor_rows, reach},
+    band::{Band, System},
     lanes::{F, Row, V3, load},
     model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
+    profile::Profile,
     scratch::Scratch,
     tile::{Tile, rest, state},
 };
 use fearless_simd::prelude::*;
 
+/// All of a window meets.
+const PROFILE: Profile<1, 3> = Profile::within(2);
+
 /// Rows of factors a point: u of the next two points, a right-hand side of its own that is not used, and −1/d.
-const ROWS: usize = factor_rows(1, 3, 2);
+const ROWS: usize = PROFILE.rows();
 /// The last of them.
 const MINUS_INVERSE: usize = ROWS - 1;
 
 /// Points of factors before the first.
-const BEFORE: usize = reach(1, 3);
+const BEFORE: usize = Profile::<1, 3>::REACH;
 
 /// Factors the constant matrix into `scratch.factors`.
 #[inline(always)]
@@ -34,7 +38,7 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
     scratch.factors[..2 * BEFORE * ROWS].fill(Row::default());
     for i in 0..n {
         let mut band = Band::<S, 1, 3>::new(simd);
-        band.take_up(simd, 2, i, scratch.factors);
+        band.take_up(simd, PROFILE, i, scratch.factors);
         if i + 1 < n {
             let [alpha, beta, stretch, bend] = weights(simd, h, tile, i);
             let mass = load(simd, &tile.rest[i + 1][rest::MASS]);
@@ -51,7 +55,7 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
         // Points that do not move are cut off.
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
         band.cut(simd, free);
-        band.eliminate(simd, 2, i, scratch.factors);
+        band.eliminate(simd, PROFILE, i, scratch.factors);
     }
 }
 

@@ -23,6 +23,7 @@ use super::{
     band::Band,
     fixed::Fixed,
     lanes::{F, V3},
+    profile::Profile,
     root::Root,
     scratch::Scratch,
     tile::Tile,
@@ -58,6 +59,8 @@ pub struct At<S: Simd> {
 pub struct Solved<S: Simd, const N: usize> {
     /// The point.
     pub i: usize,
+    /// Which it is of the points that a point of the strand stands for.
+    pub phase: usize,
     /// From it to the next and from there to the one after, before the solve [m].
     pub edges: [V3<S>; 2],
     /// Displacements of the three [m].
@@ -88,8 +91,8 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// Simulated points from one point of the strand to the next.
     const STRIDE: usize = 1;
 
-    /// Largest distance of two unknowns that meet in the matrix.
-    const HALF: usize = N - 1;
+    /// Which unknowns meet in the matrix.
+    const PROFILE: Profile<B, N> = Profile::within(N - 1);
 
     /// Points at the root that are driven: its first segment.
     const DRIVEN: usize = Self::STRIDE + 1;

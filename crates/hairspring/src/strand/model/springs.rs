@@ -22,6 +22,7 @@ use crate::strand::{
     integrate::run_tile,
     interval::Interval,
     lanes::{F, Row, Sym3, V3, load, store},
+    profile::Profile,
     root::Root,
     scratch::{Memory, Scratch},
     tile::{Tile, springs, state, strand},
@@ -33,6 +34,8 @@ pub struct Springs<const ALTITUDES: bool>;
 
 impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
     const STRIDE: usize = 2;
+
+    const PROFILE: Profile<3, 12> = Profile::far();
 
     type Whole = Springs<true>;
 
@@ -66,36 +69,38 @@ impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
 
         // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
         // much as along: kept where it pulls alone (Choi & Ko 2002), it would resist every turn of a segment; left out, it cancels.
-        let k = load(simd, &scratch.fixed[i & !1].along);
+        let k = load(simd, &scratch.fixed[i - at.phase].along);
         let (l, u) = p[0].length_and_unit();
         let tension = load(simd, &tile.state[i][springs::SIDE]);
-        let pull = k.mul_add((l - load(simd, &tile.rest[i | 1][springs::SIDES])) * at.news, tension);
-        add_spring(band, 1, u * k.mul_add(u.dot(drift(1)) * at.drifting, pull), Sym3::outer(u, k));
+        let pull =
+            k.mul_add((l - load(simd, &tile.rest[i - at.phase + 1][springs::SIDES])) * at.news, tension);
+        add_spring(band, 1, u, k, k.mul_add(u.dot(drift(1)) * at.drifting, pull));
 
         // From a point, the particle after the next is the strand's next point: that spring is the segment's.
         if at.phase == 1 {
-            let spring = BEND.spring(
+            let (u, k, pull) = BEND.spring(
                 [p[1], drift(2)],
                 [load(simd, &rest[springs::L2]), load(simd, &fixed.inverse_spans[0])],
                 load(simd, &rest[springs::K2]),
                 [at.damped, at.drifting],
             );
-            add_spring(band, 2, spring.0, spring.1);
+            add_spring(band, 2, u, k, pull);
         }
-        let spring = TORSION.spring(
+        let (u, k, pull) = TORSION.spring(
             [p[2], drift(3)],
             [load(simd, &rest[springs::L3]), load(simd, &fixed.inverse_spans[1])],
             load(simd, &rest[springs::K3]),
             [at.damped, at.drifting],
         );
-        add_spring(band, 3, spring.0, spring.1);
+        band.add_far(u, k, pull);
     }
 
     #[inline(always)]
     fn take(simd: S, solved: &Solved<S, 12>, tile: &mut Tile, fixed: &[Fixed]) {
         let i = solved.i;
-        let side = load(simd, &tile.rest[i | 1][springs::SIDES]);
-        let inverse = load(simd, &fixed[i | 1].inverse_length);
+        let extra = i - solved.phase + 1;
+        let side = load(simd, &tile.rest[extra][springs::SIDES]);
+        let inverse = load(simd, &fixed[extra].inverse_length);
         let taken = solved.taken(1, [side, inverse], solved.along);
         let row = &mut tile.state[i][springs::SIDE];
         store(load(simd, row) + taken, row);
@@ -142,8 +147,8 @@ impl Progressive {
         [poly(self.a, self.b), poly(2.0 * self.a, 3.0 * self.b)]
     }
 
-    /// Force on the nearer end of a spring from there to the farther, which is at `e` and drifts with `v` [N], and its matrix; with
-    /// its rest length and the inverse.
+    /// Direction of a spring to its farther end, which is at `e` from the nearer and drifts with `v`, its stiffness in the matrix [N/m] and with how much it
+    /// pulls [N]; with its rest length and the inverse.
     #[inline(always)]
     fn spring<S: Simd>(
         &self,
@@ -151,11 +156,11 @@ impl Progressive {
         [rest, inverse]: [F<S>; 2],
         k: F<S>,
         [damped, drifting]: [F<S>; 2],
-    ) -> (V3<S>, Sym3<S>) {
+    ) -> (V3<S>, F<S>, F<S>) {
         let (l, u) = e.length_and_unit();
         let [secant, tangent] = self.stiffness(k.simd, (l - rest) * inverse);
         let implicit = k * tangent * damped;
-        (u * implicit.mul_add(u.dot(v) * drifting, k * secant * (l - rest)), Sym3::outer(u, implicit))
+        (u, implicit, implicit.mul_add(u.dot(v) * drifting, k * secant * (l - rest)))
     }
 
     /// Force and energy of a spring of linear stiffness 1 and rest length `rest` that is longer by `longer` [m], [m²].
@@ -176,9 +181,10 @@ impl Progressive {
     }
 }
 
-/// Adds a spring between the window's first particle, on which it acts with `force`, and the one `far` after it.
+/// Adds a spring between the window's first particle and the one `far` after it, in direction `u`, which has stiffness `k` [N/m] and pulls [N].
 #[inline(always)]
-fn add_spring<S: Simd>(band: &mut Band<S, 3, 12>, far: usize, force: V3<S>, block: Sym3<S>) {
+fn add_spring<S: Simd>(band: &mut Band<S, 3, 12>, far: usize, u: V3<S>, k: F<S>, pull: F<S>) {
+    let (force, block) = (u * pull, Sym3::outer(u, k));
     band.add_diagonal(0, block);
     band.add_diagonal(far, block);
     band.add_block(0, far, &-block.full());
@@ -219,13 +225,36 @@ fn add_altitude<S: Simd>(
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
     let k = flattened.select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
     let (normal, c, strain) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
-    band.add_rank_one(normal, c, k * at.damped);
+    for (p, q, held) in pairs(c) {
+        let block = Sym3::outer(normal, k * at.damped * held);
+        band.add_diagonal(p, block);
+        band.add_diagonal(q, block);
+        band.add_block(p, q, &-block.full());
+    }
     let drifted = normal.dot(drift(1) * c[1] + drift(2) * c[2] + drift(3) * c[3]);
     let force = normal * -(k * at.damped.mul_add(drifted * at.drifting, strain));
     band.add_force(0, force * c[0]);
     band.add_force(1, force * c[1]);
     band.add_force(2, force * c[2]);
     band.add_force(3, force * c[3]);
+}
+
+/// An altitude spring of stiffness 1 as springs between points along its height, whose gradient is `c`: which two each holds, and how stiff it is.
+///
+/// (Σ c x)² is −Σ c_p c_q (x_p − x_q)² over all pairs, because Σ c is 0. The first and the last have room for one spring in the band, and that is another's
+/// ([`Profile::far`]): what holds them together goes by way of the two others, (x₀ − x₃)² ≤ Σ (x₀ − x_p)² + (x_p − x₃)², and what would drive them apart is left
+/// out. So the matrix resists a change of the height more than the spring does, never less, and no motion of all four alike.
+#[inline(always)]
+pub fn pairs<S: Simd>(c: [F<S>; 4]) -> [(usize, usize, F<S>); 5] {
+    let around = (-c[0] * c[3]).max(0.0);
+    let between = |p: usize, q: usize| (-c[p]).mul_add(c[q], around);
+    [
+        (0, 1, between(0, 1)),
+        (0, 2, between(0, 2)),
+        (1, 3, between(1, 3)),
+        (2, 3, between(2, 3)),
+        (1, 2, -c[1] * c[2]),
+    ]
 }
 
 /// The heights of a tetrahedron: the points p, q, r, v, and whether from the face pqr to v, or from the edge pq to the edge rv.

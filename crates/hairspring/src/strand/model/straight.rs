@@ -8,6 +8,7 @@ use crate::strand::{
     integrate::run_tile,
     interval::Interval,
     lanes::load,
+    profile::Profile,
     root::Root,
     scratch::{Memory, Scratch},
     tile::{Tile, rest},
@@ -20,7 +21,7 @@ pub struct Straight;
 
 impl<S: Simd> Model<S, 3, 9> for Straight {
     // Points i and i+2 meet in bending alone, an axis by itself.
-    const HALF: usize = 6;
+    const PROFILE: Profile<3, 9> = Profile::within(6);
 
     type Whole = Self;
 

@@ -1,0 +1,120 @@
+//! The sweep up a strand: the solution point after point, added to its edges.
+
+use super::{
+    assemble::{Step, Sweep},
+    band::back_substitute,
+    lanes::{F, V3, load, store},
+    model::{Model, Solved},
+    press::relieve,
+    profile::Profile,
+    project::Projection,
+    scratch::Scratch,
+    segment::relieve_between,
+    tile::{Tile, rest, state},
+};
+use fearless_simd::prelude::*;
+
+/// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took. Projection meets the new segments on it.
+#[inline(always)]
+pub fn substitute<S, M, const B: usize, const N: usize>(
+    simd: S,
+    sweep: Sweep,
+    step: &Step<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) -> Projection<S>
+where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    let zero = V3::zero(simd);
+    let n = tile.rest.len();
+    let mut up = Up {
+        root_velocity: V3::load(simd, &tile.state[0][state::V..]),
+        solved: Solved {
+            i: n,
+            phase: 0,
+            edges: [zero; 2],
+            moved: [zero; 3],
+            unknowns: [F::<S>::splat(simd, 0.0); N],
+            along: F::splat(simd, 0.0),
+            news: sweep.news(),
+        },
+        projection: Projection::begin(simd, tile, scratch.fixed),
+    };
+    // The tip and the points by the root by themselves: the loop between knows nothing of them.
+    let first = M::DRIVEN.next_multiple_of(M::STRIDE);
+    up.pass_point::<M, B>(simd, (sweep, n - 1, 0, true), step, tile, scratch);
+    let mut i = n - 1;
+    while i > first {
+        if M::STRIDE == 2 {
+            up.pass_point::<M, B>(simd, (sweep, i - 1, 1, false), step, tile, scratch);
+        }
+        i -= M::STRIDE;
+        up.pass_point::<M, B>(simd, (sweep, i, 0, false), step, tile, scratch);
+    }
+    for i in (1..first.min(n - 1)).rev() {
+        up.pass_point::<M, B>(simd, (sweep, i, i % M::STRIDE, false), step, tile, scratch);
+    }
+    up.projection
+}
+
+/// The walk up a strand.
+struct Up<S: Simd, const N: usize> {
+    /// Velocity of the root in the last substep [m/s].
+    root_velocity: V3<S>,
+    /// What is known of the point that it was at last.
+    solved: Solved<S, N>,
+    projection: Projection<S>,
+}
+
+impl<S: Simd, const N: usize> Up<S, N> {
+    /// Passes point i; `phase` is i modulo the model's stride, and `tip` tells the last.
+    #[inline(always)]
+    fn pass_point<M: Model<S, B, N>, const B: usize>(
+        &mut self,
+        simd: S,
+        (sweep, i, phase, tip): (Sweep, usize, usize, bool),
+        step: &Step<S>,
+        tile: &mut Tile,
+        scratch: &mut Scratch,
+    ) {
+        let Self { root_velocity, solved, projection } = self;
+        let mut delta = V3::zero(simd);
+        if i >= M::DRIVEN || B > 3 {
+            let factors = &scratch.factors[(i + Profile::<B, N>::REACH) * M::PROFILE.rows()..];
+            back_substitute(simd, M::PROFILE, factors, &mut solved.unknowns);
+        }
+        if i >= M::DRIVEN {
+            let unknowns = &solved.unknowns;
+            let drift = V3::load(simd, &tile.state[i][state::V..]) - *root_velocity;
+            delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
+            delta = drift.mul_add(F::splat(simd, sweep.drift(step.h)), delta);
+            if phase == 0 {
+                relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
+            }
+        }
+        if phase == 0 && !tip {
+            // Before this point's is added: those of the points after it.
+            relieve_between(simd, step, tile, (i, [delta, solved.moved[M::STRIDE - 1]]), scratch.contacts);
+        }
+        (solved.i, solved.phase) = (i, phase);
+        let fixed = &scratch.fixed[i - phase];
+        solved.along = load(simd, &fixed.along);
+        solved.moved = [delta, solved.moved[0], solved.moved[1]];
+        if tip {
+            return;
+        }
+        let edge = V3::load(simd, &scratch.edges[i + 1]);
+        solved.edges = [edge, solved.edges[0]];
+        (edge + (solved.moved[1] - delta)).store(&mut scratch.edges[i + 1]);
+        M::take(simd, solved, tile, scratch.fixed);
+        if phase == 0 {
+            // Padding has no stiffness, and so takes nothing.
+            let length = [load(simd, &tile.rest[i][rest::LENGTH]), load(simd, &fixed.inverse_length)];
+            let row = &mut tile.state[i][state::TENSION];
+            store(load(simd, row) + solved.taken(M::STRIDE, length, solved.along), row);
+            projection.meet(simd, (M::STRIDE, i), tile, scratch);
+        }
+    }
+}
