@@ -78,9 +78,7 @@ pub fn limit<S: Simd>(
     let mut shift = V3::zero(simd);
     let mut i = 2 * stride;
     while i < tile.rest.len() {
-        let [length, inverse] =
-            [&tile.rest[i - stride][rest::LENGTH], &scratch.fixed[i - stride].inverse_length]
-                .map(|row| load(simd, row));
+        let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
         let link = Link { length, limit: finish.limit };
         // From the strand's point before, wherever that is now.
         let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
@@ -112,6 +110,7 @@ pub fn limit<S: Simd>(
             // An extra particle meets nothing and weighs next to nothing: it goes where its triangle puts it.
             if finish.limit.is_finite() {
                 let free = load(simd, &scratch.fixed[i - 1].inverse_mass).simd_gt(0.0);
+                let inverse = load(simd, &scratch.fixed[i - 2].inverse_length);
                 extra = V3::select(free, beside(simd, extra, e, [length, inverse]), extra);
             }
             at = write(simd, finish, step, (i - 1, &at, extra), tile, scratch);

@@ -52,9 +52,7 @@ pub fn advance<S: Simd>(
         x += old + shift;
         let v = V3::load(simd, &tile.state[i][state::V..]);
         let p = old + (v + outside(simd, step, tile, i, [u, x]) * h) * h - step.moved;
-        let [length, inverse] =
-            [&tile.rest[i - stride][rest::LENGTH], &scratch.fixed[i - stride].inverse_length]
-                .map(|row| load(simd, row));
+        let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
         let new = V3::select(free, p.length_and_unit().1 * length, old);
         new.store(&mut scratch.edges[i]);
@@ -64,6 +62,7 @@ pub fn advance<S: Simd>(
         }
         zero.store(&mut scratch.kick[i]);
         if tile.model == Elastic::Springs {
+            let inverse = load(simd, &scratch.fixed[i - stride].inverse_length);
             extra = beside(simd, extra, new, [length, inverse]);
             extra.store(&mut scratch.edges[i - 1]);
             (new - extra).store(&mut scratch.edges[i]);
