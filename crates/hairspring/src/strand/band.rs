@@ -17,10 +17,7 @@ use super::{
     profile::Profile,
 };
 use fearless_simd::{mask32x8, prelude::*};
-use std::{
-    ops::Range,
-    sync::atomic::{Ordering, compiler_fence},
-};
+use std::sync::atomic::{Ordering, compiler_fence};
 
 /// The zero that a sum begins with: adding to −0 is exact for every number, 0 and −0 included, and so costs nothing.
 const NOTHING: f32 = -0.0;
@@ -127,21 +124,6 @@ pub struct Band<S: Simd, const B: usize, const N: usize> {
     a: [[F<S>; N]; N],
     /// Right-hand side.
     b: [F<S>; N],
-    /// Between the first point and the last.
-    far: Far<S>,
-}
-
-/// A spring between the window's first point and its last, which nothing else couples: all that was eliminated before reaches less far. So their block of the
-/// matrix is −k u uᵀ, of rank one, and stays that: eliminating the first point makes −w uᵀ of it, with w = L⁻¹ k u. Three numbers stand for nine in all
-/// that meets the block, and on the last point, where nothing else of the first comes, the spring leaves (k − wᵀ D⁻¹ w) u uᵀ.
-#[derive(Clone, Copy)]
-struct Far<S: Simd> {
-    /// Its direction, a unit vector from the first point to the last; or zero.
-    u: V3<S>,
-    /// Its stiffness [N/m].
-    k: F<S>,
-    /// With how much it pulls [N].
-    pull: F<S>,
 }
 
 impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
@@ -149,16 +131,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let nothing = F::<S>::splat(simd, NOTHING);
-        let far = Far { u: V3::zero(simd), k: nothing, pull: nothing };
-        Self { a: [[nothing; N]; N], b: [nothing; N], far }
-    }
-
-    /// Sets the spring between the window's first point and its last, of a [far](Profile::far) profile: it has direction `u` and stiffness `k`, and `pull`s.
-    #[inline(always)]
-    pub fn add_far(&mut self, u: V3<S>, k: F<S>, pull: F<S>) {
-        self.add_diagonal(0, Sym3::outer(u, k));
-        self.add_force(0, u * pull);
-        self.far = Far { u, k, pull };
+        Self { a: [[nothing; N]; N], b: [nothing; N] }
     }
 
     /// Takes up what was [left](Band::leave) of the window's first point, the strand's `i`th, which [`Band::eliminate`] does by itself.
@@ -179,21 +152,38 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         ahead.fill(Row::default());
     }
 
-    /// Leaves what was said of these `points` after the window's first where their factors will be, with what was left of them before: in the rows `ahead`,
+    /// Leaves what was said of the points after the window's first where their factors will be, with what was left of them before: in the rows `ahead`,
     /// which begin with the next point's.
     #[inline(always)]
-    fn leave(&self, simd: S, profile: Profile<B, N>, points: Range<usize>, ahead: &mut [Row]) {
+    fn leave(&self, simd: S, profile: Profile<B, N>, ahead: &mut [Row]) {
         let add = |value: F<S>, row: &mut Row, before: bool| {
             store(if before { value + load(simd, row) } else { value }, row);
         };
         each!(r, {
-            if r + B < N && points.contains(&(r / B + 1)) {
+            if r + B < N {
                 each!(c, {
                     if c >= r && c + B < N {
                         add(self.a[r + B][c + B], &mut ahead[profile.said(r, c)], c + 2 * B < N);
                     }
                 });
                 add(self.b[r + B], &mut ahead[profile.said_right(r)], r + 2 * B < N);
+            }
+        });
+    }
+
+    /// Adds `stiffness` times the square of a gradient, which is `c[p]` times `direction` at the displacement of point `p`.
+    #[inline(always)]
+    pub fn add_rank_one<const P: usize>(&mut self, direction: V3<S>, c: [F<S>; P], stiffness: F<S>) {
+        let block = Sym3::outer(direction, stiffness);
+        each!(p, {
+            if p < P {
+                let scaled = block * c[p];
+                self.add_diagonal(p, scaled * c[p]);
+                each!(q, {
+                    if q > p && q < P {
+                        self.add_block(p, q, &(scaled * c[q]).full());
+                    }
+                });
             }
         });
     }
@@ -255,14 +245,11 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         let minus_one = F::<S>::splat(simd, -1.0);
         let mut pivots = [minus_one; B];
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
-        // A far spring's factors and all that is said of points ahead are too many for the registers: the sooner it is left, the better.
-        let late = if profile.is_far() { reach } else { 1 };
         let (own, after) = factors[i * rows..][..(2 * reach + 1) * rows].split_at_mut((reach + 1) * rows);
-        self.leave(simd, profile, 1..late, after);
-        let Far { u, k: mut left, mut pull } = self.far;
-        let mut w = [F::<S>::splat(simd, NOTHING); B];
-        for (w, u) in w.iter_mut().zip([u.x, u.y, u.z]) {
-            *w = u * left;
+        // What is said of three points ahead, and their factors, are too much for the registers: the sooner it is left, the better.
+        let soon = reach > 2;
+        if soon {
+            self.leave(simd, profile, after);
         }
         each!(r of 0 1 2 3, {
             if r < B {
@@ -280,8 +267,6 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                         // put them back into memory: a sixth more instructions.
                         compiler_fence(Ordering::SeqCst);
                         let point = &own[(reach - back) * rows..][..rows];
-                        // What the far spring of the point before has of this row.
-                        let mut of_far = F::<S>::splat(simd, NOTHING);
                         each!(k of 0 1 2 3, {
                             let last = profile.last(k);
                             if k < B && back * B + r <= last && (back > 0 || k < r) {
@@ -293,22 +278,8 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                                     row[c] = l.mul_add(a(c), row[c]);
                                 }
                                 right = l.mul_add(load(simd, &point[at + last - k]), right);
-                                if profile.is_far() {
-                                    if back == 0 {
-                                        w[r] = l.mul_add(w[k], w[r]);
-                                    } else {
-                                        of_far = l.mul_add(load(simd, &point[profile.far_row(k)]), of_far);
-                                    }
-                                }
                             }
                         });
-                        if profile.is_far() && back > 0 && back < reach {
-                            let at = (reach - back) * B;
-                            let u = V3::load(simd, &point[profile.far_row(B)..]);
-                            for (c, u) in [u.x, u.y, u.z].into_iter().enumerate() {
-                                row[at + c] = (-of_far).mul_add(u, row[at + c]);
-                            }
-                        }
                     }
                 });
                 let point = &mut own[reach * rows..][..rows];
@@ -319,39 +290,20 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                 store(right, &mut point[at + last - r]);
                 pivots[r] = minus_one / row[r];
                 store(pivots[r], &mut point[profile.pivot(r)]);
-                if profile.is_far() {
-                    store(w[r], &mut point[profile.far_row(r)]);
-                    let l = w[r] * pivots[r];
-                    left = l.mul_add(w[r], left);
-                    pull = l.mul_add(right, pull);
-                }
             }
         });
-        if profile.is_far() {
-            u.store(&mut own[reach * rows..][profile.far_row(B)..rows]);
-            self.leave_far(u, left, pull);
+        if !soon {
+            self.leave(simd, profile, after);
         }
-        self.leave(simd, profile, late..reach + 1, after);
-    }
-
-    /// Says of the window's last point what is left of the far spring once the first has been eliminated or passed.
-    #[inline(always)]
-    fn leave_far(&mut self, u: V3<S>, left: F<S>, pull: F<S>) {
-        self.add_diagonal(Profile::<B, N>::REACH, Sym3::outer(u, left));
-        self.add_force(Profile::<B, N>::REACH, -(u * pull));
     }
 
     /// Moves on past the strand's `i`th point without eliminating it: those after it meet nothing of it.
     #[inline(always)]
-    pub fn pass(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
+    pub fn pass(&self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
         let (own, after) = factors[(i + reach) * rows..][..(reach + 1) * rows].split_at_mut(rows);
         own.fill(Row::default());
-        if profile.is_far() {
-            let Far { u, k, pull } = self.far;
-            self.leave_far(u, k, pull);
-        }
-        self.leave(simd, profile, 1..reach + 1, after);
+        self.leave(simd, profile, after);
     }
 }
 
@@ -370,20 +322,11 @@ pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
             x[k] = after[k - B];
         }
     });
-    let mut far = F::<S>::splat(simd, NOTHING);
-    if profile.is_far() {
-        let at = Profile::<B, N>::REACH * B;
-        let u = V3::load(simd, &factors[profile.far_row(B)..]);
-        far = -u.dot(V3 { x: x[at], y: x[at + 1], z: x[at + 2] });
-    }
     each!(back of 0 1 2 3, {
         if back < B {
             let r = B - 1 - back;
             let (at, end) = (profile.row(r), profile.last(r));
             let mut sum = -load(simd, &factors[at + end - r]);
-            if profile.is_far() {
-                sum = load(simd, &factors[profile.far_row(r)]).mul_add(far, sum);
-            }
             // Those found last come last: the sums of three unknowns are one chain from tip to root.
             for c in (r + 1..end + 1).rev() {
                 sum = load(simd, &factors[at + c - r - 1]).mul_add(x[c], sum);

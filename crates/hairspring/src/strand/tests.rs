@@ -11,7 +11,7 @@ use super::{
         bend::bend,
         curvature::Curvature,
         rod::Rod,
-        springs::{BEND, Springs, TORSION, altitude, pairs},
+        springs::{BEND, Springs, TORSION, altitude},
         straight::Straight,
     },
     profile::Profile,
@@ -39,12 +39,12 @@ pub fn lane<S: Simd>(v: V3<S>) -> DVec3 {
     DVec3::new(v.x[3] as f64, v.y[3] as f64, v.z[3] as f64)
 }
 
-/// Solves a banded system of `B` unknowns a point with the kernel's band; `far` has the direction and the stiffness of each point's far spring.
+/// Solves a banded system of `B` unknowns a point with the kernel's band.
 fn band_solve<S: Simd, const B: usize, const N: usize>(
     simd: S,
     profile: Profile<B, N>,
-    (a, b): (&[Vec<f64>], &[f64]),
-    far: &[(DVec3, f64)],
+    a: &[Vec<f64>],
+    b: &[f64],
 ) -> Vec<f64> {
     let (n, rows, reach) = (b.len() / B, profile.rows(), Profile::<B, N>::REACH);
     let f = |v: f64| F::<S>::splat(simd, v as f32);
@@ -59,9 +59,6 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
                 }
             }
             band.add_right((0, r - i * B), f(b[r]));
-        }
-        if let Some((u, k)) = far.get(i) {
-            band.add_far(splat(simd, *u), f(*k), f(0.0));
         }
         band.eliminate(simd, profile, i, &mut factors);
     }
@@ -98,8 +95,7 @@ fn agree<const B: usize, const N: usize>(
     let a = banded(points, [B, N, half], noise);
     let right: Vec<f64> = (0..points * B).map(|i| noise[(i * 7) % noise.len()]).collect();
     let exact = dense_solve(&a, &right);
-    let ours =
-        dispatch!(Level::new(), simd => band_solve(simd, Profile::<B, N>::within(half), (&a, &right), &[]));
+    let ours = dispatch!(Level::new(), simd => band_solve(simd, Profile::<B, N>::within(half), &a, &right));
     let size = exact.iter().map(|v| v.abs()).fold(1.0, f64::max);
     for (e, o) in exact.iter().zip(&ours) {
         prop_assert!((*e - *o).abs() < 2e-4 * size, "{e} and {o}");
@@ -116,33 +112,6 @@ proptest! {
         agree::<3, 9>(8, points, &noise)?;
         agree::<4, 11>(10, points, &noise)?;
         agree::<3, 12>(11, points, &noise)?;
-    }
-
-    /// It is one, too, where all that holds a point and the third after it is a spring in one direction, however stiff.
-    #[test]
-    fn a_far_spring_is_its_block_of_the_matrix(
-        points in 4usize..20,
-        noise in proptest::collection::vec(-1.0..1.0, 97),
-        far in proptest::collection::vec((vector(1.0), 0.0f64..1e3), 20),
-    ) {
-        let mut a = banded(points, [3, 9, 8], &noise);
-        let right: Vec<f64> = (0..points * 3).map(|i| noise[(i * 7) % noise.len()]).collect();
-        // Of those that end on the strand. The kernel is told the numbers in f32.
-        let far: Vec<_> = far[..points - 3].iter().map(|(u, k)| (u.normalize_or_zero().as_vec3().as_dvec3(), *k as f32 as f64)).collect();
-        let alone = a.clone();
-        for (i, (u, k)) in far.iter().enumerate() {
-            for (p, q, sign) in [(i, i, 1.0), (i + 3, i + 3, 1.0), (i, i + 3, -1.0), (i + 3, i, -1.0)] {
-                (0..9).for_each(|rc| a[p * 3 + rc / 3][q * 3 + rc % 3] += sign * k * u[rc / 3] * u[rc % 3]);
-            }
-        }
-        let exact = dense_solve(&a, &right);
-        let ours = dispatch!(Level::new(), simd => {
-            band_solve(simd, Profile::<3, 12>::far(), (&alone, &right), &far)
-        });
-        let size = exact.iter().map(|v| v.abs()).fold(1.0, f64::max);
-        for (e, o) in exact.iter().zip(&ours) {
-            prop_assert!((*e - *o).abs() < 2e-3 * size, "{e} and {o}");
-        }
     }
 
     /// The bending force is minus the gradient of its energy, keeps momentum, and keeps angular momentum but for the twist
@@ -218,22 +187,6 @@ proptest! {
             let height_sign = c.iter().zip(x).map(|(c, x)| x.dot(n) * c).sum::<f64>().signum();
             prop_assert!((grows - height_sign * c[k] * area).abs() < 2e-2 * area, "point {k}: {grows} and {}", c[k] * area);
         }
-    }
-
-    /// In the matrix, an altitude spring resists at least as much as it does, whatever moves, and not at all what moves all four points alike.
-    #[test]
-    fn the_altitude_springs_matrix_is_never_less_than_it(
-        weights in prop::array::uniform3(-2.0..2.0), moved in prop::array::uniform4(-1.0..1.0),
-    ) {
-        let [a, b, d]: [f64; 3] = weights;
-        let c = [a, b, d, -a - b - d];
-        let held = dispatch!(Level::new(), simd => {
-            pairs(c.map(|c| F::splat(simd, c as f32))).map(|(p, q, k)| (p, q, k[3] as f64))
-        });
-        let energy = |x: [f64; 4]| held.iter().map(|(p, q, k)| k * (x[*p] - x[*q]).powi(2)).sum::<f64>();
-        let height: f64 = c.iter().zip(moved).map(|(c, x)| c * x).sum();
-        prop_assert!(energy(moved) > height * height - 1e-4, "{} for {}", energy(moved), height * height);
-        prop_assert!(held.iter().all(|(p, q, _)| (*p, *q) != (0, 3)));
     }
 
     /// A whole substep of eight lanes is the dense f64 solve: gravity, wind, drag, damping, tension and a moving root included.

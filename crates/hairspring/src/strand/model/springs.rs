@@ -22,7 +22,6 @@ use crate::strand::{
     integrate::run_tile,
     interval::Interval,
     lanes::{F, Row, Sym3, V3, load, store},
-    profile::Profile,
     root::Root,
     scratch::{Memory, Scratch},
     tile::{Tile, springs, state, strand},
@@ -34,8 +33,6 @@ pub struct Springs<const ALTITUDES: bool>;
 
 impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
     const STRIDE: usize = 2;
-
-    const PROFILE: Profile<3, 12> = Profile::far();
 
     type Whole = Springs<true>;
 
@@ -92,7 +89,7 @@ impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
             load(simd, &rest[springs::K3]),
             [at.damped, at.drifting],
         );
-        band.add_far(u, k, pull);
+        add_spring(band, 3, u, k, pull);
     }
 
     #[inline(always)]
@@ -225,36 +222,13 @@ fn add_altitude<S: Simd>(
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
     let k = flattened.select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
     let (normal, c, strain) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
-    for (p, q, held) in pairs(c) {
-        let block = Sym3::outer(normal, k * at.damped * held);
-        band.add_diagonal(p, block);
-        band.add_diagonal(q, block);
-        band.add_block(p, q, &-block.full());
-    }
+    band.add_rank_one(normal, c, k * at.damped);
     let drifted = normal.dot(drift(1) * c[1] + drift(2) * c[2] + drift(3) * c[3]);
     let force = normal * -(k * at.damped.mul_add(drifted * at.drifting, strain));
     band.add_force(0, force * c[0]);
     band.add_force(1, force * c[1]);
     band.add_force(2, force * c[2]);
     band.add_force(3, force * c[3]);
-}
-
-/// An altitude spring of stiffness 1 as springs between points along its height, whose gradient is `c`: which two each holds, and how stiff it is.
-///
-/// (Σ c x)² is −Σ c_p c_q (x_p − x_q)² over all pairs, because Σ c is 0. The first and the last have room for one spring in the band, and that is another's
-/// ([`Profile::far`]): what holds them together goes by way of the two others, (x₀ − x₃)² ≤ Σ (x₀ − x_p)² + (x_p − x₃)², and what would drive them apart is left
-/// out. So the matrix resists a change of the height more than the spring does, never less, and no motion of all four alike.
-#[inline(always)]
-pub fn pairs<S: Simd>(c: [F<S>; 4]) -> [(usize, usize, F<S>); 5] {
-    let around = (-c[0] * c[3]).max(0.0);
-    let between = |p: usize, q: usize| (-c[p]).mul_add(c[q], around);
-    [
-        (0, 1, between(0, 1)),
-        (0, 2, between(0, 2)),
-        (1, 3, between(1, 3)),
-        (2, 3, between(2, 3)),
-        (1, 2, -c[1] * c[2]),
-    ]
 }
 
 /// The heights of a tetrahedron: the points p, q, r, v, and whether from the face pqr to v, or from the edge pq to the edge rv.
