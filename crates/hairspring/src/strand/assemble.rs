@@ -16,7 +16,7 @@
 //! Baraff & Witkin 1998, *Large Steps in Cloth Simulation*; BDF2 after Choi & Ko 2002, *Stable but Responsive Cloth*, eq. 17.
 
 use super::{
-    band::{Band, System},
+    band::Band,
     elements::{Elements, Outset, Walk},
     lanes::{F, Sym3, V3},
     model::{
@@ -27,6 +27,7 @@ use super::{
     prefetch::ask_beyond,
     root::Root,
     scratch::Scratch,
+    system::System,
     tile::{Tile, history, state},
 };
 use crate::collide::ObstaclePose;
@@ -201,6 +202,9 @@ fn pass_whole<S, M, const B: usize, const N: usize>(
         || {
             add_point(simd, (sweep, i, phase), step, tile, scratch, elements);
             eliminate(simd, (i, driven), scratch, elements);
+            if let Some(across) = elements.band.across {
+                scratch.across.push(across.eliminate(simd, M::PROFILE, i, scratch.factors));
+            }
         },
     );
 }

@@ -13,66 +13,44 @@
 //! Computations*, 4th ed., §4.1.2, §4.3.5. Which unknowns meet is said by a [`Profile`].
 
 use super::{
-    lanes::{F, M3, Row, Sym3, V3, load, store},
+    across::Across,
+    lanes::{F, Row, Sym3, V3, load, store},
     profile::Profile,
+    system::System,
 };
 use fearless_simd::{mask32x8, prelude::*};
-use std::sync::atomic::{Ordering, compiler_fence};
+use std::{
+    ops::Range,
+    sync::atomic::{Ordering, compiler_fence},
+};
 
 /// The zero that a sum begins with: adding to −0 is exact for every number, 0 and −0 included, and so costs nothing.
 const NOTHING: f32 = -0.0;
 
-/// A part of the matrix and the right-hand side that elements add to, of eight strands: some points that follow each other, `B` unknowns each, of which the
-/// first three are its displacement. Upper triangle only: the first of two unknowns is never after the second.
-pub trait System<S: Simd, const B: usize> {
-    /// Adds to one entry: unknown `j` of point `p` with unknown `k` of point `q`.
-    fn add(&mut self, pj: (usize, usize), qk: (usize, usize), value: F<S>);
+/// The part of the matrix that is being worked on, of eight strands: the unknowns of a point and of the half-bandwidth
+/// after it, `N` in all, `B` a point of which the first three are its displacement.
+pub struct Band<S: Simd, const B: usize, const N: usize> {
+    /// Entry (r, c) for c ≥ r.
+    a: [[F<S>; N]; N],
+    /// Right-hand side.
+    b: [F<S>; N],
+    /// Between the first point and the last.
+    far: Far<S>,
+    /// Across all of it.
+    pub across: Option<Across<S>>,
+}
 
-    /// Adds to the right-hand side of unknown `k` of point `p`.
-    fn add_right(&mut self, pk: (usize, usize), value: F<S>);
-
-    /// Adds a symmetric block to the displacement of point `p`.
-    #[inline(always)]
-    fn add_diagonal(&mut self, p: usize, m: Sym3<S>) {
-        self.add((p, 0), (p, 0), m.xx);
-        self.add((p, 0), (p, 1), m.xy);
-        self.add((p, 0), (p, 2), m.xz);
-        self.add((p, 1), (p, 1), m.yy);
-        self.add((p, 1), (p, 2), m.yz);
-        self.add((p, 2), (p, 2), m.zz);
-    }
-
-    /// Adds `s` times the identity to the displacement of point `p`.
-    #[inline(always)]
-    fn add_identity(&mut self, p: usize, s: F<S>) {
-        self.add_identity_block(p, p, s);
-    }
-
-    /// Adds `s` times the identity to the block of the displacements of points `p` ≤ `q`.
-    #[inline(always)]
-    fn add_identity_block(&mut self, p: usize, q: usize, s: F<S>) {
-        for k in 0..3 {
-            self.add((p, k), (q, k), s);
-        }
-    }
-
-    /// Adds `m` to the block of the displacements of points `p` < `q`.
-    #[inline(always)]
-    fn add_block(&mut self, p: usize, q: usize, m: &M3<S>) {
-        for (r, row) in m.rows.into_iter().enumerate() {
-            self.add((p, r), (q, 0), row.x);
-            self.add((p, r), (q, 1), row.y);
-            self.add((p, r), (q, 2), row.z);
-        }
-    }
-
-    /// Adds a force to the displacement of point `p` [N].
-    #[inline(always)]
-    fn add_force(&mut self, p: usize, f: V3<S>) {
-        self.add_right((p, 0), f.x);
-        self.add_right((p, 1), f.y);
-        self.add_right((p, 2), f.z);
-    }
+/// A spring between the window's first point and its last, which nothing else couples: all that was eliminated before reaches less far. So their block of the
+/// matrix is −k u uᵀ, of rank one, and stays that: eliminating the first point makes −w uᵀ of it, with w = L⁻¹ k u. Three numbers stand for nine in all
+/// that meets the block, and on the last point, where nothing else of the first comes, the spring leaves (k − wᵀ D⁻¹ w) u uᵀ.
+#[derive(Clone, Copy)]
+struct Far<S: Simd> {
+    /// Its direction, a unit vector from the first point to the last; or zero.
+    u: V3<S>,
+    /// Its stiffness [N/m].
+    k: F<S>,
+    /// With how much it pulls [N].
+    pull: F<S>,
 }
 
 impl<S: Simd, const B: usize, const N: usize> System<S, B> for Band<S, B, N> {
@@ -87,51 +65,32 @@ impl<S: Simd, const B: usize, const N: usize> System<S, B> for Band<S, B, N> {
     }
 }
 
-/// What was said of the window's points before the walk comes to the first, and of the last nothing: in memory, for what acts on few points. Were it added to
-/// the window, all of that would have to be where both sides of a rare branch find it.
-pub struct Said<'a, const B: usize, const N: usize> {
-    rows: &'a mut [Row],
-    profile: Profile<B, N>,
-}
-
-impl<'a, const B: usize, const N: usize> Said<'a, B, N> {
-    /// Of the points from the strand's `i`th on.
-    #[inline(always)]
-    pub fn new(profile: Profile<B, N>, i: usize, factors: &'a mut [Row]) -> Self {
-        let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
-        Self { rows: &mut factors[(i + reach) * rows..][..reach * rows], profile }
-    }
-}
-
-impl<S: Simd, const B: usize, const N: usize> System<S, B> for Said<'_, B, N> {
-    #[inline(always)]
-    fn add(&mut self, (p, j): (usize, usize), (q, k): (usize, usize), value: F<S>) {
-        let row = &mut self.rows[self.profile.said(p * B + j, q * B + k)];
-        store(load(value.simd, row) + value, row);
-    }
-
-    #[inline(always)]
-    fn add_right(&mut self, (p, k): (usize, usize), value: F<S>) {
-        let row = &mut self.rows[self.profile.said_right(p * B + k)];
-        store(load(value.simd, row) + value, row);
-    }
-}
-
-/// The part of the matrix that is being worked on, of eight strands: the unknowns of a point and of the half-bandwidth
-/// after it, `N` in all, `B` a point of which the first three are its displacement.
-pub struct Band<S: Simd, const B: usize, const N: usize> {
-    /// Entry (r, c) for c ≥ r.
-    a: [[F<S>; N]; N],
-    /// Right-hand side.
-    b: [F<S>; N],
-}
-
 impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     /// A window of whose points nothing has been said.
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let nothing = F::<S>::splat(simd, NOTHING);
-        Self { a: [[nothing; N]; N], b: [nothing; N] }
+        let far = Far { u: V3::zero(simd), k: nothing, pull: nothing };
+        Self { a: [[nothing; N]; N], b: [nothing; N], far, across: None }
+    }
+
+    /// Sets the spring between the window's first point and its last, of a [far](Profile::far) profile: it has direction `u` and stiffness `k`, and `pull`s.
+    #[inline(always)]
+    pub fn add_far(&mut self, u: V3<S>, k: F<S>, pull: F<S>) {
+        self.add_diagonal(0, Sym3::outer(u, k));
+        self.add_force(0, u * pull);
+        self.far = Far { u, k, pull };
+    }
+
+    /// Sets the spring across all points of the window, whose `force` on each goes by its gradient. What that force changes by in the solve is left to who
+    /// eliminates the first point, see [`Across::eliminate`].
+    #[inline(always)]
+    pub fn add_across(&mut self, across: Across<S>, force: F<S>) {
+        let force = across.direction * force;
+        for (p, c) in across.c.into_iter().enumerate() {
+            self.add_force(p, force * c);
+        }
+        self.across = Some(across);
     }
 
     /// Takes up what was [left](Band::leave) of the window's first point, the strand's `i`th, which [`Band::eliminate`] does by itself.
@@ -152,38 +111,21 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         ahead.fill(Row::default());
     }
 
-    /// Leaves what was said of the points after the window's first where their factors will be, with what was left of them before: in the rows `ahead`,
+    /// Leaves what was said of these `points` after the window's first where their factors will be, with what was left of them before: in the rows `ahead`,
     /// which begin with the next point's.
     #[inline(always)]
-    fn leave(&self, simd: S, profile: Profile<B, N>, ahead: &mut [Row]) {
+    fn leave(&self, simd: S, profile: Profile<B, N>, points: Range<usize>, ahead: &mut [Row]) {
         let add = |value: F<S>, row: &mut Row, before: bool| {
             store(if before { value + load(simd, row) } else { value }, row);
         };
         each!(r, {
-            if r + B < N {
+            if r + B < N && points.contains(&(r / B + 1)) {
                 each!(c, {
                     if c >= r && c + B < N {
                         add(self.a[r + B][c + B], &mut ahead[profile.said(r, c)], c + 2 * B < N);
                     }
                 });
                 add(self.b[r + B], &mut ahead[profile.said_right(r)], r + 2 * B < N);
-            }
-        });
-    }
-
-    /// Adds `stiffness` times the square of a gradient, which is `c[p]` times `direction` at the displacement of point `p`.
-    #[inline(always)]
-    pub fn add_rank_one<const P: usize>(&mut self, direction: V3<S>, c: [F<S>; P], stiffness: F<S>) {
-        let block = Sym3::outer(direction, stiffness);
-        each!(p, {
-            if p < P {
-                let scaled = block * c[p];
-                self.add_diagonal(p, scaled * c[p]);
-                each!(q, {
-                    if q > p && q < P {
-                        self.add_block(p, q, &(scaled * c[q]).full());
-                    }
-                });
             }
         });
     }
@@ -245,11 +187,14 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         let minus_one = F::<S>::splat(simd, -1.0);
         let mut pivots = [minus_one; B];
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
+        // A far spring's factors and all that is said of points ahead are too many for the registers: the sooner it is left, the better.
+        let late = if profile.is_far() { reach } else { 1 };
         let (own, after) = factors[i * rows..][..(2 * reach + 1) * rows].split_at_mut((reach + 1) * rows);
-        // What is said of three points ahead, and their factors, are too much for the registers: the sooner it is left, the better.
-        let soon = reach > 2;
-        if soon {
-            self.leave(simd, profile, after);
+        self.leave(simd, profile, 1..late, after);
+        let Far { u, k: mut left, mut pull } = self.far;
+        let mut w = [F::<S>::splat(simd, NOTHING); B];
+        for (w, u) in w.iter_mut().zip([u.x, u.y, u.z]) {
+            *w = u * left;
         }
         each!(r of 0 1 2 3, {
             if r < B {
@@ -267,6 +212,8 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                         // put them back into memory: a sixth more instructions.
                         compiler_fence(Ordering::SeqCst);
                         let point = &own[(reach - back) * rows..][..rows];
+                        // What the far spring of the point before has of this row.
+                        let mut of_far = F::<S>::splat(simd, NOTHING);
                         each!(k of 0 1 2 3, {
                             let last = profile.last(k);
                             if k < B && back * B + r <= last && (back > 0 || k < r) {
@@ -278,8 +225,22 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                                     row[c] = l.mul_add(a(c), row[c]);
                                 }
                                 right = l.mul_add(load(simd, &point[at + last - k]), right);
+                                if profile.is_far() {
+                                    if back == 0 {
+                                        w[r] = l.mul_add(w[k], w[r]);
+                                    } else {
+                                        of_far = l.mul_add(load(simd, &point[profile.far_row(k)]), of_far);
+                                    }
+                                }
                             }
                         });
+                        if profile.is_far() && back > 0 && back < reach {
+                            let at = (reach - back) * B;
+                            let u = V3::load(simd, &point[profile.far_row(B)..]);
+                            for (c, u) in [u.x, u.y, u.z].into_iter().enumerate() {
+                                row[at + c] = (-of_far).mul_add(u, row[at + c]);
+                            }
+                        }
                     }
                 });
                 let point = &mut own[reach * rows..][..rows];
@@ -290,20 +251,39 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                 store(right, &mut point[at + last - r]);
                 pivots[r] = minus_one / row[r];
                 store(pivots[r], &mut point[profile.pivot(r)]);
+                if profile.is_far() {
+                    store(w[r], &mut point[profile.far_row(r)]);
+                    let l = w[r] * pivots[r];
+                    left = l.mul_add(w[r], left);
+                    pull = l.mul_add(right, pull);
+                }
             }
         });
-        if !soon {
-            self.leave(simd, profile, after);
+        if profile.is_far() {
+            u.store(&mut own[reach * rows..][profile.far_row(B)..rows]);
+            self.leave_far(u, left, pull);
         }
+        self.leave(simd, profile, late..reach + 1, after);
+    }
+
+    /// Says of the window's last point what is left of the far spring once the first has been eliminated or passed.
+    #[inline(always)]
+    fn leave_far(&mut self, u: V3<S>, left: F<S>, pull: F<S>) {
+        self.add_diagonal(Profile::<B, N>::REACH, Sym3::outer(u, left));
+        self.add_force(Profile::<B, N>::REACH, -(u * pull));
     }
 
     /// Moves on past the strand's `i`th point without eliminating it: those after it meet nothing of it.
     #[inline(always)]
-    pub fn pass(&self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
+    pub fn pass(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
         let (own, after) = factors[(i + reach) * rows..][..(reach + 1) * rows].split_at_mut(rows);
         own.fill(Row::default());
-        self.leave(simd, profile, after);
+        if profile.is_far() {
+            let Far { u, k, pull } = self.far;
+            self.leave_far(u, k, pull);
+        }
+        self.leave(simd, profile, 1..reach + 1, after);
     }
 }
 
@@ -322,11 +302,20 @@ pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
             x[k] = after[k - B];
         }
     });
+    let mut far = F::<S>::splat(simd, NOTHING);
+    if profile.is_far() {
+        let at = Profile::<B, N>::REACH * B;
+        let u = V3::load(simd, &factors[profile.far_row(B)..]);
+        far = -u.dot(V3 { x: x[at], y: x[at + 1], z: x[at + 2] });
+    }
     each!(back of 0 1 2 3, {
         if back < B {
             let r = B - 1 - back;
             let (at, end) = (profile.row(r), profile.last(r));
             let mut sum = -load(simd, &factors[at + end - r]);
+            if profile.is_far() {
+                sum = load(simd, &factors[profile.far_row(r)]).mul_add(far, sum);
+            }
             // Those found last come last: the sums of three unknowns are one chain from tip to root.
             for c in (r + 1..end + 1).rev() {
                 sum = load(simd, &factors[at + c - r - 1]).mul_add(x[c], sum);

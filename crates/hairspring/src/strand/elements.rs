@@ -2,12 +2,13 @@
 
 use super::{
     assemble::{Step, Sweep},
-    band::{Band, System},
+    band::Band,
     lanes::{F, Row, V3, load},
     model::{At, Model, stretch::stretch},
     profile::Profile,
     root::Root,
     scratch::Scratch,
+    system::System,
     tile::{Tile, rest, state, strand},
 };
 use fearless_simd::prelude::*;
@@ -63,6 +64,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         };
         let begin = 2 * Profile::<B, N>::REACH * M::PROFILE.rows();
         scratch.factors[..begin].fill(Row::default());
+        scratch.across.clear();
         let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
         let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
         let explicit = F::splat(simd, step.explicit_tension()) / stiffening;

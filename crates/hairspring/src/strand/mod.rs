@@ -3,6 +3,7 @@
 #[macro_use]
 mod each;
 
+pub(crate) mod across;
 pub(crate) mod assemble;
 pub(crate) mod band;
 pub(crate) mod dispatch;
@@ -25,6 +26,7 @@ pub(crate) mod root;
 pub(crate) mod scratch;
 pub(crate) mod segment;
 pub(crate) mod substitute;
+pub(crate) mod system;
 pub(crate) mod tether;
 pub(crate) mod tile;
 pub(crate) mod truss;

@@ -5,7 +5,6 @@
 
 use super::{
     assemble::{Step, Sweep},
-    band::{Said, System},
     elements::Outset,
     lanes::{F, Sym3, V3, load},
     model::Model,
@@ -13,6 +12,7 @@ use super::{
     root::Root,
     scratch::Scratch,
     segment::press_between,
+    system::{Said, System},
     tether,
     tile::{Tile, grip, hold, rest, span, state, tines},
 };

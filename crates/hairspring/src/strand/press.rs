@@ -19,10 +19,10 @@
 
 use super::{
     assemble::Step,
-    band::System,
     friction::Friction,
     lanes::{F, Row, Sym3, V3, load, store},
     model::stretch::STRETCH,
+    system::System,
     tile::{Tile, rest, state},
 };
 use crate::collide::{ObstaclePose, contact, surface_displacement};

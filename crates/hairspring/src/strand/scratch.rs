@@ -1,11 +1,14 @@
 //! Working memory of one thread, reused by every tile that it runs.
 
-use super::{fixed::Fixed, lanes::Row, press, profile::Profile, project, tile::StateRows, tile::state};
+use super::{
+    across, fixed::Fixed, lanes::Row, press, profile::Profile, project, tile::StateRows, tile::state,
+};
 
 /// Working memory of one thread, as large as the longest tile that it ran.
 #[derive(Default)]
 pub struct Memory {
     factors: Vec<Row>,
+    across: Vec<across::Eliminated>,
     edges: Vec<[Row; 3]>,
     kick: Vec<[Row; 3]>,
     change: Vec<[Row; 3]>,
@@ -18,6 +21,8 @@ pub struct Memory {
 pub struct Scratch<'a> {
     /// Factors of the band, point after point, between those that the first and the last would meet; `local_global`'s rows lie over them.
     pub factors: &'a mut [Row],
+    /// Springs whose force has been eliminated, the last on top; with room for one a point.
+    pub across: &'a mut Vec<across::Eliminated>,
     /// From each particle's predecessor to it, anew, shape `[points + BEYOND]` [m]; see `state::EDGE`.
     pub edges: &'a mut [[Row; 3]],
     /// What is added to the velocities of `(new − old) / h`, shape `[points]` [m/s]; forces before that. Of integrators other than the
@@ -49,6 +54,7 @@ impl Memory {
         self.reserve(points);
         Scratch {
             factors: &mut self.factors[..(points + 2 * MOST_REACH) * MOST_FACTORS],
+            across: &mut self.across,
             edges: &mut self.edges[..points + BEYOND],
             kick: &mut self.kick[..points],
             change: &mut self.change[..points],
@@ -62,6 +68,7 @@ impl Memory {
     fn reserve(&mut self, points: usize) {
         if self.fixed.len() < points {
             self.factors.resize((points + 2 * MOST_REACH) * MOST_FACTORS, Row::default());
+            self.across.reserve(points);
             self.kick.resize(points, [Row::default(); 3]);
             self.change.resize(points, [Row::default(); 3]);
             self.edges.resize(points + BEYOND, [Row::default(); 3]);
@@ -78,8 +85,8 @@ impl Scratch<'_> {
     /// [`Tile::lent`]: super::tile::Tile::lent
     #[inline(always)]
     pub fn lent(&mut self) -> Scratch<'_> {
-        let Self { factors, edges, kick, change, contacts, pulls, fixed } = self;
-        Scratch { factors, edges, kick, change, contacts, pulls, fixed }
+        let Self { factors, across, edges, kick, change, contacts, pulls, fixed } = self;
+        Scratch { factors, across, edges, kick, change, contacts, pulls, fixed }
     }
 
     /// Fills `edges` from those in `state`, shape `[points]`.

@@ -17,12 +17,12 @@
 
 use super::{
     assemble::{Step, Sweep},
-    band::System,
     friction::Friction,
     lanes::{F, Row, Sym3, V3, load, store},
     limit::{CORRECTIONS, Finish, LIMIT, Link, Particle, out_of},
     model::stretch::STRETCH,
     press::{STICK, Surface, nearest, scratch, scratch::SEGMENT},
+    system::System,
     tile::{Tile, rest, span, state},
 };
 use crate::collide::{Deepest, ObstaclePose, STEEP, contact, deepest, surface_displacement};

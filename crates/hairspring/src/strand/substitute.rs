@@ -82,6 +82,11 @@ impl<S: Simd, const N: usize> Up<S, N> {
         let Self { root_velocity, solved, projection } = self;
         let mut delta = V3::zero(simd);
         if i >= M::DRIVEN || B > 3 {
+            if M::PROFILE.is_far()
+                && let Some(across) = scratch.across.pop_if(|across| across.point == i)
+            {
+                across.put_back(simd, M::PROFILE, &solved.unknowns, scratch.factors);
+            }
             let factors = &scratch.factors[(i + Profile::<B, N>::REACH) * M::PROFILE.rows()..];
             back_substitute(simd, M::PROFILE, factors, &mut solved.unknowns);
         }

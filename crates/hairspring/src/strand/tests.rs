@@ -1,8 +1,9 @@
 //! The kernel's pieces, each held against scalar f64.
 
 use super::{
+    across::Across,
     assemble::{Step, Sweep, assemble},
-    band::{Band, System, back_substitute},
+    band::{Band, back_substitute},
     dispatch::dispatch,
     fixed::fix,
     lanes::{F, LANES, Row, V3},
@@ -19,12 +20,13 @@ use super::{
     root::Root,
     scratch::{Memory, Scratch},
     substitute::substitute,
+    system::System,
     tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
     truss::ASIDE,
 };
 use fearless_simd::{Level, prelude::*};
 use glam::{DVec3, Mat3, Vec3};
-use proptest::prelude::*;
+use proptest::{array::uniform4, prelude::*};
 
 pub fn vector(size: f64) -> impl Strategy<Value = DVec3> {
     (-size..size, -size..size, -size..size).prop_map(|(x, y, z)| DVec3::new(x, y, z))
@@ -39,16 +41,25 @@ pub fn lane<S: Simd>(v: V3<S>) -> DVec3 {
     DVec3::new(v.x[3] as f64, v.y[3] as f64, v.z[3] as f64)
 }
 
-/// Solves a banded system of `B` unknowns a point with the kernel's band.
+/// What begins at a point of a band with far springs: the direction, the stiffness and the pull of one, and what one across all four points has of these, with
+/// the gradient between.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    far: (DVec3, f64, f64),
+    across: Option<(DVec3, [f64; 4], f64, f64)>,
+}
+
+/// Solves a banded system of `B` unknowns a point with the kernel's band, in which the first `driven` points do not move.
 fn band_solve<S: Simd, const B: usize, const N: usize>(
     simd: S,
     profile: Profile<B, N>,
-    a: &[Vec<f64>],
-    b: &[f64],
+    (a, b): (&[Vec<f64>], &[f64]),
+    (driven, held): (usize, &[Held]),
 ) -> Vec<f64> {
     let (n, rows, reach) = (b.len() / B, profile.rows(), Profile::<B, N>::REACH);
     let f = |v: f64| F::<S>::splat(simd, v as f32);
     let mut factors = vec![Row::default(); (n + 2 * reach) * rows];
+    let mut eliminated = Vec::new();
     for i in 0..n {
         let mut band = Band::<S, B, N>::new(simd);
         // Everything whose first point is i.
@@ -60,11 +71,28 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
             }
             band.add_right((0, r - i * B), f(b[r]));
         }
-        band.eliminate(simd, profile, i, &mut factors);
+        if let Some(Held { far: (u, k, pull), across }) = held.get(i) {
+            band.add_far(splat(simd, *u), f(*k), f(*pull));
+            if let Some((u, c, k, force)) = across {
+                let across = Across { direction: splat(simd, *u), c: c.map(f), stiffness: f(*k) };
+                band.add_across(across, f(*force));
+            }
+        }
+        if i < driven {
+            band.pass(simd, profile, i, &mut factors);
+        } else {
+            band.eliminate(simd, profile, i, &mut factors);
+        }
+        if let Some(across) = band.across {
+            eliminated.push(across.eliminate(simd, profile, i, &mut factors));
+        }
     }
     let mut unknowns = [f(0.0); N];
     let mut out = vec![0.0; n * B];
-    for i in (0..n).rev() {
+    for i in (driven..n).rev() {
+        if let Some(across) = eliminated.pop_if(|across| across.point == i) {
+            across.put_back(simd, profile, &unknowns, &mut factors);
+        }
         back_substitute(simd, profile, &factors[(i + reach) * rows..], &mut unknowns);
         (0..B).for_each(|k| out[i * B + k] = unknowns[k][3] as f64);
     }
@@ -95,7 +123,7 @@ fn agree<const B: usize, const N: usize>(
     let a = banded(points, [B, N, half], noise);
     let right: Vec<f64> = (0..points * B).map(|i| noise[(i * 7) % noise.len()]).collect();
     let exact = dense_solve(&a, &right);
-    let ours = dispatch!(Level::new(), simd => band_solve(simd, Profile::<B, N>::within(half), &a, &right));
+    let ours = dispatch!(Level::new(), simd => band_solve(simd, Profile::<B, N>::within(half), (&a, &right), (0, &[])));
     let size = exact.iter().map(|v| v.abs()).fold(1.0, f64::max);
     for (e, o) in exact.iter().zip(&ours) {
         prop_assert!((*e - *o).abs() < 2e-4 * size, "{e} and {o}");
@@ -112,6 +140,51 @@ proptest! {
         agree::<3, 9>(8, points, &noise)?;
         agree::<4, 11>(10, points, &noise)?;
         agree::<3, 12>(11, points, &noise)?;
+    }
+
+    /// It is one, too, where all that holds a point and the third after it is a spring in one direction, however stiff, and here and there one across all four
+    /// points, whose force is an unknown of its own; with points at the root that are driven.
+    #[test]
+    fn springs_to_the_third_point_are_their_blocks_of_the_matrix(
+        points in 4usize..20,
+        driven in 0usize..4,
+        noise in proptest::collection::vec(-1.0..1.0, 97),
+        far in proptest::collection::vec((vector(1.0), 0.0f64..1e3, -1.0..1.0), 20),
+        across in proptest::collection::vec(proptest::option::of((vector(1.0), uniform4(-1.0..1.0), 0.0f64..1e3, -1.0..1.0)), 20),
+    ) {
+        let mut a = banded(points, [3, 9, 8], &noise);
+        let mut right: Vec<f64> = (0..points * 3).map(|i| noise[(i * 7) % noise.len()]).collect();
+        // The kernel is told the numbers in f32.
+        let rounded = |v: f64| v as f32 as f64;
+        let unit = |u: DVec3| u.normalize_or_zero().as_vec3().as_dvec3();
+        let held: Vec<Held> = far.into_iter().zip(across).take(points - 3).map(|((u, k, pull), across)| Held {
+            far: (unit(u), rounded(k), pull),
+            across: across.map(|(u, c, k, force)| (unit(u), c.map(rounded), rounded(k), force)),
+        }).collect();
+        let alone = (a.clone(), right.clone());
+        for (i, Held { far: (u, k, pull), across }) in held.iter().enumerate() {
+            let far = (*u, [1.0, 0.0, 0.0, -1.0], *k, *pull);
+            for (u, c, k, force) in [Some(far), *across].into_iter().flatten() {
+                let g = |r: usize| c[r / 3] * u[r % 3];
+                for r in 0..12 {
+                    right[i * 3 + r] += g(r) * force;
+                    (0..12).for_each(|c| a[i * 3 + r][i * 3 + c] += k * g(r) * g(c));
+                }
+            }
+        }
+        for r in 0..driven * 3 {
+            a.iter_mut().for_each(|row| row[r] = 0.0);
+            a[r].fill(0.0);
+            (a[r][r], right[r]) = (1.0, 0.0);
+        }
+        let exact = dense_solve(&a, &right);
+        let ours = dispatch!(Level::new(), simd => {
+            band_solve(simd, Profile::<3, 12>::far(), (&alone.0, &alone.1), (driven, &held))
+        });
+        let size = exact.iter().map(|v| v.abs()).fold(1.0, f64::max);
+        for (e, o) in exact.iter().zip(&ours) {
+            prop_assert!((*e - *o).abs() < 2e-3 * size, "{e} and {o}");
+        }
     }
 
     /// The bending force is minus the gradient of its energy, keeps momentum, and keeps angular momentum but for the twist

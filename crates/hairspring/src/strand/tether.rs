@@ -11,10 +11,10 @@
 
 use super::{
     assemble::Step,
-    band::System,
     lanes::{F, Sym3, V3, load},
     limit::{Link, Particle},
     model::stretch::STRETCH,
+    system::System,
     tile::{Tile, rest},
 };
 use fearless_simd::{mask32x8, prelude::*};

@@ -11,11 +11,12 @@
 use super::outside;
 use crate::strand::{
     assemble::Step,
-    band::{Band, System},
+    band::Band,
     lanes::{F, Row, V3, load},
     model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
     profile::Profile,
     scratch::Scratch,
+    system::System,
     tile::{Tile, rest, state},
 };
 use fearless_simd::prelude::*;

@@ -9,8 +9,9 @@
 //! ```
 
 use crate::strand::{
-    band::{Band, System},
+    band::Band,
     lanes::{F, M3, Sym3, V3},
+    system::System,
 };
 use fearless_simd::prelude::*;
 

@@ -20,7 +20,7 @@ use super::{
     curvature::turn_in_frame,
 };
 use crate::strand::{
-    band::{Band, System},
+    band::Band,
     dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
@@ -28,6 +28,7 @@ use crate::strand::{
     lanes::{F, V3, load},
     root::Root,
     scratch::{Memory, Scratch},
+    system::System,
     tile::{Tile, rest, state, strand},
 };
 use fearless_simd::{Level, prelude::*};

@@ -16,14 +16,17 @@
 
 use super::{At, Model, Solved};
 use crate::strand::{
-    band::{Band, System},
+    across::Across,
+    band::Band,
     dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
     lanes::{F, Row, Sym3, V3, load, store},
+    profile::Profile,
     root::Root,
     scratch::{Memory, Scratch},
+    system::System,
     tile::{Tile, springs, state, strand},
 };
 use fearless_simd::{Level, mask32x8, prelude::*};
@@ -33,6 +36,8 @@ pub struct Springs<const ALTITUDES: bool>;
 
 impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
     const STRIDE: usize = 2;
+
+    const PROFILE: Profile<3, 12> = Profile::far();
 
     type Whole = Springs<true>;
 
@@ -89,7 +94,7 @@ impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
             load(simd, &rest[springs::K3]),
             [at.damped, at.drifting],
         );
-        add_spring(band, 3, u, k, pull);
+        band.add_far(u, k, pull);
     }
 
     #[inline(always)]
@@ -221,14 +226,11 @@ fn add_altitude<S: Simd>(
     let flattened = flattened(p, rest);
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
     let k = flattened.select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
-    let (normal, c, strain) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
-    band.add_rank_one(normal, c, k * at.damped);
-    let drifted = normal.dot(drift(1) * c[1] + drift(2) * c[2] + drift(3) * c[3]);
-    let force = normal * -(k * at.damped.mul_add(drifted * at.drifting, strain));
-    band.add_force(0, force * c[0]);
-    band.add_force(1, force * c[1]);
-    band.add_force(2, force * c[2]);
-    band.add_force(3, force * c[3]);
+    let (direction, c, strain) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
+    let stiffness = k * at.damped;
+    let drifted = direction.dot(drift(1) * c[1] + drift(2) * c[2] + drift(3) * c[3]);
+    let force = -(k * strain + stiffness * drifted * at.drifting);
+    band.add_across(Across { direction, c, stiffness }, force);
 }
 
 /// The heights of a tetrahedron: the points p, q, r, v, and whether from the face pqr to v, or from the edge pq to the edge rv.

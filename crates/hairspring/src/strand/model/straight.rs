@@ -2,7 +2,7 @@
 
 use super::{At, Model, Solved};
 use crate::strand::{
-    band::{Band, System},
+    band::Band,
     dispatch::dispatch,
     fixed::Fixed,
     integrate::run_tile,
@@ -11,6 +11,7 @@ use crate::strand::{
     profile::Profile,
     root::Root,
     scratch::{Memory, Scratch},
+    system::System,
     tile::{Tile, rest},
 };
 use fearless_simd::{Level, prelude::*};

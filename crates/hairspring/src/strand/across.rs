@@ -1,0 +1,122 @@
+//! A spring across all four points of a window: its force is an unknown of its own, eliminated right after the window's first point.
+//!
+//! ```text
+//! [ A     g  ] [ x ]   [ b ]      g    gradient of its length: c_p n at point p
+//! [ gᵀ  −1/k ] [ λ ] = [ 0 ]      λ    by how much its force changes in the solve
+//!
+//! down, of u, y and d of the first point, and w uᵀ of its far spring:       q = L⁻¹ g₀    h_p = g_p − u_pᵀ D⁻¹ q    h₃ = g₃ + u wᵀ D⁻¹ q
+//!       which leaves κ h hᵀ and κ ρ h on the three points after it:         1/κ = 1/k + qᵀ D⁻¹ q                    ρ = −qᵀ D⁻¹ y
+//! up:                                                                       λ = κ (h·x − ρ)    and then y − λ q in the place of y
+//! ```
+//!
+//! Put into the matrix it would be k g gᵀ, and between the first point and the last a [far](Profile::far) profile has room for one spring only, which is another's.
+//! As an unknown it meets the three points after by what it leaves there, and the first by its own few numbers, which only those points have that need it. The
+//! solution is the same. Such a matrix has pivots of known sign in any order: Vanderbei 1995, *Symmetric Quasidefinite Matrices*.
+
+use super::{
+    lanes::{F, M3, Row, Sym3, V3, load, store},
+    profile::Profile,
+    system::{Said, System},
+};
+use fearless_simd::prelude::*;
+
+/// A spring across all points of a window.
+#[derive(Clone, Copy)]
+pub struct Across<S: Simd> {
+    /// Its direction, a unit vector.
+    pub direction: V3<S>,
+    /// The gradient of its length over that, at each point.
+    pub c: [F<S>; 4],
+    /// Its stiffness [N/m].
+    pub stiffness: F<S>,
+}
+
+/// What the sweep up needs of one whose force has been eliminated.
+#[derive(Clone, Copy)]
+pub struct Eliminated {
+    /// The point that it was eliminated after.
+    pub point: usize,
+    /// κ, see above.
+    pivot: Row,
+    right: Row,
+    q: [Row; 3],
+    h: [[Row; 3]; 3],
+}
+
+impl<S: Simd> Across<S> {
+    /// Eliminates its force; point `i`, the first of the four, has been [eliminated](super::band::Band::eliminate) or [passed](super::band::Band::pass).
+    #[inline(always)]
+    pub fn eliminate<const B: usize, const N: usize>(
+        &self,
+        simd: S,
+        profile: Profile<B, N>,
+        i: usize,
+        factors: &mut [Row],
+    ) -> Eliminated {
+        let Self { direction: n, c, stiffness } = self;
+        let point = &factors[(i + Profile::<B, N>::REACH) * profile.rows()..][..profile.rows()];
+        let mut q = [n.x * c[0], n.y * c[0], n.z * c[0]];
+        let [mut h1, mut h2, h3] = [*n * c[1], *n * c[2], *n * c[3]];
+        let zero = F::<S>::splat(simd, 0.0);
+        let (mut squares, mut right, mut of_far) = (zero, zero, zero);
+        for k in 0..3 {
+            // From unknown k+1 of the window on.
+            let u = &point[profile.row(k)..];
+            // What is kept of a pivot d is −1/d.
+            let l = q[k] * load(simd, &point[profile.pivot(k)]);
+            for r in k + 1..3 {
+                q[r] = l.mul_add(load(simd, &u[r - k - 1]), q[r]);
+            }
+            h1 = V3::load(simd, &u[B - k - 1..]).mul_add(l, h1);
+            h2 = V3::load(simd, &u[2 * B - k - 1..]).mul_add(l, h2);
+            of_far = l.mul_add(load(simd, &point[profile.far_row(k)]), of_far);
+            squares = (-l).mul_add(q[k], squares);
+            right = l.mul_add(load(simd, &u[profile.last(k) - k]), right);
+        }
+        let h = [h1, h2, h3 - V3::load(simd, &point[profile.far_row(B)..]) * of_far];
+        let pivot = *stiffness / stiffness.mul_add(squares, F::splat(simd, 1.0));
+        let said = &mut Said::<B, N>::new(profile, i + 1, factors);
+        for p in 0..3 {
+            let scaled = h[p] * pivot;
+            said.add_force(p, scaled * right);
+            said.add_diagonal(p, Sym3::outer(h[p], pivot));
+            for (q, h) in h.into_iter().enumerate().skip(p + 1) {
+                said.add_block(p, q, &M3 { rows: [h * scaled.x, h * scaled.y, h * scaled.z] });
+            }
+        }
+        let mut rows = [Row::default(); 5];
+        for (row, value) in rows.iter_mut().zip([pivot, right, q[0], q[1], q[2]]) {
+            store(value, row);
+        }
+        let [pivot, right, q @ ..] = rows;
+        let mut kept = [[Row::default(); 3]; 3];
+        for (rows, h) in kept.iter_mut().zip(h) {
+            h.store(rows);
+        }
+        Eliminated { point: i, pivot, right, q, h: kept }
+    }
+}
+
+impl Eliminated {
+    /// Puts its force, which follows from the unknowns of the three points after it, on the right of its own point.
+    #[inline(always)]
+    pub fn put_back<S: Simd, const B: usize, const N: usize>(
+        &self,
+        simd: S,
+        profile: Profile<B, N>,
+        after: &[F<S>; N],
+        factors: &mut [Row],
+    ) {
+        let mut change = -load(simd, &self.right);
+        for (p, h) in self.h.iter().enumerate() {
+            let x = V3 { x: after[p * B], y: after[p * B + 1], z: after[p * B + 2] };
+            change += V3::load(simd, h).dot(x);
+        }
+        let force = change * load(simd, &self.pivot);
+        let point = &mut factors[(self.point + Profile::<B, N>::REACH) * profile.rows()..][..profile.rows()];
+        for (k, q) in self.q.iter().enumerate() {
+            let right = &mut point[profile.row(k) + profile.last(k) - k];
+            store((-force).mul_add(load(simd, q), load(simd, right)), right);
+        }
+    }
+}
