@@ -1,12 +1,12 @@
 //! A spring across all four points of a window: its force is an unknown of its own, eliminated right after the window's first point.
 //!
 //! ```text
-//! [ A     g  ] [ x ]   [ b ]      g    gradient of its length: c_p n at point p
-//! [ gᵀ  −1/k ] [ λ ] = [ 0 ]      λ    by how much its force changes in the solve
+//! [ A     g  ] [ x ]   [  b ]     g    gradient of its length at each point      s    by how much it is longer than at rest
+//! [ gᵀ  −1/k ] [ λ ] = [ −s ]     λ    its force, k (s + g·x)
 //!
 //! down, of u, y and d of the first point, and w uᵀ of its far spring:       q = L⁻¹ g₀    h_p = g_p − u_pᵀ D⁻¹ q    h₃ = g₃ + u wᵀ D⁻¹ q
-//!       which leaves κ h hᵀ and κ ρ h on the three points after it:         1/κ = 1/k + qᵀ D⁻¹ q                    ρ = −qᵀ D⁻¹ y
-//! up:                                                                       λ = κ (h·x − ρ)    and then y − λ q in the place of y
+//!       which leaves κ h hᵀ and −κ ρ h on the three points after it:        1/κ = 1/k + qᵀ D⁻¹ q                    ρ = s + qᵀ D⁻¹ y
+//! up:                                                                       λ = κ (ρ + h·x)    and then y − λ q in the place of y
 //! ```
 //!
 //! Put into the matrix it would be k g gᵀ, and between the first point and the last a [far](Profile::far) profile has room for one spring only, which is another's.
@@ -20,13 +20,13 @@ use super::{
 };
 use fearless_simd::prelude::*;
 
-/// A spring across all points of a window.
+/// A spring across all points of a window, where there are four.
 #[derive(Clone, Copy)]
 pub struct Across<S: Simd> {
-    /// Its direction, a unit vector.
-    pub direction: V3<S>,
-    /// The gradient of its length over that, at each point.
-    pub c: [F<S>; 4],
+    /// The gradient of its length at each point [1].
+    pub gradient: [V3<S>; 4],
+    /// By how much it is longer than at rest where the solve begins [m].
+    pub longer: F<S>,
     /// Its stiffness [N/m].
     pub stiffness: F<S>,
 }
@@ -36,7 +36,7 @@ pub struct Across<S: Simd> {
 pub struct Eliminated {
     /// The point that it was eliminated after.
     pub point: usize,
-    /// κ, see above.
+    /// κ, ρ, q and h of the three points after, see above.
     pivot: Row,
     right: Row,
     q: [Row; 3],
@@ -44,6 +44,21 @@ pub struct Eliminated {
 }
 
 impl<S: Simd> Across<S> {
+    /// None.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        let zero = F::splat(simd, 0.0);
+        Self { gradient: [V3::zero(simd); 4], longer: zero, stiffness: zero }
+    }
+
+    /// The force on each point [N].
+    #[inline(always)]
+    pub fn forces(&self) -> [V3<S>; 4] {
+        let pull = -(self.stiffness * self.longer);
+        let [a, b, c, d] = self.gradient;
+        [a * pull, b * pull, c * pull, d * pull]
+    }
+
     /// Eliminates its force; point `i`, the first of the four, has been [eliminated](super::band::Band::eliminate) or [passed](super::band::Band::pass).
     #[inline(always)]
     pub fn eliminate<const B: usize, const N: usize>(
@@ -53,12 +68,11 @@ impl<S: Simd> Across<S> {
         i: usize,
         factors: &mut [Row],
     ) -> Eliminated {
-        let Self { direction: n, c, stiffness } = self;
+        let &Self { gradient: [g0, mut h1, mut h2, h3], longer, stiffness } = self;
         let point = &factors[(i + Profile::<B, N>::REACH) * profile.rows()..][..profile.rows()];
-        let mut q = [n.x * c[0], n.y * c[0], n.z * c[0]];
-        let [mut h1, mut h2, h3] = [*n * c[1], *n * c[2], *n * c[3]];
+        let mut q = [g0.x, g0.y, g0.z];
         let zero = F::<S>::splat(simd, 0.0);
-        let (mut squares, mut right, mut of_far) = (zero, zero, zero);
+        let (mut squares, mut right, mut of_far) = (zero, longer, zero);
         for k in 0..3 {
             // From unknown k+1 of the window on.
             let u = &point[profile.row(k)..];
@@ -71,14 +85,14 @@ impl<S: Simd> Across<S> {
             h2 = V3::load(simd, &u[2 * B - k - 1..]).mul_add(l, h2);
             of_far = l.mul_add(load(simd, &point[profile.far_row(k)]), of_far);
             squares = (-l).mul_add(q[k], squares);
-            right = l.mul_add(load(simd, &u[profile.last(k) - k]), right);
+            right = (-l).mul_add(load(simd, &u[profile.last(k) - k]), right);
         }
         let h = [h1, h2, h3 - V3::load(simd, &point[profile.far_row(B)..]) * of_far];
-        let pivot = *stiffness / stiffness.mul_add(squares, F::splat(simd, 1.0));
+        let pivot = stiffness / stiffness.mul_add(squares, F::splat(simd, 1.0));
         let said = &mut Said::<B, N>::new(profile, i + 1, factors);
         for p in 0..3 {
             let scaled = h[p] * pivot;
-            said.add_force(p, scaled * right);
+            said.add_force(p, -(scaled * right));
             said.add_diagonal(p, Sym3::outer(h[p], pivot));
             for (q, h) in h.into_iter().enumerate().skip(p + 1) {
                 said.add_block(p, q, &M3 { rows: [h * scaled.x, h * scaled.y, h * scaled.z] });
@@ -107,12 +121,12 @@ impl Eliminated {
         after: &[F<S>; N],
         factors: &mut [Row],
     ) {
-        let mut change = -load(simd, &self.right);
+        let mut length = load(simd, &self.right);
         for (p, h) in self.h.iter().enumerate() {
             let x = V3 { x: after[p * B], y: after[p * B + 1], z: after[p * B + 2] };
-            change += V3::load(simd, h).dot(x);
+            length += V3::load(simd, h).dot(x);
         }
-        let force = change * load(simd, &self.pivot);
+        let force = length * load(simd, &self.pivot);
         let point = &mut factors[(self.point + Profile::<B, N>::REACH) * profile.rows()..][..profile.rows()];
         for (k, q) in self.q.iter().enumerate() {
             let right = &mut point[profile.row(k) + profile.last(k) - k];

@@ -86,7 +86,7 @@ pub fn forces<S, M, const B: usize, const N: usize>(
     let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, step, tile, scratch);
     for i in 0..n {
         if i + 1 < n {
-            elements.add(simd, i, i % M::STRIDE, tile, scratch);
+            elements.add_forces(simd, i, tile, scratch);
         } else {
             elements.band = Band::new(simd);
         }
@@ -172,27 +172,23 @@ fn pass_point<S, M, const B: usize, const N: usize>(
         let place = outside::Place { i, x, way, root_velocity };
         outside::add::<S, M, B, N>(simd, (sweep, step), &place, &mut tile.lent(), &mut scratch.lent());
     }
-    // After that, so that what it looks at is at hand for what follows.
-    if M::falls_short(simd, i, tile, scratch) {
-        let mut whole = elements.whole(simd);
-        let (tile, scratch) = (&mut tile.lent(), &mut scratch.lent());
-        pass_whole(simd, (sweep, i, phase, driven), step, tile, scratch, &mut whole);
-        elements.walk = whole.walk;
-        return;
-    }
+    // Asked here, so that what it looks at is at hand for what follows.
+    let acts_across = M::acts_across(simd, i, tile, scratch);
     add_point(simd, (sweep, i, phase), step, tile, scratch, elements);
     eliminate(simd, (i, driven), scratch, elements);
+    if acts_across {
+        eliminate_across::<S, M, B, N>(simd, (sweep, step), i, tile, &mut scratch.lent());
+    }
 }
 
-/// What follows of [`pass_point`] for the few that need the whole model, by itself.
+/// Eliminates the force of the spring across the four points from `i` on, by itself.
 #[inline(never)]
-fn pass_whole<S, M, const B: usize, const N: usize>(
+fn eliminate_across<S, M, const B: usize, const N: usize>(
     simd: S,
-    (sweep, i, phase, driven): (Sweep, usize, usize, bool),
-    step: &Step<S>,
-    tile: &mut Tile,
+    (sweep, step): (Sweep, &Step<S>),
+    i: usize,
+    tile: &Tile,
     scratch: &mut Scratch,
-    elements: &mut Elements<S, M, B, N>,
 ) where
     S: Simd,
     M: Model<S, B, N>,
@@ -200,11 +196,8 @@ fn pass_whole<S, M, const B: usize, const N: usize>(
     simd.vectorize(
         #[inline(always)]
         || {
-            add_point(simd, (sweep, i, phase), step, tile, scratch, elements);
-            eliminate(simd, (i, driven), scratch, elements);
-            if let Some(across) = elements.band.across {
-                scratch.across.push(across.eliminate(simd, M::PROFILE, i, scratch.factors));
-            }
+            let across = M::across(simd, (step.h, sweep.drift(step.h)), i, tile, scratch);
+            scratch.across.push(across.eliminate(simd, M::PROFILE, i, scratch.factors));
         },
     );
 }

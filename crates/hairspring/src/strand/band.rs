@@ -13,7 +13,6 @@
 //! Computations*, 4th ed., §4.1.2, §4.3.5. Which unknowns meet is said by a [`Profile`].
 
 use super::{
-    across::Across,
     lanes::{F, Row, Sym3, V3, load, store},
     profile::Profile,
     system::System,
@@ -36,8 +35,6 @@ pub struct Band<S: Simd, const B: usize, const N: usize> {
     b: [F<S>; N],
     /// Between the first point and the last.
     far: Far<S>,
-    /// Across all of it.
-    pub across: Option<Across<S>>,
 }
 
 /// A spring between the window's first point and its last, which nothing else couples: all that was eliminated before reaches less far. So their block of the
@@ -71,7 +68,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     pub fn new(simd: S) -> Self {
         let nothing = F::<S>::splat(simd, NOTHING);
         let far = Far { u: V3::zero(simd), k: nothing, pull: nothing };
-        Self { a: [[nothing; N]; N], b: [nothing; N], far, across: None }
+        Self { a: [[nothing; N]; N], b: [nothing; N], far }
     }
 
     /// Sets the spring between the window's first point and its last, of a [far](Profile::far) profile: it has direction `u` and stiffness `k`, and `pull`s.
@@ -80,17 +77,6 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         self.add_diagonal(0, Sym3::outer(u, k));
         self.add_force(0, u * pull);
         self.far = Far { u, k, pull };
-    }
-
-    /// Sets the spring across all points of the window, whose `force` on each goes by its gradient. What that force changes by in the solve is left to who
-    /// eliminates the first point, see [`Across::eliminate`].
-    #[inline(always)]
-    pub fn add_across(&mut self, across: Across<S>, force: F<S>) {
-        let force = across.direction * force;
-        for (p, c) in across.c.into_iter().enumerate() {
-            self.add_force(p, force * c);
-        }
-        self.across = Some(across);
     }
 
     /// Takes up what was [left](Band::leave) of the window's first point, the strand's `i`th, which [`Band::eliminate`] does by itself.

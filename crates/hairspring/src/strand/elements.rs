@@ -78,12 +78,6 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         Self { band, model, walk }
     }
 
-    /// The same walk by the [whole](Model::Whole) model.
-    #[inline(always)]
-    pub fn whole(&self, simd: S) -> Elements<S, M::Whole, B, N> {
-        Elements { band: Band::new(simd), model: self.model.whole(), walk: self.walk }
-    }
-
     /// Adds what begins at the next point `i`: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i
     /// modulo the model's stride. Both are known to the walk; it is for the compiler that they are told.
     #[inline(always)]
@@ -130,6 +124,18 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         band.add_force(1 + M::STRIDE, -force);
         let air = walk.half_drag * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
         Segment { u, mass, air }
+    }
+
+    /// Adds the same, and the force of what acts across, which in a solve is eliminated apart.
+    #[inline(always)]
+    pub fn add_forces(&mut self, simd: S, i: usize, tile: &mut Tile, scratch: &Scratch) {
+        self.add(simd, i, i % M::STRIDE, tile, scratch);
+        if M::acts_across(simd, i, tile, scratch) {
+            let across = M::across(simd, (self.walk.at.h, 0.0), i, tile, scratch);
+            for (p, force) in across.forces().into_iter().enumerate() {
+                self.band.add_force(p, force);
+            }
+        }
     }
 }
 

@@ -66,7 +66,7 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         Elastic::Straight => walk::<_, Straight, 3, 9>(simd, s, &mut tile),
         Elastic::Curvature => walk::<_, Curvature<_>, 3, 9>(simd, s, &mut tile),
         Elastic::Rod => walk::<_, Rod<_>, 4, 11>(simd, s, &mut tile),
-        Elastic::Springs => walk::<_, Springs<true>, 3, 12>(simd, s, &mut tile),
+        Elastic::Springs => walk::<_, Springs, 3, 12>(simd, s, &mut tile),
     })
 }
 
@@ -96,7 +96,7 @@ where
     let mut forces = Forces::default();
     for i in 0..s.x.len() {
         if i + 1 < s.x.len() {
-            elements.add(simd, i, i % M::STRIDE, tile, &scratch);
+            elements.add_forces(simd, i, tile, &scratch);
         } else {
             elements.band = Band::new(simd);
         }

@@ -9,10 +9,11 @@ use super::{
     lanes::{F, LANES, Row, V3},
     model::{
         Stretching,
+        altitude::altitude,
         bend::bend,
         curvature::Curvature,
         rod::Rod,
-        springs::{BEND, Springs, TORSION, altitude},
+        springs::{BEND, Springs, TORSION},
         straight::Straight,
     },
     profile::Profile,
@@ -41,8 +42,8 @@ pub fn lane<S: Simd>(v: V3<S>) -> DVec3 {
     DVec3::new(v.x[3] as f64, v.y[3] as f64, v.z[3] as f64)
 }
 
-/// What begins at a point of a band with far springs: the direction, the stiffness and the pull of one, and what one across all four points has of these, with
-/// the gradient between.
+/// What begins at a point of a band with far springs: the direction, the stiffness and the pull of one; and of one across all four points the direction, the
+/// gradient over that, the stiffness and by how much it is longer.
 #[derive(Clone, Copy, Debug)]
 struct Held {
     far: (DVec3, f64, f64),
@@ -71,19 +72,17 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
             }
             band.add_right((0, r - i * B), f(b[r]));
         }
-        if let Some(Held { far: (u, k, pull), across }) = held.get(i) {
+        if let Some(Held { far: (u, k, pull), .. }) = held.get(i) {
             band.add_far(splat(simd, *u), f(*k), f(*pull));
-            if let Some((u, c, k, force)) = across {
-                let across = Across { direction: splat(simd, *u), c: c.map(f), stiffness: f(*k) };
-                band.add_across(across, f(*force));
-            }
         }
         if i < driven {
             band.pass(simd, profile, i, &mut factors);
         } else {
             band.eliminate(simd, profile, i, &mut factors);
         }
-        if let Some(across) = band.across {
+        if let Some((u, c, k, longer)) = held.get(i).and_then(|held| held.across) {
+            let gradient = c.map(|c| splat(simd, u * c));
+            let across = Across { gradient, longer: f(longer), stiffness: f(k) };
             eliminated.push(across.eliminate(simd, profile, i, &mut factors));
         }
     }
@@ -159,12 +158,13 @@ proptest! {
         let unit = |u: DVec3| u.normalize_or_zero().as_vec3().as_dvec3();
         let held: Vec<Held> = far.into_iter().zip(across).take(points - 3).map(|((u, k, pull), across)| Held {
             far: (unit(u), rounded(k), pull),
-            across: across.map(|(u, c, k, force)| (unit(u), c.map(rounded), rounded(k), force)),
+            across: across.map(|(u, c, k, longer)| (unit(u), c.map(rounded), rounded(k), longer)),
         }).collect();
         let alone = (a.clone(), right.clone());
         for (i, Held { far: (u, k, pull), across }) in held.iter().enumerate() {
             let far = (*u, [1.0, 0.0, 0.0, -1.0], *k, *pull);
-            for (u, c, k, force) in [Some(far), *across].into_iter().flatten() {
+            let across = across.map(|(u, c, k, longer)| (u, c, k, -k * longer));
+            for (u, c, k, force) in [Some(far), across].into_iter().flatten() {
                 let g = |r: usize| c[r / 3] * u[r % 3];
                 for r in 0..12 {
                     right[i * 3 + r] += g(r) * force;
@@ -430,8 +430,8 @@ fn solve_once<S: Simd>(simd: S, step: &Step<S>, tile: &mut Tile, scratch: &mut S
             substitute::<S, Rod<S>, 4, 11>(simd, Sweep::First, step, tile, scratch);
         }
         Elastic::Springs => {
-            assemble::<S, Springs<true>, 3, 12>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Springs<true>, 3, 12>(simd, Sweep::First, step, tile, scratch);
+            assemble::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
+            substitute::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
         }
     }
 }

@@ -31,7 +31,7 @@ pub fn advance<S, M, const B: usize, const N: usize>(
     S: Simd,
     M: Model<S, B, N>,
 {
-    forces::<S, M::Whole, B, N>(simd, step, tile, scratch);
+    forces::<S, M, B, N>(simd, step, tile, scratch);
     let zero = V3::zero(simd);
     let h = F::<S>::splat(simd, step.h);
     let (mut tip, mut before) = (zero, zero);

@@ -27,16 +27,9 @@ pub struct Curvature<S: Simd> {
 }
 
 impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
-    type Whole = Self;
-
     #[inline(always)]
     fn begin(_: S, _: &Tile, root: &Root<S>) -> Self {
         Self { normal: root.normal }
-    }
-
-    #[inline(always)]
-    fn whole(&self) -> Self {
-        *self
     }
 
     #[inline(always)]

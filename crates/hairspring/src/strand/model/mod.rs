@@ -9,6 +9,7 @@
 //!
 //! Stretch of the segments is the same in all (see `stretch`).
 
+pub mod altitude;
 pub mod bend;
 pub mod curvature;
 pub mod joint;
@@ -20,6 +21,7 @@ pub mod stretch;
 pub use stretch::Stretching;
 
 use super::{
+    across::Across,
     band::Band,
     fixed::Fixed,
     lanes::{F, V3},
@@ -97,22 +99,22 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// Points at the root that are driven: its first segment.
     const DRIVEN: usize = Self::STRIDE + 1;
 
-    /// The model with what few points need: were that added to the window in a rare branch, all of it would have to be where both sides find it.
-    type Whole: Model<S, B, N>;
-
     /// Starts at the root of a strand.
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self;
 
     /// Adds all elements whose first point is `at.i`, which is the band's first.
     fn add(&mut self, simd: S, at: &At<S>, scratch: &Scratch, tile: &mut Tile, band: &mut Band<S, B, N>);
 
-    /// The same with what few points need, where the walk is.
-    fn whole(&self) -> Self::Whole;
-
-    /// Whether what begins at point `i` needs [`Model::Whole`].
+    /// Whether a spring acts across the four points from `i` on. That is asked everywhere, and what it does is left to a function by itself: few points have one.
     #[inline(always)]
-    fn falls_short(_: S, _: usize, _: &Tile, _: &Scratch) -> bool {
+    fn acts_across(_: S, _: usize, _: &Tile, _: &Scratch) -> bool {
         false
+    }
+
+    /// That spring, in a substep of so long whose velocities act for so long until the solve begins [s]; of no stiffness in a model that knows none.
+    #[inline(always)]
+    fn across(simd: S, _: (f32, f32), _: usize, _: &Tile, _: &Scratch) -> Across<S> {
+        Across::none(simd)
     }
 
     /// Takes what the solve found besides displacements.

@@ -51,8 +51,6 @@ pub struct Rod<S: Simd> {
 }
 
 impl<S: Simd> Model<S, 4, 11> for Rod<S> {
-    type Whole = Self;
-
     #[inline(always)]
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self {
         Self {
@@ -60,11 +58,6 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
             twist_ratio: load(simd, &tile.strand[strand::TWIST_RATIO]),
             flat: load(simd, &tile.strand[strand::FLAT]),
         }
-    }
-
-    #[inline(always)]
-    fn whole(&self) -> Self {
-        *self
     }
 
     #[inline(always)]

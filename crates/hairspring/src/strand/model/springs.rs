@@ -14,7 +14,10 @@
 //! the others already resist as much as the fibre does; its height is kept by the volume over the present area, so one number a
 //! tetrahedron is enough; and the strand's segments are projected to their lengths as in the other models, their triangles with them.
 
-use super::{At, Model, Solved};
+use super::{
+    At, Model, Solved,
+    altitude::{self, after, flattened},
+};
 use crate::strand::{
     across::Across,
     band::Band,
@@ -22,24 +25,22 @@ use crate::strand::{
     fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
-    lanes::{F, Row, Sym3, V3, load, store},
+    lanes::{F, Sym3, V3, load, store},
     profile::Profile,
     root::Root,
     scratch::{Memory, Scratch},
     system::System,
     tile::{Tile, springs, state, strand},
 };
-use fearless_simd::{Level, mask32x8, prelude::*};
+use fearless_simd::{Level, prelude::*};
 
-/// A truss of distance springs, see above; altitude springs if they are `ALTITUDES`, for what begins at points whose tetrahedron is flattened.
-pub struct Springs<const ALTITUDES: bool>;
+/// A truss of distance springs, see above.
+pub struct Springs;
 
-impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
+impl<S: Simd> Model<S, 3, 12> for Springs {
     const STRIDE: usize = 2;
 
     const PROFILE: Profile<3, 12> = Profile::far();
-
-    type Whole = Springs<true>;
 
     #[inline(always)]
     fn begin(_: S, _: &Tile, _: &Root<S>) -> Self {
@@ -47,13 +48,13 @@ impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
     }
 
     #[inline(always)]
-    fn whole(&self) -> Springs<true> {
-        Springs
+    fn acts_across(simd: S, i: usize, tile: &Tile, scratch: &Scratch) -> bool {
+        flattened(after(simd, i, scratch), &tile.rest[i]).any_true()
     }
 
     #[inline(always)]
-    fn falls_short(simd: S, i: usize, tile: &Tile, scratch: &Scratch) -> bool {
-        !ALTITUDES && flattened(after(simd, i, scratch), &tile.rest[i]).any_true()
+    fn across(simd: S, times: (f32, f32), i: usize, tile: &Tile, scratch: &Scratch) -> Across<S> {
+        altitude::across(simd, times, i, tile, scratch)
     }
 
     #[inline(always)]
@@ -65,9 +66,6 @@ impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
         let tip = tile.rest.len() - 1;
         let v = |k: usize| V3::load(simd, &tile.state[(i + k).min(tip)][state::V..]);
         let drift = |far: usize| v(far) - v(0);
-        if ALTITUDES {
-            add_altitude(simd, at, (p, &drift), rest, band);
-        }
 
         // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
         // much as along: kept where it pulls alone (Choi & Ko 2002), it would resist every turn of a segment; left out, it cancels.
@@ -111,7 +109,7 @@ impl<S: Simd, const ALTITUDES: bool> Model<S, 3, 12> for Springs<ALTITUDES> {
 
 /// One tile through an interval, on the widest lanes that there are.
 pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
-    dispatch!(level, simd => run_tile::<_, Springs<false>, 3, 12>(simd, interval, tile, memory));
+    dispatch!(level, simd => run_tile::<_, Springs, 3, 12>(simd, interval, tile, memory));
 }
 
 /// What a triangle's sides have besides the stiffness of all segments, for the triangle that begins at `point` (see `truss`) [N/m].
@@ -193,97 +191,3 @@ fn add_spring<S: Simd>(band: &mut Band<S, 3, 12>, far: usize, u: V3<S>, k: F<S>,
     band.add_force(0, force);
     band.add_force(far, -force);
 }
-
-/// Volume over the rest volume below which an altitude spring acts [1].
-const FLATTENED: f32 = 0.5;
-
-/// From particle `i` to the three after it.
-#[inline(always)]
-fn after<S: Simd>(simd: S, i: usize, scratch: &Scratch) -> [V3<S>; 3] {
-    let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges go on past the tip");
-    let [e1, e2, e3] = edges.each_ref().map(|e| V3::load(simd, e));
-    [e1, e1 + e2, e1 + e2 + e3]
-}
-
-/// Where the tetrahedron of a particle and the three after it, which are at `p` from it, is flattened.
-#[inline(always)]
-fn flattened<S: Simd>(p: [V3<S>; 3], rest: &[Row]) -> mask32x8<S> {
-    let volume = p[0].dot(p[1].cross(p[2]));
-    let kept = load(volume.simd, &rest[springs::VOLUME]) * FLATTENED;
-    (volume * kept).simd_lt(kept * kept)
-}
-
-/// Adds the altitude spring of a particle and the three after it, which are at `p` from it and drift with velocities `drift` against its, where their
-/// tetrahedron is `flattened`.
-#[inline(always)]
-fn add_altitude<S: Simd>(
-    simd: S,
-    at: &At<S>,
-    (p, drift): ([V3<S>; 3], &impl Fn(usize) -> V3<S>),
-    rest: &[Row],
-    band: &mut Band<S, 3, 12>,
-) {
-    let flattened = flattened(p, rest);
-    let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
-    let k = flattened.select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
-    let (direction, c, strain) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
-    let stiffness = k * at.damped;
-    let drifted = direction.dot(drift(1) * c[1] + drift(2) * c[2] + drift(3) * c[3]);
-    let force = -(k * strain + stiffness * drifted * at.drifting);
-    band.add_across(Across { direction, c, stiffness }, force);
-}
-
-/// The heights of a tetrahedron: the points p, q, r, v, and whether from the face pqr to v, or from the edge pq to the edge rv.
-const HEIGHTS: [([usize; 4], bool); 7] = [
-    ([0, 1, 2, 3], true),
-    ([1, 2, 3, 0], true),
-    ([0, 2, 3, 1], true),
-    ([0, 1, 3, 2], true),
-    ([0, 1, 2, 3], false),
-    ([0, 2, 1, 3], false),
-    ([0, 3, 1, 2], false),
-];
-
-/// The shortest height of a tetrahedron: its unit direction, the gradient of the height over that direction at the four points, and what it is
-/// longer than with six times the rest volume `volume` [m].
-#[inline(always)]
-pub fn altitude<S: Simd>(simd: S, x: [V3<S>; 4], volume: F<S>) -> (V3<S>, [F<S>; 4], F<S>) {
-    let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
-    let nought = V3::zero(simd);
-    // All heights are six volumes over |a × b|; the shortest has the largest.
-    let (mut a, mut b, mut d, mut n) = (nought, nought, nought, nought);
-    let mut largest = F::<S>::splat(simd, -1.0);
-    let mut sign = one;
-    let mut which = zero;
-    each!(k of 0 1 2 3 4 5 6, {
-        let ([p, q, r, v], face) = HEIGHTS[k];
-        let side = x[q] - x[p];
-        let (other, across) = if face { (x[r] - x[p], x[v] - x[p]) } else { (x[v] - x[r], x[r] - x[p]) };
-        let cross = side.cross(other);
-        let area = cross.dot(cross);
-        let better: mask32x8<S> = area.simd_gt(largest);
-        largest = better.select(area, largest);
-        (a, b) = (V3::select(better, side, a), V3::select(better, other, b));
-        (d, n) = (V3::select(better, across, d), V3::select(better, cross, n));
-        sign = better.select(F::splat(simd, ORIENTATION[k]), sign);
-        which = better.select(F::splat(simd, k as f32), which);
-    });
-    let inverse = one / largest.max(1e-30);
-    let s = d.cross(b).dot(n) * inverse;
-    let t = d.cross(a).dot(n) * inverse;
-    let mut c = [zero; 4];
-    each!(k of 0 1 2 3 4 5 6, {
-        let (points, face) = HEIGHTS[k];
-        let weights = if face { [s - t - one, -s, t, one] } else { [s - one, -s, one - t, t] };
-        let chosen = which.simd_eq(k as f32);
-        for (point, weight) in points.into_iter().zip(weights) {
-            c[point] = chosen.select(weight, c[point]);
-        }
-    });
-    let scale = inverse.sqrt();
-    let strain = (n.dot(d) - sign * volume) * scale;
-    (n * scale, c, strain)
-}
-
-/// Sign of n·d of each of [`HEIGHTS`] in a tetrahedron with (x₁−x₀)·((x₂−x₀)×(x₃−x₀)) > 0.
-const ORIENTATION: [f32; 7] = [1.0, -1.0, 1.0, -1.0, -1.0, 1.0, -1.0];

@@ -24,16 +24,9 @@ impl<S: Simd> Model<S, 3, 9> for Straight {
     // Points i and i+2 meet in bending alone, an axis by itself.
     const PROFILE: Profile<3, 9> = Profile::within(6);
 
-    type Whole = Self;
-
     #[inline(always)]
     fn begin(_: S, _: &Tile, _: &Root<S>) -> Self {
         Self
-    }
-
-    #[inline(always)]
-    fn whole(&self) -> Self {
-        *self
     }
 
     #[inline(always)]

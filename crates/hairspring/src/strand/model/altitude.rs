@@ -1,0 +1,112 @@
+//! The altitude springs of the springs model, along the shortest height of the tetrahedron of four neighbours, where it is flattened.
+
+use crate::strand::{
+    across::Across,
+    lanes::{F, Row, V3, load},
+    root::Root,
+    scratch::Scratch,
+    tile::{Tile, springs, state},
+};
+use fearless_simd::{mask32x8, prelude::*};
+
+/// Volume over the rest volume below which an altitude spring acts [1].
+const FLATTENED: f32 = 0.5;
+
+/// From particle `i` to the three after it [m].
+#[inline(always)]
+pub fn after<S: Simd>(simd: S, i: usize, scratch: &Scratch) -> [V3<S>; 3] {
+    let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges go on past the tip");
+    let [e1, e2, e3] = edges.each_ref().map(|e| V3::load(simd, e));
+    [e1, e1 + e2, e1 + e2 + e3]
+}
+
+/// Where the tetrahedron of a particle and the three after it, which are at `p` from it, is flattened.
+#[inline(always)]
+pub fn flattened<S: Simd>(p: [V3<S>; 3], rest: &[Row]) -> mask32x8<S> {
+    let volume = p[0].dot(p[1].cross(p[2]));
+    let kept = load(volume.simd, &rest[springs::VOLUME]) * FLATTENED;
+    (volume * kept).simd_lt(kept * kept)
+}
+
+/// The altitude spring of particle `i` and the three after it, none where their tetrahedron is not [`flattened`], in a substep of `h` [s] whose velocities act
+/// for `drifting` [s] until the solve begins.
+#[inline(always)]
+pub fn across<S: Simd>(
+    simd: S,
+    (h, drifting): (f32, f32),
+    i: usize,
+    tile: &Tile,
+    scratch: &Scratch,
+) -> Across<S> {
+    let p = after(simd, i, scratch);
+    let rest = &tile.rest[i];
+    let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
+    let k = flattened(p, rest).select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
+    let (direction, c, longer) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
+    let damped = Root::<S>::fibre(simd, tile.strand).1 * (1.0 / h) + 1.0;
+    // Beyond the tip nothing is stiff.
+    let tip = tile.rest.len() - 1;
+    let v0 = V3::load(simd, &tile.state[i][state::V..]);
+    let mut drift = V3::zero(simd);
+    for (k, c) in c.into_iter().enumerate().skip(1) {
+        let v = V3::load(simd, &tile.state[(i + k).min(tip)][state::V..]);
+        drift = (v - v0).mul_add(c, drift);
+    }
+    let longer = direction.dot(drift).mul_add(F::splat(simd, drifting), longer / damped);
+    Across { gradient: c.map(|c| direction * c), longer, stiffness: k * damped }
+}
+
+/// The heights of a tetrahedron: the points p, q, r, v, and whether from the face pqr to v, or from the edge pq to the edge rv.
+const HEIGHTS: [([usize; 4], bool); 7] = [
+    ([0, 1, 2, 3], true),
+    ([1, 2, 3, 0], true),
+    ([0, 2, 3, 1], true),
+    ([0, 1, 3, 2], true),
+    ([0, 1, 2, 3], false),
+    ([0, 2, 1, 3], false),
+    ([0, 3, 1, 2], false),
+];
+
+/// The shortest height of a tetrahedron: its unit direction, the gradient of the height over that direction at the four points, and what it is
+/// longer than with six times the rest volume `volume` [m].
+#[inline(always)]
+pub fn altitude<S: Simd>(simd: S, x: [V3<S>; 4], volume: F<S>) -> (V3<S>, [F<S>; 4], F<S>) {
+    let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
+    let nought = V3::zero(simd);
+    // All heights are six volumes over |a × b|; the shortest has the largest.
+    let (mut a, mut b, mut d, mut n) = (nought, nought, nought, nought);
+    let mut largest = F::<S>::splat(simd, -1.0);
+    let mut sign = one;
+    let mut which = zero;
+    each!(k of 0 1 2 3 4 5 6, {
+        let ([p, q, r, v], face) = HEIGHTS[k];
+        let side = x[q] - x[p];
+        let (other, across) = if face { (x[r] - x[p], x[v] - x[p]) } else { (x[v] - x[r], x[r] - x[p]) };
+        let cross = side.cross(other);
+        let area = cross.dot(cross);
+        let better: mask32x8<S> = area.simd_gt(largest);
+        largest = better.select(area, largest);
+        (a, b) = (V3::select(better, side, a), V3::select(better, other, b));
+        (d, n) = (V3::select(better, across, d), V3::select(better, cross, n));
+        sign = better.select(F::splat(simd, ORIENTATION[k]), sign);
+        which = better.select(F::splat(simd, k as f32), which);
+    });
+    let inverse = one / largest.max(1e-30);
+    let s = d.cross(b).dot(n) * inverse;
+    let t = d.cross(a).dot(n) * inverse;
+    let mut c = [zero; 4];
+    each!(k of 0 1 2 3 4 5 6, {
+        let (points, face) = HEIGHTS[k];
+        let weights = if face { [s - t - one, -s, t, one] } else { [s - one, -s, one - t, t] };
+        let chosen = which.simd_eq(k as f32);
+        for (point, weight) in points.into_iter().zip(weights) {
+            c[point] = chosen.select(weight, c[point]);
+        }
+    });
+    let scale = inverse.sqrt();
+    let strain = (n.dot(d) - sign * volume) * scale;
+    (n * scale, c, strain)
+}
+
+/// Sign of n·d of each of [`HEIGHTS`] in a tetrahedron with (x₁−x₀)·((x₂−x₀)×(x₃−x₀)) > 0.
+const ORIENTATION: [f32; 7] = [1.0, -1.0, 1.0, -1.0, -1.0, 1.0, -1.0];
