@@ -36,8 +36,8 @@ fn check(outcomes: &[Outcome]) {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Largest difference of a measured value from the page's, over the reference [1]: instruction sets differ in rounding, and a threshold is halved to.
-const SAME: f64 = 0.01;
+/// Largest difference of a measured value from the page's, of the tolerance [1]: instruction sets differ in rounding, most where a strand gives way.
+const SAME: f64 = 0.2;
 
 /// Holds the outcomes against the table on docs/validation.md after the line that begins so.
 fn is_on_the_page(after: &str, outcomes: &[Outcome]) {
@@ -54,7 +54,9 @@ fn is_on_the_page(after: &str, outcomes: &[Outcome]) {
             said.unwrap_or_else(|| panic!("'{row}' is not of {}", outcome.quantity)).parse::<f64>().ok();
         assert!(row.starts_with(outcome.case), "'{row}' is not of {}", outcome.case);
         let same = match (said, outcome.measured.as_ref().ok(), outcome.reference.as_ref().ok()) {
-            (Some(said), Some(measured), Some(reference)) => (said - measured).abs() < SAME * reference.abs(),
+            (Some(said), Some(measured), Some(reference)) => {
+                (said - measured).abs() < SAME * outcome.tolerance * reference.abs()
+            }
             (said, measured, _) => said.is_none() && measured.is_none(),
         };
         assert!(same, "docs/validation.md says '{row}', measured is {:?}", outcome.measured);
