@@ -1,4 +1,5 @@
-//! The altitude springs of the springs model, along the shortest height of the tetrahedron of four neighbours, where it is flattened.
+//! The altitude springs of the springs model, along the shortest height of the tetrahedron of four neighbours, where it is flattened: Selle, Lentine, Fedkiw 2008,
+//! *A Mass Spring Model for Hair Simulation*, §3; where we deviate is said in [`springs`](super::springs).
 
 use crate::strand::{
     across::Across,
@@ -48,8 +49,8 @@ pub fn across<S: Simd>(
     let tip = tile.rest.len() - 1;
     let v0 = V3::load(simd, &tile.state[i][state::V..]);
     let mut drift = V3::zero(simd);
-    for (k, c) in c.into_iter().enumerate().skip(1) {
-        let v = V3::load(simd, &tile.state[(i + k).min(tip)][state::V..]);
+    for (far, c) in c.into_iter().enumerate().skip(1) {
+        let v = V3::load(simd, &tile.state[(i + far).min(tip)][state::V..]);
         drift = (v - v0).mul_add(c, drift);
     }
     let longer = direction.dot(drift).mul_add(F::splat(simd, drifting), longer / damped);

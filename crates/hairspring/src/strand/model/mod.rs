@@ -111,7 +111,8 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
         false
     }
 
-    /// That spring, in a substep of so long whose velocities act for so long until the solve begins [s]; of no stiffness in a model that knows none.
+    /// That spring, in a substep of length h whose velocities act for so long until the solve begins, both in the pair [s]; of no stiffness in a model that knows
+    /// none.
     #[inline(always)]
     fn across(simd: S, _: (f32, f32), _: usize, _: &Tile, _: &Scratch) -> Across<S> {
         Across::none(simd)
