@@ -356,7 +356,7 @@ pub struct Snapshot {
     /// Counts scenes: another number, another scene.
     pub scene: u64,
     /// Time in the scene [s].
-    pub time: f32,
+    pub time: f64,
     /// The scene, and beside it the one that it is compared with.
     pub stages: Vec<Scenery>,
     /// Where the step's time went.

@@ -11,7 +11,7 @@ use crate::{
 };
 use clap::Parser;
 use glam::{Vec2, Vec3};
-use hairspring::stage::Stage;
+use hairspring::stage::{FrameRate, Stage};
 use hairspring_io::{Format, ReadOptions, Strands, read_groom, write_strands};
 use serde_json::json;
 use std::{
@@ -44,7 +44,7 @@ pub struct Options {
 
     /// Frames a second
     #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
-    fps: f64,
+    fps: FrameRate,
 
     /// Skip frames whose file is there and complete; they are simulated through, so that the result is the same bits
     /// as without an interruption. Give the same scene and options as before
@@ -77,6 +77,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let range = options.frames.unwrap_or(FrameRange::whole(scene.clip.as_ref(), options.fps));
     interrupt::listen();
     let mut stage = Stage::new(scene)?;
+    console.note_all(stage.thin_mesh());
     let mut sheaf = Sheaf::new(&stage, console);
     let mut wanted: Vec<u32> = range.numbers().collect();
     if options.resume {
@@ -114,7 +115,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "output": pattern,
             "frames": wanted.len(),
             "skipped": skipped,
-            "fps": options.fps,
+            "fps": options.fps.hertz(),
         });
         say(totals.json(&stage, summary));
     } else {
@@ -168,6 +169,15 @@ impl Sheaf {
     fn write(&mut self, path: &Path, stage: &Stage) -> Result<(), Fault> {
         self.points.clear();
         stage.strands().for_each(|s| self.points.extend_from_slice(s.points));
+        if let Some(point) = self.points.iter().position(|p| !p.is_finite()) {
+            let strand = self.offsets.partition_point(|first| *first as usize <= point) - 1;
+            let text = format!(
+                "strand {strand} is not finite at {} s, so {} was not written: a setting of the scene is too large",
+                stage.time(),
+                path.display()
+            );
+            return Err(Fault::Scene(text));
+        }
         let strands = Strands {
             points: &self.points,
             offsets: &self.offsets,

@@ -1,5 +1,6 @@
 //! `hairspring bench`: the speed and the quality of the simulation on the standard scene.
 
+mod scene;
 mod table;
 
 use crate::{
@@ -19,7 +20,7 @@ use hairspring::{
     simulation::Simulation,
 };
 use serde_json::json;
-use std::time::Instant;
+use std::{path::PathBuf, time::Instant};
 
 /// Measures the simulation on the standard bench scene.
 ///
@@ -30,6 +31,9 @@ use std::time::Instant;
 /// measured between the frames, outside the timed part: as they are after the last frame, and (`_ever`) the worst after
 /// any frame.
 ///
+/// `--scene` plays a scene instead and prints medians of its frames: what each stage takes, a point and substep of the
+/// solve, how many points and segments colliders hold out, and how many points have a collider looked up.
+///
 /// `--table` steps the scene for every elastic model on every instruction set that this processor has, and as the same
 /// code built without SIMD (scalar), turn by turn in one process, so that whatever else the machine does slows all of
 /// them alike.
@@ -39,7 +43,8 @@ Examples:
   hairspring bench
   hairspring bench --strands 100000 --frames 60
   hairspring --threads 1 bench --simd sse2 --json
-  hairspring bench --table --frames 60")]
+  hairspring bench --table --frames 60
+  hairspring bench --scene shot.toml --frames 120")]
 pub struct Options {
     /// Strands
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
@@ -92,6 +97,10 @@ pub struct Options {
     /// Compare all models on all instruction sets of this processor and without any, the same frames for each
     #[arg(long, conflicts_with_all = ["simd", "model", "integrator", "high_quality", "hair_hair", "head", "wind"])]
     table: bool,
+
+    /// Measure a scene (.toml) or a groom as it is, instead of the standard scene: what the stages of its frames take, and what its hair meets
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["table", "strands", "points", "substeps", "simd", "model", "integrator", "high_quality", "device", "hair_hair", "head", "wind"])]
+    scene: Option<PathBuf>,
 
     /// Print the figures as JSON
     #[arg(long)]
@@ -152,6 +161,9 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         return Err(Fault::Usage(text));
     }
     interrupt::listen();
+    if let Some(path) = &options.scene {
+        return scene::run(path, frames, options.json, console);
+    }
     if options.table {
         return table::run(options, console);
     }

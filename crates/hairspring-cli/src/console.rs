@@ -36,6 +36,11 @@ impl Console {
         }
     }
 
+    /// A note for each thing, if there is any.
+    pub fn note_all(self, things: impl IntoIterator<Item = impl Display>) {
+        things.into_iter().for_each(|thing| self.note(thing));
+    }
+
     /// What is being done, where it takes a moment.
     pub fn doing(self, line: impl Display) {
         if !self.quiet {

@@ -16,6 +16,7 @@ use hairspring::{
         Guides,
         builtin::{BuiltinOptions, Style, scene},
     },
+    stage::FrameRate,
 };
 use serde_json::json;
 use std::path::PathBuf;
@@ -55,7 +56,7 @@ pub struct Options {
 
     /// Frames a second
     #[arg(long, value_name = "RATE", default_value = "24", value_parser = frames::rate)]
-    fps: f64,
+    fps: FrameRate,
 
     #[command(flatten)]
     view: View,
@@ -81,10 +82,12 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let (film, still) = (options.output.join("hairspring.mp4"), options.output.join("hairspring.png"));
     output::try_folder(&film)?;
     output::try_folder(&still)?;
-    let frames = ((f64::from(options.seconds) * options.fps).round().min(1e6) as u32).max(1);
-    let moment = ((STILL * options.fps).round() as u32 + 1).min(frames);
-    let sinks =
-        vec![Sink::Clip(clip(&film, options.view.size, options.fps)?), Sink::Still(still.clone(), moment)];
+    let frames = ((f64::from(options.seconds) * options.fps.hertz()).round().min(1e6) as u32).max(1);
+    let moment = ((STILL * options.fps.hertz()).round() as u32 + 1).min(frames);
+    let sinks = vec![
+        Sink::Clip(clip(&film, options.view.size, options.fps.hertz())?),
+        Sink::Still(still.clone(), moment),
+    ];
     console.doing(format_args!("growing {} hairs", crate::totals::grouped(options.strands as usize)));
     let scene = scene(&BuiltinOptions {
         strands: options.strands,
@@ -106,7 +109,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "still": still,
             "style": style.name(),
             "frames": frames,
-            "fps": options.fps,
+            "fps": options.fps.hertz(),
             "size": [width, height],
         });
         say(totals.json(&stage, summary));

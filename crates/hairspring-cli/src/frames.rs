@@ -1,6 +1,6 @@
 //! Frame numbers, sizes and guides as the command line writes them.
 
-use hairspring::{body::Clip, scene::Guides};
+use hairspring::{body::Clip, scene::Guides, stage::FrameRate};
 use std::str::FromStr;
 
 /// Frames from `first` to `last`, both included, counted from 1; frame 1 is the rest pose at time 0.
@@ -16,11 +16,12 @@ pub struct FrameRange {
 const MOST: u32 = 1_000_000;
 
 impl FrameRange {
-    /// The frames of a motion at `fps` frames a second, its last moment included; five seconds without one.
-    pub fn whole(clip: Option<&Clip>, fps: f64) -> Self {
+    /// The frames of a motion at the rate `fps`, its last moment included; five seconds without one.
+    pub fn whole(clip: Option<&Clip>, fps: FrameRate) -> Self {
+        let fps = fps.hertz();
         let frames = match clip.filter(|c| c.frame_count() > 1) {
             // Half a thousandth of a frame for a duration that is not a round number in binary.
-            Some(clip) => (f64::from(clip.duration()) * fps + 5e-4).floor() + 1.0,
+            Some(clip) => (clip.duration() * fps + 5e-4).floor() + 1.0,
             None => (5.0 * fps).round(),
         };
         Self { first: 1, last: (frames as u32).clamp(1, MOST) }
@@ -58,10 +59,12 @@ pub fn size(text: &str) -> Result<(u32, u32), String> {
         .ok_or_else(|| "a size is width x height in pixels, each 1 to 16384, such as 1280x720".into())
 }
 
-/// Frames a second, above 0 and up to 240.
-pub fn rate(text: &str) -> Result<f64, String> {
-    let rate = text.parse::<f64>().ok().filter(|r| *r >= 1.0 && *r <= 240.0);
-    rate.ok_or_else(|| "frames a second are a number from 1 to 240, such as 30 or 23.976".into())
+/// Frames per second, 1 to 240.
+pub fn rate(text: &str) -> Result<FrameRate, String> {
+    let rate = text.parse::<FrameRate>().ok().filter(|rate| (1.0..=240.0).contains(&rate.hertz()));
+    rate.ok_or_else(|| {
+        "a frame rate is a number or a fraction from 1 to 240, such as 30, 23.976 or 24000/1001".into()
+    })
 }
 
 /// Which strands are simulated: `all`, `file` or a number.
@@ -110,15 +113,16 @@ mod tests {
 
     #[test]
     fn a_motion_is_played_to_its_last_moment() {
-        let clip = |frames: usize, rate: f32| Clip {
+        let clip = |frames: usize, rate: f64| Clip {
             name: String::new(),
             rate,
             joint_count: 1,
             samples: vec![Default::default(); frames],
         };
-        assert_eq!(FrameRange::whole(Some(&clip(301, 60.0)), 30.0).last, 151);
-        assert_eq!(FrameRange::whole(Some(&clip(343, 120.0)), 30.0).last, 86);
-        assert_eq!(FrameRange::whole(Some(&clip(1, 120.0)), 30.0).last, 150);
-        assert_eq!(FrameRange::whole(None, 24.0).last, 120);
+        let whole = |clip: Option<&Clip>, fps: &str| FrameRange::whole(clip, rate(fps).unwrap()).last;
+        assert_eq!(whole(Some(&clip(301, 60.0)), "30"), 151);
+        assert_eq!(whole(Some(&clip(343, 120.0)), "30"), 86);
+        assert_eq!(whole(Some(&clip(1, 120.0)), "30"), 150);
+        assert_eq!(whole(None, "24"), 120);
     }
 }

@@ -111,6 +111,12 @@ pub fn tell(notes: &[String], repairs: &Repairs, console: Console) {
     if repairs.total() > 0 {
         console.note(format_args!("repaired {}", repaired(repairs)));
     }
+    if repairs.folds > 0 {
+        console.note(format_args!(
+            "{} joints turn by more than 150°: strands are folded there; they are kept as they are",
+            repairs.folds
+        ));
+    }
 }
 
 /// What was repaired, in words; empty where nothing was.

@@ -1,7 +1,7 @@
 //! Frame after frame of a scene, until the last or until the user stops it.
 
 use crate::{fault::Fault, interrupt};
-use hairspring::stage::{FrameReport, Stage};
+use hairspring::stage::{FrameRate, FrameReport, Stage};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,17 +12,16 @@ pub enum Ending {
     Stopped(u32),
 }
 
-/// Plays `stage`, which is at time 0, to frame `last` at `fps` frames a second, and hands each frame's number and what
+/// Plays `stage`, which is at time 0, to frame `last` at the rate `fps`, and hands each frame's number and what
 /// stepping to it took to `show`. Frame 1 is the start: nothing is stepped for it.
 pub fn play(
     stage: &mut Stage,
     last: u32,
-    fps: f64,
+    fps: FrameRate,
     mut show: impl FnMut(u32, &Stage, &FrameReport) -> Result<(), Fault>,
 ) -> Result<Ending, Fault> {
-    let dt = (1.0 / fps) as f32;
     for frame in 1..=last {
-        let report = if frame == 1 { FrameReport::default() } else { stage.step(dt) };
+        let report = if frame == 1 { FrameReport::default() } else { stage.step_frame(fps) };
         show(frame, stage, &report)?;
         if frame < last && interrupt::asked() {
             return Ok(Ending::Stopped(frame));

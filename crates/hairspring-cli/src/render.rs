@@ -12,7 +12,10 @@ use crate::{
     totals::{self, Totals},
 };
 use clap::Parser;
-use hairspring::{scene::Scene, stage::Stage};
+use hairspring::{
+    scene::Scene,
+    stage::{FrameRate, Stage},
+};
 use hairspring_view::{ClipWriter, OutputError, read_png};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -43,7 +46,7 @@ pub struct Options {
 
     /// Frames a second
     #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
-    fps: f64,
+    fps: FrameRate,
 
     #[command(flatten)]
     view: View,
@@ -94,7 +97,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         wanted.retain(|n| !is_drawn(&output::frame_path(&options.output, *n), options.view.size));
     }
     let sink = match kind {
-        Kind::Clip => Sink::Clip(clip(&options.output, options.view.size, options.fps)?),
+        Kind::Clip => Sink::Clip(clip(&options.output, options.view.size, options.fps.hertz())?),
         Kind::Pictures => Sink::Pictures(options.output.clone()),
         Kind::Still => Sink::Still(options.output.clone(), range.first),
     };
@@ -113,7 +116,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "output": options.output,
             "frames": wanted.len(),
             "skipped": range.count() as usize - wanted.len(),
-            "fps": options.fps,
+            "fps": options.fps.hertz(),
             "size": [options.view.size.0, options.view.size.1],
         });
         say(totals.json(&stage, summary));
@@ -136,7 +139,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
 pub fn shoot(
     scene: Scene,
     wanted: &[u32],
-    fps: f64,
+    fps: FrameRate,
     view: &View,
     turn: Option<FrameRange>,
     sinks: Vec<Sink>,
@@ -144,6 +147,7 @@ pub fn shoot(
 ) -> Result<(Stage, Totals, Ending), Fault> {
     interrupt::listen();
     let mut stage = Stage::new(scene)?;
+    console.note_all(stage.thin_mesh());
     let mut studio = Studio::new(view, &mut stage)?;
     if studio.width_scale() != 1.0 {
         console.note(format_args!(

@@ -123,11 +123,30 @@ impl Totals {
                 joints(start.stiffened)
             ));
         }
+        if start.coils > 0 {
+            let coils = start.coils;
+            say(format_args!(
+                "start    {coils} strands coil by more than one and a half turns: the curvature model has no twist, and they are simulated as rods"
+            ));
+        }
         if start.held_back > 0 {
             say(format_args!(
-                "start    {} softer than asked: single precision bears no more at {} substeps; more of them give it back",
+                "start    {} softer than asked, because the solver holds no more at {} substeps: use more of them",
                 joints(start.held_back),
                 stage.scene().solver.substeps
+            ));
+        }
+        let neighbours = stage.neighbours().unwrap_or_default();
+        if neighbours.same > 0 {
+            say(format_args!(
+                "same     {} strands are the same as others, and meet the rest as one with them",
+                grouped(neighbours.same)
+            ));
+        }
+        if neighbours.crowded > 0 {
+            say(format_args!(
+                "crowded  {} segments had more neighbors at once than are looked at: they met some of them only",
+                grouped(neighbours.crowded)
             ));
         }
         let stages: Vec<String> = self.stages().iter().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
@@ -175,6 +194,9 @@ impl Totals {
             "simulated_points": guide_points,
             "stiffened_joints": stage.start().stiffened,
             "held_back_joints": stage.start().held_back,
+            "coils_as_rods": stage.start().coils,
+            "same_strands": stage.neighbours().unwrap_or_default().same,
+            "crowded_segments": stage.neighbours().unwrap_or_default().crowded,
             "substeps": self.substeps,
             "threads": rayon::current_num_threads(),
             "simd": stage.instruction_set(),

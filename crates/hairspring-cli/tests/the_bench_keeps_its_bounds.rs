@@ -188,3 +188,24 @@ fn what_there_is_not_is_refused_with_what_there_is() {
         assert!(told.contains(name) && told.contains(there) && told.lines().count() == 1, "{told}");
     }
 }
+
+#[test]
+fn a_scene_says_what_its_stages_take_and_what_it_met() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[builtin]\nstrands = 60\nguides = 60\n\n[volume]\nmethod = \"density\"\n";
+    std::fs::write(folder.path().join("head.toml"), text).unwrap();
+    let arguments = ["bench", "--scene", "head.toml", "--frames", "5", "--threads", "2"];
+    let found = json(&succeed(folder.path(), &[&arguments[..], &["--json"]].concat()));
+    let number = |key: &str| found[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", found[key]));
+    let (threads, frames, substeps) = (number("threads"), number("frames"), number("substeps"));
+    assert_eq!((threads, frames, substeps), (2.0, 5.0, 4.0));
+    let stage = |name: &str| found["stages"][name].as_f64().unwrap();
+    let stages = ["body", "volume", "forces", "solve", "follow"];
+    assert!(stages.iter().all(|name| stage(name) > 0.0), "{found}");
+    assert_eq!(stage("neighbours"), 0.0, "they are off");
+    assert!(number("points_in_contact") > 0.0, "hair lies on the head: {found}");
+    assert!(number("points_looked_up") > 0.0, "{found}");
+    assert!(number("ns_per_point_substep") > 0.0);
+    let told = succeed(folder.path(), &arguments);
+    assert!(stages.iter().all(|name| told.contains(name)) && told.contains("held out"), "{told}");
+}

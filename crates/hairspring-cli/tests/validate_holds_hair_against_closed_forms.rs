@@ -45,6 +45,20 @@ fn what_does_not_agree_is_exit_code_1() {
 }
 
 #[test]
+fn a_table_has_a_value_or_a_reason_in_each_cell() {
+    let found = succeed(Path::new("."), &["validate", "pendulum", "--table"]);
+    let rows: Vec<&str> = found.lines().filter(|line| line.starts_with("| pendulum")).collect();
+    assert_eq!(rows.len(), 3, "one a model: {found}");
+    for row in rows {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        assert_eq!(cells.len(), 3 + 6, "case, model, tolerance, and 32 to 1,024 points: {row}");
+        assert!(cells[3].ends_with('%'), "{row}");
+        assert!(cells[4..].iter().all(|cell| *cell == "(1)"), "{row}");
+    }
+    assert!(found.contains("\n1. pendulum is about a strand of 3 points alone\n"), "{found}");
+}
+
+#[test]
 fn a_report_is_one_file() {
     let folder = tempfile::tempdir().unwrap();
     succeed(folder.path(), &["validate", "end-load", "--alpha", "2", "--report", "report.html"]);

@@ -8,7 +8,10 @@ use crate::{
     units::{apply_to_motion, turn_of},
 };
 use glam::{Quat, Vec3};
-use hairspring::body::{Body, Clip, Joint, Trs};
+use hairspring::{
+    body::{Body, Clip, Joint, Trs},
+    stage::FrameRate,
+};
 
 /// One number of a frame's line.
 #[derive(Clone, Copy)]
@@ -45,7 +48,7 @@ fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
     let line = words.line();
     words.expect("Frame")?;
     words.expect("Time:")?;
-    let frame_time: f32 = words.number("the time of a frame")?;
+    let frame_time: f64 = words.number("the time of a frame")?;
     // 1 µs to 100 s a frame: outside it a clip's times are no longer exact.
     if !(1e-6..=100.0).contains(&frame_time) {
         return Err(Problem::line(
@@ -67,7 +70,9 @@ fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
             samples.push(local(joint, channels, || words.finite(&format!("a number of frame {frame}")))?);
         }
     }
-    let clip = Clip { name: String::new(), rate: 1.0 / frame_time, joint_count: joints.len(), samples };
+    // Frame times are rounded to six digits or so, and stand for a standard rate.
+    let rate = FrameRate::nearest(1.0 / frame_time).map_or(1.0 / frame_time, FrameRate::hertz);
+    let clip = Clip { name: String::new(), rate, joint_count: joints.len(), samples };
     Ok((Motion { joints, clip }, ends))
 }
 

@@ -9,7 +9,7 @@ use crate::{
 };
 use hairspring::{
     body::Body,
-    groom::{Groom, Repairs, sanitize},
+    groom::{Groom, Repairs, first_imprecise, sanitize},
 };
 use std::{io, path::Path};
 
@@ -109,6 +109,9 @@ pub fn read_groom(path: &Path, options: &ReadOptions) -> Result<Loaded<Groom>> {
         return Err(Problem::whole("the file holds no strands").in_file(path));
     }
     let (mut groom, scale, notes) = read.finish(options);
+    if let Some(far) = first_imprecise(&groom) {
+        return Err(Problem::whole(far.to_string()).in_file(path));
+    }
     let repairs = sanitize(&mut groom);
     Ok(Loaded { value: groom, format, scale, repairs, notes })
 }

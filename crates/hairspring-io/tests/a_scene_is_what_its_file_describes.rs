@@ -282,7 +282,7 @@ fn the_cmu_rig_walks() {
     let head = body.joint("Head").unwrap();
     let mut last = None;
     for f in (0..clip.frame_count()).step_by(20) {
-        let world = body.world(&clip.sample(f as f32 / clip.rate));
+        let world = body.world(&clip.sample(f as f64 / clip.rate));
         body.skinned(&world, &mut positions, &mut normals);
         let (lo, hi) =
             positions.iter().fold((positions[0], positions[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));

@@ -8,7 +8,10 @@
 #[path = "common/samples.rs"]
 mod samples;
 
-use hairspring_io::{ErrorKind, Place, ReadOptions, read_body, read_groom, read_motion};
+use glam::Vec3;
+use hairspring_io::{
+    ErrorKind, Place, ReadOptions, Strands, read_body, read_groom, read_motion, write_strands,
+};
 use proptest::prelude::*;
 use rayon::prelude::*;
 use std::fs;
@@ -143,6 +146,27 @@ fn the_sentence_has_file_place_and_remedy() {
     assert_eq!(read_groom(&path("a.hair"), &wrong).unwrap_err().kind(), ErrorKind::Unsupported);
     fs::create_dir(path("folder.hair")).unwrap();
     assert_eq!(read_groom(&path("folder.hair"), &options).unwrap_err().kind(), ErrorKind::Unreadable);
+}
+
+#[test]
+fn a_groom_too_far_for_its_size_is_refused_and_not_repaired() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("far.data");
+    let write = |away: f32| {
+        let points: Vec<Vec3> = (0..16).map(|i| Vec3::new(away, 0.005 * i as f32, 0.0)).collect();
+        let strands = Strands { points: &points, offsets: &[0, 16], radii: &[], colors: &[], root_uvs: &[] };
+        write_strands(&path, strands).unwrap();
+        points
+    };
+    let options = ReadOptions { scale: Some(1.0), up: None };
+    for away in [5e3, 1e7, 1e30] {
+        write(away);
+        let error = read_groom(&path, &options).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Malformed);
+        assert!(error.to_string().contains("from the origin"), "{error}");
+    }
+    let points = write(100.0);
+    assert_eq!(read_groom(&path, &options).unwrap().value.points, points);
 }
 
 #[test]

@@ -144,7 +144,7 @@ fn the_robot_stands_4_5_m_tall_in_its_bind_pose_and_in_every_clip() {
         let (lo, hi) = (0..clip.frame_count())
             .step_by(7)
             .map(|f| {
-                body.skinned(&body.world(&clip.sample(f as f32 / clip.rate)), &mut positions, &mut normals);
+                body.skinned(&body.world(&clip.sample(f as f64 / clip.rate)), &mut positions, &mut normals);
                 positions
                     .iter()
                     .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)))
@@ -174,7 +174,7 @@ fn motions_have_their_frames_and_people_their_height() {
         let motion = read_motion(&path, None, &ReadOptions::default()).unwrap();
         println!("{file}: {} joints, scale {}, {:?}", motion.value.joints.len(), motion.scale, motion.notes);
         assert_eq!(motion.value.clip.frame_count(), frames, "{file}");
-        near(motion.value.clip.rate, rate, 0.2);
+        near(motion.value.clip.rate as f32, rate, 0.2);
         let body = hairspring::body::Body { joints: motion.value.joints.clone(), ..Default::default() };
         let head = body.joint("Head").expect("a head joint");
         let middle = body.world(&motion.value.clip.sample(motion.value.clip.duration() * 0.5));

@@ -25,7 +25,7 @@ const FRAME: f32 = 1.0 / 60.0;
 /// What a scene keeps to.
 struct Bounds {
     /// The longest that it plays [s].
-    seconds: f32,
+    seconds: f64,
     /// Most of the simulated points, in any frame, deeper in a collider than they were authored [share].
     inside: f64,
     /// The deepest of them [m].

@@ -3,12 +3,13 @@
 
 /// The keys around `time` [s], by their numbers, and how far it is from the one to the other, 0 to 1; before the first and after the last, that one twice. Of
 /// `count` keys, each is `at` a time [s], later than the one before. `None` without keys.
-pub(crate) fn between(count: usize, at: impl Fn(usize) -> f32, time: f32) -> Option<(usize, usize, f32)> {
+pub(crate) fn between(count: usize, at: impl Fn(usize) -> f32, time: f64) -> Option<(usize, usize, f32)> {
     let last = count.checked_sub(1)?;
+    let at = |key| f64::from(at(key));
     let next = (0..count).take_while(|key| at(*key) <= time).count();
     let (a, b) = (next.saturating_sub(1), next.min(last));
     let share = if a < b { ((time - at(a)) / (at(b) - at(a))).clamp(0.0, 1.0) } else { 0.0 };
-    Some((a, b, share))
+    Some((a, b, share as f32))
 }
 
 #[cfg(test)]

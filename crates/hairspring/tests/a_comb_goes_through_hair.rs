@@ -36,7 +36,7 @@ impl Curtain {
         let all: Vec<u32> = (0..STRANDS as u32).collect();
         let root = |s: &u32| Rigid { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY };
         let roots = all.iter().map(root).collect();
-        let (material, gravity) = (Material { model, ..Material::default() }, Vec3::NEG_Y * 9.81);
+        let (material, gravity) = (Material { model, drag: 0.1, ..Material::default() }, Vec3::NEG_Y * 9.81);
         let solver = Solver::default();
         let simulation =
             Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);

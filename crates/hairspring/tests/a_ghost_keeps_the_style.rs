@@ -151,7 +151,7 @@ fn off_it_is_nothing() {
 
 #[test]
 fn it_turns_with_the_head() {
-    let material = Material { ghost: ghost(20.0, 1.0), ..Material::default() };
+    let material = Material { ghost: ghost(20.0, 1.0), drag: 0.05, ..Material::default() };
     let mut brush = Brush::new(material, Solver::default(), Vec::new());
     // A quarter turn about the vertical and a step of 3 m, in a second.
     let at = |frame: u32| {

@@ -134,7 +134,7 @@ fn wind_and_charge_allocate_nothing() {
                 obstacles: &[],
                 air: Air {
                     wind: Wind { velocity: Vec3::X, gust: 0.5, gust_rate: 1.0 },
-                    time: frame as f32 * bench::FRAME,
+                    time: f64::from(frame as f32 * bench::FRAME),
                     sources: &sources,
                     turbulence: Turbulence { strength: 0.5, ..Turbulence::default() },
                 },

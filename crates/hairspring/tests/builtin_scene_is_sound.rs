@@ -185,8 +185,10 @@ fn the_motion_starts_and_ends_at_rest_and_stays_human() {
     let (left, right) =
         (facing.iter().map(turn).fold(0.0, f32::max), facing.iter().map(turn).fold(0.0, f32::min));
     assert!((40.0..60.0).contains(&left) && (-60.0..-40.0).contains(&right), "turns {left} and {right}");
-    let fastest =
-        facing.windows(2).map(|w| w[0].angle_between(w[1]).to_degrees() * clip.rate).fold(0.0, f32::max);
+    let fastest = facing
+        .windows(2)
+        .map(|w| w[0].angle_between(w[1]).to_degrees() * clip.rate as f32)
+        .fold(0.0, f32::max);
     assert!((200.0..500.0).contains(&fastest), "turns at {fastest} degrees a second");
 }
 
@@ -286,4 +288,16 @@ fn nearest(p: Vec3, [a, b, c]: [Vec3; 3]) -> (Vec3, Vec3) {
     }
     let denominator = 1.0 / (va + vb + vc);
     at(vb * denominator, vc * denominator)
+}
+
+#[test]
+fn no_hair_is_folded() {
+    for style in Style::ALL {
+        let groom = small(style).grooms.remove(0).groom;
+        let turn = |w: &[Vec3]| (w[1] - w[0]).angle_between(w[2] - w[1]).to_degrees();
+        let sharpest = (0..groom.strand_count())
+            .flat_map(|s| groom.strand(s).windows(3).map(turn).collect::<Vec<_>>())
+            .fold(0.0, f32::max);
+        assert!(sharpest < 120.0, "{style:?}: a joint turns by {sharpest}°");
+    }
 }

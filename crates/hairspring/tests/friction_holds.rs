@@ -78,7 +78,7 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
 
 /// How far any point goes in the first two seconds, and in the ten after them [m].
 fn moved(model: Model, friction: f32, bend: f32) -> [f32; 2] {
-    let material = Material { model, friction, bend, ..Material::default() };
+    let material = Material { model, friction, bend, drag: 0.1, ..Material::default() };
     let mut slope = Slope::new(material, Response::default(), 0.01);
     let [start, before, after] = [0, 120, 600].map(|frames| slope.after(frames, Vec3::ZERO));
     [farthest(&start, &before), farthest(&before, &after)]
@@ -128,7 +128,8 @@ fn what_slides_is_held_back_by_kinetic_friction() {
 
 /// How far any point goes in a second at rest, and from 0.2 to 0.4 s after the slope was jerked down under it [m].
 fn jerked(model: Model, friction_kinetic: f32) -> [f32; 2] {
-    let material = Material { model, friction: 0.4, friction_kinetic, bend: 0.01, ..Material::default() };
+    let material =
+        Material { model, friction: 0.4, friction_kinetic, bend: 0.01, drag: 0.3, ..Material::default() };
     let mut slope = Slope::new(material, Response::default(), 0.04);
     let [start, still] = [0, 60].map(|frames| slope.after(frames, Vec3::ZERO));
     slope.after(1, Vec3::Z * 0.01);

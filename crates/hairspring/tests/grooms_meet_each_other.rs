@@ -39,7 +39,7 @@ fn patches() -> Vec<Vec<Vec3>> {
 fn groom(strands: &[Vec<Vec3>]) -> SceneGroom {
     SceneGroom {
         groom: Groom::from_strands(strands, 35e-6),
-        materials: vec![Material::default()],
+        materials: vec![Material { drag: 0.1, ..Material::default() }],
         guides: Guides::All,
         ..SceneGroom::default()
     }

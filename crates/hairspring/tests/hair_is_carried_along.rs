@@ -48,7 +48,7 @@ impl Head {
         let rest = Rigid::default();
         let obstacle = ObstaclePose::new(ball(), rest.matrix(), rest.matrix(), 1.0);
         let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-        let material = Material { model, ..Material::default() };
+        let material = Material { model, drag: 0.1, ..Material::default() };
         let gravity = Vec3::new(0.0, -9.81, 0.0);
         let mut simulation =
             Simulation::new(groom.clone(), &all, &[material], solver, gravity, rest, &[obstacle]);

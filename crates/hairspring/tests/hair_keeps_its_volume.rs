@@ -49,7 +49,10 @@ fn the_first_frame_is_the_groom_and_it_stays() {
     for method in METHODS {
         let (own_start, own_first, own_last) = played(method);
         assert!(own_start == start, "{method:?}: frame 1 is another groom");
-        assert!(own_first == first, "{method:?}: hair at rest was pushed");
+        // Strands meet within the frame too, where they creep by what rounding leaves of their balance.
+        let pushed = own_first.iter().zip(&first).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        println!("{method:?}: {pushed} m from without after a frame");
+        assert!(pushed < 1e-7, "{method:?}: hair at rest was pushed by {pushed} m");
         println!(
             "{method:?}: {} m in the mean after a second, {} m from without",
             apart(&own_last, &start),

@@ -23,7 +23,7 @@ const STRANDS: u32 = 10;
 
 /// Strands that stand out along X, 1 mm above the origin's height, and begin at each tenth of a segment, none of them with a point at the origin.
 fn hair(model: Model, rest: &[ObstaclePose]) -> (Simulation, Vec<Rigid>) {
-    hair_of(&Material { model, ..Material::default() }, Solver::default(), rest)
+    hair_of(&Material { model, drag: 0.5, ..Material::default() }, Solver::default(), rest)
 }
 
 /// The same, of this material and solved so.

@@ -122,7 +122,7 @@ fn falling(groom: &Arc<Groom>, model: Model, integrator: Integrator) -> Simulati
     let explicit = matches!(integrator, Integrator::ExplicitEuler | Integrator::Verlet);
     let substeps = if explicit { 400 } else { 4 };
     let solver = Solver { integrator, substeps, sag_free: false, ..Solver::default() };
-    let material = Material { model, ..Material::default() };
+    let material = Material { model, drag: 0.1, ..Material::default() };
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
     Simulation::new(groom.clone(), &all, &[material], solver, GRAVITY, ROOT, &[])
 }
@@ -206,7 +206,7 @@ fn lock() -> Scene {
     Scene {
         grooms: vec![SceneGroom {
             groom: Groom::from_strands(strands, 40e-6),
-            materials: vec![Material::default()],
+            materials: vec![Material { drag: 0.1, ..Material::default() }],
             guides: Guides::Count(8),
             ..SceneGroom::default()
         }],

@@ -101,7 +101,7 @@ fn blown(
         .map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() })
         .collect();
     for frame in 0..frames {
-        let air = Air { time: frame as f32 / 60.0, ..air };
+        let air = Air { time: frame as f64 / 60.0, ..air };
         simulation.step(&Drive { dt: 1.0 / 60.0, anchor: Rigid::default(), roots: &roots, obstacles, air });
     }
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
@@ -137,7 +137,7 @@ fn ball() -> MovingObstacle {
 #[test]
 fn a_body_shelters_what_is_behind_it_alone() {
     let groom = hanging(&[Vec3::new(0.0, 0.1, -0.1), Vec3::new(0.0, 0.1, 0.15), Vec3::new(0.3, 0.1, 0.15)]);
-    let air = Air { wind: Wind { velocity: Vec3::Z * 0.6, ..Wind::default() }, ..Air::default() };
+    let air = Air { wind: Wind { velocity: Vec3::Z * 0.12, ..Wind::default() }, ..Air::default() };
     let open = blown(&groom, air, &Shelter::default(), &[ball()], 120);
     let lee = blown(&groom, air, &Shelter { body: 200.0, ..Shelter::default() }, &[ball()], 120);
     let tips = [0, 1, 2].map(|s| [&open, &lee].map(|points| tip(&groom, points, s)));
@@ -155,7 +155,7 @@ fn a_body_shelters_what_is_behind_it_alone() {
 fn deep_hair_feels_less_wind() {
     let roots: Vec<Vec3> = (0..240).map(|k| Vec3::new((k % 8) as f32, 0.0, (k / 8) as f32) * 0.005).collect();
     let groom = hanging(&roots);
-    let air = Air { wind: Wind { velocity: Vec3::Z * 0.6, ..Wind::default() }, ..Air::default() };
+    let air = Air { wind: Wind { velocity: Vec3::Z * 0.12, ..Wind::default() }, ..Air::default() };
     let open = blown(&groom, air, &Shelter::default(), &[], 60);
     let inside = blown(&groom, air, &Shelter { hair: 50.0, ..Shelter::default() }, &[], 60);
     let row = |points: &[Vec3], z: usize| (0..8).map(|x| tip(&groom, points, z * 8 + x)).sum::<f32>() / 8.0;

@@ -5,7 +5,12 @@ mod work;
 
 use crate::{error::AppError, pulled::Push, snapshot::Snapshot};
 use glam::Vec3;
-use hairspring::{around::Tool, collide::Rigid, scene::Scene, stage::Value};
+use hairspring::{
+    around::Tool,
+    collide::Rigid,
+    scene::Scene,
+    stage::{FrameRate, Value},
+};
 use hairspring_view::gpu::Gpu;
 use std::{
     sync::{
@@ -17,7 +22,10 @@ use std::{
 };
 use work::Work;
 
-/// Length of a step [s]: what a frame of most screens takes.
+/// Rate of steps: that of most screens.
+pub const RATE: FrameRate = FrameRate::new(60, 1).expect("60 Hz is a rate");
+
+/// Length of a step [s].
 pub const STEP: f32 = 1.0 / 60.0;
 
 /// What the thread is told.
@@ -35,7 +43,7 @@ pub enum Order {
     /// Seconds of the scene in a second, above 0.
     Speed(f32),
     /// Begins anew after so many seconds; `None`: plays on.
-    Loop(Option<f32>),
+    Loop(Option<f64>),
     /// Takes a tool, which moves at once with every `Carry`.
     Take(Tool, Rigid),
     /// Moves it.

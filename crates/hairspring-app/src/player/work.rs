@@ -1,6 +1,6 @@
 //! What the thread does: it obeys orders between steps, and steps when one is due.
 
-use super::{Order, STEP, Shared, lock};
+use super::{Order, RATE, STEP, Shared, lock};
 use crate::{
     error::AppError,
     memory,
@@ -37,7 +37,7 @@ pub(super) struct Work {
     pub(super) stages: Vec<(Stage, Arc<Still>)>,
     pub(super) playing: bool,
     pub(super) speed: f32,
-    pub(super) end: Option<f32>,
+    pub(super) end: Option<f64>,
     pub(super) tool: Option<Vec<ToolId>>,
     /// Where the body is carried, and a tool, and what is pushed, and where the pointer has them.
     pub(super) body: Pulled,
@@ -274,14 +274,16 @@ impl Work {
 
     fn advance(&mut self) {
         self.pull();
-        if self.end.is_some_and(|end| self.stages.first().is_some_and(|(s, _)| s.time() + 0.5 * STEP > end)) {
+        if self.end.is_some_and(|end| {
+            self.stages.first().is_some_and(|(s, _)| s.time() + 0.5 * f64::from(STEP) > end)
+        }) {
             self.reset();
             // It counts as a step: who waits for so many would else wait for ever.
             self.step += 1;
             return;
         }
         for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
-            let report = stage.advance(STEP);
+            let report = stage.advance_frame(RATE);
             self.reset_strands += report.step.reset_strands;
             if k == 0 {
                 self.report = FrameReport { follow: self.report.follow, ..report };

@@ -48,7 +48,7 @@ pub struct Session {
     /// What was said of the last scene as it was read.
     notes: Vec<String>,
     /// Length of the scene's motion [s].
-    length: Option<f32>,
+    length: Option<f64>,
     /// Names of the body's joints.
     joints: Vec<String>,
     /// What the two that are compared differ in.
@@ -313,7 +313,7 @@ impl Session {
     }
 
     /// Length of the scene's motion [s], if it has one.
-    pub fn length(&self) -> Option<f32> {
+    pub fn length(&self) -> Option<f64> {
         self.length
     }
 

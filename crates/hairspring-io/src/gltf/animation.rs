@@ -66,7 +66,7 @@ pub(super) fn clips(
                 track.apply(time, &mut samples[first + track.joint]);
             }
         }
-        clips.push(Clip { name, rate: RATE, joint_count, samples });
+        clips.push(Clip { name, rate: f64::from(RATE), joint_count, samples });
     }
     Ok(clips)
 }

@@ -10,6 +10,7 @@ use crate::Problem;
 use glam::Vec3;
 use hairspring::{
     around::{Tool, ghost::Ghost},
+    groom::MAX_COORDINATE,
     material::Material,
     scene::{Effects, Guides, HairLook, Hand, Shape},
 };
@@ -324,9 +325,9 @@ pub(super) fn look(text: &str, from: usize, look: &HairLook) -> Result<(), Probl
 pub(super) fn effects(text: &str, from: usize, effects: &Effects) -> Result<(), Problem> {
     let checks = [
         ((0.0..=1.0).contains(&effects.clump), "clump", "0 to 1"),
-        (from_0(effects.curl_radius), "curl_radius", "0 or more [m]"),
+        ((0.0..=MAX_COORDINATE).contains(&effects.curl_radius), "curl_radius", "0 to 1000000 [m]"),
         (above_0(Some(effects.curl_length)), "curl_length", "above 0 [m]"),
-        (from_0(effects.noise), "noise", "0 or more [m]"),
+        ((0.0..=MAX_COORDINATE).contains(&effects.noise), "noise", "0 to 1000000 [m]"),
     ];
     first_failure(text, from, &checks)
 }

@@ -65,6 +65,7 @@ impl Reader<'_> {
         self.repairs.zero_segments += r.zero_segments;
         self.repairs.short_strands += r.short_strands;
         self.repairs.bad_radii += r.bad_radii;
+        self.repairs.folds += r.folds;
         Ok(loaded.value)
     }
 

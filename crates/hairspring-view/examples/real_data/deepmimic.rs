@@ -62,7 +62,7 @@ fn motion(text: &str) -> Result<(Vec<Joint>, Clip), Box<dyn Error>> {
             return Err(format!("a frame has {} numbers, not {WIDTH}", numbers.len()).into());
         }
         // The last frame has a length of 0.
-        rate = if samples.is_empty() { 1.0 / numbers[0] } else { rate };
+        rate = if samples.is_empty() { 1.0 / f64::from(numbers[0]) } else { rate };
         let mut rest = &numbers[4..];
         for ((_, _, _, hinge), joint) in JOINTS.iter().zip(&joints) {
             let (own, after) = rest.split_at(if *hinge { 1 } else { 4 });

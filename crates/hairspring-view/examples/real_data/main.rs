@@ -21,7 +21,7 @@ use glam::Vec3;
 use hairspring::{
     scene::Scene,
     simulation::Measure,
-    stage::{Stage, StageError},
+    stage::{FrameRate, Stage, StageError},
 };
 use hairspring_io::read_scene;
 use hairspring_view::{
@@ -32,8 +32,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Length of a frame [s].
-const FRAME: f32 = 1.0 / 60.0;
+/// Frame rate.
+const RATE: FrameRate = FrameRate::new(60, 1).expect("60 Hz is a rate");
 
 /// What the command line asks for.
 struct Arguments {
@@ -117,11 +117,11 @@ fn read(path: &Path) -> Result<Scene, Box<dyn Error>> {
 struct Played {
     /// Body, simulated strands, follow hairs: time of each frame [ms].
     frames: Vec<[f64; 3]>,
-    duration: f32,
+    duration: f64,
     /// The worst of all frames.
     worst: Measure,
     /// When hair was fastest [s].
-    fastest: f32,
+    fastest: f64,
     /// Frames in which a segment was deeper than 1 mm.
     deep_frames: usize,
 }
@@ -181,7 +181,7 @@ fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
     let mut stage = Stage::new(scene)?;
     let mut played = Played { duration, ..Played::default() };
     while stage.time() < duration {
-        let report = stage.step(FRAME);
+        let report = stage.step_frame(RATE);
         let measure = stage.measure();
         if measure.speed_max > played.worst.speed_max {
             played.fastest = stage.time();
@@ -212,7 +212,7 @@ fn at_rest(scene: Scene) -> Result<f64, StageError> {
     let still = Scene { clip: None, wind: Default::default(), ..scene };
     let mut stage = Stage::new(still)?;
     for _ in 0..60 {
-        stage.step(FRAME);
+        stage.step_frame(RATE);
     }
     let (mut sum, mut count) = (0.0, 0);
     for strands in stage.strands() {
@@ -224,12 +224,12 @@ fn at_rest(scene: Scene) -> Result<f64, StageError> {
 }
 
 /// Plays up to `time` [s] and draws.
-fn draw(stage: &mut Stage, time: f32, size: [u32; 2], path: &Path) -> Result<(), Box<dyn Error>> {
+fn draw(stage: &mut Stage, time: f64, size: [u32; 2], path: &Path) -> Result<(), Box<dyn Error>> {
     if time < stage.time() {
         stage.reset();
     }
-    while stage.time() + 0.5 * FRAME < time {
-        stage.step(FRAME);
+    while stage.time() + 0.5 * RATE.frame_length() < time {
+        stage.step_frame(RATE);
     }
     let hair: Vec<HairDraw> = stage.strands().map(HairDraw::of).collect();
     let bodies: Vec<MeshDraw> = stage.body().map(MeshDraw::of).into_iter().collect();

@@ -73,7 +73,8 @@ pub fn scene(path: &Path) -> Result<Scene, Box<dyn Error>> {
     let parts = vec![Part { name: "woman".into(), triangles: all, color: SKIN, roughness: 0.6 }];
     let mut mesh = Mesh { positions, triangles, parts, ..Mesh::default() };
     mesh.compute_normals();
-    scene.clip = Some(Clip { name: "face".into(), rate: RATE, joint_count: joints.len(), samples });
+    scene.clip =
+        Some(Clip { name: "face".into(), rate: f64::from(RATE), joint_count: joints.len(), samples });
     scene.body = Some(Body { mesh, joints, skin: Some(skin) });
     Ok(scene)
 }

@@ -22,10 +22,10 @@ pub(super) struct Gust {
 
 impl Gust {
     /// The wind at `time` [s] over its mean [1].
-    pub fn factor(&self, time: f32) -> f32 {
-        let phase = TAU * self.rate * time + self.phase;
-        let gust = 0.6 * phase.sin() + 0.4 * (phase * SECOND + 1.0).sin();
-        1.0 + self.amount * gust
+    pub fn factor(&self, time: f64) -> f32 {
+        let phase = f64::from(TAU * self.rate) * time + f64::from(self.phase);
+        let gust = 0.6 * phase.sin() + 0.4 * (phase * f64::from(SECOND) + 1.0).sin();
+        1.0 + self.amount * gust as f32
     }
 
     /// How long the mean wind would take for the way that it makes by `time` [s]: the integral of [`Gust::factor`] [s].
@@ -49,7 +49,7 @@ mod tests {
         for rate in [0.0, 0.3, 2.0] {
             let gust = Gust { amount: 0.7, rate, phase: 0.4 };
             let steps = 20_000;
-            let at = |k: usize| (k as f32 + 0.5) * 3.0 / steps as f32;
+            let at = |k: usize| (k as f64 + 0.5) * 3.0 / steps as f64;
             let sum: f64 =
                 (0..steps).map(|k| f64::from(gust.factor(at(k)))).sum::<f64>() * 3.0 / steps as f64;
             assert!(

@@ -38,7 +38,7 @@ pub struct Air<'a> {
     /// The wind of all points.
     pub wind: Wind,
     /// Time at the start of the frame [s].
-    pub time: f32,
+    pub time: f64,
     /// What blows besides, each where it is in the frame.
     pub sources: &'a [Source],
     /// Eddies, which the wind of all points carries along.
@@ -48,7 +48,7 @@ pub struct Air<'a> {
 impl Air<'_> {
     /// The wind of all points `after` the start of the frame [m/s].
     pub(crate) fn uniform(&self, after: f32) -> Vec3 {
-        self.wind.velocity * self.gust().factor(self.time + after)
+        self.wind.velocity * self.gust().factor(self.time + f64::from(after))
     }
 
     fn gust(&self) -> Gust {
@@ -67,7 +67,7 @@ impl Air<'_> {
 
     /// The air in the middle of a frame of `dt` [s]; `noise` is memory.
     pub(crate) fn moment<'a>(&'a self, dt: f32, noise: &'a mut Noise) -> Moment<'a> {
-        let middle = f64::from(self.time) + 0.5 * f64::from(dt);
+        let middle = self.time + 0.5 * f64::from(dt);
         let way = self.wind.velocity.as_dvec3() * self.gust().travelled(middle);
         let noise = self.turbulence.is_on().then(|| {
             noise.set(&self.turbulence, way, middle);

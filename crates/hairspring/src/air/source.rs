@@ -35,7 +35,7 @@ pub struct WindSource {
 
 impl WindSource {
     /// The source as it blows at `time` [s], carried by `pose` since rest; `number`: which of the scene's it is, so that each has its own gusts.
-    pub fn at(&self, number: usize, pose: Rigid, time: f32) -> Source {
+    pub fn at(&self, number: usize, pose: Rigid, time: f64) -> Source {
         // Golden angles: no two begin alike.
         let gust = Gust { amount: self.gust, rate: self.gust_rate, phase: 2.4 * (number + 1) as f32 };
         let factor = if self.gust_rate > 0.0 { gust.factor(time) } else { 1.0 };

@@ -64,7 +64,7 @@ pub struct Waypoint {
 
 impl Charged {
     /// Its middle at `time` [s], where what carries it is at rest [m].
-    pub fn center(&self, time: f32) -> Vec3 {
+    pub fn center(&self, time: f64) -> Vec3 {
         let start = Waypoint { time: 0.0, center: self.center };
         let key = |k: usize| k.checked_sub(1).map_or(start, |k| self.path[k]);
         let way = between(1 + self.path.len(), |k| key(k).time, time);

@@ -66,16 +66,14 @@ pub(crate) struct Kinds {
 }
 
 impl Around {
-    /// Room for what acts on `points`. Nothing does, but for pushes where they are `kept`: whoever goes first writes them all.
-    pub fn prepare(&mut self, points: usize, kinds: Kinds, kept: bool) {
+    /// Room for what acts on `points`, of which nothing does yet.
+    pub fn prepare(&mut self, points: usize, kinds: Kinds) {
         let size = |on: bool| if on { points } else { 0 };
         self.push.resize(size(kinds.push || kinds.grip), [Row::default(); 3]);
         self.grip.resize(size(kinds.grip), [Row::default(); grip::ROWS]);
         self.tines.resize(size(kinds.tines), [Row::default(); tines::ROWS]);
         self.air.resize(size(kinds.air), [Row::default(); 3]);
-        if !kept {
-            self.push.fill([Row::default(); 3]);
-        }
+        self.push.fill([Row::default(); 3]);
         self.grip.fill([Row::default(); grip::ROWS]);
         self.tines.fill([Row::default(); tines::ROWS]);
         self.air.fill([Row::default(); 3]);

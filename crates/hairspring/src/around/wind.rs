@@ -4,7 +4,7 @@
 //! Δu = T(x) (W + Σ sources(x) + turbulence(x)) − W          W: the wind of all points, which the kernel has of every substep
 //! ```
 //!
-//! Drag takes it from there: it is implicit, and half as strong along the strand as across it.
+//! Drag (`strand/drag.rs`) acts on the velocity of that air relative to each point.
 
 use super::Surrounded;
 use crate::{

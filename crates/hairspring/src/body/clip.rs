@@ -35,13 +35,16 @@ impl Trs {
     }
 }
 
+/// How near a time is to a frame that it counts as being on [frames].
+const ON_FRAME: f64 = 1e-6;
+
 /// A motion: for every frame and joint, the joint's local transform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     /// The file's name for it.
     pub name: String,
     /// Frames a second [Hz], above 0.
-    pub rate: f32,
+    pub rate: f64,
     /// Joints a frame.
     pub joint_count: usize,
     /// Local transforms, frame after frame; shape `[frames][joints]`.
@@ -55,8 +58,8 @@ impl Clip {
     }
 
     /// From the first frame to the last [s].
-    pub fn duration(&self) -> f32 {
-        self.frame_count().saturating_sub(1) as f32 / self.rate
+    pub fn duration(&self) -> f64 {
+        self.frame_count().saturating_sub(1) as f64 / self.rate
     }
 
     /// The clip from frame `first` on; the last frame alone where there is no such frame.
@@ -67,11 +70,22 @@ impl Clip {
     }
 
     /// Local transforms at `time` [s], held at the ends; shape `[joints]`.
-    pub fn sample(&self, time: f32) -> Vec<Trs> {
+    pub fn sample(&self, time: f64) -> Vec<Trs> {
+        let (i, t) = self.place(time);
+        self.frame(i).iter().zip(self.frame(i + 1)).map(|(a, b)| a.lerp(b, t)).collect()
+    }
+
+    /// Local transforms of a frame, the last one's beyond it; shape `[joints]`.
+    pub(crate) fn frame(&self, frame: usize) -> &[Trs] {
         let last = self.frame_count().saturating_sub(1);
-        let at = (time * self.rate).clamp(0.0, last as f32);
-        let (i, t) = (at as usize, at.fract());
-        let frame = |f: usize| &self.samples[f.min(last) * self.joint_count..][..self.joint_count];
-        frame(i).iter().zip(frame(i + 1)).map(|(a, b)| a.lerp(b, t)).collect()
+        &self.samples[frame.min(last) * self.joint_count..][..self.joint_count]
+    }
+
+    /// The frame at or before `time` [s], and how far it is from there to the next, 0 to below 1. A time that is on a frame but for rounding is on it.
+    pub(crate) fn place(&self, time: f64) -> (usize, f32) {
+        let last = self.frame_count().saturating_sub(1);
+        let at = (time * self.rate).clamp(0.0, last as f64);
+        let near = at.round();
+        if (at - near).abs() < ON_FRAME { (near as usize, 0.0) } else { (at as usize, at.fract() as f32) }
     }
 }

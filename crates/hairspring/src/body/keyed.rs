@@ -5,7 +5,7 @@ use crate::timed::between;
 use glam::{Quat, Vec3};
 
 /// Frames a second of the clip [Hz].
-const RATE: f32 = 60.0;
+const RATE: f64 = 60.0;
 
 /// Where a body is at a time. Between keys it moves as people do, and is at rest at each.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +22,8 @@ pub struct Key {
 /// it rests.
 pub fn keyed(keys: &[Key], pivot: Vec3) -> Clip {
     let end = keys.last().map_or(0.0, |key| key.time);
-    let frames = (end * RATE).ceil() as usize + 1;
-    let samples = (0..frames).map(|frame| at(keys, pivot, frame as f32 / RATE)).collect();
+    let frames = (f64::from(end) * RATE).ceil() as usize + 1;
+    let samples = (0..frames).map(|frame| at(keys, pivot, frame as f64 / RATE)).collect();
     Clip { name: "keys".into(), rate: RATE, joint_count: 1, samples }
 }
 
@@ -32,17 +32,17 @@ pub fn keyed(keys: &[Key], pivot: Vec3) -> Clip {
 pub fn beside(own: Option<Clip>, rest: &[Trs], others: &[Clip]) -> Clip {
     let still = || Clip { name: "keys".into(), rate: RATE, joint_count: rest.len(), samples: rest.to_vec() };
     let own = own.unwrap_or_else(still);
-    let end = others.iter().map(Clip::duration).fold(own.duration(), f32::max);
+    let end = others.iter().map(Clip::duration).fold(own.duration(), f64::max);
     // Not one more for what is rounded.
     let frames = (end * own.rate - 1e-3).ceil() as usize + 1;
     let all = || std::iter::once(&own).chain(others);
-    let frame = |f: usize| all().flat_map(move |clip| clip.sample(f as f32 / own.rate));
+    let frame = |f: usize| all().flat_map(move |clip| clip.sample(f as f64 / own.rate));
     let (joint_count, samples) =
         (all().map(|clip| clip.joint_count).sum(), (0..frames).flat_map(frame).collect());
     Clip { name: own.name.clone(), rate: own.rate, joint_count, samples }
 }
 
-fn at(keys: &[Key], pivot: Vec3, time: f32) -> Trs {
+fn at(keys: &[Key], pivot: Vec3, time: f64) -> Trs {
     let Some((from, to, share)) = between(keys.len(), |k| keys[k].time, time) else { return Trs::default() };
     let (from, to, t) = (&keys[from], &keys[to], ease(share));
     let rotation = from.rotation.slerp(to.rotation, t);

@@ -1,6 +1,7 @@
 //! The body that hair grows on and meets: mesh, skeleton, skin weights, clips of motion.
 
 mod clip;
+mod cuts;
 mod keyed;
 mod mesh;
 mod nearest;
@@ -8,6 +9,7 @@ mod pose;
 mod retarget;
 
 pub use clip::{Clip, Trs};
+pub(crate) use cuts::{Cuts, is_teleport};
 pub(crate) use keyed::ease;
 pub use keyed::{Key, beside, keyed};
 pub use mesh::{Mesh, Part};

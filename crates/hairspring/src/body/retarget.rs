@@ -1,7 +1,8 @@
 //! Motion from one skeleton onto another: a head that drives a bust, or a clip onto a rig whose joints have the same
 //! names.
 
-use super::{Body, Clip, Joint, Trs};
+use super::{Body, Clip, Joint, Trs, cuts};
+use crate::{collide::Rigid, scene::Solver};
 use glam::{Affine3A, Quat, Vec3};
 
 /// What of the head's travel through the world is kept by [`head_motion`].
@@ -60,7 +61,12 @@ pub fn head_motion(joints: &[Joint], clip: &Clip, name: &str, options: &HeadMoti
         .unzip();
     match options.travel {
         Travel::Keep => {}
-        Travel::InPlace => stay(&mut shifts, clip.rate, rest_frame),
+        Travel::InPlace => {
+            let pose = |(rotation, shift): (&Quat, &Vec3)| Rigid { rotation: *rotation, translation: *shift };
+            let path: Vec<Rigid> = rotations.iter().zip(&shifts).map(pose).collect();
+            let cuts = cuts::find(&path, clip.rate, Solver::default().jump);
+            stay(&mut shifts, clip.rate, rest_frame, &cuts);
+        }
         Travel::None => shifts.fill(Vec3::ZERO),
     }
     let samples = rotations.into_iter().zip(shifts).map(|(rotation, shift)| Trs {
@@ -71,19 +77,23 @@ pub fn head_motion(joints: &[Joint], clip: &Clip, name: &str, options: &HeadMoti
     Some(Clip { name: clip.name.clone(), rate: clip.rate, joint_count: 1, samples: samples.collect() })
 }
 
-/// Takes the path, averaged over a second, out of `shifts`; the rest frame stays at zero.
-fn stay(shifts: &mut [Vec3], rate: f32, rest_frame: usize) {
+/// Takes the path, averaged over a second, out of `shifts`; the rest frame stays at zero. No average reaches across one of the `cuts`.
+fn stay(shifts: &mut [Vec3], rate: f64, rest_frame: usize, cuts: &[(usize, usize)]) {
     let half = (rate * 0.5).round() as usize;
     let mut sums = vec![glam::DVec3::ZERO];
     for s in shifts.iter() {
         sums.push(sums[sums.len() - 1] + s.as_dvec3());
     }
-    let n = shifts.len();
-    for (f, shift) in shifts.iter_mut().enumerate() {
-        // The window is as long to either side, so that at the ends a steady walk still averages to its middle.
-        let reach = half.min(f).min(n - 1 - f);
-        let mean = (sums[f + reach + 1] - sums[f - reach]) / (2 * reach + 1) as f64;
-        *shift -= mean.as_vec3();
+    let mut starts = vec![0];
+    cuts.iter().for_each(|(before, after)| starts.extend(before + 1..=*after));
+    starts.push(shifts.len());
+    for shot in starts.windows(2) {
+        for f in shot[0]..shot[1] {
+            // The window is as long to either side, so that at the ends a steady walk still averages to its middle.
+            let reach = half.min(f - shot[0]).min(shot[1] - 1 - f);
+            let mean = (sums[f + reach + 1] - sums[f - reach]) / (2 * reach + 1) as f64;
+            shifts[f] -= mean.as_vec3();
+        }
     }
     let at_rest = shifts[rest_frame];
     shifts.iter_mut().for_each(|s| *s -= at_rest);
@@ -263,7 +273,7 @@ mod tests {
         let carried = retarget(&source.joints, &motion, &target).unwrap();
         assert_eq!((carried.matched, carried.unmatched.len()), (7, 0));
         for f in [0, 10, 29] {
-            let time = f as f32 / 60.0;
+            let time = f as f64 / 60.0;
             let (s, t) = (source.world(&motion.sample(time)), target.world(&carried.clip.sample(time)));
             for (a, b) in [(2, 3), (3, 4)] {
                 let direction = |w: &[Affine3A]| (w[b].translation - w[a].translation).normalize();
@@ -318,5 +328,17 @@ mod tests {
         assert_eq!(shift(Travel::None, 100), Vec3::ZERO);
         let swing = (60..180).map(|f| shift(Travel::InPlace, f)).fold(Vec3::ZERO, |m, s| m.max(s.abs()));
         assert!(swing.z < 1e-3 && (0.02..0.03).contains(&swing.y), "{swing}");
+    }
+
+    #[test]
+    fn a_cut_is_no_travel_in_place() {
+        let source = person(1.0, 0.0, Quat::IDENTITY);
+        let motion = clip(&source, 120, |t, pose| {
+            pose[0].translation.z += t + if t < 1.0 { 0.0 } else { 5.0 };
+        });
+        let head = head_motion(&source.joints, &motion, "Head", &HeadMotion::default()).unwrap();
+        let place = |frame: usize| head.samples[frame].translation;
+        let most = (1..120).map(|f| place(f).distance(place(f - 1))).fold(0.0, f32::max);
+        assert!(most < 0.02, "the head moves by {most} m in a frame");
     }
 }

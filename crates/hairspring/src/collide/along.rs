@@ -7,8 +7,7 @@
 //! ```
 
 use super::{Obstacle, ObstaclePose, pose::slope};
-use crate::strand::lanes::{F, V3};
-use fearless_simd::{mask32x8, prelude::*};
+use crate::strand::lanes::{F, Mask, Simd, V3};
 use glam::Vec3;
 
 /// Places of a segment that are looked at where it is measured, its end among them. Not its beginning, which is the end of the one before or goes
@@ -38,9 +37,10 @@ impl ObstaclePose {
 }
 
 /// The deepest place that was found between the ends of eight segments.
+#[derive(Clone, Copy)]
 pub(crate) struct Deepest<S: Simd> {
     /// Which of them have one within the distance that was asked for; of the others nothing is told.
-    pub found: mask32x8<S>,
+    pub found: Mask<S>,
     /// Distance to the surface, negative inside [m].
     pub distance: F<S>,
     /// The way out, a unit vector across the segment: that in which its least distance grows fastest.
@@ -52,12 +52,51 @@ pub(crate) struct Deepest<S: Simd> {
 }
 
 impl<S: Simd> Deepest<S> {
+    /// This, but `other` where `mask` is true.
+    #[inline(always)]
+    pub fn or(self, mask: Mask<S>, other: Self) -> Self {
+        Self {
+            found: (self.found & !mask) | (other.found & mask),
+            distance: mask.select(other.distance, self.distance),
+            normal: V3::select(mask, other.normal, self.normal),
+            gain: mask.select(other.gain, self.gain),
+            at: mask.select(other.at, self.at),
+        }
+    }
+
     /// That none was found.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         let zero = F::splat(simd, 0.0);
-        let found = mask32x8::splat(simd, false);
+        let found = Mask::splat(simd, false);
         Self { found, distance: zero, normal: V3::zero(simd), gain: zero, at: zero }
+    }
+
+    /// The deepest place `best` of segments along `u`, with a place on its `other` side.
+    ///
+    /// ```text
+    ///   ╲ n₁     n₂ ╱     on both sides of a thin wall or an edge: w n₁ + (1 − w) n₂ with nothing in it along the segment. What is deepest moves
+    ///    ╲    │    ╱      along as the segment does, so that the depth is less by that for each metre, out over the wall's rim; along one
+    ///     ╲___│___╱       side's normal it would be less here and more beyond
+    /// ```
+    #[inline(always)]
+    fn between(simd: S, found: Mask<S>, u: V3<S>, (best, other): (Look<S>, Look<S>)) -> Self {
+        let share = best.slope / (best.slope - other.slope);
+        // Walls that face away from each other; where an edge is blunter, the nearer side's normal across the segment is enough. (At a right angle, by
+        // rounding, a box would be now one and now the other.)
+        let thin = opposite(&best, &other) & best.rise.dot(other.rise).simd_lt(APART);
+        let share = thin.select(share, F::splat(simd, 0.0));
+        let rise = (other.rise - best.rise).mul_add(share, best.rise);
+        let (gain, across) = (rise - u * rise.dot(u)).length_and_unit();
+        let steep = gain.simd_lt(STEEP);
+        let (straight_gain, straight) = best.rise.length_and_unit();
+        Self {
+            found,
+            distance: best.distance,
+            normal: V3::select(steep, straight, across),
+            gain: thin.select(steep.select(straight_gain, gain), F::splat(simd, 1.0)),
+            at: best.at,
+        }
     }
 }
 
@@ -75,7 +114,7 @@ const PIECES: [usize; 2] = [4, 12];
 /// as each is told the way to its own.
 const STEEPEST: f32 = 2.0;
 
-/// Which of the segments from `a` to `a + e` (world) have a place between their ends that is `within` so much of the surface, less than 0 for places
+/// Which of the segments from `a` to `a + e` (world) have a place between their ends, for a convex shape no nearer to the beginning than the part `from` of them, that is `within` so much of the surface, less than 0 for places
 /// inside [m], and where. The middle is looked at and both quarters, more places where a field is finer than that, and then beside
 /// the deepest of them where tangents say that it is deeper.
 ///
@@ -86,8 +125,11 @@ pub(crate) fn deepest<S: Simd>(
     simd: S,
     pose: &ObstaclePose,
     (a, e): (V3<S>, V3<S>),
-    within: F<S>,
+    (from, within): (F<S>, F<S>),
 ) -> Option<Deepest<S>> {
+    if pose.shape.is_convex_formula() {
+        return deepest_convex(simd, pose, (a, e), (from, within));
+    }
     let splat = |x: f32| F::<S>::splat(simd, x);
     let (l, u) = e.length_and_unit();
     let spacing = match &pose.shape {
@@ -101,7 +143,7 @@ pub(crate) fn deepest<S: Simd>(
     let apart = 1.0 / pieces as f32;
     let mut seen = Seen::nothing(simd);
     let (mut middle, mut last, mut refined) = (seen.best, seen.best, seen.best);
-    let mut found = mask32x8::splat(simd, false);
+    let mut found = Mask::splat(simd, false);
     // The middle, all from the first on, and what is beside the deepest: in a loop, so that the code that looks is there once.
     for k in 0..=pieces {
         let at = match k {
@@ -134,17 +176,67 @@ pub(crate) fn deepest<S: Simd>(
             last = here;
         }
     }
-    let (best, rise, thin) = seen.out(simd, refined);
-    let (gain, across) = (rise - u * rise.dot(u)).length_and_unit();
-    let steep = gain.simd_lt(STEEP);
-    let (straight_gain, straight) = best.rise.length_and_unit();
-    Some(Deepest {
-        found: found & best.distance.simd_lt(within),
-        distance: best.distance,
-        normal: V3::select(steep, straight, across),
-        gain: thin.select(steep.select(straight_gain, gain), splat(1.0)),
-        at: best.at,
-    })
+    let (best, other) = seen.sides(refined);
+    let found = found & best.distance.simd_lt(within);
+    Some(Deepest::between(simd, found, u, (best, other)))
+}
+
+/// Most places of a segment that are looked at near a convex shape.
+const CONVEX_PLACES: usize = 10;
+
+/// Error of the depth at which the search near a convex shape ends, over the segment's length [1].
+const CONVEX_ERROR: f32 = 1e-4;
+
+/// The same for a convex shape, to within [`CONVEX_ERROR`]. Along the segment the distance is then a convex function: it lies above its tangents, so that its minimum is
+/// in the bracket between a place where it falls and one where it rises, no lower than where their tangents cross. That is the next place (the cutting-plane method
+/// of Kelley 1960, in one dimension). A shape that is much thinner than the segment cannot hide between samples.
+#[inline(always)]
+fn deepest_convex<S: Simd>(
+    simd: S,
+    pose: &ObstaclePose,
+    (a, e): (V3<S>, V3<S>),
+    (from, within): (F<S>, F<S>),
+) -> Option<Deepest<S>> {
+    let splat = |x: f32| F::<S>::splat(simd, x);
+    let (zero, one) = (splat(0.0), splat(1.0));
+    let (l, u) = e.length_and_unit();
+    let nothing = Seen::nothing(simd).best;
+    let (mut low, mut high) = (nothing, nothing);
+    let (mut at, mut found) = (splat(0.5), Mask::splat(simd, false));
+    let mut going = found;
+    for k in 0..CONVEX_PLACES {
+        let (distance, rise) = slope(simd, pose, e.mul_add(at, a));
+        let here = Look { at, distance, rise, slope: rise.dot(e) };
+        let falls = here.slope.simd_lt(0.0);
+        if k == 0 {
+            (low, high) = (here, here);
+            found = (here.distance - here.slope.abs() * 0.5).simd_lt(within);
+            going = found;
+            at = falls.select(one, from);
+        } else {
+            // The second place is the end toward which the middle falls, whatever the slope is there.
+            let is_low = if k == 1 { at.simd_eq(from) } else { falls };
+            low = Look::select(going & is_low, here, low);
+            high = Look::select(going & !is_low, here, high);
+            let width = high.at - low.at;
+            let [down, up] = [low.slope * width, high.slope * width];
+            let cross = (up + low.distance - high.distance) / (up - down).max(1e-30);
+            let cross = cross.max(0.0).min(1.0);
+            let cross = up.simd_gt(0.0).select(down.simd_lt(0.0).select(cross, zero), one);
+            let bound = cross.mul_add(down, low.distance);
+            found &= bound.simd_lt(within);
+            let error = low.distance.min(high.distance) - bound;
+            going &= found & error.simd_gt(l * CONVEX_ERROR);
+            at = cross.mul_add(width, low.at);
+        }
+        if !going.any_true() {
+            break;
+        }
+    }
+    let lower = low.distance.simd_lt(high.distance);
+    let sides = (Look::select(lower, low, high), Look::select(lower, high, low));
+    found &= sides.0.distance.simd_lt(within);
+    found.any_true().then(|| Deepest::between(simd, found, u, sides))
 }
 
 /// Where the segment may be deeper than at the deepest of the places that were looked at, which are `apart`: between that and the place beside it toward
@@ -193,29 +285,21 @@ impl<S: Simd> Seen<S> {
         Look::select(self.best.slope.simd_lt(0.0), self.after, self.before)
     }
 
-    /// The deepest place, with what was seen in a place `refined` between the deepest and the next, how fast the least distance of the segment grows
-    /// as it is moved [1], and whether that is between walls that face away from each other.
-    ///
-    /// ```text
-    ///   ╲ n₁     n₂ ╱     on both sides of a thin wall or an edge: w n₁ + (1 − w) n₂ with nothing in it along the segment. What is deepest moves
-    ///    ╲    │    ╱      along as the segment does, so that the depth is less by that for each metre, out over the wall's rim; along one
-    ///     ╲___│___╱       side's normal it would be less here and more beyond
-    /// ```
+    /// The deepest place, with what was seen in a place `refined` between the deepest and the next, and the place on the other side of it.
     #[inline(always)]
-    fn out(&self, simd: S, refined: Look<S>) -> (Look<S>, V3<S>, mask32x8<S>) {
-        let opposite = |a: &Look<S>, b: &Look<S>| (a.slope * b.slope).simd_lt(0.0);
+    fn sides(&self, refined: Look<S>) -> (Look<S>, Look<S>) {
         let deeper = refined.distance.simd_lt(self.best.distance);
         let best = Look::select(deeper, refined, self.best);
         // The two sides of a place between are that which it falls from and that which it falls to.
         let beyond = Look::select(opposite(&self.best, &refined), self.best, self.next());
-        let other = Look::select(deeper, beyond, refined);
-        let share = best.slope / (best.slope - other.slope);
-        // Walls that face away from each other; where an edge is blunter, the nearer side's normal across the segment is enough. (At a right angle, by
-        // rounding, a box would be now one and now the other.)
-        let apart = opposite(&best, &other) & best.rise.dot(other.rise).simd_lt(APART);
-        let share = apart.select(share, F::splat(simd, 0.0));
-        (best, (other.rise - best.rise).mul_add(share, best.rise), apart)
+        (best, Look::select(deeper, beyond, refined))
     }
+}
+
+/// Whether the distance falls at one of the places and rises at the other.
+#[inline(always)]
+fn opposite<S: Simd>(a: &Look<S>, b: &Look<S>) -> Mask<S> {
+    (a.slope * b.slope).simd_lt(0.0)
 }
 
 /// What is seen at a place of eight segments.
@@ -232,7 +316,7 @@ struct Look<S: Simd> {
 
 impl<S: Simd> Look<S> {
     #[inline(always)]
-    fn select(mask: mask32x8<S>, a: Self, b: Self) -> Self {
+    fn select(mask: Mask<S>, a: Self, b: Self) -> Self {
         Self {
             at: mask.select(a.at, b.at),
             distance: mask.select(a.distance, b.distance),
@@ -314,7 +398,7 @@ mod tests {
                     let (a, b) = (V3::splat(simd, a), V3::splat(simd, b));
                     let clear = F::splat(simd, clear);
                     pose.may_cut(simd, (b, b - a), -clear).any_true()
-                        && deepest(simd, &pose, (a, b - a), clear).is_some_and(|place| place.found.any_true())
+                        && deepest(simd, &pose, (a, b - a), (F::splat(simd, 0.0), clear)).is_some_and(|place| place.found.any_true())
                 });
                 cuts += 1;
                 if !found {

@@ -2,8 +2,10 @@
 
 use super::{lattice::Lattice, voxelize::BAND};
 use crate::body::nearest_on_triangle;
-use crate::strand::lanes::{F, LANES, Row, V3, load};
-use fearless_simd::{f32x4, mask32x8, prelude::*};
+use crate::strand::lanes::{F, LANES, Mask, Row, Simd, V3, load};
+use fearless_simd::f32x4;
+#[cfg(not(one_lane))]
+use fearless_simd::prelude::*;
 use glam::{UVec3, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -87,6 +89,11 @@ impl Grid {
         (self.lattice.origin + half, half.length())
     }
 
+    /// Length of the grid's shortest side [m].
+    pub(super) fn shortest_side(&self) -> f32 {
+        (self.lattice.size.min_element() - 1) as f32 * self.lattice.cell
+    }
+
     /// Distance [m] and outward unit normal at `p` [m]; outside the grid, the distance to the grid is added.
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
         let (out, cell, along) = self.lattice.locate(p);
@@ -164,9 +171,19 @@ impl Grid {
         }
     }
 
+    /// Whether the cell of `p` holds a place inside.
+    pub(crate) fn may_be_inside_at(&self, p: Vec3) -> bool {
+        let (_, cell, _) = self.lattice.locate(p);
+        let size = self.lattice.size;
+        let index = ((cell.z * size.y + cell.y) * size.x + cell.x) as usize;
+        self.inside
+            .get(index / u32::BITS as usize)
+            .is_none_or(|bits| bits >> (index as u32 % u32::BITS) & 1 == 1)
+    }
+
     /// Of eight points, those in a cell that holds a place inside; the others are outside.
     #[inline(always)]
-    pub(crate) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
+    pub(crate) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let mut may = Row([1.0; LANES]);
         if !self.inside.is_empty() {
             let (_, index, _) = self.lattice.locate_lanes(simd, p);
@@ -218,20 +235,24 @@ impl Grid {
 #[inline(always)]
 fn pairs<S: Simd>(simd: S, [a, b, c, d, e, f, g, h]: &[&[f32]; LANES], at: usize) -> [F<S>; 2] {
     let (low, high) = (pairs_of_four(simd, [a, b, c, d], at), pairs_of_four(simd, [e, f, g, h], at));
-    [low.0.combine(high.0), low.1.combine(high.1)]
+    [low.0.combine(high.0), low.1.combine(high.1)].map(|eight| F::from_native(simd, eight))
 }
 
 /// The same of four.
 #[inline(always)]
-fn pairs_of_four<S: Simd>(simd: S, [a, b, c, d]: [&[f32]; 4], at: usize) -> (f32x4<S>, f32x4<S>) {
+fn pairs_of_four<S: Simd>(
+    simd: S,
+    [a, b, c, d]: [&[f32]; 4],
+    at: usize,
+) -> (f32x4<S::Native>, f32x4<S::Native>) {
     let (a, b) = (four(simd, a, at), four(simd, b, at));
     let (c, d) = (four(simd, c, at), four(simd, d, at));
     a.zip_low(c).interleave(b.zip_low(d))
 }
 
 #[inline(always)]
-fn four<S: Simd>(simd: S, numbers: &[f32], first: usize) -> f32x4<S> {
-    f32x4::from_slice(simd, &numbers[first..first + 4])
+fn four<S: Simd>(simd: S, numbers: &[f32], first: usize) -> f32x4<S::Native> {
+    f32x4::from_slice(simd.native(), &numbers[first..first + 4])
 }
 
 /// `a` at `t` = 0, `b` at 1.
@@ -337,7 +358,7 @@ pub(super) mod tests {
         let [lanes, up, steep] = dispatch!(Level::new(), simd => {
             let p = V3::splat(simd, p);
             let ((d, n), (_, slope)) = (grid.distance_lanes(simd, p), grid.slope_lanes(simd, p));
-            [d[3], n.y[3], slope.y[3]]
+            [d, n.y, slope.y].map(|v| v.lane(3))
         });
         assert_eq!((distance, normal), (-0.02, Vec3::Y));
         assert_eq!((lanes, up), (-0.02, 1.0));

@@ -7,9 +7,8 @@
 
 use crate::{
     body::nearest_on_triangle,
-    strand::lanes::{F, V3},
+    strand::lanes::{F, Mask, Simd, V3},
 };
-use fearless_simd::{mask32x8, prelude::*};
 use glam::Vec3;
 use parry3d::transformation::try_convex_hull;
 
@@ -146,7 +145,7 @@ impl Hull {
 
     /// Of eight segments that end at `p` and are `e` long, those that no face has in front of it from end to end; the others are outside.
     #[inline(always)]
-    pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>, e: V3<S>) -> mask32x8<S> {
+    pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>, e: V3<S>) -> Mask<S> {
         let mut most = F::<S>::splat(simd, f32::MIN);
         for face in &self.faces {
             let n = V3::splat(simd, face.normal);

@@ -11,6 +11,7 @@ mod obstacle;
 mod pose;
 mod rigid;
 mod sheet;
+mod side;
 mod voxelize;
 
 pub(crate) use along::{Deepest, STEEP, deepest};
@@ -21,4 +22,5 @@ pub use pose::ObstaclePose;
 pub(crate) use pose::{contact, surface_displacement};
 pub use rigid::Rigid;
 pub use sheet::Sheet;
+pub(crate) use side::{Edges, Side};
 pub use voxelize::{Voxelizer, voxelize};

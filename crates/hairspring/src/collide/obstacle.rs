@@ -2,10 +2,9 @@
 
 use super::{Grid, Hull, Sheet};
 use crate::strand::{
-    lanes::{F, V3},
+    lanes::{F, Simd, V3},
     root::transform,
 };
-use fearless_simd::prelude::*;
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
@@ -60,6 +59,11 @@ impl Obstacle {
             Obstacle::Sphere { radius, .. } | Obstacle::Capsule { radius, .. } => *radius,
             _ => 0.0,
         }
+    }
+
+    /// Whether it is a convex formula, so that the deepest place of a segment is searched for exactly. Hulls are sampled: springs tremble on their edges otherwise.
+    pub(crate) fn is_convex_formula(&self) -> bool {
+        !matches!(self, Obstacle::Field(_) | Obstacle::Sheet(_) | Obstacle::Hull(_))
     }
 
     /// The distance from `p` [m] in the collider's own space, negative inside.
@@ -146,6 +150,15 @@ impl Obstacle {
             Obstacle::Field(grid) => -grid.distances.iter().copied().fold(0.0, f32::min),
             Obstacle::Hull(hull) => -hull.distance_and_normal(hull.bounds().0).0,
             Obstacle::Sheet(sheet) => sheet.thickness(),
+        }
+    }
+
+    /// Whether it is a solid whose [half thickness](Self::half_thickness) is less than `half` [m]. A field of which no side is that short is not searched.
+    pub(crate) fn is_thin(&self, half: f32) -> bool {
+        match self {
+            Obstacle::Sheet(_) => false,
+            Obstacle::Field(grid) => grid.shortest_side() < 4.0 * half && self.half_thickness() < half,
+            _ => self.half_thickness() < half,
         }
     }
 
@@ -283,7 +296,7 @@ mod tests {
                     let (d, n) = contact(simd, &pose, at);
                     let mut rows = [Row([0.0; LANES]); 3];
                     n.store(&mut rows);
-                    (d[3], Vec3::from(rows.map(|r| r.0[3])), pose.near(simd, at).any_true())
+                    (d.lane(3), Vec3::from(rows.map(|r| r.0[3])), pose.near(simd, at).any_true())
                 });
                 prop_assert!((lanes - distance).abs() < 1e-6, "{shape:?}: {lanes}, alone {distance}");
                 prop_assert!(normals.distance(normal) < 1e-3, "{shape:?}: {normals}, alone {normal}");

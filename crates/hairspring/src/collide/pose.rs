@@ -1,11 +1,10 @@
 //! A collider as the kernel sees it during a substep: where its shape is, who is near it, and how its surface moves, for eight points in the world at once.
 
-use super::{Grid, Obstacle, obstacle::ball_lanes};
+use super::{Grid, Obstacle, obstacle::ball_lanes, side::Edges};
 use crate::strand::{
-    lanes::{F, LANES, Row, V3},
+    lanes::{F, LANES, Mask, Row, Simd, V3},
     root::transform,
 };
-use fearless_simd::{mask32x8, prelude::*};
 use glam::{Mat3, Vec3};
 
 /// Cells between places that a segment longer than [`LONG`] is looked at on its way past a field [1], and from the outer ones to its ends half of that: it
@@ -33,6 +32,8 @@ pub struct ObstaclePose {
     bounds: (Vec3, f32),
     /// How far its places move in the substep: a matrix, by where each is from the pose's end, and what is the same for all [m].
     motion: (Mat3, Vec3),
+    /// Its edges, where it is a capsule or a box.
+    pub(crate) edges: Option<Edges>,
 }
 
 impl ObstaclePose {
@@ -42,12 +43,13 @@ impl ObstaclePose {
         let bounds = (end.0 * center + end.1, radius);
         // What does not move does so to the last bit, which a rotation and its inverse do not.
         let turned = if start.0 == end.0 { Mat3::ZERO } else { Mat3::IDENTITY - start.0 * end.0.transpose() };
-        Self { shape, start, end, share, bounds, motion: (turned, end.1 - start.1) }
+        let edges = Edges::new(&shape, start, end);
+        Self { shape, start, end, share, bounds, motion: (turned, end.1 - start.1), edges }
     }
 
     /// Which of eight points may be inside at the end of the substep; the others are not.
     #[inline(always)]
-    pub(crate) fn near<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
+    pub(crate) fn near<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let d = p - V3::splat(simd, self.bounds.0);
         let near = d.dot(d).simd_le(F::splat(simd, self.bounds.1 * self.bounds.1));
         if !near.any_true() {
@@ -69,8 +71,8 @@ impl ObstaclePose {
     ///  ╱  sag ↕    ╲   where that is below what it may, nothing need be looked at
     /// ```
     #[inline(always)]
-    pub(crate) fn may_cut<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> mask32x8<S> {
-        let none = mask32x8::splat(simd, false);
+    pub(crate) fn may_cut<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> Mask<S> {
+        let none = Mask::splat(simd, false);
         let size = e.dot(e);
         let mut may = size.simd_gt(sag * (8.0 * self.shape.roundness()));
         if !may.any_true() {
@@ -118,7 +120,7 @@ impl ObstaclePose {
 
     /// The same of segments that end beside the surface, as most of those have a place in a cell that holds one inside: it is not asked first.
     #[inline(always)]
-    pub(crate) fn may_lie_deep<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> mask32x8<S> {
+    pub(crate) fn may_lie_deep<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> Mask<S> {
         match &self.shape {
             Obstacle::Field(grid) if !is_long(simd, grid, e) => self.dips(simd, grid, (p, e), sag),
             _ => self.may_cut(simd, (p, e), sag),
@@ -136,7 +138,7 @@ impl ObstaclePose {
     ///        ⅓   ╌╌_╌╌    ⅔
     /// ```
     #[inline(always)]
-    fn dips<S: Simd>(&self, simd: S, grid: &Grid, (p, e): (V3<S>, V3<S>), sag: F<S>) -> mask32x8<S> {
+    fn dips<S: Simd>(&self, simd: S, grid: &Grid, (p, e): (V3<S>, V3<S>), sag: F<S>) -> Mask<S> {
         let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
         let [third, two] = [1.0 / 3.0, 2.0 / 3.0].map(|part| F::<S>::splat(simd, part));
         let (inner, rise) = grid.slope_lanes(simd, p - e * two);
@@ -159,9 +161,9 @@ impl ObstaclePose {
         simd: S,
         (p, e): (V3<S>, V3<S>),
         (size, cell): (F<S>, f32),
-        may: mask32x8<S>,
-        holds: impl Fn(V3<S>) -> mask32x8<S>,
-    ) -> mask32x8<S> {
+        may: Mask<S>,
+        holds: impl Fn(V3<S>) -> Mask<S>,
+    ) -> Mask<S> {
         // As many places as the longest of the eight needs.
         let mut looks = 1;
         while looks < MOST_LOOKS
@@ -170,7 +172,7 @@ impl ObstaclePose {
             looks += 1;
         }
         let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
-        let mut held = mask32x8::splat(simd, false);
+        let mut held = Mask::splat(simd, false);
         for k in 0..looks {
             held |= holds(e.mul_add(F::splat(simd, -(k as f32 + 0.5) / looks as f32), p));
         }
@@ -223,7 +225,7 @@ pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<
         let local = pose.local(simd, p);
         let mut rows = [Row::default(); 3];
         for lane in 0..LANES {
-            let at = Vec3::new(local.x[lane], local.y[lane], local.z[lane]);
+            let at = Vec3::new(local.x.lane(lane), local.y.lane(lane), local.z.lane(lane));
             let d = pose.end.0 * (displacement(at) * pose.share);
             for (row, d) in rows.iter_mut().zip(d.to_array()) {
                 row.0[lane] = d;

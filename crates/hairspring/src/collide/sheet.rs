@@ -13,9 +13,8 @@
 use super::lattice::Lattice;
 use crate::{
     body::nearest_on_triangle,
-    strand::lanes::{F, LANES, Row, V3, load},
+    strand::lanes::{F, LANES, Mask, Row, Simd, V3, load},
 };
-use fearless_simd::{mask32x8, prelude::*};
 use glam::{UVec3, Vec3};
 use std::sync::Arc;
 
@@ -216,7 +215,7 @@ impl Sheet {
 
     /// Of eight points, those in a cell that a triangle comes near to; the others are outside.
     #[inline(always)]
-    pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> mask32x8<S> {
+    pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let (_, cells, _) = self.lattice.locate_lanes(simd, p);
         let may = Row(cells.map(|cell| if self.first[cell] < self.first[cell + 1] { 1.0 } else { 0.0 }));
         load(simd, &may).simd_gt(0.0)
@@ -228,7 +227,8 @@ impl Sheet {
         let (_, cells, _) = self.lattice.locate_lanes(simd, p);
         let mut rows = [Row::default(); 4];
         for (lane, cell) in (0..LANES).zip(cells) {
-            let (distance, normal) = self.in_cell(cell, Vec3::new(p.x[lane], p.y[lane], p.z[lane]));
+            let (distance, normal) =
+                self.in_cell(cell, Vec3::new(p.x.lane(lane), p.y.lane(lane), p.z.lane(lane)));
             for (row, v) in rows.iter_mut().zip([normal.x, normal.y, normal.z, distance]) {
                 row.0[lane] = v;
             }

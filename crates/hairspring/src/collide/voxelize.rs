@@ -12,9 +12,9 @@ use super::{
 };
 use crate::strand::{
     dispatch::dispatch,
-    lanes::{F, LANES, V3},
+    lanes::{F, LANES, Simd, V3},
 };
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::Level;
 use glam::{DVec2, UVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;

@@ -2,9 +2,8 @@
 
 use crate::{
     collide::{ObstaclePose, contact},
-    strand::lanes::{LANES, Row, V3, load},
+    strand::lanes::{LANES, Row, Simd, V3, load},
 };
-use fearless_simd::prelude::*;
 use glam::Vec3;
 
 /// Moves the points of one strand that are deeper inside a collider than their `clearance` (0 or less) [m] to the surface.

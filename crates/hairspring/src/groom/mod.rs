@@ -3,12 +3,14 @@
 mod bind;
 mod curve;
 mod grow;
+mod precision;
 mod sanitize;
 mod thicken;
 
 pub use bind::{RootBinding, bind_roots, bind_roots_where};
 pub use curve::Curve;
 pub use grow::{Growth, grow};
+pub use precision::{Imprecise, MAX_COORDINATE, first_imprecise};
 pub use sanitize::{Repairs, sanitize};
 pub use thicken::{Thicken, thicken};
 

@@ -1,6 +1,6 @@
 //! Repairs of what real files contain: duplicate points, non-finite values, strands of a single point.
 
-use super::{DEFAULT_RADIUS, Groom};
+use super::{DEFAULT_RADIUS, Groom, MAX_COORDINATE};
 use glam::Vec3;
 
 /// What [`sanitize`] found and repaired. Nothing is dropped without being counted here.
@@ -14,10 +14,12 @@ pub struct Repairs {
     pub short_strands: usize,
     /// Radii that were not positive and finite, replaced by the strand's mean or the default.
     pub bad_radii: usize,
+    /// Joints at which a strand turns by more than 150°. They are counted and left as they are.
+    pub folds: usize,
 }
 
 impl Repairs {
-    /// Sum of all counts.
+    /// Sum of all counts of what was repaired.
     pub fn total(&self) -> usize {
         self.non_finite_points + self.zero_segments + self.short_strands + self.bad_radii
     }
@@ -36,11 +38,11 @@ const SHORTEST_STRAND: f32 = 1e-6;
 /// Length of the stub that stands in for a strand without a shape [m].
 const STUB: f32 = 1e-3;
 
-/// Largest coordinate that is believed [m]: beyond it squares overflow and f32 has no sub-millimetre left.
-const FARTHEST: f32 = 1e6;
-
 /// Repairs `groom` in place and says what was repaired: afterwards every strand has three points at least, every
 /// coordinate and radius is finite, and no segment is near zero. No strand is dropped, and a second call finds nothing.
+///
+/// A strand that is shorter than the resolution of single precision at its place has no shape to keep. A groom with such strands is better refused
+/// beforehand; [`first_imprecise`](super::first_imprecise) finds them.
 pub fn sanitize(groom: &mut Groom) -> Repairs {
     let mut repairs = Repairs::default();
     if groom.offsets.is_empty() {
@@ -52,9 +54,17 @@ pub fn sanitize(groom: &mut Groom) -> Repairs {
         let range = groom.range(s);
         repairs.non_finite_points += fill_non_finite(&mut groom.points[range.clone()]);
         repairs.zero_segments += spread_zero_segments(&mut groom.points[range.clone()]);
+        repairs.folds += folds(&groom.points[range.clone()]);
         repairs.bad_radii += mend_radii(&mut groom.radii[range]);
     }
     repairs
+}
+
+/// Joints that turn by more than 150°.
+fn folds(points: &[Vec3]) -> usize {
+    const COSINE: f32 = -0.866;
+    let turn = |w: &[Vec3]| (w[1] - w[0]).normalize_or_zero().dot((w[2] - w[1]).normalize_or_zero());
+    points.windows(3).filter(|w| turn(w) < COSINE).count()
 }
 
 /// Gives strands of fewer than three points their missing ones, by resampling every per-point array.
@@ -105,10 +115,10 @@ fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
     };
 }
 
-/// Moves points that are not finite (or beyond [`FARTHEST`]) onto the line between their finite neighbours; at the ends,
+/// Moves points that are not finite (or beyond [`MAX_COORDINATE`]) onto the line between their finite neighbours; at the ends,
 /// onward by the nearest segment; a strand without a finite point goes to the origin. Returns how many.
 fn fill_non_finite(points: &mut [Vec3]) -> usize {
-    let good = |p: &Vec3| p.is_finite() && p.abs().max_element() <= FARTHEST;
+    let good = |p: &Vec3| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE;
     let finite: Vec<usize> = (0..points.len()).filter(|i| good(&points[*i])).collect();
     let bad = points.len() - finite.len();
     if bad == 0 {
@@ -153,7 +163,7 @@ fn spread_zero_segments(points: &mut [Vec3]) -> usize {
     }
     for spread in [spread_apart, spread_evenly, spread_straight] {
         spread(points, &old, &at);
-        if short_segments(points) == 0 && points.iter().all(|p| p.abs().max_element() <= FARTHEST) {
+        if short_segments(points) == 0 && points.iter().all(|p| p.abs().max_element() <= MAX_COORDINATE) {
             return short;
         }
     }
@@ -219,7 +229,7 @@ fn spread_straight(points: &mut [Vec3], old: &[Vec3], at: &[f32]) {
 /// end of what is believed), long enough to be told from noise wherever it is.
 fn stub(points: &mut [Vec3]) {
     let root = points[0];
-    let up = if root.y > FARTHEST * 0.5 { -1.0 } else { 1.0 };
+    let up = if root.y > MAX_COORDINATE * 0.5 { -1.0 } else { 1.0 };
     let step = up * STUB.max(noise_of(points) * 4.0) / (points.len() - 1) as f32;
     for (i, p) in points.iter_mut().enumerate() {
         *p = root + Vec3::Y * (step * i as f32);
@@ -232,9 +242,9 @@ fn noise_of(points: &[Vec3]) -> f32 {
     reach * f32::EPSILON * 16.0 * (points.len() - 1) as f32
 }
 
-/// The point with no coordinate beyond [`FARTHEST`].
+/// The point with no coordinate beyond [`MAX_COORDINATE`].
 fn within_reach(p: Vec3) -> Vec3 {
-    p.clamp(Vec3::splat(-FARTHEST), Vec3::splat(FARTHEST))
+    p.clamp(Vec3::splat(-MAX_COORDINATE), Vec3::splat(MAX_COORDINATE))
 }
 
 /// The place at distance `d` along a strand whose points are at distances `at`.
@@ -304,6 +314,15 @@ mod tests {
     }
 
     #[test]
+    fn folds_are_counted_and_kept() {
+        let strand = [Vec3::ZERO, Vec3::Y, Vec3::Y * 0.5 + Vec3::X * 0.05, Vec3::X + Vec3::Y];
+        let mut groom = Groom::from_strands([strand], 4e-5);
+        let repairs = sanitize(&mut groom);
+        assert_eq!((repairs.folds, repairs.total()), (1, 0));
+        assert_eq!(groom.strand(0), strand);
+    }
+
+    #[test]
     fn bad_radii_take_the_strands_mean() {
         let mut groom = Groom::from_strands([[Vec3::ZERO, Vec3::Y, Vec3::Y * 2.0]], 4e-5);
         groom.radii = vec![2e-5, 0.0, f32::NAN];
@@ -368,7 +387,7 @@ mod tests {
                 prop_assert!(groom.strand(s).windows(2).all(|w| w[0] != w[1]));
             }
             let once = groom.clone();
-            prop_assert_eq!(sanitize(&mut groom), Repairs::default());
+            prop_assert_eq!(sanitize(&mut groom).total(), 0);
             prop_assert_eq!(groom, once);
         }
     }

@@ -39,8 +39,8 @@ pub struct Material {
     /// Relaxation time of the fibre's bending [s], 0 or more: larger stops the hair's own vibrations sooner. Default 0.01: the
     /// solver adds next to none, and in a head of hair neighbours take a swing's energy within a second.
     pub damping: f32,
-    /// Multiplier over the drag of the air on a lone fibre, 0 or more. Default 0.5: inside a head of hair the air
-    /// moves along with it in part.
+    /// Multiplier over the drag of the air on a lone, smooth fiber, 0 or more. Default 1. In a scene, dense hair shelters itself from the air
+    /// by its density besides.
     pub drag: f32,
     /// Coulomb friction against the body, 0 to 1: static, what holds. Default 0.3: hair on skin, 0.1 to 0.3 along the scales, higher against.
     pub friction: f32,
@@ -100,7 +100,7 @@ impl Default for Material {
             bend_tip: 1.0,
             flatness: 1.0,
             damping: 0.01,
-            drag: 0.5,
+            drag: 1.0,
             friction: 0.3,
             friction_kinetic: 1.0,
             ghost: Ghost::default(),
@@ -120,8 +120,8 @@ pub fn preset(name: &str) -> Option<Material> {
         "straight" => Material { bend: 2.0, ..base },
         "wavy" => Material { bend: 4.0, damping: 0.015, ..base },
         "curly" => Material { bend: 8.0, damping: 0.02, ..base },
-        "coily" => Material { bend: 16.0, damping: 0.025, drag: 0.6, ..base },
-        "short-fur" => Material { radius: Some(25e-6), bend: 1.0, bend_tip: 0.5, drag: 0.6, ..base },
+        "coily" => Material { bend: 16.0, damping: 0.025, ..base },
+        "short-fur" => Material { radius: Some(25e-6), bend: 1.0, bend_tip: 0.5, ..base },
         _ => return None,
     })
 }

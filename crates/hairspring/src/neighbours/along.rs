@@ -37,6 +37,11 @@ impl Along {
         self.before.copy_from_slice(&hair.v);
     }
 
+    /// What the velocity of point `i` has changed by since [`Along::begin`] [m/s].
+    pub fn change(&self, i: usize, hair: &Hair) -> Vec3 {
+        hair.v[i] - self.before[i]
+    }
+
     /// Takes out of all changes of velocity what would stretch a segment.
     pub fn keep_lengths(&mut self, hair: &mut Hair) {
         for s in 0..hair.strand_count() {

@@ -11,25 +11,62 @@ const CELLS_A_SEGMENT: usize = 8;
 /// Buckets a segment, before the next power of two.
 const BUCKETS_A_SEGMENT: usize = 4;
 
-/// Edge of a cell, over the mean of the boxes' longest edges [1].
-const CELL: f32 = 1.5;
+/// How much cells grow at once, while segments reach into too many [1].
+const GROWTH: f32 = 1.25;
+
+/// Most others that a segment is shown. Hair that falls in on itself has some tens that come near; hundreds are in one place, where each is pressed by many as
+/// it is.
+const MOST_FOUND: usize = 256;
 
 /// Farthest cell that is told from others: 2³⁰ in each direction.
 const FARTHEST: f32 = (1 << 30) as f32;
+
+/// A segment with what is around it that counts as near.
+#[derive(Clone, Copy)]
+struct Boxed {
+    segment: u32,
+    /// Its box now: lowest and highest corner [m].
+    now: [Vec3; 2],
+    /// Where its middle goes until the next time [m], and how much more each end does.
+    way: Vec3,
+    more: f32,
+    /// The box that it keeps in until then [m].
+    swept: [Vec3; 2],
+}
+
+impl Boxed {
+    fn new(segment: u32, [a, b]: [Vec3; 2], reach: f32, ways: [Vec3; 2]) -> Self {
+        let now = [a.min(b) - reach, a.max(b) + reach];
+        let (way, more) = (ways[0].midpoint(ways[1]), 0.5 * ways[0].distance(ways[1]));
+        let swept = [now[0] + way.min(Vec3::ZERO) - more, now[1] + way.max(Vec3::ZERO) + more];
+        Self { segment, now, way, more, swept }
+    }
+
+    /// Whether its box may meet another's until the next time. What goes along with the other comes no nearer to it.
+    fn may_meet(&self, other: &Self) -> bool {
+        let (way, more) = (self.way - other.way, self.more + other.more);
+        let low = self.now[0] + way.min(Vec3::ZERO) - more;
+        let high = self.now[1] + way.max(Vec3::ZERO) + more;
+        low.cmple(other.now[1]).all() && other.now[0].cmple(high).all()
+    }
+}
 
 /// The segments, sorted by cells. Memory is as large as it will ever be.
 #[derive(Default)]
 pub struct Grid {
     /// Edge of a cell [m].
     cell: f32,
-    /// The segments, and the box that each keeps in until the next time [m].
-    segments: Vec<(u32, [Vec3; 2])>,
+    segments: Vec<Boxed>,
     /// First entry of each bucket, and of the first after the last.
     first: Vec<u32>,
     /// Cells and who is in them: places in `segments`.
     entries: Vec<(IVec3, u32)>,
     /// Neighbours of one segment.
     found: Vec<u32>,
+    /// Pairs that the last [`Grid::pairs`] looked at.
+    pub looked_at: usize,
+    /// Segments that had more others near them than are shown.
+    pub crowded: usize,
 }
 
 impl Grid {
@@ -41,7 +78,9 @@ impl Grid {
             segments: Vec::with_capacity(segments),
             first: vec![0; buckets + 1],
             entries: vec![(IVec3::ZERO, 0); CELLS_A_SEGMENT * segments],
-            found: Vec::with_capacity(segments),
+            found: Vec::with_capacity(MOST_FOUND),
+            looked_at: 0,
+            crowded: 0,
         }
     }
 
@@ -49,7 +88,7 @@ impl Grid {
     pub fn bytes(&self) -> usize {
         size_of_val(&self.first[..])
             + size_of_val(&self.entries[..])
-            + self.segments.capacity() * size_of::<(u32, [Vec3; 2])>()
+            + self.segments.capacity() * size_of::<Boxed>()
             + self.found.capacity() * size_of::<u32>()
     }
 
@@ -60,28 +99,38 @@ impl Grid {
         let common = (hair.v.iter().map(|v| v.as_dvec3()).sum::<glam::DVec3>() / count).as_vec3();
         self.sort_by(hair, |segment, ends| {
             let i = segment as usize;
-            let speed = [hair.v[i], hair.v[i + 1]].map(|v| v.distance(common));
-            reach(hair.radius[i], ends[0].distance(ends[1]), h * speed[0].max(speed[1]))
+            // Of what it may come nearer by, no more counts than its length: what is faster is not seen to come.
+            let length = ends[0].distance(ends[1]);
+            let ways = [i, i + 1].map(|i| ((hair.v[i] - common) * h).clamp_length_max(length));
+            Boxed::new(segment, ends, (1.0 + NEAR) * hair.radius[i], ways)
         });
     }
 
-    /// Sorts segments in, each with `around` it [m].
-    pub fn sort_by(&mut self, hair: &Hair, around: impl Fn(u32, [Vec3; 2]) -> f32) {
+    /// Sorts segments in that stay where they are, each with what is nearer than `reach` [m].
+    pub fn sort_still(&mut self, hair: &Hair, reach: f32) {
+        self.sort_by(hair, |segment, ends| Boxed::new(segment, ends, reach, [Vec3::ZERO; 2]));
+    }
+
+    /// Sorts segments in, each with its box.
+    fn sort_by(&mut self, hair: &Hair, boxed: impl Fn(u32, [Vec3; 2]) -> Boxed) {
         self.segments.clear();
-        let mut size = 0.0;
+        // Means of the shortest and the longest edges of boxes.
+        let mut size = [0.0; 2];
         for segment in hair.segments() {
-            let ends = hair.ends(segment);
-            let margin = around(segment, ends);
-            let (low, high) = (ends[0].min(ends[1]) - margin, ends[0].max(ends[1]) + margin);
-            if low.is_finite() && high.is_finite() {
-                size += f64::from((high - low).max_element());
-                self.segments.push((segment, [low, high]));
+            let boxed = boxed(segment, hair.ends(segment));
+            let edges = boxed.swept[1] - boxed.swept[0];
+            if edges.is_finite() {
+                size[0] += f64::from(edges.min_element());
+                size[1] += f64::from(edges.max_element());
+                self.segments.push(boxed);
             }
         }
-        self.cell = (CELL * (size / self.segments.len().max(1) as f64) as f32).max(1e-9);
+        // As small as boxes are thick, so that what is in one cell is near; but no box is in more than some cells.
+        let [shortest, longest] = size.map(|sum| sum / self.segments.len().max(1) as f64);
+        self.cell = shortest.max(longest / CELLS_A_SEGMENT as f64).max(1e-9) as f32;
         let most = self.entries.len() as f64;
-        while self.segments.iter().map(|(_, bounds)| count(self.cell, bounds)).sum::<f64>() > most {
-            self.cell *= CELL;
+        while self.segments.iter().map(|of| count(self.cell, &of.swept)).sum::<f64>() > most {
+            self.cell *= GROWTH;
         }
         self.fill();
     }
@@ -91,8 +140,8 @@ impl Grid {
         let Self { cell, segments, first, entries, .. } = self;
         let buckets = first.len() - 1;
         first.fill(0);
-        for (_, bounds) in segments.iter() {
-            cells(*cell, bounds).for_each(|c| first[bucket(c, buckets) + 1] += 1);
+        for of in segments.iter() {
+            cells(*cell, &of.swept).for_each(|c| first[bucket(c, buckets) + 1] += 1);
         }
         for b in 0..buckets {
             first[b + 1] += first[b];
@@ -101,8 +150,8 @@ impl Grid {
         for b in (1..=buckets).rev() {
             first[b] = first[b - 1];
         }
-        for (k, (_, bounds)) in segments.iter().enumerate() {
-            for c in cells(*cell, bounds) {
+        for (k, of) in segments.iter().enumerate() {
+            for c in cells(*cell, &of.swept) {
                 let at = &mut first[bucket(c, buckets) + 1];
                 entries[*at as usize] = (c, k as u32);
                 *at += 1;
@@ -110,39 +159,41 @@ impl Grid {
         }
     }
 
-    /// Shows `see` all pairs of segments of different strands whose boxes meet, the lesser first, in order.
+    /// Shows `see` all pairs of segments of different strands whose boxes meet until the next time, the lesser first, in order; of a segment with more than [`MOST_FOUND`] others after
+    /// it in order, only so many: they are next to it in the order of strands, or in the same cell.
     pub fn pairs(&mut self, hair: &Hair, mut see: impl FnMut([u32; 2])) {
-        let Self { cell, segments, first, entries, found } = self;
+        let Self { cell, segments, first, entries, found, looked_at, crowded } = self;
+        (*looked_at, *crowded) = (0, 0);
         let buckets = first.len() - 1;
-        for (k, (segment, bounds)) in segments.iter().enumerate() {
+        for (k, of) in segments.iter().enumerate() {
             found.clear();
-            for c in cells(*cell, bounds) {
+            'cells: for c in cells(*cell, &of.swept) {
                 let b = bucket(c, buckets);
                 let inside = &entries[first[b] as usize..first[b + 1] as usize];
-                // Those after it in order come last in each bucket.
-                for (_, other) in inside.iter().rev().take_while(|(_, o)| *o > k as u32).filter(|e| e.0 == c)
-                {
-                    let (other, with) = segments[*other as usize];
+                // Those after it in order come after it in each bucket.
+                let after = inside.partition_point(|(_, other)| *other <= k as u32);
+                for (_, other) in inside[after..].iter().filter(|e| e.0 == c) {
+                    *looked_at += 1;
+                    let other = &segments[*other as usize];
                     // In the one cell in which the boxes' common part begins.
-                    let low = bounds[0].max(with[0]);
-                    if low.cmple(bounds[1].min(with[1])).all()
+                    let low = of.swept[0].max(other.swept[0]);
+                    if low.cmple(of.swept[1].min(other.swept[1])).all()
+                        && of.may_meet(other)
                         && cell_of(*cell, low) == c
-                        && hair.of[other as usize] != hair.of[*segment as usize]
+                        && hair.of[other.segment as usize] != hair.of[of.segment as usize]
                     {
-                        found.push(other);
+                        if found.len() == MOST_FOUND {
+                            *crowded += 1;
+                            break 'cells;
+                        }
+                        found.push(other.segment);
                     }
                 }
             }
             found.sort_unstable();
-            found.iter().for_each(|other| see([*segment, *other]));
+            found.iter().for_each(|other| see([of.segment, *other]));
         }
     }
-}
-
-/// How far around itself a segment looks for others [m]: what counts as near, and what it may come nearer by, of which no more counts than its
-/// length: what is faster is not seen to come.
-fn reach(radius: f32, length: f32, way: f32) -> f32 {
-    (1.0 + NEAR) * radius + way.min(length)
 }
 
 /// Cells that a box reaches into.

@@ -18,6 +18,8 @@
 //! Every impulse acts on both segments, equal and opposite: momentum is kept to rounding. No place is ever moved: lengths and contact with bodies are as
 //! the substep left them.
 //!
+//! Strands that are the same at rest are one here (`hair`), and a segment is shown so many others at most (`grid`): the cost of a crowd grows with its number.
+//!
 //! A start at rest stays one: a segment is no thicker than half of the way to the nearest other strand at rest, so that nothing touches there.
 //!
 //! # Cost
@@ -25,7 +27,7 @@
 //! touch: of 500 shaken strands of 32 points at 4 substeps a frame takes 1.1 ms on one core without, 140 ms with a radius of 1 mm and 290 ms with that of their density.
 //!
 //! # Missing
-//! A strand does not meet itself, nor one of another groom. Followers are moved by their guides alone. Where more
+//! A strand does not meet itself. Followers are moved by their guides alone. Where more
 //! strands are pressed together than there is room for, they overlap, and tremble; a narrow tie does not gather them, because they hold each other up.
 
 mod along;
@@ -57,6 +59,8 @@ pub(crate) struct Neighbours {
     settings: scene::Neighbours,
     /// The largest radius of a segment [m].
     radius: f32,
+    /// See [`NeighboursReport::crowded`].
+    crowded: usize,
     pub hair: Hair,
     grid: Grid,
     along: Along,
@@ -82,12 +86,18 @@ pub struct NeighboursReport {
     pub force: f32,
     /// The deepest that two segments are in each other [m].
     pub depth: f32,
+    /// Strands that are the same at rest as others before them, and meet the rest as one with those.
+    pub same: usize,
+    /// Pairs of segments that were looked at after the last substep.
+    pub looked_at: usize,
+    /// The most segments that were ever left with some of their neighbours out, because they had more than are looked at.
+    pub crowded: usize,
 }
 
 impl Neighbours {
     /// Strands as they are at rest in `hair`; `None` where they are not to meet, or there are not two.
     pub fn new(settings: &scene::Neighbours, mut hair: Hair) -> Option<Self> {
-        if !settings.on || hair.strand_count() < 2 {
+        if !settings.on || hair.shown_count() < 2 {
             return None;
         }
         let mut grid = Grid::new(hair.segments().count());
@@ -96,6 +106,7 @@ impl Neighbours {
         Some(Self {
             settings: *settings,
             radius,
+            crowded: 0,
             along: Along::new(&hair),
             hair,
             grid,
@@ -107,8 +118,14 @@ impl Neighbours {
 
     /// See [`NeighboursReport`].
     pub fn report(&self) -> NeighboursReport {
-        let mut report =
-            NeighboursReport { radius: self.radius, near: self.contacts.len(), ..Default::default() };
+        let mut report = NeighboursReport {
+            radius: self.radius,
+            near: self.contacts.len(),
+            same: self.hair.shown_count() - self.hair.strand_count(),
+            looked_at: self.grid.looked_at,
+            crowded: self.crowded,
+            ..Default::default()
+        };
         for contact in &self.contacts {
             report.pressing += usize::from(contact.presses());
             report.bonds += usize::from(contact.holds());
@@ -143,13 +160,17 @@ impl Neighbours {
         self.contacts.extend_from_slice(&old.contacts[..old.contacts.len().min(self.contacts.capacity())]);
     }
 
-    /// The change of velocity of every point by what contacts carry, for a substep of `h` [s]; shape `[points]` [m/s].
-    pub fn bear(&mut self, h: f32) -> &[Vec3] {
+    /// Leaves as the velocities of `hair` what they change by by what contacts carry, in a substep of `h` [s].
+    pub fn bear(&mut self, h: f32) {
         self.hair.v.fill(Vec3::ZERO);
         for contact in &self.contacts {
             contact.bear(h, &mut self.hair);
         }
-        &self.hair.v
+    }
+
+    /// What the velocity of point `i` was changed by by the last [`Neighbours::meet`] [m/s].
+    pub fn change(&self, i: usize) -> Vec3 {
+        self.along.change(i, &self.hair)
     }
 
     /// Finds who touches whom in `hair`, after a substep of `h` [s], and changes velocities so that none will be in the other after the next.
@@ -168,6 +189,7 @@ impl Neighbours {
                 contacts.push(contact);
             }
         });
+        self.crowded = self.crowded.max(grid.crowded);
         let rules = Rules { h, friction: self.settings.friction, stiction: self.settings.stiction };
         sides.clear();
         sides.resize_with(contacts.len(), || None);

@@ -15,7 +15,7 @@ pub fn find_radii(asked: Option<f32>, hair: &mut Hair, grid: &mut Grid) -> f32 {
     // Where no radius is asked for, strands farther off than a segment is long count as that far.
     let within = asked.map_or(mean as f32, |radius| 2.0 * radius);
     let mut nearest = vec![within; hair.x.len()];
-    grid.sort_by(hair, |_, _| 0.5 * within);
+    grid.sort_still(hair, 0.5 * within);
     grid.pairs(hair, |pair| {
         let [a, b] = pair.map(|s| hair.ends(s));
         let (s, t) = closest(a, b);

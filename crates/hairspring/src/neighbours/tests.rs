@@ -41,6 +41,7 @@ fn momentum_is_kept() {
     let mut neighbours = Neighbours {
         settings: scene::Neighbours { on: true, stiction: 1e-6, ..Default::default() },
         radius: 0.001,
+        crowded: 0,
         grid: Grid::new(segments),
         along: Along::new(&hair),
         hair,

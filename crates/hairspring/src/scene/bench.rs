@@ -169,7 +169,7 @@ impl Bench {
             anchor: end,
             roots: &self.poses,
             obstacles: std::slice::from_ref(&self.obstacle),
-            air: Air { wind: self.wind, time: (self.frame - 1) as f32 * FRAME, ..Air::default() },
+            air: Air { wind: self.wind, time: f64::from(self.frame - 1) / 60.0, ..Air::default() },
         })
     }
 

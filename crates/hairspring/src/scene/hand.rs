@@ -32,7 +32,7 @@ impl Hand {
     }
 
     /// How far it has moved at `time` [s].
-    pub fn moved(&self, time: f32) -> Vec3 {
+    pub fn moved(&self, time: f64) -> Vec3 {
         let place = |k: usize| Vec3::from_slice(&self.path[k][1..]);
         let way = between(self.path.len(), |k| self.path[k][0], time);
         way.map_or(Vec3::ZERO, |(a, b, share)| place(a).lerp(place(b), share))

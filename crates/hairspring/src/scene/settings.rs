@@ -23,11 +23,11 @@ pub enum Guides {
 pub struct Effects {
     /// How far tips are drawn to their first guide, 0 (not) to 1 (wholly); grows from root to tip.
     pub clump: f32,
-    /// Radius of curls added to follow hairs [m], 0 or more.
+    /// Radius of curls added to follow hairs [m], 0 to 1,000,000.
     pub curl_radius: f32,
     /// Length of hair in one turn of those curls [m], above 0. Default 0.03.
     pub curl_length: f32,
-    /// Amplitude of the flyaway noise at the tip [m], 0 or more.
+    /// Amplitude of the flyaway noise at the tip [m], 0 to 1,000,000.
     pub noise: f32,
 }
 
@@ -195,13 +195,13 @@ pub struct Volume {
     /// Edge of a cell [m], above 0; it grows where there would be more than two million. `None`, the default: the smallest in which a cell
     /// with hair holds eight points at rest, so that its density is more than chance.
     pub cell: Option<f32>,
-    /// How fast hair takes on the velocity of the hair around it [1/s], 0 or more. Default 3: strands that cross lose a twentieth of what
-    /// is between them in a frame of 1/60 s; as a PIC/FLIP blend, 0.95 FLIP.
+    /// How fast hair takes on the velocity of the hair around it [1/s], 0 or more. Default 3: strands lose a twentieth of what
+    /// is between their velocities in 1/60 s; as a PIC/FLIP blend, 0.95 FLIP. What goes across other hair is stopped besides, see `volume/crossing.rs`.
     pub friction: f32,
-    /// Speed with which a crowd spreads, for `density` [m/s], 0 or more; it counts as at most half a cell a frame, beyond which a step would
-    /// overshoot. Default 0.5, about that bound at cells of 15 mm and 60 Hz.
+    /// Speed with which a crowd spreads, for `density` [m/s], 0 or more; it counts as at most half a cell in 1/240 s, beyond which a step
+    /// would overshoot. Default 0.5.
     pub pressure: f32,
-    /// How fast lost volume is regained, for `incompressible`: the share a second [1/s], 0 or more, and at most all of it in a frame.
+    /// How fast lost volume is regained, for `incompressible`: the share a second [1/s], 0 or more, and at most all of it in 1/240 s.
     /// Default 30: hair that falls from standing out and is shaken keeps nine tenths of its volume so, three quarters with 10, and a
     /// quarter without a method (`hairspring bench --hair-hair`).
     pub regain: f32,
@@ -245,7 +245,7 @@ pub enum VolumeMethod {
     Off,
     /// Pressure down the gradient of density, where hair is denser than at rest (Petrovic 2005): cheap, and gives way.
     Density,
-    /// Velocities that close in on full cells are taken out, and lost volume is regained (McAdams 2009): firm, for a linear solve a frame.
+    /// Velocities that close in on full cells are taken out, and lost volume is regained (McAdams 2009): firm, for a linear solve each 1/240 s.
     Incompressible,
 }
 

@@ -124,7 +124,8 @@ impl Swing {
     /// The sample at rest, to be stepped by `h` [s], above 0.
     pub fn new(sample: &Sample, integrator: Integrator, h: f64) -> Self {
         // A simulation takes no step longer than a frame. A longer one is a frame of a world that runs faster: velocities grow by the
-        // pace, accelerations and stiffnesses by its square, and every length stays.
+        // pace, accelerations and stiffnesses by its square, and every length stays. Drag grows by a little more: its coefficient is that of the
+        // larger Reynolds number.
         let pace = (h / FRAME as f64).max(1.0);
         let (p, p2) = (pace as f32, (pace * pace) as f32);
         let materials: Vec<Material> = sample

@@ -5,10 +5,11 @@ use crate::{
     air::{Noise, Shade, Shelter},
     around::{Around, HairField},
     collide::{ObstaclePose, Rigid},
-    groom::Groom,
+    groom::{Groom, StrandScale},
     material::{Material, Model},
     scene::{Integrator, Solver},
     strand::{
+        drag::{AIR_KINEMATIC_VISCOSITY, AIR_VISCOSITY},
         interval::Interval,
         lanes::{LANES, Row},
         model::stretch::stiffening,
@@ -30,9 +31,6 @@ pub(super) struct Settings {
     pub(super) anchor: Rigid,
 }
 
-/// Viscosity of air at 25 °C [Pa s].
-const AIR_VISCOSITY: f32 = 1.85e-5;
-
 impl Simulation {
     /// Takes up `strands` (indices of `groom`, each with three points or more) at rest.
     ///
@@ -52,21 +50,32 @@ impl Simulation {
         let fallback = Material::default();
         let material =
             |s: usize| materials.get(groom.group(s) as usize).or(materials.last()).unwrap_or(&fallback);
-        let elastic: Vec<Elastic> = strands
+        let balanced = if solver.sag_free { gravity.as_dvec3() } else { DVec3::ZERO };
+        let elastic: Vec<(Elastic, bool)> = strands
             .par_iter()
-            .map(|s| elastic(material(*s as usize), groom.strand(*s as usize), &solver))
+            .map(|s| {
+                let (s, material) = (*s as usize, material(*s as usize));
+                let model = elastic(material, groom.strand(s), &solver);
+                let radii = radii(material, &groom, s);
+                let fibre = fibre(material, groom.scale(s), model, &solver, &radii);
+                (model, needs_double(model, &simulated_points(model, groom.strand(s)), &fibre, balanced))
+            })
             .collect();
+        let coils = elastic.iter().zip(strands).filter(|((model, _), s)| {
+            *model == Elastic::Rod && material(**s as usize).model == Model::Curvature
+        });
+        let coils = coils.count();
         let Order { lanes, asked, places, models } = Order::new(&groom, strands, &elastic);
         let mut first = 0;
         let tiles: Vec<TilePlace> = lanes
             .chunks(LANES)
             .zip(models)
-            .map(|(lane, model)| {
+            .map(|(lane, (model, double))| {
                 let strands = || lane.iter().filter(|s| **s != u32::MAX).map(|s| *s as usize);
                 let points = strands().map(|s| groom.range(s).len()).max().unwrap_or(0).max(3);
                 let points = ((points - 1) * model.stride() + 1) as u32;
                 let flat = model == Elastic::Rod && strands().any(|s| material(s).flatness != 1.0);
-                let place = TilePlace { first, points, model, flat };
+                let place = TilePlace { first, points, model, flat, double };
                 first += points;
                 place
             })
@@ -113,6 +122,7 @@ impl Simulation {
             start: Start::default(),
         };
         simulation.fill(materials, obstacles);
+        simulation.start.coils = coils;
         let springs = simulation.tiles.iter().any(|tile| tile.model == Elastic::Springs);
         let rows = |at: usize| simulation.state.iter().map(|rows| rows[at]).collect();
         simulation.tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
@@ -137,12 +147,13 @@ impl Simulation {
             let (rest, more_rest) = rest_of.split_at_mut(tile.points as usize);
             let (state, more_state) = state_of.split_at_mut(tile.points as usize);
             (rest_of, state_of) = (more_rest, more_state);
-            work.push((tile.model, lanes, strand, rest, state));
+            work.push((tile, lanes, strand, rest, state));
         }
         self.start = work
             .into_par_iter()
             .with_min_len(16)
-            .map(|(model, lanes, strand, rest, state)| {
+            .map(|(tile, lanes, strand, rest, state)| {
+                let model = tile.model;
                 let mut start = Start::default();
                 for (lane, s) in lanes.iter().enumerate() {
                     let mut into = Lane { lane, strand: &mut *strand, rest: &mut *rest, state: &mut *state };
@@ -154,31 +165,17 @@ impl Simulation {
                     let material = material(groom.group(s));
                     let scale = groom.scale(s);
                     let points = simulated_points(model, groom.strand(s));
-                    let own = &groom.radii[groom.range(s)];
-                    let radii: Vec<f32> = own.iter().map(|own| material.radius.unwrap_or(*own)).collect();
+                    let radii = radii(material, groom, s);
                     let section = Section::new(material);
-                    let fibre = Fibre {
-                        radii: &radii,
-                        density: material.density as f64,
-                        mass_profile: &material.mass_profile,
-                        young: (material.young * material.bend * scale.bend * section.bend) as f64,
-                        tip: material.bend_tip as f64,
-                        flat: section.flat as f64,
-                        substep: super::step::substep_length(&solver),
-                        twist_ratio: (!matches!(model, Elastic::Straight | Elastic::Curvature))
-                            .then_some(section.twist_ratio as f64),
-                    };
-                    let shape = match model {
-                        Elastic::Springs => truss(&points, &fibre, gravity),
-                        Elastic::Straight | Elastic::Curvature | Elastic::Rod => {
-                            rest_shape(&points, &fibre, gravity)
-                        }
-                    };
+                    let fibre =
+                        Fibre { double: tile.double, ..fibre(material, scale, model, &solver, &radii) };
+                    let shape = shape(model, &points, &fibre, gravity);
                     start = start + shape.start;
                     into.write_strand(&points, &shape, anchor, obstacles);
                     let radius = radii.iter().sum::<f32>() / radii.len() as f32;
                     let rows = &mut *into.strand;
-                    rows[strand::DRAG].0[lane] = material.drag * scale.drag * drag_per_length(radius);
+                    rows[strand::DRAG].0[lane] = material.drag * scale.drag * AIR_VISCOSITY;
+                    rows[strand::REYNOLDS].0[lane] = 2.0 * radius / AIR_KINEMATIC_VISCOSITY;
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
                     rows[strand::FRICTION].0[lane] = material.friction;
                     rows[strand::FRICTION_KINETIC].0[lane] = material.friction_kinetic;
@@ -226,6 +223,7 @@ pub(super) fn simulated_points(model: Elastic, points: &[Vec3]) -> Cow<'_, [Vec3
 
 /// The elastic model that simulates a strand.
 fn elastic(material: &Material, points: &[Vec3], solver: &Solver) -> Elastic {
+    let coiled = turning(points) > COILED;
     // Only a strand that starts out straight and free of load needs no rest turn.
     let straight = !solver.sag_free && is_straight(points);
     match material.model {
@@ -233,11 +231,25 @@ fn elastic(material: &Material, points: &[Vec3], solver: &Solver) -> Elastic {
         _ if solver.integrator == Integrator::LocalGlobal => Elastic::Curvature,
         Model::Springs => Elastic::Springs,
         Model::Curvature if straight => Elastic::Straight,
+        Model::Curvature if coiled => Elastic::Rod,
         Model::Curvature => Elastic::Curvature,
         Model::Rod => Elastic::Rod,
         Model::Auto if straight && material.flatness == 1.0 => Elastic::Straight,
         Model::Auto => Elastic::Rod,
     }
+}
+
+/// Total turn of a strand above which the curvature model gives way to the rod [rad]: one and a half turns. The curvature model's force does not know of its share in
+/// the frames beyond, so a coil gains energy: it moves by 2 m/s for ever with 2 turns, and rests with 1.5.
+const COILED: f32 = 3.0 * std::f32::consts::PI;
+
+/// The sum of a strand's turns from joint to joint [rad].
+fn turning(points: &[Vec3]) -> f32 {
+    let turn = |w: &[Vec3]| {
+        let (a, b) = (w[1] - w[0], w[2] - w[1]);
+        a.cross(b).length().atan2(a.dot(b))
+    };
+    points.windows(3).map(turn).sum()
 }
 
 /// Largest change of tangent at a joint of a strand that counts as straight [rad]: nothing that twist could turn would be seen.
@@ -246,6 +258,55 @@ const STRAIGHT: f32 = 1e-4;
 fn is_straight(points: &[Vec3]) -> bool {
     let tangent = |w: &[Vec3]| (w[1] - w[0]).normalize_or_zero();
     points.windows(3).all(|w| tangent(&w[0..2]).distance(tangent(&w[1..3])) < STRAIGHT)
+}
+
+/// Radius at each point of strand `s` [m].
+fn radii(material: &Material, groom: &Groom, s: usize) -> Vec<f32> {
+    groom.radii[groom.range(s)].iter().map(|own| material.radius.unwrap_or(*own)).collect()
+}
+
+/// The fibre of a strand that is solved in single precision.
+fn fibre<'a>(
+    material: &'a Material,
+    scale: StrandScale,
+    model: Elastic,
+    solver: &Solver,
+    radii: &'a [f32],
+) -> Fibre<'a> {
+    let section = Section::new(material);
+    Fibre {
+        radii,
+        density: material.density as f64,
+        mass_profile: &material.mass_profile,
+        young: (material.young * material.bend * scale.bend * section.bend) as f64,
+        tip: material.bend_tip as f64,
+        flat: section.flat as f64,
+        substep: super::step::substep_length(solver),
+        // The matrix of springs knows it, but what they would lose by it is more than rounding does to them.
+        damping: if model == Elastic::Springs { 0.0 } else { (material.damping * scale.damping) as f64 },
+        double: false,
+        twist_ratio: (!matches!(model, Elastic::Straight | Elastic::Curvature))
+            .then_some(section.twist_ratio as f64),
+    }
+}
+
+/// The rest shape that a model gives a strand.
+fn shape(model: Elastic, points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
+    match model {
+        Elastic::Springs => truss(points, fibre, gravity),
+        Elastic::Straight | Elastic::Curvature | Elastic::Rod => rest_shape(points, fibre, gravity),
+    }
+}
+
+/// Whether single precision cannot hold the stiffness of a strand's elements, by [`Fibre::stiffest`]: then it is solved in double precision, at
+/// about twice the cost.
+fn needs_double(model: Elastic, points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> bool {
+    // A flat fiber's matrix has the stiffness of its stiff direction, I_max/I_min times that of the other one.
+    let stiff = Fibre { young: fibre.young * (1.0 + fibre.flat), ..*fibre };
+    // The build without SIMD has single precision alone, and so has the springs model, which is there to be compared with.
+    cfg!(not(one_lane))
+        && model != Elastic::Springs
+        && shape(model, points, &stiff, gravity).start.held_back > 0
 }
 
 /// What the shape of a fibre's section does to its stiffness. An ellipse with semi-axes a ≥ b and b/a = f has, for the same area as the circle of
@@ -268,15 +329,6 @@ impl Section {
             twist_ratio: 4.0 * material.shear / (material.young * (1.0 + f * f)),
         }
     }
-}
-
-/// Force of still air on a lone fibre moving across itself, over length and speed [N s/m²]: the radius counts, the mass does not.
-///
-/// Slender body in Stokes flow: force per length 4πμ v / (ln(ℓ/r) + ½) across (Batchelor 1970, eq. 8.11), with the length over
-/// radius of a hair's segment of a centimetre, about 250.
-fn drag_per_length(radius: f32) -> f32 {
-    let slenderness = (0.01 / radius).max(2.0).ln() + 0.5;
-    4.0 * std::f32::consts::PI * AIR_VISCOSITY / slenderness
 }
 
 /// One lane of a tile, to write.
@@ -319,6 +371,7 @@ impl Lane<'_> {
             let p = shape.points[i.min(last)];
             let rows = &mut self.rest[i];
             rows[rest::MASS].0[lane] = p.mass as f32;
+            rows[rest::EXPOSURE].0[lane] = 1.0;
             if i < last {
                 rows[rest::LENGTH].0[lane] = p.length as f32;
                 rows[rest::BEND].0[lane] = p.bend as f32;

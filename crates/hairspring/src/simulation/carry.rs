@@ -11,6 +11,7 @@
 
 use super::{Drive, Simulation};
 use crate::{
+    body::is_teleport,
     collide::Rigid,
     strand::{
         lanes::Row,
@@ -19,9 +20,6 @@ use crate::{
 };
 use glam::{Mat3, Quat, Vec3};
 use rayon::prelude::*;
-
-/// A head that turns by more than this in a frame, over how it turned before, has jumped [rad].
-const JUMP_ANGLE: f32 = std::f32::consts::FRAC_PI_2;
 
 /// How the anchor moved in the last frame, which a jump is told by.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,8 +69,9 @@ impl Simulation {
         let moved = drive.anchor.translation - self.settings.anchor.translation;
         let turned = way.rotation.to_scaled_axis();
         let expected = Quat::from_scaled_axis(self.motion.spin * drive.dt);
-        let jumped = (moved - self.motion.velocity * drive.dt).length() > solver.jump
-            || way.rotation.angle_between(expected) > JUMP_ANGLE;
+        let off = (moved - self.motion.velocity * drive.dt).length();
+        let turned_off = way.rotation.angle_between(expected);
+        let jumped = is_teleport(off, turned_off, solver.jump, f64::from(drive.dt));
         // A jump too is what the next frame is judged by: where it was one, hair is carried once more, by as little as the head then moves; where it
         // was the start of a ride, the ride is felt.
         let now = Motion { velocity: moved / drive.dt, spin: turned / drive.dt };

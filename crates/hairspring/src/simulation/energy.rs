@@ -6,6 +6,8 @@ use crate::{
     strand::{
         lanes::LANES,
         model::{
+            bend::{FOLDED, transport_normal},
+            rod::{FOLDING, curved_joint},
             springs::{BEND, Progressive, TORSION},
             stretch::STRETCH,
         },
@@ -195,17 +197,19 @@ impl Simulation {
             let d = m0 * local.x + u0.cross(m0) * local.y + u0 * local.z;
             let r = e(j) / length(j) - e(j - 1) / length(j - 1) - d;
             energy.bending += 0.5 * stiffness * r.length_squared();
-            let carried = m0 - (u0 + u1) * (m0.dot(u1) / (1.0 + u0.dot(u1)).max(1e-3));
-            let mut m1 = carried.normalize_or(m0);
+            let carried = transport_normal(m0, u0, u1);
+            let mut m1 = carried;
             if model == Elastic::Rod {
                 let own = self.vector(place, j, state::NORMAL).as_dvec3();
                 let across = own - u1 * own.dot(u1);
                 if across.length_squared() > 1e-6 {
                     m1 = across.normalize();
                 }
-                let tau = 2.0 * carried.cross(m1).dot(u1) / (carried.dot(m1) + 1.0).max(0.5);
-                let twist = tau - self.rest(place, j, rest::TWIST) as f64;
-                energy.twisting += 0.5 * stiffness * ratio * twist * twist;
+                let half = carried.cross(m1).dot(u1) / (carried.dot(m1) + 1.0).max(FOLDED as f64);
+                let tau = 4.0 * half / (1.0 + (1.0 + half * half).sqrt());
+                let z = (0.5 * (u0 + u1).length_squared() / FOLDING as f64).min(1.0);
+                let twist = z * (2.0 - z) * (tau - self.rest(place, j, rest::TWIST) as f64);
+                energy.twisting += 0.5 * stiffness * ratio * curved_joint(local.z) * twist * twist;
                 let wider = m0.dot(e(j) / length(j) - u0) - local.x;
                 energy.bending += 0.5 * stiffness * flat * wider * wider;
             }

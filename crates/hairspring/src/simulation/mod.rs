@@ -4,14 +4,17 @@ mod authored;
 mod bodies;
 mod build;
 mod carry;
+mod contacts;
 mod crowd;
 mod energy;
+mod exposure;
 mod fast;
 mod hands;
 mod hold;
 mod measure;
 mod meet;
 mod order;
+mod parts;
 mod place;
 mod reset;
 mod step;
@@ -24,12 +27,13 @@ pub use crate::neighbours::NeighboursReport;
 pub use crate::strand::rest_shape::Start;
 pub use crate::volume::VolumeReport;
 pub(crate) use bodies::Bodies;
+pub use contacts::Contacts;
 pub use energy::Energy;
 pub(crate) use fast::PART;
 pub use hands::ToolId;
 pub use hold::Hold;
 pub use measure::Measure;
-pub use step::{Drive, MovingObstacle, StepReport};
+pub use step::{Drive, MovingObstacle, StepReport, StepTimes};
 
 use crate::{
     air::{Noise, Shade, Shelter},
@@ -128,6 +132,8 @@ pub(crate) struct TilePlace {
     pub model: Elastic,
     /// Whether any fibre is flat.
     pub flat: bool,
+    /// Whether its strands are solved in double precision.
+    pub double: bool,
 }
 
 impl Simulation {

@@ -1,6 +1,6 @@
 //! Which eight strands make a tile.
 //!
-//! Strands of one elastic model and of like counts of points, and of those neighbours: they meet the same things at the same time, so that what the kernel
+//! Strands of one elastic model and precision and of like counts of points, and of those neighbours: they meet the same things at the same time, so that what the kernel
 //! does for all eight as soon as one of them touches is done for few in vain, and they read and write the same part of a field and of the volume. It
 //! changes no result: no lane of a tile knows of another.
 
@@ -18,13 +18,13 @@ pub(super) struct Order {
     pub asked: Vec<u32>,
     /// The lane of each strand that was asked for; shape `[strands]`.
     pub places: Vec<u32>,
-    /// The elastic model of each tile.
-    pub models: Vec<Elastic>,
+    /// The elastic model of each tile, and whether it is solved in double precision.
+    pub models: Vec<(Elastic, bool)>,
 }
 
 impl Order {
-    /// Of `strands` (indices of `groom`) and the `elastic` model of each.
-    pub fn new(groom: &Groom, strands: &[u32], elastic: &[Elastic]) -> Self {
+    /// Of `strands` (indices of `groom`), the `elastic` model of each and whether it is solved in double precision.
+    pub fn new(groom: &Groom, strands: &[u32], elastic: &[(Elastic, bool)]) -> Self {
         // Strands are told apart by their middles: roots alone lie close together.
         let middle = |s: u32| {
             let points = groom.strand(s as usize);
@@ -78,8 +78,8 @@ mod tests {
             (0..36).map(|k| (if k % 9 == 0 { 12 } else { 8 }, if k % 2 == 0 { -0.1 } else { 0.1 })).collect();
         let groom = groom(&strands);
         let all: Vec<u32> = (0..36).collect();
-        let order = Order::new(&groom, &all, &[Elastic::Rod; 36]);
-        assert_eq!(order.models, [Elastic::Rod; 5]);
+        let order = Order::new(&groom, &all, &[(Elastic::Rod, false); 36]);
+        assert_eq!(order.models, [(Elastic::Rod, false); 5]);
         let tiles: Vec<&[u32]> = order.lanes.chunks(LANES).collect();
         for s in [0, 9, 18, 27] {
             assert!(tiles[0].contains(&s), "the four of 12 points come first: {:?}", tiles[0]);
@@ -96,7 +96,8 @@ mod tests {
     #[test]
     fn a_tile_has_one_model() {
         let groom = groom(&[(8, 0.0); 5]);
-        let elastic = [Elastic::Rod, Elastic::Springs, Elastic::Rod, Elastic::Springs, Elastic::Rod];
+        let elastic = [Elastic::Rod, Elastic::Springs, Elastic::Rod, Elastic::Springs, Elastic::Rod]
+            .map(|model| (model, false));
         let order = Order::new(&groom, &[4, 3, 2, 1, 0], &elastic);
         assert_eq!(order.models.len(), 2);
         for (k, strand) in [4, 3, 2, 1, 0].into_iter().enumerate() {

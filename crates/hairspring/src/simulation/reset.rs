@@ -3,10 +3,10 @@
 use super::{Simulation, build::simulated_points};
 use crate::strand::{
     dispatch::dispatch,
-    lanes::{F, LANES, Row, load, store},
+    lanes::{F, LANES, Row, Simd, load, store},
     tile::{Elastic, StateRows, springs, state, strand},
 };
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::Level;
 use glam::{Quat, Vec3};
 
 /// Whether every number of these rows is finite.

@@ -4,7 +4,6 @@ use super::{Bodies, Simulation, TilePlace, reset};
 use crate::{
     air::Air,
     collide::{Obstacle, ObstaclePose, Rigid},
-    neighbours::Neighbours,
     scene::{Integrator, Quality, Solver},
     strand::{
         interval::{Interval, Substep},
@@ -20,7 +19,7 @@ use crate::{
 };
 use fearless_simd::Level;
 use rayon::prelude::*;
-use std::cell::RefCell;
+use std::{cell::RefCell, time::Duration};
 
 /// A frame's input, all at the end of it; the start is where the last step ended.
 pub struct Drive<'a> {
@@ -77,10 +76,28 @@ pub struct StepReport {
     pub substeps: u32,
     /// Strands that had turned non-finite and were put back to their rest shape at the root.
     pub reset_strands: usize,
+    /// What the stages took.
+    pub times: StepTimes,
+}
+
+/// What the stages of a step took. What little lies between them (substeps' poses, tools) is in none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StepTimes {
+    /// Hair's density and what it does to hair, in each of the volume's intervals.
+    pub volume: Duration,
+    /// Roots, wind, ghosts, charge and hands, once a frame.
+    pub forces: Duration,
+    /// All substeps of all strands: assembly, solve, projection, contact with colliders, strain limit.
+    pub solve: Duration,
+    /// Contacts of strands with each other, after each substep.
+    pub neighbours: Duration,
 }
 
 /// Reference frame of `Solver::substeps` [s].
 const FRAME: f32 = 1.0 / 60.0;
+
+/// How much longer than the setting a substep may be [1]: a frame at 23.976 Hz has as many substeps as one at 24 Hz.
+pub(super) const LONGER: f64 = 1.0015;
 
 /// Most substeps of one step, so that a stalled caller's long `dt` cannot stall it for good.
 const MAX_SUBSTEPS: u32 = 4096;
@@ -106,7 +123,7 @@ pub(super) fn substep_length(solver: &Solver) -> f64 {
 impl Simulation {
     /// Steps all strands to the end of a frame.
     ///
-    /// The frame is cut into equal substeps none of which is longer than 1/60 s over `solver.substeps` (so the step does not
+    /// The frame is cut into equal substeps none of which is longer than 1/60 s over `solver.substeps` but for 0.15 % (so the step does not
     /// depend on the frame rate where that divides it, and roots are on the skin at every frame, which an accumulator that
     /// carries a remainder would not give); into more where a body passes through the hair that is faster than it is thick.
     ///
@@ -119,7 +136,7 @@ impl Simulation {
         let carried = self.carry_along(drive);
         // Of bodies with fast limbs each part has as many.
         let parts = drive.obstacles.iter().map(|o| o.shape.parts() as u32).max().unwrap_or(1);
-        let substeps = ((drive.dt / substep_length(&solver) as f32 - 1e-3).ceil() as u32)
+        let substeps = ((f64::from(drive.dt) / (substep_length(&solver) * LONGER)).ceil() as u32)
             .max(self.substeps_past(drive, carried.as_ref()))
             .clamp(1, MAX_SUBSTEPS)
             .next_multiple_of(parts);
@@ -131,40 +148,18 @@ impl Simulation {
             self.spans.fill([Row::default(); span::ROWS]);
         }
         self.begin_tools(&Bodies::new((drive.obstacles, carried.as_ref())));
-        self.exchange(drive, carried.as_ref());
-        self.settings.anchor = drive.anchor;
-        let reset_strands = match self.neighbours.take() {
-            None => self.run(&interval),
-            Some(mut neighbours) => {
-                let reset_strands = self.run_and_meet(&mut neighbours, &mut interval);
-                self.neighbours = Some(neighbours);
-                reset_strands
-            }
-        };
+        let (reset_strands, times) = self.run_in_parts(drive, carried.as_ref(), &mut interval);
         self.rest_holds();
         self.rest_tools(drive.dt);
         self.last_h = interval.h;
         // The colliders' shapes are the caller's again.
         interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
         self.interval = interval;
-        StepReport { substeps, reset_strands }
-    }
-
-    /// Runs substep after substep, and lets strands meet each other after each; returns how many were reset.
-    fn run_and_meet(&mut self, neighbours: &mut Neighbours, interval: &mut Interval) -> usize {
-        let mut reset_strands = 0;
-        for number in interval.now.clone() {
-            interval.now = number..number + 1;
-            self.bear_neighbours(neighbours, interval.h);
-            reset_strands += self.run(interval);
-            interval.continues = true;
-            self.meet_neighbours(neighbours, interval, number);
-        }
-        reset_strands
+        StepReport { substeps, reset_strands, times }
     }
 
     /// Runs the interval's substeps; returns how many strands turned non-finite and were reset.
-    fn run(&mut self, interval: &Interval) -> usize {
+    pub(super) fn run(&mut self, interval: &Interval) -> usize {
         let reset = run(
             self.level,
             interval,
@@ -327,6 +322,7 @@ impl<'a> Piece<'a> {
         Tile {
             model: place.model,
             flat: place.flat,
+            double: place.double,
             strand: &self.strand[k],
             rest: &self.rest[points.clone()],
             state: &mut self.state[points.clone()],

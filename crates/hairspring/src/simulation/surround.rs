@@ -4,33 +4,48 @@ use super::{Bodies, Drive, Simulation};
 use crate::{
     around::{Blow, Charges, Frame, Kinds, Strands, Surrounded},
     collide::Rigid,
+    strand::interval::Interval,
+    volume::Now,
 };
+use std::time::{Duration, Instant};
 
 impl Simulation {
-    /// Finds what acts on all points in the frame, and moves the roots; hair was `carried` along before it.
-    pub(super) fn exchange(&mut self, drive: &Drive, carried: Option<&Rigid>) {
+    /// Finds what acts on all points in the frame, of the hair volume for an interval of it alone, and moves the roots; hair was `carried` along before it. What the
+    /// hair volume took.
+    pub(super) fn exchange(
+        &mut self,
+        drive: &Drive,
+        carried: Option<&Rigid>,
+        interval: &Interval,
+    ) -> Duration {
         let ghosts = self.settings.solver.ghost && self.ghosts.iter().any(|ghost| ghost.is_on());
         let charged = self.charges.iter().any(|charge| *charge != 0.0);
-        let pressed = self.volume.as_ref().is_some_and(|volume| volume.acts());
+        let pressed = self.is_pressed();
         let sheltered = self.shelter.is_on() && drive.air.moves();
         let gripped = ghosts || charged || !self.tools.used.is_empty();
         let tines = self.tools.used.iter().any(|used| !used.tool.binds());
         let blown = sheltered || drive.air.varies();
         let kinds = Kinds { push: pressed, grip: gripped, tines, air: blown };
-        self.around.prepare(self.state.len(), kinds, pressed);
+        self.around.prepare(self.state.len(), kinds);
         let anchor = self.settings.anchor;
-        let obstacles = (drive.obstacles, carried);
-        let bodies = Bodies::new(obstacles);
+        let bodies = Bodies::new((drive.obstacles, carried));
+        let began = Instant::now();
         if let Some(volume) = self.volume.as_mut().filter(|_| pressed || sheltered) {
+            volume.begin_frame();
+            // Roots are moved below.
+            let now = Now { anchor, gone: 1.0 };
             let hair = (&self.strand[..], &self.state[..]);
-            volume.measure(hair, &anchor);
+            volume.measure(hair, &now);
             if pressed {
-                volume.exchange(drive.dt, hair, &anchor, obstacles, &mut self.around.push);
+                let first = (&interval.substeps[0].obstacles[..], interval.h);
+                let dt = interval.now.len() as f32 * interval.h;
+                volume.exchange(dt, hair, &now, first, &mut self.around.push);
             }
         }
+        let volume_took = began.elapsed();
         self.move_roots(drive);
         if !gripped && !blown {
-            return;
+            return volume_took;
         }
         let frame = Frame { anchor: [anchor, drive.anchor], dt: drive.dt };
         let mut strands = Strands {
@@ -81,6 +96,24 @@ impl Simulation {
             }
         };
         strands.each(&frame, &act);
+        volume_took
+    }
+}
+
+impl Simulation {
+    /// Lets strands meet as a volume again, with the anchor at `anchor`, for those of the interval's substeps that are to be run now.
+    pub(super) fn exchange_again(&mut self, anchor: Rigid, interval: &Interval) {
+        let Some(volume) = &mut self.volume else { return };
+        let now = Now { anchor, gone: interval.begun().0 };
+        let hair = (&self.strand[..], &self.state[..]);
+        volume.measure(hair, &now);
+        let first = (&interval.substeps[interval.now.start].obstacles[..], interval.h);
+        volume.exchange(interval.now.len() as f32 * interval.h, hair, &now, first, &mut self.around.push);
+    }
+
+    /// Whether strands meet as a volume.
+    pub(super) fn is_pressed(&self) -> bool {
+        self.volume.as_ref().is_some_and(|volume| volume.acts())
     }
 }
 

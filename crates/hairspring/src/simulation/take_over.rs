@@ -14,6 +14,7 @@ use crate::{
     scene::Integrator,
     strand::{
         lanes::{LANES, Row},
+        model::bend::transport_normal,
         tile::{Elastic, history, rest, springs, state, strand},
         truss::{ASIDE, normal_of, side},
     },
@@ -73,7 +74,9 @@ impl Simulation {
             for at in (0..state::ROWS).filter(|at| !kept(*at)) {
                 self.state[to][at].0[lane] = old.state[from][at].0[from_lane];
             }
-            self.rest[to][rest::CLEARANCE].0[lane] = old.rest[from][rest::CLEARANCE].0[from_lane];
+            for at in [rest::CLEARANCE, rest::EXPOSURE] {
+                self.rest[to][at].0[lane] = old.rest[from][at].0[from_lane];
+            }
             if let Some(sunk) = self.sunk.get_mut(to) {
                 sunk.0[lane] = old.sunk[from].0[from_lane];
             }
@@ -100,7 +103,9 @@ impl Simulation {
             let (i, i_was) = (j * stride, j * was);
             self.set_vector(place, i, state::V, velocity(j));
             let at = self.tiles[place / LANES].first as usize + i;
-            self.rest[at][rest::CLEARANCE].0[place % LANES] = old.rest(from, i_was, rest::CLEARANCE);
+            for row in [rest::CLEARANCE, rest::EXPOSURE] {
+                self.rest[at][row].0[place % LANES] = old.rest(from, i_was, row);
+            }
             if let Some(sunk) = self.sunk.get_mut(at) {
                 sunk.0[place % LANES] = old.sunk(from, i_was);
             }
@@ -164,8 +169,7 @@ impl Simulation {
                     (1..=stride).map(|k| self.vector(place, j * stride + k, state::EDGE).as_dvec3()).sum();
                 let t = e.normalize_or(before.unwrap_or(DVec3::Y));
                 if let Some(before) = before {
-                    let scale = normal.dot(t) / (1.0 + t.dot(before)).max(1e-3);
-                    normal = (normal - (before + t) * scale).normalize_or(normal);
+                    normal = transport_normal(normal, before, t);
                 }
                 let own = match model {
                     Elastic::Rod if j > 0 => self.vector(place, j, state::NORMAL).as_dvec3(),

@@ -33,7 +33,7 @@ impl Simulation {
         self.state[at][state::PRESS].0[place % LANES]
     }
 
-    /// How full of hair `place` in the world was at the start of the last step, over what it is at rest [1]; 0 where nothing asks for the hair's volume.
+    /// How full of hair `place` in the world was when the volume was last measured, over what it is at rest [1]; 0 where nothing asks for the hair's volume.
     pub fn density_at(&self, place: Vec3) -> f32 {
         self.volume.as_ref().map_or(0.0, |volume| volume.density(self.settings.anchor).fill(place))
     }

@@ -6,10 +6,11 @@ use super::{
     joints::Joints,
     pieces,
     surface::{Making, Surface},
+    thickness::ThinMesh,
 };
 use crate::{
     around::charge::ChargedBall,
-    body::{self, Body, Trs},
+    body::{self, Body, Cuts, Trs},
     collide::{Obstacle, ObstaclePose, Rigid},
     scene::{Collider, Scene},
     simulation::MovingObstacle,
@@ -33,6 +34,8 @@ pub(super) struct StagedBody {
     moved: Rigid,
     /// The joint that most of the head moves with: hair and fields are kept in its space.
     anchor: usize,
+    /// Where the clip cuts.
+    cuts: Cuts,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     /// Those made of meshes, the scene's colliders, its charged bodies, what the app pushes.
@@ -44,6 +47,8 @@ pub(super) struct StagedBody {
     /// What is made anew as it deforms.
     surfaces: Vec<Deforming>,
     reach: Reach,
+    /// See [`StagedBody::thin`].
+    thin: Option<ThinMesh>,
     charged: StagedCharged,
     /// How many shapes the app pushes, and where their space goes next.
     pushed: (usize, Rigid),
@@ -142,6 +147,7 @@ impl StagedBody {
             rest,
             moved: Rigid::default(),
             anchor,
+            cuts: Cuts::default(),
             positions: Vec::new(),
             normals: Vec::new(),
             obstacles: Vec::new(),
@@ -149,12 +155,14 @@ impl StagedBody {
             meshes: 0,
             surfaces: Vec::new(),
             reach: Reach::new(scene),
+            thin: None,
             charged: StagedCharged::default(),
             pushed: (0, Rigid::default()),
         };
         if let Some(body) = &scene.body {
             body.skinned(&staged.world, &mut staged.positions, &mut staged.normals);
         }
+        staged.find_cuts(scene);
         staged.add_surface(scene);
         for (k, sheet) in scene.sheets.iter().enumerate() {
             staged.add_mesh(scene, Mesh::Sheet(k), Making::Sheet(sheet.thickness));
@@ -166,6 +174,13 @@ impl StagedBody {
         staged.repose(scene, 0.0);
         staged.stand_still();
         staged
+    }
+
+    /// Finds the cuts of the scene's clip, as they are by its settings.
+    pub(super) fn find_cuts(&mut self, scene: &Scene) {
+        if let (Some(body), Some(clip)) = (&scene.body, &scene.clip) {
+            self.cuts = Cuts::new(body, clip, self.anchor, scene.solver.jump);
+        }
     }
 
     /// Colliders have not moved to where they are.
@@ -197,7 +212,7 @@ impl StagedBody {
     }
 
     /// Takes up other colliders and charged bodies in the midst of the play, at `time` [s]: where they are now, without motion.
-    pub(super) fn retune(&mut self, scene: &Scene, joints: &Joints, time: f32) {
+    pub(super) fn retune(&mut self, scene: &Scene, joints: &Joints, time: f64) {
         let pushed = self.obstacles.split_off(self.obstacles.len() - self.pushed.0);
         self.obstacles.truncate(self.meshes);
         self.carriers.truncate(self.meshes);
@@ -245,6 +260,7 @@ impl StagedBody {
         let (lo, hi) = within.map_or((lo, hi), |(a, b)| (lo.max(a), hi.min(b)));
         // Hair that cannot reach the body meets a field of one cell.
         let cell = (hi - lo).max_element().max(1e-3) / CELLS;
+        self.thin = ThinMesh::find(&body.mesh, cell, within);
         self.add_mesh(scene, Mesh::Closed, Making::Field(cell));
     }
 
@@ -272,7 +288,7 @@ impl StagedBody {
     }
 
     /// Makes the colliders of skinned meshes anew, in the anchor's space; `since` the time [s] of the pose that they have moved from, where they have, and the time now.
-    fn rebuild_surfaces(&mut self, scene: &Scene, since: Option<(f32, f32)>) {
+    fn rebuild_surfaces(&mut self, scene: &Scene, since: Option<(f64, f64)>) {
         let anchor = self.anchor();
         let within = self.reach.bounds(&self.positions, |p| anchor.inverse_point(p));
         let parts = |Deforming { surface, mesh, rest, .. }: &Deforming| {
@@ -291,8 +307,8 @@ impl StagedBody {
             let parts = shares.iter().copied().max().unwrap_or(1);
             // Wherever all of it is carried: what is made is in the anchor's space.
             poses.extend((1..parts).map(|part| {
-                let time = from + (to - from) * (part as f32 / parts as f32);
-                let world = body.world(&clip.sample(time));
+                let time = from + (to - from) * (part as f64 / parts as f64);
+                let world = body.world(&self.cuts.sample(clip, time));
                 let anchor = Rigid::from_affine(&world[self.anchor]);
                 (world, anchor)
             }));
@@ -306,16 +322,44 @@ impl StagedBody {
         }
     }
 
-    /// Poses the body for the time `to` [s], `from` the time of the last pose; motion since then is what colliders do in this frame.
-    pub(super) fn advance(&mut self, scene: &Scene, (from, to): (f32, f32)) {
+    /// Poses the body for the time `to` [s], `from` the time of the last pose; motion since then is what colliders do in this frame. Returns where a cut of
+    /// the clip takes the hair, if there is one: cuts are no motion, and colliders that they move start where they are taken.
+    pub(super) fn advance(&mut self, scene: &Scene, (from, to): (f64, f64)) -> Option<Rigid> {
         self.stand_still();
+        let cut = self.cut(scene, (from, to));
         self.pose(scene, to);
-        self.rebuild_surfaces(scene, Some((from, to)));
+        // A surface that was cut has not moved since.
+        self.rebuild_surfaces(scene, cut.is_none().then_some((from, to)));
         self.repose(scene, to);
+        cut
+    }
+
+    /// Takes what is on the joints that are cut after the time `from` until the time `to` [s] to where the cuts take it, and returns where that is for
+    /// the anchor.
+    fn cut(&mut self, scene: &Scene, times: (f64, f64)) -> Option<Rigid> {
+        let (Some(body), Some(clip)) = (&scene.body, &scene.clip) else { return None };
+        let cut = self.cuts.between(body, clip, times);
+        let moved = self.moved;
+        let by = |joint: usize| {
+            let by = cut.get(joint).copied().flatten()?;
+            Some(moved.after(&by.after(&moved.inverse())))
+        };
+        for (obstacle, carrier) in self.obstacles.iter_mut().zip(&self.carriers) {
+            let joint = match *carrier {
+                Carrier::Fixed => None,
+                Carrier::Joint(joint) => Some(joint),
+                Carrier::Anchor => Some(self.anchor),
+            };
+            if let Some(by) = joint.and_then(by) {
+                obstacle.start = by.after(&obstacle.start);
+            }
+        }
+        self.charged.cut(&scene.charged, by, &mut self.obstacles[self.carriers.len()..]);
+        by(self.anchor)
     }
 
     /// Poses the body for time `time` [s] without motion.
-    pub(super) fn place(&mut self, scene: &Scene, time: f32) {
+    pub(super) fn place(&mut self, scene: &Scene, time: f64) {
         self.moved = Rigid::default();
         self.pose(scene, time);
         self.rebuild_surfaces(scene, None);
@@ -323,9 +367,9 @@ impl StagedBody {
         self.stand_still();
     }
 
-    fn pose(&mut self, scene: &Scene, time: f32) {
+    fn pose(&mut self, scene: &Scene, time: f64) {
         if let (Some(body), Some(clip)) = (&scene.body, &scene.clip) {
-            let pose: Vec<Trs> = clip.sample(time);
+            let pose: Vec<Trs> = self.cuts.sample(clip, time);
             self.world = body.world(&pose);
         } else {
             self.world.clone_from(&self.rest);
@@ -340,7 +384,7 @@ impl StagedBody {
     }
 
     /// Where obstacles and charged bodies are in the current pose, at `time` [s], and what the app pushes where that goes.
-    fn repose(&mut self, scene: &Scene, time: f32) {
+    fn repose(&mut self, scene: &Scene, time: f64) {
         let anchor = self.anchor();
         let Self { world, rest, obstacles, carriers, charged, pushed: (count, pose), .. } = self;
         let carried = |joint: Option<usize>| carried(world, rest, joint);
@@ -358,6 +402,11 @@ impl StagedBody {
     /// Where what a joint carries has gone since rest; nowhere without a joint.
     pub(super) fn carried(&self, joint: Option<usize>) -> Rigid {
         carried(&self.world, &self.rest, joint)
+    }
+
+    /// What of the mesh that hair collides with is too thin for its field.
+    pub(super) fn thin(&self) -> Option<ThinMesh> {
+        self.thin
     }
 
     /// The charged bodies in the last frame.

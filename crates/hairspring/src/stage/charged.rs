@@ -43,12 +43,30 @@ impl StagedCharged {
         }
     }
 
+    /// Takes those on joints that are cut, and the `obstacles` of the solid ones, to where `by` says that the cut takes the joint: they start the frame there.
+    pub(super) fn cut(
+        &mut self,
+        settings: &[Charged],
+        by: impl Fn(usize) -> Option<Rigid>,
+        obstacles: &mut [MovingObstacle],
+    ) {
+        let mut obstacles = obstacles.iter_mut();
+        for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
+            let obstacle = if charged.solid { obstacles.next() } else { None };
+            let Some(by) = joint.and_then(&by) else { continue };
+            ball.centers[0] = by.point(ball.centers[0]);
+            if let Some(obstacle) = obstacle {
+                obstacle.start = by.after(&obstacle.start);
+            }
+        }
+    }
+
     /// Puts them, and the `obstacles` of the solid ones, where they are at the end of a frame, at `time` [s]; `carried` tells where a joint has taken what
     /// it carries.
     pub(super) fn advance(
         &mut self,
         settings: &[Charged],
-        time: f32,
+        time: f64,
         carried: impl Fn(Option<usize>) -> Rigid,
         obstacles: &mut [MovingObstacle],
     ) {

@@ -57,14 +57,16 @@ impl StagedHands {
     }
 
     /// Takes and lets go what is due at `time` [s], the body being posed for it.
-    pub(super) fn begin(&mut self, hands: &[Hand], time: f32, body: &StagedBody, hair: &mut Simulation) {
+    pub(super) fn begin(&mut self, hands: &[Hand], time: f64, body: &StagedBody, hair: &mut Simulation) {
+        // Rounded as the settings are: a hand that begins at 0.1 s begins in the frame at 6/60 s.
+        let now = time as f32;
         for (k, hand) in hands.iter().enumerate() {
-            if self.work[k] == Work::Before && hand.from <= time {
+            if self.work[k] == Work::Before && hand.from <= now {
                 let pose = self.pose(k, hand, time, body);
                 self.work[k] = Work::Now(hair.take(hand.tool, pose));
             }
             if let (Work::Now(id), Some(until)) = (self.work[k], hand.until)
-                && until <= time
+                && until <= now
             {
                 hair.let_go(id);
                 self.work[k] = Work::After;
@@ -73,7 +75,7 @@ impl StagedHands {
     }
 
     /// Sends them to where they are at `time` [s], the end of a frame for which the body is posed.
-    pub(super) fn advance(&self, hands: &[Hand], time: f32, body: &StagedBody, hair: &mut Simulation) {
+    pub(super) fn advance(&self, hands: &[Hand], time: f64, body: &StagedBody, hair: &mut Simulation) {
         for (k, hand) in hands.iter().enumerate() {
             if let Work::Now(id) = self.work[k] {
                 let pose = self.pose(k, hand, time, body);
@@ -82,7 +84,7 @@ impl StagedHands {
         }
     }
 
-    fn pose(&self, k: usize, hand: &Hand, time: f32, body: &StagedBody) -> Rigid {
+    fn pose(&self, k: usize, hand: &Hand, time: f64, body: &StagedBody) -> Rigid {
         let joint = body.carried(self.joints[k]);
         Rigid { translation: joint.point(hand.moved(time)), ..joint }
     }

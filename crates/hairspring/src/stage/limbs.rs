@@ -10,18 +10,13 @@
 //! shorter substeps are for a body that moves as one piece (`simulation/fast.rs`), but dear, since a field takes longer than a substep does. So only
 //! what goes across itself counts, where hair can be. A sheet is half as thick as it reaches to both sides.
 
+use super::thickness::{Place, normal, places, thicknesses};
 use crate::{
     body::{Mesh, Skin},
     collide::Rigid,
     simulation::PART,
 };
 use glam::{Affine3A, Vec3};
-use parry3d::{
-    query::{Ray, RayCast},
-    shape::TriMesh,
-};
-use rayon::prelude::*;
-use std::collections::HashSet;
 
 /// Edge of the cubes that one triangle for each way it may face stands for, over the edge of the field's cells [1]: two to a finger.
 const SPACING: f32 = 3.0;
@@ -45,45 +40,13 @@ struct Probe {
     half: f32,
 }
 
-/// A triangle, its middle and its normal.
-type Place = (u32, Vec3, Vec3);
-
-/// Triangles of a `mesh` that stand for their neighbours: one for each way it may face in each cube of edge `spacing` [m].
-fn places(mesh: &Mesh, spacing: f32) -> Vec<Place> {
-    let mut seen = HashSet::new();
-    let place = |triangle: usize| {
-        let corners = mesh.corners(triangle);
-        let (middle, normal) = (corners.iter().sum::<Vec3>() / 3.0, normal(corners)?);
-        // Truncated to −1, 0 or 1 along each axis: 26 ways at most.
-        let faces = (normal * 1.999).as_ivec3();
-        let new = seen.insert(((middle / spacing).floor().as_ivec3(), faces));
-        new.then_some((triangle as u32, middle, normal))
-    };
-    (0..mesh.triangles.len()).filter_map(place).collect()
-}
-
 impl Limbs {
     /// Those of a closed `mesh` in the rest pose whose field has cells of `cell` [m].
     pub fn of_solid(mesh: &Mesh, cell: f32) -> Self {
-        let none = Self { probes: Vec::new(), most: MOST };
-        if !mesh.positions.iter().all(|p| p.is_finite()) {
-            return none;
-        }
-        let vertices = mesh.positions.iter().map(|p| p.to_array().into()).collect();
-        let Ok(solid) = TriMesh::new(vertices, mesh.triangles.clone()) else { return none };
-        let probes = places(mesh, SPACING * cell)
-            .into_par_iter()
-            .filter_map(|(triangle, middle, normal)| {
-                // From just below the surface, so that the triangle itself is not met.
-                let skip = 1e-3 * cell;
-                let from = middle - normal * skip;
-                let ray = Ray::new(from.to_array().into(), (-normal).to_array().into());
-                // What has no other side, an open shell, tells nothing.
-                let far = solid.cast_local_ray(&ray, f32::MAX, false)?;
-                Some(Probe { triangle, half: (0.5 * (far + skip)).max(cell) })
-            })
-            .collect();
-        Self { probes, ..none }
+        let probe =
+            |((triangle, ..), thickness): (Place, f32)| Probe { triangle, half: (0.5 * thickness).max(cell) };
+        let probes = thicknesses(mesh, SPACING * cell, 1e-3 * cell).into_iter().map(probe).collect();
+        Self { probes, most: MOST }
     }
 
     /// Those of an open `mesh` in the rest pose that reaches `thickness` [m] to both sides.
@@ -118,11 +81,6 @@ impl Limbs {
         };
         self.probes.iter().map(ask).fold(1.0, f32::max).min(self.most).ceil() as usize
     }
-}
-
-/// The unit normal of a triangle; `None` where it has no area.
-fn normal([a, b, c]: [Vec3; 3]) -> Option<Vec3> {
-    (b - a).cross(c - a).try_normalize()
 }
 
 #[cfg(test)]

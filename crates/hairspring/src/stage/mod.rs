@@ -2,6 +2,7 @@
 
 mod body;
 mod charged;
+mod clock;
 mod hair;
 mod hands;
 mod joints;
@@ -10,23 +11,28 @@ mod pieces;
 mod retune;
 mod settle;
 mod surface;
+mod thickness;
 mod together;
 mod values;
 mod wind;
 
+pub use clock::FrameRate;
+pub use thickness::ThinMesh;
 pub use values::{Picked, StrandFigures, Value};
 
 use crate::{
     around::Tool,
     collide::{Obstacle, Rigid},
     follow::Followed,
-    groom::{Groom, bind_roots},
+    groom::{Groom, Imprecise, MAX_COORDINATE, bind_roots, first_imprecise},
     scene::{HairLook, Scene},
     simulation::{
-        Air, Drive, Energy, Measure, MovingObstacle, Simulation, Start, StepReport, ToolId, VolumeReport,
+        Air, Contacts, Drive, Energy, Measure, MovingObstacle, NeighboursReport, Simulation, Start,
+        StepReport, ToolId, VolumeReport,
     },
 };
 use body::StagedBody;
+use clock::Clock;
 use glam::Vec3;
 use hair::StagedHair;
 use hands::StagedHands;
@@ -73,6 +79,20 @@ pub enum StageError {
         settings: usize,
         /// Grooms on the stage.
         grooms: usize,
+    },
+    /// A strand is too far from the origin for single precision.
+    #[error("groom {groom}: {why}")]
+    TooFar {
+        /// Index of the groom in the scene.
+        groom: usize,
+        /// Which strand, and how far.
+        why: Imprecise,
+    },
+    /// A length that no frame could hold.
+    #[error("{what} is not finite or exceeds {MAX_COORDINATE} m, the largest length that is simulated")]
+    OutOfRange {
+        /// What has it.
+        what: String,
     },
     /// Something is to follow a joint that is not there.
     #[error("{what} follows the joint '{joint}', and the body has none of that name")]
@@ -132,7 +152,7 @@ pub struct Stage {
     /// Their roots.
     roots: Vec<Rigid>,
     hands: StagedHands,
-    time: f32,
+    clock: Clock,
 }
 
 impl Stage {
@@ -156,14 +176,15 @@ impl Stage {
         }
         let simulation = together::simulation(&hair, &scene, scene.solver, body.anchor(), &body.poses());
         let (wind, hands) = (StagedWind::new(joints.wind), StagedHands::new(joints.hands));
-        let mut stage = Self { body, wind, hair, simulation, roots: Vec::new(), hands, time: 0.0, scene };
+        let mut stage =
+            Self { body, wind, hair, simulation, roots: Vec::new(), hands, clock: Clock::ZERO, scene };
         stage.reset();
         Ok(stage)
     }
 
     /// Back to time 0; no tool is in use, and the body goes by its clip alone. What [`Stage::push_with`] brought stays where it is.
     pub fn reset(&mut self) {
-        self.time = 0.0;
+        self.clock = Clock::ZERO;
         self.body.place(&self.scene, 0.0);
         self.hands.reset();
         self.simulation.let_go_all();
@@ -226,15 +247,33 @@ impl Stage {
         self.body.colliders()
     }
 
+    /// What of the mesh that hair collides with is thinner than its distance field can tell.
+    pub fn thin_mesh(&self) -> Option<ThinMesh> {
+        self.body.thin()
+    }
+
+    /// Where what the body's joint of this name carries has gone since rest; nowhere without a joint of that name.
+    pub fn carried(&self, joint: Option<&str>) -> Rigid {
+        let joint = joint.and_then(|name| self.scene.body.as_ref()?.joint(name));
+        self.body.carried(joint)
+    }
+
     /// Where the frame is now that roots and fields move with: the joint that carries most of the skin around the roots (the head); the identity without a
     /// body.
     pub fn body_anchor(&self) -> Rigid {
         self.body.anchor()
     }
 
-    /// Plays `dt` [s] (above 0) of the scene.
+    /// Plays `dt` [s] (above 0) of the scene. For frames at a fixed rate, [`Stage::step_frame`] keeps exact time.
     pub fn step(&mut self, dt: f32) -> FrameReport {
         let mut report = self.advance(dt);
+        report.follow = self.show();
+        report
+    }
+
+    /// Plays one frame at `rate`. Time is a count of such frames, so that it is exact after any number of them.
+    pub fn step_frame(&mut self, rate: FrameRate) -> FrameReport {
+        let mut report = self.advance_frame(rate);
         report.follow = self.show();
         report
     }
@@ -242,18 +281,31 @@ impl Stage {
     /// Plays `dt` [s] (above 0) of what is simulated alone: what [`Stage::strands`] shows stays as it is until [`Stage::show`], and costs nothing in frames that
     /// nobody looks at. No result depends on which frames are shown.
     pub fn advance(&mut self, dt: f32) -> FrameReport {
+        self.advance_to(self.clock.after(f64::from(dt)), dt)
+    }
+
+    /// Plays one frame at `rate` of what is simulated alone, as [`Stage::advance`] does.
+    pub fn advance_frame(&mut self, rate: FrameRate) -> FrameReport {
+        self.advance_to(self.clock.after_frame(rate), rate.frame_length() as f32)
+    }
+
+    /// Plays to the time `end`, which is `dt` [s] after now.
+    fn advance_to(&mut self, end: Clock, dt: f32) -> FrameReport {
         let mut report = FrameReport::default();
         let began = Instant::now();
-        self.hands.begin(&self.scene.hands, self.time, &self.body, &mut self.simulation);
+        let (from, to) = (self.clock.time(), end.time());
+        self.hands.begin(&self.scene.hands, from, &self.body, &mut self.simulation);
         // Sources are where they are at the start, as points are.
-        self.wind.advance(&self.scene, self.time + 0.5 * dt, &self.body);
-        self.body.advance(&self.scene, (self.time, self.time + dt));
-        self.hands.advance(&self.scene.hands, self.time + dt, &self.body, &mut self.simulation);
+        self.wind.advance(&self.scene, from.midpoint(to), &self.body);
+        if let Some(cut) = self.body.advance(&self.scene, (from, to)) {
+            self.simulation.teleport(cut);
+        }
+        self.hands.advance(&self.scene.hands, to, &self.body, &mut self.simulation);
         report.body = began.elapsed();
         let began = Instant::now();
         self.pose_roots();
         let Scene { wind, turbulence, .. } = self.scene;
-        let air = Air { wind, time: self.time, sources: self.wind.sources(), turbulence };
+        let air = Air { wind, time: from, sources: self.wind.sources(), turbulence };
         self.simulation.set_charged(self.body.charged().iter().copied());
         report.step = self.simulation.step(&Drive {
             dt,
@@ -263,7 +315,7 @@ impl Stage {
             air,
         });
         report.simulate = began.elapsed();
-        self.time += dt;
+        self.clock = end;
         report
     }
 
@@ -275,8 +327,8 @@ impl Stage {
     }
 
     /// Time played since the start [s].
-    pub fn time(&self) -> f32 {
-        self.time
+    pub fn time(&self) -> f64 {
+        self.clock.time()
     }
 
     /// The scene's settings; its grooms have moved into the stage.
@@ -327,6 +379,11 @@ impl Stage {
         self.simulation.volume()
     }
 
+    /// What is known of strands that meet each other one by one; `None` where none do.
+    pub fn neighbours(&self) -> Option<NeighboursReport> {
+        self.simulation.neighbours()
+    }
+
     /// Name of the instruction set that strands are simulated with.
     pub fn instruction_set(&self) -> String {
         self.simulation.instruction_set()
@@ -335,6 +392,11 @@ impl Stage {
     /// Energy of all simulated strands at the end of the last step.
     pub fn energy(&self) -> Energy {
         self.simulation.energy()
+    }
+
+    /// What colliders hold out now, and how many points had one looked up.
+    pub fn contacts(&self) -> Contacts {
+        self.simulation.contacts(self.body.obstacles())
     }
 
     /// Figures over all simulated strands at the end of the last step.
@@ -353,6 +415,18 @@ fn check(scene: &Scene) -> Result<(), StageError> {
             let points = groom.range(strand).len();
             return Err(StageError::ShortStrand { groom: g, strand, points });
         }
+        if let Some(why) = first_imprecise(groom) {
+            return Err(StageError::TooFar { groom: g, why });
+        }
+        in_range(&format!("a point of groom {g}"), &groom.points)?;
+    }
+    check_effects(scene)?;
+    if let Some(body) = &scene.body {
+        in_range("a vertex of the body", &body.mesh.positions)?;
+    }
+    if let Some(clip) = &scene.clip {
+        let translations = clip.samples.iter().map(|joint| &joint.translation);
+        in_range("a translation of the clip", translations)?;
     }
     if let (Some(clip), Some(body)) = (&scene.clip, &scene.body)
         && clip.joint_count != body.joints.len()
@@ -364,4 +438,22 @@ fn check(scene: &Scene) -> Result<(), StageError> {
         });
     }
     Ok(())
+}
+
+/// Refuses effects that would displace follow hairs beyond what is simulated.
+fn check_effects(scene: &Scene) -> Result<(), StageError> {
+    for (g, effects) in scene.grooms.iter().map(|groom| groom.effects).enumerate() {
+        let lengths = Vec3::new(effects.curl_radius, effects.curl_length, effects.noise);
+        in_range(&format!("an effect of groom {g}"), [&lengths])?;
+    }
+    Ok(())
+}
+
+/// Refuses coordinates that are not finite or beyond [`MAX_COORDINATE`].
+fn in_range<'a>(what: &str, coordinates: impl IntoIterator<Item = &'a Vec3>) -> Result<(), StageError> {
+    let inside = |p: &Vec3| p.abs().cmple(Vec3::splat(MAX_COORDINATE)).all();
+    match coordinates.into_iter().all(inside) {
+        true => Ok(()),
+        false => Err(StageError::OutOfRange { what: what.into() }),
+    }
 }

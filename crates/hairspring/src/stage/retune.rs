@@ -1,6 +1,6 @@
 //! Other settings in the midst of the play.
 
-use super::{Stage, StageError, joints::Joints, together, wind::StagedWind};
+use super::{Stage, StageError, check_effects, joints::Joints, together, wind::StagedWind};
 use crate::scene::{Scene, Solver};
 
 impl Stage {
@@ -16,11 +16,13 @@ impl Stage {
     /// - Tools of [`Stage::take`] go on. So does a hand of the scene whose settings are still there; others let go, and new ones begin.
     ///
     /// # Errors
-    /// [`StageError::GroomCount`] where there are more or fewer grooms, [`StageError::NoSuchJoint`]; nothing changes then.
+    /// [`StageError::GroomCount`] where there are more or fewer grooms, [`StageError::NoSuchJoint`],
+    /// [`StageError::OutOfRange`] for effects that are too large; nothing changes then.
     pub fn retune(&mut self, settings: Scene) -> Result<(), StageError> {
         if settings.grooms.len() != self.hair.len() {
             return Err(StageError::GroomCount { settings: settings.grooms.len(), grooms: self.hair.len() });
         }
+        check_effects(&settings)?;
         let joints = Joints::new(&settings, self.scene.body.as_ref())?;
         let before = std::mem::take(&mut self.scene);
         self.scene = Scene {
@@ -38,7 +40,10 @@ impl Stage {
         let grooms = std::mem::take(&mut self.scene.grooms);
         let scene = &self.scene;
         if (&before.colliders, &before.charged) != (&scene.colliders, &scene.charged) {
-            self.body.retune(scene, &joints, self.time);
+            self.body.retune(scene, &joints, self.clock.time());
+        }
+        if before.solver.jump != scene.solver.jump {
+            self.body.find_cuts(scene);
         }
         if before.wind_sources != scene.wind_sources {
             self.wind = StagedWind::new(joints.wind);

@@ -23,6 +23,7 @@ pub(super) fn simulation(
     let mut simulation =
         Simulation::new(Arc::new(groom), &strands, &materials, solver, scene.gravity, anchor, obstacles);
     simulation.set_hairs(hair.iter().flat_map(StagedHair::hairs).collect());
+    simulation.set_self_shelter(obstacles);
     simulation.set_volume(&scene.volume);
     simulation.set_shelter(&scene.shelter);
     simulation.set_neighbours(&scene.neighbours);

@@ -17,7 +17,7 @@ impl StagedWind {
     }
 
     /// Puts them where the body is, blowing as at `time` [s].
-    pub(super) fn advance(&mut self, scene: &Scene, time: f32, body: &StagedBody) {
+    pub(super) fn advance(&mut self, scene: &Scene, time: f64, body: &StagedBody) {
         self.sources.clear();
         let all = scene.wind_sources.iter().zip(&self.joints).enumerate();
         self.sources.extend(all.map(|(k, (source, joint))| source.at(k, body.carried(*joint), time)));

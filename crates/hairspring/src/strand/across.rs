@@ -14,11 +14,10 @@
 //! solution is the same. Such a matrix has pivots of known sign in any order: Vanderbei 1995, *Symmetric Quasidefinite Matrices*.
 
 use super::{
-    lanes::{F, M3, Row, Sym3, V3, load, store},
+    lanes::{F, M3, Simd, Sym3, V3, Work, load, store},
     profile::Profile,
     system::{Said, System},
 };
-use fearless_simd::prelude::*;
 
 /// A spring across all points of a window, where there are four.
 #[derive(Clone, Copy)]
@@ -37,10 +36,10 @@ pub struct Eliminated {
     /// The point that it was eliminated after.
     pub point: usize,
     /// κ, ρ, q and h of the three points after, see above.
-    pivot: Row,
-    right: Row,
-    q: [Row; 3],
-    h: [[Row; 3]; 3],
+    pivot: Work,
+    right: Work,
+    q: [Work; 3],
+    h: [[Work; 3]; 3],
 }
 
 impl<S: Simd> Across<S> {
@@ -66,7 +65,7 @@ impl<S: Simd> Across<S> {
         simd: S,
         profile: Profile<B, N>,
         i: usize,
-        factors: &mut [Row],
+        factors: &mut [Work],
     ) -> Eliminated {
         let &Self { gradient: [g0, mut h1, mut h2, h3], longer, stiffness } = self;
         let point = &factors[(i + Profile::<B, N>::REACH) * profile.rows()..][..profile.rows()];
@@ -98,12 +97,12 @@ impl<S: Simd> Across<S> {
                 said.add_block(p, q, &M3 { rows: [h * scaled.x, h * scaled.y, h * scaled.z] });
             }
         }
-        let mut rows = [Row::default(); 5];
+        let mut rows = [Work::default(); 5];
         for (row, value) in rows.iter_mut().zip([pivot, right, q[0], q[1], q[2]]) {
             store(value, row);
         }
         let [pivot, right, q @ ..] = rows;
-        let mut kept = [[Row::default(); 3]; 3];
+        let mut kept = [[Work::default(); 3]; 3];
         for (rows, h) in kept.iter_mut().zip(h) {
             h.store(rows);
         }
@@ -119,7 +118,7 @@ impl Eliminated {
         simd: S,
         profile: Profile<B, N>,
         after: &[F<S>; N],
-        factors: &mut [Row],
+        factors: &mut [Work],
     ) {
         let mut length = load(simd, &self.right);
         for (p, h) in self.h.iter().enumerate() {

@@ -17,12 +17,10 @@
 
 use super::{
     band::Band,
+    drag::Drag,
     elements::{Elements, Outset, Walk},
-    lanes::{F, Sym3, V3},
-    model::{
-        Model,
-        stretch::{EXPLICIT_TENSION, EXPLICIT_TENSION_BDF2},
-    },
+    lanes::{F, Simd, Sym3, V3},
+    model::Model,
     outside,
     prefetch::ask_beyond,
     root::Root,
@@ -31,7 +29,6 @@ use super::{
     tile::{Tile, history, state},
 };
 use crate::collide::ObstaclePose;
-use fearless_simd::prelude::*;
 use glam::Vec3;
 
 /// One substep of one tile, as the assembly needs it.
@@ -62,12 +59,6 @@ impl<S: Simd> Step<'_, S> {
     #[inline(always)]
     pub fn inertia(&self) -> f32 {
         if self.second_order { 2.25 } else { 1.0 }
-    }
-
-    /// How much of a tense segment's sideways stiffness is left out of the matrix (see `stretch`).
-    #[inline(always)]
-    pub fn explicit_tension(&self) -> f32 {
-        if self.second_order { EXPLICIT_TENSION_BDF2 } else { EXPLICIT_TENSION }
     }
 }
 
@@ -244,8 +235,8 @@ fn add_point<S, M, const B: usize, const N: usize>(
 {
     let segment = elements.add(simd, i, phase, tile, scratch);
     if sweep == Sweep::Again {
-        let [new, old] = [&scratch.edges[i + 1][..], &tile.state[i + 1][state::EDGE..]];
-        elements.walk.way += V3::load(simd, new) - V3::load(simd, old);
+        let old = V3::load(simd, &tile.state[i + 1][state::EDGE..]);
+        elements.walk.way += V3::load(simd, &scratch.edges[i + 1]) - old;
     }
     let Elements { band, walk: Walk { way, root_velocity, ambient, .. }, .. } = elements;
     let (way, root_velocity) = (*way, *root_velocity);
@@ -254,7 +245,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
     ask_beyond(tile.state, i, 2 * step.number + 1);
     ask_beyond(tile.spans, i, step.number);
 
-    // Mass, air and gravity of point i+1. Drag along a slender fibre is half of that across it (Batchelor 1970).
+    // Mass, air and gravity of point i+1.
     let inv_h = 1.0 / step.h;
     let mass = segment.mass;
     let v = V3::load(simd, &tile.state[i + 1][state::V..]);
@@ -282,14 +273,15 @@ fn add_point<S, M, const B: usize, const N: usize>(
     let mut right = p * mass;
     band.add_identity(1, m_h2);
     if phase + 1 == M::STRIDE {
-        let across = segment.air * inv_h;
-        let slip = if sweep == Sweep::First {
-            ambient.wind - v
-        } else {
-            ambient.wind - root_velocity - outset.way(simd) * F::splat(simd, inv_h)
-        };
-        right += (slip - segment.u * (segment.u.dot(slip) * 0.5)) * segment.air;
-        band.add_diagonal(1, Sym3::outer(segment.u, across * -0.5).add_identity(across));
+        let u = segment.u;
+        let local = tile.air.get(i + 1).map_or(V3::zero(simd), |air| V3::load(simd, air));
+        let drag = Drag::new(simd, tile.strand, &tile.rest[i + 1], V3::splat(simd, step.wind) + local - v, u);
+        let (across, along) = (segment.air * drag.across, segment.air * drag.along);
+        let moving =
+            if sweep == Sweep::First { v } else { root_velocity + outset.way(simd) * F::splat(simd, inv_h) };
+        let slip = ambient.wind + local - moving;
+        right += slip * across + u * (u.dot(slip) * (along - across));
+        band.add_diagonal(1, Sym3::outer(u, (along - across) * inv_h).add_identity(across * inv_h));
     }
     band.add_force(1, right);
 }

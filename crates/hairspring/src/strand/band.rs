@@ -13,11 +13,10 @@
 //! Computations*, 4th ed., §4.1.2, §4.3.5. Which unknowns meet is said by a [`Profile`].
 
 use super::{
-    lanes::{F, Row, Sym3, V3, load, store},
+    lanes::{F, Mask, Simd, Sym3, V3, Work, load, store},
     profile::Profile,
     system::System,
 };
-use fearless_simd::{mask32x8, prelude::*};
 use std::{
     ops::Range,
     sync::atomic::{Ordering, compiler_fence},
@@ -81,7 +80,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 
     /// Takes up what was [left](Band::leave) of the window's first point, the strand's `i`th, which [`Band::eliminate`] does by itself.
     #[inline(always)]
-    pub fn take_up(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
+    pub fn take_up(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let rows = profile.rows();
         let ahead = &mut factors[(i + Profile::<B, N>::REACH) * rows..][..rows];
         each!(r of 0 1 2 3, {
@@ -94,14 +93,14 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                 self.b[r] += load(simd, &ahead[profile.said_right(r)]);
             }
         });
-        ahead.fill(Row::default());
+        ahead.fill(Work::default());
     }
 
     /// Leaves what was said of these `points` after the window's first where their factors will be, with what was left of them before: in the rows `ahead`,
     /// which begin with the next point's.
     #[inline(always)]
-    fn leave(&self, simd: S, profile: Profile<B, N>, points: Range<usize>, ahead: &mut [Row]) {
-        let add = |value: F<S>, row: &mut Row, before: bool| {
+    fn leave(&self, simd: S, profile: Profile<B, N>, points: Range<usize>, ahead: &mut [Work]) {
+        let add = |value: F<S>, row: &mut Work, before: bool| {
             store(if before { value + load(simd, row) } else { value }, row);
         };
         each!(r, {
@@ -154,7 +153,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 
     /// Cuts the first point off from the rest in the strands where it is not `free`.
     #[inline(always)]
-    pub fn cut(&mut self, simd: S, free: mask32x8<S>) {
+    pub fn cut(&mut self, simd: S, free: Mask<S>) {
         let zero = F::<S>::splat(simd, 0.0);
         let one = F::<S>::splat(simd, 1.0);
         for r in 0..B {
@@ -169,7 +168,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     /// of which nothing has been said.
     #[inline(always)]
     #[allow(clippy::needless_range_loop, reason = "columns count in the row and in the factors")]
-    pub fn eliminate(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
+    pub fn eliminate(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let minus_one = F::<S>::splat(simd, -1.0);
         let mut pivots = [minus_one; B];
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
@@ -261,10 +260,10 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 
     /// Moves on past the strand's `i`th point without eliminating it: those after it meet nothing of it.
     #[inline(always)]
-    pub fn pass(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Row]) {
+    pub fn pass(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
         let (own, after) = factors[(i + reach) * rows..][..(reach + 1) * rows].split_at_mut(rows);
-        own.fill(Row::default());
+        own.fill(Work::default());
         if profile.is_far() {
             let Far { u, k, pull } = self.far;
             self.leave_far(u, k, pull);
@@ -278,7 +277,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
     simd: S,
     profile: Profile<B, N>,
-    factors: &[Row],
+    factors: &[Work],
     x: &mut [F<S>; N],
 ) {
     let factors = &factors[..profile.rows()];

@@ -3,15 +3,17 @@
 use super::{
     assemble::{Step, Sweep},
     band::Band,
-    lanes::{F, Row, V3, load},
-    model::{At, Model, stretch::stretch},
+    lanes::{F, Simd, V3, Work, load},
+    model::{
+        At, Model,
+        stretch::{SIDEWAYS_BDF2, stretch},
+    },
     profile::Profile,
     root::Root,
     scratch::Scratch,
     system::System,
-    tile::{Tile, rest, state, strand},
+    tile::{Tile, rest, state},
 };
-use fearless_simd::prelude::*;
 
 /// The walk down a strand that fills the band: elasticity only.
 pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
@@ -34,10 +36,10 @@ pub struct Walk<S: Simd> {
     pub root_velocity: V3<S>,
     /// What acts alike on all points.
     pub ambient: Ambient<S>,
-    /// Force of still air on half a unit of length, over speed [N s/m²].
+    /// Half of `strand::DRAG` [Pa s].
     half_drag: F<S>,
     /// See [`stretch`].
-    explicit: F<S>,
+    sideways: F<S>,
 }
 
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
@@ -63,18 +65,17 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             h: step.h,
         };
         let begin = 2 * Profile::<B, N>::REACH * M::PROFILE.rows();
-        scratch.factors[..begin].fill(Row::default());
+        scratch.factors[..begin].fill(Work::default());
         scratch.across.clear();
         let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
-        let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
-        let explicit = F::splat(simd, step.explicit_tension()) / stiffening;
+        let sideways = F::splat(simd, if step.second_order { SIDEWAYS_BDF2 } else { M::SIDEWAYS });
         let root_velocity = V3::load(simd, &tile.state[0][state::V..]);
         let now = step.moved * F::splat(simd, 1.0 / step.h);
         let ambient = Ambient {
             pull: (root_velocity - now).mul_add(F::splat(simd, 1.0 / step.h), V3::splat(simd, step.gravity)),
             wind: V3::splat(simd, step.wind) + (root_velocity - now),
         };
-        let walk = Walk { at, x: zero, way: zero, root_velocity, ambient, half_drag, explicit };
+        let walk = Walk { at, x: zero, way: zero, root_velocity, ambient, half_drag, sideways };
         Self { band, model, walk }
     }
 
@@ -115,11 +116,11 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let length = load(simd, &row[rest::LENGTH]);
         let k = load(simd, &fixed[next].along);
         let tension = load(simd, &tile.state[next][state::TENSION]);
-        let (force, block) = stretch((l, u), (l - length) * at.news, k, tension, walk.explicit);
+        let (force, block) =
+            stretch((l, u), (l - length) * at.news, (k, tension), at.drift[1], walk.sideways);
         band.add_diagonal(1, block);
         band.add_diagonal(1 + M::STRIDE, block);
         band.add_block(1, 1 + M::STRIDE, &-block.full());
-        let force = force + block * at.drift[1];
         band.add_force(1, force);
         band.add_force(1 + M::STRIDE, -force);
         let air = walk.half_drag * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
@@ -141,11 +142,11 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
 
 /// What the assembly says of the point after the walk's.
 pub struct Segment<S: Simd> {
-    /// Unit vector of the strand's segment from it.
+    /// Unit vector of the strand's segment from it, zero at the tip.
     pub u: V3<S>,
     /// Its mass [kg].
     pub mass: F<S>,
-    /// Force of still air on the half segments around it, over speed [N s/m].
+    /// Drag on the half segments around it, over velocity and the coefficients of `Drag` [N s/m].
     pub air: F<S>,
 }
 

@@ -1,24 +1,23 @@
 //! What stays as it is for a whole exchange interval, worked out once: inverse masses and lengths, and the springs along the segments.
 
 use super::{
-    lanes::{F, Row, load, store},
+    lanes::{F, Simd, Work, load, store},
     model::{Stretching, springs},
     scratch::Scratch,
     tile::{self, Elastic, Tile, hold, rest},
 };
-use fearless_simd::prelude::*;
 
 /// What is known of one point of a tile for a whole interval.
 #[derive(Clone, Copy, Default)]
 pub struct Fixed {
     /// Inverse mass [1/kg]; 0 for driven points, held points and the padding.
-    pub inverse_mass: Row,
+    pub inverse_mass: Work,
     /// Inverse rest length of the segment from this point to the strand's next [1/m]; 0 for padding.
-    pub inverse_length: Row,
+    pub inverse_length: Work,
     /// Stiffness of the spring along that segment [N/m]; 0 for padding.
-    pub along: Row,
+    pub along: Work,
     /// Inverse rest lengths of the springs to the second and third particle after this one, of the springs model [1/m].
-    pub inverse_spans: [Row; 2],
+    pub inverse_spans: [Work; 2],
 }
 
 /// Fills `scratch.fixed` for substeps of `h` [s].

@@ -12,10 +12,9 @@
 //! rest, 5 µm/s, would let go whatever trembles.
 
 use super::{
-    lanes::{F, load},
+    lanes::{F, Simd, load},
     tile::{StrandRows, strand},
 };
-use fearless_simd::prelude::*;
 
 /// v_s of the formula: the speed at which friction is halfway from static to kinetic [m/s].
 const SLIDES: f32 = 1e-3;

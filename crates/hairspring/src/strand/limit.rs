@@ -8,16 +8,16 @@
 
 use super::{
     assemble::Step,
+    colliders::{self, contact, may_cut, surface_displacement},
     friction::Friction,
-    lanes::{F, V3, load, store},
+    lanes::{F, Mask, Simd, V3, load, store},
     scratch::Scratch,
     segment::{clear, sag},
     tether::{beyond, tethered},
     tile::{Tile, history, rest, span, state},
     truss::beside,
 };
-use crate::collide::{STEEP, contact, surface_displacement};
-use fearless_simd::{mask32x8, prelude::*};
+use crate::collide::STEEP;
 
 /// What a substep leaves behind besides positions.
 pub struct Finish {
@@ -125,7 +125,7 @@ pub fn limit<S: Simd>(
 #[inline(always)]
 fn near<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, (i, world, e): (usize, V3<S>, V3<S>)) -> bool {
     for pose in step.obstacles {
-        if pose.near(simd, world).any_true() {
+        if colliders::near(simd, pose, world).any_true() {
             return true;
         }
     }
@@ -133,7 +133,7 @@ fn near<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, (i, world, e): (usize, V3
     if !tile.spans.is_empty() {
         let sag = sag(simd, tile, i);
         for pose in step.obstacles {
-            if pose.may_cut(simd, (world, e), sag).any_true() {
+            if may_cut(simd, pose, (world, e), sag).any_true() {
                 return true;
             }
         }
@@ -184,7 +184,7 @@ fn held<S: Simd>(
         let (distance, normal) = contact(simd, pose, world);
         let depth = (clearance - distance).max(0.0);
         let inside = depth.simd_gt(0.0);
-        let mut caught = mask32x8::splat(simd, false);
+        let mut caught = Mask::splat(simd, false);
         if inside.any_true() {
             // Out along the normal; then back along the surface, at most μ times as far.
             let pushed = e + normal * depth;
@@ -307,7 +307,7 @@ pub struct Link<S: Simd> {
 impl<S: Simd> Link<S> {
     /// Where the segment is too long or too short.
     #[inline(always)]
-    fn wrong(&self, e: V3<S>) -> mask32x8<S> {
+    fn wrong(&self, e: V3<S>) -> Mask<S> {
         let (size, length) = (e.dot(e), self.length * self.length);
         let (shortest, longest) = ((1.0 - self.limit).max(0.0), 1.0 + self.limit);
         size.simd_gt(length * (longest * longest)) | size.simd_lt(length * (shortest * shortest))

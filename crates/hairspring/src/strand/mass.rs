@@ -96,6 +96,8 @@ mod tests {
             flat: 0.0,
             twist_ratio: Some(0.46),
             substep: 1.0 / 240.0,
+            damping: 0.0,
+            double: false,
         }
     }
 

@@ -4,10 +4,10 @@
 use super::{
     assemble::{Step, Sweep},
     band::Band,
-    dispatch::dispatch,
+    dispatch::{dispatch, dispatch_double},
     elements::Elements,
     fixed::fix,
-    lanes::{F, LANES, Row},
+    lanes::{F, LANES, Row, Simd, V3},
     model::{
         Model, Stretching, curvature::Curvature, rod::Rod, springs::Springs, straight::Straight,
         stretch::stretch,
@@ -16,18 +16,18 @@ use super::{
     root::Root,
     scratch::Memory,
     tests::{lane, rows, splat, vector},
-    tile::{Elastic, Tile, rest, springs, strand},
+    tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, springs, state, strand},
 };
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::Level;
 use glam::{DVec3, Mat3, Vec3};
 use proptest::prelude::*;
 
 /// Forces on the points [N], and moments on the segments' angles [N m], of which only the rod has any.
 type Forces = (Vec<DVec3>, Vec<f64>);
 
-/// The internal forces of a strand whose rest shape is another one.
+/// The internal forces of a strand whose rest shape is another one, flat and twisted.
 fn internal(s: &reference::Strand, model: Elastic) -> Forces {
-    let (mut strand_rows, mut rest_rows, mut state_rows, _) = rows(s);
+    let (mut strand_rows, mut rest_rows, state_rows, _) = rows(s);
     strand_rows[strand::FLAT] = Row([2.0; LANES]);
     let points = rest_rows.len();
     if model == Elastic::Springs {
@@ -46,9 +46,20 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
     } else {
         rest_rows.iter_mut().for_each(|row| row[rest::TWIST] = Row([0.3; LANES]));
     }
+    forces_of(s, model, (strand_rows, rest_rows, state_rows))
+}
+
+/// The internal forces of the strand in these rows, in double precision where the model has it.
+fn forces_of(
+    s: &reference::Strand,
+    model: Elastic,
+    (strand_rows, rest_rows, mut state_rows): (StrandRows, Vec<RestRows>, Vec<StateRows>),
+) -> Forces {
+    let mut forces = Forces::default();
     let mut tile = Tile {
         model,
         flat: true,
+        double: true,
         strand: &strand_rows,
         rest: &rest_rows,
         state: &mut state_rows,
@@ -62,12 +73,17 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
         tethers: &[],
         holds: &[],
     };
-    dispatch!(Level::new(), simd => match model {
+    if model == Elastic::Springs {
+        dispatch!(Level::new(), simd => forces = walk::<_, Springs, 3, 12>(simd, s, &mut tile));
+        return forces;
+    }
+    dispatch_double!(Level::new(), simd => forces = match model {
         Elastic::Straight => walk::<_, Straight, 3, 9>(simd, s, &mut tile),
         Elastic::Curvature => walk::<_, Curvature<_>, 3, 9>(simd, s, &mut tile),
         Elastic::Rod => walk::<_, Rod<_>, 4, 11>(simd, s, &mut tile),
-        Elastic::Springs => walk::<_, Springs, 3, 12>(simd, s, &mut tile),
-    })
+        Elastic::Springs => unreachable!("the springs model has single precision alone"),
+    });
+    forces
 }
 
 #[inline(always)]
@@ -91,7 +107,7 @@ where
     let mut memory = Memory::default();
     let mut scratch = memory.scratch(s.x.len());
     fix(simd, step.h, Stretching::Moderate, tile, &mut scratch);
-    scratch.begin(tile.state);
+    scratch.begin(simd, tile.state);
     let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, &step, tile, &mut scratch);
     let mut forces = Forces::default();
     for i in 0..s.x.len() {
@@ -102,10 +118,83 @@ where
         }
         elements.band.take_up(simd, M::PROFILE, i, scratch.factors);
         forces.0.push(lane(elements.band.force()));
-        forces.1.push(if B > 3 { elements.band.right(3)[3] as f64 } else { 0.0 });
+        forces.1.push(if B > 3 { elements.band.right(3).lane(3) as f64 } else { 0.0 });
         elements.band.pass(simd, M::PROFILE, i, scratch.factors);
     }
     forces
+}
+
+/// Bending and twisting up to a complete fold: the force is the gradient of the energy, within a thousandth of the largest.
+#[test]
+fn the_force_is_the_gradient_of_the_energy_up_to_a_fold() {
+    const LENGTH: f64 = 0.008;
+    for degrees in [1.0, 60.0, 120.0, 138.0, 140.0, 150.0, 160.0, 170.0, 175.0, 179.0, 179.9] {
+        for aside in [0.0, 0.7] {
+            let angle = f64::to_radians(degrees);
+            let t0 = DVec3::new(0.0, -1.0, 0.0);
+            let t1 = DVec3::new(0.28, -0.96, 0.0);
+            let across = DVec3::new(0.96, 0.28, 0.0);
+            let t2 = t1 * angle.cos() + (across * 0.6 + DVec3::Z * 0.8) * angle.sin();
+            let t3 = (t2 + DVec3::new(0.1, 0.2, 0.3)).normalize();
+            let mut x = vec![DVec3::ZERO];
+            for t in [t0, t1, t2, t3] {
+                x.push((x[x.len() - 1] + t * LENGTH).as_vec3().as_dvec3());
+            }
+            let n = x.len();
+            let length: Vec<f64> =
+                (0..n).map(|i| if i + 1 < n { x[i].distance(x[i + 1]) } else { 0.0 }).collect();
+            let strand = reference::Strand {
+                v: vec![DVec3::ZERO; n],
+                mass: vec![4e-8; n],
+                bend: (0..n).map(|i| if i == 0 || i + 1 == n { 0.0 } else { 4e-6f32 as f64 }).collect(),
+                turn: vec![DVec3::new(0.3, -0.2, 0.0).as_vec3().as_dvec3(); n],
+                tension: vec![0.0; n],
+                drag: 0.0,
+                reynolds: 0.0,
+                damping: 0.0,
+                wind: DVec3::ZERO,
+                moved: DVec3::ZERO,
+                gravity: DVec3::ZERO,
+                h: 1.0 / 240.0,
+                length,
+                x: x.clone(),
+            };
+            let (strand_rows, rest_rows, mut state_rows, mut normals) = rows(&strand);
+            // Frames that are turned against each other.
+            for i in 1..n - 1 {
+                let u = (x[i + 1] - x[i]).normalize();
+                normals[i] = glam::DQuat::from_axis_angle(u, aside * i as f64) * normals[i];
+                for (k, v) in normals[i].as_vec3().to_array().into_iter().enumerate() {
+                    state_rows[i][state::NORMAL + k] = Row([v; LANES]);
+                }
+            }
+            let (forces, _) = forces_of(&strand, Elastic::Rod, (strand_rows, rest_rows, state_rows));
+            let energy = |y: &[DVec3]| reference::elastic_energy(&strand, &normals, &x, y);
+            let gradient: Vec<DVec3> = (0..n)
+                .map(|i| {
+                    DVec3::from_array([0, 1, 2].map(|c| {
+                        let step = 1e-4 * LENGTH * (1.0 - angle / 3.15).max(0.01);
+                        let at = |s: f64| {
+                            let mut y = x.clone();
+                            y[i][c] += s;
+                            energy(&y)
+                        };
+                        (at(step) - at(-step)) / (2.0 * step)
+                    }))
+                })
+                .collect();
+            let largest = gradient.iter().map(|g| g.length()).fold(0.0, f64::max);
+            for i in 0..n {
+                let error = (forces[i] + gradient[i]).length();
+                assert!(
+                    error < 2e-3 * largest,
+                    "{degrees} degrees, turned {aside}: point {i} has {} and not {}",
+                    forces[i],
+                    -gradient[i]
+                );
+            }
+        }
+    }
 }
 
 proptest! {
@@ -118,8 +207,8 @@ proptest! {
         let ((ours, block), u) = dispatch!(Level::new(), simd => {
             let f = |v: f64| F::splat(simd, v as f32);
             let (l, u) = splat(simd, e).length_and_unit();
-            let (force, block) = stretch((l, u), l - f(rest), f(k), f(tension), f(0.0));
-            let m = [block.xx, block.xy, block.xz, block.yy, block.yz, block.zz].map(|v| v[3] as f64);
+            let (force, block) = stretch((l, u), l - f(rest), (f(k), f(tension)), V3::zero(simd), f(0.0));
+            let m = [block.xx, block.xy, block.xz, block.yy, block.yz, block.zz].map(|v| v.lane(3) as f64);
             ((lane(force), m), lane(u))
         });
         // Of the nearer point, whose move shortens the segment.
@@ -160,7 +249,7 @@ proptest! {
             bend: (0..n).map(|i| if i == 0 || i + 1 == n { 0.0 } else { 4e-6 }).collect(),
             turn: turns[..n].to_vec(),
             tension: vec![tension; n],
-            drag: 0.0, damping: 0.0, wind: DVec3::ZERO, moved: DVec3::ZERO, gravity: DVec3::ZERO,
+            drag: 0.0, reynolds: 0.0, damping: 0.0, wind: DVec3::ZERO, moved: DVec3::ZERO, gravity: DVec3::ZERO,
             h: 1.0 / 240.0,
             length: (0..n).map(|i| if i + 1 < n { 0.008 } else { 0.0 }).collect(),
             x: x.clone(),

@@ -1,4 +1,4 @@
-//! What acts on few points from outside in the solve: a hand's grip and comb, air that is not the uniform wind, holds, tethers, and what presses from a
+//! What acts on few points from outside in the solve: a hand's grip and comb, holds, tethers, and what presses from a
 //! collider. Each is a term on the point's own diagonal (a segment's contact: of its two ends) and one on the right.
 //!
 //! It is added in memory, before the walk comes to the point (see [`Said`]), by a function by itself: most points meet none of it.
@@ -6,17 +6,15 @@
 use super::{
     assemble::{Step, Sweep},
     elements::Outset,
-    lanes::{F, Sym3, V3, load},
+    lanes::{F, Simd, Sym3, V3, load},
     model::Model,
     press::press,
-    root::Root,
     scratch::Scratch,
     segment::press_between,
     system::{Said, System},
     tether,
     tile::{Tile, grip, hold, rest, span, state, tines},
 };
-use fearless_simd::prelude::*;
 
 /// Stiffness of a hold in the matrix, over the mass in it [1]: a held point gives way by a millionth of what it would move.
 const HOLD: f32 = 1e6;
@@ -38,8 +36,8 @@ pub struct Place<S: Simd> {
 
 /// Whether any point of the tile may be acted on by what is given for whole tiles.
 pub fn any(tile: &Tile) -> bool {
-    let Tile { grip, tines, air, holds, tethers, .. } = tile;
-    !(grip.is_empty() && tines.is_empty() && air.is_empty() && holds.is_empty() && tethers.is_empty())
+    let Tile { grip, tines, holds, tethers, .. } = tile;
+    !(grip.is_empty() && tines.is_empty() && holds.is_empty() && tethers.is_empty())
 }
 
 /// Whether anything is pressed of the point after the `i`th and of the segment from that, in a model of this `stride`.
@@ -110,27 +108,18 @@ fn act<S, M, const B: usize, const N: usize>(
         said.add_identity(1, mass * (stiffness + brake));
     }
     let on_strand = next.is_multiple_of(M::STRIDE);
-    if on_strand && !(tile.air.is_empty() && tile.tines.is_empty()) {
+    if let Some(rows) = tile.tines.get(next).filter(|_| on_strand) {
         let far = next + M::STRIDE;
         let mut after = V3::load(simd, &edges[far]);
         if M::STRIDE == 2 {
             after += V3::load(simd, &edges[far - 1]);
         }
         let u = after.length_and_unit().1;
-        if let Some(air) = tile.air.get(next) {
-            let air = V3::load(simd, air);
-            let length = |i: usize| load(simd, &tile.rest[i][rest::LENGTH]);
-            let hold =
-                Root::<S>::fibre(simd, tile.strand).0 * 0.5 * (length(next - M::STRIDE) + length(next));
-            said.add_force(1, (air - u * (u.dot(air) * 0.5)) * hold);
-        }
-        if let Some(rows) = tile.tines.get(next) {
-            let brake = load(simd, &rows[tines::BRAKE]) * inv_h;
-            let slip = V3::load(simd, &rows[tines::CARRY..]) - (way + step.moved) * brake;
-            said.add_force(1, (slip - u * u.dot(slip)) * mass);
-            let across = brake * mass;
-            said.add_diagonal(1, Sym3::outer(u, -across).add_identity(across));
-        }
+        let brake = load(simd, &rows[tines::BRAKE]) * inv_h;
+        let slip = V3::load(simd, &rows[tines::CARRY..]) - (way + step.moved) * brake;
+        said.add_force(1, (slip - u * u.dot(slip)) * mass);
+        let across = brake * mass;
+        said.add_diagonal(1, Sym3::outer(u, -across).add_identity(across));
     }
     for at in tile.holds {
         if B > 3 && at.point as usize == i {

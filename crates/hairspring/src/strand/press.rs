@@ -19,14 +19,14 @@
 
 use super::{
     assemble::Step,
+    colliders::{contact, surface_displacement},
     friction::Friction,
-    lanes::{F, Row, Sym3, V3, load, store},
+    lanes::{F, Simd, Sym3, V3, Work, load, store},
     model::stretch::STRETCH,
     system::System,
     tile::{Tile, rest, state},
 };
-use crate::collide::{ObstaclePose, contact, surface_displacement};
-use fearless_simd::prelude::*;
+use crate::collide::ObstaclePose;
 
 /// Rows of scratch a point, written where any of the eight is in contact.
 pub mod scratch {
@@ -53,7 +53,7 @@ pub fn press<S: Simd, const B: usize>(
     tile: &mut Tile,
     (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
     system: &mut impl System<S, B>,
-    work: &mut [Row; scratch::ROWS],
+    work: &mut [Work; scratch::ROWS],
 ) {
     let zero = F::<S>::splat(simd, 0.0);
     let force = load(simd, &tile.state[i][state::PRESS]);
@@ -124,7 +124,7 @@ pub fn relieve<S: Simd>(
     step: &Step<S>,
     tile: &mut Tile,
     (i, delta): (usize, V3<S>),
-    work: &[Row; scratch::ROWS],
+    work: &[Work; scratch::ROWS],
 ) {
     let force = load(simd, &tile.state[i][state::PRESS]);
     let shut = force.simd_gt(0.0);

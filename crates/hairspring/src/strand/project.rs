@@ -10,11 +10,10 @@
 
 use super::{
     fixed::Fixed,
-    lanes::{F, Row, V3, load, store},
+    lanes::{F, Mask, Simd, V3, Work, load, store},
     scratch::Scratch,
     tile::{Tile, rest, state, strand},
 };
-use fearless_simd::{mask32x8, prelude::*};
 use scratch::{C, D};
 
 /// Rows of scratch a segment: the coefficient of the λ before it, and λ without that.
@@ -104,7 +103,7 @@ impl<S: Simd> Projection<S> {
         self,
         simd: S,
         stride: usize,
-        (force, asked): (F<S>, mask32x8<S>),
+        (force, asked): (F<S>, Mask<S>),
         tile: &mut Tile,
         scratch: &mut Scratch,
     ) -> bool {
@@ -170,7 +169,7 @@ impl<S: Simd> Enough<S> {
     /// Error of a segment's length, from the square of its relative length, and by how much it is more than enough; none where it is not `loose`. Padding
     /// has neither length nor inverse length: all of its row is nought.
     #[inline(always)]
-    fn error(&self, length: F<S>, size: F<S>, loose: mask32x8<S>) -> (F<S>, F<S>) {
+    fn error(&self, length: F<S>, size: F<S>, loose: Mask<S>) -> (F<S>, F<S>) {
         let half = F::splat(length.simd, -0.5);
         let error = loose.select(length * size.mul_add(0.5, half), F::splat(length.simd, 0.0));
         (error, length.mul_add(-self.0, error.abs()))
@@ -179,7 +178,7 @@ impl<S: Simd> Enough<S> {
 
 /// From particle `i` to the strand's next point.
 #[inline(always)]
-fn segment<S: Simd>(simd: S, stride: usize, edges: &[[Row; 3]], i: usize) -> V3<S> {
+fn segment<S: Simd>(simd: S, stride: usize, edges: &[[Work; 3]], i: usize) -> V3<S> {
     let last = V3::load(simd, &edges[i + stride]);
     if stride == 1 { last } else { V3::load(simd, &edges[i + 1]) + last }
 }

@@ -3,7 +3,13 @@
 //! Written from the energies, not from the kernel: every block comes from finite differences or outer products of plain
 //! gradients, the system is solved by a dense Cholesky.
 
-use super::model::stretch::STRETCH;
+use super::{
+    drag::normal_coefficient,
+    model::{
+        rod::{FOLDING, curved_joint},
+        stretch::{SIDEWAYS, STRETCH},
+    },
+};
 use glam::{DMat3, DQuat, DVec3};
 
 /// One strand in one substep, in f64.
@@ -18,6 +24,8 @@ pub struct Strand {
     pub turn: Vec<DVec3>,
     pub tension: Vec<f64>,
     pub drag: f64,
+    /// Reynolds number over speed [s/m].
+    pub reynolds: f64,
     pub damping: f64,
     pub gravity: DVec3,
     pub wind: DVec3,
@@ -48,7 +56,7 @@ pub fn bend_energy(x: [DVec3; 3], lengths: [f64; 2], was: DVec3, turn: DVec3, st
 pub const TWIST_RATIO: f64 = 0.46;
 
 /// The strains of a joint between two segments whose frames have the normals `m0`, `m1` at positions `x0`: the three of bending in the first
-/// frame, and twist as 2 tan(τ/2). Frames swing with their segments by the least rotation and turn about them by `angles`.
+/// frame, and twist as 4 tan(φ/4), faded out near a fold. Frames swing with their segments by the least rotation and turn about them by `angles`.
 fn strains(
     x0: [DVec3; 3],
     normals: [DVec3; 2],
@@ -66,8 +74,22 @@ fn strains(
     let d = m0 * turn.x + u0.cross(m0) * turn.y + u0 * turn.z;
     let r = e1 / lengths[1] - e0 / lengths[0] - d;
     let carried = swung(u0, u1, m0);
-    let tau = 2.0 * (0.5 * carried.cross(m1).dot(u1).atan2(carried.dot(m1))).tan();
-    [r.x, r.y, r.z, tau]
+    let tau = 4.0 * (0.25 * carried.cross(m1).dot(u1).atan2(carried.dot(m1))).tan();
+    let z = ((1.0 + u0.dot(u1)) / FOLDING as f64).min(1.0);
+    [r.x, r.y, r.z, z * (2.0 - z) * tau]
+}
+
+/// Energy of bending and twisting [J] of a strand at `x` whose segments' frames had these `normals` at `x0`.
+pub fn elastic_energy(s: &Strand, normals: &[DVec3], x0: &[DVec3], x: &[DVec3]) -> f64 {
+    let joint = |j: usize| {
+        let at = |x: &[DVec3]| [x[j - 1], x[j], x[j + 1]];
+        let lengths = [s.length[j - 1], s.length[j]];
+        let strains = strains(at(x0), [normals[j - 1], normals[j]], at(x), [0.0; 2], lengths, s.turn[j]);
+        let stiffness =
+            [1.0, 1.0, 1.0, TWIST_RATIO * curved_joint(s.turn[j].z)].map(|ratio| ratio * s.bend[j]);
+        strains.iter().zip(stiffness).map(|(strain, k)| 0.5 * k * strain * strain).sum::<f64>()
+    };
+    (1..s.x.len() - 1).map(joint).sum()
 }
 
 /// The gradients of these strains: three displacements and two angles.
@@ -103,7 +125,11 @@ impl Strand {
         let mut b = vec![DVec3::ZERO; n];
         for i in 0..n {
             let u = if i + 1 < n { (self.x[i + 1] - self.x[i]).normalize() } else { DVec3::ZERO };
-            let across = DMat3::IDENTITY - outer(u, u) * 0.5;
+            let slip = self.wind - self.v[i];
+            let root = ((slip - u * u.dot(slip)).length() * self.reynolds).sqrt();
+            let normal = f64::from(normal_coefficient(root as f32));
+            let tangential = (0.5 * normal).min(0.7 + 2.7 * root);
+            let across = DMat3::IDENTITY * normal - outer(u, u) * (normal - tangential);
             let around = 0.5 * (self.length[i.saturating_sub(1)] + self.length[i]);
             let air = across * (around * self.drag);
             a[i][i] += DMat3::IDENTITY * (self.mass[i] / (self.h * self.h)) + air * (1.0 / self.h);
@@ -116,8 +142,13 @@ impl Strand {
             let (l, u) = (e.length(), e.normalize());
             let k = STRETCH as f64 * self.mass[i] / (self.h * self.h);
             let pull = k * (l - rest) + self.tension[i];
-            let force = u * pull;
-            let side = (pull / l - 0.25 * self.mass[i] / (self.h * self.h)).clamp(0.0, k);
+            let side = (pull.max(self.tension[i]) / l).clamp(0.0, k);
+            let turned = (self.tension[i] / l).clamp(0.0, k) * SIDEWAYS as f64;
+            // The matrix acts on the whole displacement; the pull turns with a share of the drift, and with all that is solved for beyond it.
+            // What the root drives drifts with it.
+            let inner = if i < 2 { self.v[0] } else { self.v[i] };
+            let drift = (self.v[i + 1] - inner) * self.h;
+            let force = u * pull + (drift - u * u.dot(drift)) * (turned - side);
             let block = outer(u, u) * (k - side) + DMat3::IDENTITY * side;
             b[i] += force;
             b[i + 1] -= force;
@@ -148,7 +179,8 @@ impl Strand {
             let gradient = gradients(x, frames, lengths, self.turn[j]);
             let at = |k: usize| if k < 9 { 3 * (j - 1) + k } else { 3 * n + j - 1 + (k - 9) };
             for c in 0..if twists { 4 } else { 3 } {
-                let stiffness = if c < 3 { self.bend[j] } else { TWIST_RATIO * self.bend[j] };
+                let ratio = if c < 3 { 1.0 } else { TWIST_RATIO * curved_joint(self.turn[j].z) };
+                let stiffness = ratio * self.bend[j];
                 let implicit = stiffness * (1.0 + self.damping / self.h);
                 // The linearised measure of twist: its force has the gradient, its matrix the square.
                 for p in 0..11 {

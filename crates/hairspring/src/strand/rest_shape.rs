@@ -19,7 +19,13 @@
 //! the shape, bending stiffness is raised by the least that does (Hsu et al. 2023, *Sag-Free Initialization for Strand-Based
 //! Hybrid Hair Simulation*, raise it too; what holds a style in life is wax and neighbours).
 
-use super::mass::masses;
+use super::{
+    mass::masses,
+    model::{
+        bend::{FOLDED, transport_normal},
+        rod::{FOLDING, curved_joint},
+    },
+};
 use glam::{DVec3, Vec3};
 
 /// Largest |m|/B of a joint at the sag-free start [rad]: beyond it the linear moment is not a fibre's any more.
@@ -59,17 +65,27 @@ pub struct Fibre<'a> {
     pub twist_ratio: Option<f64>,
     /// Length of a substep [s].
     pub substep: f64,
+    /// Relaxation time of bending [s].
+    pub damping: f64,
+    /// Whether the strand is solved in double precision.
+    pub double: bool,
 }
 
-/// Largest stiffness of an element of the matrix over the inertia m/h² of its points [1]: single precision has 24 bits, and what is stiffer than
-/// this is rigid within a substep anyway. Above, what rounding does to the matrix outweighs the mass, and stiff strands of a thousand points
-/// whip themselves. A hair of 40 µm in segments of 8 mm is at 4, in segments of 1 mm at 10⁴.
-const STIFFEST: f64 = 4e6;
+/// Largest stiffness of an element of the matrix over the inertia m/h² of its points, in single precision [1].
+///
+/// The matrix entry of a point is its inertia plus the stiffness k of its elements. Rounding the sum to 24 bits changes it by 2⁻²⁴ k. As long as that is well
+/// below m/h², the strand moves as its mass says; above, rounding pushes and brakes the points. 2⁻²⁴ · 4·10⁶ is a quarter. A hair of 40 µm in
+/// segments of 8 mm is at 4, in segments of 1 mm at 10⁴, in segments of 0.1 mm at 10⁸; its damping τ multiplies that by 1 + τ/h.
+const STIFFEST_SINGLE: f64 = 4e6;
+
+/// The same in double precision, whose significand has 29 bits more [1].
+const STIFFEST_DOUBLE: f64 = STIFFEST_SINGLE * (1u64 << 29) as f64;
 
 impl Fibre<'_> {
-    /// The largest stiffness that a spring on a point of this mass [kg] may have in the matrix [N/m].
+    /// The largest stiffness that a spring on a point of this mass [kg] may have [N/m], so that the matrix can hold it with its damping.
     pub fn stiffest(&self, mass: f64) -> f64 {
-        STIFFEST * mass / (self.substep * self.substep)
+        let most = if self.double { STIFFEST_DOUBLE } else { STIFFEST_SINGLE };
+        most * mass / (self.substep * self.substep * (1.0 + self.damping / self.substep))
     }
 }
 
@@ -113,16 +129,22 @@ pub struct RestShape {
 pub struct Start {
     /// Joints whose bending stiffness the sag-free start raised, by the least that holds the shape: no fibre of the material could.
     pub stiffened: usize,
-    /// Joints that are softer than the material, or than the shape asks for, because single precision bears no more in a substep of this
-    /// length: what fine segments let off, more substeps give back. (Springs that hold a truss's extra particles are not counted.)
+    /// Joints that are softer than the material, or than the shape asks for, because double precision holds no stiffer ones in a substep of this
+    /// length; more substeps help. (Springs that hold a truss's extra particles are not counted.)
     pub held_back: usize,
+    /// Strands with the curvature model that are simulated as rods, because they coil by more than one and a half turns: that model has no twist.
+    pub coils: usize,
 }
 
 impl std::ops::Add for Start {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Self { stiffened: self.stiffened + other.stiffened, held_back: self.held_back + other.held_back }
+        Self {
+            stiffened: self.stiffened + other.stiffened,
+            held_back: self.held_back + other.held_back,
+            coils: self.coils + other.coils,
+        }
     }
 }
 
@@ -170,12 +192,10 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         usize::from(asked > stiffest)
     };
 
-    // The frame carried along the strand (the same transport as `bend::transport`).
+    // The frame carried along the strand.
     rest[0].normal = t[0].any_orthonormal_vector();
     for i in 1..n - 1 {
-        let frame = rest[i - 1].normal;
-        let scale = frame.dot(t[i]) / (1.0 + t[i - 1].dot(t[i])).max(1e-3);
-        rest[i].normal = (frame - (t[i - 1] + t[i]) * scale).normalize_or(frame);
+        rest[i].normal = transport_normal(rest[i - 1].normal, t[i - 1], t[i]);
     }
 
     if gravity != DVec3::ZERO {
@@ -191,7 +211,13 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             height += mass * e[i].dot(up);
             arc += lengths[i];
             // The twist torques of the joints at both ends of this segment push it too (see `rod`).
-            let binormal = |j: usize| t[j - 1].cross(t[j]) / (1.0 + t[j - 1].dot(t[j])).max(0.1);
+            let unfolded = |j: usize| 0.5 * (t[j - 1] + t[j]).length_squared();
+            let binormal = |j: usize| t[j - 1].cross(t[j]) / unfolded(j).max(FOLDED as f64);
+            // How much of its twist a joint that is nearly folded has (see `rod`). It takes at least a tenth here, or would have to be endlessly stiff.
+            let fade = |j: usize| {
+                let z = (unfolded(j) / FOLDING as f64).min(1.0);
+                (z * (2.0 - z)).max(0.1)
+            };
             let carried = weight * lengths[i] + below - binormal(i) * torque - torque_after;
             let axial = carried.dot(t[i]);
             let moment = carried - t[i] * axial;
@@ -201,7 +227,10 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             // The fibre's own here: with the mean of what hangs beyond, strands with heavy tips gave way.
             let weight_per_length = g * rest[i].mass / mean;
             let held = (moment.length() / LARGEST_CURVATURE).powf(1.5) / weight_per_length.sqrt() / mean;
-            let twisting = fibre.twist_ratio.map_or(0.0, |ratio| torque.abs() / (ratio * LARGEST_TWIST));
+            let twisting = fibre.twist_ratio.map_or(0.0, |ratio| {
+                let along = t[i - 1].dot(t[i]) - 1.0;
+                torque.abs() / (ratio * curved_joint(along) * fade(i).powi(2) * LARGEST_TWIST)
+            });
             let sag = (moment.length() / LARGEST_SAG).max(twisting);
             let needed = sag.max(held).max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
             if needed > rest[i].bend {
@@ -217,7 +246,8 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             rest[i].turn = kappa - (moment - stiff) / bend;
             below = moment * (1.0 + t[i - 1].dot(kappa)) - kappa * t[i - 1].dot(moment);
             if let Some(ratio) = fibre.twist_ratio {
-                rest[i].twist = -torque / (ratio * bend);
+                let twisting = ratio * bend * curved_joint(rest[i].turn.dot(t[i - 1]));
+                rest[i].twist = -torque / (twisting * fade(i).powi(2));
                 torque_after = binormal(i) * torque;
                 torque += moment.dot(t[i - 1].cross(kappa));
             }

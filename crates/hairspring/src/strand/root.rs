@@ -2,10 +2,9 @@
 
 use super::{
     interval::Substep,
-    lanes::{F, Q4, V3, load},
+    lanes::{F, Q4, Simd, V3, load},
     tile::{StrandRows, strand},
 };
-use fearless_simd::prelude::*;
 use glam::{Mat3, Vec3};
 
 /// Root of eight strands at one time.

@@ -1,39 +1,46 @@
 //! Working memory of one thread, reused by every tile that it runs.
 
 use super::{
-    across, fixed::Fixed, lanes::Row, press, profile::Profile, project, tile::StateRows, tile::state,
+    across,
+    fixed::Fixed,
+    lanes::{Simd, V3, Work},
+    press,
+    profile::Profile,
+    project,
+    tile::StateRows,
+    tile::state,
 };
 
 /// Working memory of one thread, as large as the longest tile that it ran.
 #[derive(Default)]
 pub struct Memory {
-    factors: Vec<Row>,
+    factors: Vec<Work>,
     across: Vec<across::Eliminated>,
-    edges: Vec<[Row; 3]>,
-    kick: Vec<[Row; 3]>,
-    change: Vec<[Row; 3]>,
-    contacts: Vec<[Row; press::scratch::ROWS]>,
-    pulls: Vec<[Row; project::scratch::ROWS]>,
+    edges: Vec<[Work; 3]>,
+    kick: Vec<[Work; 3]>,
+    change: Vec<[Work; 3]>,
+    contacts: Vec<[Work; press::scratch::ROWS]>,
+    pulls: Vec<[Work; project::scratch::ROWS]>,
     fixed: Vec<Fixed>,
 }
 
 /// What one tile needs of it, cut to the tile's length, so that walks along the strand need no checks.
 pub struct Scratch<'a> {
     /// Factors of the band, point after point, between those that the first and the last would meet; `local_global`'s rows lie over them.
-    pub factors: &'a mut [Row],
+    pub factors: &'a mut [Work],
     /// Springs whose force has been eliminated, the last on top; with room for one a point.
     pub across: &'a mut Vec<across::Eliminated>,
     /// From each particle's predecessor to it, anew, shape `[points + BEYOND]` [m]; see `state::EDGE`.
-    pub edges: &'a mut [[Row; 3]],
+    pub edges: &'a mut [[Work; 3]],
     /// What is added to the velocities of `(new − old) / h`, shape `[points]` [m/s]; forces before that. Of integrators other than the
     /// implicit ones.
-    pub kick: &'a mut [[Row; 3]],
+    pub kick: &'a mut [[Work; 3]],
     /// Changes of the positions in one iteration, shape `[points]` [m].
-    pub change: &'a mut [[Row; 3]],
+    pub change: &'a mut [[Work; 3]],
     /// What the solve knows of contact, shape `[points]`; see `press::scratch`.
-    pub contacts: &'a mut [[Row; press::scratch::ROWS]],
+    pub contacts: &'a mut [[Work; press::scratch::ROWS]],
     /// What projection has worked out of each segment, shape `[points]`; see `project::scratch`.
-    pub pulls: &'a mut [[Row; project::scratch::ROWS]],
+    pub pulls: &'a mut [[Work; project::scratch::ROWS]],
     /// What stays as it is for an interval, shape `[points]`.
     pub fixed: &'a mut [Fixed],
 }
@@ -67,13 +74,13 @@ impl Memory {
     /// Room for a tile of `points`.
     fn reserve(&mut self, points: usize) {
         if self.fixed.len() < points {
-            self.factors.resize((points + 2 * MOST_REACH) * MOST_FACTORS, Row::default());
+            self.factors.resize((points + 2 * MOST_REACH) * MOST_FACTORS, Work::default());
             self.across.reserve(points);
-            self.kick.resize(points, [Row::default(); 3]);
-            self.change.resize(points, [Row::default(); 3]);
-            self.edges.resize(points + BEYOND, [Row::default(); 3]);
-            self.contacts.resize(points, [Row::default(); press::scratch::ROWS]);
-            self.pulls.resize(points, [Row::default(); project::scratch::ROWS]);
+            self.kick.resize(points, [Work::default(); 3]);
+            self.change.resize(points, [Work::default(); 3]);
+            self.edges.resize(points + BEYOND, [Work::default(); 3]);
+            self.contacts.resize(points, [Work::default(); press::scratch::ROWS]);
+            self.pulls.resize(points, [Work::default(); project::scratch::ROWS]);
             self.fixed.resize(points, Fixed::default());
         }
     }
@@ -90,10 +97,11 @@ impl Scratch<'_> {
     }
 
     /// Fills `edges` from those in `state`, shape `[points]`.
-    pub fn begin(&mut self, state: &[StateRows]) {
+    #[inline(always)]
+    pub fn begin<S: Simd>(&mut self, simd: S, state: &[StateRows]) {
         for (edge, at) in self.edges.iter_mut().zip(state) {
-            edge.copy_from_slice(&at[state::EDGE..state::EDGE + 3]);
+            V3::load(simd, &at[state::EDGE..]).store(edge);
         }
-        self.edges[state.len()..state.len() + BEYOND].fill([Row::default(); 3]);
+        self.edges[state.len()..state.len() + BEYOND].fill([Work::default(); 3]);
     }
 }

@@ -17,16 +17,16 @@
 
 use super::{
     assemble::{Step, Sweep},
+    colliders::{contact, deepest, may_lie_deep, surface_displacement},
     friction::Friction,
-    lanes::{F, Row, Sym3, V3, load, store},
+    lanes::{F, Mask, Simd, Sym3, V3, Work, load, store},
     limit::{CORRECTIONS, Finish, LIMIT, Link, Particle, out_of},
     model::stretch::STRETCH,
     press::{STICK, Surface, nearest, scratch, scratch::SEGMENT},
     system::System,
     tile::{Tile, rest, span, state},
 };
-use crate::collide::{Deepest, ObstaclePose, STEEP, contact, deepest, surface_displacement};
-use fearless_simd::{mask32x8, prelude::*};
+use crate::collide::{Deepest, Edges, ObstaclePose, STEEP, Side};
 use glam::Vec3;
 
 /// How deep a segment may be between its ends, over its length [1]. On a smooth body it is always a little inside: by L/8R of its length over a
@@ -36,6 +36,9 @@ const SAG: f32 = 0.015;
 /// Nearest place to the inner end whose depth the outer end answers wholly, as a part of the segment [1]. What is nearer is for the inner
 /// end, in the next solve: a lever that short would throw the outer one.
 const NEAREST: f32 = 0.125;
+
+/// Radius of a rod from which on it may be left near the inner end of a segment, over how deep the segment may be [1].
+const THIN_ROD: f32 = 5.0;
 
 /// How deep a segment may be that is not corrected again, over how deep it may be at all [1].
 const ENOUGH: f32 = 1.02;
@@ -75,7 +78,7 @@ pub fn clear<S: Simd>(
     tile: &mut Tile,
     (i, old, e): (usize, V3<S>, V3<S>),
     (inner, link): (&Particle<S>, &Link<S>),
-    (distance, caught): (F<S>, mask32x8<S>),
+    (distance, caught): (F<S>, Mask<S>),
 ) -> V3<S> {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let a = step.root.position + inner.x;
@@ -85,18 +88,38 @@ pub fn clear<S: Simd>(
     let far = distance.max(0.0);
     let mut may = caught | (far * far).simd_lt(e.dot(e));
     if may.any_true() {
-        may = caught | pose.may_lie_deep(simd, (a + e, e), -clear);
+        may = caught | may_lie_deep(simd, pose, (a + e, e), -clear);
     }
     if !may.any_true() {
         return e;
     }
+    // What is thinner than the segment is long may be pulled through in a substep.
+    let thin = |edges: &&Edges| link.length.simd_gt(2.0 * edges.half_thickness()).any_true();
+    let edges = pose.edges.as_ref().filter(thin);
+    let side = edges.map(|edges| {
+        let mut side = edges.side(simd, (a - inner.way, old), -(clear + clear));
+        side.known &= link.length.simd_gt(2.0 * edges.half_thickness());
+        (edges, side)
+    });
+    // A rod that is left near the inner end would be past the segment before the next solve.
+    let nearest = F::<S>::splat(simd, NEAREST);
+    let from = match edges {
+        Some(edges) => edges.is_rod_within(clear * -THIN_ROD).select(zero, nearest),
+        None => nearest,
+    };
     let allowed = load(simd, &tile.rest[i][rest::CLEARANCE]);
     let (mut q, mut cuts, mut wall) = (e, may, V3::zero(simd));
     let (mut best, mut least) = (e, F::<S>::splat(simd, f32::MAX));
     let last = CORRECTIONS + STARTS * OF_EACH;
     for correction in 0..=last {
         let asked = if correction == 0 { clear } else { clear * ENOUGH };
-        let place = deepest(simd, pose, (a, q), asked).unwrap_or_else(|| Deepest::none(simd));
+        // What is near the inner end is pressed there in the next solve and does not swing the outer one.
+        let mut place = cut(simd, (pose, &side), (a, q), (if correction == 0 { zero } else { from }, asked));
+        let pressed = place;
+        let near = place.found & place.at.simd_lt(from);
+        if correction == 0 && near.any_true() {
+            place = place.or(near, cut(simd, (pose, &side), (a, q), (from, asked)));
+        }
         let (distance, normal) = contact(simd, pose, a + q);
         let between = place.found.select(clear - place.distance, zero);
         // A swing may have led the end itself inside, around an edge.
@@ -105,7 +128,8 @@ pub fn clear<S: Simd>(
         let end = if correction == 0 { caught.select(end, zero) } else { end };
         let depth = between.max(end);
         cuts &= depth.simd_gt(0.0);
-        if !cuts.any_true() {
+        let pressing = may & pressed.found;
+        if !(cuts.any_true() || correction == 0 && pressing.any_true()) {
             break;
         }
         // What is turned aside has to be worth it, or it would be thrown through thin walls for nothing.
@@ -136,22 +160,24 @@ pub fn clear<S: Simd>(
         let mut out = link.clamp(link.swing_out(q, way_out, depth * far / lever));
         if correction == 0 {
             // What of the depth did not stop an approach presses on in the next solve, as of points.
-            let carried = surface_displacement(simd, pose, e.mul_add(place.at, a));
             let v = |i: usize| V3::load(simd, &tile.state[i][state::V..]);
             let (v_a, v_b) = (v(i - tile.model.stride()), v(i));
-            let way = (v_b - v_a).mul_add(place.at, v_a) * F::splat(simd, step.h);
-            let approach = place.normal.dot(carried - way).max(0.0);
+            let way = (v_b - v_a).mul_add(pressed.at, v_a) * F::splat(simd, step.h);
+            let carried = surface_displacement(simd, pose, e.mul_add(pressed.at, a));
+            let approach = pressed.normal.dot(carried - way).max(0.0);
             let mass = load(simd, &tile.rest[i][rest::MASS]);
             let rows = &mut tile.spans[i];
             let force = load(simd, &rows[span::FORCE]);
-            let pressing = cuts & first;
-            let pressed = pressing.select(finish.pressed(force, mass, depth, approach), force);
-            store(pressed, &mut rows[span::FORCE]);
-            store(pressing.select(place.at, load(simd, &rows[span::AT])), &mut rows[span::AT]);
+            let deep = (clear - pressed.distance).max(0.0);
+            let pressing = pressing & deep.simd_gt(end);
+            let more = pressing.select(finish.pressed(force, mass, deep, approach), force);
+            store(more, &mut rows[span::FORCE]);
+            store(pressing.select(pressed.at, load(simd, &rows[span::AT])), &mut rows[span::AT]);
             if !finish.project {
                 break;
             }
             // Back along the surface, at most μ times as far.
+            let carried = surface_displacement(simd, pose, e.mul_add(place.at, a));
             let slide = (out - old).mul_add(place.at, inner.way) - carried;
             let tangent = slide - place.normal * place.normal.dot(slide);
             let hold = Friction::of(simd, step.h, tile.strand).share(depth, tangent.dot(tangent));
@@ -160,6 +186,24 @@ pub fn clear<S: Simd>(
         q = V3::select(cuts, out, q);
     }
     q
+}
+
+/// Where the segment from `a` to `a + q` cuts the shape or is past the side of it that it was on, no nearer to its beginning than the part `from` of it.
+#[inline(always)]
+fn cut<S: Simd>(
+    simd: S,
+    (pose, side): (&ObstaclePose, &Option<(&Edges, Side<S>)>),
+    (a, q): (V3<S>, V3<S>),
+    (from, within): (F<S>, F<S>),
+) -> Deepest<S> {
+    let place = deepest(simd, pose, (a, q), (from, within)).unwrap_or_else(|| Deepest::none(simd));
+    match side {
+        Some((edges, side)) => {
+            let past = edges.past(simd, side, (a, q), (from, within));
+            place.or(past.found, past)
+        }
+        None => place,
+    }
 }
 
 /// `e` turned aside for the `start`th time, from 1 on: each time in another direction, at first a little and at last by [`FARTHEST`].
@@ -184,7 +228,7 @@ pub fn press_between<S: Simd, const B: usize>(
     tile: &mut Tile,
     (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
     system: &mut impl System<S, B>,
-    (edges, contacts): (&[[Row; 3]], &mut [[Row; scratch::ROWS]]),
+    (edges, contacts): (&[[Work; 3]], &mut [[Work; scratch::ROWS]]),
 ) {
     let outer = i + stride;
     let Some(rows) = tile.spans.get(outer) else { return };
@@ -201,8 +245,9 @@ pub fn press_between<S: Simd, const B: usize>(
         e += V3::load(simd, &edges[i + 1]);
         old += V3::load(simd, &tile.state[i + 1][state::EDGE..]);
     }
-    let Surface { distance, normal, carried } =
-        nearest(simd, step.obstacles, step.root.position + e.mul_add(at, x));
+    let (at, Surface { distance, normal, carried }) =
+        nearest_edge(simd, step.obstacles, (x + step.root.position, e), at);
+    store(at, &mut tile.spans[outer][span::AT]);
     let gap = distance + sag(simd, tile, outer);
 
     // Shut while N could close the gap in a substep; what has gone farther is let go.
@@ -246,6 +291,37 @@ pub fn press_between<S: Simd, const B: usize>(
     system.add_force(stride, push * at);
 }
 
+/// The surface that is nearest to the place `at` of the segments from `a` to `a + e` (world), and that place; on an edge of a box, where the
+/// segment crosses it. The distance along the edge's normal has no jump between two faces.
+#[inline(never)]
+fn nearest_edge<S: Simd>(
+    simd: S,
+    obstacles: &[ObstaclePose],
+    (a, e): (V3<S>, V3<S>),
+    at: F<S>,
+) -> (F<S>, Surface<S>) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut surface = nearest(simd, obstacles, e.mul_add(at, a));
+            let mut at = at;
+            for pose in obstacles {
+                let Some(edges) = pose.edges.as_ref().filter(|edges| edges.is_box()) else { continue };
+                let place = edges.nearest(simd, (a, e));
+                let nearer = place.found & place.distance.simd_le(surface.distance);
+                if nearer.any_true() {
+                    let carried = surface_displacement(simd, pose, e.mul_add(place.at, a));
+                    at = nearer.select(place.at, at);
+                    surface.distance = nearer.select(place.distance, surface.distance);
+                    surface.normal = V3::select(nearer, place.normal, surface.normal);
+                    surface.carried = V3::select(nearer, carried, surface.carried);
+                }
+            }
+            (at, surface)
+        },
+    )
+}
+
 /// The force that presses the segment from point `i` once the solve has moved its ends by `moved`.
 #[inline(always)]
 pub fn relieve_between<S: Simd>(
@@ -253,7 +329,7 @@ pub fn relieve_between<S: Simd>(
     step: &Step<S>,
     tile: &mut Tile,
     (i, moved): (usize, [V3<S>; 2]),
-    contacts: &[[Row; scratch::ROWS]],
+    contacts: &[[Work; scratch::ROWS]],
 ) {
     let outer = i + tile.model.stride();
     let Some(rows) = tile.spans.get_mut(outer) else { return };

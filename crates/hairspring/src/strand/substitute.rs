@@ -3,7 +3,7 @@
 use super::{
     assemble::{Step, Sweep},
     band::back_substitute,
-    lanes::{F, V3, load, store},
+    lanes::{F, Simd, V3, load, store},
     model::{Model, Solved},
     press::relieve,
     profile::Profile,
@@ -12,7 +12,6 @@ use super::{
     segment::relieve_between,
     tile::{Tile, rest, state},
 };
-use fearless_simd::prelude::*;
 
 /// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took. Projection meets the new segments on it.
 #[inline(always)]

@@ -1,10 +1,9 @@
 //! What elements add to: a part of the matrix and of the right-hand side, in the window that the walk is at or in memory ahead of it.
 
 use super::{
-    lanes::{F, M3, Row, Sym3, V3, load, store},
+    lanes::{F, M3, Simd, Sym3, V3, Work, load, store},
     profile::Profile,
 };
-use fearless_simd::prelude::*;
 
 /// A part of the matrix and the right-hand side that elements add to, of eight strands: some points that follow each other, `B` unknowns each, of which the
 /// first three are its displacement. Upper triangle only: the first of two unknowns is never after the second.
@@ -62,14 +61,14 @@ pub trait System<S: Simd, const B: usize> {
 /// What was said of the window's points before the walk comes to the first, and of the last nothing: in memory, for what acts on few points. Were it added to
 /// the window, all of that would have to be where both sides of a rare branch find it.
 pub struct Said<'a, const B: usize, const N: usize> {
-    rows: &'a mut [Row],
+    rows: &'a mut [Work],
     profile: Profile<B, N>,
 }
 
 impl<'a, const B: usize, const N: usize> Said<'a, B, N> {
     /// Of the points from the strand's `i`th on.
     #[inline(always)]
-    pub fn new(profile: Profile<B, N>, i: usize, factors: &'a mut [Row]) -> Self {
+    pub fn new(profile: Profile<B, N>, i: usize, factors: &'a mut [Work]) -> Self {
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
         Self { rows: &mut factors[(i + reach) * rows..][..reach * rows], profile }
     }

@@ -4,9 +4,9 @@ use super::{
     across::Across,
     assemble::{Step, Sweep, assemble},
     band::{Band, back_substitute},
-    dispatch::dispatch,
+    dispatch::{dispatch, dispatch_double},
     fixed::fix,
-    lanes::{F, LANES, Row, V3},
+    lanes::{F, LANES, Row, Simd, V3, Work},
     model::{
         Stretching,
         altitude::altitude,
@@ -25,7 +25,7 @@ use super::{
     tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
     truss::ASIDE,
 };
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::Level;
 use glam::{DVec3, Mat3, Vec3};
 use proptest::{array::uniform4, prelude::*};
 
@@ -39,7 +39,7 @@ pub fn splat<S: Simd>(simd: S, v: DVec3) -> V3<S> {
 }
 
 pub fn lane<S: Simd>(v: V3<S>) -> DVec3 {
-    DVec3::new(v.x[3] as f64, v.y[3] as f64, v.z[3] as f64)
+    DVec3::new(v.x.lane(3) as f64, v.y.lane(3) as f64, v.z.lane(3) as f64)
 }
 
 /// What begins at a point of a band with far springs: the direction, the stiffness and the pull of one; and of one across all four points the direction, the
@@ -59,7 +59,7 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
 ) -> Vec<f64> {
     let (n, rows, reach) = (b.len() / B, profile.rows(), Profile::<B, N>::REACH);
     let f = |v: f64| F::<S>::splat(simd, v as f32);
-    let mut factors = vec![Row::default(); (n + 2 * reach) * rows];
+    let mut factors = vec![Work::default(); (n + 2 * reach) * rows];
     let mut eliminated = Vec::new();
     for i in 0..n {
         let mut band = Band::<S, B, N>::new(simd);
@@ -93,7 +93,7 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
             across.put_back(simd, profile, &unknowns, &mut factors);
         }
         back_substitute(simd, profile, &factors[(i + reach) * rows..], &mut unknowns);
-        (0..B).for_each(|k| out[i * B + k] = unknowns[k][3] as f64);
+        (0..B).for_each(|k| out[i * B + k] = unknowns[k].lane(3) as f64);
     }
     out
 }
@@ -240,7 +240,7 @@ proptest! {
         prop_assume!(rest.abs() > 0.05);
         let at = |x: [DVec3; 4]| dispatch!(Level::new(), simd => {
             let (n, c, strain) = altitude(simd, x.map(|x| splat(simd, x)), F::splat(simd, rest as f32));
-            (lane(n), c.map(|c| c[3] as f64), strain[3] as f64)
+            (lane(n), c.map(|c| c.lane(3) as f64), strain.lane(3) as f64)
         });
         let (n, c, strain) = at(x);
         prop_assert!(strain.abs() < 1e-5, "at rest: {strain}");
@@ -302,7 +302,7 @@ proptest! {
             bend: (0..n).map(|i| if i == 0 || i + 1 == n { 0.0 } else { 4e-6f32 as f64 }).collect(),
             turn,
             tension: vec![tension; n],
-            drag: drag * mass / 0.008, damping, wind, moved, h,
+            drag: drag * mass / 0.008, reynolds: 4.6, damping, wind, moved, h,
             gravity: DVec3::new(0.0, -9.81, 0.0),
             length: length.iter().copied().chain([0.0]).collect(),
             x: x.clone(),
@@ -310,12 +310,14 @@ proptest! {
         for model in [Elastic::Straight, Elastic::Curvature, Elastic::Rod] {
         let straight = reference::Strand { turn: vec![DVec3::ZERO; n], ..reference.clone() };
         let reference = if model == Elastic::Straight { &straight } else { &reference };
-        let (ours, normals) = kernel(reference, model);
-        let exact = reference.solve(&normals, model == Elastic::Rod);
-        for i in 2..n {
-            let error = (exact[i] - ours[i]).length();
-            let way = (0..n).map(|i| (exact[i] - x[i]).length()).fold(0.0, f64::max);
-            prop_assert!(error < 1e-3 * way + 5e-7, "{model:?}, point {i} of {n}: off by {error} m of {way} m");
+        for double in [false, true] {
+            let (ours, normals) = kernel(reference, model, double);
+            let exact = reference.solve(&normals, model == Elastic::Rod);
+            for i in 2..n {
+                let error = (exact[i] - ours[i]).length();
+                let way = (0..n).map(|i| (exact[i] - x[i]).length()).fold(0.0, f64::max);
+                prop_assert!(error < 1e-3 * way + 5e-7, "{model:?}, double {double}, point {i} of {n}: off by {error} m of {way} m");
+            }
         }
         }
     }
@@ -343,10 +345,12 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
     set(&mut strand_rows, strand::NORMAL, &normal.as_vec3().to_array());
     set(&mut strand_rows, strand::STIFFENING, &[1.0]);
     set(&mut strand_rows, strand::DRAG, &[s.drag as f32]);
+    set(&mut strand_rows, strand::REYNOLDS, &[s.reynolds as f32]);
     set(&mut strand_rows, strand::DAMPING, &[s.damping as f32]);
     set(&mut strand_rows, strand::TWIST_RATIO, &[reference::TWIST_RATIO as f32]);
     let tangent: Vec<DVec3> = s.x.windows(2).map(|w| (w[1] - w[0]).normalize()).collect();
     for i in 0..n {
+        set(&mut rest_rows[i], rest::EXPOSURE, &[1.0]);
         set(&mut rest_rows[i], rest::LENGTH, &[s.length[i] as f32]);
         set(&mut rest_rows[i], rest::MASS, &[s.mass[i] as f32]);
         set(&mut rest_rows[i], rest::BEND, &[s.bend[i] as f32]);
@@ -368,7 +372,7 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
 
 /// The solve of one substep, on a tile whose lanes all hold this strand: the solved positions, and the normals that the segments had
 /// before it, carried from the root.
-fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
+fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, Vec<DVec3>) {
     let n = s.x.len();
     let (strand_rows, rest_rows, mut state_rows, normals) = rows(s);
     let mut memory = Memory::default();
@@ -376,6 +380,7 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
     let mut tile = Tile {
         model,
         flat: false,
+        double,
         strand: &strand_rows,
         rest: &rest_rows,
         state: &mut state_rows,
@@ -389,29 +394,46 @@ fn kernel(s: &reference::Strand, model: Elastic) -> (Vec<DVec3>, Vec<DVec3>) {
         tethers: &[],
         holds: &[],
     };
-    dispatch!(Level::new(), simd => {
-        let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
-        let step = Step {
-            number: 0,
-            left: 0.0,
-            h: s.h as f32,
-            gravity: s.gravity.as_vec3(),
-            wind: s.wind.as_vec3(),
-            moved: root.position,
-            root,
-            second_order: false,
-            obstacles: &[],
-        };
-        scratch.begin(tile.state);
-        fix(simd, step.h, Stretching::Moderate, &tile, &mut scratch);
-        solve_once(simd, &step, &mut tile, &mut scratch);
-    });
-    let edges = scratch.edges[..n].iter().map(|e| Vec3::from(e.map(|row| row.0[0])).as_dvec3());
-    let solved = edges.scan(DVec3::ZERO, |x, e| {
+    let mut edges = vec![DVec3::ZERO; n];
+    if double {
+        dispatch_double!(Level::new(), simd => solve_substep(simd, s, &mut tile, &mut scratch, &mut edges));
+    } else {
+        dispatch!(Level::new(), simd => solve_substep(simd, s, &mut tile, &mut scratch, &mut edges));
+    }
+    let solved = edges.into_iter().scan(DVec3::ZERO, |x, e| {
         *x += e;
         Some(*x)
     });
     (solved.collect(), normals)
+}
+
+/// Leaves the solved edges of the last lane in `edges`.
+#[inline(always)]
+fn solve_substep<S: Simd>(
+    simd: S,
+    s: &reference::Strand,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+    edges: &mut [DVec3],
+) {
+    let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
+    let step = Step {
+        number: 0,
+        left: 0.0,
+        h: s.h as f32,
+        gravity: s.gravity.as_vec3(),
+        wind: s.wind.as_vec3(),
+        moved: root.position,
+        root,
+        second_order: false,
+        obstacles: &[],
+    };
+    scratch.begin(simd, tile.state);
+    fix(simd, step.h, Stretching::Moderate, tile, scratch);
+    solve_once(simd, &step, tile, scratch);
+    for (edge, row) in edges.iter_mut().zip(&*scratch.edges) {
+        *edge = lane(V3::load(simd, row));
+    }
 }
 
 #[inline(always)]

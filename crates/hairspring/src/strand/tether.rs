@@ -11,13 +11,12 @@
 
 use super::{
     assemble::Step,
-    lanes::{F, Sym3, V3, load},
+    lanes::{F, Mask, Simd, Sym3, V3, load},
     limit::{Link, Particle},
     model::stretch::STRETCH,
     system::System,
     tile::{Tile, rest},
 };
-use fearless_simd::{mask32x8, prelude::*};
 
 /// How far a spring may let a point be beyond its tether, over the tether's length [1].
 const SLACK: f32 = 1e-3;
@@ -48,8 +47,8 @@ pub fn pull<S: Simd, const B: usize>(
 
 /// Whether point `i`, at `x` from the root, is beyond its tether.
 #[inline(always)]
-pub fn beyond<S: Simd>(simd: S, tile: &Tile, i: usize, x: V3<S>) -> mask32x8<S> {
-    let Some(reach) = tile.tethers.get(i) else { return mask32x8::splat(simd, false) };
+pub fn beyond<S: Simd>(simd: S, tile: &Tile, i: usize, x: V3<S>) -> Mask<S> {
+    let Some(reach) = tile.tethers.get(i) else { return Mask::splat(simd, false) };
     let reach = load(simd, reach) * (1.0 + SLACK);
     x.dot(x).simd_gt(reach * reach)
 }

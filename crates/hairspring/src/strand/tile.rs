@@ -38,8 +38,10 @@ pub mod rest {
     pub const CLEARANCE: usize = 6;
     /// Rest twist of the joint at this point, from the segment before to the one after, as 2 tan(τ/2) [1].
     pub const TWIST: usize = 7;
+    /// Share of the velocity of the air outside the hair, relative to this point, that reaches it [1]; 1 on a lone hair.
+    pub const EXPOSURE: usize = 8;
     /// Rows a point.
-    pub const ROWS: usize = 8;
+    pub const ROWS: usize = 9;
 }
 
 /// Rows of a whole strand.
@@ -56,7 +58,7 @@ pub mod strand {
     pub const FIRST: usize = 14;
     /// The frame's normal on the first segment in the rest pose, 3 rows.
     pub const NORMAL: usize = 17;
-    /// Force of still air on a length of the fibre that moves across itself, over length and speed [N s/m²].
+    /// Viscosity of the air, times the material's multiplier over drag [Pa s].
     pub const DRAG: usize = 20;
     /// Relaxation time of bending [s].
     pub const DAMPING: usize = 21;
@@ -76,8 +78,10 @@ pub mod strand {
     pub const STIFFENING: usize = 30;
     /// Kinetic friction over static [1].
     pub const FRICTION_KINETIC: usize = 31;
+    /// Reynolds number over the speed of the air across the fiber, d/ν [s/m].
+    pub const REYNOLDS: usize = 32;
     /// Rows a strand.
-    pub const ROWS: usize = 32;
+    pub const ROWS: usize = 33;
 }
 
 /// What rows hold in the springs model. The points of a strand are its even particles; what is said of a segment is said at them.
@@ -188,6 +192,8 @@ pub struct Tile<'a> {
     pub model: Elastic,
     /// Whether any of the strands is flat.
     pub flat: bool,
+    /// Whether the strands are solved in double precision.
+    pub double: bool,
     pub strand: &'a StrandRows,
     /// Shape `[points]`, the points of the longest strand; as long as `state`.
     pub rest: &'a [RestRows],

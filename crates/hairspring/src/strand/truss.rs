@@ -16,11 +16,13 @@
 //! root, three tensions balance what pulls on each particle, and the rest lengths that give them follow.
 
 use super::{
-    lanes::{F, V3},
-    model::springs::{BEND, Progressive, TORSION},
+    lanes::{F, Simd, V3},
+    model::{
+        bend::transport_normal,
+        springs::{BEND, Progressive, TORSION},
+    },
     rest_shape::{Fibre, RestPoint, RestShape, Start, fine, rest_shape},
 };
-use fearless_simd::prelude::*;
 use glam::{DMat3, DVec3, Vec3};
 
 /// How far an extra particle is set aside over the length of its segment, ε [1]. The farther, the more digits single precision has for
@@ -60,12 +62,7 @@ pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
         let (a, b) = (w[0].as_dvec3(), w[1].as_dvec3());
         let t = (b - a).normalize_or(DVec3::Y);
         // The frame of `rest_shape`.
-        normal = if k == 0 {
-            t.any_orthonormal_vector()
-        } else {
-            let scale = normal.dot(t) / (1.0 + before.dot(t)).max(1e-3);
-            (normal - (before + t) * scale).normalize_or(normal)
-        };
+        normal = if k == 0 { t.any_orthonormal_vector() } else { transport_normal(normal, before, t) };
         before = t;
         let aside = side(k, t, normal);
         out.push(w[0]);

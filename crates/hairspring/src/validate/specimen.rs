@@ -5,7 +5,7 @@ use crate::{
     collide::{Obstacle, ObstaclePose, Rigid},
     groom::Groom,
     material::Material,
-    scene::Solver,
+    scene::{Solver, Wind},
     simulation::{Air, Drive, Hold, MovingObstacle, Simulation},
 };
 use glam::{DQuat, DVec3, Mat3, Vec3};
@@ -57,12 +57,16 @@ pub struct Setup {
     pub gravity: DVec3,
     /// What it may touch.
     pub obstacle: Option<Obstacle>,
+    /// Velocity of the air [m/s].
+    pub wind: DVec3,
+    /// Whether `points` are in balance under gravity, as a groom's are, instead of natural.
+    pub in_balance: bool,
 }
 
 impl Setup {
     /// A strand of natural shape `points` whose own weight is `gamma` = ρgAL³/EI under [`GRAVITY`], and `ratio` = GJ/EI.
     ///
-    /// Air at rest brings it to rest, near critically: the drag of a lone fibre, and no damping of its own. Neither
+    /// Air at rest brings it to rest, near critically: more drag than on a lone fiber, and no damping of its own. Neither
     /// changes where it rests.
     pub fn heavy(points: Vec<Vec3>, gamma: f64, ratio: f64) -> Self {
         let length: f64 = points.windows(2).map(|p| p[0].as_dvec3().distance(p[1].as_dvec3())).sum();
@@ -74,10 +78,17 @@ impl Setup {
             young: young as f32,
             shear: (0.5 * ratio * young) as f32,
             damping: 0.0,
-            drag: 1.5,
+            drag: 2.5,
             ..Material::default()
         };
-        Self { points, material, gravity: DVec3::NEG_Y * GRAVITY, obstacle: None }
+        Self {
+            points,
+            material,
+            gravity: DVec3::NEG_Y * GRAVITY,
+            obstacle: None,
+            wind: DVec3::ZERO,
+            in_balance: false,
+        }
     }
 
     /// A strand of human hair's Young's modulus and `ratio` = GJ/EI, where nothing weighs.
@@ -99,7 +110,14 @@ impl Setup {
             drag: 0.0,
             ..Material::default()
         };
-        Self { points, material, gravity: DVec3::NEG_Y * GRAVITY, obstacle: None }
+        Self {
+            points,
+            material,
+            gravity: DVec3::NEG_Y * GRAVITY,
+            obstacle: None,
+            wind: DVec3::ZERO,
+            in_balance: false,
+        }
     }
 }
 
@@ -139,6 +157,7 @@ pub struct Specimen {
     simulation: Simulation,
     root: Rigid,
     obstacles: Vec<MovingObstacle>,
+    wind: Vec3,
     substep: f64,
     at: Vec<Vec3>,
 }
@@ -150,9 +169,8 @@ impl Specimen {
         let count = setup.points.len();
         let groom = Arc::new(Groom::from_strands([setup.points], RADIUS as f32));
         let at = groom.points.clone();
-        // Natural shapes are what the closed forms speak of: nothing is put in balance beforehand.
         let solver = Solver {
-            sag_free: false,
+            sag_free: setup.in_balance,
             substeps: method.substeps,
             integrator: method.integrator,
             ..Solver::default()
@@ -169,7 +187,8 @@ impl Specimen {
         let gravity = setup.gravity.as_vec3();
         let simulation = Simulation::new(groom, &[0], &[material], solver, gravity, Rigid::default(), &poses);
         debug_assert_eq!(simulation.point_count(), count);
-        Self { simulation, root, obstacles, substep: FRAME / method.substeps as f64, at }
+        let (wind, substep) = (setup.wind.as_vec3(), FRAME / method.substeps as f64);
+        Self { simulation, root, obstacles, wind, substep, at }
     }
 
     /// Length of a substep [s].
@@ -185,6 +204,16 @@ impl Specimen {
     /// From the root to the free end [m].
     pub fn tip(&self) -> DVec3 {
         self.at[self.at.len() - 1].as_dvec3() - self.at[0].as_dvec3()
+    }
+
+    /// Speed of the fastest point [m/s].
+    pub fn fastest(&self) -> f64 {
+        self.simulation.measure(&self.obstacles).speed_max
+    }
+
+    /// Force with which the collider holds the strand out [N].
+    pub fn contact_force(&self) -> f64 {
+        self.simulation.contacts(&self.obstacles).force
     }
 
     /// Holds or pulls these points from now on, and lets go of all others.
@@ -215,7 +244,7 @@ impl Specimen {
             anchor: Rigid::default(),
             roots: &[self.root],
             obstacles: &self.obstacles,
-            air: Air::default(),
+            air: Air { wind: Wind { velocity: self.wind, ..Wind::default() }, ..Air::default() },
         });
         if report.reset_strands > 0 {
             return Err(Failure::NotFinite);
@@ -230,8 +259,24 @@ impl Specimen {
     /// length, which is no motion.
     pub fn settle(&mut self) -> Result<Vec<DVec3>, Failure> {
         let length: f64 = self.at.windows(2).map(|p| p[0].distance(p[1]) as f64).sum();
+        self.settle_within(STILL * length)
+    }
+
+    /// The same, where all points keep still within `still` [m].
+    pub fn settle_within(&mut self, still: f64) -> Result<Vec<DVec3>, Failure> {
+        let moved = |a: &[DVec3], b: &[DVec3]| {
+            a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) < still
+        };
+        self.settle_where(moved)
+    }
+
+    /// Goes on until the means of two whiles in turn are alike; the last one, relative to the root [m].
+    pub fn settle_where(
+        &mut self,
+        alike: impl Fn(&[DVec3], &[DVec3]) -> bool,
+    ) -> Result<Vec<DVec3>, Failure> {
         let frames = (WATCH / FRAME).round() as u32;
-        let mut before = vec![DVec3::INFINITY; self.at.len()];
+        let mut before: Option<Vec<DVec3>> = None;
         for _ in 0..(PATIENCE / WATCH) as u32 {
             let mut mean = vec![DVec3::ZERO; self.at.len()];
             for _ in 0..frames {
@@ -239,11 +284,10 @@ impl Specimen {
                 let root = self.at[0].as_dvec3();
                 mean.iter_mut().zip(&self.at).for_each(|(m, p)| *m += (p.as_dvec3() - root) / frames as f64);
             }
-            let moved = before.iter().zip(&mean).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
-            if moved < STILL * length {
+            if before.is_some_and(|before| alike(&before, &mean)) {
                 return Ok(mean);
             }
-            before = mean;
+            before = Some(mean);
         }
         Err(Failure::NotAtRest)
     }

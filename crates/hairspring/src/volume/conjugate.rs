@@ -4,14 +4,14 @@
 //! span from the first to the last with pressure is touched.
 
 use super::window::Window;
-use glam::Vec3;
+use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// What is left of the residual when a solve ends, over the right-hand side [1]: of a divergence, a twentieth is not seen.
 pub const TOLERANCE: f64 = 0.05;
 
-/// Most iterations of a solve: what spreads farther than so many cells in a frame is left to the next frame.
+/// Most iterations of a solve: what spreads farther than so many cells in an interval is left to the next.
 pub const ITERATIONS: u32 = 24;
 
 /// One system and its solution. All arrays have the shape of the window's nodes.
@@ -25,6 +25,8 @@ pub struct Solve {
     right: Vec<f32>,
     residual: Vec<f32>,
     pressure: Vec<f32>,
+    /// What the last system's pressures were, and its window; none where a frame begins.
+    last: (Window, Vec<f32>),
     direction: Vec<f32>,
     image: Vec<f32>,
     /// M⁻¹ Dᵀ of what was applied last, a component each.
@@ -84,13 +86,21 @@ impl Solve {
     /// Room for so many nodes ever.
     pub fn reserve(&mut self, nodes: usize) {
         self.arrays().into_iter().for_each(|array| array.reserve_exact(nodes));
+        self.last.1.reserve_exact(nodes);
         // No window has more rows than nodes over three: its ring.
         self.spans.reserve_exact(nodes / 3);
         self.partial.reserve_exact(nodes / 9);
     }
 
-    /// A new system, all 0.
+    /// The next system knows of no other.
+    pub fn forget(&mut self) {
+        self.pressure.clear();
+    }
+
+    /// A new system, all 0 but the pressures, which are the last one's.
     pub fn begin(&mut self, window: Window) {
+        self.last.0 = self.window;
+        std::mem::swap(&mut self.last.1, &mut self.pressure);
         self.window = window;
         self.arrays().into_par_iter().for_each(|array| {
             array.clear();
@@ -100,6 +110,19 @@ impl Solve {
         self.spans.resize(window.dims[1] * window.dims[2], Span::default());
         self.partial.clear();
         self.partial.resize(window.dims[2], 0.0);
+        let (before, last) = &self.last;
+        if last.is_empty() {
+            return;
+        }
+        // Rows of both windows, from the first to the last x of both.
+        let (from, to) = (before.lo.max(window.lo), before.end().min(window.end()));
+        let count = usize::try_from(to.x - from.x).unwrap_or(0);
+        for (z, y) in (from.z..to.z).flat_map(|z| (from.y..to.y).map(move |y| (z, y))) {
+            let row = IVec3::new(from.x, y, z);
+            if let (Some(old), Some(new)) = (before.index(row), window.index(row)) {
+                self.pressure[new..new + count].copy_from_slice(&last[old..old + count]);
+            }
+        }
     }
 
     /// Takes up the cells of which `flow` has a right-hand side; how many they are.
@@ -107,9 +130,10 @@ impl Solve {
         let [nx, ny, nz] = self.window.dims;
         let (slab, corners, inverse_mass) = (nx * ny, self.window.corners(), &self.inverse_mass);
         let parts = self.inverse_diagonal.par_chunks_mut(slab).zip(self.right.par_chunks_mut(slab));
-        let parts = parts.zip(self.spans.par_chunks_mut(ny)).enumerate();
+        let parts =
+            parts.zip(self.pressure.par_chunks_mut(slab)).zip(self.spans.par_chunks_mut(ny)).enumerate();
         parts
-            .map(|(z, ((diagonal, right), spans))| {
+            .map(|(z, (((diagonal, right), pressure), spans))| {
                 let mut cells = 0;
                 // The last slab and the last row hold no cells.
                 let rows = if z + 1 < nz { ny - 1 } else { 0 };
@@ -126,6 +150,9 @@ impl Solve {
                         }
                     }
                 }
+                // What is of the system no more does not press.
+                let of_none = pressure.iter_mut().zip(diagonal).filter(|(_, diagonal)| **diagonal == 0.0);
+                of_none.for_each(|(pressure, _)| *pressure = 0.0);
                 cells
             })
             .sum()

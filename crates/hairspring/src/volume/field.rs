@@ -6,6 +6,13 @@ use super::{
 };
 use rayon::prelude::*;
 
+/// Numbers of [`Field::push`] that there are, and with those that fill up the last four.
+pub const TAKEN: usize = 9;
+pub const PUSH: usize = 12;
+
+/// Which of [`Field::push`] are the rows of the symmetric matrix.
+pub const BRAKE: [[usize; 3]; 3] = [[3, 6, 8], [6, 4, 7], [8, 7, 5]];
+
 /// Hair as a continuum, and what it does to the points in it.
 #[derive(Default)]
 pub struct Field {
@@ -13,18 +20,22 @@ pub struct Field {
     pub window: Window,
     /// Mean velocity at each node [m/s], and its mass in that of the largest point; shape `[nodes]`.
     pub nodes: Vec<[f32; 4]>,
+    /// Mean direction of the strands at each node, as long as they agree on it [1], and the root of the mean square of what velocities differ
+    /// by from their mean [m/s].
+    pub spread: Vec<[f32; 4]>,
     /// Room of the points in each cell [cells].
     rooms: Vec<f32>,
     /// How full each cell is: room over volume, averaged with its neighbours', as on a quadratic B-spline [1].
     pub fill: Vec<f32>,
-    /// What a point takes with its trilinear weights: an acceleration [m/s²] and the share of its own velocity that it loses [1/s].
-    pub push: Vec<[f32; 4]>,
+    /// What a point takes with its trilinear weights: an acceleration [m/s²], and a symmetric matrix that takes of its own velocity [1/s].
+    pub push: Vec<[f32; PUSH]>,
 }
 
 impl Field {
     /// Room for so many nodes ever.
     pub fn reserve(&mut self, nodes: usize) {
         self.nodes.reserve_exact(nodes);
+        self.spread.reserve_exact(nodes);
         self.rooms.reserve_exact(nodes);
         self.fill.reserve_exact(nodes);
         self.push.reserve_exact(nodes);
@@ -35,34 +46,38 @@ impl Field {
         self.window = window;
         let (count, slab) = (window.nodes(), window.slab());
         self.nodes.resize(count, [0.0; 4]);
+        self.spread.resize(count, [0.0; 4]);
         self.rooms.resize(count, 0.0);
         self.fill.resize(count, 0.0);
-        self.push.resize(count, [0.0; 4]);
+        self.push.resize(count, [0.0; PUSH]);
         let (to_speed, to_mass) = (units.mass / units.momentum, 1.0 / units.mass);
-        self.nodes.par_chunks_mut(slab).zip(self.rooms.par_chunks_mut(slab)).enumerate().for_each(
-            |(z, (nodes, rooms))| {
-                let first = z * slab;
-                for (n, node) in nodes.iter_mut().enumerate() {
-                    let mut sum = [0; NODE];
-                    for own in sums {
-                        let Some(own) = own.nodes[(first + n) * NODE..].first_chunk::<NODE>() else {
-                            continue;
-                        };
-                        for (sum, own) in sum.iter_mut().zip(own) {
-                            *sum += own;
-                        }
+        let to_square = units.mass / units.energy;
+        let parts = self.nodes.par_chunks_mut(slab).zip(self.spread.par_chunks_mut(slab));
+        parts.zip(self.rooms.par_chunks_mut(slab)).enumerate().for_each(|(z, ((nodes, spread), rooms))| {
+            let first = z * slab;
+            for (n, (node, spread)) in nodes.iter_mut().zip(spread).enumerate() {
+                let mut sum = [0; NODE];
+                for own in sums {
+                    let Some(own) = own.nodes[(first + n) * NODE..].first_chunk::<NODE>() else {
+                        continue;
+                    };
+                    for (sum, own) in sum.iter_mut().zip(own) {
+                        *sum += own;
                     }
-                    let mass = sum[3] as f32;
-                    let inverse = if mass > 0.0 { to_speed / mass } else { 0.0 };
-                    let [x, y, z] = [0, 1, 2].map(|k| sum[k] as f32 * inverse);
-                    *node = [x, y, z, mass * to_mass];
                 }
-                for (n, room) in rooms.iter_mut().enumerate() {
-                    let sum = sums.iter().fold(0_u32, |sum, own| sum.saturating_add(own.rooms[first + n]));
-                    *room = sum as f32 * (1.0 / ROOM);
-                }
-            },
-        );
+                let mass = sum[3] as f32;
+                let inverse = if mass > 0.0 { 1.0 / mass } else { 0.0 };
+                let mean = sum.map(|sum| sum as f32 * inverse);
+                let [x, y, z] = [0, 1, 2].map(|k| mean[k] * to_speed);
+                *node = [x, y, z, mass * to_mass];
+                let square = mean[7] * to_square - (x * x + y * y + z * z);
+                *spread = [mean[4], mean[5], mean[6], square.max(0.0).sqrt()];
+            }
+            for (n, room) in rooms.iter_mut().enumerate() {
+                let sum = sums.iter().fold(0_u32, |sum, own| sum.saturating_add(own.rooms[first + n]));
+                *room = sum as f32 * (1.0 / ROOM);
+            }
+        });
         self.smooth();
     }
 

@@ -1,6 +1,7 @@
 //! Lattice to points: one acceleration a point, frozen for the interval.
 
 use super::{
+    field::{BRAKE, PUSH, TAKEN},
     splat::Tiles,
     window::{Chart, Placed, Window},
 };
@@ -12,53 +13,71 @@ use crate::strand::{
 /// Tiles that one task runs.
 const TILES_PER_TASK: usize = 32;
 
-/// Writes the acceleration of every point [m/s²], shape `[points]` of these tiles, on all threads; 0 outside of the window.
-pub fn all(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; 4]], push: &mut [[Row; 3]]) {
+/// What points took in the last interval, and the sum of all that acts on them, shape `[points]` of some tiles [m/s²].
+type Points<'a> = (&'a mut [[Row; 3]], &'a mut [[Row; 3]]);
+
+/// Puts the acceleration of every point in the place of what it was, in the sum too, on all threads; 0 outside of the window.
+pub fn all(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; PUSH]], (taken, push): Points<'_>) {
     let count = tiles.count();
     if count <= TILES_PER_TASK {
-        return gather(tiles, chart, window, field, push);
+        return gather(tiles, chart, window, field, (taken, push));
     }
     let (a, b) = (tiles.part(0, 2), tiles.part(1, 2));
-    let (low, high) = push.split_at_mut((b.firsts[0] - a.firsts[0]) as usize);
-    rayon::join(|| all(&a, chart, window, field, low), || all(&b, chart, window, field, high));
+    let at = (b.firsts[0] - a.firsts[0]) as usize;
+    let ((low, high), (low_push, high_push)) = (taken.split_at_mut(at), push.split_at_mut(at));
+    rayon::join(
+        || all(&a, chart, window, field, (low, low_push)),
+        || all(&b, chart, window, field, (high, high_push)),
+    );
 }
 
 /// The same on one thread.
 #[expect(clippy::needless_range_loop, reason = "a lane is one point, in several rows")]
-fn gather(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; 4]], push: &mut [[Row; 3]]) {
+fn gather(
+    tiles: &Tiles,
+    chart: &Chart,
+    window: &Window,
+    field: &[[f32; PUSH]],
+    (acceleration, push): Points<'_>,
+) {
     let [_, _, row, _, slab, _, both, _] = window.corners();
-    let mut push = push.iter_mut();
+    let mut points = acceleration.iter_mut().zip(push);
     for (strand, state, _) in tiles.iter() {
         let mut places = chart.roots(strand, window.lo);
-        for (at, push) in state.iter().zip(&mut push) {
+        for (at, (acceleration, push)) in state.iter().zip(&mut points) {
             chart.walk(&mut places, at);
             let placed = Placed::new(&places, window);
-            let mut taken = [[0.0; LANES]; 4];
+            let mut taken = [[0.0; LANES]; TAKEN];
             for lane in 0..LANES {
                 let cell = placed.cell[lane] as usize;
-                let mut sum = [0.0; 4];
+                let mut sum = [0.0; PUSH];
                 for (k, corner) in [0, row, slab, both].into_iter().enumerate() {
                     let [a, b] = [placed.weights[2 * k][lane], placed.weights[2 * k + 1][lane]];
                     let Some([low, high]) = field[cell + corner..].first_chunk::<2>() else { continue };
-                    for c in 0..4 {
+                    for c in 0..PUSH {
                         sum[c] += low[c] * a + high[c] * b;
                     }
                 }
-                (0..4).for_each(|c| taken[c][lane] = sum[c]);
+                (0..TAKEN).for_each(|c| taken[c][lane] = sum[c]);
             }
-            let mut sound = placed.inside;
+            let (mut sound, mut now) = (placed.inside, [Row::default(); 3]);
+            let [Row(vx), Row(vy), Row(vz)] = &at[state::V..].first_chunk::<3>().expect("three rows");
             for k in 0..3 {
-                let Row(v) = &at[state::V + k];
+                let [x, y, z] = BRAKE[k];
                 for lane in 0..LANES {
-                    let a = taken[k][lane] - taken[3][lane] * v[lane];
+                    let braked =
+                        taken[x][lane] * vx[lane] + taken[y][lane] * vy[lane] + taken[z][lane] * vz[lane];
+                    let a = taken[k][lane] - braked;
                     // 0 for finite numbers, else NaN.
                     sound[lane] = if a * 0.0 == 0.0 { sound[lane] } else { 0.0 };
-                    push[k].0[lane] = a;
+                    now[k].0[lane] = a;
                 }
             }
-            for row in push {
+            for ((row, acceleration), push) in now.iter().zip(acceleration).zip(push) {
                 for lane in 0..LANES {
-                    row.0[lane] = if sound[lane] > 0.0 { row.0[lane] } else { 0.0 };
+                    let a = if sound[lane] > 0.0 { row.0[lane] } else { 0.0 };
+                    push.0[lane] += a - acceleration.0[lane];
+                    acceleration.0[lane] = a;
                 }
             }
         }

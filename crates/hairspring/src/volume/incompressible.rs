@@ -51,6 +51,11 @@ impl Projection {
         self.velocities.iter_mut().for_each(|v| v.reserve_exact(nodes));
     }
 
+    /// The next projection knows of none before it.
+    pub fn forget(&mut self) {
+        self.solve.forget();
+    }
+
     /// Finds what changes the velocities of `field`. `to_lattice` turns a node's velocity into the lattice's axes and says whether the node
     /// is solid, in which case it is the solid's; `wanted` is the divergence that a cell is to have, times 4 cells [m/s].
     pub fn project(

@@ -1,15 +1,19 @@
-//! Hair on hair, as a volume: once an exchange interval all simulated points leave their mass and momentum on a lattice, and take from it
+//! Hair on hair, as a volume: in intervals of 1/240 s all simulated points leave their mass and momentum on a lattice, and take from it
 //! one acceleration each, which is frozen for the interval and all that the strands' solver sees.
 //!
 //! ```text
 //! node    M = Σ w m,   V = Σ w m v / M                         (Petrovic 2005)
-//! point   a = Σ w (A + β V) − (Σ w β) v,   β = (1 − e^(−friction dt)) / dt
+//! point   a = Σ w (A + β V + R V) − Σ w (β + R) v,   β = (1 − e^(−friction dt)) / dt
 //! ```
 //!
-//! A is what the nodes' pressure does, by one of two methods: `density` (Petrovic 2005) or `incompressible` (McAdams 2009). The rest is
-//! friction: the exact relaxation of the velocity relative to that of the hair around. It cannot overshoot, brakes no common motion, and
-//! keeps momentum, because Σ m over the points of w (V − v) is 0 at every node. With A = (V⁺ − V)/dt, e^(−friction dt) of the velocity comes by
-//! FLIP and the rest by PIC (Zhu & Bridson 2005, as McAdams 2009), in a blend that does not depend on the frame rate.
+//! - A is what the nodes' pressure does, by one of two methods: `density` (Petrovic 2005) or `incompressible` (McAdams 2009).
+//! - β is friction: the exact relaxation of the velocity relative to that of the hair around. It cannot overshoot, brakes no common motion, and
+//!   keeps momentum, because Σ m over the points of w (V − v) is 0 at every node. With A = (V⁺ − V)/dt, e^(−friction dt) of the velocity comes by
+//!   FLIP and the rest by PIC (Zhu & Bridson 2005, as McAdams 2009), in a blend that does not depend on the length of the interval.
+//! - R is what hair takes from hair that goes across it, a matrix, see `crossing`. Pressure and friction do not know of strands that go through each other within a cell.
+//!
+//! All of it is a rate or exact for an interval of any length, and intervals are as long at any frame rate (`simulation/parts.rs`): results depend on the frame
+//! rate as little as the strands do.
 //!
 //! # The five steps of McAdams 2009 here
 //! - Steps 1 and 2, positions and velocities free of collision and what forces make of the velocities, are the strands' state and their solve.
@@ -20,15 +24,16 @@
 //!
 //! # Cost
 //! A point's 12 bytes of position are read for the window, its 24 of position and velocity and 8 of its own for the sums, 24 again for the
-//! acceleration, which is 12 to write and 12 to read by the substeps: 92 bytes, 5 ns at 20 GB/s. It adds 32 whole numbers at eight nodes and takes
-//! 32: some 250 operations, 10 ns on one core in registers of four. Measured on one core, beside other work: 3 ns for the window, 14 for the sums,
-//! 10 for the acceleration, each by itself; `hairspring --threads 1 bench --hair-hair` takes 41 ns a point and frame longer than without, caches that
-//! the strands then find cold included. A node costs 1 to 3 ns; the solve of `incompressible`, 20,000 full cells, 4 to 8 ms on two cores.
+//! acceleration, which is 12 to write here, 24 to change in the sum of all that acts, and 12 to read by the substeps. It adds 64 whole numbers at eight nodes and takes 96.
+//! Measured on one core with SSE2, bench scene of 96,000 points in 21,000 nodes: 56 ns a point and exchange for `density`, 117 for `incompressible` (solve of
+//! 34,000 nodes), caches that the strands then find cold and tiles that run one substep at a time included; a frame of 1/60 s has four exchanges.
 //!
 //! # Missing
 //! Followers are moved by their guides alone.
 
+mod brakes;
 mod conjugate;
+mod crossing;
 mod density;
 mod field;
 mod gather;
@@ -41,14 +46,15 @@ mod tests;
 mod window;
 
 use crate::{
-    collide::Rigid,
+    collide::{ObstaclePose, Rigid},
     scene::{self, VolumeMethod},
-    simulation::MovingObstacle,
     strand::{
         lanes::Row,
         tile::{StateRows, StrandRows},
     },
 };
+use brakes::fill_push;
+use crossing::Crossing;
 use field::Field;
 use glam::{Mat3, Vec3};
 use incompressible::Projection;
@@ -58,7 +64,7 @@ pub(crate) use sample::Density;
 use splat::{Extent, OwnRows, Sums, Tiles, Units, own};
 use window::{Chart, Window};
 
-/// Most nodes of a window: those of a head of long hair in every direction in cells of a centimetre, and 40 MB for each thread.
+/// Most nodes of a window: those of a head of long hair in every direction in cells of a centimetre, and 75 MB for each thread.
 const MOST_NODES: f32 = (1 << 21) as f32;
 
 /// Nodes of a window beyond its hair, along each axis [cells].
@@ -81,6 +87,10 @@ pub(crate) struct Volume {
     reach: (Vec3, Vec3),
     /// Length of the longest strand [m].
     length: f32,
+    /// Distance of neighbouring strands at rest [m].
+    spacing: f32,
+    /// Length of strand in each mass of 1 [m].
+    per_mass: f32,
     /// Index of each tile's first point, and of the first after the last.
     firsts: Vec<u32>,
     own: Vec<OwnRows>,
@@ -88,6 +98,8 @@ pub(crate) struct Volume {
     /// Sum of the points' masses over the largest.
     total: f64,
     rest: Rest,
+    /// What acts on the points in this interval, shape `[points]` of all tiles [m/s²].
+    acceleration: Vec<[Row; 3]>,
     sums: Vec<Sums>,
     field: Field,
     pressures: Vec<f32>,
@@ -108,6 +120,18 @@ pub struct VolumeReport {
     /// The volume that the hair took up at the start of the last interval, over that at rest [1]. The volume is that of its cells as far as
     /// they are filled, none more than once: where strands crowd into each other's room, theirs is lost.
     pub share: f64,
+}
+
+/// When an interval begins: where the anchor is then, and which part of their way in the frame roots have gone [1].
+pub(crate) struct Now {
+    pub anchor: Rigid,
+    pub gone: f32,
+}
+
+impl Now {
+    fn chart(&self, cell: f32) -> Chart {
+        Chart::on_the_way(&self.anchor, cell, self.gone)
+    }
 }
 
 /// Strands at rest, as a simulation is built.
@@ -144,20 +168,32 @@ impl Volume {
             })
             .collect();
         let tiles = Tiles { firsts: &at.firsts, strand: at.strand, state: at.state, own: &own };
-        let asked = settings.cell.unwrap_or_else(|| rest::cell_for(&tiles, &at.anchor, at.segment.max(1e-4)));
+        let grain = rest::grain(&tiles, &at.anchor, at.segment.max(1e-4));
+        let asked = settings.cell.unwrap_or(grain.cell);
         // Hair reaches no farther from its roots than it is long.
         let extent = Extent::of(&tiles, &Chart::new(&at.anchor, 1.0));
         let reach = rest::reach((extent.lo, extent.hi), at.length);
         let size = (reach.1 - reach.0).max(Vec3::splat(asked));
-        let cell = asked.max((size.element_product() / (0.5 * MOST_NODES)).cbrt());
+        let mut cell = asked.max((size.element_product() / (0.5 * MOST_NODES)).cbrt());
+        // Around hair in two places far apart, most of the lattice is the ring.
+        let farthest = reach.0.abs().max(reach.1.abs()).max_element();
+        while (size / cell + RING + 1.0).element_product() > MOST_NODES || farthest / cell > FARTHEST {
+            cell *= 1.1;
+        }
         let masses = || own.iter().flat_map(|o| o[own::MASS].0).filter(|m| *m > 0.0);
-        let (points, total) = (masses().count(), masses().map(f64::from).sum());
+        let (points, total) = (masses().count(), masses().map(f64::from).sum::<f64>());
         let mut volume = Self {
             settings: *settings,
             cell,
             grown: cell > asked,
             reach,
             length: at.length,
+            spacing: grain.spacing,
+            per_mass: at.segment * (points as f64 / total) as f32,
+            acceleration: vec![
+                [Row::default(); 3];
+                if settings.method == VolumeMethod::Off { 0 } else { at.state.len() }
+            ],
             firsts: at.firsts,
             own: Vec::new(),
             points,
@@ -170,9 +206,9 @@ impl Volume {
             taken_up: [1.0; 2],
         };
         volume.reserve();
-        let chart = Chart::new(&at.anchor, cell);
         let work = (&mut volume.sums[0], &mut volume.field);
-        volume.rest.measure((at.strand, at.state), &volume.firsts, &mut own, &chart, work);
+        let cells = (&at.anchor, cell, grain.cell);
+        volume.rest.measure((at.strand, at.state, &volume.firsts), &mut own, cells, work);
         volume.own = own;
         volume.taken_up = [taken_up(&volume.field.fill); 2];
         Some(volume)
@@ -202,7 +238,7 @@ impl Volume {
 
     /// Bytes that it holds a strand's points in, the lattice not counted.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.own[..])
+        size_of_val(&self.own[..]) + size_of_val(&self.acceleration[..])
     }
 
     /// Whether it does anything to the points.
@@ -234,10 +270,17 @@ impl Volume {
         Window::around(lo, hi)
     }
 
-    /// Measures where hair is, at the start of an interval, where the anchor is at `anchor`.
-    pub fn measure(&mut self, (strand, state): (&[StrandRows], &[StateRows]), anchor: &Rigid) {
+    /// Begins a frame in which nothing of this acts yet. Pressures of the intervals in it begin with those of the last; those of its first do not, so that a frame
+    /// follows from places and velocities alone.
+    pub fn begin_frame(&mut self) {
+        self.projection.forget();
+        self.acceleration.fill([Row::default(); 3]);
+    }
+
+    /// Measures where hair is, at the start of an interval.
+    pub fn measure(&mut self, (strand, state): (&[StrandRows], &[StateRows]), now: &Now) {
         self.reserve();
-        let chart = Chart::new(anchor, self.cell);
+        let chart = now.chart(self.cell);
         let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
         let parts = rayon::current_num_threads().clamp(1, self.sums.len());
         let extent = (0..parts)
@@ -255,23 +298,29 @@ impl Volume {
         self.taken_up[1] = taken_up(&self.field.fill);
     }
 
-    /// Finds the accelerations of all points for an interval of `dt` [s] that has been measured: `push` [m/s²], shape `[points]` of all tiles.
+    /// Finds the accelerations of all points for an interval of `dt` [s] that has been measured, and puts them in the place of the last interval's in
+    /// `push` [m/s²], shape `[points]` of all tiles. `obstacles` are in the interval's first substep, of `h` [s].
     pub fn exchange(
         &mut self,
         dt: f32,
         (strand, state): (&[StrandRows], &[StateRows]),
-        anchor: &Rigid,
-        obstacles: (&[MovingObstacle], Option<&Rigid>),
+        now: &Now,
+        obstacles: (&[ObstaclePose], f32),
         push: &mut [[Row; 3]],
     ) {
         match self.settings.method {
             VolumeMethod::Off => {}
-            VolumeMethod::Density => self.press(dt, anchor),
-            VolumeMethod::Incompressible => self.project(dt, anchor, obstacles),
+            VolumeMethod::Density => self.press(dt, &now.anchor),
+            VolumeMethod::Incompressible => self.project(dt, &now.anchor, obstacles),
         }
-        let chart = Chart::new(anchor, self.cell);
         let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
-        gather::all(&tiles, &chart, &self.field.window, &self.field.push, push);
+        let points = (&mut self.acceleration[..], push);
+        gather::all(&tiles, &now.chart(self.cell), &self.field.window, &self.field.push, points);
+    }
+
+    /// What crossing hair takes in an interval of `dt` [s].
+    fn crossing(&self, dt: f32) -> Crossing {
+        Crossing::new(self.spacing, self.per_mass, self.cell, dt)
     }
 
     /// Acceleration by the pressure of crowded cells.
@@ -281,18 +330,18 @@ impl Volume {
         density::pressures(field, excess, &mut self.pressures);
         let push = density::Push::new(field, &self.pressures, self.settings.pressure, self.cell, dt);
         let turn = Mat3::from_quat(anchor.rotation);
-        let friction = friction(&self.settings, dt);
-        fill_push(&mut self.field, friction, |n, mass| turn * push.at(n, mass));
+        let brakes = (brakes::friction(&self.settings, dt), self.crossing(dt));
+        fill_push(&mut self.field, brakes, |n, mass| turn * push.at(n, mass));
     }
 
     /// Acceleration that makes velocities free of divergence where hair is full.
-    fn project(&mut self, dt: f32, anchor: &Rigid, obstacles: (&[MovingObstacle], Option<&Rigid>)) {
+    fn project(&mut self, dt: f32, anchor: &Rigid, obstacles: (&[ObstaclePose], f32)) {
         let (field, rest, window, cell) = (&self.field, &self.rest, self.field.window, self.cell);
         let turn = Mat3::from_quat(anchor.rotation);
         let back = turn.transpose();
         let to_lattice = |n: usize, node: &[f32; 4]| {
             let place = anchor.point(window.place(n).as_vec3() * cell);
-            match solid(obstacles, place, dt) {
+            match solid(obstacles, place) {
                 Some(v) => (back * v, true),
                 None => (back * Vec3::new(node[0], node[1], node[2]), false),
             }
@@ -302,9 +351,9 @@ impl Volume {
             4.0 * cell * regain * rest.excess(&window, c, field.fill[c]).clamp(0.0, density::MOST_EXCESS)
         };
         self.projection.project(field, to_lattice, wanted);
+        let brakes = (brakes::friction(&self.settings, dt), self.crossing(dt));
         let projection = &self.projection;
-        let friction = friction(&self.settings, dt);
-        fill_push(&mut self.field, friction, |n, _| turn * projection.change(n) / dt);
+        fill_push(&mut self.field, brakes, |n, _| turn * projection.change(n) / dt);
     }
 }
 
@@ -316,35 +365,10 @@ fn taken_up(fill: &[f32]) -> f64 {
     if all > 0.0 { once / all } else { 1.0 }
 }
 
-/// β of full cells for intervals of `dt` [s] [1/s].
-fn friction(settings: &scene::Volume, dt: f32) -> f32 {
-    -(-settings.friction * dt).exp_m1() / dt
-}
-
-/// Writes what points take from each node: `acceleration` by index and mass, and friction.
-fn fill_push(field: &mut Field, friction: f32, acceleration: impl Fn(usize, f32) -> Vec3 + Sync) {
-    let (window, nodes, fill) = (field.window, &field.nodes, &field.fill);
-    let (slab, corners) = (window.slab(), window.corners());
-    field.push.par_chunks_mut(slab).enumerate().for_each(|(z, push)| {
-        for (k, push) in push.iter_mut().enumerate() {
-            let n = z * slab + k;
-            let [x, y, z, mass] = nodes[n];
-            *push = [0.0; 4];
-            if mass > 0.0 {
-                // Hair rubs as far as there is hair: a lone strand meets none.
-                let full: f32 = corners.iter().map(|corner| fill[n - corner]).sum();
-                let beta = friction * (0.125 * full).min(1.0);
-                let a = acceleration(n, mass);
-                *push = [a.x + beta * x, a.y + beta * y, a.z + beta * z, beta];
-            }
-        }
-    });
-}
-
-/// Velocity of the collider that `place` [m] is in at the start of an interval of `dt` [s] before which hair was carried along, in the world [m/s].
-fn solid((obstacles, carried): (&[MovingObstacle], Option<&Rigid>), place: Vec3, dt: f32) -> Option<Vec3> {
+/// Velocity of the collider that `place` [m] is in at the start of a substep of `h` [s], in the world [m/s].
+fn solid((obstacles, h): (&[ObstaclePose], f32), place: Vec3) -> Option<Vec3> {
     obstacles.iter().find_map(|o| {
-        let local = o.start(carried).inverse_point(place);
-        (o.shape.distance(local) < 0.0).then(|| (o.end.point(local) - place) / dt)
+        let local = o.start.0.transpose() * (place - o.start.1);
+        (o.shape.distance(local) < 0.0).then(|| (o.end.0 * local + o.end.1 - place) / h)
     })
 }

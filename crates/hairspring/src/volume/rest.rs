@@ -19,18 +19,26 @@ use rayon::prelude::*;
 /// rough to 8 % if they lie at random.
 const POINTS_A_CELL: f32 = 8.0;
 
-/// Rounds in which points find their rooms: after three a hair-filled cell is full to 2 % or better.
-const ROUNDS: usize = 3;
-
 /// Largest room of a point [cells]: a lone one fills its own cell and a third of what is around it.
 const MOST_ROOM: f32 = 4.0;
 
-/// What may be fuller than at rest before it counts [1]: above the rounding of a turned head, far below what is seen.
-const SLACK: f32 = 1.02;
+/// What may be fuller than at rest before it counts [1]: above what cells are filled unevenly by where they lie in hair that moves through them, and hardly seen.
+const SLACK: f32 = 1.1;
 
-/// The smallest cell that holds [`POINTS_A_CELL`] points at rest, and is no smaller than the mean segment `shortest` [m], above 0.
-pub fn cell_for(tiles: &Tiles, anchor: &Rigid, shortest: f32) -> f32 {
-    let mut cell = shortest;
+/// How hair lies at rest.
+pub struct Grain {
+    /// The smallest cell that holds [`POINTS_A_CELL`] points, and is no smaller than the mean segment [m].
+    pub cell: f32,
+    /// Distance of neighbouring strands [m].
+    pub spacing: f32,
+}
+
+/// How hair with a mean segment of `segment` [m], above 0, lies at rest.
+///
+/// The spacing is that of the strands around the mean point: with N points in a cell of edge c, n = ℓ Σ N (N − 1) / (c³ Σ N) is the length of
+/// the others' strands per volume around it, whose cross-section each shares with n others: 1/√n apart.
+pub fn grain(tiles: &Tiles, anchor: &Rigid, segment: f32) -> Grain {
+    let (mut cell, mut spacing) = (segment, segment);
     let mut occupied: Vec<u64> = Vec::new();
     for _ in 0..64 {
         let chart = Chart::new(anchor, cell);
@@ -47,13 +55,16 @@ pub fn cell_for(tiles: &Tiles, anchor: &Rigid, shortest: f32) -> f32 {
         }
         let points = occupied.len() as f32;
         occupied.par_sort_unstable();
-        occupied.dedup();
-        if points >= POINTS_A_CELL * occupied.len() as f32 || occupied.len() <= 1 {
+        let cells = || occupied.chunk_by(|a, b| a == b).map(|cell| cell.len() as f64);
+        let (count, pairs) = (cells().count(), cells().map(|n| n * (n - 1.0)).sum::<f64>());
+        let density = segment * pairs as f32 / (cell.powi(3) * points);
+        spacing = density.sqrt().recip().min(cell);
+        if points >= POINTS_A_CELL * count as f32 || count <= 1 {
             break;
         }
         cell *= 1.1;
     }
-    cell
+    Grain { cell, spacing }
 }
 
 /// How full cells are at rest, where that is more than full.
@@ -70,47 +81,58 @@ impl Rest {
         fill - SLACK * at.map_or(1.0, |at| self.fill[at].max(1.0))
     }
 
-    /// Gives every point its room, such that hair at rest fills the cells that it is in, and remembers the rest.
+    /// Gives every point its room, such that hair at rest fills the cells of `grain` [m] that it is in, or those of the lattice where they are smaller, and
+    /// remembers how full those of the lattice are, of `cell` [m].
+    ///
+    /// Rooms are to be what is between strands, wherever a bundle goes in the lattice. So they are not such that larger cells are full, all of each that hair
+    /// reaches into; and they are found once, by how full cells are when all rooms are the same, and not until those at the surface are as full as those inside.
     pub fn measure(
         &mut self,
-        (strand, state): (&[StrandRows], &[StateRows]),
-        firsts: &[u32],
+        tiles: (&[StrandRows], &[StateRows], &[u32]),
         own: &mut [OwnRows],
-        chart: &Chart,
+        (anchor, cell, grain): (&Rigid, f32, f32),
         (sums, field): (&mut Sums, &mut Field),
     ) {
-        let extent = Extent::of(&Tiles { firsts, strand, state, own }, chart);
-        if !(extent.lo.is_finite() && extent.hi.is_finite()) {
-            return;
-        }
-        let window = Window::around(extent.lo, extent.hi);
-        // Any mass will do, rooms are sums of their own.
-        let units = Units { mass: 1.0, momentum: 0.0, speed: 0.0 };
-        for round in 0..=ROUNDS {
-            sums.clear(window.nodes());
-            sums.add(&Tiles { firsts, strand, state, own }, chart, &window, &units);
-            field.collect(window, &units, std::slice::from_ref(sums));
-            if round == ROUNDS {
-                break;
-            }
-            for (rows, first) in strand.iter().zip(firsts.windows(2)) {
-                let mut places = chart.roots(rows, window.lo);
-                for i in first[0] as usize..first[1] as usize {
-                    chart.walk(&mut places, &state[i]);
-                    let placed = Placed::new(&places, &window);
-                    let room = &mut own[i][own::ROOM].0;
-                    for (room, cell) in room.iter_mut().zip(placed.cell) {
-                        let fill = field.fill[cell as usize];
-                        if *room > 0.0 && fill > 0.0 {
-                            *room = (*room / fill).round().clamp(1.0, MOST_ROOM * ROOM);
-                        }
+        let (strand, state, firsts) = tiles;
+        let fine = cell.min(grain);
+        let chart = Chart::new(anchor, fine);
+        // What is a cell of the fine lattice, in the lattice's.
+        let share = (fine / cell).powi(3);
+        let Some(window) = fill(&Tiles { firsts, strand, state, own }, &chart, sums, field) else { return };
+        for (rows, first) in strand.iter().zip(firsts.windows(2)) {
+            let mut places = chart.roots(rows, window.lo);
+            for i in first[0] as usize..first[1] as usize {
+                chart.walk(&mut places, &state[i]);
+                let placed = Placed::new(&places, &window);
+                let room = &mut own[i][own::ROOM].0;
+                for (room, cell) in room.iter_mut().zip(placed.cell) {
+                    let fill = field.fill[cell as usize];
+                    if *room > 0.0 && fill > 0.0 {
+                        *room = ((*room / fill).min(MOST_ROOM * ROOM) * share).round().max(1.0);
                     }
                 }
             }
         }
+        let chart = Chart::new(anchor, cell);
+        let Some(window) = fill(&Tiles { firsts, strand, state, own }, &chart, sums, field) else { return };
         self.window = window;
         self.fill.clone_from(&field.fill);
     }
+}
+
+/// Finds how full the cells of hair are; the window around it, or `None` where there is none.
+fn fill(tiles: &Tiles, chart: &Chart, sums: &mut Sums, field: &mut Field) -> Option<Window> {
+    let extent = Extent::of(tiles, chart);
+    if !(extent.lo.is_finite() && extent.hi.is_finite()) {
+        return None;
+    }
+    let window = Window::around(extent.lo, extent.hi);
+    // Any mass will do, rooms are sums of their own.
+    let units = Units { mass: 1.0, momentum: 0.0, energy: 0.0, speed: 0.0 };
+    sums.clear(window.nodes());
+    sums.add(tiles, chart, &window, &units);
+    field.collect(window, &units, std::slice::from_ref(sums));
+    Some(window)
 }
 
 /// The box that strands with roots in one box (`lo`, `hi`) and no longer than `length` can reach.

@@ -1,4 +1,4 @@
-//! Points to lattice: mass and momentum to the corners of a point's cell, its room to the cell.
+//! Points to lattice: mass, momentum, direction and energy to the corners of a point's cell, its room to the cell.
 //!
 //! Sums are whole numbers, so that they have the same bits in any order, and each thread may have a grid of its own.
 
@@ -22,8 +22,8 @@ pub mod own {
 /// What is known of one point of eight strands for good.
 pub type OwnRows = [Row; own::ROWS];
 
-/// Units of room in a cell: a point's room, about an eighth of a cell, is then known to a thousandth.
-pub const ROOM: f32 = 4096.0;
+/// Units of room in a cell: a point's room, about an eighth of a cell, is then known to a ten thousandth, and to a tenth in cells ten times as large.
+pub const ROOM: f32 = 65536.0;
 
 /// Speed that counts as no more [m/s]: one strand that is gone wild takes no digits from the others.
 const FASTEST: f32 = 50.0;
@@ -137,6 +137,8 @@ pub struct Units {
     pub mass: f32,
     /// Units of momentum of that mass at 1 m/s [s/m].
     pub momentum: f32,
+    /// Units of m |v|² of that mass at 1 m/s [s²/m²].
+    pub energy: f32,
     /// Largest component of a velocity [m/s].
     pub speed: f32,
 }
@@ -152,21 +154,21 @@ impl Units {
         let most = (f64::from(i32::MAX) - 0.5 * points as f64) / total.max(1.0);
         let mass = (most.max(1.0).log2().floor().exp2() as f32).min(MOST_UNITS);
         let speed = speed.max(f32::MIN_POSITIVE.sqrt());
-        Self { mass, momentum: mass / speed, speed }
+        Self { mass, momentum: mass / speed, energy: mass / (3.0 * speed * speed), speed }
     }
 }
 
 /// Sums at the nodes and cells of a window.
 #[derive(Default)]
 pub struct Sums {
-    /// Momentum along x, y, z, and mass, of each node.
+    /// Of each node: momentum along x, y, z, mass, the sum of the directions of strands times their mass along x, y, z, and the sum of m |v|².
     pub nodes: Vec<i32>,
     /// Room of the points in each cell.
     pub rooms: Vec<u32>,
 }
 
 /// Numbers a node.
-pub const NODE: usize = 4;
+pub const NODE: usize = 8;
 
 impl Sums {
     /// Room for so many nodes ever.
@@ -186,13 +188,13 @@ impl Sums {
     /// Adds points to the nodes of `window`.
     pub fn add(&mut self, tiles: &Tiles, chart: &Chart, window: &Window, units: &Units) {
         let [_, _, row, _, slab, _, both, _] = window.corners();
-        let per_speed = units.momentum / units.mass;
+        let (per_speed, per_energy) = (units.momentum / units.mass, units.energy / units.mass);
         for (strand, state, own) in tiles.iter() {
             let mut places = chart.roots(strand, window.lo);
             for (at, own) in state.iter().zip(own) {
                 chart.walk(&mut places, at);
                 let placed = Placed::new(&places, window);
-                // Momentum and mass, and room, of eight points.
+                // Momentum, mass, direction and energy, and room, of eight points.
                 let mut there = placed.inside;
                 for k in 0..3 {
                     let Row(v) = &at[state::V + k];
@@ -206,6 +208,13 @@ impl Sums {
                 for lane in 0..LANES {
                     counted[3][lane] = own[own::MASS].0[lane] * there[lane] * units.mass;
                     room[lane] = nearest(own[own::ROOM].0[lane] * there[lane]);
+                    let edge = [0, 1, 2].map(|k: usize| at[state::EDGE + k].0[lane]);
+                    let length = (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]).sqrt();
+                    // The edge to a root has no direction.
+                    let share = if length > 0.0 { counted[3][lane] / length } else { 0.0 };
+                    for k in 0..3 {
+                        counted[4 + k][lane] = if there[lane] > 0.0 { edge[k] * share } else { 0.0 };
+                    }
                 }
                 for k in 0..3 {
                     let Row(v) = &at[state::V + k];
@@ -213,13 +222,16 @@ impl Sums {
                         let high = if v[lane] < units.speed { v[lane] } else { units.speed };
                         let v = if high > -units.speed { high } else { -units.speed };
                         counted[k][lane] = v * (counted[3][lane] * per_speed);
+                        counted[7][lane] += v * v * (counted[3][lane] * per_energy);
                     }
                 }
                 for lane in 0..LANES {
                     let cell = placed.cell[lane] as usize;
-                    let point = [counted[0][lane], counted[1][lane], counted[2][lane], counted[3][lane]];
+                    let point: [f32; NODE] = std::array::from_fn(|k| counted[k][lane]);
                     for (k, corner) in [0, row, slab, both].into_iter().enumerate() {
-                        let Some(pair) = self.nodes[(cell + corner) * NODE..].first_chunk_mut::<8>() else {
+                        let Some(pair) =
+                            self.nodes[(cell + corner) * NODE..].first_chunk_mut::<{ 2 * NODE }>()
+                        else {
                             continue;
                         };
                         let [a, b] = [placed.weights[2 * k][lane], placed.weights[2 * k + 1][lane]];

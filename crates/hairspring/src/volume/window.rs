@@ -29,6 +29,11 @@ impl Window {
         Self { lo, dims }
     }
 
+    /// The node after its highest along every axis.
+    pub fn end(&self) -> IVec3 {
+        self.lo + IVec3::from(self.dims.map(|n| n as i32))
+    }
+
     /// How many nodes there are.
     pub fn nodes(&self) -> usize {
         self.dims.iter().product()
@@ -66,20 +71,30 @@ pub struct Chart {
     turn: Mat3,
     /// Over the cell [1/m].
     scale: f32,
+    /// The part of their way in a frame that roots have gone [1].
+    gone: f32,
 }
 
 impl Chart {
-    /// With cells of `cell` [m], where the anchor is at `anchor`.
+    /// With cells of `cell` [m], where the anchor is at `anchor` and roots are at the end of their way.
     pub fn new(anchor: &Rigid, cell: f32) -> Self {
+        Self::on_the_way(anchor, cell, 1.0)
+    }
+
+    /// The same where roots have gone a part of their way.
+    pub fn on_the_way(anchor: &Rigid, cell: f32, gone: f32) -> Self {
         let scale = 1.0 / cell;
-        Self { turn: Mat3::from_quat(anchor.rotation).transpose() * scale, scale }
+        Self { turn: Mat3::from_quat(anchor.rotation).transpose() * scale, scale, gone }
     }
 
     /// Roots of eight strands, from the node `from` [cells].
     pub fn roots(&self, rows: &StrandRows, from: IVec3) -> [[f32; LANES]; 3] {
         let from = from.as_vec3().to_array();
         std::array::from_fn(|k| {
-            std::array::from_fn(|lane| rows[strand::ROOT_END + k].0[lane] * self.scale - from[k])
+            let [start, end] = [strand::ROOT_START, strand::ROOT_END].map(|at| &rows[at + k].0);
+            std::array::from_fn(|lane| {
+                (start[lane] * (1.0 - self.gone) + end[lane] * self.gone) * self.scale - from[k]
+            })
         })
     }
 

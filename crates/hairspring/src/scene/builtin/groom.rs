@@ -235,15 +235,20 @@ fn resample(curve: &[Vec3], steps: f32, out: &mut [Vec3]) {
     }
 }
 
-/// Lays every point but the root at least [`CLEARANCE`] from the skin, the segments as even as they were.
+/// Cosine of the sharpest turn from one segment to the next: 75°.
+const SHARPEST: f32 = 0.26;
+
+/// Lays every point but the root at least [`CLEARANCE`] from the skin, the segments as even as they were, and without folds.
 fn settle(field: &Field, points: &mut [Vec3]) {
     let step = points[0].distance(points[1]);
     for k in 1..points.len() {
         // Each point follows the one before at a segment's length, and both conditions are met in turn.
         let before = points[k - 1];
+        let along = if k > 1 { (before - points[k - 2]).normalize_or_zero() } else { Vec3::ZERO };
         let mut p = outside(field, points[k]);
-        for _ in 0..4 {
-            let reached = before + (p - before).normalize_or(Vec3::NEG_Y) * step;
+        for _ in 0..8 {
+            let way = unfolded(along, (p - before).normalize_or(Vec3::NEG_Y));
+            let reached = before + way * step;
             p = outside(field, reached);
             if p == reached {
                 break;
@@ -251,6 +256,15 @@ fn settle(field: &Field, points: &mut [Vec3]) {
         }
         points[k] = p;
     }
+}
+
+/// The direction nearest to `way` that turns from `along` by no more than [`SHARPEST`] says; both are unit vectors, or `along` is zero.
+fn unfolded(along: Vec3, way: Vec3) -> Vec3 {
+    if along == Vec3::ZERO || along.dot(way) >= SHARPEST {
+        return way;
+    }
+    let aside = way.reject_from_normalized(along).normalize_or(along.any_orthonormal_vector());
+    along * SHARPEST + aside * (1.0 - SHARPEST * SHARPEST).sqrt()
 }
 
 /// The place nearest to `p`, or nearly so, that is [`CLEARANCE`] from the skin.

@@ -55,7 +55,7 @@ pub fn clip(body: &Body) -> Clip {
         }
         samples.extend(pose);
     }
-    Clip { name: "nods, turns and a shake".into(), rate: RATE, joint_count: rest.len(), samples }
+    Clip { name: "nods, turns and a shake".into(), rate: f64::from(RATE), joint_count: rest.len(), samples }
 }
 
 /// The shake's angle at `t` [s] in degrees: a sine that swells and dies away.

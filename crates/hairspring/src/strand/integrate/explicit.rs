@@ -11,13 +11,12 @@ use crate::{
     scene::Integrator,
     strand::{
         assemble::{Step, forces},
-        lanes::{F, V3, load},
+        lanes::{F, Simd, V3, load},
         model::Model,
         scratch::Scratch,
         tile::{Tile, state},
     },
 };
-use fearless_simd::prelude::*;
 
 /// Leaves the new edges in `scratch.edges` and what the velocities get besides in `scratch.kick`.
 #[inline(always)]

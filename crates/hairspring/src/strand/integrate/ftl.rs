@@ -13,13 +13,12 @@ use crate::{
     scene::Integrator,
     strand::{
         assemble::Step,
-        lanes::{F, V3, load},
+        lanes::{F, Simd, V3, load},
         scratch::Scratch,
         tile::{Elastic, Tile, rest, state},
         truss::beside,
     },
 };
-use fearless_simd::prelude::*;
 
 /// s of the dynamic form [1]; 1 keeps all of the energy and is just stable.
 const KEPT: f32 = 0.9;

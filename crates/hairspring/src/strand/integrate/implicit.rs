@@ -4,14 +4,13 @@
 use crate::strand::{
     assemble::{Step, Sweep, assemble},
     interval::Interval,
-    lanes::{F, V3, load},
+    lanes::{F, Simd, V3, load},
     model::Model,
     project::Projection,
     scratch::Scratch,
     substitute::substitute,
     tile::{Tile, rest, strand},
 };
-use fearless_simd::prelude::*;
 
 /// Leaves the new edges in `scratch.edges`.
 #[inline(always)]

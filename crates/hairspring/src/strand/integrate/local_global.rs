@@ -12,14 +12,13 @@ use super::outside;
 use crate::strand::{
     assemble::Step,
     band::Band,
-    lanes::{F, Row, V3, load},
+    lanes::{F, Simd, V3, Work, load},
     model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
     profile::Profile,
     scratch::Scratch,
     system::System,
     tile::{Tile, rest, state},
 };
-use fearless_simd::prelude::*;
 
 /// All of a window meets.
 const PROFILE: Profile<1, 3> = Profile::within(2);
@@ -36,7 +35,7 @@ const BEFORE: usize = Profile::<1, 3>::REACH;
 #[inline(always)]
 pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
     let n = tile.rest.len();
-    scratch.factors[..2 * BEFORE * ROWS].fill(Row::default());
+    scratch.factors[..2 * BEFORE * ROWS].fill(Work::default());
     for i in 0..n {
         let mut band = Band::<S, 1, 3>::new(simd);
         band.take_up(simd, PROFILE, i, scratch.factors);

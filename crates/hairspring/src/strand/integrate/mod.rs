@@ -9,9 +9,10 @@ mod local_global;
 
 use super::{
     assemble::Step,
+    drag::Drag,
     fixed::fix,
     interval::Interval,
-    lanes::{F, V3, load},
+    lanes::{F, Simd, V3, load},
     limit::{Finish, LIMIT, limit},
     model::{Model, Stretching},
     root::Root,
@@ -19,7 +20,6 @@ use super::{
     tile::{Tile, grip, rest, state, tines},
 };
 use crate::scene::{Integrator, Response};
-use fearless_simd::prelude::*;
 
 /// The substeps of `interval` that are to be run now, for one tile.
 #[inline(always)]
@@ -39,7 +39,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
         _ => Stretching::Moderate,
     };
     fix(simd, interval.h, stretching, tile, scratch);
-    scratch.begin(tile.state);
+    scratch.begin(simd, tile.state);
     if interval.integrator == Integrator::LocalGlobal {
         local_global::factor(simd, interval.h, tile, scratch);
     }
@@ -115,13 +115,17 @@ fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, [u, x]: [V3<
     // Air takes hold of the half segments around a point, not of what is no part of the fibre.
     let around = if i.is_multiple_of(stride) { (length(i - stride) + length(i)) * 0.5 } else { zero };
     let drag = Root::<S>::fibre(simd, tile.strand).0 * around / load(simd, &tile.rest[i][rest::MASS]);
+    // Explicit: a larger coefficient would overshoot the velocity of the air.
+    let stable = |coefficient: F<S>| (drag * coefficient).min(1.0 / step.h);
     let v = V3::load(simd, &tile.state[i][state::V..]);
     let nothing = V3::zero(simd);
     let air = tile.air.get(i).map_or(nothing, |air| V3::load(simd, air));
     let slip = V3::splat(simd, step.wind) + air - v;
-    let slip = slip - u * (u.dot(slip) * 0.5);
+    let coefficients = Drag::new(simd, tile.strand, &tile.rest[i], slip, u);
+    let (across, along) = (stable(coefficients.across), stable(coefficients.along));
+    let dragged = slip * across + u * (u.dot(slip) * (along - across));
     let push = tile.push.get(i).map_or(nothing, |push| V3::load(simd, push));
-    let free = slip.mul_add(drag, V3::splat(simd, step.gravity) + push);
+    let free = dragged + V3::splat(simd, step.gravity) + push;
     if tile.grip.is_empty() && tile.tines.is_empty() {
         return free;
     }

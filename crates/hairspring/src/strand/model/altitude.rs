@@ -3,12 +3,11 @@
 
 use crate::strand::{
     across::Across,
-    lanes::{F, Row, V3, load},
+    lanes::{F, Mask, Row, Simd, V3, load},
     root::Root,
     scratch::Scratch,
     tile::{Tile, springs, state},
 };
-use fearless_simd::{mask32x8, prelude::*};
 
 /// Volume over the rest volume below which an altitude spring acts [1].
 const FLATTENED: f32 = 0.5;
@@ -23,7 +22,7 @@ pub fn after<S: Simd>(simd: S, i: usize, scratch: &Scratch) -> [V3<S>; 3] {
 
 /// Where the tetrahedron of a particle and the three after it, which are at `p` from it, is flattened.
 #[inline(always)]
-pub fn flattened<S: Simd>(p: [V3<S>; 3], rest: &[Row]) -> mask32x8<S> {
+pub fn flattened<S: Simd>(p: [V3<S>; 3], rest: &[Row]) -> Mask<S> {
     let volume = p[0].dot(p[1].cross(p[2]));
     let kept = load(volume.simd, &rest[springs::VOLUME]) * FLATTENED;
     (volume * kept).simd_lt(kept * kept)
@@ -85,7 +84,7 @@ pub fn altitude<S: Simd>(simd: S, x: [V3<S>; 4], volume: F<S>) -> (V3<S>, [F<S>;
         let (other, across) = if face { (x[r] - x[p], x[v] - x[p]) } else { (x[v] - x[r], x[r] - x[p]) };
         let cross = side.cross(other);
         let area = cross.dot(cross);
-        let better: mask32x8<S> = area.simd_gt(largest);
+        let better: Mask<S> = area.simd_gt(largest);
         largest = better.select(area, largest);
         (a, b) = (V3::select(better, side, a), V3::select(better, other, b));
         (d, n) = (V3::select(better, across, d), V3::select(better, cross, n));

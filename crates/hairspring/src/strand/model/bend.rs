@@ -17,8 +17,8 @@
 //! and the Gauss–Newton matrix B JᵀJ is positive semi-definite whatever the strain (cf. Choi & Ko 2002).
 
 use super::joint::Joint;
-use crate::strand::lanes::{F, M3, Sym3, V3};
-use fearless_simd::prelude::*;
+use crate::strand::lanes::{F, M3, Simd, Sym3, V3};
+use glam::DVec3;
 
 /// A joint that bends.
 pub struct Bend<S: Simd> {
@@ -69,12 +69,24 @@ pub fn bend<S: Simd>(
     Bend { joint: Joint { pull, h00, h01, h11: Sym3::scaled_identity(b * beta) }, moment }
 }
 
+/// 1 + cos θ of a joint that counts as completely folded, θ within 0.03° of 180° [1].
+pub const FOLDED: f32 = 1e-7;
+
 /// The frame's normal carried from segment `u0` to segment `u1` by the least rotation (parallel transport;
 /// Bishop 1975), kept at unit length by one Newton step.
 #[inline(always)]
 pub fn transport<S: Simd>(normal: V3<S>, u0: V3<S>, u1: V3<S>) -> V3<S> {
-    // n' = n − (n·u1)/(1 + u0·u1) (u0 + u1); a strand folded back on itself keeps its normal.
-    let scale = normal.dot(u1) / (u0.dot(u1) + 1.0).max(1e-3);
-    let n = normal - (u0 + u1) * scale;
+    // n' = n − (n·u1)/(1 + u0·u1) (u0 + u1), with 1 + u0·u1 = ½|u0 + u1|², which keeps its digits near a fold. A strand that is folded back on itself
+    // keeps its normal.
+    let sum = u0 + u1;
+    let scale = normal.dot(u1) / (sum.dot(sum) * 0.5).max(FOLDED);
+    let n = normal - sum * scale;
     n * (n.dot(n).mul_add(-0.5, F::splat(scale.simd, 1.5)).max(0.5))
+}
+
+/// The same of one strand in double precision, at unit length; the normal itself where the strand is folded back on itself.
+pub fn transport_normal(normal: DVec3, t0: DVec3, t1: DVec3) -> DVec3 {
+    let sum = t0 + t1;
+    let scale = normal.dot(t1) / (0.5 * sum.length_squared()).max(f64::from(FOLDED));
+    (normal - sum * scale).normalize_or(normal)
 }

@@ -6,16 +6,16 @@ use super::{
 };
 use crate::strand::{
     band::Band,
-    dispatch::dispatch,
+    dispatch::{dispatch, dispatch_double},
     fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
-    lanes::{V3, load},
+    lanes::{Simd, V3, load},
     root::Root,
     scratch::{Memory, Scratch},
     tile::{Tile, rest},
 };
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::Level;
 
 /// Bending in a frame that is carried along the strand by the least rotation and so knows no twist: right and cheapest for
 /// strands that are straight at rest, where no frame matters (see `straight`). A coil slowly forgets its shape in it, and swung curls gain energy, because
@@ -51,7 +51,11 @@ impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
 
 /// One tile through an interval, on the widest lanes that there are.
 pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
-    dispatch!(level, simd => run_tile::<_, Curvature<_>, 3, 9>(simd, interval, tile, memory));
+    if tile.double {
+        dispatch_double!(level, simd => run_tile::<_, Curvature<_>, 3, 9>(simd, interval, tile, memory));
+    } else {
+        dispatch!(level, simd => run_tile::<_, Curvature<_>, 3, 9>(simd, interval, tile, memory));
+    }
 }
 
 /// A rest turn in world axes: the frame is (normal, binormal, tangent).

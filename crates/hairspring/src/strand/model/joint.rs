@@ -10,10 +10,9 @@
 
 use crate::strand::{
     band::Band,
-    lanes::{F, M3, Sym3, V3},
+    lanes::{F, M3, Simd, Sym3, V3},
     system::System,
 };
-use fearless_simd::prelude::*;
 
 /// Forces and stiffness of a joint, by its segments.
 pub struct Joint<S: Simd> {
@@ -39,6 +38,17 @@ impl<S: Simd> Joint<S> {
         self.h01 = self.h01 + (d * (a * b)).full();
         self.pull[0] -= direction * (force * a);
         self.pull[1] -= direction * (force * b);
+    }
+
+    /// Adds an element with one strain, whose gradient in each segment is given [1/m]; its `force` is stiffness times strain [N m].
+    #[inline(always)]
+    pub fn add_strain(&mut self, [a, b]: [V3<S>; 2], force: F<S>, stiffness: F<S>) {
+        let stiff = a * stiffness;
+        self.h00 = Sym3::outer(a, stiffness) + self.h00;
+        self.h11 = Sym3::outer(b, stiffness) + self.h11;
+        self.h01 = self.h01 + M3 { rows: [b * stiff.x, b * stiff.y, b * stiff.z] };
+        self.pull[0] -= a * force;
+        self.pull[1] -= b * force;
     }
 
     /// Adds the joint to a band whose window begins at its first point.

@@ -24,13 +24,12 @@ use super::{
     across::Across,
     band::Band,
     fixed::Fixed,
-    lanes::{F, V3},
+    lanes::{F, Simd, V3},
     profile::Profile,
     root::Root,
     scratch::Scratch,
     tile::Tile,
 };
-use fearless_simd::prelude::*;
 
 /// What is known where the elements that begin at point `i` are added: segments i and i+1 around joint i+1.
 #[derive(Clone, Copy)]
@@ -92,6 +91,9 @@ impl<S: Simd, const N: usize> Solved<S, N> {
 pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// Simulated points from one point of the strand to the next.
     const STRIDE: usize = 1;
+
+    /// Share of the drift that turns a tense segment's pull, with backward Euler, see [`stretch`](stretch::stretch) [1].
+    const SIDEWAYS: f32 = stretch::SIDEWAYS;
 
     /// Which unknowns meet in the matrix.
     const PROFILE: Profile<B, N> = Profile::within(N - 1);

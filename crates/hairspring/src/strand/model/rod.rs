@@ -2,42 +2,75 @@
 //!
 //! ```text
 //!        m_{j-1}       m_j
-//!          ▲             ▲  τ_j     E = Σ ½ B |r|² + ½ ΔB (m·r)²  +  ½ GJ/L̄ (τ − τ⁰)²
+//!          ▲             ▲  φ_j     E = Σ ½ B |r|² + ½ ΔB (m·r)²  +  ½ GJ/L̄ s² (τ − τ⁰)²
 //!   x_{j-1} ───► x_j ───► x_{j+1}   r = κ − d,  κ the change of tangent,  d the rest turn, fixed in the frame of segment j−1
 //! ```
 //!
 //! Bergou et al. 2008, *Discrete Elastic Rods*: the centre line by its points, the material frame by an angle against a
 //! frame carried in time. Where we deviate: the frame of the segment before a joint carries its whole rest turn (half-bandwidth 2, no
-//! averaged vertex frame), the measure of twist is 2 tan(τ/2), which grows to the half turn, and the angles are unknowns of the same
+//! averaged vertex frame), the measure of a twist φ is τ = 4 tan(φ/4), which grows up to the half turn, and the angles are unknowns of the same
 //! linear system instead of being minimised before it, so that motion and twist see each other within a substep.
 //! An angle has no inertia worth its name (a hair's own is a millionth of its stiffness at any frame rate).
+//!
+//! Bending is bounded and smooth at any angle: |r| is the distance between two unit vectors. Twist is not defined in a joint that is folded back on itself, so
+//! its strain fades out from 139° to 180° by the factor s = z (2 − z), z = (1 + cos θ) / ¼. All forces are the gradient of E, that factor included, and
+//! all matrices are Gauss–Newton's.
+//!
+//! Where a strand is curved at rest its segments are chords, and a polygon of rods is stiffer than the curve: twisting stiffness is less by (1 − cos θ⁰)/8 where a
+//! joint turns by θ⁰ at rest. That is calibrated: a helical spring of eight segments a turn gives way along its axis, about it and across it as the wire does, within 5 %.
 //!
 //! A flat fibre bends more easily across its short axis: ΔB is the stiffness that it has more in the direction of its frame's normal.
 
 use super::{
     At, Model, Solved,
-    bend::{Bend, bend, transport},
+    bend::{Bend, FOLDED, bend, transport},
     curvature::turn_in_frame,
 };
 use crate::strand::{
     band::Band,
-    dispatch::dispatch,
+    dispatch::{dispatch, dispatch_double},
     fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
-    lanes::{F, V3, load},
+    lanes::{F, Simd, V3, load},
     root::Root,
     scratch::{Memory, Scratch},
     system::System,
     tile::{Tile, rest, state, strand},
 };
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::Level;
 
 /// Largest turn of a frame about its segment in a substep [rad]: a Newton step is not to be believed beyond.
 const LARGEST_TURN: f32 = 0.5;
 
+/// 1 + cos θ of a joint's angle θ below which its twist fades out, see above [1]; 139°.
+pub const FOLDING: f32 = 0.25;
+
+/// By how much natural curvature softens a joint's twisting stiffness, over 1 − cos θ⁰ of its rest turn θ⁰ [1].
+const CURVED: f32 = 0.125;
+
+/// Least factor of a joint's twisting stiffness for its natural curvature [1].
+const MOST_CURVED: f32 = 0.5;
+
+/// Factor of a joint's twisting stiffness for its natural curvature: 1 − (1 − cos θ⁰)/8 with the rest turn θ⁰, of which `along` is the part along the segment before,
+/// cos θ⁰ − 1 [1].
+#[inline(always)]
+pub fn curved<S: Simd>(along: F<S>) -> F<S> {
+    let one = F::<S>::splat(along.simd, 1.0);
+    along.mul_add(CURVED, one).max(MOST_CURVED)
+}
+
+/// The same for one joint in double precision.
+pub fn curved_joint(along: f64) -> f64 {
+    (1.0 + f64::from(CURVED) * along).max(f64::from(MOST_CURVED))
+}
+
 /// Polar inertia of a frame over mass [m²], as a floor under the diagonal of the angles; that of a hair of 40 µm, r²/2.
 const INERTIA: f32 = 8e-10;
+
+/// How many roundings of a joint's twisting stiffness hold its angle to that of the last substep [1]. Beyond a joint that is folded back on itself nothing else does but
+/// inertia, which rounding outweighs; a twist that changes takes a substep more at most.
+const HELD: f32 = 16.0;
 
 /// Curvature and twist; see above.
 #[derive(Clone, Copy)]
@@ -91,30 +124,44 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
             moment: moment.dot(s),
         };
 
-        // Twist: how a change of the two segments turns their frames against each other is ∂τ/∂e = κb / 2ℓ on either side,
-        // κb = 2 û₀×û₁ / (1 + û₀·û₁) (Bergou et al. 2010, *Discrete Viscous Threads*, §4.2.2). ∂τ/∂θ is −1 and 1.
-        let sine = carried.cross(m1).dot(u1);
-        // Bounded near the half turn, where the measure would grow without end.
-        let tau = (sine + sine) / (carried.dot(m1) + 1.0).max(0.5);
-        let slope = (tau * tau).mul_add(0.25, one);
-        let twisting = stiffness * self.twist_ratio * slope;
-        let k = twisting * slope * at.damped;
-        let direction = u0.cross(u1) * (one / (u0.dot(u1) + 1.0).max(0.1));
+        // Twist: how a change of the two segments turns their frames against each other is ∂φ/∂e = κb / 2ℓ on either side,
+        // κb = 2 û₀×û₁ / (1 + û₀·û₁) (Bergou et al. 2010, *Discrete Viscous Threads*, §4.2.2). ∂φ/∂θ is −1 and 1. The strain is
+        // s (τ − τ⁰), s = 1 but near a fold.
+        let half = carried.cross(m1).dot(u1) / (carried.dot(m1) + 1.0).max(FOLDED);
+        let tau = half * 4.0 / (half.mul_add(half, one).sqrt() + 1.0);
+        let slope = (tau * tau).mul_add(0.0625, one);
+        let sum = u0 + u1;
+        let unfolded = sum.dot(sum) * 0.5;
+        let z = (unfolded * (1.0 / FOLDING)).min(1.0);
+        let fade = z * (2.0 - z);
+        let twist = tau - load(simd, &own[rest::TWIST]);
+        let (strain, turning) = (fade * twist, fade * slope);
+        let direction = u0.cross(u1) * (turning / unfolded.max(FOLDED));
+        // ∂s/∂e, where the joint is nearly folded: 1 + û₀·û₁ grows by (û₁ − û₀ cos θ)/ℓ₀ and (û₀ − û₁ cos θ)/ℓ₁.
+        let opening = twist * ((1.0 - z) * (2.0 / FOLDING));
+        let cosine = unfolded - 1.0;
+        let gradient = [
+            ((u1 - u0 * cosine) * opening + direction) * alpha,
+            ((u0 - u1 * cosine) * opening + direction) * beta,
+        ];
+        let twisting = stiffness * self.twist_ratio * curved(turn.z);
+        let k = twisting * at.damped;
         let [d0, d1] = at.drift;
-        let drift = direction.dot(d0 * alpha + d1 * beta);
-        let force = k.mul_add(drift, twisting * (tau - load(simd, &own[rest::TWIST])));
-        joint.add_rank_one(direction, [alpha, beta], force, k);
-        let column = direction * k;
-        let columns = [column * alpha, column * beta];
+        let drift = gradient[0].dot(d0) + gradient[1].dot(d1);
+        let force = k.mul_add(drift, twisting * strain);
+        joint.add_strain(gradient, force, k);
+        let kt = k * turning;
+        let columns = gradient.map(|g| g * kt);
         angle.segments = [angle.segments[0] - columns[0], angle.segments[1] - columns[1]];
-        angle.own += k;
-        angle.moment += force;
+        let (own_angle, moment) = (kt * turning, force * turning);
+        angle.own += own_angle;
+        angle.moment += moment;
         band.add_column(1, (1, 3), columns[0] - columns[1]);
         band.add_column(0, (1, 3), -columns[0]);
         band.add_column(2, (1, 3), columns[1]);
-        band.add((0, 3), (1, 3), -k);
-        band.add((1, 3), (1, 3), k);
-        band.add_right((1, 3), -force);
+        band.add((0, 3), (1, 3), -own_angle);
+        band.add((1, 3), (1, 3), own_angle * (1.0 + HELD * S::ROUNDING));
+        band.add_right((1, 3), -moment);
 
         if tile.flat {
             // m·κ against its rest value; κ = e₁/L₁ − û₀.
@@ -122,6 +169,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
             let a1 = u0.dot(kappa) + 1.0;
             let stiffer = stiffness * self.flat;
             let along = [-(alpha * a1), beta];
+            let [d0, d1] = at.drift;
             let drift = m0.dot(d0 * along[0] + d1 * along[1]);
             let k = stiffer * at.damped;
             let force = k.mul_add(drift, stiffer * (m0.dot(kappa) - turn.x));
@@ -154,7 +202,11 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
 
 /// One tile through an interval, on the widest lanes that there are.
 pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
-    dispatch!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, memory));
+    if tile.double {
+        dispatch_double!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, memory));
+    } else {
+        dispatch!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, memory));
+    }
 }
 
 /// What the elements of a joint say of the angle of its first segment.

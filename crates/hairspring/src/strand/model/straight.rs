@@ -3,18 +3,18 @@
 use super::{At, Model, Solved};
 use crate::strand::{
     band::Band,
-    dispatch::dispatch,
+    dispatch::{dispatch, dispatch_double},
     fixed::Fixed,
     integrate::run_tile,
     interval::Interval,
-    lanes::load,
+    lanes::{Simd, load},
     profile::Profile,
     root::Root,
     scratch::{Memory, Scratch},
     system::System,
     tile::{Tile, rest},
 };
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::Level;
 
 /// Bending by the curvature vector with d = 0: `bend` where P is the identity.
 #[derive(Clone, Copy)]
@@ -57,5 +57,9 @@ impl<S: Simd> Model<S, 3, 9> for Straight {
 
 /// One tile through an interval, on the widest lanes that there are.
 pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
-    dispatch!(level, simd => run_tile::<_, Straight, 3, 9>(simd, interval, tile, memory));
+    if tile.double {
+        dispatch_double!(level, simd => run_tile::<_, Straight, 3, 9>(simd, interval, tile, memory));
+    } else {
+        dispatch!(level, simd => run_tile::<_, Straight, 3, 9>(simd, interval, tile, memory));
+    }
 }

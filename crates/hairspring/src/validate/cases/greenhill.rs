@@ -1,6 +1,6 @@
 //! A straight strand that stands upright gives way under its own weight.
 
-use super::{HAIR, STILL, THRESHOLD};
+use super::{HAIR, THRESHOLD, USUAL};
 use crate::validate::{
     Case, Failure, GAMMA, Method, Quantity,
     plot::{Axis, Curve, Plot, Sweep, evaluate, places},
@@ -16,7 +16,7 @@ pub const CASE: Case = Case {
     parameters: &[],
     defaults: &[&[]],
     quantities: &[Quantity { name: "threshold Γ", tolerance: THRESHOLD }],
-    method: STILL,
+    method: USUAL,
     points_fixed: false,
     out_of_reach: |_| None,
     reference: |_| Ok(vec![greenhill()]),

@@ -1,11 +1,14 @@
 //! A straight strand clamped horizontally droops under its own weight.
 
-use super::{HAIR, STATIC, STILL};
-use crate::validate::{
-    Case, GAMMA, Parameter, Quantity,
-    plot::Sweep,
-    reference::elastica::cantilever,
-    specimen::{LENGTH, Setup, Specimen, straight},
+use super::{HAIR, STATIC, USUAL};
+use crate::{
+    material::Model,
+    validate::{
+        Case, GAMMA, Method, Parameter, Quantity,
+        plot::Sweep,
+        reference::elastica::cantilever,
+        specimen::{LENGTH, Setup, Specimen, straight},
+    },
 };
 use glam::DVec3;
 
@@ -19,9 +22,12 @@ pub const CASE: Case = Case {
         Quantity { name: "reach W/L", tolerance: STATIC },
         Quantity { name: "drop over reach H/W", tolerance: STATIC },
     ],
-    method: STILL,
+    method: USUAL,
     points_fixed: false,
-    out_of_reach: |_| None,
+    out_of_reach: |method| match method {
+        Method { model: Model::Springs, points: ..48, .. } => Some(BENT_FAR),
+        _ => None,
+    },
     reference: |values| {
         let shape = cantilever(values[0], 0.0);
         Ok(vec![shape.drop, shape.reach, shape.drop / shape.reach])
@@ -34,3 +40,7 @@ pub const CASE: Case = Case {
     },
     sweep: Sweep::Parameter { index: 0, from: 0.3, to: 300.0, log: true },
 };
+
+/// Why springs do not pass at few points.
+const BENT_FAR: &str =
+    "at Γ = 100 the joint at the clamp of 32 points turns by 0.6 rad, where its springs are too soft";

@@ -1,6 +1,6 @@
 //! A strand that lies across a slope slips where the slope is steeper than friction.
 
-use super::{FRICTION, STILL};
+use super::{FRICTION, USUAL};
 use crate::{
     collide::Obstacle,
     validate::{
@@ -17,7 +17,7 @@ pub const CASE: Case = Case {
     parameters: &[Parameter { symbol: &MU, range: (0.01, 1.0) }],
     defaults: &[&[0.1], &[0.3], &[0.6]],
     quantities: &[Quantity { name: "tan θ at which it slips", tolerance: FRICTION }],
-    method: STILL,
+    method: USUAL,
     points_fixed: false,
     out_of_reach: |_| None,
     reference: |values| Ok(vec![values[0]]),

@@ -1,6 +1,6 @@
 //! A flat strand, clamped horizontally on its edge, tips over sideways under its own weight or under a load at its tip.
 
-use super::{HAIR, NO_TWIST, STILL, THRESHOLD};
+use super::{HAIR, HELD_BACK, NO_TWIST, THRESHOLD, USUAL};
 use crate::{
     material::Model,
     simulation::Hold,
@@ -24,9 +24,16 @@ pub const CASE: Case = Case {
         Quantity { name: "own weight qL³/√(EI_min GJ)", tolerance: THRESHOLD },
         Quantity { name: "tip load PL²/√(EI_min GJ)", tolerance: THRESHOLD },
     ],
-    method: STILL,
+    method: USUAL,
     points_fixed: false,
-    out_of_reach: |model| (model == Model::Curvature).then_some(NO_TWIST),
+    out_of_reach: |method| match method {
+        Method { model: Model::Curvature, .. } => Some(NO_TWIST),
+        Method { model: Model::Springs, points: 80.., .. } => Some(HELD_BACK),
+        Method { points: ..48, .. } => {
+            Some("the error goes as the length of a segment: at 64 points it is 2.4 %")
+        }
+        _ => None,
+    },
     reference: |values| {
         // With the strand's own flatness: what it bends in its plane before it tips over adds under a percent.
         let strand = flat(1.0, FLATNESS.powi(-2), values[0]);

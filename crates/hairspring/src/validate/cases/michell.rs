@@ -23,7 +23,8 @@ pub const CASE: Case = Case {
     quantities: &[Quantity { name: "total twist Φ [rad]", tolerance: THRESHOLD }],
     method: TWISTED,
     points_fixed: false,
-    out_of_reach: |model| match model {
+    out_of_reach: |method| {
+        match method.model {
         Model::Curvature => Some(NO_TWIST),
         Model::Springs => Some(
             "a ring of round fibre may turn about its clamped tangent at no cost; a truss has joints with sides, and turns to \
@@ -32,7 +33,10 @@ pub const CASE: Case = Case {
         Model::Auto => Some(
             "auto takes the curvature model for a strand that is straight at rest, and that knows no twist",
         ),
-        Model::Rod => None,
+        Model::Rod => (method.points < 48).then_some(
+            "at 32 points each joint of the ring turns by 0.2 rad and twists by 0.8, too far for the measure of its twist",
+        ),
+    }
     },
     reference: |values| Ok(vec![writhing_twist(values[0])]),
     measure: |values, method| {
@@ -52,6 +56,9 @@ const TURN: f64 = 0.05;
 
 /// Size of the pull out of the plane: what would bend an untwisted ring out of its plane by this share of its length.
 const PULL: f64 = 1e-3;
+
+/// The mode is at rest where it changes by less than this share of the pull.
+const STILL: f64 = 3e-3;
 
 /// The pull out of the plane over what it does, under a total twist [rad].
 fn stiffness(twist: f64, ratio: f64, method: Method) -> Result<Option<f64>, Failure> {
@@ -84,9 +91,13 @@ fn stiffness(twist: f64, ratio: f64, method: Method) -> Result<Option<f64>, Fail
     let mut holds: Vec<Hold> = (2..n - 2).map(pull).collect();
     holds.extend(ends(n, TAU));
     specimen.hold(&holds);
-    let rest = specimen.settle()?;
-    let projection: f64 = rest.iter().zip(0..n).map(|(p, i)| p.z * wave(i)).sum();
-    let aside = 2.0 * projection / (n - 1) as f64 / LENGTH;
+    let aside = |points: &[DVec3]| {
+        let projection: f64 = points.iter().zip(0..n).map(|(p, i)| p.z * wave(i)).sum();
+        2.0 * projection / (n - 1) as f64 / LENGTH
+    };
+    // A ring of few points turns about its tangent all the same, a few micrometres a second: what is to come to rest is the mode.
+    let rest = specimen.settle_where(|a, b| (aside(a) - aside(b)).abs() < STILL * PULL)?;
+    let aside = aside(&rest);
     // A ring that writhed passes through itself (nothing here keeps it from that), loses two turns, and lies flat again, twisted
     // the other way.
     Ok((aside > 0.0 && aside < southwell::SMALL).then_some(PULL / aside))

@@ -1,11 +1,14 @@
 //! A pendulum of one segment swings, the slower the wider.
 
-use super::{FREQUENCY, MOVING};
-use crate::validate::{
-    AMPLITUDE_DEG, Case, Failure, Method, Parameter, Quantity,
-    plot::Sweep,
-    reference::pendulum::period_ratio,
-    specimen::{GRAVITY, LENGTH, Setup, Specimen, pinned},
+use super::{FREQUENCY, SPRINGS_ARE_BRAKED, USUAL};
+use crate::{
+    material::Model,
+    validate::{
+        AMPLITUDE_DEG, Case, Failure, Method, Parameter, Quantity,
+        plot::Sweep,
+        reference::pendulum::period_ratio,
+        specimen::{GRAVITY, LENGTH, Setup, Specimen, pinned},
+    },
 };
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -20,9 +23,9 @@ pub const CASE: Case = Case {
         Quantity { name: "amplitude kept in a period", tolerance: 0.05 },
     ],
     // More points would be a whip and not a pendulum.
-    method: Method { points: 3, ..MOVING },
+    method: Method { points: 3, ..USUAL },
     points_fixed: true,
-    out_of_reach: |_| None,
+    out_of_reach: |method| (method.model == Model::Springs).then_some(SPRINGS_ARE_BRAKED),
     reference: |values| Ok(vec![period_ratio(values[0].to_radians()), 1.0]),
     measure: |values, method| measure(values[0].to_radians(), method),
     sweep: Sweep::Parameter { index: 0, from: 10.0, to: 150.0, log: false },

@@ -6,7 +6,11 @@
 pub mod beam;
 pub mod catenary;
 pub mod chain;
+pub mod column;
+pub mod cylinder;
 pub mod elastica;
+pub mod elliptic;
+pub mod helix;
 pub mod pendulum;
 pub mod ring;
 pub mod stability;

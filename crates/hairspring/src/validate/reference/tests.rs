@@ -1,8 +1,15 @@
 //! The references against the tables of the literature, to their printed digits.
 
 use super::{
-    beam, bisect, catenary::catenary, chain, elastica, elastica::cantilever, integrate, pendulum, ring,
-    stability,
+    beam, bisect,
+    catenary::catenary,
+    chain,
+    column::column,
+    cylinder, elastica,
+    elastica::cantilever,
+    elliptic::complete,
+    helix::{compliance_along, end_compliance},
+    integrate, pendulum, ring, stability,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -163,4 +170,75 @@ fn hanging_between_two_supports() {
         prints(found.sag, sag);
         prints(found.end_tension, tension);
     }
+}
+
+#[test]
+fn air_across_a_hair() {
+    // F/L = ½ρU²d Cd of a hair of 70 µm.
+    for (speed, coefficient, force) in [(0.1, "19.6", "8.3"), (1.0, "4.6", "194"), (5.0, "2.2", "2350")] {
+        let cd = cylinder::drag_coefficient(speed * 70e-6 / 1.516e-5);
+        // The table's drag is that of Cd in three digits: one unit of the last printed one.
+        let got = 0.5 * 1.204 * speed * speed * 70e-6 * cd * 1e6;
+        let (want_cd, want): (f64, f64) = (coefficient.parse().unwrap(), force.parse().unwrap());
+        assert!((cd - want_cd).abs() < 0.1, "Cd {cd} instead of {want_cd}");
+        assert!((got / want - 1.0).abs() < 0.02, "{got} instead of {want} µN/m");
+    }
+    let angle = |speed: f64| cylinder::wind_angle(speed, 70e-6, 1310.0, 9.81).to_degrees();
+    assert!((angle(1.0) - 68.0).abs() < 0.5, "{}", angle(1.0));
+    // Continuous and falling through the blend.
+    let cd = |k: i32| cylinder::drag_coefficient(10f64.powf(f64::from(k) / 100.0));
+    assert!((-300..300).all(|k| cd(k + 1) < cd(k) && cd(k + 1) > 0.97 * cd(k)));
+}
+
+/// Abramowitz & Stegun 1964, tables 17.1 and 17.2, by m = k².
+#[test]
+fn complete_elliptic_integrals() {
+    for (m, first, second) in [
+        (0.0, "1.570796", "1.570796"),
+        (0.1, "1.612441", "1.530758"),
+        (0.5, "1.854075", "1.350644"),
+        (0.9, "2.578092", "1.104775"),
+    ] {
+        let found = complete(f64::sqrt(m));
+        prints(found.0, first);
+        prints(found.1, second);
+    }
+}
+
+/// Timoshenko & Gere 1961, table 2-4, which is right to one unit of its last digit: by the inclination of the free end, P over Euler's load,
+/// H/L and x/L.
+#[test]
+fn pressed_column() {
+    for (degrees, load, height, aside) in [
+        (20.0f64, 1.015, 0.970, 0.220),
+        (40.0, 1.063, 0.881, 0.422),
+        (60.0, 1.152, 0.741, 0.593),
+        (80.0, 1.293, 0.560, 0.719),
+    ] {
+        let (first, second) = complete((0.5 * degrees.to_radians()).sin());
+        let at = 2.0 * second / first - 1.0;
+        let found = column(at);
+        let euler = FRAC_PI_2 * FRAC_PI_2;
+        for (value, printed) in [(at, height), (found.load / euler, load), (found.aside, aside)] {
+            assert!((value - printed).abs() < 1.05e-3, "{value} instead of {printed} at {degrees}°");
+        }
+    }
+}
+
+/// In the limits of many turns and of none, and by quadrature.
+#[test]
+fn helical_spring() {
+    let ratio = 0.458;
+    for (turns, pitch) in [(0.7, 0.1), (2.3, 0.3), (4.0, 0.25)] {
+        let along = compliance_along(glam::DVec3::Z, turns, pitch, ratio);
+        assert!((along / end_compliance(turns, pitch, ratio) - 1.0).abs() < 1e-8);
+    }
+    assert!((end_compliance(1000.0, 0.0, ratio) - (1.5 / ratio + 0.5)).abs() < 1e-3);
+    // A short arc is a cantilever, L³/3EI; a flat half ring opens by 3π/2 R³/EI where its end is pulled along the diameter.
+    let arc = 1e-2;
+    assert!((end_compliance(arc / TAU, 0.0, ratio) / (arc * arc / 3.0) - 1.0).abs() < 1e-3);
+    let opens = compliance_along(glam::DVec3::X, 0.5, 0.0, ratio) * PI;
+    assert!((opens / FRAC_PI_2 - 1.0).abs() < 1e-8, "{opens}");
+    let opens = compliance_along(glam::DVec3::Y, 0.5, 0.0, ratio) * PI;
+    assert!((opens / (1.5 * PI) - 1.0).abs() < 1e-8, "{opens}");
 }

@@ -1,0 +1,135 @@
+//! `hairspring bench --scene`: what the stages of a scene's frames take, and what its hair met.
+
+use super::{Times, go_on};
+use crate::{
+    console::{Console, say},
+    fault::Fault,
+    input::{Input, Units},
+    totals::grouped,
+};
+use hairspring::stage::{FrameRate, FrameReport, Stage};
+use serde_json::{Map, Value, json};
+use std::{path::Path, time::Duration};
+
+/// A stage of a frame: its name, what it does, and what it took of a frame.
+type StageOfFrame = (&'static str, &'static str, fn(&FrameReport) -> Duration);
+
+const STAGES: [StageOfFrame; 6] = [
+    ("body", "pose, skin, distance field", |r| r.body),
+    ("volume", "density of the hair, once a frame", |r| r.step.times.volume),
+    ("forces", "roots, wind, ghosts, charge, hands, once a frame", |r| r.step.times.forces),
+    ("solve", "assembly, solve, projection, contact, strain limit, all substeps", |r| r.step.times.solve),
+    ("neighbours", "contacts of strands with each other, all substeps", |r| r.step.times.neighbours),
+    ("follow", "hairs that are not simulated", |r| r.follow),
+];
+
+const RATE: FrameRate = FrameRate::new(60, 1).expect("a rate");
+
+/// The stage that the figure for a point and substep is of.
+const SOLVE: usize = 3;
+
+/// Numbers of every frame.
+#[derive(Default)]
+struct Counts(Vec<usize>);
+
+impl Counts {
+    fn median(&self) -> usize {
+        let mut sorted = self.0.clone();
+        sorted.sort_unstable();
+        sorted[sorted.len() / 2]
+    }
+}
+
+/// Plays the scene in `path` for `frames` of 1/60 s, and prints medians of its frames.
+pub(super) fn run(path: &Path, frames: u32, as_json: bool, console: Console) -> Result<(), Fault> {
+    let units = Units { scale: None, up: None };
+    let input = Input { path: path.into(), units, guides: None, substeps: None };
+    let mut stage = Stage::new(input.scene(console)?)?;
+    let mut stages: [Times; STAGES.len()] = std::array::from_fn(|_| Times(Vec::new()));
+    let (mut whole, mut per_point) = (Times(Vec::new()), Times(Vec::new()));
+    let (mut points, mut segments, mut looked_up) = Default::default();
+    let count = |counts: &mut Counts, n| counts.0.push(n);
+    let threads = rayon::current_num_threads();
+    let (simulated, all) = (stage.simulated_points(), stage.simulated_strands());
+    let (mut substeps, mut reset) = (0, 0);
+    let mut progress = console.progress("simulating", frames);
+    for frame in 1..=frames {
+        let report = stage.step_frame(RATE);
+        let took = STAGES.map(|(_, _, of)| of(&report));
+        stages.iter_mut().zip(took).for_each(|(times, took)| times.0.push(took.as_secs_f64()));
+        whole.0.push((report.body + report.simulate + report.follow).as_secs_f64());
+        let work = simulated.0 as f64 * f64::from(report.step.substeps);
+        per_point.0.push(took[SOLVE].as_secs_f64() * threads as f64 / work);
+        let contacts = stage.contacts();
+        count(&mut points, contacts.points);
+        count(&mut segments, contacts.segments);
+        count(&mut looked_up, contacts.looked_up);
+        substeps = report.step.substeps.max(substeps);
+        reset += report.step.reset_strands;
+        progress.step(|| format!("frame {frame}: {:.2} ms", whole.0[frame as usize - 1] * 1e3));
+        go_on(frame, frames)?;
+    }
+    drop(progress);
+    let measure = stage.measure();
+    let ns = per_point.rank(0.5) * 1e6;
+    let [points, segments, looked_up] = [points, segments, looked_up].map(|counts: Counts| counts.median());
+    let solver = stage.scene().solver;
+    if as_json {
+        let each =
+            STAGES.iter().zip(&stages).map(|((name, ..), times)| ((*name).into(), json!(times.rank(0.5))));
+        say(json!({
+            "scene": path.display().to_string(),
+            "threads": threads,
+            "simd": stage.instruction_set(),
+            "integrator": solver.integrator.name(),
+            "strands": all.1,
+            "simulated_strands": all.0,
+            "simulated_points": simulated.0,
+            "substeps": solver.substeps,
+            "most_substeps": substeps,
+            "frames": frames,
+            "ms_per_frame_median": whole.rank(0.5),
+            "ms_per_frame_p95": whole.rank(0.95),
+            "stages": Value::Object(each.collect::<Map<_, _>>()),
+            "ns_per_point_substep": ns,
+            "points_in_contact": points,
+            "segments_in_contact": segments,
+            "points_looked_up": looked_up,
+            "non_finite": measure.non_finite,
+            "reset_strands": reset,
+        }));
+        return Ok(());
+    }
+    say(format_args!(
+        "scene    {}: {} of {} strands simulated, {} points",
+        path.display(),
+        grouped(all.0),
+        grouped(all.1),
+        grouped(simulated.0)
+    ));
+    say(format_args!(
+        "on       cpu, {threads} threads, {}, {}, {} substeps (at most {substeps}), {frames} frames of 1/60 s",
+        stage.instruction_set(),
+        solver.integrator.name(),
+        solver.substeps
+    ));
+    say(format_args!(
+        "time     {:.2} ms a frame (median), {:.2} ms (95 %); medians of the stages:",
+        whole.rank(0.5),
+        whole.rank(0.95)
+    ));
+    for ((name, what, _), times) in STAGES.iter().zip(&stages) {
+        say(format_args!("         {:8.2} ms  {name:<11} {what}", times.rank(0.5)));
+    }
+    say(format_args!(
+        "         {ns:.2} ns a point and substep per core, of the solve alone (wall time x threads)"
+    ));
+    say(format_args!(
+        "met      {} points and {} segments held out by a collider at the end of the median frame",
+        grouped(points),
+        grouped(segments)
+    ));
+    say(format_args!("         {} points for which a collider's distance is looked up", grouped(looked_up)));
+    say(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
+    Ok(())
+}

@@ -1,0 +1,153 @@
+//! `hairspring validate --table`: every case with every model at 32 to 1,024 points, as the Markdown table of docs/validation.md.
+
+use crate::{
+    console::{Console, say},
+    interrupt,
+};
+use hairspring::{
+    material::Model,
+    validate::{Case, Method, Outcome},
+};
+use rayon::prelude::*;
+use std::{
+    sync::atomic::{AtomicU32, Ordering::Relaxed},
+    time::Instant,
+};
+
+/// The models that a strand can have; `auto` is one of them.
+const MODELS: [Model; 3] = [Model::Curvature, Model::Rod, Model::Springs];
+
+/// The points of a strand.
+const POINTS: [u32; 6] = [32, 64, 128, 256, 512, 1024];
+
+/// All that is measured for one cell of the table.
+struct Cell {
+    case: &'static Case,
+    method: Method,
+}
+
+impl Cell {
+    /// The outcomes at all default parameters; none of a case that is about other strands.
+    fn run(&self) -> Vec<Outcome> {
+        if self.case.points_fixed && self.method.points != POINTS[0] {
+            return Vec::new();
+        }
+        let method = match self.case.points_fixed {
+            true => Method { points: self.case.method.points, ..self.method },
+            false => self.method,
+        };
+        self.case.defaults.par_iter().flat_map_iter(|values| self.case.run(values, method)).collect()
+    }
+}
+
+/// Runs `cases` and prints the table.
+pub(super) fn run(cases: &[&'static Case], console: Console) {
+    let began = Instant::now();
+    let rows: Vec<(&'static Case, Model)> =
+        cases.iter().flat_map(|case| MODELS.map(|model| (*case, model))).collect();
+    // What takes longest comes first, so that no thread is left with it alone.
+    let cells: Vec<Cell> = POINTS
+        .iter()
+        .rev()
+        .flat_map(|&points| {
+            rows.iter()
+                .map(move |&(case, model)| Cell { case, method: Method { points, model, ..case.method } })
+        })
+        .collect();
+    let progress = std::sync::Mutex::new(console.progress_in("measuring", cells.len() as u32, "cells"));
+    let done = AtomicU32::new(0);
+    let found: Vec<Vec<Outcome>> = cells
+        .par_iter()
+        .with_max_len(1)
+        .map(|cell| {
+            let outcomes = if interrupt::asked() { Vec::new() } else { cell.run() };
+            let done = done.fetch_add(1, Relaxed) + 1;
+            if let Ok(mut progress) = progress.lock() {
+                let Method { points, model, .. } = cell.method;
+                progress.step(|| format!("{done}: {} {} {points}", cell.case.name, model.name()));
+            }
+            outcomes
+        })
+        .collect();
+    drop(progress);
+    let heads: Vec<String> = POINTS.iter().map(|points| format!(" {points} |")).collect();
+    say(format_args!("| case | model | within |{}", heads.concat()));
+    say(format_args!("| --- | --- | --: |{}", " --: |".repeat(POINTS.len())));
+    let mut notes: Vec<String> = Vec::new();
+    for (r, (case, model)) in rows.iter().enumerate() {
+        let of_columns = (0..POINTS.len()).rev().map(|c| &found[c * rows.len() + r]);
+        let texts: Vec<String> = of_columns.map(|outcomes| cell(case, outcomes, &mut notes)).collect();
+        say(format_args!(
+            "| {} | {} | {} | {} |",
+            case.name,
+            model.name(),
+            bound(&found[(POINTS.len() - 1) * rows.len() + r]),
+            texts.join(" | ")
+        ));
+    }
+    say("");
+    notes.iter().enumerate().for_each(|(k, note)| say(format_args!("{}. {note}", k + 1)));
+    let threads = rayon::current_num_threads();
+    say(format_args!(
+        "\n{} cells in {:.0} s on {threads} threads.",
+        cells.len(),
+        began.elapsed().as_secs_f64()
+    ));
+}
+
+/// The tolerances of a case's quantities.
+fn bound(outcomes: &[Outcome]) -> String {
+    let mut all: Vec<String> = Vec::new();
+    for outcome in outcomes {
+        let text = match outcome.reference {
+            Ok(0.0) => format!("{}", outcome.tolerance),
+            _ => format!("{} %", outcome.tolerance * 100.0),
+        };
+        if !all.contains(&text) {
+            all.push(text);
+        }
+    }
+    all.join(", ")
+}
+
+/// What stands in a cell: the outcome that is farthest out of its tolerance, and why where it is out.
+fn cell(case: &Case, outcomes: &[Outcome], notes: &mut Vec<String>) -> String {
+    let Some(worst) = outcomes.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else {
+        return note(
+            notes,
+            format!("{} is about a strand of {} points alone", case.name, case.method.points),
+        );
+    };
+    let value = match (&worst.measured, worst.relative_error()) {
+        (Ok(_), Some(error)) => format!("{:.2} %", error * 100.0),
+        (Ok(value), None) => format!("{value:.3}"),
+        (Err(_), _) => "–".into(),
+    };
+    if worst.pass() {
+        return value;
+    }
+    let why = match (worst.reason(), &worst.measured, &worst.reference) {
+        (Some(reason), ..) => reason.to_string(),
+        (None, Err(why), _) | (None, _, Err(why)) => why.to_string(),
+        (None, Ok(_), Ok(_)) => format!("{} is out of its tolerance at so many points", worst.quantity),
+    };
+    format!("**{value}** {}", note(notes, format!("{}: {why}", case.name)))
+}
+
+/// The error over the tolerance; what could not be measured is farthest.
+fn share(outcome: &Outcome) -> f64 {
+    match (&outcome.measured, outcome.relative_error()) {
+        (Ok(_), Some(error)) => error / outcome.tolerance,
+        (Ok(value), None) => value.abs() / outcome.tolerance,
+        (Err(_), _) => f64::INFINITY,
+    }
+}
+
+/// The number of a note in brackets; each is there once.
+fn note(notes: &mut Vec<String>, text: String) -> String {
+    let k = notes.iter().position(|note| *note == text).unwrap_or_else(|| {
+        notes.push(text);
+        notes.len() - 1
+    });
+    format!("({})", k + 1)
+}

@@ -1,0 +1,242 @@
+//! Cuts of a clip: places where a body is put elsewhere between two frames, instead of moving there.
+//!
+//! ```text
+//!   position │            ●──●──●      The step D of the run of frame intervals differs from what the intervals before and
+//!            │                         after it predict, v·T, by more than the threshold: no motion does that. The pose is
+//!            │  ●──●──●                held until the run's last frame, and changes there at once.
+//!            └──────────────────► time
+//! ```
+//!
+//! A cut is found in the frames of the clip, so that it does not depend on the rate at which the clip is played. Joints that hang together cut together, by
+//! the motion of one of them: the joint that carries the hair, or the topmost one.
+
+use super::{Body, Clip, Trs};
+use crate::collide::Rigid;
+use glam::{Affine3A, Quat, Vec3};
+
+/// Time in which the teleport distance is the threshold [s]: over longer intervals a genuine motion goes farther, in proportion.
+const REFERENCE: f64 = 1.0 / 24.0;
+
+/// Turn beyond the predicted one that is a teleport in [`REFERENCE`] [rad].
+const TELEPORT_ANGLE: f32 = std::f32::consts::FRAC_PI_2;
+
+/// Share of a teleport that, beside one, is the rest of it [1].
+const REST: f32 = 0.05;
+
+/// Whether no genuine motion goes `off` [m] and turns by `turned` [rad] from where it is expected after `dt` [s], where `distance` [m] is what a teleport takes
+/// in a frame of film.
+pub(crate) fn is_teleport(off: f32, turned: f32, distance: f32, dt: f64) -> bool {
+    let longer = (dt / REFERENCE).max(1.0) as f32;
+    off > distance * longer || turned > TELEPORT_ANGLE * longer
+}
+
+/// The cuts of a clip that moves a body.
+#[derive(Debug, Default)]
+pub(crate) struct Cuts {
+    trees: Vec<Tree>,
+    /// The tree of each joint.
+    tree_of: Vec<usize>,
+}
+
+/// Joints that hang together.
+#[derive(Debug)]
+struct Tree {
+    /// The joint whose motion has the cuts.
+    joint: usize,
+    /// The last frame before each cut and the first one after it, in order.
+    cuts: Vec<(usize, usize)>,
+}
+
+impl Cuts {
+    /// The cuts of `clip`, where a teleport is farther than `distance` [m]; `anchor` is the joint that carries the hair.
+    pub fn new(body: &Body, clip: &Clip, anchor: usize, distance: f32) -> Self {
+        let mut cuts = Self::default();
+        for (joint, parent) in body.joints.iter().map(|j| j.parent).enumerate() {
+            let tree = parent.map_or(cuts.trees.len(), |p| cuts.tree_of[p as usize]);
+            if parent.is_none() {
+                cuts.trees.push(Tree { joint, cuts: Vec::new() });
+            }
+            cuts.tree_of.push(tree);
+        }
+        if let Some(tree) = cuts.tree_of.get(anchor) {
+            cuts.trees[*tree].joint = anchor;
+        }
+        for tree in &mut cuts.trees {
+            let path: Vec<Rigid> =
+                (0..clip.frame_count()).map(|f| world_of(body, clip.frame(f), tree.joint)).collect();
+            tree.cuts = find(&path, clip.rate, distance);
+        }
+        cuts
+    }
+
+    /// Local transforms at `time` [s], as [`Clip::sample`], but no joint is on its way across a cut; shape `[joints]`.
+    pub fn sample(&self, clip: &Clip, time: f64) -> Vec<Trs> {
+        let (frame, t) = clip.place(time);
+        let place = |tree: &Tree| match tree.cut_at(frame) {
+            Some((before, _)) => (before, 0.0),
+            None => (frame, t),
+        };
+        let places: Vec<(usize, f32)> = self.trees.iter().map(place).collect();
+        let local = |(joint, tree): (usize, &usize)| {
+            let (frame, t) = places[*tree];
+            clip.frame(frame)[joint].lerp(&clip.frame(frame + 1)[joint], t)
+        };
+        self.tree_of.iter().enumerate().map(local).collect()
+    }
+
+    /// Where each joint is taken by the cuts after the time `from` until the time `to` [s]; `None` for joints without one. Empty if there is no cut.
+    pub fn between(&self, body: &Body, clip: &Clip, (from, to): (f64, f64)) -> Vec<Option<Rigid>> {
+        let (first, last) = (clip.place(from).0, clip.place(to).0);
+        let mut moved = Vec::new();
+        for (number, tree) in self.trees.iter().enumerate() {
+            for (before, after) in tree.cuts.iter().filter(|(_, after)| (first + 1..=last).contains(after)) {
+                let [old, new] = [*before, *after].map(|frame| body.world(clip.frame(frame)));
+                moved.resize(self.tree_of.len(), None);
+                for joint in (0..self.tree_of.len()).filter(|joint| self.tree_of[*joint] == number) {
+                    let by = step(&old[joint], &new[joint]);
+                    moved[joint] = Some(moved[joint].map_or(by, |before| by.after(&before)));
+                }
+            }
+        }
+        moved
+    }
+}
+
+impl Tree {
+    /// The cut that the interval after `frame` is part of.
+    fn cut_at(&self, frame: usize) -> Option<(usize, usize)> {
+        let next = self.cuts.partition_point(|(_, after)| *after <= frame);
+        self.cuts.get(next).copied().filter(|(before, _)| *before <= frame)
+    }
+}
+
+/// The motion of a joint's matrix.
+fn step(from: &Affine3A, to: &Affine3A) -> Rigid {
+    Rigid::from_affine(to).after(&Rigid::from_affine(from).inverse())
+}
+
+/// Where a joint is in a pose.
+fn world_of(body: &Body, pose: &[Trs], joint: usize) -> Rigid {
+    let mut world = pose[joint].to_affine();
+    let mut parent = body.joints[joint].parent;
+    while let Some(p) = parent {
+        world = pose[p as usize].to_affine() * world;
+        parent = body.joints[p as usize].parent;
+    }
+    Rigid::from_affine(&world)
+}
+
+/// Velocity and rotation vector over time of an interval of frames [m, rad a frame].
+#[derive(Clone, Copy, Default)]
+struct Pace {
+    velocity: Vec3,
+    spin: Vec3,
+}
+
+/// The cuts of a joint's path, a pose for each frame: the last frame before each and the first one after it, in order.
+pub(super) fn find(path: &[Rigid], rate: f64, distance: f32) -> Vec<(usize, usize)> {
+    let intervals = path.len().saturating_sub(1);
+    let pace = |k: usize| {
+        let (a, b) = (&path[k], &path[k + 1]);
+        let turn = b.rotation * a.rotation.inverse();
+        let turn = if turn.w < 0.0 { -turn } else { turn };
+        Pace { velocity: b.translation - a.translation, spin: turn.to_scaled_axis() }
+    };
+    // Outside of the clip the body stands still.
+    let before = |k: usize| k.checked_sub(1).map_or(Pace::default(), pace);
+    let after = |k: usize| if k < intervals { pace(k) } else { Pace::default() };
+    let is_cut = |from: usize, to: usize| {
+        let n = (to - from) as f32;
+        let (a, b) = (&path[from], &path[to]);
+        let moved = b.translation - a.translation;
+        let turn = b.rotation * a.rotation.inverse();
+        [before(from), after(to)].into_iter().all(|pace| {
+            let off = (moved - pace.velocity * n).length();
+            let turned = turn.angle_between(Quat::from_scaled_axis(pace.spin * n));
+            is_teleport(off, turned, distance, f64::from(n) / rate)
+        })
+    };
+    // A cut between keys of 24 Hz is spread over so many frames where they were resampled.
+    let longest = ((rate * REFERENCE).ceil() as usize).saturating_add(1).min(intervals);
+    // It touches one interval more than it fills where its keys lie between frames.
+    let widest = longest + 1;
+    // What beside a cut still goes its way, as no motion before or after it does, is the rest of it.
+    let is_rest = |interval: usize, neighbour: Pace, step: Vec3| {
+        let own = pace(interval);
+        let off = own.velocity - neighbour.velocity;
+        off.dot(step) > REST * distance * step.length()
+            || own.spin.distance(neighbour.spin) > REST * TELEPORT_ANGLE
+    };
+    let widen = |(mut from, mut to): (usize, usize), others: &[(usize, usize)]| {
+        let free = |interval: usize| others.iter().all(|(a, b)| interval < *a || interval >= *b);
+        while to - from < widest {
+            let step = path[to].translation - path[from].translation;
+            if from > 1 && free(from - 1) && is_rest(from - 1, pace(from - 2), step) {
+                from -= 1;
+            } else if to + 1 < intervals && free(to) && is_rest(to, pace(to + 1), step) {
+                to += 1;
+            } else {
+                break;
+            }
+        }
+        (from, to)
+    };
+    let mut cuts: Vec<(usize, usize)> = Vec::new();
+    // The shortest runs first: what stands still beside a cut is no part of it.
+    for n in 1..=longest {
+        for from in 0..=intervals - n {
+            let to = from + n;
+            let free = cuts.iter().all(|(a, b)| to <= *a || from >= *b);
+            if free && is_cut(from, to) {
+                let widened = widen((from, to), &cuts);
+                cuts.push(widened);
+            }
+        }
+    }
+    cuts.sort_unstable();
+    cuts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(xs: &[f32]) -> Vec<Rigid> {
+        xs.iter().map(|x| Rigid { translation: Vec3::X * *x, ..Rigid::default() }).collect()
+    }
+
+    fn turns(angles: &[f32]) -> Vec<Rigid> {
+        angles.iter().map(|a| Rigid { rotation: Quat::from_rotation_y(*a), ..Rigid::default() }).collect()
+    }
+
+    #[test]
+    fn a_cut_is_what_no_motion_does() {
+        let cut = |xs: &[f32], rate: f64| find(&path(xs), rate, 1.0);
+        assert_eq!(cut(&[0.0, 0.0, 5.0, 5.0], 30.0), [(1, 2)]);
+        assert_eq!(cut(&[0.0, 0.1, 5.1, 5.2], 30.0), [(1, 2)]);
+        assert_eq!(cut(&[0.0, 5.0], 30.0), [(0, 1)]);
+        assert_eq!(cut(&[0.0, 5.0, 0.0, 0.0], 30.0), [(0, 1), (1, 2)]);
+        // Resampled from keys at 24 Hz to 60 Hz.
+        assert_eq!(cut(&[0.0, 0.0, 0.5, 2.5, 4.5, 5.0, 5.0], 60.0), [(1, 5)]);
+        // Keys between frames: what is left of the cut before and after an interval is part of it.
+        assert_eq!(cut(&[0.0, 0.0, 0.6, 4.6, 5.0, 5.0], 30.0), [(1, 4)]);
+        assert_eq!(cut(&[0.0, 0.1, 0.2, 4.3, 5.2, 5.3, 5.4], 30.0), [(2, 4)]);
+        // A run that goes on after a cut.
+        assert_eq!(cut(&[0.0, 0.0, 5.0, 5.1, 5.2, 5.3], 30.0), [(1, 2)]);
+        // Running, falling, and a ride that begins at once.
+        assert_eq!(cut(&[0.0, 0.0, 0.1, 0.2, 0.3, 0.3], 30.0), []);
+        assert_eq!(cut(&[0.0, 0.0, 2.0, 4.0, 6.0, 8.0], 24.0), []);
+        // Keys that are far apart in time are far apart in space.
+        assert_eq!(cut(&[0.0, 10.0, 20.0, 20.0], 0.01), []);
+        assert_eq!(cut(&[], 30.0), []);
+    }
+
+    #[test]
+    fn a_turn_is_a_cut_where_no_head_turns_so() {
+        let cut = |angles: &[f32], rate: f64| find(&turns(angles), rate, 1.0);
+        assert_eq!(cut(&[0.0, 0.0, 2.0, 2.0], 30.0), [(1, 2)]);
+        assert_eq!(cut(&[0.0, 0.2, 0.4, 0.6, 0.6], 30.0), []);
+        // A wheel that turns by more than a right angle a frame.
+        assert_eq!(cut(&[0.0, 1.7, 3.4, 5.1, 6.8], 30.0), []);
+    }
+}

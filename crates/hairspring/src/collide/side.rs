@@ -1,0 +1,167 @@
+//! On which side of a thin rod or box a segment is, so that it stays there however far it moves in a substep.
+//!
+//! ```text
+//!    before   │          n is normal to the segment and to an edge of the shape, and points to the side where the segment
+//!         ◯   │ →n       began the substep. The signed distance along n keeps its sign when the segment is pulled through:
+//!    after │             the distance to the shape itself is positive again there.
+//!          │  ◯
+//! ```
+//!
+//! A capsule has one edge, its axis; a box has edges along three axes. This is the separating-axis test of two edges (Gottschalk, Lin & Manocha 1996, *OBBTree*),
+//! with the axis and its direction fixed by the start of the substep.
+
+use super::{Deepest, Obstacle, STEEP};
+use crate::strand::{
+    lanes::{F, Mask, Simd, V3},
+    root::transform,
+};
+use glam::{Mat3, Vec3};
+
+/// How far outside of the segment, over its length, the place may be that faced an edge when the substep began [1].
+const BESIDE: f32 = 0.5;
+
+/// Least cosine between the normals before and after a substep [1]. A segment that turns farther has no side.
+const TURNED: f32 = 0.5;
+
+/// A capsule or a box as a box with round edges around the origin of its own space.
+#[derive(Clone)]
+pub(crate) struct Edges {
+    half: Vec3,
+    radius: f32,
+    /// Along how many of the axes there are edges.
+    axes: usize,
+    /// Pose of its own space at the start and at the end of the substep.
+    start: (Mat3, Vec3),
+    end: (Mat3, Vec3),
+}
+
+/// The side of an edge that each of eight segments is on.
+pub(crate) struct Side<S: Simd> {
+    /// Which segments have a side.
+    pub known: Mask<S>,
+    /// Direction of the edge and the unit normal toward the segment, in the shape's own space.
+    axis: V3<S>,
+    normal: V3<S>,
+}
+
+impl Edges {
+    /// The edges of a shape that moves from `start` to `end`; `None` for a shape that is neither a capsule nor a box.
+    pub fn new(shape: &Obstacle, start: (Mat3, Vec3), end: (Mat3, Vec3)) -> Option<Self> {
+        let (center, turn, half, radius, axes) = match *shape {
+            Obstacle::Capsule { a, b, radius } => {
+                let x = (b - a).normalize_or(Vec3::X);
+                let (y, z) = x.any_orthonormal_pair();
+                (a.midpoint(b), Mat3::from_cols(x, y, z), Vec3::X * (0.5 * a.distance(b)), radius, 1)
+            }
+            Obstacle::Cuboid { center, half, axes } => (center, axes, half, 0.0, 3),
+            _ => return None,
+        };
+        let own = |pose: (Mat3, Vec3)| (pose.0 * turn, pose.0 * center + pose.1);
+        Some(Self { half, radius, axes, start: own(start), end: own(end) })
+    }
+
+    /// Whether the shape is round and thinner than `radius` [m].
+    pub fn is_rod_within<S: Simd>(&self, radius: F<S>) -> Mask<S> {
+        let rod = if self.axes == 1 { self.radius } else { f32::INFINITY };
+        radius.simd_gt(rod)
+    }
+
+    /// Whether the shape is a box.
+    pub fn is_box(&self) -> bool {
+        self.axes == 3
+    }
+
+    /// Half of how thick the shape is [m].
+    pub fn half_thickness(&self) -> f32 {
+        if self.axes == 1 { self.radius } else { self.half.min_element() }
+    }
+
+    /// The sides of the segments from `a` to `a + e` (world), which are `deep` at most, where the substep begins.
+    #[inline(always)]
+    pub fn side<S: Simd>(&self, simd: S, segment: (V3<S>, V3<S>), deep: F<S>) -> Side<S> {
+        self.side_in(simd, own(simd, &self.start, segment), deep)
+    }
+
+    /// The edge that the segments from `a` to `a + e` (world) are nearest to at the end of the substep, whether they began on that side or not.
+    #[inline(always)]
+    pub fn nearest<S: Simd>(&self, simd: S, segment: (V3<S>, V3<S>)) -> Deepest<S> {
+        let any = F::splat(simd, f32::MAX);
+        let side = self.side_in(simd, own(simd, &self.end, segment), any);
+        self.past(simd, &side, segment, (F::splat(simd, 0.0), any))
+    }
+
+    /// The sides of segments in the shape's own space.
+    #[inline(always)]
+    fn side_in<S: Simd>(&self, simd: S, (a, e): (V3<S>, V3<S>), deep: F<S>) -> Side<S> {
+        let least = e.dot(e).sqrt() * STEEP;
+        let mut widest = -deep;
+        let (mut axis, mut normal) = (V3::zero(simd), V3::zero(simd));
+        let mut known = Mask::splat(simd, false);
+        for edge in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().take(self.axes) {
+            let edge = V3::splat(simd, edge);
+            let (size, across) = e.cross(edge).length_and_unit();
+            let along = across.dot(a);
+            let across = V3::select(along.simd_lt(0.0), -across, across);
+            let gap = along.abs() - self.reach(across);
+            let at = self.facing((a, e), edge, across);
+            let faces = at.simd_ge(-BESIDE) & at.simd_le(1.0 + BESIDE);
+            let better = faces & size.simd_gt(least) & gap.simd_ge(widest);
+            widest = better.select(gap, widest);
+            axis = V3::select(better, edge, axis);
+            normal = V3::select(better, across, normal);
+            known |= better;
+        }
+        Side { known, axis, normal }
+    }
+
+    /// Where the segments from `a` to `a + e` (world) are past their edge from that side, or nearer to it than `within` [m], at the end of the substep.
+    #[inline(always)]
+    pub fn past<S: Simd>(
+        &self,
+        simd: S,
+        side: &Side<S>,
+        (a, e): (V3<S>, V3<S>),
+        (from, within): (F<S>, F<S>),
+    ) -> Deepest<S> {
+        let (a, e) = own(simd, &self.end, (a, e));
+        let (size, across) = e.cross(side.axis).length_and_unit();
+        let turned = across.dot(side.normal);
+        let normal = V3::select(turned.simd_lt(0.0), -across, across);
+        let at = self.facing((a, e), side.axis, normal);
+        let distance = normal.dot(a) - self.reach(normal);
+        let half = V3::splat(simd, self.half).dot(side.axis);
+        let on_edge = e.mul_add(at, a).dot(side.axis).abs().simd_le(half);
+        let faces = at.simd_ge(from) & at.simd_le(1.0) & on_edge;
+        let clear = size.simd_gt(e.dot(e).sqrt() * STEEP) & turned.abs().simd_gt(TURNED);
+        Deepest {
+            found: side.known & faces & clear & distance.simd_lt(within),
+            distance,
+            normal: transform(simd, &self.end.0, normal),
+            gain: F::splat(simd, 1.0),
+            at,
+        }
+    }
+
+    /// How far the shape reaches along a unit vector across its edges [m].
+    #[inline(always)]
+    fn reach<S: Simd>(&self, n: V3<S>) -> F<S> {
+        n.x.abs() * self.half.x + n.y.abs() * self.half.y + n.z.abs() * self.half.z + self.radius
+    }
+
+    /// The place of a segment that faces the edge along `axis` which is farthest along `n`: 0 at its beginning, 1 at its end.
+    #[inline(always)]
+    fn facing<S: Simd>(&self, (a, e): (V3<S>, V3<S>), axis: V3<S>, n: V3<S>) -> F<S> {
+        let m = axis.cross(n);
+        let toward = |n: F<S>, m: F<S>| n.simd_lt(0.0).select(-m, m);
+        let corner =
+            toward(n.x, m.x) * self.half.x + toward(n.y, m.y) * self.half.y + toward(n.z, m.z) * self.half.z;
+        (corner - a.dot(m)) / e.dot(m)
+    }
+}
+
+/// A segment of the world in the space of `pose`.
+#[inline(always)]
+fn own<S: Simd>(simd: S, pose: &(Mat3, Vec3), (a, e): (V3<S>, V3<S>)) -> (V3<S>, V3<S>) {
+    let inverse = pose.0.transpose();
+    (transform(simd, &inverse, a - V3::splat(simd, pose.1)), transform(simd, &inverse, e))
+}

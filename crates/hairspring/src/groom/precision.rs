@@ -1,0 +1,57 @@
+//! How far from the origin strands may be: the farther a place, the coarser single precision knows it.
+
+use super::Groom;
+use std::fmt;
+
+/// Largest coordinate that is simulated [m]. Beyond it, single precision resolves less than 6 cm, and products of lengths come near to overflow.
+pub const MAX_COORDINATE: f32 = 1e6;
+
+/// Distance from the origin within which strands of any size are accepted [m]: places are known to 8 µm.
+const NEAR: f32 = 128.0;
+
+/// Largest distance of neighbouring numbers over a segment [1]: a segment's direction is then known to a degree.
+const COARSEST: f32 = 0.02;
+
+/// A strand that is too far from the origin for the length of its segments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Imprecise {
+    /// Index of the strand.
+    pub strand: usize,
+    /// Largest coordinate of its nearest point [m].
+    pub distance: f32,
+    /// Distance of neighbouring numbers there [m].
+    pub resolution: f32,
+    /// Length of its segments, the median or the mean [m].
+    pub segment: f32,
+}
+
+impl fmt::Display for Imprecise {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { strand, distance, resolution, segment } = self;
+        write!(
+            f,
+            "strand {strand} is {distance:.4} m from the origin, where single precision resolves {resolution:.1e} m, and its segments are {segment:.1e} m \
+             long: move the scene nearer to the origin"
+        )
+    }
+}
+
+/// The first strand whose segments are too short for its distance from the origin, or that is beyond [`MAX_COORDINATE`]. Single points that went astray do
+/// not count; [`sanitize`](super::sanitize) brings them back.
+pub fn first_imprecise(groom: &Groom) -> Option<Imprecise> {
+    let of_strand = |strand: usize| {
+        let points = groom.strand(strand);
+        let finite = points.iter().filter(|p| p.is_finite());
+        let distance = finite.map(|p| p.abs().max_element()).reduce(f32::min).filter(|d| *d > NEAR)?;
+        let mut segments: Vec<f32> =
+            points.windows(2).map(|w| w[0].distance(w[1])).filter(|length| !length.is_nan()).collect();
+        segments.sort_by(f32::total_cmp);
+        let mean = segments.iter().sum::<f32>() / segments.len().max(1) as f32;
+        let segment =
+            segments.get(segments.len() / 2).copied().filter(|median| *median > 0.0).unwrap_or(mean);
+        let resolution = distance.next_up() - distance;
+        let coarse = segment > 0.0 && resolution > COARSEST * segment;
+        (coarse || distance > MAX_COORDINATE).then_some(Imprecise { strand, distance, resolution, segment })
+    };
+    (0..groom.strand_count()).find_map(of_strand)
+}

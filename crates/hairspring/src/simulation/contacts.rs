@@ -1,0 +1,71 @@
+//! What colliders hold out now: how many points and segments, with what force, and how many points had a collider looked up.
+
+use super::{MovingObstacle, Simulation};
+use crate::{
+    collide::{Obstacle, Rigid},
+    strand::{
+        lanes::LANES,
+        tile::{span, state},
+    },
+};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Contacts with colliders at the end of the last substep.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contacts {
+    /// Points that a collider holds out.
+    pub points: usize,
+    /// Segments that a collider holds out between their ends.
+    pub segments: usize,
+    /// Sum of the normal forces of both [N].
+    pub force: f64,
+    /// Pairs of a point and a collider in whose bounds it is, in a distance field also in a cell that is not all outside: there a substep asks for the
+    /// distance.
+    pub looked_up: usize,
+}
+
+impl Simulation {
+    /// Counts the contacts of all strands with `obstacles`, those of the last step.
+    pub fn contacts(&self, obstacles: &[MovingObstacle]) -> Contacts {
+        let poses: Vec<_> = obstacles.iter().map(|o| (&o.shape, o.end)).collect();
+        // Summed up in order, so that the force has the same bits for any number of threads.
+        let of_strands: Vec<Contacts> =
+            self.places.par_iter().map(|&place| self.strand_contacts(place as usize, &poses)).collect();
+        of_strands.into_iter().fold(Contacts::default(), |a, b| Contacts {
+            points: a.points + b.points,
+            segments: a.segments + b.segments,
+            force: a.force + b.force,
+            looked_up: a.looked_up + b.looked_up,
+        })
+    }
+
+    fn strand_contacts(&self, place: usize, poses: &[(&Obstacle, Rigid)]) -> Contacts {
+        let (tile, lane) = (place / LANES, place % LANES);
+        let (first, stride) = (self.tiles[tile].first as usize, self.tiles[tile].model.stride());
+        let root = self.root_position(place);
+        let mut out = Contacts::default();
+        // The first two points are the root's.
+        for (i, x) in self.particles(place).enumerate().step_by(stride).skip(2) {
+            let at = first + i;
+            let point = f64::from(self.state[at][state::PRESS].0[lane]);
+            let segment = self.spans.get(at).map_or(0.0, |rows| f64::from(rows[span::FORCE].0[lane]));
+            out.points += usize::from(point > 0.0);
+            out.segments += usize::from(segment > 0.0);
+            out.force += point.max(0.0) + segment.max(0.0);
+            out.looked_up += poses.iter().filter(|(shape, pose)| may_touch(shape, pose, root + x)).count();
+        }
+        out
+    }
+}
+
+/// Whether a substep asks for the distance of `p` in the world from a shape.
+fn may_touch(shape: &Obstacle, pose: &Rigid, p: Vec3) -> bool {
+    let (center, radius) = shape.bounds();
+    let local = pose.inverse_point(p);
+    local.distance(center) <= radius
+        && match shape {
+            Obstacle::Field(grid) => grid.may_be_inside_at(local),
+            _ => true,
+        }
+}

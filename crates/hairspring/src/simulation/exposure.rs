@@ -1,0 +1,173 @@
+//! How much of the air outside the hair reaches each point of it: dense hair carries the air inside it along.
+//!
+//! A flow that moves at U relative to hair of n fibers per area across them, each of diameter d, gives its momentum to their drag:
+//!
+//! ```text
+//! ρ U dU/ds = −n d ½ρU² Cd   ⟹   U = U₀ e^(−τ),   τ = ½ Cd ∫ n d ds
+//! ```
+//!
+//! n is the length of hair per volume at rest, with each strand counted for as many hairs as it stands for. τ follows the path from outside that
+//! meets the least hair and passes no collider. In the cell of the point, e^(−τ) is averaged over the cell, without the hair itself: a lone hair
+//! meets all of the air, and all hair together takes no more momentum than the air has. The hair behind e^(−τ) feels wind and its own motion
+//! through the air alike.
+//!
+//! # Missing
+//! n is that of the groom at rest. Wind from every side reaches a point along the same path; the lee behind hair and bodies is
+//! [`crate::air::Shelter`].
+
+use super::Simulation;
+use crate::{
+    collide::ObstaclePose,
+    strand::{
+        drag::AIR_KINEMATIC_VISCOSITY,
+        lanes::LANES,
+        tile::{rest, strand},
+    },
+};
+use glam::Vec3;
+use std::{cmp::Reverse, collections::BinaryHeap};
+
+/// Edge of a cell [m], unless the hair needs more than [`MOST_CELLS`] of them or guides are so far apart that they leave gaps between cells.
+const CELL: f32 = 0.005;
+
+/// Strands in a cell that holds any, on average, below which cells are made larger [1].
+const FEW: f32 = 3.0;
+
+/// Edge from which on cells are not made larger for that [m].
+const MOST_EDGE: f32 = 0.02;
+
+/// Most cells of the grid, about.
+const MOST_CELLS: f32 = 262_144.0;
+
+/// Cd of a hair in a wind of about 1 m/s.
+const COEFFICIENT: f32 = 4.0;
+
+/// Least share of the air: some is everywhere.
+const LEAST: f32 = 0.02;
+
+impl Simulation {
+    /// Lets hair shelter itself from the air from now on, by how dense the groom is at rest among `obstacles` at rest. Without it every strand is
+    /// a lone hair.
+    pub fn set_self_shelter(&mut self, obstacles: &[ObstaclePose]) {
+        let points = || self.strands().flat_map(|s| self.groom.strand(s as usize).iter().copied());
+        let low = points().fold(Vec3::INFINITY, Vec3::min);
+        let high = points().fold(Vec3::NEG_INFINITY, Vec3::max);
+        let mut grid = self.dense_grid(low, high, CELL);
+        while grid.edge < MOST_EDGE && grid.strands_per_cell() < FEW {
+            grid = self.dense_grid(low, high, 2.0 * grid.edge);
+        }
+        let depth = grid.depths(obstacles);
+        for (place, s) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+            let tile = self.tiles[place / LANES];
+            let reynolds = self.strand[place / LANES][strand::REYNOLDS].0[place % LANES];
+            let own = 0.5 * COEFFICIENT * reynolds * AIR_KINEMATIC_VISCOSITY / grid.edge;
+            for (i, point) in self.groom.strand(*s as usize).iter().enumerate() {
+                let cell = grid.cell(*point);
+                // A hair does not shelter itself.
+                let others = (grid.cost[cell] - own).max(1e-6);
+                let mean = (1.0 - (-others).exp()) / others;
+                let exposure = (mean * (-depth[cell]).exp()).max(LEAST);
+                let at = tile.first as usize + i * tile.model.stride();
+                self.rest[at][rest::EXPOSURE].0[place % LANES] = exposure;
+            }
+        }
+    }
+
+    /// The hair between `low` and `high` in cells that are not shorter than `edge` [m].
+    fn dense_grid(&self, low: Vec3, high: Vec3, edge: f32) -> Grid {
+        let mut grid = Grid::new(low, high, edge);
+        for (place, s) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+            let reynolds = self.strand[place / LANES][strand::REYNOLDS].0[place % LANES];
+            let width = self.hairs[*s as usize] * reynolds * AIR_KINEMATIC_VISCOSITY;
+            for w in self.groom.strand(*s as usize).windows(2) {
+                grid.add(w[0], w[1], width);
+            }
+        }
+        grid
+    }
+}
+
+/// Cells around the hair, with a ring that holds none.
+struct Grid {
+    low: Vec3,
+    edge: f32,
+    dims: [usize; 3],
+    /// τ across a cell along an axis [1].
+    cost: Vec<f32>,
+    /// Length of all strands [m].
+    length: f32,
+}
+
+impl Grid {
+    fn new(low: Vec3, high: Vec3, edge: f32) -> Self {
+        let extent = (high - low).max(Vec3::splat(CELL));
+        let edge = edge.max((extent.element_product() / MOST_CELLS).cbrt());
+        let dims = (extent / edge).to_array().map(|n| n as usize + 3);
+        Self { low: low - edge, edge, dims, cost: vec![0.0; dims.iter().product()], length: 0.0 }
+    }
+
+    fn cell(&self, place: Vec3) -> usize {
+        let [x, y, z] = ((place - self.low) / self.edge).to_array().map(|k| k as usize);
+        (z * self.dims[1] + y) * self.dims[0] + x
+    }
+
+    /// Adds hair that is `width` [m] wide from `a` to `b`.
+    fn add(&mut self, a: Vec3, b: Vec3, width: f32) {
+        let length = a.distance(b);
+        self.length += length;
+        let parts = (length / self.edge).ceil().max(1.0);
+        // Its area over that of a cell's face.
+        let cost = 0.5 * COEFFICIENT * width * length / (parts * self.edge * self.edge);
+        for k in 0..parts as usize {
+            let cell = self.cell(a.lerp(b, (k as f32 + 0.5) / parts));
+            self.cost[cell] += cost;
+        }
+    }
+
+    fn strands_per_cell(&self) -> f32 {
+        let held = self.cost.iter().filter(|cost| **cost > 0.0).count();
+        self.length / (self.edge * held.max(1) as f32)
+    }
+
+    /// The least τ from outside to each cell, its own not counted (Dijkstra 1959); infinite where colliders enclose it.
+    fn depths(&self, obstacles: &[ObstaclePose]) -> Vec<f32> {
+        let steps = [1, self.dims[0], self.dims[0] * self.dims[1]];
+        let along = |cell: usize, axis: usize| cell / steps[axis] % self.dims[axis];
+        let blocked = |cell: usize| {
+            let at = Vec3::from([0, 1, 2].map(|axis| along(cell, axis) as f32 + 0.5)) * self.edge + self.low;
+            self.cost[cell] == 0.0 && obstacles.iter().any(|o| o.distance(at) < 0.0)
+        };
+        let mut depths = vec![f32::INFINITY; self.cost.len()];
+        let mut queue = BinaryHeap::new();
+        for (cell, depth) in depths.iter_mut().enumerate() {
+            if (0..3).any(|axis| along(cell, axis) == 0 || along(cell, axis) + 1 == self.dims[axis])
+                && !blocked(cell)
+            {
+                *depth = 0.0;
+                queue.push(Reverse((0, cell)));
+            }
+        }
+        // The bits of numbers from 0 on are in the order of the numbers.
+        while let Some(Reverse((bits, cell))) = queue.pop() {
+            if f32::from_bits(bits) > depths[cell] {
+                continue;
+            }
+            let depth = depths[cell] + self.cost[cell];
+            for (axis, step) in steps.into_iter().enumerate() {
+                let mut enter = |next: usize| {
+                    if depth < depths[next] && !blocked(next) {
+                        depths[next] = depth;
+                        queue.push(Reverse((depth.to_bits(), next)));
+                    }
+                };
+                if along(cell, axis) > 0 {
+                    enter(cell - step);
+                }
+                if along(cell, axis) + 1 < self.dims[axis] {
+                    enter(cell + step);
+                }
+            }
+        }
+        depths
+    }
+}

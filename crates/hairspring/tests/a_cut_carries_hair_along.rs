@@ -1,0 +1,187 @@
+//! Promise: a cut in a clip carries hair along, at any frame rate.
+//!
+//! A clip of 30 Hz in which the body is put 5 m away from one frame to the next, or turned, or both, moves no hair against its body, whether it is played at 24
+//! frames per second or at 240. A genuine motion is never taken for a cut: hair feels it as it does without teleports.
+
+use glam::{Quat, Vec3};
+use hairspring::{
+    body::{Body, Clip, Joint, Mesh, Skin, Trs},
+    collide::Rigid,
+    groom::Groom,
+    scene::{Collider, Guides, Scene, SceneGroom, Shape, Solver},
+    stage::{FrameRate, Stage},
+};
+
+const RATES: [u32; 7] = [24, 25, 30, 48, 60, 120, 240];
+
+/// Frames of the clips, at 30 Hz.
+const FRAMES: usize = 60;
+
+/// A plate of 20 cm about `middle`.
+fn plate(middle: Vec3) -> Mesh {
+    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+    Mesh {
+        positions: corners.map(|(x, z)| middle + Vec3::new(x, 0.0, z) * 0.1).into(),
+        normals: vec![Vec3::Y; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+/// Strands that lie out from a plate that moves by `pose`, which has a frame's number.
+fn scene(pose: impl Fn(usize) -> Trs) -> Scene {
+    let strand = |k: usize| -> Vec<Vec3> {
+        let out = Quat::from_rotation_y(k as f32) * Vec3::new(0.8, 0.6, 0.0);
+        (0..10).map(|i| out * (0.02 * i as f32)).collect()
+    };
+    let groom = SceneGroom {
+        groom: Groom::from_strands((0..6).map(strand), 35e-6),
+        guides: Guides::All,
+        ..SceneGroom::default()
+    };
+    let samples = (0..FRAMES).map(pose).collect();
+    Scene {
+        grooms: vec![groom],
+        body: Some(Body::rigid(plate(Vec3::ZERO))),
+        clip: Some(Clip { name: "cut".into(), rate: 30.0, joint_count: 1, samples }),
+        solver: Solver { collide_body: false, ..Solver::default() },
+        ..Scene::default()
+    }
+}
+
+/// How far any point ever is from where it was authored, as the body carries it [m].
+fn farthest(scene: Scene, rate: u32) -> f32 {
+    let mut stage = Stage::new(scene).unwrap();
+    let mut most = 0.0f32;
+    for _ in 0..2 * rate {
+        stage.step_frame(FrameRate::new(rate, 1).unwrap());
+        let anchor = stage.body_anchor();
+        let strands = stage.strands().next().unwrap();
+        let off = |(p, rest): (&Vec3, &Vec3)| anchor.inverse_point(*p).distance(*rest);
+        most = strands.points.iter().zip(&strands.groom.points).map(off).fold(most, f32::max);
+    }
+    most
+}
+
+/// Elsewhere, from frame `from` on.
+fn cut(from: usize, to: Trs) -> impl Fn(usize) -> Trs {
+    move |frame| if frame < from { Trs::default() } else { to }
+}
+
+fn away() -> Trs {
+    Trs { translation: Vec3::new(5.0, 0.0, 0.0), ..Trs::default() }
+}
+
+fn turned() -> Trs {
+    Trs { rotation: Quat::from_rotation_y(3.0), ..Trs::default() }
+}
+
+#[test]
+fn hair_stays_with_its_body_at_any_frame_rate() {
+    let both = Trs { rotation: turned().rotation, ..away() };
+    for rate in RATES {
+        for (what, to) in [("away", away()), ("turned", turned()), ("both", both)] {
+            // A multiple of most rates' frames, and one that is between them.
+            for from in [30, 31] {
+                let off = farthest(scene(cut(from, to)), rate);
+                assert!(off < 1e-4, "{what} in frame {from} at {rate} Hz: {off} m");
+            }
+        }
+    }
+}
+
+#[test]
+fn cuts_from_frame_to_frame_and_in_frames_of_film_are_cuts() {
+    // There and back, and a cut between keys of 24 Hz that were resampled.
+    let blink = |frame: usize| if frame == 30 { away() } else { Trs::default() };
+    for rate in RATES {
+        let off = farthest(scene(blink), rate);
+        assert!(off < 1e-4, "there and back at {rate} Hz: {off} m");
+        let mut resampled = scene(|_| Trs::default());
+        let at = |k: usize| ((k as f32 / 2.5 - 8.3).clamp(0.0, 1.0) * 5.0) * Vec3::X;
+        let samples = (0..FRAMES).map(|k| Trs { translation: at(k), ..Trs::default() }).collect();
+        resampled.clip = Some(Clip { name: "resampled".into(), rate: 60.0, joint_count: 1, samples });
+        let off = farthest(resampled, rate);
+        assert!(off < 1e-4, "resampled at {rate} Hz: {off} m");
+    }
+}
+
+#[test]
+fn a_genuine_motion_is_felt_at_any_frame_rate() {
+    // A start at 3 m/s, a head that turns by 720° per second, and a ride that begins at 20 m/s.
+    let motions: [fn(usize) -> Trs; 3] = [
+        |k| Trs { translation: Vec3::X * (0.1 * k.saturating_sub(20) as f32), ..Trs::default() },
+        |k| Trs { rotation: Quat::from_rotation_y(0.419 * k.saturating_sub(20) as f32), ..Trs::default() },
+        |k| Trs { translation: Vec3::X * (0.666 * k.saturating_sub(20) as f32), ..Trs::default() },
+    ];
+    for rate in RATES {
+        for (number, motion) in motions.into_iter().enumerate() {
+            let [watched, never] = [1.0, f32::MAX].map(|jump| {
+                let mut scene = scene(motion);
+                scene.solver.jump = jump;
+                farthest(scene, rate)
+            });
+            assert!(watched > 0.02, "motion {number} at {rate} Hz moves hair by {watched} m alone");
+            assert_eq!(watched, never, "motion {number} at {rate} Hz");
+        }
+    }
+}
+
+#[test]
+fn what_is_carried_by_the_body_is_cut_with_it_and_what_is_not_stays() {
+    // A ball rests in front of the hair, carried by the body; a second one, on a joint of its own, is put into the hair's old place by a cut of its own.
+    let joint = |name: &str| Joint { name: name.into(), parent: None, rest: Trs::default() };
+    let ball = |joint: &str, center: Vec3| Collider {
+        joint: Some(joint.into()),
+        shape: Shape::Sphere { center, radius: 0.02 },
+    };
+    for rate in RATES {
+        let mut scene = scene(|_| Trs::default());
+        let mut mesh = plate(Vec3::ZERO);
+        let apart = plate(Vec3::Z * 40.0);
+        mesh.positions.extend(apart.positions);
+        mesh.normals.extend(apart.normals);
+        mesh.triangles.extend([[4, 5, 6], [4, 6, 7]]);
+        let skin = Skin {
+            joints: (0..8).map(|v| [v / 4, 0, 0, 0]).collect(),
+            weights: vec![[1.0, 0.0, 0.0, 0.0]; 8],
+            inverse_bind: vec![Default::default(); 2],
+        };
+        scene.body = Some(Body { mesh, joints: vec![joint("head"), joint("prop")], skin: Some(skin) });
+        let frame = |k: usize| {
+            let head = if k < 30 { Trs::default() } else { away() };
+            // Across the hair, from one side to the other.
+            let prop = Trs { translation: Vec3::Z * if k < 20 { -4.0 } else { 4.0 }, ..Trs::default() };
+            [head, prop]
+        };
+        let samples = (0..FRAMES).flat_map(frame).collect();
+        scene.clip = Some(Clip { name: "cuts".into(), rate: 30.0, joint_count: 2, samples });
+        scene.colliders =
+            vec![ball("head", Vec3::new(0.0, 0.5, 0.0)), ball("prop", Vec3::new(0.08, 0.06, 0.0))];
+        let off = farthest(scene, rate);
+        assert!(off < 1e-4, "at {rate} Hz: {off} m");
+    }
+}
+
+#[test]
+fn a_body_that_is_moved_besides_its_clip_is_cut_where_it_is() {
+    for rate in RATES {
+        let mut stage = Stage::new(scene(cut(30, away()))).unwrap();
+        stage.move_body(Rigid {
+            rotation: Quat::from_rotation_y(1.0),
+            translation: Vec3::new(0.0, 0.0, 20.0),
+        });
+        let rest = stage.strands().next().unwrap().groom.points.clone();
+        for frame in 0..2 * rate {
+            stage.step_frame(FrameRate::new(rate, 1).unwrap());
+            let anchor = stage.body_anchor();
+            let points = stage.strands().next().unwrap().points;
+            let off = points
+                .iter()
+                .zip(&rest)
+                .map(|(p, r)| anchor.inverse_point(*p).distance(*r))
+                .fold(0.0, f32::max);
+            assert!(off < 1e-4, "frame {frame} at {rate} Hz: {off} m");
+        }
+    }
+}

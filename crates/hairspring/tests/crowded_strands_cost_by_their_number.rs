@@ -1,0 +1,90 @@
+//! Promise: strands in one place do not make the cost of contact grow with the square of their number, and what is left out of it is said.
+//!
+//! Files hold the same strand many times, by mistake or as a count of hairs. Such strands have no room beside each other; they meet the rest as one strand of the mass
+//! of all. Strands that are nearly the same meet some of the others in their place. Counted is the work, pairs of segments that were looked at, not time.
+
+use glam::Vec3;
+use hairspring::{
+    collide::Rigid,
+    groom::Groom,
+    material::{Material, Model},
+    scene::{Neighbours, Solver, bench},
+    simulation::{Air, Drive, Hold, NeighboursReport, Simulation},
+};
+use std::sync::Arc;
+
+fn line(from: Vec3, to: Vec3, points: usize) -> Vec<Vec3> {
+    (0..points).map(|i| from.lerp(to, i as f32 / (points - 1) as f32)).collect()
+}
+
+/// Strands that fall, and bars that are held: what is known of them after so many frames, and where the tips are.
+fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursReport, Vec<Vec3>) {
+    let groom = Arc::new(Groom::from_strands(strands, 4e-5));
+    let all: Vec<u32> = (0..strands.len() as u32).collect();
+    let solver = Solver { sag_free: false, ..Solver::default() };
+    let material = Material { bend: 0.01, drag: 1.0, model: Model::Curvature, ..Material::default() };
+    let gravity = Vec3::NEG_Y * 9.81;
+    let mut simulation =
+        Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
+    let radius = Some(0.001);
+    simulation.set_neighbours(&Neighbours { on: true, radius, friction: 0.0, ..Neighbours::default() });
+    let hold = |strand: usize, point: usize| Hold {
+        strand: strand as u32,
+        point: point as u32,
+        target: Some(strands[strand][point]),
+        ..Hold::default()
+    };
+    let holds: Vec<Hold> =
+        (0..bars).flat_map(|bar| (2..strands[bar].len()).map(move |i| hold(bar, i))).collect();
+    simulation.set_holds(&holds);
+    let roots: Vec<Rigid> = strands.iter().map(|s| Rigid { translation: s[0], ..Rigid::default() }).collect();
+    for _ in 0..frames {
+        let drive = Drive {
+            dt: bench::FRAME,
+            anchor: Rigid::default(),
+            roots: &roots,
+            obstacles: &[],
+            air: Air::default(),
+        };
+        assert_eq!(simulation.step(&drive).reset_strands, 0);
+    }
+    let mut now = vec![Vec3::ZERO; simulation.point_count()];
+    simulation.write_points(&mut now);
+    let tips = (0..strands.len()).map(|s| now[groom.range(s).end - 1]).collect();
+    (simulation.neighbours().unwrap(), tips)
+}
+
+#[test]
+fn strands_that_are_the_same_meet_the_rest_as_one() {
+    let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
+    let rope = line(Vec3::new(-0.05, 0.01, 0.0), Vec3::new(0.20, 0.01, 0.0), 26);
+    let over = |count: usize| {
+        let strands: Vec<_> = std::iter::once(bar.clone()).chain(vec![rope.clone(); count]).collect();
+        fallen(1, &strands, 90)
+    };
+    let (one, lone) = over(1);
+    let (many, tips) = over(1000);
+    println!("one: {one:?}\n1000: {many:?}");
+    assert!(lone[1].y > -0.3 && one.pressing > 0, "it lies over the bar: {}", lone[1]);
+    assert_eq!((one.same, many.same), (0, 999));
+    assert_eq!(one.looked_at, many.looked_at, "pairs that are looked at");
+    let apart = tips[1..].iter().map(|tip| tip.distance(lone[1])).fold(0.0, f32::max);
+    assert!(apart < 1e-3, "tips of a thousand are {apart} m from where that of one is");
+}
+
+#[test]
+fn a_crowd_costs_by_its_number_and_says_that_it_is_one() {
+    // So near each other that no two are a hair's width apart.
+    let crowd = |count: usize| -> Vec<Vec<Vec3>> {
+        let at = |k: usize| Vec3::new((k as f32 * 0.618).fract(), 0.0, (k as f32 * 0.755).fract()) * 1e-5;
+        (0..count).map(|k| line(at(k), at(k) + Vec3::new(0.1, 0.0, 0.0), 12)).collect()
+    };
+    let [half, all] = [600, 1200].map(|count| fallen(0, &crowd(count), 2).0);
+    println!("600: {half:?}\n1200: {all:?}");
+    assert!(all.looked_at < 3 * half.looked_at, "{} pairs, {} of half", all.looked_at, half.looked_at);
+    // Eight substeps of two frames, and at most 256 others a segment in each.
+    assert!(all.looked_at < 1200 * 11 * 256 * 8, "{} pairs", all.looked_at);
+    assert!(all.crowded > 0, "it is said");
+    let (few, _) = fallen(0, &crowd(10), 3);
+    assert_eq!(few.crowded, 0);
+}

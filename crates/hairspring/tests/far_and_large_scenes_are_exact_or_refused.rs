@@ -1,0 +1,116 @@
+//! Promise: scenes that are far from the origin or very large are simulated exactly, or refused with a sentence.
+//!
+//! Hair at 100 m from the origin moves as it does at the origin. Where single precision no longer resolves its segments, and where lengths would overflow in a
+//! frame, the scene is refused. Two grooms that are far apart share a volume whose memory is bounded.
+
+use glam::Vec3;
+use hairspring::{
+    body::{Body, Clip, Mesh, Trs},
+    groom::Groom,
+    scene::{Effects, Guides, Scene, SceneGroom, Solver, Volume, VolumeMethod},
+    stage::{Stage, StageError},
+};
+
+const POINTS: usize = 10;
+
+/// Strands of `POINTS` points that lie out from `middle`.
+fn groom(middle: Vec3, segment: f32) -> SceneGroom {
+    let strand = |k: usize| -> Vec<Vec3> {
+        let root = middle + Vec3::new(0.002 * (k % 4) as f32, 0.0, 0.002 * (k / 4) as f32);
+        (0..POINTS).map(|i| root + Vec3::new(0.8, 0.6, 0.0) * (segment * i as f32)).collect()
+    };
+    SceneGroom {
+        groom: Groom::from_strands((0..16).map(strand), 35e-6),
+        guides: Guides::All,
+        ..SceneGroom::default()
+    }
+}
+
+fn scene(grooms: Vec<SceneGroom>) -> Scene {
+    let solver = Solver { sag_free: false, ..Solver::default() };
+    Scene { grooms, gravity: Vec3::new(0.0, -9.81, 0.0), solver, ..Scene::default() }
+}
+
+/// The sentence that a scene is refused with.
+fn refused(scene: Scene) -> String {
+    match Stage::new(scene) {
+        Ok(_) => panic!("the scene is accepted"),
+        Err(error @ (StageError::TooFar { .. } | StageError::OutOfRange { .. })) => error.to_string(),
+        Err(other) => panic!("{other}"),
+    }
+}
+
+/// Each point of the first groom, from its root.
+fn shape(stage: &Stage) -> Vec<Vec3> {
+    let strands = stage.strands().next().unwrap();
+    strands.points.chunks(POINTS).flat_map(|strand| strand.iter().map(|p| *p - strand[0])).collect()
+}
+
+#[test]
+fn hair_at_a_hundred_meters_moves_as_at_the_origin() {
+    let [here, there] = [Vec3::ZERO, Vec3::new(100.0, 0.0, -100.0)].map(|middle| {
+        let mut stage = Stage::new(scene(vec![groom(middle, 0.01)])).unwrap();
+        (0..60).for_each(|_| _ = stage.step(1.0 / 60.0));
+        shape(&stage)
+    });
+    let apart = here.iter().zip(&there).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    assert!(apart < 1e-3, "{apart} m");
+}
+
+#[test]
+fn hair_that_is_too_far_for_its_segments_is_refused() {
+    for away in [5e3, 1e5, 1e7, 1e30] {
+        let why = refused(scene(vec![groom(Vec3::ZERO, 0.005), groom(Vec3::X * away, 0.005)]));
+        assert!(why.starts_with("groom 1: strand 0 is ") && why.contains("nearer to the origin"), "{why}");
+    }
+}
+
+#[test]
+fn lengths_that_overflow_are_refused() {
+    let huge = |groom: SceneGroom| {
+        let points = groom.groom.points.iter().map(|p| *p * 1e25).collect();
+        SceneGroom { groom: Groom { points, ..groom.groom }, ..groom }
+    };
+    assert!(refused(scene(vec![huge(groom(Vec3::ZERO, 0.01))])).contains("groom 0"));
+    for effects in [
+        Effects { curl_radius: 3e38, ..Effects::default() },
+        Effects { noise: f32::NAN, ..Effects::default() },
+    ] {
+        let curled = SceneGroom { effects, guides: Guides::Count(4), ..groom(Vec3::ZERO, 0.01) };
+        assert!(refused(scene(vec![curled.clone()])).contains("an effect of groom 0"));
+        // So are settings that come later.
+        let plain = SceneGroom { effects: Effects::default(), ..curled.clone() };
+        let mut stage = Stage::new(scene(vec![plain])).unwrap();
+        assert!(matches!(stage.retune(scene(vec![curled])), Err(StageError::OutOfRange { .. })));
+    }
+    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+    let mesh = Mesh {
+        positions: corners.map(|(x, z)| Vec3::new(x, 0.0, z)).into(),
+        normals: vec![Vec3::Y; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    };
+    let away = Trs { translation: Vec3::Y * 1e30, ..Trs::default() };
+    let mut moved = scene(vec![groom(Vec3::ZERO, 0.01)]);
+    moved.body = Some(Body::rigid(mesh));
+    let samples = vec![Trs::default(), away];
+    moved.clip = Some(Clip { name: "away".into(), rate: 30.0, joint_count: 1, samples });
+    assert!(refused(moved).contains("a translation of the clip"));
+}
+
+#[test]
+fn a_volume_of_grooms_far_apart_is_bounded() {
+    for method in [VolumeMethod::Density, VolumeMethod::Incompressible] {
+        for away in [200.0, 1000.0] {
+            let mut scene = scene(vec![groom(Vec3::ZERO, 0.007), groom(Vec3::X * away, 0.007)]);
+            scene.volume = Volume { method, ..Volume::default() };
+            let mut stage = Stage::new(scene).unwrap();
+            for _ in 0..10 {
+                stage.step(1.0 / 60.0);
+                let nodes = stage.volume().unwrap().nodes;
+                assert!(nodes <= 1 << 21, "{nodes} nodes at {away} m, {method:?}");
+            }
+            assert!(stage.strands().flat_map(|s| s.points).all(|p| p.is_finite()));
+        }
+    }
+}

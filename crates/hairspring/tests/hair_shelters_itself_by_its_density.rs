@@ -1,0 +1,87 @@
+//! Promise: dense hair shelters itself from the wind by its density: a lone hair not at all, the inside of a bundle more than its outside, and as
+//! many hairs that follow one guide within a factor of 2 of the same hairs simulated.
+
+use glam::Vec3;
+use hairspring::{
+    collide::Rigid,
+    groom::Groom,
+    material::Material,
+    scene::{Solver, Wind},
+    simulation::{Air, Drive, Simulation},
+};
+use std::sync::Arc;
+
+/// Mean distance that the middles of the strands of a square bundle of `side`² strands move in a second of wind from the side [m]: of the outermost strands, and of the
+/// others more than a centimeter inside. Each strand stands for `hairs`.
+fn blown(side: usize, spacing: f32, hairs: f32, sheltered: bool) -> [f32; 2] {
+    let at = |k: usize| k as f32 * spacing;
+    let strands = (0..side * side).map(|k| {
+        let root = Vec3::new(at(k % side), 0.0, at(k / side));
+        (0..17).map(|i| root - Vec3::Y * (0.01 * i as f32)).collect::<Vec<_>>()
+    });
+    let groom = Arc::new(Groom::from_strands(strands, 35e-6));
+    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
+    let roots: Vec<Rigid> = (0..groom.strand_count())
+        .map(|s| Rigid { translation: groom.strand(s)[0], ..Rigid::default() })
+        .collect();
+    let gravity = Vec3::NEG_Y * 9.81;
+    let (solver, material) = (Solver::default(), Material::default());
+    let mut simulation =
+        Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
+    simulation.set_hairs(vec![hairs; groom.strand_count()]);
+    if sheltered {
+        simulation.set_self_shelter(&[]);
+    }
+    let wind = Wind { velocity: Vec3::X, ..Wind::default() };
+    for _ in 0..60 {
+        simulation.step(&Drive {
+            dt: 1.0 / 60.0,
+            anchor: Rigid::default(),
+            roots: &roots,
+            obstacles: &[],
+            air: Air { wind, ..Air::default() },
+        });
+    }
+    let mut points = vec![Vec3::ZERO; groom.point_count()];
+    simulation.write_points(&mut points);
+    let mut sums = [(0.0, 0.0f32); 2];
+    for s in 0..groom.strand_count() {
+        let root = groom.strand(s)[0];
+        let edge =
+            [root.x, root.z].map(|x| x.min(at(side - 1) - x)).into_iter().fold(f32::INFINITY, f32::min);
+        let moved = points[groom.range(s).start + 8].distance(groom.strand(s)[8]);
+        if edge == 0.0 || edge > 0.01 {
+            let sum = &mut sums[usize::from(edge > 0.0)];
+            *sum = (sum.0 + moved, sum.1 + 1.0);
+        }
+    }
+    sums.map(|(sum, count)| sum / f32::max(count, 1.0))
+}
+
+#[test]
+fn a_lone_hair_is_not_sheltered() {
+    let [sheltered, alone] = [true, false].map(|on| blown(1, 1.0, 1.0, on)[0]);
+    assert!(alone > 0.05, "{alone} m");
+    assert!((sheltered / alone - 1.0).abs() < 0.01, "{sheltered} m, not {alone} m");
+}
+
+#[test]
+fn the_inside_of_a_bundle_is_sheltered_more_than_its_outside() {
+    // 25 strands that stand for 1,000 hairs a square centimeter.
+    let [outside, inside] = blown(11, 0.004, 160.0, true);
+    let [_, open] = blown(11, 0.004, 160.0, false);
+    println!("{outside} m outside, {inside} m inside, {open} m without shelter");
+    assert!(outside > 1.5 * inside, "the outermost layer meets more wind");
+    assert!(inside < 0.3 * open, "the inside is still");
+    // Few hairs shelter little.
+    let [_, sparse] = blown(11, 0.004, 0.1, true);
+    assert!(sparse > 0.99 * open, "{sparse} m of {open} m");
+}
+
+#[test]
+fn hairs_that_follow_shelter_as_those_that_are_simulated() {
+    let [_, few] = blown(9, 0.0045, 25.0, true);
+    let [_, many] = blown(41, 0.001, 1.0, true);
+    println!("{few} m by guides, {many} m by hairs");
+    assert!((0.5..2.0).contains(&(few / many)), "{few} m by guides, {many} m by hairs");
+}

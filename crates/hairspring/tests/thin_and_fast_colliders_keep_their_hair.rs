@@ -1,0 +1,134 @@
+//! Promise: thin and fast colliders keep the hair that they meet. A rod of 1 mm radius, dragged at 0.02 to 1 m/s through hanging hair, keeps every strand, and so
+//! does a box of 1 mm at 0.5 m/s; hair that falls on a rod of 1 mm radius lies over it; and a rod that crosses 15 cm in one frame and stops keeps its hair in the frames after.
+
+use glam::{Mat3, Vec3};
+use hairspring::{
+    collide::{Obstacle, Rigid},
+    groom::Groom,
+    material::Material,
+    scene::Solver,
+    simulation::{Air, Drive, MovingObstacle, Simulation},
+};
+use std::sync::Arc;
+
+const FRAME: f32 = 1.0 / 60.0;
+const POINTS: usize = 32;
+const LENGTH: f32 = 0.25;
+
+/// A simulation of strands that start at `roots` and run in the direction `along`.
+fn hair(roots: impl Iterator<Item = Vec3>, along: Vec3, sag_free: bool) -> (Simulation, Vec<Rigid>) {
+    let strands = roots.map(|root| {
+        (0..POINTS).map(move |i| root + along * (LENGTH * i as f32 / (POINTS - 1) as f32)).collect::<Vec<_>>()
+    });
+    let groom = Arc::new(Groom::from_strands(strands, 40e-6));
+    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
+    let roots =
+        all.iter().map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() }).collect();
+    let solver = Solver { sag_free, ..Solver::default() };
+    let gravity = Vec3::NEG_Y * 9.81;
+    let simulation =
+        Simulation::new(groom, &all, &[Material::default()], solver, gravity, Rigid::default(), &[]);
+    (simulation, roots)
+}
+
+/// Hanging strands whose roots are scattered by up to 8 mm in height and 9 mm in depth.
+fn curtain(strands: usize) -> (Simulation, Vec<Rigid>) {
+    let scatter = |s: usize, k: usize| ((s * 7919 + k * 104_729) % 1009) as f32 / 1009.0 - 0.5;
+    let root = move |s: usize| {
+        let x = 0.3 * (s as f32 / (strands - 1) as f32 - 0.5);
+        Vec3::new(x, -0.008 * (scatter(s, 1) + 0.5), 0.009 * scatter(s, 2))
+    };
+    hair((0..strands).map(root), Vec3::NEG_Y, true)
+}
+
+fn step(simulation: &mut Simulation, roots: &[Rigid], obstacle: MovingObstacle) {
+    let (anchor, air, obstacles) = (Rigid::default(), Air::default(), [obstacle]);
+    simulation.step(&Drive { dt: FRAME, anchor, roots, obstacles: &obstacles, air });
+    assert_eq!(simulation.measure(&obstacles).non_finite, 0);
+}
+
+fn points(simulation: &Simulation) -> Vec<Vec3> {
+    let mut points = vec![Vec3::ZERO; simulation.point_count()];
+    simulation.write_points(&mut points);
+    points
+}
+
+/// How many strands a body at the height `y` and at `z` holds back: from the root on, they first cross its height in front of it.
+fn caught(simulation: &Simulation, y: f32, z: f32) -> usize {
+    let crossing = |pair: &[Vec3]| {
+        let t = (y - pair[0].y) / (pair[1].y - pair[0].y);
+        (0.0..1.0).contains(&t).then(|| pair[0].lerp(pair[1], t).z)
+    };
+    let held = |strand: &&[Vec3]| match strand.windows(2).find_map(crossing) {
+        Some(place) => place > z,
+        None => strand.iter().any(|p| p.z > z),
+    };
+    points(simulation).chunks(POINTS).filter(held).count()
+}
+
+/// Drags a shape 15 cm through `strands` hanging strands, 5 cm below their roots, and keeps it there for `frames`; how many strands it holds at the end.
+fn drag(shape: &Obstacle, speed: f32, frames: usize, strands: usize) -> usize {
+    let (mut simulation, roots) = curtain(strands);
+    let y = -0.05;
+    let at = |z: f32| Rigid { translation: Vec3::new(0.0, y, z), ..Rigid::default() };
+    let (mut z, end) = (-0.1f32, 0.05);
+    let moving = (0.15 / (speed * FRAME)).ceil() as usize;
+    for _ in 0..moving + frames {
+        let next = (z + speed * FRAME).min(end);
+        step(&mut simulation, &roots, MovingObstacle { shape: shape.clone(), start: at(z), end: at(next) });
+        z = next;
+    }
+    caught(&simulation, y, z)
+}
+
+fn rod(radius: f32) -> Obstacle {
+    Obstacle::Capsule { a: Vec3::X * -0.2, b: Vec3::X * 0.2, radius }
+}
+
+#[test]
+fn a_rod_of_1_mm_radius_keeps_its_hair() {
+    for speed in [0.02, 0.0533, 0.2, 1.0] {
+        assert_eq!(drag(&rod(0.001), speed, 20, 200), 200, "{speed} m/s");
+    }
+    let fast = drag(&rod(0.001), 3.0, 20, 200);
+    assert!(fast >= 199, "3 m/s: {fast} of 200");
+}
+
+#[test]
+fn a_thin_box_keeps_its_hair() {
+    for thickness in [0.002, 0.001] {
+        let half = Vec3::new(0.2, 0.005, 0.5 * thickness);
+        let shape = Obstacle::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY };
+        assert_eq!(drag(&shape, 0.5, 20, 200), 200, "{thickness} m thick");
+        let slowly = drag(&shape, 0.0533, 20, 200);
+        assert!(slowly >= 195, "{thickness} m thick, slowly: {slowly} of 200");
+    }
+}
+
+#[test]
+fn a_rod_that_stops_keeps_its_hair() {
+    for radius in [0.002, 0.005, 0.01] {
+        assert_eq!(drag(&rod(radius), 9.0, 90, 21), 21, "{radius} m");
+    }
+}
+
+#[test]
+fn hair_that_falls_on_a_thin_rod_lies_over_it() {
+    let radius = 0.001;
+    for height in [0.002, 0.02, 0.1] {
+        let root = |s: usize| Vec3::new(-0.05 - 0.0004 * (s % 20) as f32, 0.0, 0.0015 * (s as f32 - 100.0));
+        let (mut simulation, roots) = hair((0..200).map(root), Vec3::X, false);
+        let y = -height - radius;
+        let shape = Obstacle::Capsule { a: Vec3::new(0.0, y, -0.2), b: Vec3::new(0.0, y, 0.2), radius };
+        for _ in 0..300 {
+            step(&mut simulation, &roots, MovingObstacle::at_rest(shape.clone(), Rigid::default()));
+        }
+        let over = |strand: &&[Vec3]| {
+            let crosses = |pair: &&[Vec3]| (pair[0].x < 0.0) != (pair[1].x < 0.0);
+            let above = |pair: &[Vec3]| pair[0].lerp(pair[1], pair[0].x / (pair[0].x - pair[1].x)).y > y;
+            strand.windows(2).any(|pair| crosses(&pair)) && strand.windows(2).filter(crosses).all(above)
+        };
+        let count = points(&simulation).chunks(POINTS).filter(over).count();
+        assert_eq!(count, 200, "from {height} m");
+    }
+}
