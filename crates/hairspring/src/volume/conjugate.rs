@@ -11,6 +11,9 @@ use std::ops::Range;
 /// What is left of the residual when a solve ends, over the right-hand side [1]: of a divergence, a twentieth is not seen.
 pub const TOLERANCE: f64 = 0.05;
 
+/// Pressure below which a cell is softened when those that pull are let go, over the root mean square [1].
+const HARDLY: f32 = 0.1;
+
 /// Most iterations of a solve: what spreads farther than so many cells in an interval is left to the next.
 pub const ITERATIONS: u32 = 24;
 
@@ -22,6 +25,8 @@ pub struct Solve {
     pub inverse_mass: Vec<f32>,
     /// Inverse diagonal; 0 in cells that have no pressure.
     inverse_diagonal: Vec<f32>,
+    /// What is added to the diagonal: how a cell yields to pressure.
+    compliance: Vec<f32>,
     right: Vec<f32>,
     residual: Vec<f32>,
     pressure: Vec<f32>,
@@ -67,11 +72,12 @@ fn indices(spans: &[Span], nx: usize) -> impl Iterator<Item = Range<usize>> {
 
 impl Solve {
     /// Every array of numbers.
-    fn arrays(&mut self) -> [&mut Vec<f32>; 10] {
+    fn arrays(&mut self) -> [&mut Vec<f32>; 11] {
         let [fx, fy, fz] = &mut self.flux;
         [
             &mut self.inverse_mass,
             &mut self.inverse_diagonal,
+            &mut self.compliance,
             &mut self.right,
             &mut self.residual,
             &mut self.pressure,
@@ -125,26 +131,28 @@ impl Solve {
         }
     }
 
-    /// Takes up the cells of which `flow` has a right-hand side; how many they are.
-    pub fn fill(&mut self, flow: impl Fn(usize) -> Option<f32> + Sync) -> usize {
+    /// Takes up the cells of which `cell` has a right-hand side and a hardness, more than 0 to 1; how many they are. What is less than hard yields to pressure:
+    /// its diagonal d is d over its hardness, so that it takes part in the system the less, the softer it is.
+    pub fn fill(&mut self, cell: impl Fn(usize) -> Option<(f32, f32)> + Sync) -> usize {
         let [nx, ny, nz] = self.window.dims;
         let (slab, corners, inverse_mass) = (nx * ny, self.window.corners(), &self.inverse_mass);
         let parts = self.inverse_diagonal.par_chunks_mut(slab).zip(self.right.par_chunks_mut(slab));
-        let parts =
-            parts.zip(self.pressure.par_chunks_mut(slab)).zip(self.spans.par_chunks_mut(ny)).enumerate();
+        let parts = parts.zip(self.pressure.par_chunks_mut(slab)).zip(self.compliance.par_chunks_mut(slab));
+        let parts = parts.zip(self.spans.par_chunks_mut(ny)).enumerate();
         parts
-            .map(|(z, (((diagonal, right), pressure), spans))| {
+            .map(|(z, ((((diagonal, right), pressure), compliance), spans))| {
                 let mut cells = 0;
                 // The last slab and the last row hold no cells.
                 let rows = if z + 1 < nz { ny - 1 } else { 0 };
                 for (y, span) in spans.iter_mut().enumerate().take(rows) {
                     for x in 0..nx - 1 {
-                        let (c, cell) = (y * nx + x, z * slab + y * nx + x);
-                        let Some(flow) = flow(cell) else { continue };
-                        let sum: f32 = corners.iter().map(|k| inverse_mass[cell + k]).sum();
-                        if sum > 0.0 {
-                            // Three axes, each ±1 at every corner.
-                            (diagonal[c], right[c]) = (1.0 / (3.0 * sum), flow);
+                        let (c, at) = (y * nx + x, z * slab + y * nx + x);
+                        let Some((flow, hardness)) = cell(at) else { continue };
+                        // Three axes, each ±1 at every corner.
+                        let stiff: f32 = 3.0 * corners.iter().map(|k| inverse_mass[at + k]).sum::<f32>();
+                        if stiff > 0.0 {
+                            (diagonal[c], right[c]) = (hardness / stiff, flow);
+                            compliance[c] = stiff * (1.0 / hardness - 1.0);
                             *span = span.with(Span { from: x as u32, to: x as u32 + 1 });
                             cells += 1;
                         }
@@ -158,17 +166,28 @@ impl Solve {
             .sum()
     }
 
-    /// Lets go of the cells that pull; how many are left.
+    /// Lets go of the cells that pull, and softens those that hardly press: how many are left. Were there nothing between, the last bit of a place would tell
+    /// whether a cell presses once others are let go.
     pub fn let_go(&mut self) -> usize {
         let slab = self.window.slab();
+        let (square, cells) = (
+            self.sum(|s, k| f64::from(s.pressure[k]) * f64::from(s.pressure[k])),
+            self.sum(|s, k| f64::from(u8::from(s.inverse_diagonal[k] > 0.0))),
+        );
+        let hard = HARDLY * (square / cells.max(1.0)).sqrt() as f32;
         let parts = self.inverse_diagonal.par_chunks_mut(slab).zip(self.right.par_chunks_mut(slab));
         parts
-            .zip(self.pressure.par_chunks_mut(slab))
-            .map(|((diagonal, right), pressure)| {
+            .zip(self.pressure.par_chunks_mut(slab).zip(self.compliance.par_chunks_mut(slab)))
+            .map(|((diagonal, right), (pressure, compliance))| {
                 let mut cells = 0;
-                for ((diagonal, right), pressure) in diagonal.iter_mut().zip(right).zip(pressure) {
+                let rows = diagonal.iter_mut().zip(right).zip(pressure.iter_mut().zip(compliance));
+                for ((diagonal, right), (pressure, compliance)) in rows {
                     if *pressure <= 0.0 {
                         (*diagonal, *right, *pressure) = (0.0, 0.0, 0.0);
+                    } else if *pressure < hard {
+                        let softer = hard / *pressure;
+                        *compliance += (softer - 1.0) / *diagonal;
+                        *diagonal /= softer;
                     }
                     cells += usize::from(*diagonal > 0.0);
                 }
@@ -291,8 +310,9 @@ impl Solve {
             }
         });
         let [fx, fy, fz] = &self.flux;
-        let parts = self.image.par_chunks_mut(slab).zip(self.inverse_diagonal.par_chunks(slab)).enumerate();
-        parts.filter(|(z, _)| z + 1 < nz).for_each(|(z, (image, diagonal))| {
+        let parts = self.image.par_chunks_mut(slab).zip(self.inverse_diagonal.par_chunks(slab));
+        let parts = parts.zip(self.compliance.par_chunks(slab)).enumerate();
+        parts.filter(|(z, _)| z + 1 < nz).for_each(|(z, ((image, diagonal), compliance))| {
             for (y, span) in spans[z * ny..(z + 1) * ny].iter().enumerate().filter(|(_, s)| s.from < s.to) {
                 let (from, count) = (y * nx + span.from as usize, span.range().len());
                 let corners = [0, nx, slab, slab + nx].map(|corner| z * slab + from + corner);
@@ -301,13 +321,15 @@ impl Solve {
                 let [y0, y1, y2, y3] = [0, 1, 2, 3].map(|k| &fy[rows[k].clone()]);
                 let [z0, z1, z2, z3] = [0, 1, 2, 3].map(|k| &fz[rows[k].clone()]);
                 let (image, diagonal) = (&mut image[from..from + count], &diagonal[from..from + count]);
+                let (compliance, p) = (&compliance[from..from + count], &p[z * slab + from..][..count]);
                 for x in 0..count {
                     let across = |row: &[f32]| row[x + 1] - row[x];
                     let sum = |row: &[f32]| row[x + 1] + row[x];
                     let along_x = (across(x0) + across(x1)) + (across(x2) + across(x3));
                     let along_y = (sum(y1) - sum(y0)) + (sum(y3) - sum(y2));
                     let along_z = (sum(z2) - sum(z0)) + (sum(z3) - sum(z1));
-                    image[x] = if diagonal[x] > 0.0 { along_x + along_y + along_z } else { 0.0 };
+                    let out = along_x + along_y + along_z + compliance[x] * p[x];
+                    image[x] = if diagonal[x] > 0.0 { out } else { 0.0 };
                 }
             }
         });

@@ -23,9 +23,9 @@ pub struct Field {
     /// Mean direction of the strands at each node, as long as they agree on it [1], and the root of the mean square of what velocities differ
     /// by from their mean [m/s].
     pub spread: Vec<[f32; 4]>,
-    /// Room of the points in each cell [cells].
+    /// Room of the points at each node [cells].
     rooms: Vec<f32>,
-    /// How full each cell is: room over volume, averaged with its neighbours', as on a quadratic B-spline [1].
+    /// How full each cell is: room over volume, the mean of its corners [1].
     pub fill: Vec<f32>,
     /// What a point takes with its trilinear weights: an acceleration [m/s²], and a symmetric matrix that takes of its own velocity [1/s].
     pub push: Vec<[f32; PUSH]>,
@@ -50,8 +50,10 @@ impl Field {
         self.rooms.resize(count, 0.0);
         self.fill.resize(count, 0.0);
         self.push.resize(count, [0.0; PUSH]);
-        let (to_speed, to_mass) = (units.mass / units.momentum, 1.0 / units.mass);
-        let to_square = units.mass / units.energy;
+        // In double precision: what velocities differ by is the difference of two squares.
+        let to_mass = 1.0 / units.mass;
+        let to_speed = f64::from(units.mass) / f64::from(units.momentum);
+        let to_square = f64::from(units.mass) / f64::from(units.energy);
         let parts = self.nodes.par_chunks_mut(slab).zip(self.spread.par_chunks_mut(slab));
         parts.zip(self.rooms.par_chunks_mut(slab)).enumerate().for_each(|(z, ((nodes, spread), rooms))| {
             let first = z * slab;
@@ -66,49 +68,37 @@ impl Field {
                     }
                 }
                 let mass = sum[3] as f32;
-                let inverse = if mass > 0.0 { 1.0 / mass } else { 0.0 };
-                let mean = sum.map(|sum| sum as f32 * inverse);
-                let [x, y, z] = [0, 1, 2].map(|k| mean[k] * to_speed);
+                let inverse = if sum[3] > 0 { 1.0 / f64::from(sum[3]) } else { 0.0 };
+                let mean = sum.map(|sum| f64::from(sum) * inverse);
+                let v = [0, 1, 2].map(|k| mean[k] * to_speed);
+                let square = mean[7] * to_square - v.iter().map(|v| v * v).sum::<f64>();
+                let [x, y, z] = [0, 1, 2].map(|k| v[k] as f32 + units.carried[k]);
                 *node = [x, y, z, mass * to_mass];
-                let square = mean[7] * to_square - (x * x + y * y + z * z);
-                *spread = [mean[4], mean[5], mean[6], square.max(0.0).sqrt()];
+                *spread = [mean[4] as f32, mean[5] as f32, mean[6] as f32, square.max(0.0).sqrt() as f32];
             }
             for (n, room) in rooms.iter_mut().enumerate() {
                 let sum = sums.iter().fold(0_u32, |sum, own| sum.saturating_add(own.rooms[first + n]));
                 *room = sum as f32 * (1.0 / ROOM);
             }
         });
-        self.smooth();
+        self.fill_cells();
     }
 
-    /// `fill` from `rooms`: ¼, ½, ¼ along each axis, which is what averaging cells to nodes and nodes to cells does.
-    fn smooth(&mut self) {
+    /// `fill` from `rooms`: the mean of a cell's eight corners, which a point's way from one cell into the next does not change at once.
+    fn fill_cells(&mut self) {
         let [nx, ny, nz] = self.window.dims;
-        let (slab, rooms) = (nx * ny, &self.rooms);
+        let (slab, corners, rooms) = (nx * ny, self.window.corners(), &self.rooms);
         self.fill.par_chunks_mut(slab).enumerate().for_each(|(z, fill)| {
             fill.fill(0.0);
-            if z == 0 || z + 1 >= nz {
+            if z + 1 >= nz {
                 return;
             }
-            for y in 1..ny.saturating_sub(1) {
-                let row = |dy: usize, dz: usize| {
-                    let first = (z + dz - 1) * slab + (y + dy - 1) * nx;
-                    &rooms[first..first + nx]
-                };
-                let out = &mut fill[y * nx..(y + 1) * nx];
-                for (dy, dz) in (0..3).flat_map(|dz| (0..3).map(move |dy| (dy, dz))) {
-                    let weight = [0.25, 0.5, 0.25][dy] * [0.25, 0.5, 0.25][dz];
-                    for (out, room) in out.iter_mut().zip(row(dy, dz)) {
-                        *out += weight * room;
-                    }
+            for y in 0..ny.saturating_sub(1) {
+                let row = y * nx..(y + 1) * nx - 1;
+                let sides = corners.map(|corner| &rooms[z * slab + row.start + corner..][..row.len()]);
+                for (x, out) in fill[row].iter_mut().enumerate() {
+                    *out = 0.125 * sides.iter().map(|side| side[x]).sum::<f32>();
                 }
-                let mut before = 0.0;
-                for x in 0..nx - 1 {
-                    let now = out[x];
-                    out[x] = 0.25 * (before + out[x + 1]) + 0.5 * now;
-                    before = now;
-                }
-                out[nx - 1] = 0.0;
             }
         });
     }

@@ -16,11 +16,16 @@ use super::{conjugate::Solve, field::Field};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// How full a cell is that hair presses in [1]: below what chance leaves of a full one, see `rest::POINTS_A_CELL`.
-const FULL: f32 = 0.8;
+/// How full a cell is that hair begins to press in, and from which on it is hard [1]: below what chance leaves of a full one, see `rest::POINTS_A_CELL`.
+const FULL: [f32; 2] = [0.8, 1.0];
 
-/// Least mass at a corner of such a cell, over the mean of its eight [1]: what hangs on less is at the surface.
-const LEAST_MASS: f32 = 0.05;
+/// Least mass at a corner of such a cell, over the mean of its eight [1], where it begins to press and where it is hard: what hangs on less is at the surface.
+const LEAST_MASS: [f32; 2] = [0.05, 0.1];
+
+/// How hard a cell is, 0 to 1, of which something is at `x`. Were there nothing between, the last bit of a place would tell whether a cell presses.
+fn hardness(x: f32, [soft, hard]: [f32; 2]) -> f32 {
+    ((x - soft) / (hard - soft)).clamp(0.0, 1.0)
+}
 
 /// Solves: of all full cells, then of those that press.
 const SOLVES: usize = 2;
@@ -85,12 +90,12 @@ impl Projection {
         });
         let [vx, vy, vz] = &self.velocities;
         let cells = self.solve.fill(|cell| {
-            if field.fill[cell] < FULL {
-                return None;
-            }
             let masses = corners.map(|k| field.nodes[cell + k][3]);
             let least = masses.iter().copied().fold(f32::INFINITY, f32::min);
-            if least <= LEAST_MASS * 0.125 * masses.iter().sum::<f32>() {
+            let mean = 0.125 * masses.iter().sum::<f32>();
+            let hard =
+                hardness(field.fill[cell], FULL) * hardness(least / mean.max(f32::MIN_POSITIVE), LEAST_MASS);
+            if hard <= 0.0 {
                 return None;
             }
             let mut flow = wanted(cell);
@@ -99,7 +104,7 @@ impl Projection {
                 let out = |v: &[f32], bit: usize| if k & bit == 0 { v[n] } else { -v[n] };
                 flow += out(vx, 1) + out(vy, 2) + out(vz, 4);
             }
-            Some(flow)
+            Some((flow, hard))
         });
         let mut projected = Projected { cells, ..Projected::default() };
         for solve in 0..SOLVES {

@@ -171,7 +171,7 @@ impl Volume {
         let grain = rest::grain(&tiles, &at.anchor, at.segment.max(1e-4));
         let asked = settings.cell.unwrap_or(grain.cell);
         // Hair reaches no farther from its roots than it is long.
-        let extent = Extent::of(&tiles, &Chart::new(&at.anchor, 1.0));
+        let extent = Extent::of(&tiles, &Chart::new(&at.anchor, 1.0), Vec3::ZERO);
         let reach = rest::reach((extent.lo, extent.hi), at.length);
         let size = (reach.1 - reach.0).max(Vec3::splat(asked));
         let mut cell = asked.max((size.element_product() / (0.5 * MOST_NODES)).cbrt());
@@ -283,12 +283,13 @@ impl Volume {
         let chart = now.chart(self.cell);
         let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
         let parts = rayon::current_num_threads().clamp(1, self.sums.len());
+        let carried = splat::root_velocity(&tiles);
         let extent = (0..parts)
             .into_par_iter()
-            .map(|part| Extent::of(&tiles.part(part, parts), &chart))
+            .map(|part| Extent::of(&tiles.part(part, parts), &chart, carried))
             .reduce(|| Extent::NONE, Extent::with);
         let window = self.window(&extent);
-        let units = Units::new(self.points, self.total, extent.speed);
+        let units = Units::new(self.points, self.total, (extent.speed, carried));
         let sums = &mut self.sums[..parts];
         sums.par_iter_mut().enumerate().for_each(|(part, sums)| {
             sums.clear(window.nodes());

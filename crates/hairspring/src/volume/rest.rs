@@ -122,13 +122,13 @@ impl Rest {
 
 /// Finds how full the cells of hair are; the window around it, or `None` where there is none.
 fn fill(tiles: &Tiles, chart: &Chart, sums: &mut Sums, field: &mut Field) -> Option<Window> {
-    let extent = Extent::of(tiles, chart);
+    let extent = Extent::of(tiles, chart, Vec3::ZERO);
     if !(extent.lo.is_finite() && extent.hi.is_finite()) {
         return None;
     }
     let window = Window::around(extent.lo, extent.hi);
     // Any mass will do, rooms are sums of their own.
-    let units = Units { mass: 1.0, momentum: 0.0, energy: 0.0, speed: 0.0 };
+    let units = Units { mass: 1.0, momentum: 0.0, energy: 0.0, speed: 0.0, carried: Vec3::ZERO };
     sums.clear(window.nodes());
     sums.add(tiles, chart, &window, &units);
     field.collect(window, &units, std::slice::from_ref(sums));

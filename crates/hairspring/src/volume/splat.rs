@@ -1,4 +1,4 @@
-//! Points to lattice: mass, momentum, direction and energy to the corners of a point's cell, its room to the cell.
+//! Points to lattice: mass, momentum, direction, energy and room to the corners of a point's cell.
 //!
 //! Sums are whole numbers, so that they have the same bits in any order, and each thread may have a grid of its own.
 
@@ -22,8 +22,9 @@ pub mod own {
 /// What is known of one point of eight strands for good.
 pub type OwnRows = [Row; own::ROWS];
 
-/// Units of room in a cell: a point's room, about an eighth of a cell, is then known to a ten thousandth, and to a tenth in cells ten times as large.
-pub const ROOM: f32 = 65536.0;
+/// Units of room in a cell: a point's room, about an eighth of a cell, is then known to a ten thousandth at each corner, and to a tenth in cells ten times as
+/// large.
+pub const ROOM: f32 = 524288.0;
 
 /// Speed that counts as no more [m/s]: one strand that is gone wild takes no digits from the others.
 const FASTEST: f32 = 50.0;
@@ -73,8 +74,24 @@ pub struct Extent {
     pub hi: Vec3,
     /// Lowest and highest corner of the roots' [cells].
     pub roots: [Vec3; 2],
-    /// Largest component of a velocity, at most [`FASTEST`] [m/s].
+    /// Largest component of a velocity relative to that of the roots, at most [`FASTEST`] [m/s].
     pub speed: f32,
+}
+
+/// The velocity that all are counted from: the middle of what those of the roots are [m/s]. Hair that is carried along at 5 m/s, and moves by 1 cm/s against its
+/// neighbours, would lose the digits of that.
+pub fn root_velocity(tiles: &Tiles) -> Vec3 {
+    let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for (_, state, own) in tiles.iter() {
+        for lane in (0..LANES).filter(|lane| own[0][own::MASS].0[*lane] > 0.0) {
+            let v = Vec3::from([0, 1, 2].map(|k: usize| state[0][state::V + k].0[lane]));
+            if v.is_finite() {
+                (lo, hi) = (lo.min(v), hi.max(v));
+            }
+        }
+    }
+    let middle = 0.5 * (lo + hi);
+    if middle.is_finite() { middle } else { Vec3::ZERO }
 }
 
 impl Extent {
@@ -86,8 +103,8 @@ impl Extent {
         speed: 0.0,
     };
 
-    /// Of these points; what is not finite does not count.
-    pub fn of(tiles: &Tiles, chart: &Chart) -> Self {
+    /// Of these points, velocities counted from `carried` [m/s]; what is not finite does not count.
+    pub fn of(tiles: &Tiles, chart: &Chart, carried: Vec3) -> Self {
         let (mut lo, mut hi) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
         let mut speed = [0.0_f32; LANES];
         let mut roots = Self::NONE.roots;
@@ -108,7 +125,7 @@ impl Extent {
                         // Comparisons that a NaN fails.
                         lo[k][lane] = if counts & (p < lo[k][lane]) { p } else { lo[k][lane] };
                         hi[k][lane] = if counts & (p > hi[k][lane]) { p } else { hi[k][lane] };
-                        let v = at[state::V + k].0[lane].abs();
+                        let v = (at[state::V + k].0[lane] - carried[k]).abs();
                         speed[lane] = if counts & (v > speed[lane]) { v } else { speed[lane] };
                     }
                 }
@@ -139,8 +156,10 @@ pub struct Units {
     pub momentum: f32,
     /// Units of m |v|² of that mass at 1 m/s [s²/m²].
     pub energy: f32,
-    /// Largest component of a velocity [m/s].
+    /// Largest component of a velocity relative to `carried` [m/s].
     pub speed: f32,
+    /// The velocity that those of points are counted from [m/s].
+    pub carried: Vec3,
 }
 
 /// Most units in a point: they are rounded by [`nearest`].
@@ -148,13 +167,13 @@ const MOST_UNITS: f32 = (1 << 21) as f32;
 
 impl Units {
     /// As fine as they can be while a node could hold all `points`, of `total` mass over the largest one's, and none faster than `speed`
-    /// [m/s]: the sum of what 320,000 points could leave in one node is below 2³¹, each to one part in 6,000.
-    pub fn new(points: usize, total: f64, speed: f32) -> Self {
+    /// [m/s] relative to `carried` [m/s]: the sum of what 320,000 points could leave in one node is below 2³¹, each to one part in 6,000.
+    pub fn new(points: usize, total: f64, (speed, carried): (f32, Vec3)) -> Self {
         // Each may be rounded up by half a unit.
         let most = (f64::from(i32::MAX) - 0.5 * points as f64) / total.max(1.0);
         let mass = (most.max(1.0).log2().floor().exp2() as f32).min(MOST_UNITS);
         let speed = speed.max(f32::MIN_POSITIVE.sqrt());
-        Self { mass, momentum: mass / speed, energy: mass / (3.0 * speed * speed), speed }
+        Self { mass, momentum: mass / speed, energy: mass / (3.0 * speed * speed), speed, carried }
     }
 }
 
@@ -163,7 +182,7 @@ impl Units {
 pub struct Sums {
     /// Of each node: momentum along x, y, z, mass, the sum of the directions of strands times their mass along x, y, z, and the sum of m |v|².
     pub nodes: Vec<i32>,
-    /// Room of the points in each cell.
+    /// Room of the points at each node.
     pub rooms: Vec<u32>,
 }
 
@@ -204,10 +223,10 @@ impl Sums {
                     }
                 }
                 let mut counted = [[0.0; LANES]; NODE];
-                let mut room = [0; LANES];
+                let mut room = [0.0; LANES];
                 for lane in 0..LANES {
                     counted[3][lane] = own[own::MASS].0[lane] * there[lane] * units.mass;
-                    room[lane] = nearest(own[own::ROOM].0[lane] * there[lane]);
+                    room[lane] = own[own::ROOM].0[lane] * there[lane];
                     let edge = [0, 1, 2].map(|k: usize| at[state::EDGE + k].0[lane]);
                     let length = (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]).sqrt();
                     // The edge to a root has no direction.
@@ -219,7 +238,8 @@ impl Sums {
                 for k in 0..3 {
                     let Row(v) = &at[state::V + k];
                     for lane in 0..LANES {
-                        let high = if v[lane] < units.speed { v[lane] } else { units.speed };
+                        let v = v[lane] - units.carried[k];
+                        let high = if v < units.speed { v } else { units.speed };
                         let v = if high > -units.speed { high } else { -units.speed };
                         counted[k][lane] = v * (counted[3][lane] * per_speed);
                         counted[7][lane] += v * v * (counted[3][lane] * per_energy);
@@ -241,8 +261,10 @@ impl Sums {
                         for c in 0..NODE {
                             pair[NODE + c] = pair[NODE + c].wrapping_add(nearest(point[c] * b));
                         }
+                        for (sum, weight) in self.rooms[cell + corner..].iter_mut().zip([a, b]) {
+                            *sum = sum.saturating_add(nearest(room[lane] * weight) as u32);
+                        }
                     }
-                    self.rooms[cell] = self.rooms[cell].saturating_add(room[lane] as u32);
                 }
             }
         }

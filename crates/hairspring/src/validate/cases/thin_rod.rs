@@ -3,7 +3,7 @@
 use super::USUAL;
 use crate::{
     collide::Obstacle,
-    material::{Material, Model},
+    material::Material,
     validate::{
         Case, Failure, Method, Parameter, Quantity, ROD_RADIUS_MM,
         plot::Sweep,
