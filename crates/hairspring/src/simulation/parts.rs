@@ -27,6 +27,7 @@ impl Simulation {
         let exchanges = (f64::from(drive.dt) / (LONGEST * LONGER)).ceil() as usize;
         let frozen = if self.is_pressed() { substeps.div_ceil(exchanges) } else { substeps };
         let mut neighbours = self.neighbours.take();
+        interval.meets = neighbours.is_some();
         let alone = if neighbours.is_some() { 1 } else { frozen };
         interval.now = 0..frozen.min(substeps);
         let mut times = StepTimes::default();
@@ -48,14 +49,17 @@ impl Simulation {
                 self.bear_neighbours(neighbours, interval.h);
             }
             let borne = Instant::now();
+            if neighbours.is_some() {
+                times.neighbours += borne - began;
+            }
             reset_strands += self.run(interval);
             interval.continues = true;
-            let solved = Instant::now();
+            times.solve += borne.elapsed();
             if let Some(neighbours) = &mut neighbours {
+                let began = Instant::now();
                 self.meet_neighbours(neighbours, interval, number);
+                times.neighbours += began.elapsed();
             }
-            times.solve += solved - borne;
-            times.neighbours += (borne - began) + solved.elapsed();
         }
         self.neighbours = neighbours;
         (reset_strands, times)

@@ -19,7 +19,7 @@ use super::{
     band::Band,
     drag::Drag,
     elements::{Elements, Outset, Walk},
-    lanes::{F, Simd, Sym3, V3},
+    lanes::{F, Mask, Simd, Sym3, V3},
     model::Model,
     outside,
     prefetch::ask_beyond,
@@ -50,6 +50,8 @@ pub struct Step<'a, S: Simd> {
     pub moved: V3<S>,
     /// Whether the tile's history stands for a substep of the same length: then by BDF2, else by backward Euler.
     pub second_order: bool,
+    /// Which strands touch something.
+    pub touches: Mask<S>,
     /// Colliders, each at the start and the end of it.
     pub obstacles: &'a [ObstaclePose],
 }

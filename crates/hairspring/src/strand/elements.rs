@@ -3,10 +3,10 @@
 use super::{
     assemble::{Step, Sweep},
     band::Band,
-    lanes::{F, Mask, Simd, V3, Work, load},
+    lanes::{F, Simd, V3, Work, load},
     model::{
         At, Model,
-        stretch::{SIDEWAYS_BDF2, stretch},
+        stretch::{SIDEWAYS_BDF2, Sideways, stretch},
     },
     profile::Profile,
     root::Root,
@@ -39,8 +39,7 @@ pub struct Walk<S: Simd> {
     /// Half of `strand::DRAG` [Pa s].
     half_drag: F<S>,
     /// See [`stretch`].
-    sideways: F<S>,
-    touched: Mask<S>,
+    sideways: Sideways<S>,
 }
 
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
@@ -69,32 +68,15 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         scratch.factors[..begin].fill(Work::default());
         scratch.across.clear();
         let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
-        let sideways = F::splat(
-            simd,
-            if step.second_order {
-                SIDEWAYS_BDF2
-            } else if M::STRIDE == 2 {
-                M::SIDEWAYS
-            } else {
-                EXPERIMENT.0
-            },
-        );
+        let share = if step.second_order { SIDEWAYS_BDF2 } else { M::SIDEWAYS };
+        let sideways = Sideways::new(simd, share, step.h, step.touches);
         let root_velocity = V3::load(simd, &tile.state[0][state::V..]);
         let now = step.moved * F::splat(simd, 1.0 / step.h);
         let ambient = Ambient {
             pull: (root_velocity - now).mul_add(F::splat(simd, 1.0 / step.h), V3::splat(simd, step.gravity)),
             wind: V3::splat(simd, step.wind) + (root_velocity - now),
         };
-        let walk = Walk {
-            touched: Mask::splat(simd, false),
-            at,
-            x: zero,
-            way: zero,
-            root_velocity,
-            ambient,
-            half_drag,
-            sideways,
-        };
+        let walk = Walk { at, x: zero, way: zero, root_velocity, ambient, half_drag, sideways };
         Self { band, model, walk }
     }
 
@@ -135,26 +117,8 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let length = load(simd, &row[rest::LENGTH]);
         let k = load(simd, &fixed[next].along);
         let tension = load(simd, &tile.state[next][state::TENSION]);
-        let (_, c, mode, d) = *EXPERIMENT;
-        let far = far.min(tile.rest.len() - 1);
-        let mut touches = load(simd, &tile.state[next][state::PRESS]).simd_gt(0.0)
-            | load(simd, &tile.state[far][state::PRESS]).simd_gt(0.0);
-        if let Some(rows) = tile.spans.get(far) {
-            touches |= load(simd, &rows[crate::strand::tile::span::FORCE]).simd_gt(0.0);
-        }
-        if let Some(rows) = tile.grip.get(next) {
-            touches |= load(simd, &rows[0]).simd_gt(0.0);
-        }
-        if mode >= 2 {
-            touches |= walk.touched;
-            walk.touched = touches;
-        }
-        let c =
-            if mode >= 1 { touches.select(F::splat(simd, d), F::splat(simd, c)) } else { F::splat(simd, c) };
-        let t = (tension / l).max(0.0).min(k);
-        let more = (t - mass * c * (1.0 / (at.h * at.h))).max(0.0) / t.max(1e-30);
-        let share = walk.sideways.max(more);
-        let (force, block) = stretch((l, u), (l - length) * at.news, (k, tension), at.drift[1], share);
+        let (force, block) =
+            stretch((l, u), (l - length) * at.news, (k, tension, mass), at.drift[1], &walk.sideways);
         band.add_diagonal(1, block);
         band.add_diagonal(1 + M::STRIDE, block);
         band.add_block(1, 1 + M::STRIDE, &-block.full());
@@ -221,8 +185,3 @@ impl<S: Simd> Outset<S> {
         if self.sweep == Sweep::First { self.drift(simd) } else { self.way }
     }
 }
-
-pub static EXPERIMENT: std::sync::LazyLock<(f32, f32, i32, f32)> = std::sync::LazyLock::new(|| {
-    let v = |n: &str, d: f32| std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
-    (v("XG", 0.15), v("XC", 12.0), v("XM", 1.0) as i32, v("XD", 0.25))
-});

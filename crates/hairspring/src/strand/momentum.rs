@@ -7,10 +7,14 @@ use super::{
     dispatch::{dispatch, dispatch_double},
     elements::Elements,
     fixed::fix,
-    lanes::{F, LANES, Row, Simd, V3},
+    lanes::{F, LANES, Mask, Row, Simd, V3},
     model::{
-        Model, Stretching, curvature::Curvature, rod::Rod, springs::Springs, straight::Straight,
-        stretch::stretch,
+        Model, Stretching,
+        curvature::Curvature,
+        rod::Rod,
+        springs::Springs,
+        straight::Straight,
+        stretch::{Sideways, stretch},
     },
     reference,
     root::Root,
@@ -102,6 +106,7 @@ where
         moved: root.position,
         root,
         second_order: false,
+        touches: Mask::splat(simd, false),
         obstacles: &[],
     };
     let mut memory = Memory::default();
@@ -207,7 +212,8 @@ proptest! {
         let ((ours, block), u) = dispatch!(Level::new(), simd => {
             let f = |v: f64| F::splat(simd, v as f32);
             let (l, u) = splat(simd, e).length_and_unit();
-            let (force, block) = stretch((l, u), l - f(rest), (f(k), f(tension)), V3::zero(simd), f(0.0));
+            let still = Sideways::new(simd, 0.0, 1.0, Mask::splat(simd, false));
+            let (force, block) = stretch((l, u), l - f(rest), (f(k), f(tension), f(1.0)), V3::zero(simd), &still);
             let m = [block.xx, block.xy, block.xz, block.yy, block.yz, block.zz].map(|v| v.lane(3) as f64);
             ((lane(force), m), lane(u))
         });

@@ -7,7 +7,7 @@ use super::{
     drag::normal_coefficient,
     model::{
         rod::{FOLDING, curved_joint},
-        stretch::{SIDEWAYS, STRETCH},
+        stretch::{SIDEWAYS, STRETCH, sideways},
     },
 };
 use glam::{DMat3, DQuat, DVec3};
@@ -143,7 +143,8 @@ impl Strand {
             let k = STRETCH as f64 * self.mass[i] / (self.h * self.h);
             let pull = k * (l - rest) + self.tension[i];
             let side = (pull.max(self.tension[i]) / l).clamp(0.0, k);
-            let turned = (self.tension[i] / l).clamp(0.0, k) * SIDEWAYS as f64;
+            let tense = (self.tension[i] / l).clamp(0.0, k);
+            let turned = sideways(SIDEWAYS.into(), false, tense, (self.mass[i + 1], self.h));
             // The matrix acts on the whole displacement; the pull turns with a share of the drift, and with all that is solved for beyond it.
             // What the root drives drifts with it.
             let inner = if i < 2 { self.v[0] } else { self.v[i] };

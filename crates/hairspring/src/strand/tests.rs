@@ -6,7 +6,7 @@ use super::{
     band::{Band, back_substitute},
     dispatch::{dispatch, dispatch_double},
     fixed::fix,
-    lanes::{F, LANES, Row, Simd, V3, Work},
+    lanes::{F, LANES, Mask, Row, Simd, V3, Work},
     model::{
         Stretching,
         altitude::altitude,
@@ -426,6 +426,7 @@ fn solve_substep<S: Simd>(
         moved: root.position,
         root,
         second_order: false,
+        touches: Mask::splat(simd, false),
         obstacles: &[],
     };
     scratch.begin(simd, tile.state);

@@ -17,7 +17,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 /// How full a cell is that hair begins to press in, and from which on it is hard [1]: below what chance leaves of a full one, see `rest::POINTS_A_CELL`.
-const FULL: [f32; 2] = [0.8, 1.0];
+const FULL: [f32; 2] = [0.9, 0.95];
 
 /// Least mass at a corner of such a cell, over the mean of its eight [1], where it begins to press and where it is hard: what hangs on less is at the surface.
 const LEAST_MASS: [f32; 2] = [0.05, 0.1];

@@ -12,14 +12,17 @@ use super::{
     drag::Drag,
     fixed::fix,
     interval::Interval,
-    lanes::{F, Simd, V3, load},
+    lanes::{F, Mask, Simd, V3, load},
     limit::{Finish, LIMIT, limit},
     model::{Model, Stretching},
     root::Root,
     scratch::Memory,
-    tile::{Tile, grip, rest, state, tines},
+    tile::{Tile, grip, rest, span, state, tines},
 };
-use crate::scene::{Integrator, Response};
+use crate::{
+    collide::ObstaclePose,
+    scene::{Integrator, Response},
+};
 
 /// The substeps of `interval` that are to be run now, for one tile.
 #[inline(always)]
@@ -78,6 +81,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
             root,
             moved,
             second_order,
+            touches: touching(simd, (interval, &substep.obstacles), tile),
             obstacles: &substep.obstacles,
         };
         let mut finish = Finish { limit: largest_strain, press: 0.0, project: true, kicks: false };
@@ -145,4 +149,25 @@ fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, [u, x]: [V3<
     }
     // Implicit by itself: methods that take steps as long as the implicit ones' would else not bear a firm grip.
     pulled * (one / yielding)
+}
+
+/// Which strands touch a collider, or are gripped; all of them, where strands may touch each other.
+#[inline(always)]
+fn touching<S: Simd>(simd: S, (interval, obstacles): (&Interval, &[ObstaclePose]), tile: &Tile) -> Mask<S> {
+    if interval.meets {
+        return Mask::splat(simd, true);
+    }
+    let mut most = F::<S>::splat(simd, 0.0);
+    if !obstacles.is_empty() {
+        for rows in tile.state.iter() {
+            most = most.max(load(simd, &rows[state::PRESS]));
+        }
+        for rows in tile.spans.iter() {
+            most = most.max(load(simd, &rows[span::FORCE]));
+        }
+    }
+    for rows in tile.grip {
+        most = most.max(load(simd, &rows[grip::STIFFNESS]));
+    }
+    most.simd_gt(0.0)
 }

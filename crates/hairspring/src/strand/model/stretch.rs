@@ -9,7 +9,7 @@
 //! makes the segment inextensible all the same.
 
 use crate::strand::{
-    lanes::{F, Simd, Sym3, V3, load},
+    lanes::{F, Mask, Simd, Sym3, V3, load},
     tile::{Tile, rest, strand},
 };
 
@@ -52,7 +52,7 @@ pub fn stiffening(points: usize) -> f32 {
 /// Stretch stiffness in units of m/h² [1]. Stable in every test from 10² to 10³; above about 10⁴ it blows up.
 pub const STRETCH: f32 = 400.0;
 
-/// Share of a substep's drift δ₀ = h v that sideways tension is linearised at, with backward Euler [1].
+/// Least share of a substep's drift δ₀ = h v that sideways tension is linearised at, with backward Euler [1].
 ///
 /// A swing of angular frequency ω, M a = −K (x + γ h v + h² a), keeps its amplitude for γ = 0 and loses ½ γ h ω² of it a second in first order; with γ = 1
 /// this is backward Euler, and a pendulum of 64 points loses a quarter of a swing of 90° in a period. It is stable for any stiffness and γ ≥ 0, because
@@ -63,24 +63,64 @@ pub const SIDEWAYS: f32 = 0.15;
 /// The same with BDF2, which is of second order with all of it [1].
 pub const SIDEWAYS_BDF2: f32 = 1.0;
 
+/// Sideways stiffness T/ℓ above which all of the drift counts, in units of m/h² [1]: of the excess, γ is 1.
+///
+/// At rest, strands have up to N g h²/ℓ of it at the root: 11 with 130 points over 26 cm at 240 substeps a second. What is more is a ride or a blow.
+const SWINGS: f32 = 12.0;
+
+/// The same of strands that touch something [1]. A contact's force is of the step before, which feeds what trembles on it, and nothing that touches swings freely:
+/// a quarter of the stiffness at which a chain without any damping blows up, T/ℓ = m/h² (ω h = 2 of its highest mode).
+const TOUCHES: f32 = 0.25;
+
+/// How much of a tense segment's pull turns with the drift: γ T/ℓ, or what is above a bound.
+#[derive(Clone, Copy)]
+pub struct Sideways<S: Simd> {
+    /// γ [1].
+    share: F<S>,
+    /// The bound over the mass of the segment's farther point [1/s²].
+    bound: F<S>,
+}
+
+impl<S: Simd> Sideways<S> {
+    /// Of strands in substeps of `h` [s], of which some touch something.
+    #[inline(always)]
+    pub fn new(simd: S, share: f32, h: f32, touches: Mask<S>) -> Self {
+        let bound = |units: f32| F::splat(simd, units / (h * h));
+        Self { share: F::splat(simd, share), bound: touches.select(bound(TOUCHES), bound(SWINGS)) }
+    }
+
+    /// Of a segment with this sideways stiffness T/ℓ [N/m], whose farther point has this `mass` [kg].
+    #[inline(always)]
+    fn of(&self, stiffness: F<S>, mass: F<S>) -> F<S> {
+        (stiffness * self.share).max(stiffness - mass * self.bound)
+    }
+}
+
+/// The same of a single number: stiffness [N/m], mass [kg] and length of a substep [s].
+#[cfg(test)]
+pub fn sideways(share: f64, touches: bool, stiffness: f64, (mass, h): (f64, f64)) -> f64 {
+    let units = if touches { TOUCHES } else { SWINGS };
+    (stiffness * share).max(stiffness - mass * f64::from(units) / (h * h))
+}
+
 /// A segment: force on the nearer point (the farther gets its opposite) where the solve begins [N], and stiffness block [N/m].
 ///
 /// `longer` is by how much it is longer than at rest [m], as far as its tension does not know yet.
 /// `tension` [N] is what the last substep found to hold the segment at its length; carrying it over (as an augmented
 /// Lagrangian does) makes a strand at rest stay at rest exactly, whatever the stiffness of the spring. `drift` is how far its farther end drifts from its
-/// nearer one before the solve begins [m], and `sideways` the share of that which turns the pull, see [`SIDEWAYS`].
+/// nearer one before the solve begins [m]. `mass` is the farther point's [kg].
 #[inline(always)]
 pub fn stretch<S: Simd>(
     (length, u): (F<S>, V3<S>),
     longer: F<S>,
-    (k, tension): (F<S>, F<S>),
+    (k, tension, mass): (F<S>, F<S>, F<S>),
     drift: V3<S>,
-    sideways: F<S>,
+    sideways: &Sideways<S>,
 ) -> (V3<S>, Sym3<S>) {
     let pull = k.mul_add(longer, tension);
     let across = (pull.max(tension) / length).max(0.0).min(k);
     // By the tension alone: what projection leaves of lengths is noise, of which `pull` knows k times, and the part that pulls would brake a swing.
-    let turned = (tension / length).max(0.0).min(k) * sideways;
+    let turned = sideways.of((tension / length).max(0.0).min(k), mass);
     let force = u * (k - turned).mul_add(u.dot(drift), pull) + drift * turned;
     (force, Sym3::outer(u, k - across).add_identity(across))
 }
