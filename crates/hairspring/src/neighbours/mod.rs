@@ -160,6 +160,11 @@ impl Neighbours {
         self.contacts.extend_from_slice(&old.contacts[..old.contacts.len().min(self.contacts.capacity())]);
     }
 
+    /// Whether any strand touches another.
+    pub fn touch(&self) -> bool {
+        self.contacts.iter().any(|contact| contact.presses() || contact.holds())
+    }
+
     /// Leaves as the velocities of `hair` what they change by by what contacts carry, in a substep of `h` [s].
     pub fn bear(&mut self, h: f32) {
         self.hair.v.fill(Vec3::ZERO);

@@ -27,7 +27,7 @@ impl Simulation {
         let exchanges = (f64::from(drive.dt) / (LONGEST * LONGER)).ceil() as usize;
         let frozen = if self.is_pressed() { substeps.div_ceil(exchanges) } else { substeps };
         let mut neighbours = self.neighbours.take();
-        interval.meets = neighbours.is_some();
+        interval.meets = false;
         let alone = if neighbours.is_some() { 1 } else { frozen };
         interval.now = 0..frozen.min(substeps);
         let mut times = StepTimes::default();
@@ -47,6 +47,7 @@ impl Simulation {
             let began = Instant::now();
             if let Some(neighbours) = &mut neighbours {
                 self.bear_neighbours(neighbours, interval.h);
+                interval.meets = neighbours.touch();
             }
             let borne = Instant::now();
             if neighbours.is_some() {

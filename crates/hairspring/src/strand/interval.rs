@@ -18,7 +18,7 @@ pub struct Interval {
     pub iterations: u32,
     /// Whether the substep before this interval was as long as those in it.
     pub continues: bool,
-    /// Whether strands meet each other one by one, between substeps.
+    /// Whether any strands touch each other, which they do between substeps.
     pub meets: bool,
     /// What keeps hair out of colliders.
     pub response: Response,

@@ -41,8 +41,11 @@ const NEAREST: f32 = 0.125;
 /// were dragged through.
 const NEAREST_OF_BOX: f32 = 0.25;
 
-/// Shortest lever by which an outer end answers what is thin, as a part of the segment [1]: the rest is for the next substep.
+/// Shortest lever by which an outer end answers a thin box, or a rod thinner than [`THIN_FOR_LEVER`], as a part of the segment [1]: the rest is for the next substep.
 const SHORTEST: f32 = 0.25;
+
+/// Radius of such a rod, over the segment's length [1].
+const THIN_FOR_LEVER: f32 = 1.0 / 6.0;
 
 /// Radius of a rod from which on it may be left near the inner end of a segment, over how deep the segment may be [1].
 const THIN_ROD: f32 = 5.0;
@@ -111,9 +114,13 @@ pub fn clear<S: Simd>(
     // A rod that is left near the inner end would be past the segment before the next solve.
     let nearest = F::<S>::splat(simd, NEAREST);
     let (from, shortest) = match edges {
-        Some(edges) if edges.is_box() => (F::splat(simd, NEAREST_OF_BOX), SHORTEST),
-        Some(edges) => (edges.is_rod_within(clear * -THIN_ROD).select(zero, nearest), SHORTEST),
-        None => (nearest, NEAREST),
+        Some(edges) if edges.is_box() => (F::splat(simd, NEAREST_OF_BOX), F::splat(simd, SHORTEST)),
+        Some(edges) => {
+            let thin = edges.is_rod_within(link.length * THIN_FOR_LEVER);
+            let shortest = thin.select(F::splat(simd, SHORTEST), nearest);
+            (edges.is_rod_within(clear * -THIN_ROD).select(zero, nearest), shortest)
+        }
+        None => (nearest, nearest),
     };
     let allowed = load(simd, &tile.rest[i][rest::CLEARANCE]);
     let (mut q, mut cuts, mut wall) = (e, may, V3::zero(simd));

@@ -12,7 +12,7 @@ use std::ops::Range;
 pub const TOLERANCE: f64 = 0.05;
 
 /// Pressure below which a cell is softened when those that pull are let go, over the root mean square [1].
-const HARDLY: f32 = 0.3;
+const HARDLY: f32 = 0.1;
 
 /// Most iterations of a solve: what spreads farther than so many cells in an interval is left to the next.
 pub const ITERATIONS: u32 = 24;

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 const FULL: [f32; 2] = [0.9, 0.95];
 
 /// Least mass at a corner of such a cell, over the mean of its eight [1], where it begins to press and where it is hard: what hangs on less is at the surface.
-const LEAST_MASS: [f32; 2] = [0.05, 0.1];
+const LEAST_MASS: [f32; 2] = [0.025, 0.05];
 
 /// How hard a cell is, 0 to 1, of which something is at `x`. Were there nothing between, the last bit of a place would tell whether a cell presses.
 fn hardness(x: f32, [soft, hard]: [f32; 2]) -> f32 {

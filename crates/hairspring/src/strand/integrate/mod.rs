@@ -151,7 +151,7 @@ fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, [u, x]: [V3<
     pulled * (one / yielding)
 }
 
-/// Which strands touch a collider, or are gripped; all of them, where strands may touch each other.
+/// Which strands touch a collider, or are gripped; all of them, where any touch each other.
 #[inline(always)]
 fn touching<S: Simd>(simd: S, (interval, obstacles): (&Interval, &[ObstaclePose]), tile: &Tile) -> Mask<S> {
     if interval.meets {

@@ -22,8 +22,8 @@ pub const CASE: Case = Case {
         Quantity { name: "period over small-swing period", tolerance: FREQUENCY },
         Quantity { name: "amplitude kept in a period", tolerance: 0.05 },
     ],
-    // More points would be a whip and not a pendulum.
-    method: Method { points: 3, ..USUAL },
+    // More points would be a whip and not a pendulum. At four substeps a swing of 90° keeps 91 % of its width in a period, one of 30° 98 %.
+    method: Method { points: 3, substeps: 8, ..USUAL },
     points_fixed: true,
     out_of_reach: |method| (method.model == Model::Springs).then_some(SPRINGS_ARE_BRAKED),
     reference: |values| Ok(vec![period_ratio(values[0].to_radians()), 1.0]),
