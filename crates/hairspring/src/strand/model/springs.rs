@@ -40,9 +40,9 @@ pub struct Springs;
 impl<S: Simd> Model<S, 3, 12> for Springs {
     const STRIDE: usize = 2;
 
-    // The truss feeds a swing by a tenth of its width a second (50 mm at the tip of 26 cm, a fibre of the default material), which this takes. More of it on a
-    // free strand, or less on one that lies on an edge, and long strands tremble.
-    const SIDEWAYS: [f32; 2] = [1.1, 1.75];
+    // The truss feeds a swing by a tenth of its width a second (50 mm at the tip of 26 cm, a fibre of the default material), which this takes. With more of it on
+    // a free strand long strands tremble, and on one that lies on an edge it needs more.
+    const SIDEWAYS: [f32; 2] = [1.0, 1.4];
 
     const PROFILE: Profile<3, 12> = Profile::far();
 
