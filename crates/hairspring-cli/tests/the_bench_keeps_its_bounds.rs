@@ -206,6 +206,6 @@ fn a_scene_says_what_its_stages_take_and_what_it_met() {
     assert!(number("points_in_contact") > 0.0, "hair lies on the head: {found}");
     assert!(number("points_looked_up") > 0.0, "{found}");
     assert!(number("ns_per_point_substep") > 0.0);
-    let told = succeed(folder.path(), &arguments);
-    assert!(stages.iter().all(|name| told.contains(name)) && told.contains("held out"), "{told}");
+    let output = succeed(folder.path(), &arguments);
+    assert!(stages.iter().all(|name| output.contains(name)) && output.contains("held out"), "{output}");
 }

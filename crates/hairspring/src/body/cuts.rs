@@ -20,7 +20,7 @@ const REFERENCE: f64 = 1.0 / 24.0;
 /// Turn beyond the predicted one that is a teleport in [`REFERENCE`] [rad].
 const TELEPORT_ANGLE: f32 = std::f32::consts::FRAC_PI_2;
 
-/// Share of a teleport that, beside one, is the rest of it [1].
+/// Least motion next to a teleport that is counted as part of it, over the teleport's length [1].
 const REST: f32 = 0.05;
 
 /// Whether no genuine motion goes `off` [m] and turns by `turned` [rad] from where it is expected after `dt` [s], where `distance` [m] is what a teleport takes
@@ -160,7 +160,7 @@ pub(super) fn find(path: &[Rigid], rate: f64, distance: f32) -> Vec<(usize, usiz
     let longest = ((rate * REFERENCE).ceil() as usize).saturating_add(1).min(intervals);
     // It touches one interval more than it fills where its keys lie between frames.
     let widest = longest + 1;
-    // What beside a cut still goes its way, as no motion before or after it does, is the rest of it.
+    // A frame next to a cut belongs to it if it moves in the same direction and faster than the frames before and after.
     let is_rest = |interval: usize, neighbour: Pace, step: Vec3| {
         let own = pace(interval);
         let off = own.velocity - neighbour.velocity;
@@ -182,7 +182,7 @@ pub(super) fn find(path: &[Rigid], rate: f64, distance: f32) -> Vec<(usize, usiz
         (from, to)
     };
     let mut cuts: Vec<(usize, usize)> = Vec::new();
-    // The shortest runs first: what stands still beside a cut is no part of it.
+    // Try the shortest runs first, so that a frame without motion next to a cut is not counted as part of it.
     for n in 1..=longest {
         for from in 0..=intervals - n {
             let to = from + n;
