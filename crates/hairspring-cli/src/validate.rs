@@ -161,8 +161,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         let mut cases: Vec<&'static Case> = jobs.iter().map(|job| job.case).collect();
         cases.dedup_by_key(|case| case.name);
         interrupt::listen();
-        table::run(&cases, console);
-        return Ok(());
+        return table::run(&cases, console);
     }
     let outcomes: Vec<Outcome> =
         jobs.par_iter().flat_map_iter(|job| job.case.run(&job.values, job.method)).collect();

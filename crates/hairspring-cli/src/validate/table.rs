@@ -2,6 +2,7 @@
 
 use crate::{
     console::{Console, say},
+    fault::Fault,
     interrupt,
 };
 use hairspring::{
@@ -40,8 +41,8 @@ impl Cell {
     }
 }
 
-/// Runs `cases` and prints the table.
-pub(super) fn run(cases: &[&'static Case], console: Console) {
+/// Runs `cases` and prints the table, of what was measured when the user asked to stop.
+pub(super) fn run(cases: &[&'static Case], console: Console) -> Result<(), Fault> {
     let began = Instant::now();
     let rows: Vec<(&'static Case, Model)> =
         cases.iter().flat_map(|case| MODELS.map(|model| (*case, model))).collect();
@@ -56,11 +57,12 @@ pub(super) fn run(cases: &[&'static Case], console: Console) {
         .collect();
     let progress = std::sync::Mutex::new(console.progress_in("measuring", cells.len() as u32, "cells"));
     let done = AtomicU32::new(0);
-    let found: Vec<Vec<Outcome>> = cells
+    // None of a cell that was not begun when the user asked to stop.
+    let found: Vec<Option<Vec<Outcome>>> = cells
         .par_iter()
         .with_max_len(1)
         .map(|cell| {
-            let outcomes = if interrupt::asked() { Vec::new() } else { cell.run() };
+            let outcomes = (!interrupt::asked()).then(|| cell.run());
             let done = done.fetch_add(1, Relaxed) + 1;
             if let Ok(mut progress) = progress.lock() {
                 let Method { points, model, .. } = cell.method;
@@ -76,12 +78,16 @@ pub(super) fn run(cases: &[&'static Case], console: Console) {
     let mut notes: Vec<String> = Vec::new();
     for (r, (case, model)) in rows.iter().enumerate() {
         let of_columns = (0..POINTS.len()).rev().map(|c| &found[c * rows.len() + r]);
-        let texts: Vec<String> = of_columns.map(|outcomes| cell(case, outcomes, &mut notes)).collect();
+        let texts = of_columns.map(|outcomes| match outcomes {
+            Some(outcomes) => cell(case, outcomes, &mut notes),
+            None => note(&mut notes, "not measured: the run was interrupted".into()),
+        });
+        let texts: Vec<String> = texts.collect();
         say(format_args!(
             "| {} | {} | {} | {} |",
             case.name,
             model.name(),
-            bound(&found[(POINTS.len() - 1) * rows.len() + r]),
+            bound(found[(POINTS.len() - 1) * rows.len() + r].as_deref().unwrap_or_default()),
             texts.join(" | ")
         ));
     }
@@ -90,9 +96,16 @@ pub(super) fn run(cases: &[&'static Case], console: Console) {
     let threads = rayon::current_num_threads();
     say(format_args!(
         "\n{} cells in {:.0} s on {threads} threads.",
-        cells.len(),
+        found.iter().flatten().count(),
         began.elapsed().as_secs_f64()
     ));
+    match found.iter().filter(|found| found.is_none()).count() {
+        0 => Ok(()),
+        left => Err(Fault::Interrupted(format!(
+            "interrupted: {left} of {} cells were not measured; they say so in the table",
+            cells.len()
+        ))),
+    }
 }
 
 /// The tolerances of a case's quantities.

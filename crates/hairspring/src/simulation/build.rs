@@ -94,6 +94,7 @@ impl Simulation {
                 .flat_map(|s| groom.strand(*s as usize).windows(2).map(|w| w[0].distance(w[1])))
                 .fold(0.0, f32::max),
             hairs: vec![groom.strand_count() as f32 / strands.len() as f32; groom.strand_count()],
+            touched: vec![Row::default(); tiles.len()],
             spans: vec![SpanRows::default(); if solver.segments { first as usize } else { 0 }],
             history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],
             holds: Vec::new(),

@@ -73,6 +73,8 @@ pub struct Simulation {
     /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]; as long as `state`, or empty where
     /// none was.
     sunk: Vec<Row>,
+    /// For how much longer each strand counts as one that touches something [s]; one for each tile.
+    touched: Vec<Row>,
     /// What presses the segment to each point between its ends; empty where segments are no contacts.
     spans: Vec<SpanRows>,
     /// How far each point may be from its root [m]; empty where no material has a tether.
@@ -158,6 +160,7 @@ impl Simulation {
             + size_of_val(&self.rest[..])
             + size_of_val(&self.state[..])
             + size_of_val(&self.sunk[..])
+            + size_of_val(&self.touched[..])
             + size_of_val(&self.spans[..])
             + size_of_val(&self.tethers[..])
             + size_of_val(&self.history[..])

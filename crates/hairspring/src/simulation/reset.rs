@@ -72,6 +72,7 @@ impl Simulation {
         let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
         let points = simulated_points(self.tiles[tile].model, self.groom.strand(self.lanes[place] as usize))
             .into_owned();
+        self.touched[tile].0[lane] = 0.0;
         let springs = self.tiles[tile].model == Elastic::Springs;
         for i in 0..self.tiles[tile].points as usize {
             let at = |i: usize| points[i.min(points.len() - 1)];

@@ -174,6 +174,7 @@ impl Simulation {
                 tines: &self.around.tines,
                 air: &self.around.air,
                 sunk: &self.sunk,
+                touched: &mut self.touched,
                 spans: if interval.segments { &mut self.spans } else { &mut [] },
                 tethers: &self.tethers,
                 holds: &self.holds,
@@ -259,6 +260,7 @@ struct Piece<'a> {
     tines: &'a [[Row; tines::ROWS]],
     air: &'a [[Row; 3]],
     sunk: &'a [Row],
+    touched: &'a mut [Row],
     spans: &'a mut [SpanRows],
     tethers: &'a [Row],
     holds: &'a [Vec<HoldRows>],
@@ -278,6 +280,7 @@ impl<'a> Piece<'a> {
         let (tines, more_tines) = self.tines.split_at(points.min(self.tines.len()));
         let (air, more_air) = self.air.split_at(points.min(self.air.len()));
         let (sunk, more_sunk) = self.sunk.split_at(points.min(self.sunk.len()));
+        let (touched, more_touched) = self.touched.split_at_mut(count);
         let (spans, more_spans) = self.spans.split_at_mut(points.min(self.spans.len()));
         let (tethers, more_tethers) = self.tethers.split_at(points.min(self.tethers.len()));
         let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
@@ -293,6 +296,7 @@ impl<'a> Piece<'a> {
                 tines,
                 air,
                 sunk,
+                touched,
                 spans,
                 tethers,
                 holds,
@@ -308,6 +312,7 @@ impl<'a> Piece<'a> {
                 tines: more_tines,
                 air: more_air,
                 sunk: more_sunk,
+                touched: more_touched,
                 spans: more_spans,
                 tethers: more_tethers,
                 holds: more_holds,
@@ -332,6 +337,7 @@ impl<'a> Piece<'a> {
             tines: if self.tines.is_empty() { &[] } else { &self.tines[points.clone()] },
             air: if self.air.is_empty() { &[] } else { &self.air[points.clone()] },
             sunk: if self.sunk.is_empty() { &[] } else { &self.sunk[points.clone()] },
+            touched: &mut self.touched[k],
             spans: if self.spans.is_empty() { &mut [] } else { &mut self.spans[points.clone()] },
             tethers: if self.tethers.is_empty() { &[] } else { &self.tethers[points] },
             holds: self.holds.get(k).map_or(&[], |holds| holds),

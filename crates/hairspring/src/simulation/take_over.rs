@@ -44,6 +44,7 @@ impl Simulation {
             for (row, was) in rows[..strand::FIRST].iter_mut().zip(&old.strand[from / LANES]) {
                 row.0[place % LANES] = was.0[from % LANES];
             }
+            self.touched[place / LANES].0[place % LANES] = old.touched[from / LANES].0[from % LANES];
             if self.tiles[place / LANES].model == old.tiles[from / LANES].model {
                 self.take_rows(place, old, from);
             } else {

@@ -73,6 +73,7 @@ fn forces_of(
         tines: &[],
         air: &[],
         sunk: &[],
+        touched: &mut Row::default(),
         spans: &mut [],
         tethers: &[],
         holds: &[],

@@ -390,6 +390,7 @@ fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, V
         tines: &[],
         air: &[],
         sunk: &[],
+        touched: &mut Row::default(),
         spans: &mut [],
         tethers: &[],
         holds: &[],

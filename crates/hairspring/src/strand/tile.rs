@@ -213,6 +213,8 @@ pub struct Tile<'a> {
     /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]: shape `[points]`, empty where none
     /// was.
     pub sunk: &'a [Row],
+    /// For how much longer each strand counts as one that touches something [s].
+    pub touched: &'a mut Row,
     /// What presses the segment to each point between its ends, see `span`: shape `[points]`, empty where segments are no contacts.
     pub spans: &'a mut [SpanRows],
     /// How far each point may be from its root [m]: shape `[points]`, empty where none is held so.
@@ -237,6 +239,7 @@ impl Tile<'_> {
             tines: &self.tines[..all_or_none(self.tines.is_empty())],
             air: &self.air[..all_or_none(self.air.is_empty())],
             sunk: &self.sunk[..all_or_none(self.sunk.is_empty())],
+            touched: self.touched,
             spans: &mut self.spans[..spans],
             tethers: &self.tethers[..all_or_none(self.tethers.is_empty())],
             ..*self
@@ -247,8 +250,8 @@ impl Tile<'_> {
     /// long, at every point again.
     #[inline(always)]
     pub fn lent(&mut self) -> Tile<'_> {
-        let Self { state, history, spans, .. } = self;
-        Tile { state, history, spans, ..*self }
+        let Self { state, history, touched, spans, .. } = self;
+        Tile { state, history, touched, spans, ..*self }
     }
 }
 
