@@ -57,7 +57,7 @@ fn a_table_has_a_value_or_a_reason_in_each_cell() {
         assert!(cells[3].ends_with(wanted), "{row}");
         assert!(cells[4..].iter().all(|cell| *cell == "(1)"), "{row}");
     }
-    assert!(found.contains("\n2. a truss feeds its own swing"), "{found}");
+    assert!(found.contains("\n2. pendulum: a truss is braked more"), "{found}");
     assert!(found.contains("\n1. pendulum is about a strand of 3 points alone\n"), "{found}");
 }
 

@@ -16,20 +16,21 @@ use hairspring::{
 };
 use std::{
     alloc::{GlobalAlloc, Layout, System},
-    sync::{
-        Arc,
-        atomic::{AtomicUsize, Ordering},
-    },
+    cell::Cell,
+    sync::Arc,
 };
 
 struct Counting;
 
-static COUNT: AtomicUsize = AtomicUsize::new(0);
+thread_local! {
+    /// Allocations of this thread: the test harness has another, which allocates when it likes.
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
 
 // SAFETY: every call is passed on to the system's allocator as it came.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.fetch_add(1, Ordering::Relaxed);
+        COUNT.set(COUNT.get() + 1);
         // SAFETY: the caller's promises are the system allocator's.
         unsafe { System.alloc(layout) }
     }
@@ -57,11 +58,11 @@ fn hair_on_hair_allocates_nothing() {
             let mut bench = Bench::new(200, 16, Solver::default());
             bench.simulation.set_volume(&Volume { method, ..Volume::default() });
             bench.step();
-            let before = COUNT.load(Ordering::Relaxed);
+            let before = COUNT.get();
             for _ in 0..20 {
                 bench.step();
             }
-            COUNT.load(Ordering::Relaxed) - before
+            COUNT.get() - before
         });
         assert_eq!(counted, 0, "{counted} allocations in 20 steps, hair on hair {}", method.name());
     }
@@ -70,13 +71,13 @@ fn hair_on_hair_allocates_nothing() {
         let mut bench = Bench::new(200, 16, Solver::default());
         bench.simulation.set_neighbours(&Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
         bench.step();
-        let before = COUNT.load(Ordering::Relaxed);
+        let before = COUNT.get();
         for _ in 0..40 {
             bench.step();
         }
         let report = bench.simulation.neighbours().unwrap();
         assert!(report.pressing > 50, "{report:?}");
-        COUNT.load(Ordering::Relaxed) - before
+        COUNT.get() - before
     });
     assert_eq!(counted, 0, "{counted} allocations in 40 steps, strands that meet one by one");
     // With hands on the hair and a ghost, while a tie still gathers.
@@ -101,11 +102,11 @@ fn hair_on_hair_allocates_nothing() {
             assert!(matches!(tool, Tool::Comb(_)) || holds > 10, "{tool:?} holds {holds} points");
         }
         bench.step();
-        let before = COUNT.load(Ordering::Relaxed);
+        let before = COUNT.get();
         for _ in 0..40 {
             bench.step();
         }
-        COUNT.load(Ordering::Relaxed) - before
+        COUNT.get() - before
     });
     assert_eq!(counted, 0, "{counted} allocations in 40 steps, hands on the hair");
 }
@@ -141,9 +142,9 @@ fn wind_and_charge_allocate_nothing() {
             });
         };
         step(0);
-        let before = COUNT.load(Ordering::Relaxed);
+        let before = COUNT.get();
         (1..20).for_each(step);
-        COUNT.load(Ordering::Relaxed) - before
+        COUNT.get() - before
     });
     assert_eq!(counted, 0, "{counted} allocations in 19 steps in moving air among charged bodies");
 }

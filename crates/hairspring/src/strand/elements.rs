@@ -68,7 +68,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         scratch.factors[..begin].fill(Work::default());
         scratch.across.clear();
         let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
-        let share = if step.second_order { [SIDEWAYS_BDF2; 2] } else { M::SIDEWAYS };
+        let share = if step.second_order { SIDEWAYS_BDF2 } else { M::SIDEWAYS };
         let sideways = Sideways::new(simd, share, step.h, step.touches);
         let root_velocity = V3::load(simd, &tile.state[0][state::V..]);
         let now = step.moved * F::splat(simd, 1.0 / step.h);

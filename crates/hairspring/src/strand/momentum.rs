@@ -213,7 +213,7 @@ proptest! {
         let ((ours, block), u) = dispatch!(Level::new(), simd => {
             let f = |v: f64| F::splat(simd, v as f32);
             let (l, u) = splat(simd, e).length_and_unit();
-            let still = Sideways::new(simd, [0.0; 2], 1.0, Mask::splat(simd, false));
+            let still = Sideways::new(simd, 0.0, 1.0, Mask::splat(simd, false));
             let (force, block) = stretch((l, u), l - f(rest), (f(k), f(tension), f(1.0)), V3::zero(simd), &still);
             let m = [block.xx, block.xy, block.xz, block.yy, block.yz, block.zz].map(|v| v.lane(3) as f64);
             ((lane(force), m), lane(u))

@@ -135,8 +135,9 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         rest[e0].twist = bend * harder[0] / lever(e0, p2).powi(2);
         rest[e0].bend = bend / twisting.clamp(TWISTING.0, TWISTING.1) / straight(e0, e1).powi(2);
         rest[e0].turn.x = x[e0].distance(x[e1]);
-        for (point, length) in [p0, p1].into_iter().zip(lengths) {
-            let brace = (BRACED[1] * hardest * bend / (length * length)).min(fine(points.len()) * stiffest);
+        // Of both triangles alike: levers at the joint are as short as the shorter of them.
+        let brace = (BRACED[1] * hardest * bend / (shorter * shorter)).min(fine(points.len()) * stiffest);
+        for point in [p0, p1] {
             rest[point].bend = rest[point].bend.max(brace);
         }
     }

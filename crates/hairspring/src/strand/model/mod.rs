@@ -92,9 +92,8 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// Simulated points from one point of the strand to the next.
     const STRIDE: usize = 1;
 
-    /// Least share of the drift that turns a tense segment's pull, with backward Euler, of strands that touch nothing and of those that touch something, see
-    /// [`stretch::SIDEWAYS`] [1].
-    const SIDEWAYS: [f32; 2] = [stretch::SIDEWAYS; 2];
+    /// Least share of the drift that turns a tense segment's pull, with backward Euler, see [`stretch::SIDEWAYS`] [1].
+    const SIDEWAYS: f32 = stretch::SIDEWAYS;
 
     /// Which unknowns meet in the matrix.
     const PROFILE: Profile<B, N> = Profile::within(N - 1);

@@ -50,7 +50,8 @@ const AIR: f64 = 0.03;
 pub(super) const HELD_BACK: &str = "springs are solved in single precision, which cannot hold joints as stiff as the fiber's in a strand of so many points";
 
 /// Why springs swing less and slower than they ought to.
-const SPRINGS_ARE_BRAKED: &str = "a truss feeds its own swing, and more than that is taken from it";
+const SPRINGS_ARE_BRAKED: &str =
+    "a truss is braked more than the other models, or its swing would leave its plane";
 
 /// Why the curvature model does not pass where a strand twists.
 const NO_TWIST: &str = "the model knows no twist";
