@@ -18,18 +18,27 @@ impl Obstacle {
     /// The least distance on the way from `a` to `b` [m] in the collider's own space, of the eight places at each eighth of it; negative
     /// inside. Where that is far from negative, of its middle alone.
     pub fn least_distance(&self, a: Vec3, b: Vec3) -> f32 {
-        let middle = self.distance(a.midpoint(b));
-        // A field's gradient is not quite of length 1: twice what could be nearer than the middle.
-        if middle > a.distance(b) {
-            return middle;
-        }
-        let places = (1..=PLACES).map(|k| a.lerp(b, k as f32 / PLACES as f32));
-        places.map(|p| self.distance(p)).fold(middle, f32::min)
+        least(a, b, |p| self.distance(p))
+    }
+
+    /// The same of [`Obstacle::distance_to_surface`].
+    pub fn least_distance_to_surface(&self, a: Vec3, b: Vec3) -> f32 {
+        least(a, b, |p| self.distance_to_surface(p))
     }
 }
 
+fn least(a: Vec3, b: Vec3, distance: impl Fn(Vec3) -> f32) -> f32 {
+    let middle = distance(a.midpoint(b));
+    // A field's gradient is not quite of length 1: twice what could be nearer than the middle.
+    if middle > a.distance(b) {
+        return middle;
+    }
+    let places = (1..=PLACES).map(|k| a.lerp(b, k as f32 / PLACES as f32));
+    places.map(distance).fold(middle, f32::min)
+}
+
 impl ObstaclePose {
-    /// The same in the world at the end of the substep.
+    /// [`Obstacle::least_distance`] in the world at the end of the substep.
     pub fn least_distance(&self, a: Vec3, b: Vec3) -> f32 {
         let own = |p: Vec3| self.end.0.transpose() * (p - self.end.1);
         self.shape.least_distance(own(a), own(b))

@@ -21,8 +21,9 @@ pub struct Grid {
     pub(super) distances: Vec<f32>,
     /// Number of the nearest triangle at each node of the band, anything at others; as many as nodes.
     pub(super) nearest: Vec<u32>,
-    /// Corners of the triangles, and how far they moved during the last interval, in the field's space [m]; empty: the surface is rigid.
-    corners: Vec<[Vec3; 3]>,
+    /// Corners of the triangles, in the field's space [m].
+    pub(super) triangles: Vec<[Vec3; 3]>,
+    /// How far they moved during the last interval, in the field's space [m]; empty: the surface is rigid.
     moved: Vec<[Vec3; 3]>,
     /// What it was at equal parts of the last interval, before the last of them, where it moved far in that; empty: this all along.
     pub(super) earlier: Vec<Arc<Grid>>,
@@ -68,11 +69,11 @@ impl Grid {
         self.distances.resize(lattice.nodes() + BEYOND, 0.0);
         self.distances[lattice.nodes()..].fill(f32::MAX);
         self.nearest.resize(lattice.nodes(), 0);
-        self.corners.clear();
+        self.triangles.clear();
+        self.triangles.extend(triangles.iter().map(|t| t.map(|i| positions[i as usize])));
         self.moved.clear();
         self.earlier.clear();
         if let Some(before) = before {
-            self.corners.extend(triangles.iter().map(|t| t.map(|i| positions[i as usize])));
             let moved = |i: u32| positions[i as usize] - before[i as usize];
             self.moved.extend(triangles.iter().map(|t| t.map(moved)));
         }
@@ -116,7 +117,7 @@ impl Grid {
         let known = self.distances[node].abs() < 0.99 * BAND * self.lattice.cell;
         let triangle = self.nearest[node] as usize;
         let Some(moved) = self.moved.get(triangle).filter(|_| known) else { return Vec3::ZERO };
-        let weights = nearest_on_triangle(p, self.corners[triangle]);
+        let weights = nearest_on_triangle(p, self.triangles[triangle]);
         if !weights.is_finite() {
             // Its corners lie on one another, or in a row.
             return moved[0];

@@ -12,6 +12,7 @@ mod pose;
 mod rigid;
 mod sheet;
 mod side;
+mod to_mesh;
 mod voxelize;
 
 pub(crate) use along::{Deepest, STEEP, deepest};
