@@ -6,7 +6,7 @@
 //! # Missing
 //! The twist that the rod model solves for is not shown: the library hands out no frames.
 
-use crate::{overlay::Pen, snapshot::Scenery};
+use crate::{overlay::OverlayPainter, snapshot::StageSnapshot};
 use eframe::egui::{Align2, Color32, FontId, Stroke, vec2};
 use glam::{Mat3, Quat, Vec3};
 
@@ -21,7 +21,7 @@ const COLORS: [Color32; 3] =
     [Color32::from_rgb(255, 80, 70), Color32::from_rgb(110, 230, 90), Color32::from_rgb(100, 160, 255)];
 
 /// Draws them; `picked`: groom and number of strands that are drawn along their whole length.
-pub fn draw(pen: &Pen, scenery: &Scenery, picked: &[[usize; 2]]) {
+pub fn draw(pen: &OverlayPainter, scenery: &StageSnapshot, picked: &[[usize; 2]]) {
     let (m, at) = scenery.anchor.matrix();
     frame(pen, at, m, LONG, 2.0);
     for (axis, name) in [(m.x_axis, "x"), (m.y_axis, "y"), (m.z_axis, "z")] {
@@ -58,14 +58,14 @@ pub fn draw(pen: &Pen, scenery: &Scenery, picked: &[[usize; 2]]) {
 }
 
 /// Three axes at a place.
-fn frame(pen: &Pen, at: Vec3, axes: Mat3, length: f32, width: f32) {
+fn frame(pen: &OverlayPainter, at: Vec3, axes: Mat3, length: f32, width: f32) {
     for (axis, color) in [axes.x_axis, axes.y_axis, axes.z_axis].into_iter().zip(COLORS) {
         pen.line(at, at + axis * length, Stroke::new(width, color));
     }
 }
 
 /// The frames of a strand's segments, at their middles; the strand itself in white.
-fn along(pen: &Pen, points: &[Vec3], root: Mat3) {
+fn along(pen: &OverlayPainter, points: &[Vec3], root: Mat3) {
     for (pair, axes) in points.windows(2).zip(carried(points, root)) {
         pen.line(pair[0], pair[1], Stroke::new(1.0, Color32::WHITE));
         let length = 0.9 * pair[0].distance(pair[1]).clamp(0.004, 0.02);

@@ -1,18 +1,18 @@
 //! Where joints have carried what a scene lists: a collider is written down as it is at rest, and met where the head has taken it.
 
-use hairspring::{collide::Rigid, stage::Stage};
+use hairspring::{collide::RigidTransform, stage::Stage};
 
 /// How far each entry of a list has gone since rest, in the order of the scene file.
 #[derive(Default)]
 pub struct Carried {
     /// Of `[[collider]]`.
-    pub colliders: Vec<Rigid>,
+    pub colliders: Vec<RigidTransform>,
     /// Of `[[wind_source]]`.
-    pub wind_sources: Vec<Rigid>,
+    pub wind_sources: Vec<RigidTransform>,
     /// Of `[[charged]]`, without their own ways.
-    pub charged: Vec<Rigid>,
+    pub charged: Vec<RigidTransform>,
     /// Of `[[hand]]`, without their own ways.
-    pub hands: Vec<Rigid>,
+    pub hands: Vec<RigidTransform>,
 }
 
 impl Carried {
@@ -21,7 +21,7 @@ impl Carried {
         let scene = stage.scene();
         self.colliders.clear();
         self.colliders.extend(stage.colliders().iter().map(|collider| collider.end));
-        let of = |list: &mut Vec<Rigid>, names: &mut dyn Iterator<Item = &Option<String>>| {
+        let of = |list: &mut Vec<RigidTransform>, names: &mut dyn Iterator<Item = &Option<String>>| {
             list.clear();
             list.extend(names.map(|name| stage.carried(name.as_deref())));
         };

@@ -51,7 +51,7 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
         ("wind", value(&scene.wind)),
         ("wind_source", value(&scene.wind_sources)),
         ("turbulence", value(&scene.turbulence)),
-        ("shelter", value(&scene.shelter)),
+        ("wind_occlusion", value(&scene.wind_occlusion)),
         ("charged", value(&scene.charged)),
         ("solver", value(&scene.solver)),
         ("volume", value(&scene.volume)),

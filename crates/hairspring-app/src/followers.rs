@@ -4,9 +4,9 @@
 
 use glam::{Affine3A, Vec3};
 use hairspring::{
-    follow::{FollowLayout, Followed},
+    follow::{FollowLayout, HairInterpolation},
     scene::Effects,
-    simulation::MovingObstacle,
+    simulation::MovingCollider,
 };
 use std::sync::{Arc, OnceLock};
 
@@ -23,14 +23,14 @@ pub struct Followers {
 
 impl Followers {
     /// Memory for it.
-    pub fn new(follow: Followed) -> Self {
+    pub fn new(follow: HairInterpolation) -> Self {
         let layout = follow.layout.clone();
         let (carriers, guide_points) = (Vec::new(), Vec::new());
         Self { layout, effects: follow.effects, carriers, guide_points, placed: OnceLock::new() }
     }
 
     /// Copies a moment, into the memory that is there.
-    pub fn fill(&mut self, follow: Followed) {
+    pub fn fill(&mut self, follow: HairInterpolation) {
         self.layout.clone_from(follow.layout);
         self.effects = follow.effects;
         self.carriers.clear();
@@ -41,13 +41,13 @@ impl Followers {
     }
 
     /// For who places them.
-    pub fn now<'a>(&'a self, obstacles: &'a [MovingObstacle]) -> Followed<'a> {
+    pub fn now<'a>(&'a self, obstacles: &'a [MovingCollider]) -> HairInterpolation<'a> {
         let Self { layout, effects, carriers, guide_points, .. } = self;
-        Followed { layout, effects: *effects, carriers, guide_points, obstacles }
+        HairInterpolation { layout, effects: *effects, carriers, guide_points, obstacles }
     }
 
     /// Where they are [m]; placed when it is first asked for.
-    pub fn points(&self, obstacles: &[MovingObstacle]) -> &[Vec3] {
+    pub fn points(&self, obstacles: &[MovingCollider]) -> &[Vec3] {
         self.placed.get_or_init(|| {
             let mut points = vec![Vec3::ZERO; self.layout.groom.points.len()];
             self.now(obstacles).place(&mut points);
@@ -56,7 +56,7 @@ impl Followers {
     }
 
     /// Where every `every`-th strand is [m], each from its place in `offsets` on.
-    pub fn some_points(&self, every: usize, offsets: &[u32], obstacles: &[MovingObstacle]) -> Vec<Vec3> {
+    pub fn some_points(&self, every: usize, offsets: &[u32], obstacles: &[MovingCollider]) -> Vec<Vec3> {
         let mut points = vec![Vec3::ZERO; offsets.last().map_or(0, |end| *end as usize)];
         self.now(obstacles).place_every(every, offsets, &mut points);
         points

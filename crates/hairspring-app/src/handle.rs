@@ -1,9 +1,9 @@
 //! Handles in the picture: the arrow of the wind, and what the scene lists (colliders, hands, sources of wind, charged bodies), to be taken with the mouse, moved, turned and widened where they
 //! are. What a handle does is what a slider would: it writes into the scene's text.
 
-use crate::{document::Document, key::Key, orbit::Lens, session::Action, snapshot::Scenery};
+use crate::{document::Document, key::Key, orbit::Lens, session::Action, snapshot::StageSnapshot};
 use glam::{Vec2, Vec3};
-use hairspring::collide::Rigid;
+use hairspring::collide::RigidTransform;
 use toml_edit::Value;
 
 /// Where the wind's arrow begins in the picture, from its top left corner, over its width and height [1].
@@ -41,7 +41,7 @@ pub struct Handle {
     pub name: String,
     pull: Pull,
     /// Where what it belongs to has been carried.
-    pose: Rigid,
+    pose: RigidTransform,
 }
 
 impl Handle {
@@ -100,7 +100,7 @@ impl Handle {
 }
 
 /// All handles of a scene, seen through `lens` by an eye that is so far from what it looks at [m].
-pub fn all(document: &Document, scenery: &Scenery, lens: &Lens, distance: f32) -> Vec<Handle> {
+pub fn all(document: &Document, scenery: &StageSnapshot, lens: &Lens, distance: f32) -> Vec<Handle> {
     let mut handles = vec![wind(document, lens, distance)];
     let carried = &scenery.carried;
     for (name, one, poses) in [
@@ -129,7 +129,7 @@ fn wind(document: &Document, lens: &Lens, distance: f32) -> Handle {
     let speed = velocity.length();
     let tip = velocity.normalize_or_zero() * longest * (speed / STORM).sqrt().min(1.0);
     let name = if speed > 0.0 { format!("wind {speed:.1} m/s") } else { "calm: pull for wind".into() };
-    Handle { at: from + tip, name, pull: Pull::Wind(from, longest), pose: Rigid::default() }
+    Handle { at: from + tip, name, pull: Pull::Wind(from, longest), pose: RigidTransform::default() }
 }
 
 /// The table that holds an entry's places: its `shape`'s or its `tool`'s, or its own.
@@ -148,7 +148,7 @@ fn shape(key: Key, entry: &toml::Value) -> (Key, &toml::Value) {
 fn of_shape(
     name: &str,
     (key, table): (&Key, &toml::Value),
-    pose: Rigid,
+    pose: RigidTransform,
     lens: &Lens,
     handles: &mut Vec<Handle>,
 ) {
@@ -204,12 +204,12 @@ mod tests {
         [[hand]]\ntool.comb = { a = [-0.1, 1.6, 0.15], b = [0.1, 1.6, 0.15], radius = 0.02 }\n\
         [[charged]]\ncenter = [0.3, 1.8, 0.0]\nradius = 0.13\ncharge = -2e-7\n";
 
-    fn scene() -> (Document, Scenery, Lens) {
+    fn scene() -> (Document, StageSnapshot, Lens) {
         let document = Document::new("scene.toml".as_ref(), SCENE.into()).unwrap();
         let still = Still { grooms: Vec::new(), body: None, counts: [0; 4], instruction_set: String::new() };
         let camera =
             Camera { position: Vec3::new(0.0, 1.5, 2.0), target: Vec3::new(0.0, 1.5, 0.0), fov: 30.0 };
-        (document, Scenery::new(Arc::new(still)), Lens::new(&camera, 1.5))
+        (document, StageSnapshot::new(Arc::new(still)), Lens::new(&camera, 1.5))
     }
 
     #[test]
@@ -253,7 +253,8 @@ mod tests {
     fn what_a_joint_has_carried_is_moved_where_it_is() {
         let (mut document, mut scenery, lens) = scene();
         let turn = glam::Quat::from_rotation_y(std::f32::consts::FRAC_PI_2);
-        scenery.carried.colliders = vec![Rigid { rotation: turn, translation: Vec3::new(0.0, 0.5, 0.0) }];
+        scenery.carried.colliders =
+            vec![RigidTransform { rotation: turn, translation: Vec3::new(0.0, 0.5, 0.0) }];
         let handles = all(&document, &scenery, &lens, 2.0);
         let ball = &handles[1];
         assert!(ball.at.distance(Vec3::new(0.25, 1.8, 0.0)) < 1e-6, "{}", ball.at);

@@ -180,10 +180,13 @@ mod tests {
 
     #[test]
     fn a_value_is_written_and_the_rest_of_the_text_stays() {
-        let text = "# mine\n[solver]\nsubsteps = 4 # enough\njump = 1.0\n";
+        let text = "# mine\n[solver]\nsubsteps = 4 # enough\nteleport_distance = 1.0\n";
         let after = written(text, "solver.substeps", Some(8.into())).unwrap();
         assert_eq!(after, text.replace('4', "8"));
-        assert_eq!(written(text, "solver.jump", None).unwrap(), "# mine\n[solver]\nsubsteps = 4 # enough\n");
+        assert_eq!(
+            written(text, "solver.teleport_distance", None).unwrap(),
+            "# mine\n[solver]\nsubsteps = 4 # enough\n"
+        );
         assert_eq!(written(text, "wind.gust", None).unwrap(), text);
     }
 

@@ -5,12 +5,12 @@ use crate::{
     handle::Handle,
     orbit::Lens,
     ramp,
-    snapshot::Scenery,
+    snapshot::StageSnapshot,
     view::{FINGERS, Hand, View},
 };
 use eframe::egui::{self, Color32, Pos2, Stroke};
 use glam::{Mat3, Vec2, Vec3};
-use hairspring::{collide::Obstacle, collide::ObstaclePose};
+use hairspring::{collide::ColliderPose, collide::ColliderShape};
 use std::collections::HashMap;
 
 /// Pieces of a circle.
@@ -26,7 +26,7 @@ const TRIANGLES: usize = 3000;
 const DOTS: usize = 8000;
 
 /// A painter of lines in space.
-pub struct Pen<'a> {
+pub struct OverlayPainter<'a> {
     /// What it draws on.
     pub painter: &'a egui::Painter,
     /// Through which the picture is seen.
@@ -35,7 +35,7 @@ pub struct Pen<'a> {
     pub rect: egui::Rect,
 }
 
-impl Pen<'_> {
+impl OverlayPainter<'_> {
     /// Where a place is on the screen; `None` behind the camera.
     pub fn at(&self, p: Vec3) -> Option<Pos2> {
         let (at, _) = self.lens.project(p)?;
@@ -73,7 +73,13 @@ impl Pen<'_> {
 }
 
 /// Draws what is switched on over the picture at `rect`.
-pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picked: &[[usize; 2]]) {
+pub fn draw(
+    pen: &OverlayPainter,
+    scenery: &StageSnapshot,
+    view: &View,
+    handles: &[Handle],
+    picked: &[[usize; 2]],
+) {
     let painter = pen.painter;
     let overlays = view.overlays;
     if overlays.slice {
@@ -115,7 +121,7 @@ pub fn draw(pen: &Pen, scenery: &Scenery, view: &View, handles: &[Handle], picke
 }
 
 /// Five fingers, as wide and as long as they reach.
-fn fingers(pen: &Pen, center: Vec3, radius: f32, stroke: Stroke) {
+fn fingers(pen: &OverlayPainter, center: Vec3, radius: f32, stroke: Stroke) {
     let (right, down) = (pen.lens.right() * (FINGERS * radius), -pen.lens.up() * radius);
     pen.line(center - right, center + right, stroke);
     for k in -2..=2 {
@@ -125,7 +131,7 @@ fn fingers(pen: &Pen, center: Vec3, radius: f32, stroke: Stroke) {
 }
 
 /// A handle, and its name where the pointer is on it.
-fn handle_at(pen: &Pen, handle: &Handle, touched: bool) {
+fn handle_at(pen: &OverlayPainter, handle: &Handle, touched: bool) {
     let color = if touched { Color32::from_rgb(255, 210, 90) } else { Color32::from_rgb(120, 200, 255) };
     let Some(at) = pen.at(handle.at) else { return };
     if let Some(from) = handle.arrow() {
@@ -163,7 +169,7 @@ fn handle_at(pen: &Pen, handle: &Handle, touched: bool) {
 }
 
 /// A level ring about the wind's beginning, and how far its tip is above or below it: else nobody sees how an arrow lies in space.
-fn rose(pen: &Pen, from: Vec3, tip: Vec3, color: Color32) {
+fn rose(pen: &OverlayPainter, from: Vec3, tip: Vec3, color: Color32) {
     let thin = Stroke::new(1.0, color.gamma_multiply(0.5));
     let radius = 0.09 / pen.lens.scale(pen.lens.depth(from), 1.0);
     pen.circle(from, Vec3::X * radius, Vec3::Z * radius, thin);
@@ -173,13 +179,18 @@ fn rose(pen: &Pen, from: Vec3, tip: Vec3, color: Color32) {
 }
 
 /// The outline of a collider.
-fn collider(pen: &Pen, scenery: &Scenery, obstacle: &hairspring::simulation::MovingObstacle, stroke: Stroke) {
+fn collider(
+    pen: &OverlayPainter,
+    scenery: &StageSnapshot,
+    obstacle: &hairspring::simulation::MovingCollider,
+    stroke: Stroke,
+) {
     let pose = obstacle.end;
     let (m, _) = pose.matrix();
     let turned = |axes: Mat3| m * axes;
     match &obstacle.shape {
-        Obstacle::Sphere { center, radius } => pen.ball(pose.point(*center), *radius, stroke),
-        Obstacle::Capsule { a, b, radius } => {
+        ColliderShape::Sphere { center, radius } => pen.ball(pose.point(*center), *radius, stroke),
+        ColliderShape::Capsule { a, b, radius } => {
             let (a, b) = (pose.point(*a), pose.point(*b));
             let axis = (b - a).normalize_or(Vec3::Y);
             let x = axis.any_orthonormal_vector() * *radius;
@@ -190,7 +201,7 @@ fn collider(pen: &Pen, scenery: &Scenery, obstacle: &hairspring::simulation::Mov
                 pen.line(a + side, b + side, stroke);
             }
         }
-        Obstacle::Cuboid { center, half, axes } => {
+        ColliderShape::Cuboid { center, half, axes } => {
             let axes = turned(*axes);
             let corner = |k: usize| {
                 let sign = |bit: usize| if k & bit > 0 { 1.0 } else { -1.0 };
@@ -204,7 +215,7 @@ fn collider(pen: &Pen, scenery: &Scenery, obstacle: &hairspring::simulation::Mov
                 }
             }
         }
-        Obstacle::Plane { point, normal } => {
+        ColliderShape::Plane { point, normal } => {
             let normal = m * *normal;
             let x = normal.any_orthonormal_vector();
             let (at, y) = (pose.point(*point), normal.cross(x));
@@ -214,24 +225,24 @@ fn collider(pen: &Pen, scenery: &Scenery, obstacle: &hairspring::simulation::Mov
                 pen.line(at + y * step - x * 0.5, at + y * step + x * 0.5, stroke);
             }
         }
-        Obstacle::Hull(hull) => {
+        ColliderShape::Hull(hull) => {
             hull.triangles().for_each(|t| triangle(pen, t.map(|p| pose.point(p)), stroke))
         }
-        Obstacle::Sheet(sheet) => {
+        ColliderShape::Sheet(sheet) => {
             let all = sheet.triangles();
             let some = all.iter().step_by(1 + all.len() / TRIANGLES);
             some.for_each(|t| triangle(pen, t.map(|p| pose.point(p)), stroke));
         }
-        Obstacle::Field(_) => skin(pen, scenery, stroke.color),
+        ColliderShape::Field(_) => skin(pen, scenery, stroke.color),
     }
 }
 
-fn triangle(pen: &Pen, [a, b, c]: [Vec3; 3], stroke: Stroke) {
+fn triangle(pen: &OverlayPainter, [a, b, c]: [Vec3; 3], stroke: Stroke) {
     [(a, b), (b, c), (c, a)].into_iter().for_each(|(a, b)| pen.line(a, b, stroke));
 }
 
 /// The side of the body that is seen, by dots: its field is as fine as its mesh.
-fn skin(pen: &Pen, scenery: &Scenery, color: Color32) {
+fn skin(pen: &OverlayPainter, scenery: &StageSnapshot, color: Color32) {
     let vertices = scenery.positions.iter().zip(&scenery.normals);
     for (p, n) in vertices.step_by(1 + scenery.positions.len() / DOTS) {
         if let Some(at) = pen.at(*p).filter(|_| n.dot(pen.lens.eye() - *p) > 0.0) {
@@ -241,12 +252,12 @@ fn skin(pen: &Pen, scenery: &Scenery, color: Color32) {
 }
 
 /// A horizontal slice through the distance to all colliders: blue inside, the surface white, red as far as 5 cm outside.
-fn slice(pen: &Pen, scenery: &Scenery, height: f32) {
+fn slice(pen: &OverlayPainter, scenery: &StageSnapshot, height: f32) {
     let Some((low, high)) = scenery.bounds() else { return };
-    let poses: Vec<ObstaclePose> = scenery
+    let poses: Vec<ColliderPose> = scenery
         .obstacles
         .iter()
-        .map(|o| ObstaclePose::new(o.shape.clone(), o.end.matrix(), o.end.matrix(), 1.0))
+        .map(|o| ColliderPose::new(o.shape.clone(), o.end.matrix(), o.end.matrix(), 1.0))
         .collect();
     if poses.is_empty() {
         return;
@@ -283,7 +294,7 @@ fn slice(pen: &Pen, scenery: &Scenery, height: f32) {
 }
 
 /// Cells of the volume's lattice with hair in them, the fuller the warmer.
-fn volume(pen: &Pen, scenery: &Scenery) {
+fn volume(pen: &OverlayPainter, scenery: &StageSnapshot) {
     let cell = scenery.volume.map_or(0.015, |v| v.cell);
     let anchor = scenery.anchor;
     let mut cells: HashMap<[i32; 3], u32> = HashMap::new();

@@ -165,117 +165,117 @@ macro_rules! parameters {
 /// All of them.
 pub const ALL: &[Parameter] = parameters! {
     Style {
-        Groom "style", "Hairstyle", "", Kind::Choice(&PRESETS), "Of the built-in head: cut, wave, colour and material together.";
-        Groom "strands", "Hairs", "", Kind::Count { min: 100, max: 200_000 }, "On the scalp of the built-in head. A human head has about 100,000; fewer are drawn wider, so that they still cover it. The file takes up to 10,000,000.";
-        Groom "guides", "Guides", "", Kind::Guides { max: 20_000 }, "How many of the hairs are simulated; the others follow up to three of them. Few guides move hair in slabs, many cost time. file: those that the groom's file names.";
-        Groom "grow.strands", "Hairs", "", Kind::Count { min: 10, max: 200_000 }, "That are grown from the body, evenly by area.";
-        Groom "grow.length", "Length", "m", scale(0.002, 1.0), "Of the longest hair.";
-        Groom "grow.spread", "Length varies", "", number(0.0, 1.0), "How much shorter the shortest hair is than the longest.";
-        Groom "grow.fall", "Bent down", "", number(0.0, 1.0), "How far hair bends over as it grows: 0 stands along the skin's normal, 1 ends pointing down.";
-        Groom "grow.points", "Points of a hair", "", Kind::Count { min: 3, max: 64 }, "More bend finer, and cost as much more time.";
-        Groom "thicken.copies", "Hairs around each", "", Kind::Count { min: 0, max: 20 }, "Follow hairs that are added around each strand of the file.";
-        Groom "thicken.radius", "… within", "m", number(0.0, 0.01), "Radius of the disc on the skin that they grow in.";
-        Groom "thicken.tip", "… at the tip", "×", number(0.0, 10.0), "How many times as far from their strand they are at the tip as at the root.";
-        Material "preset", "Material", "", Kind::Choice(&["none", "straight", "wavy", "curly", "coily", "short-fur"]), "What the material begins from: all that is not set below. none: a lone human hair.";
-        Material "tether", "Tether", "×", number(0.0, 3.0), "How far a point may get from its root, over how far it was at rest: 1.1 lets curls fall a tenth. 0: as far as they go. Below 1 the scene file is refused.";
-        Material "ghost.pull", "Keep the style", "Hz", number(0.0, 20.0), "Pull to the groomed shape, carried by the head: how fast a lone point would swing about its place. 0: none; from 1 a style lasts, from 4 hair is set.";
-        Material "ghost.tip", "… at the tip", "×", number(0.0, 2.0), "That pull at the tip, over that at the root.";
-        Material "ghost.damping", "… damping", "", number(0.0, 4.0), "Damping of that pull over the critical: 1 does not swing.";
+        Groom "style", "Hairstyle", "", Kind::Choice(&PRESETS), "Hairstyle of the built-in head: sets cut, wave, color and material together.";
+        Groom "strands", "Hair count", "", Kind::Count { min: 100, max: 200_000 }, "Hairs on the scalp of the built-in head. A human head has about 100,000. Fewer hairs are drawn wider, so that the scalp stays covered. The scene file accepts up to 10,000,000.";
+        Groom "guides", "Guides", "", Kind::Guides { max: 20_000 }, "Simulated hairs. The other hairs follow up to three of them. Too few guides move hair in slabs; many cost time. file: the guides that the groom's file names.";
+        Groom "grow.strands", "Hair count", "", Kind::Count { min: 10, max: 200_000 }, "Hairs grown from the body, evenly by area.";
+        Groom "grow.length", "Length", "m", scale(0.002, 1.0), "Length of the longest hair.";
+        Groom "grow.spread", "Length variation", "", number(0.0, 1.0), "How much shorter the shortest hair is than the longest, as a share.";
+        Groom "grow.fall", "Droop", "", number(0.0, 1.0), "How far hair bends over as it grows: 0 stands along the skin's normal, 1 ends pointing down.";
+        Groom "grow.points", "Points per hair", "", Kind::Count { min: 3, max: 64 }, "More points bend more finely and cost proportionally more time.";
+        Groom "thicken.copies", "Copies per strand", "", Kind::Count { min: 0, max: 20 }, "Follow hairs added around each strand of the file.";
+        Groom "thicken.radius", "… radius", "m", number(0.0, 0.01), "Radius of the disc on the skin in which the copies grow.";
+        Groom "thicken.tip", "… spread at the tip", "×", number(0.0, 10.0), "Distance of a copy from its strand at the tip, relative to that at the root.";
+        Material "preset", "Material", "", Kind::Choice(&["none", "straight", "wavy", "curly", "coily", "short-fur"]), "Preset for everything that is not set below. none: a lone human hair.";
+        Material "tether", "Tether", "×", number(0.0, 3.0), "Largest distance of a point from its root, relative to that at rest: 1.1 lets curls stretch by a tenth. 0: no limit. The scene file refuses values between 0 and 1.";
+        Material "global_shape.pull", "Global shape", "Hz", number(0.0, 20.0), "Frequency of a spring that pulls each point to the groomed shape, carried by the head. 0: off. From 1 a style lasts; from 4 hair looks set.";
+        Material "global_shape.tip", "… at the tip", "×", number(0.0, 2.0), "Strength of that spring at the tip, relative to the root.";
+        Material "global_shape.damping", "… damping", "", number(0.0, 4.0), "Damping ratio of that spring: 1 is critical.";
         Groom "effects.clump", "Clump", "", number(0.0, 1.0), "How far the tips of follow hairs are drawn to their guide.";
-        Groom "effects.curl_radius", "Curl radius", "m", number(0.0, 0.02), "Radius of the curls laid over follow hairs.";
+        Groom "effects.curl_radius", "Curl radius", "m", number(0.0, 0.02), "Radius of the curls added to follow hairs.";
         Groom "effects.curl_length", "Curl length", "m", scale(0.002, 0.2), "Length of hair in one turn of those curls.";
         Groom "effects.noise", "Flyaway", "m", number(0.0, 0.02), "How far the tips of follow hairs stray.";
-        Groom "transform.position", "Moved by", "m", Kind::Vector { reach: 5.0 }, "Where the hairstyle stands: after it is scaled and turned.";
-        Groom "transform.rotation", "Turned by", "°", Kind::Vector { reach: 180.0 }, "About X, then Y, then Z.";
-        Groom "transform.scale", "Scaled by", "×", Kind::Vector { reach: 10.0 }, "Along x, y and z; below 0 mirrors. 0 is refused.";
+        Groom "transform.position", "Position", "m", Kind::Vector { reach: 5.0 }, "Position of the hairstyle, applied after scale and rotation.";
+        Groom "transform.rotation", "Rotation", "°", Kind::Vector { reach: 180.0 }, "Rotation about X, then Y, then Z.";
+        Groom "transform.scale", "Scale", "×", Kind::Vector { reach: 10.0 }, "Scale along X, Y and Z. Negative values mirror; 0 is refused.";
     }
     Stiffness {
-        Material "model", "Model", "", Kind::Choice(&["auto", "springs", "curvature", "rod"]), "What holds a strand's shape. auto: the rod, or curvature where it comes to the same.";
-        Material "bend", "Bending", "×", scale(0.01, 1000.0), "Stiffness against bending and twisting, over that of a single hair. A head of hair is held by its neighbours, so styles use more than 1.";
-        Material "bend_tip", "… at the tip", "×", number(0.0, 2.0), "Bending stiffness at the tip over that at the root.";
-        Material "damping", "Damping", "s", number(0.0, 0.2), "Relaxation time of bending: more stops the hair's own swinging sooner.";
-        Material "flatness", "Flatness", "", number(0.05, 1.0), "Short over long axis of the fibre's section. 1: round. For the rod.";
-        Material "young", "Young's modulus", "Pa", scale(1e8, 1e11), "Stiffness of the fibre's substance along it. Human hair: 3.9e9.";
-        Material "shear", "Shear modulus", "Pa", scale(1e7, 1e11), "Stiffness of the substance against twisting. Human hair: 0.89e9.";
+        Material "model", "Model", "", Kind::Choice(&["auto", "springs", "curvature", "rod"]), "Elastic model of a strand. auto: rod, or curvature where both give the same result.";
+        Material "bend", "Bending", "×", scale(0.01, 1000.0), "Stiffness against bending and twisting, relative to a single hair. Neighbors support each other on a head, so styles use more than 1.";
+        Material "bend_tip", "… at the tip", "×", number(0.0, 2.0), "Bending stiffness at the tip, relative to the root.";
+        Material "damping", "Damping", "s", number(0.0, 0.2), "Relaxation time of bending: larger values stop the hair's own vibration sooner.";
+        Material "flatness", "Flatness", "", number(0.05, 1.0), "Short axis of the fiber's cross section over its long axis. 1: round. Only the rod uses it.";
+        Material "young", "Young's modulus", "Pa", scale(1e8, 1e11), "Young's modulus along the fiber. Human hair: 3.9e9.";
+        Material "shear", "Shear modulus", "Pa", scale(1e7, 1e11), "Shear modulus, which resists twisting. Human hair: 0.89e9.";
     }
     Weight {
         Scene "gravity", "Gravity", "m/s²", Kind::Vector { reach: 30.0 }, "Which way things fall, and how fast. Hair that starts in balance is put in balance under every gravity anew: it keeps its shape, and swings otherwise. To see it give way, switch off \"Starts in balance\" (Solver).";
-        Material "density", "Density", "kg/m³", number(100.0, 5000.0), "Of the fibre. Dry human hair: 1310.";
-        Material "mass_profile", "Mass along it", "", Kind::Profile, "Weights from root to tip, linear in between; only their ratios count: 1, 3 is three times as heavy at the tip.";
+        Material "density", "Density", "kg/m³", number(100.0, 5000.0), "Density of the fiber. Dry human hair: 1310.";
+        Material "mass_profile", "Mass profile", "", Kind::Profile, "Relative mass from root to tip, linear in between. Only ratios count: 1, 3 is three times as heavy at the tip.";
         Material "radius", "Fibre radius", "m", Kind::Maybe { min: 1e-5, max: 2e-4, from: 3.5e-5, without: "as the groom has it" }, "Of the fibre, in place of the groom's own. Human hair: 25e-6 to 50e-6. It begins the scene anew.";
     }
     Motion {
-        Groom "motion", "Moves by itself", "", Kind::Switch, "Whether the built-in head nods, turns and shakes where the scene has no motion of its own.";
-        Scene "clip.start", "Begins at frame", "", Kind::Count { min: 0, max: 500 }, "First frame of the motion's file that is used.";
-        Scene "clip.rest_frame", "Rests in frame", "", Kind::Count { min: 0, max: 500 }, "The frame in which the joint that drives the body counts as being at rest.";
-        Scene "clip.travel", "Travels", "", Kind::Choice(&["keep", "in-place", "none"]), "What is kept of it. in-place: bobbing only.";
-        Scene "clip.facing", "Faces", "°", number(-180.0, 180.0), "Direction of the body, about the vertical from +Z.";
-        Scene "solver.inertia", "Head's inertia", "×", number(0.0, 1.0), "How much of the head's motion hair feels: 0, and it moves as if the head stood still.";
+        Groom "motion", "Built-in motion", "", Kind::Switch, "Whether the built-in head nods, turns and shakes when the scene has no motion of its own.";
+        Scene "clip.start", "First frame", "", Kind::Count { min: 0, max: 500 }, "First frame of the motion file that is used.";
+        Scene "clip.rest_frame", "Rest frame", "", Kind::Count { min: 0, max: 500 }, "Frame in which the joint that drives the body counts as being at rest.";
+        Scene "clip.travel", "Travel", "", Kind::Choice(&["keep", "in-place", "none"]), "How much of the travel is kept. in-place: only the vertical motion.";
+        Scene "clip.facing", "Facing", "°", number(-180.0, 180.0), "Direction of the body, about the vertical from +Z.";
+        Scene "solver.inertia", "Head inertia", "×", number(0.0, 1.0), "Share of the head's motion that hair feels. 0: hair moves as if the head stood still.";
     }
     Air {
-        Scene "wind.velocity", "Wind", "m/s", Kind::Vector { reach: 20.0 }, "Mean velocity of the air, everywhere.";
-        Scene "wind.gust", "Gusts", "", number(0.0, 1.0), "How much gusts add and take, as a share of the wind.";
-        Scene "wind.gust_rate", "Gusts a second", "Hz", number(0.0, 5.0), "How often they come.";
-        Scene "turbulence.strength", "Turbulence", "m/s", number(0.0, 5.0), "Speed of eddies that the wind carries along.";
-        Scene "turbulence.size", "Largest eddy", "m", scale(0.01, 2.0), "Its size.";
-        Scene "turbulence.octaves", "Sizes of eddies", "", Kind::Count { min: 1, max: 6 }, "How many, each half as large as the one before.";
-        Scene "shelter.body", "Shelter by bodies", "1/m", number(0.0, 300.0), "How fast wind falls off inside a body. 100: to a third in a centimetre.";
-        Scene "shelter.hair", "Shelter by hair", "1/m", number(0.0, 300.0), "How fast wind falls off inside hair.";
-        Scene "shelter.reach", "Lee", "m", number(0.05, 3.0), "How far behind them the wind is whole again.";
-        Material "drag", "Drag", "×", number(0.0, 5.0), "Of the air on a hair, over that on a lone one.";
-        Material "charge", "Static charge", "C/m", number(-1e-8, 1e-8), "Of a length of hair: it is pushed and pulled by charged bodies. 5e-10 rises in the field of a rubbed balloon.";
+        Scene "wind.velocity", "Wind", "m/s", Kind::Vector { reach: 20.0 }, "Mean velocity of the air, the same everywhere.";
+        Scene "wind.gust", "Gust amount", "", number(0.0, 1.0), "Amplitude of the gusts, as a share of the wind.";
+        Scene "wind.gust_rate", "Gust rate", "Hz", number(0.0, 5.0), "Gusts per second.";
+        Scene "turbulence.strength", "Turbulence", "m/s", number(0.0, 5.0), "Speed of the eddies that the wind carries along.";
+        Scene "turbulence.size", "Eddy size", "m", scale(0.01, 2.0), "Size of the largest eddy.";
+        Scene "turbulence.octaves", "Octaves", "", Kind::Count { min: 1, max: 6 }, "Number of eddy sizes, each half as large as the one before.";
+        Scene "wind_occlusion.body", "Wind occlusion by bodies", "1/m", number(0.0, 300.0), "How fast wind falls off inside a body. 100: to a third in a centimeter.";
+        Scene "wind_occlusion.hair", "Wind occlusion by hair", "1/m", number(0.0, 300.0), "How fast wind falls off inside hair.";
+        Scene "wind_occlusion.reach", "Occlusion distance", "m", number(0.05, 3.0), "Distance behind an occluder at which the wind has recovered.";
+        Material "drag", "Drag", "×", number(0.0, 5.0), "Drag of the air on a hair, relative to that on a lone hair.";
+        Material "charge", "Static charge", "C/m", number(-1e-8, 1e-8), "Charge per length. Charged bodies attract and repel it. 5e-10 rises in the field of a rubbed balloon.";
     }
     Collision {
-        Scene "solver.collide_body", "Meets the body", "", Kind::Switch, "Whether hair collides with the body's mesh. It begins the scene anew.";
-        Scene "solver.contact", "Answered by", "", Kind::Choice(&["both", "penalty", "projection"]), "What keeps hair out of bodies: a force in the solve (penalty: soft), the move to the nearest free place (projection: hard), or both.";
-        Scene "solver.segments", "Between points", "", Kind::Switch, "Whether hair stays out of bodies between its points too.";
+        Scene "solver.collide_body", "Body collision", "", Kind::Switch, "Whether hair collides with the body's mesh. Restarts the scene.";
+        Scene "solver.contact", "Contact method", "", Kind::Choice(&["both", "penalty", "projection"]), "How hair is kept out of colliders. penalty: a force in the solve (soft). projection: a move to the nearest free position (hard). both: the two together.";
+        Scene "solver.segment_contacts", "Segment contacts", "", Kind::Switch, "Whether segments collide between their points too.";
         Material "friction", "Friction", "", number(0.0, 1.0), "Coulomb friction on bodies. Hair on skin: 0.1 to 0.3.";
-        Material "friction_kinetic", "… of what slides", "×", number(0.0, 1.0), "Kinetic friction over static: below 1 hair that comes loose goes on sliding.";
-        Scene "solver.jump", "A jump is", "m", scale(0.05, 10.0), "A head that moves farther in a frame, over how it moved before, has jumped, and hair goes with it as it is.";
+        Material "friction_kinetic", "… kinetic", "×", number(0.0, 1.0), "Kinetic over static friction. Below 1, hair that comes loose keeps sliding.";
+        Scene "solver.teleport_distance", "Teleport distance", "m", scale(0.05, 10.0), "If the head moves farther than this in one frame, beyond its previous motion, the hair is moved rigidly with it.";
     }
     Volume {
-        Scene "volume.method", "Hair on hair", "", Kind::Choice(&["off", "density", "incompressible"]), "off: strands pass through each other. density: pressure where hair is denser than at rest. incompressible: firm.";
-        Scene "volume.friction", "Friction in hair", "1/s", number(0.0, 30.0), "How fast hair takes on the velocity of the hair around it.";
-        Scene "volume.pressure", "Pressure", "m/s", number(0.0, 3.0), "density: speed with which a crowd spreads.";
-        Scene "volume.regain", "Regain", "1/s", number(0.0, 100.0), "incompressible: share of lost volume that is regained a second.";
-        Scene "volume.cell", "Cell", "m", Kind::Maybe { min: 0.002, max: 0.1, from: 0.015, without: "found by itself" }, "Edge of a cell of the lattice; left out, the smallest that holds eight points at rest.";
-        Scene "neighbours.on", "Strand on strand", "", Kind::Switch, "Whether simulated strands meet each other one by one: exact, and slow. For guides and small scenes.";
+        Scene "volume.method", "Volume method", "", Kind::Choice(&["off", "density", "incompressible"]), "off: strands pass through each other. density: pressure where hair is denser than at rest. incompressible: a projection that keeps the density of the rest pose.";
+        Scene "volume.friction", "Volume friction", "1/s", number(0.0, 30.0), "How fast hair takes on the velocity of the hair around it.";
+        Scene "volume.pressure", "Pressure", "m/s", number(0.0, 3.0), "density: speed at which a compressed region spreads.";
+        Scene "volume.recovery_rate", "Volume recovery rate", "1/s", number(0.0, 100.0), "incompressible: share of the lost volume that is recovered per second.";
+        Scene "volume.cell", "Cell size", "m", Kind::Maybe { min: 0.002, max: 0.1, from: 0.015, without: "found by itself" }, "Edge of a grid cell. By default the smallest one that holds eight points at rest.";
+        Scene "neighbours.on", "Strand contacts", "", Kind::Switch, "Whether simulated strands collide with each other one by one. Exact and slow: for guides and small scenes.";
         Scene "neighbours.radius", "Radius of a strand", "m", Kind::Maybe { min: 0.0002, max: 0.02, from: 0.002, without: "found by itself" }, "With the hairs that it stands for; nowhere more than half of the way to the next at rest. Left out, half of that way in the mean.";
-        Scene "neighbours.friction", "Friction of strands", "", number(0.0, 1.0), "Coulomb friction of strands on each other.";
-        Scene "neighbours.stiction", "Stiction", "N", number(0.0, 1e-4), "Force that touching segments hold together with until more pulls. A hair of 25 cm weighs 1.6e-5.";
+        Scene "neighbours.friction", "Strand friction", "", number(0.0, 1.0), "Coulomb friction between strands.";
+        Scene "neighbours.stiction", "Stiction", "N", number(0.0, 1e-4), "Force that touching segments resist before they separate. A hair of 25 cm weighs 1.6e-5.";
     }
     Look {
-        Groom "look.root_color", "Root", "", Kind::Color, "What a thick lock of it looks like at the root.";
-        Groom "look.tip_color", "Tip", "", Kind::Color, "And at the tip.";
-        Groom "look.melanin", "Melanin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "the two colours" }, "Pigment in place of the two colours: 0 is white, 1 is black.";
-        Groom "look.melanin_redness", "Redness", "", number(0.0, 1.0), "Share of the pigment that is the reddish one: brown to red.";
-        Groom "look.dye", "Dye", "", Kind::Color, "What white hair would be dyed, over melanin or the colours; white is no dye.";
-        Groom "look.variation", "Variation", "", number(0.0, 1.0), "How much pigment differs from strand to strand.";
-        Groom "look.roughness", "Roughness", "", number(0.1, 1.0), "Spread of the highlights: oiled to matt.";
-        Groom "look.cuticle", "Cuticle", "°", number(0.0, 10.0), "Tilt of the scales, which parts the white highlight from the coloured one.";
-        Groom "look.specular", "Highlights", "×", number(0.0, 4.0), "Their strength.";
-        Groom "look.backlight", "Backlight", "×", number(0.0, 4.0), "Strength of light that shines through from behind.";
-        Groom "look.scatter", "Scatter", "×", number(0.0, 4.0), "Strength of light from strand to strand.";
-        Groom "look.shadow", "Shadow", "×", number(0.0, 4.0), "How strongly strands shade what is behind them.";
-        Scene "body.color", "Skin", "", Kind::MaybeColor { from: [0.5, 0.3, 0.23], without: "as its file has it" }, "Colour of the body's whole surface, in place of its file's.";
-        Scene "body.roughness", "Roughness of skin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "as its file has it" }, "Glossy to matt, in place of the body's file's.";
-        Scene "ground.on", "Ground", "", Kind::Switch, "Whether a level floor takes the shadow of body and hair. It is a matter of the picture: hair meets colliders.";
-        Scene "ground.height", "… lies at", "m", Kind::Maybe { min: -2.0, max: 2.0, from: 0.0, without: "under the body" }, "On the axis that points up. Left out, at the lowest point of the body at rest. What is below it is hidden.";
-        Scene "ground.color", "… is of colour", "", Kind::MaybeColor { from: [0.4, 0.37, 0.33], without: "shadow alone" }, "A floor's own, which fades into the backdrop; left out, shadow alone is seen.";
+        Groom "look.root_color", "Root color", "", Kind::Color, "Color of a thick lock of hair at the root.";
+        Groom "look.tip_color", "Tip color", "", Kind::Color, "Color of a thick lock of hair at the tip.";
+        Groom "look.melanin", "Melanin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "the two colours" }, "Pigment concentration, instead of the two colors: 0 is white, 1 is black.";
+        Groom "look.melanin_redness", "Redness", "", number(0.0, 1.0), "Share of reddish pigment: brown to red.";
+        Groom "look.dye", "Dye", "", Kind::Color, "Dye over melanin or the colors, as it looks on white hair. White: no dye.";
+        Groom "look.variation", "Variation", "", number(0.0, 1.0), "Variation of the pigment from strand to strand.";
+        Groom "look.roughness", "Roughness", "", number(0.1, 1.0), "Width of the highlights: from oiled to matte.";
+        Groom "look.cuticle", "Cuticle", "°", number(0.0, 10.0), "Tilt of the cuticle scales, which separates the white highlight from the colored one.";
+        Groom "look.specular", "Specular", "×", number(0.0, 4.0), "Strength of the highlights.";
+        Groom "look.backlight", "Backlight", "×", number(0.0, 4.0), "Strength of the light transmitted from behind.";
+        Groom "look.scatter", "Scatter", "×", number(0.0, 4.0), "Strength of the light scattered from strand to strand.";
+        Groom "look.shadow", "Shadow", "×", number(0.0, 4.0), "How strongly strands shadow what is behind them.";
+        Scene "body.color", "Skin color", "", Kind::MaybeColor { from: [0.5, 0.3, 0.23], without: "as its file has it" }, "Color of the whole body, instead of its file's.";
+        Scene "body.roughness", "Skin roughness", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "as its file has it" }, "From glossy to matte, instead of the body file's.";
+        Scene "ground.on", "Ground", "", Kind::Switch, "Whether a level floor receives the shadow of body and hair. It is only drawn: to collide, add a collider.";
+        Scene "ground.height", "… height", "m", Kind::Maybe { min: -2.0, max: 2.0, from: 0.0, without: "under the body" }, "Height along the up axis. By default the lowest point of the body at rest. Everything below it is hidden.";
+        Scene "ground.color", "… color", "", Kind::MaybeColor { from: [0.4, 0.37, 0.33], without: "shadow alone" }, "Color of the floor, which fades into the backdrop. By default only its shadow is drawn.";
     }
     Camera {
-        Scene "camera.position", "Stands at", "m", Kind::Vector { reach: 10.0 }, "The scene's own camera, which looks when it is opened and rendered. The window's is turned by hand.";
-        Scene "camera.target", "Looks at", "m", Kind::Vector { reach: 10.0 }, "What that camera looks at.";
-        Scene "camera.fov", "Opens by", "°", number(5.0, 90.0), "Its vertical field of view: small from far is a portrait, large takes in the room.";
+        Scene "camera.position", "Camera position", "m", Kind::Vector { reach: 10.0 }, "Position of the scene's camera, used when the scene is opened and rendered. The window's own camera is turned by hand.";
+        Scene "camera.target", "Camera target", "m", Kind::Vector { reach: 10.0 }, "Point that the camera looks at.";
+        Scene "camera.fov", "Field of view", "°", number(5.0, 90.0), "Vertical field of view: small for a distant portrait, large for a whole room.";
     }
     Solver {
-        Scene "solver.integrator", "Integrator", "", Kind::Choice(&["backward-euler", "bdf2", "explicit-euler", "verlet", "local-global", "ftl", "dftl"]), "How a substep is made. The explicit ones blow up: they are there to be compared.";
-        Scene "solver.substeps", "Substeps", "", Kind::Count { min: 1, max: 64 }, "In a frame of 1/60 s.";
-        Scene "solver.projections", "Projections", "", Kind::Count { min: 0, max: 20 }, "Iterations a substep that keep hair at its length.";
-        Scene "solver.quality", "Quality", "", Kind::Choice(&["normal", "high"]), "normal: one linear solve a substep. high: Newton to the end.";
-        Scene "solver.sag_free", "Starts in balance", "", Kind::Switch, "Whether rest shapes are solved so that the groom hangs as it was made.";
-        Scene "solver.settle", "Falls first", "s", number(0.0, 10.0), "How long hair falls from where it was made before the scene begins; it rests where it lies then. For hair that is grown: 3. It begins the scene anew.";
-        Scene "solver.ghost", "Ghost shapes", "", Kind::Switch, "Whether styles are kept by their materials' pull.";
+        Scene "solver.integrator", "Integrator", "", Kind::Choice(&["backward-euler", "bdf2", "explicit-euler", "verlet", "local-global", "ftl", "dftl"]), "Time integrator of a substep. The explicit ones become unstable; they are there for comparison.";
+        Scene "solver.substeps", "Substeps", "", Kind::Count { min: 1, max: 64 }, "Substeps per 1/60 s.";
+        Scene "solver.projection_iterations", "Projection iterations", "", Kind::Count { min: 0, max: 20 }, "Iterations of fast projection per substep, which keep segments at their length.";
+        Scene "solver.quality", "Quality", "", Kind::Choice(&["normal", "high"]), "normal: one linear solve per substep. high: Newton iterations to convergence.";
+        Scene "solver.sag_free", "Sag-free start", "", Kind::Switch, "Whether rest shapes are solved so that the groom is in static balance as authored.";
+        Scene "solver.preroll", "Pre-roll", "s", number(0.0, 10.0), "Time that hair falls before the scene begins; its final shape becomes the start. Use 3 for hair that is grown. Restarts the scene.";
+        Scene "solver.global_shape", "Use global shape", "", Kind::Switch, "Whether the global shape of the materials is applied.";
     }
 };
 
@@ -292,7 +292,7 @@ impl Parameter {
     /// Whether it is of hair, body or motion themselves: the scene begins anew with it.
     pub fn is_geometry(&self) -> bool {
         const NAMES: [&str; 7] =
-            ["style", "strands", "guides", "motion", "radius", "solver.collide_body", "solver.settle"];
+            ["style", "strands", "guides", "motion", "radius", "solver.collide_body", "solver.preroll"];
         const TABLES: [&str; 5] = ["grow", "thicken", "transform", "clip", "body"];
         NAMES.contains(&self.name) || self.name.split_once('.').is_some_and(|(t, _)| TABLES.contains(&t))
     }

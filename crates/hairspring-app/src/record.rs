@@ -6,7 +6,7 @@ use crate::{
     letters::Letters,
     orbit::Orbit,
     session::{Action, Session},
-    snapshot::{Scenery, Sight, Snapshot},
+    snapshot::{Snapshot, StageSnapshot, ViewParameters},
 };
 use hairspring_view::{
     ClipWriter, Image, Renderer,
@@ -76,7 +76,7 @@ impl Kind {
 
 /// What is to be recorded.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wish {
+pub struct RecordRequest {
     /// What.
     pub kind: Kind,
     /// Where it is written: `.png` or `.jpg` for a still, `.png` with `#` for pictures, else `.mp4`.
@@ -89,7 +89,7 @@ pub struct Wish {
 struct Shot {
     snapshot: Arc<Snapshot>,
     /// How each stage is looked at.
-    sights: Vec<Sight>,
+    sights: Vec<ViewParameters>,
     /// What stands under two that are compared.
     captions: [String; 2],
     /// From 1.
@@ -103,7 +103,7 @@ enum Job {
 
 /// A record being made.
 pub struct Recorder {
-    wish: Wish,
+    wish: RecordRequest,
     frames: u32,
     /// Frames handed over.
     sent: u32,
@@ -120,7 +120,7 @@ pub struct Recorder {
 impl Recorder {
     /// Begins; the play is paused and goes on by what is recorded. It is drawn by `gpu`, if there is one, else by the CPU.
     pub fn new(
-        mut wish: Wish,
+        mut wish: RecordRequest,
         session: &mut Session,
         snapshot: &Snapshot,
         gpu: Option<Gpu>,
@@ -151,7 +151,7 @@ impl Recorder {
         &mut self,
         session: &mut Session,
         snapshot: &Arc<Snapshot>,
-        mut sights: Vec<Sight>,
+        mut sights: Vec<ViewParameters>,
     ) -> Option<Result<String, AppError>> {
         while let Ok(outcome) = self.done.try_recv() {
             if let Err(why) = outcome {
@@ -226,8 +226,8 @@ enum Brush {
 impl Brush {
     fn draw(
         &mut self,
-        scenery: &Scenery,
-        sight: &Sight,
+        scenery: &StageSnapshot,
+        sight: &ViewParameters,
         [width, height]: [u32; 2],
     ) -> Result<Image, AppError> {
         match self {
@@ -258,7 +258,7 @@ struct Sink {
 }
 
 impl Sink {
-    fn new(wish: &Wish, gpu: Option<Gpu>) -> Result<Self, AppError> {
+    fn new(wish: &RecordRequest, gpu: Option<Gpu>) -> Result<Self, AppError> {
         let path = wish.path.clone();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let wrong = |expected: &str| {
@@ -318,7 +318,11 @@ impl Sink {
     }
 
     /// Two that are compared, side by side, with what they differ in under them.
-    fn pair(&mut self, sides: [(&Scenery, &Sight); 2], captions: &[String; 2]) -> Result<Image, AppError> {
+    fn pair(
+        &mut self,
+        sides: [(&StageSnapshot, &ViewParameters); 2],
+        captions: &[String; 2],
+    ) -> Result<Image, AppError> {
         let size = [(SIZE[0] - GAP) / 2, SIZE[1] - CAPTION];
         let mut all = Image::new(SIZE[0], SIZE[1]);
         all.rgb.fill(DARK);

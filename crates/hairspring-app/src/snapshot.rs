@@ -3,15 +3,15 @@
 use crate::{
     carried::Carried,
     followers::Followers,
-    pushed::{Placed, Pushed},
+    pointer_collider::{Placed, Pushed},
 };
 use glam::{Mat3, Vec3};
 use hairspring::{
     body::{Mesh, Part},
-    collide::Rigid,
+    collide::RigidTransform,
     groom::RootBinding,
     scene::HairLook,
-    simulation::{Energy, Measure, MovingObstacle, VolumeReport},
+    simulation::{Energy, Measure, MovingCollider, VolumeReport},
     stage::{FrameReport, Picked, Stage, StrandFigures, Value},
 };
 use hairspring_view::{Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality};
@@ -74,7 +74,7 @@ impl Still {
 }
 
 /// A stage at one moment.
-pub struct Scenery {
+pub struct StageSnapshot {
     /// What does not move.
     pub still: Arc<Still>,
     /// How each groom is drawn.
@@ -92,9 +92,9 @@ pub struct Scenery {
     /// What the body stands on.
     ground: Option<Ground>,
     /// Colliders.
-    pub obstacles: Vec<MovingObstacle>,
+    pub obstacles: Vec<MovingCollider>,
     /// The frame that roots move with.
-    pub anchor: Rigid,
+    pub anchor: RigidTransform,
     /// Stretch, depth, speed: of this moment or, while it plays, of one a few steps ago.
     pub measure: Measure,
     /// Energy of the same moment.
@@ -104,10 +104,10 @@ pub struct Scenery {
     /// Where what the scene lists has been carried.
     pub carried: Carried,
     /// What is pushed through hair, and where it is.
-    pub pushed: Option<(Pushed, Rigid)>,
+    pub pushed: Option<(Pushed, RigidTransform)>,
 }
 
-impl Scenery {
+impl StageSnapshot {
     /// Memory for a stage's moments.
     pub fn new(still: Arc<Still>) -> Self {
         Self {
@@ -120,7 +120,7 @@ impl Scenery {
             normals: Vec::new(),
             ground: None,
             obstacles: Vec::new(),
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             measure: Measure::default(),
             energy: Energy::default(),
             volume: None,
@@ -214,7 +214,7 @@ impl Scenery {
 
     /// Draws by `draw` what is seen by this camera: every `every`-th hair, those that are drawn being wider by as much. `card`: what draws can place hairs that
     /// are left to it.
-    pub fn draw<R>(&self, sight: &Sight, card: bool, draw: impl FnOnce(&Frame) -> R) -> R {
+    pub fn draw<R>(&self, sight: &ViewParameters, card: bool, draw: impl FnOnce(&Frame) -> R) -> R {
         let left = |g: usize| self.followers[g].as_ref().filter(|_| card);
         let thinned: Vec<Option<Thin>> = (0..self.points.len())
             .map(|g| {
@@ -295,7 +295,7 @@ struct Thin {
 }
 
 impl Thin {
-    fn new(scenery: &Scenery, groom: usize, every: usize) -> Self {
+    fn new(scenery: &StageSnapshot, groom: usize, every: usize) -> Self {
         let still = &scenery.still.grooms[groom];
         let strands: Vec<_> =
             still.offsets.windows(2).step_by(every).map(|w| w[0] as usize..w[1] as usize).collect();
@@ -326,7 +326,7 @@ impl Thin {
 
 /// How a moment is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub struct ViewParameters {
     /// From where.
     pub camera: hairspring::scene::Camera,
     /// The camera that the lamps stand by: it does not turn with the view, so that light stays on the head as one walks around it.
@@ -358,7 +358,7 @@ pub struct Snapshot {
     /// Time in the scene [s].
     pub time: f64,
     /// The scene, and beside it the one that it is compared with.
-    pub stages: Vec<Scenery>,
+    pub stages: Vec<StageSnapshot>,
     /// Where the step's time went.
     pub report: FrameReport,
     /// How long a step takes, all that belongs to it included, over some steps.
@@ -381,10 +381,10 @@ mod tests {
     fn a_root_that_is_placed_alone_is_where_its_hair_begins() {
         let options = BuiltinOptions { strands: 300, guides: Guides::Count(40), ..BuiltinOptions::default() };
         let mut stage = Stage::new(builtin::scene(&options)).unwrap();
-        stage.leave_follow_hairs(true);
+        stage.set_external_interpolation(true);
         (0..5).for_each(|_| _ = stage.step(1.0 / 60.0));
         let still = Arc::new(Still::new(&stage));
-        let mut scenery = Scenery::new(still.clone());
+        let mut scenery = StageSnapshot::new(still.clone());
         scenery.fill(&stage, &still, None);
         for (groom, points) in scenery.points().enumerate() {
             for strand in 0..still.grooms[groom].strands() {

@@ -4,7 +4,7 @@
 mod support;
 
 use glam::Vec3;
-use hairspring::collide::Rigid;
+use hairspring::collide::RigidTransform;
 use hairspring_app::{Action, Document, Push, Pushed, Session};
 use support::SMALL;
 
@@ -12,7 +12,7 @@ const LENGTH: f32 = hairspring::scene::builtin::Hand::LENGTH;
 
 /// A moment: where what is pushed is, all points [m], how deep the deepest of them is in it [m], and the number of colliders.
 struct Seen {
-    pushed: Option<(Pushed, Rigid)>,
+    pushed: Option<(Pushed, RigidTransform)>,
     points: Vec<Vec3>,
     depth: f32,
     colliders: usize,
@@ -55,7 +55,7 @@ fn hair_gives_way_to_a_hand_and_none_is_in_it() {
     let way = |k: u64| Vec3::new(-0.075, 0.05 - 0.005 * k as f32, 0.075);
     let push = |k: u64| Push { what: Pushed::Hand(LENGTH), at: way(k), axes: [Vec3::X, Vec3::Y] };
     let bare = step(&mut alone, 1, None).colliders;
-    let mut last: Option<Rigid> = None;
+    let mut last: Option<RigidTransform> = None;
     let (mut deepest, mut moved) = (0f32, 0f32);
     for k in 1..=40 {
         let seen = step(&mut stroked, k, Some(push(k)));

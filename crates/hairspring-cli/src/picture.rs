@@ -85,7 +85,7 @@ impl Studio {
             false => Painter::Cpu(Box::new(Renderer::new(width, height))),
             true => {
                 let card = Card::new(view.size)?;
-                stage.leave_follow_hairs(card.renderer.gpu().can_place_among(stage.obstacles()));
+                stage.set_external_interpolation(card.renderer.gpu().can_place_among(stage.obstacles()));
                 Painter::Gpu(Box::new(card))
             }
         };

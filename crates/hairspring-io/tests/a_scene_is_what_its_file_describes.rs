@@ -10,9 +10,9 @@ mod scenes;
 use common::data;
 use glam::Vec3;
 use hairspring::{
-    air::{Flow, Shelter, Turbulence, WindSource},
-    around::{Tool, comb::Comb, tie::Tie},
+    air::{Flow, Turbulence, WindOcclusion, WindSource},
     body::{Body, Clip},
+    forces::{Manipulator, comb::Comb, tie::Tie},
     scene::{Guides, Hand, Neighbours, Shape, Volume, VolumeMethod},
 };
 use hairspring_io::Loaded;
@@ -52,7 +52,7 @@ fn a_scene_is_what_its_file_describes() {
         shape.fan = { center = [0, 0, 1], axis = [0, 0, -1], radius = 0.1, speed = 3 }
         [turbulence]
         strength = 0.4
-        [shelter]
+        [wind_occlusion]
         hair = 50
         [[charged]]
         center = [0, 1, 0]
@@ -105,15 +105,15 @@ fn a_scene_is_what_its_file_describes() {
     assert_eq!(scene.neighbours, Neighbours { on: true, radius: Some(0.002), ..Neighbours::default() });
     let (center, axis) = (Vec3::Y, Vec3::NEG_Y);
     let tie = Tie { center, axis, radius: 0.01, reach: 0.1, gather: 0.5, pull: 60.0, damping: 1.0 };
-    assert_eq!(scene.hands[0], Hand::new(Tool::Tie(tie)));
+    assert_eq!(scene.hands[0], Hand::new(Manipulator::Tie(tie)));
     let comb = Comb { a: Vec3::ZERO, b: Vec3::X * 0.1, radius: 0.02, grip: 400.0, friction: 3.0 };
-    assert_eq!(scene.hands[1].tool, Tool::Comb(comb));
+    assert_eq!(scene.hands[1].tool, Manipulator::Comb(comb));
     assert_eq!(scene.hands[1].moved(1.0), Vec3::NEG_Y * 0.2);
     let fan = Flow::Fan { center: Vec3::Z, axis: Vec3::NEG_Z, radius: 0.1, speed: 3.0, spread: 11.8 };
     let source = WindSource { joint: None, shape: fan, gust: 0.5, gust_rate: 0.0 };
     assert_eq!(scene.wind_sources, [source]);
     assert_eq!(scene.turbulence, Turbulence { strength: 0.4, ..Turbulence::default() });
-    assert_eq!(scene.shelter, Shelter { hair: 50.0, ..Shelter::default() });
+    assert_eq!(scene.wind_occlusion, WindOcclusion { hair: 50.0, ..WindOcclusion::default() });
     let balloon = &scene.charged[0];
     assert_eq!((balloon.charge, balloon.solid), (-1e-7, true));
     assert_eq!(balloon.center(1.0), Vec3::new(0.5, 1.0, 0.0));

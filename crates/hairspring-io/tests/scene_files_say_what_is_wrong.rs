@@ -139,16 +139,16 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
             &["line 4", "`friction` from 0 to its `grip`"],
         ),
         (
-            format!("{GROOM}material = \"a\"\n[material.a]\nghost = {{ pull = 61 }}\n"),
+            format!("{GROOM}material = \"a\"\n[material.a]\nglobal_shape = {{ pull = 61 }}\n"),
             &["line 5", "`pull` 0 to 60 [Hz]"],
         ),
         (
-            format!("{GROOM}material = \"a\"\n[material.a]\nghost = {{ pul = 6 }}\n"),
+            format!("{GROOM}material = \"a\"\n[material.a]\nglobal_shape = {{ pul = 6 }}\n"),
             &["did you mean `pull`?"],
         ),
         (format!("{GROOM}bones = \"x.tfxbone\"\n"), &["x.tfxbone was not found"]),
         (format!("{GROOM}[turbulence]\nsize = 0\n"), &["line 4", "`size` must be above 0 [m]"]),
-        (format!("{GROOM}[shelter]\nhair = -1\n"), &["line 4", "`hair` must be 0 or more [1/m]"]),
+        (format!("{GROOM}[wind_occlusion]\nhair = -1\n"), &["line 4", "`hair` must be 0 or more [1/m]"]),
         (
             format!("{GROOM}[[wind_source]]\nshape.fna = {{ center = [0, 0, 0] }}\n"),
             &["line 4", "did you mean `fan`?"],

@@ -133,7 +133,10 @@ fn what_a_stage_takes_up_is_no_geometry() {
         ("bend = 2", "model = \"springs\""),
         ("material = \"mine\"", "material = \"coily\"\nlook.specular = 2\neffects.clump = 1"),
         ("[solver]\n", "[solver]\nsubsteps = 8\nintegrator = \"bdf2\"\ncollide_body = true\n"),
-        ("[solver]\n", "[wind]\nvelocity = [1, 0, 0]\n[turbulence]\nstrength = 1\n[shelter]\nbody = 3\n"),
+        (
+            "[solver]\n",
+            "[wind]\nvelocity = [1, 0, 0]\n[turbulence]\nstrength = 1\n[wind_occlusion]\nbody = 3\n",
+        ),
         (
             "[solver]\n",
             "[[collider]]\nshape.hull = { file = \"no.obj\" }\n[camera]\nfov = 3\n[volume]\ncell = 0.1\n",
@@ -203,7 +206,7 @@ fn a_stage_takes_up_what_is_read() {
     let text =
         format!("gravity = [0, -1.6, 0]\n{BUILTIN}[wind]\nvelocity = [0, 0, 3]\n[ground]\non = true\n");
     assert!(same_geometry(BUILTIN, &text));
-    stage.retune(read_settings(&path, &text).unwrap()).unwrap();
+    stage.update_settings(read_settings(&path, &text).unwrap()).unwrap();
     assert_eq!((stage.scene().gravity, stage.scene().wind.velocity), (Vec3::Y * -1.6, Vec3::Z * 3.0));
     assert!(stage.body().is_some() && stage.scene().ground.on);
     stage.step(1.0 / 60.0);

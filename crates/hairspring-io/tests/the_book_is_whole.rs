@@ -5,8 +5,8 @@
 //! to by the summary alone, every picture is shown, and the scenes of the book can be read.
 
 use hairspring::{
-    air::{Shelter, Turbulence, WindSource},
-    around::charge::Charged,
+    air::{Turbulence, WindOcclusion, WindSource},
+    forces::charge::Charged,
     groom::{Growth, Thicken},
     material::Material,
     scene::{Camera, Collider, Effects, Ground, HairLook, Hand, Neighbours, Solver, Volume, Wind},
@@ -23,7 +23,7 @@ use toml::{Table, Value};
 const FILE: &str = include_str!("../src/scene/file.rs");
 const SETTINGS: &str = include_str!("../../hairspring/src/scene/settings.rs");
 const SOURCE: &str = include_str!("../../hairspring/src/air/source.rs");
-const CHARGE: &str = include_str!("../../hairspring/src/around/charge.rs");
+const CHARGE: &str = include_str!("../../hairspring/src/forces/charge.rs");
 
 /// What a parameter's name begins with, and the struct (or variant) whose fields follow.
 const STRUCTS: [(&str, &str, &str); 43] = [
@@ -40,14 +40,14 @@ const STRUCTS: [(&str, &str, &str); 43] = [
     ("groom.look.", include_str!("../../hairspring/src/scene/look.rs"), "HairLook"),
     ("groom.effects.", SETTINGS, "Effects"),
     ("material.", include_str!("../../hairspring/src/material/mod.rs"), "Material"),
-    ("material.ghost.", include_str!("../../hairspring/src/around/ghost.rs"), "Ghost"),
+    ("material.global_shape.", include_str!("../../hairspring/src/forces/global_shape.rs"), "GlobalShape"),
     ("wind.", SETTINGS, "Wind"),
     ("wind_source.", SOURCE, "WindSource"),
     ("wind_source.shape.point.", SOURCE, "Point"),
     ("wind_source.shape.vortex.", SOURCE, "Vortex"),
     ("wind_source.shape.fan.", SOURCE, "Fan"),
     ("turbulence.", include_str!("../../hairspring/src/air/turbulence.rs"), "Turbulence"),
-    ("shelter.", include_str!("../../hairspring/src/air/shelter.rs"), "Shelter"),
+    ("wind_occlusion.", include_str!("../../hairspring/src/air/occlusion.rs"), "WindOcclusion"),
     ("charged.", CHARGE, "Charged"),
     ("charged.path.", CHARGE, "Waypoint"),
     ("collider.", SETTINGS, "Collider"),
@@ -57,9 +57,9 @@ const STRUCTS: [(&str, &str, &str); 43] = [
     ("collider.shape.plane.", SETTINGS, "Plane"),
     ("collider.shape.hull.", SETTINGS, "Hull"),
     ("hand.", include_str!("../../hairspring/src/scene/hand.rs"), "Hand"),
-    ("hand.tool.grab.", include_str!("../../hairspring/src/around/grab.rs"), "Grab"),
-    ("hand.tool.comb.", include_str!("../../hairspring/src/around/comb.rs"), "Comb"),
-    ("hand.tool.tie.", include_str!("../../hairspring/src/around/tie.rs"), "Tie"),
+    ("hand.tool.grab.", include_str!("../../hairspring/src/forces/grab.rs"), "Grab"),
+    ("hand.tool.comb.", include_str!("../../hairspring/src/forces/comb.rs"), "Comb"),
+    ("hand.tool.tie.", include_str!("../../hairspring/src/forces/tie.rs"), "Tie"),
     ("solver.", SETTINGS, "Solver"),
     ("volume.", SETTINGS, "Volume"),
     ("neighbours.", SETTINGS, "Neighbours"),
@@ -300,7 +300,7 @@ fn defaults() -> BTreeMap<String, Value> {
     defaults_of::<Material>("material", "", &mut all);
     defaults_of::<Wind>("wind", "", &mut all);
     defaults_of::<Turbulence>("turbulence", "", &mut all);
-    defaults_of::<Shelter>("shelter", "", &mut all);
+    defaults_of::<WindOcclusion>("wind_occlusion", "", &mut all);
     defaults_of::<Solver>("solver", "", &mut all);
     defaults_of::<Volume>("volume", "", &mut all);
     defaults_of::<Neighbours>("neighbours", "", &mut all);

@@ -50,7 +50,7 @@ fn the_page_leaves_no_setting_out() {
         ("effects", toml::Table::try_from(hairspring::scene::Effects::default())),
         ("wind", toml::Table::try_from(hairspring::scene::Wind::default())),
         ("turbulence", toml::Table::try_from(hairspring::air::Turbulence::default())),
-        ("shelter", toml::Table::try_from(hairspring::air::Shelter::default())),
+        ("wind_occlusion", toml::Table::try_from(hairspring::air::WindOcclusion::default())),
         ("solver", toml::Table::try_from(hairspring::scene::Solver::default())),
         ("volume", toml::Table::try_from(volume)),
         ("neighbours", toml::Table::try_from(neighbours)),

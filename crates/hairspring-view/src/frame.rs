@@ -8,7 +8,7 @@ use crate::{
 use glam::Vec3;
 use hairspring::{
     body::Part,
-    follow::Followed,
+    follow::HairInterpolation,
     scene::{Camera, HairLook},
     stage::{PosedBody, Strands},
 };
@@ -30,7 +30,7 @@ pub struct HairDraw<'a> {
     pub width_scale: f32,
     /// What places the strands now, where a graphics card shall do it: then of `points` their number is looked at and nothing else. The CPU renderer draws
     /// `points`, whatever stands here. Only where [`Gpu::can_place_among`](crate::gpu::Gpu::can_place_among) its colliders.
-    pub follow: Option<Followed<'a>>,
+    pub follow: Option<HairInterpolation<'a>>,
 }
 
 /// A mesh to draw, already posed.
@@ -102,7 +102,7 @@ impl<'a> HairDraw<'a> {
     }
 
     /// What places its strands, if that belongs to as many points.
-    pub(crate) fn followed(&self) -> Option<Followed<'a>> {
+    pub(crate) fn followed(&self) -> Option<HairInterpolation<'a>> {
         self.follow.filter(|f| {
             f.layout.groom.points.len() == self.points.len() && f.carriers.len() == f.guide_points.len()
         })

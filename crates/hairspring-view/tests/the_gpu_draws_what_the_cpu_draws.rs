@@ -212,7 +212,7 @@ fn a_head_in_motion_looks_alike_whoever_places_its_hair() {
         groom.effects = Effects { clump: 0.4, curl_radius: 0.002, noise: 0.004, ..Effects::default() };
     }
     let mut stage = Stage::new(scene).unwrap();
-    stage.leave_follow_hairs(true);
+    stage.set_external_interpolation(true);
     for _ in 0..100 {
         stage.step(1.0 / 60.0);
     }

@@ -9,7 +9,7 @@ mod support;
 
 use glam::Vec3;
 use hairspring::{
-    follow::Followed,
+    follow::HairInterpolation,
     scene::{
         Collider, Effects, Guides, Scene, Shape,
         builtin::{BuiltinOptions, scene},
@@ -50,7 +50,7 @@ fn kept(points: &[Vec3]) -> f32 {
 /// 0.1 mm.
 fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usize {
     let mut stage = Stage::new(scene).unwrap();
-    stage.leave_follow_hairs(true);
+    stage.set_external_interpolation(true);
     assert!(gpu.gpu().can_place_among(stage.obstacles()));
     let mut pushed = 0;
     for frame in 1..=frames {
@@ -66,7 +66,7 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
             .flat_map(|s| {
                 let mut points = s.points.to_vec();
                 if let Some(f) = s.follow {
-                    Followed { obstacles: &[], ..f }.place(&mut points);
+                    HairInterpolation { obstacles: &[], ..f }.place(&mut points);
                 }
                 points
             })
@@ -82,7 +82,7 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
             let mut bare = s.points.to_vec();
             if let Some(f) = s.follow {
                 let effects = Effects { curl_radius: 0.0, noise: 0.0, ..f.effects };
-                Followed { obstacles: &[], effects, ..f }.place(&mut bare);
+                HairInterpolation { obstacles: &[], effects, ..f }.place(&mut bare);
             }
             for k in 0..s.groom.strand_count() {
                 let range = s.groom.range(k);

@@ -4,17 +4,17 @@
 //! SI units throughout: metres, kilograms, seconds, newtons, pascals; right-handed, Y up.
 
 pub mod air;
-pub mod around;
 pub mod body;
 pub mod collide;
 pub mod follow;
+pub mod forces;
 pub mod groom;
 pub mod material;
-pub(crate) mod neighbours;
 pub mod scene;
 pub mod simulation;
 pub mod stage;
 pub(crate) mod strand;
+pub(crate) mod strand_contact;
 pub(crate) mod timed;
 pub mod validate;
 pub(crate) mod volume;

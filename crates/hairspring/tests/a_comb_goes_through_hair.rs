@@ -4,12 +4,12 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    around::{Tool, comb::Comb},
-    collide::Rigid,
+    collide::RigidTransform,
+    forces::{Manipulator, comb::Comb},
     groom::Groom,
     material::{Material, Model},
     scene::Solver,
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ const SPEED: f32 = 0.3;
 
 struct Curtain {
     simulation: Simulation,
-    roots: Vec<Rigid>,
+    roots: Vec<RigidTransform>,
     points: Vec<Vec3>,
     before: Vec<Vec3>,
 }
@@ -34,19 +34,27 @@ impl Curtain {
         });
         let groom = Arc::new(Groom::from_strands(strands, 40e-6));
         let all: Vec<u32> = (0..STRANDS as u32).collect();
-        let root = |s: &u32| Rigid { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY };
+        let root =
+            |s: &u32| RigidTransform { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY };
         let roots = all.iter().map(root).collect();
         let (material, gravity) = (Material { model, drag: 0.1, ..Material::default() }, Vec3::NEG_Y * 9.81);
         let solver = Solver::default();
-        let simulation =
-            Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
+        let simulation = Simulation::new(
+            groom.clone(),
+            &all,
+            &[material],
+            solver,
+            gravity,
+            RigidTransform::default(),
+            &[],
+        );
         Self { simulation, roots, points: groom.points.clone(), before: groom.points.clone() }
     }
 
     fn step(&mut self) {
-        let report = self.simulation.step(&Drive {
+        let report = self.simulation.step(&StepInput {
             dt: FRAME,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             roots: &self.roots,
             obstacles: &[],
             air: Air::default(),
@@ -66,9 +74,9 @@ impl Curtain {
     }
 }
 
-fn comb(at: Vec3) -> Tool {
+fn comb(at: Vec3) -> Manipulator {
     let half = Vec3::X * 0.08;
-    Tool::Comb(Comb { a: at - half, b: at + half, radius: 0.015, grip: 1000.0, friction: 3.0 })
+    Manipulator::Comb(Comb { a: at - half, b: at + half, radius: 0.015, grip: 1000.0, friction: 3.0 })
 }
 
 #[test]
@@ -77,12 +85,15 @@ fn across_it_takes_hair_along() {
         let mut curtain = Curtain::new(model);
         let home = curtain.points.clone();
         let start = Vec3::new(0.0, -0.16, -0.05);
-        let id = curtain.simulation.take(comb(start), Rigid::default());
+        let id = curtain.simulation.add_manipulator(comb(start), RigidTransform::default());
         let mut way = 0.0;
         let mut carried = false;
         while way < 0.6 {
             way += SPEED * FRAME;
-            curtain.simulation.carry(id, Rigid { translation: Vec3::Z * way, ..Rigid::default() });
+            curtain.simulation.set_manipulator_pose(
+                id,
+                RigidTransform { translation: Vec3::Z * way, ..RigidTransform::default() },
+            );
             curtain.step();
             let comb = start.z + way;
             if (0.04..0.045).contains(&comb) {
@@ -112,11 +123,14 @@ fn across_it_takes_hair_along() {
 fn along_it_slides() {
     let mut curtain = Curtain::new(Model::Curvature);
     let home = curtain.points.clone();
-    let id = curtain.simulation.take(comb(Vec3::new(0.0, 0.03, 0.0)), Rigid::default());
+    let id = curtain.simulation.add_manipulator(comb(Vec3::new(0.0, 0.03, 0.0)), RigidTransform::default());
     let mut fastest = 0.0f64;
     for frame in 1..=72 {
         let way = SPEED * FRAME * frame as f32;
-        curtain.simulation.carry(id, Rigid { translation: Vec3::NEG_Y * way, ..Rigid::default() });
+        curtain.simulation.set_manipulator_pose(
+            id,
+            RigidTransform { translation: Vec3::NEG_Y * way, ..RigidTransform::default() },
+        );
         curtain.step();
         fastest = fastest.max(curtain.simulation.measure(&[]).speed_max);
     }

@@ -6,7 +6,7 @@
 use glam::{Quat, Vec3};
 use hairspring::{
     body::{Body, Clip, Joint, Mesh, Skin, Trs},
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     scene::{Collider, Guides, Scene, SceneGroom, Shape, Solver},
     stage::{FrameRate, Stage},
@@ -118,7 +118,7 @@ fn a_genuine_motion_is_felt_at_any_frame_rate() {
         for (number, motion) in motions.into_iter().enumerate() {
             let [watched, never] = [1.0, f32::MAX].map(|jump| {
                 let mut scene = scene(motion);
-                scene.solver.jump = jump;
+                scene.solver.teleport_distance = jump;
                 farthest(scene, rate)
             });
             assert!(watched > 0.02, "motion {number} at {rate} Hz moves hair by {watched} m alone");
@@ -167,7 +167,7 @@ fn what_is_carried_by_the_body_is_cut_with_it_and_what_is_not_stays() {
 fn a_body_that_is_moved_besides_its_clip_is_cut_where_it_is() {
     for rate in RATES {
         let mut stage = Stage::new(scene(cut(30, away()))).unwrap();
-        stage.move_body(Rigid {
+        stage.move_body(RigidTransform {
             rotation: Quat::from_rotation_y(1.0),
             translation: Vec3::new(0.0, 0.0, 20.0),
         });

@@ -6,7 +6,7 @@
 use glam::Vec3;
 use hairspring::{
     body::{Mesh, NearestTree},
-    collide::{Grid, Voxelizer},
+    collide::{SignedDistanceField, Voxelizer},
 };
 use std::f32::consts::{PI, TAU};
 
@@ -41,7 +41,7 @@ fn every_node_of_the_band_is_as_far_off_as_its_nearest_triangle_and_moves_with_i
     let before: Vec<Vec3> = mesh.positions.iter().map(|p| *p - moved(*p)).collect();
     let mut triangles = mesh.triangles.clone();
     triangles.push([40, 40, 40]);
-    let (mut grid, cell) = (Grid::default(), 0.011);
+    let (mut grid, cell) = (SignedDistanceField::default(), 0.011);
     Voxelizer::default().update(&mut grid, &mesh.positions, Some(&before), &triangles, None, cell);
     let mut near = 0;
     for (i, d) in grid.distances().iter().enumerate() {

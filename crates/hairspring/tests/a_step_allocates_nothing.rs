@@ -4,15 +4,15 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::{Flow, Shelter, Source, Turbulence},
-    around::{Tool, charge::ChargedBall, comb::Comb, ghost::Ghost, grab::Grab, tie::Tie},
-    collide::Rigid,
+    air::{Flow, Source, Turbulence, WindOcclusion},
+    collide::RigidTransform,
+    forces::{Manipulator, charge::ChargedBall, comb::Comb, global_shape::GlobalShape, grab::Grab, tie::Tie},
     material::Material,
     scene::{
         Neighbours, Solver, Volume, VolumeMethod, Wind,
         bench::{self, Bench},
     },
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::{
     alloc::{GlobalAlloc, Layout, System},
@@ -80,26 +80,37 @@ fn hair_on_hair_allocates_nothing() {
         COUNT.get() - before
     });
     assert_eq!(counted, 0, "{counted} allocations in 40 steps, strands that meet one by one");
-    // With hands on the hair and a ghost, while a tie still gathers.
+    // With hands on the hair and a global shape, while a tie still gathers.
     let counted = pool.install(|| {
-        let material = Material { ghost: Ghost { pull: 2.0, ..Ghost::default() }, ..Material::default() };
+        let material = Material {
+            global_shape: GlobalShape { pull: 2.0, ..GlobalShape::default() },
+            ..Material::default()
+        };
         let mut bench = Bench::of(200, 16, material, Solver::default());
         let center = Vec3::Y * 0.2;
         let (axis, half) = (Vec3::Y, Vec3::X * 0.1);
         for tool in [
-            Tool::Grab(Grab { center: Vec3::X * 0.2, radius: 0.1, pull: 60.0, damping: 1.0 }),
-            Tool::Comb(Comb {
+            Manipulator::Grab(Grab { center: Vec3::X * 0.2, radius: 0.1, pull: 60.0, damping: 1.0 }),
+            Manipulator::Comb(Comb {
                 a: center - half,
                 b: center + half,
                 radius: 0.05,
                 grip: 1000.0,
                 friction: 3.0,
             }),
-            Tool::Tie(Tie { center, axis, radius: 0.02, reach: 0.3, gather: 0.5, pull: 60.0, damping: 1.0 }),
+            Manipulator::Tie(Tie {
+                center,
+                axis,
+                radius: 0.02,
+                reach: 0.3,
+                gather: 0.5,
+                pull: 60.0,
+                damping: 1.0,
+            }),
         ] {
-            let id = bench.simulation.take(tool, Rigid::default());
-            let holds = bench.simulation.held(id).count();
-            assert!(matches!(tool, Tool::Comb(_)) || holds > 10, "{tool:?} holds {holds} points");
+            let id = bench.simulation.add_manipulator(tool, RigidTransform::default());
+            let holds = bench.simulation.attached_points(id).count();
+            assert!(matches!(tool, Manipulator::Comb(_)) || holds > 10, "{tool:?} holds {holds} points");
         }
         bench.step();
         let before = COUNT.get();
@@ -116,21 +127,29 @@ fn wind_and_charge_allocate_nothing() {
     let counted = pool.install(|| {
         let groom = Arc::new(bench::groom(200, 16));
         let strands: Vec<u32> = (0..200).collect();
-        let roots: Vec<Rigid> =
-            (0..200).map(|s| Rigid { translation: groom.strand(s)[0], ..Rigid::default() }).collect();
+        let roots: Vec<RigidTransform> = (0..200)
+            .map(|s| RigidTransform { translation: groom.strand(s)[0], ..RigidTransform::default() })
+            .collect();
         let material = Material { charge: 1e-9, ..Material::default() };
         let gravity = Vec3::NEG_Y * 9.81;
-        let mut simulation =
-            Simulation::new(groom, &strands, &[material], Solver::default(), gravity, Rigid::default(), &[]);
-        simulation.set_shelter(&Shelter { hair: 50.0, ..Shelter::default() });
+        let mut simulation = Simulation::new(
+            groom,
+            &strands,
+            &[material],
+            Solver::default(),
+            gravity,
+            RigidTransform::default(),
+            &[],
+        );
+        simulation.set_wind_occlusion(&WindOcclusion { hair: 50.0, ..WindOcclusion::default() });
         let flow = Flow::Point { center: Vec3::ZERO, radius: 0.1, speed: 1.0 };
-        let sources = [Source { flow, pose: Rigid::default(), factor: 1.0 }];
+        let sources = [Source { flow, pose: RigidTransform::default(), factor: 1.0 }];
         let ball = ChargedBall { centers: [Vec3::Z; 2], radius: 0.1, charge: 1e-7 };
         let mut step = |frame: u32| {
             simulation.set_charged([ball]);
-            simulation.step(&Drive {
+            simulation.step(&StepInput {
                 dt: bench::FRAME,
-                anchor: Rigid::default(),
+                anchor: RigidTransform::default(),
                 roots: &roots,
                 obstacles: &[],
                 air: Air {

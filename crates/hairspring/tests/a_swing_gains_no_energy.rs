@@ -3,11 +3,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model},
     scene::{Integrator, Solver},
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -63,13 +63,15 @@ impl Swing {
         let groom = Arc::new(Groom::from_strands([strand.clone()], 40e-6));
         let solver = Solver { integrator, sag_free: false, ..Solver::default() };
         let gravity = Vec3::NEG_Y * 9.81;
-        let simulation = Simulation::new(groom, &[0], &[material], solver, gravity, Rigid::default(), &[]);
+        let simulation =
+            Simulation::new(groom, &[0], &[material], solver, gravity, RigidTransform::default(), &[]);
         Self { simulation, points: strand }
     }
 
     fn frame(&mut self) -> &[Vec3] {
-        let roots = [Rigid::default()];
-        let drive = Drive { dt: FRAME, anchor: roots[0], roots: &roots, obstacles: &[], air: Air::default() };
+        let roots = [RigidTransform::default()];
+        let drive =
+            StepInput { dt: FRAME, anchor: roots[0], roots: &roots, obstacles: &[], air: Air::default() };
         assert_eq!(self.simulation.step(&drive).reset_strands, 0);
         self.simulation.write_points(&mut self.points);
         &self.points

@@ -6,11 +6,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model},
     scene::Solver,
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -42,18 +42,20 @@ struct Fall {
 fn fall(model: Model, tether: f32, g: f32, seconds: usize) -> Fall {
     let groom = coils();
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots: Vec<Rigid> =
-        all.iter().map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() }).collect();
+    let roots: Vec<RigidTransform> = all
+        .iter()
+        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
+        .collect();
     let materials = [Material { model, tether, ..Material::default() }];
     let solver = Solver { sag_free: g == 1.0, ..Solver::default() };
     let gravity = Vec3::NEG_Y * 9.81 * g;
-    let anchor = Rigid::default();
+    let anchor = RigidTransform::default();
     let mut simulation = Simulation::new(groom.clone(), &all, &materials, solver, gravity, anchor, &[]);
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
     let (mut most, mut speed) = (0.0f32, 0.0);
     for _ in 0..60 * seconds {
         let (dt, air) = (1.0 / 60.0, Air::default());
-        simulation.step(&Drive { dt, anchor, roots: &roots, obstacles: &[], air });
+        simulation.step(&StepInput { dt, anchor, roots: &roots, obstacles: &[], air });
         let measure = simulation.measure(&[]);
         assert_eq!(measure.non_finite, 0, "{model:?}");
         assert!(measure.stretch_max < 0.011, "{model:?}: {measure:?}");

@@ -5,12 +5,12 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    around::{Tool, comb::Comb, grab::Grab, tie::Tie},
-    collide::{Obstacle, Rigid},
+    collide::{ColliderShape, RigidTransform},
+    forces::{Manipulator, comb::Comb, grab::Grab, tie::Tie},
     groom::Groom,
     material::{Material, Model},
     scene::Solver,
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ struct Curtain {
     simulation: Simulation,
     roots: Vec<Vec3>,
     points: Vec<Vec3>,
-    obstacles: Vec<MovingObstacle>,
+    obstacles: Vec<MovingCollider>,
 }
 
 impl Curtain {
@@ -56,16 +56,16 @@ impl Curtain {
             &[material],
             Solver::default(),
             gravity,
-            Rigid::default(),
+            RigidTransform::default(),
             &[],
         );
         Self { simulation, roots, points, obstacles: Vec::new() }
     }
 
-    fn step(&mut self, pose: Rigid) {
-        let turned = |root: &Vec3| Rigid { translation: pose.point(*root), rotation: pose.rotation };
-        let roots: Vec<Rigid> = self.roots.iter().map(turned).collect();
-        let report = self.simulation.step(&Drive {
+    fn step(&mut self, pose: RigidTransform) {
+        let turned = |root: &Vec3| RigidTransform { translation: pose.point(*root), rotation: pose.rotation };
+        let roots: Vec<RigidTransform> = self.roots.iter().map(turned).collect();
+        let report = self.simulation.step(&StepInput {
             dt: FRAME,
             anchor: pose,
             roots: &roots,
@@ -78,31 +78,31 @@ impl Curtain {
 }
 
 /// Shaken by 5 cm at 2 Hz and turned by 20°, then two hops of 30 cm.
-fn motion(time: f32) -> Rigid {
+fn motion(time: f32) -> RigidTransform {
     let phase = std::f32::consts::TAU * 2.0 * time;
     let shake = if time < 2.0 { 0.05 * phase.sin() } else { 0.0 };
     let turn = if time < 2.0 { 0.35 * (0.5 * phase).sin() } else { 0.0 };
     // A parabola under gravity takes 0.49 s for 30 cm.
     let hop = (time - 2.5).rem_euclid(0.75) / 0.495;
     let up = if time > 2.5 && hop < 1.0 { 0.3 * 4.0 * hop * (1.0 - hop) } else { 0.0 };
-    Rigid { translation: Vec3::new(shake, up, 0.0), rotation: Quat::from_rotation_y(turn) }
+    RigidTransform { translation: Vec3::new(shake, up, 0.0), rotation: Quat::from_rotation_y(turn) }
 }
 
 #[test]
 fn what_is_bound_stays_in_the_ring() {
     for model in [Model::Curvature, Model::Rod, Model::Springs] {
         let mut curtain = Curtain::new(model);
-        let id = curtain.simulation.take(Tool::Tie(RING), Rigid::default());
-        assert_eq!(curtain.simulation.held(id).count(), 2 * STRANDS, "every strand is in reach");
+        let id = curtain.simulation.add_manipulator(Manipulator::Tie(RING), RigidTransform::default());
+        assert_eq!(curtain.simulation.attached_points(id).count(), 2 * STRANDS, "every strand is in reach");
         let mut fastest = 0.0f64;
         for _ in 0..90 {
-            curtain.step(Rigid::default());
+            curtain.step(RigidTransform::default());
             fastest = fastest.max(curtain.simulation.measure(&[]).speed_max);
         }
         // 3 cm in half a second, at most half as fast again as their mean, and the tips that swing below.
         println!("{model:?}: gathered with at most {fastest} m/s");
         assert!(fastest < 0.5, "{model:?}: gathered with a jerk of {fastest} m/s");
-        let held: Vec<_> = curtain.simulation.held(id).collect();
+        let held: Vec<_> = curtain.simulation.attached_points(id).collect();
         assert_eq!(held.len(), 2 * STRANDS, "{model:?}");
         // Twenty points hang on two, and the shake has 8 m/s².
         let omega = std::f32::consts::TAU * RING.pull;
@@ -113,7 +113,7 @@ fn what_is_bound_stays_in_the_ring() {
         for frame in 1..=240 {
             let time = frame as f32 * FRAME;
             let pose = motion(time);
-            curtain.simulation.carry(id, pose);
+            curtain.simulation.set_manipulator_pose(id, pose);
             curtain.step(pose);
             longest = longest.max(curtain.simulation.measure(&[]).stretch_max);
             let out = |(s, i): &(u32, u32)| {
@@ -131,9 +131,9 @@ fn what_is_bound_stays_in_the_ring() {
         assert!(hopped < landing, "{model:?}: {hopped} m out of the ring, bound {landing}");
         assert!(longest < 0.011, "{model:?}: {longest} longer");
         // A jump of 5 m: all of it is back in the ring within a second.
-        let away = Rigid { translation: Vec3::new(5.0, 0.0, 0.0), ..Rigid::default() };
+        let away = RigidTransform { translation: Vec3::new(5.0, 0.0, 0.0), ..RigidTransform::default() };
         for _ in 0..60 {
-            curtain.simulation.carry(id, away);
+            curtain.simulation.set_manipulator_pose(id, away);
             curtain.step(away);
             assert_eq!(curtain.simulation.measure(&[]).non_finite, 0);
         }
@@ -152,12 +152,12 @@ fn hair_that_is_too_short_slips_through_until_it_gets_there() {
     let mut curtain = Curtain::new(Model::Curvature);
     // Far to the side: no strand can be there with the segment that was nearest.
     let ring = Tie { center: Vec3::new(0.12, -0.06, 0.0), axis: Vec3::X, reach: 0.2, ..RING };
-    let id = curtain.simulation.take(Tool::Tie(ring), Rigid::default());
-    let before: Vec<_> = curtain.simulation.held(id).collect();
+    let id = curtain.simulation.add_manipulator(Manipulator::Tie(ring), RigidTransform::default());
+    let before: Vec<_> = curtain.simulation.attached_points(id).collect();
     for _ in 0..150 {
-        curtain.step(Rigid::default());
+        curtain.step(RigidTransform::default());
     }
-    let after: Vec<_> = curtain.simulation.held(id).collect();
+    let after: Vec<_> = curtain.simulation.attached_points(id).collect();
     assert_eq!(before.len(), after.len(), "all are long enough");
     assert!(after.iter().zip(&before).any(|(a, b)| a.1 > b.1), "none slipped");
     let off = |(s, i): &(u32, u32)| {
@@ -169,29 +169,29 @@ fn hair_that_is_too_short_slips_through_until_it_gets_there() {
     assert!(worst < 0.5 * SEGMENT, "{worst} m out of the ring");
     // Out of every strand's reach: nothing is held, nothing is torn.
     let far = Tie { center: Vec3::X, reach: 2.0, ..RING };
-    let id = curtain.simulation.take(Tool::Tie(far), Rigid::default());
+    let id = curtain.simulation.add_manipulator(Manipulator::Tie(far), RigidTransform::default());
     for _ in 0..150 {
-        curtain.step(Rigid::default());
+        curtain.step(RigidTransform::default());
         assert!(curtain.simulation.measure(&[]).stretch_max < 0.011);
     }
-    assert_eq!(curtain.simulation.held(id).count(), 0);
+    assert_eq!(curtain.simulation.attached_points(id).count(), 0);
 }
 
 #[test]
 fn hair_is_gathered_around_a_body_and_not_into_it() {
     let mut curtain = Curtain::new(Model::Curvature);
     // On the straight way from the curtain to the ring.
-    let ball = Obstacle::Sphere { center: Vec3::new(0.07, -0.1, 0.0), radius: 0.028 };
-    curtain.obstacles = vec![MovingObstacle::at_rest(ball, Rigid::default())];
+    let ball = ColliderShape::Sphere { center: Vec3::new(0.07, -0.1, 0.0), radius: 0.028 };
+    curtain.obstacles = vec![MovingCollider::at_rest(ball, RigidTransform::default())];
     let ring = Tie { center: Vec3::new(0.1, -0.1, 0.0), axis: Vec3::X, reach: 0.2, ..RING };
-    let id = curtain.simulation.take(Tool::Tie(ring), Rigid::default());
-    let before = curtain.simulation.held(id).count();
+    let id = curtain.simulation.add_manipulator(Manipulator::Tie(ring), RigidTransform::default());
+    let before = curtain.simulation.attached_points(id).count();
     let (mut deepest, mut lost) = (0.0f64, 0);
     for _ in 0..150 {
-        curtain.step(Rigid::default());
+        curtain.step(RigidTransform::default());
         let measure = curtain.simulation.measure(&curtain.obstacles);
         deepest = deepest.max(measure.max_depth);
-        lost = before - curtain.simulation.held(id).count();
+        lost = before - curtain.simulation.attached_points(id).count();
     }
     let lost = lost / 2;
     println!("{deepest} m deep at most, {lost} of {STRANDS} lost");
@@ -207,21 +207,21 @@ fn the_same_bits_on_any_number_of_threads() {
         pool.install(|| {
             let mut curtain = Curtain::new(Model::Auto);
             let center = Vec3::NEG_Y * 0.2;
-            let tie = curtain.simulation.take(Tool::Tie(RING), Rigid::default());
-            let grab = Tool::Grab(Grab { center, radius: 0.03, pull: 60.0, damping: 1.0 });
-            let grab = curtain.simulation.take(grab, Rigid::default());
-            let comb = Tool::Comb(Comb {
+            let tie = curtain.simulation.add_manipulator(Manipulator::Tie(RING), RigidTransform::default());
+            let grab = Manipulator::Grab(Grab { center, radius: 0.03, pull: 60.0, damping: 1.0 });
+            let grab = curtain.simulation.add_manipulator(grab, RigidTransform::default());
+            let comb = Manipulator::Comb(Comb {
                 a: center - Vec3::X * 0.05,
                 b: center + Vec3::X * 0.05,
                 radius: 0.02,
                 grip: 300.0,
                 friction: 3.0,
             });
-            let comb = curtain.simulation.take(comb, Rigid::default());
+            let comb = curtain.simulation.add_manipulator(comb, RigidTransform::default());
             for frame in 1..=60 {
                 let pose = motion(frame as f32 * FRAME);
                 for id in [tie, grab, comb] {
-                    curtain.simulation.carry(id, pose);
+                    curtain.simulation.set_manipulator_pose(id, pose);
                 }
                 curtain.step(pose);
             }

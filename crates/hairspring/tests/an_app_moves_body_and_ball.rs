@@ -5,7 +5,7 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::{Obstacle, Rigid},
+    collide::{ColliderShape, RigidTransform},
     groom::Groom,
     material::Material,
     scene::{
@@ -22,7 +22,7 @@ fn roots_stay_on_a_body_that_is_carried() {
     let options = BuiltinOptions { strands: 200, guides: Guides::Count(40), ..BuiltinOptions::default() };
     let scene = builtin::scene(&options);
     let [mut here, mut carried] = [0; 2].map(|_| Stage::new(scene.clone()).unwrap());
-    let way = |frame: u32| Rigid {
+    let way = |frame: u32| RigidTransform {
         rotation: Quat::from_rotation_y(0.02 * frame as f32),
         translation: Vec3::new(0.01 * frame as f32, 0.0, -0.005 * frame as f32),
     };
@@ -75,12 +75,12 @@ fn curtain() -> Stage {
     Stage::new(Scene { grooms: vec![groom], gravity: Vec3::NEG_Y * 9.81, ..Scene::default() }).unwrap()
 }
 
-fn sphere(radius: f32) -> Obstacle {
-    Obstacle::Sphere { center: Vec3::ZERO, radius }
+fn sphere(radius: f32) -> ColliderShape {
+    ColliderShape::Sphere { center: Vec3::ZERO, radius }
 }
 
-fn at(place: Vec3) -> Rigid {
-    Rigid { translation: place, ..Rigid::default() }
+fn at(place: Vec3) -> RigidTransform {
+    RigidTransform { translation: place, ..RigidTransform::default() }
 }
 
 #[test]
@@ -89,10 +89,10 @@ fn a_ball_takes_hair_along_and_none_is_in_it() {
     let radius = 0.05;
     let ball = |frame: u32| Vec3::new(0.0, -0.35, 0.15 - (frame as f32 * FRAME).min(0.3));
     for frame in 0..40 {
-        stage.push_with(&[sphere(radius)], at(ball(frame)));
+        stage.set_user_colliders(&[sphere(radius)], at(ball(frame)));
         stage.step(FRAME);
         let obstacle = stage.obstacles().last().unwrap();
-        assert!(matches!(obstacle.shape, Obstacle::Sphere { radius: r, .. } if r == radius));
+        assert!(matches!(obstacle.shape, ColliderShape::Sphere { radius: r, .. } if r == radius));
         assert_eq!(obstacle.end.translation, ball(frame));
         let from = if frame == 0 { ball(0) } else { ball(frame - 1) };
         assert_eq!(obstacle.start.translation, from, "frame {frame}");
@@ -104,10 +104,10 @@ fn a_ball_takes_hair_along_and_none_is_in_it() {
     }
     let pushed = stage.strands().next().unwrap().points.iter().map(|p| -p.z).fold(0.0, f32::max);
     assert!(pushed > 0.1, "{pushed} m: the ball takes hair along");
-    stage.push_with(&[], Rigid::default());
+    stage.set_user_colliders(&[], RigidTransform::default());
     assert!(stage.obstacles().is_empty());
     for wrong in [f32::NAN, 0.0, -1.0] {
-        stage.push_with(&[sphere(wrong)], Rigid::default());
+        stage.set_user_colliders(&[sphere(wrong)], RigidTransform::default());
         assert!(stage.obstacles().is_empty(), "a radius of {wrong}");
     }
     (0..300).for_each(|_| _ = stage.step(FRAME));
@@ -119,12 +119,12 @@ fn a_ball_takes_hair_along_and_none_is_in_it() {
 fn a_ball_stays_where_other_settings_come() {
     let mut stage = curtain();
     let center = Vec3::new(0.0, -0.35, 0.03);
-    stage.push_with(&[sphere(0.05)], at(center));
+    stage.set_user_colliders(&[sphere(0.05)], at(center));
     let sphere = hairspring::scene::Shape::Sphere { center: Vec3::X, radius: 0.1 };
     let colliders = vec![hairspring::scene::Collider { joint: None, shape: sphere }];
     let grooms = vec![SceneGroom { materials: vec![Material::default()], ..SceneGroom::default() }];
     let settings = Scene { colliders, grooms, ..stage.scene().clone() };
-    stage.retune(settings).unwrap();
+    stage.update_settings(settings).unwrap();
     assert_eq!(stage.obstacles().len(), 2);
     assert_eq!(stage.obstacles()[1].end.translation, center);
     (0..60).for_each(|_| _ = stage.step(FRAME));
@@ -148,6 +148,6 @@ fn moments_that_nobody_looks_at_change_nothing() {
         unseen.advance(FRAME);
     }
     assert_eq!(points(&unseen), before, "what is not shown stays");
-    unseen.show();
+    unseen.update_render_points();
     assert_eq!(points(&unseen), points(&seen), "the same bits");
 }

@@ -7,11 +7,11 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model},
     scene::Solver,
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ fn cantilever_toward(
 ) -> (f32, f32) {
     let points: Vec<Vec3> =
         (0..points).map(|i| Vec3::X * (LENGTH * i as f32 / (points - 1) as f32)).collect();
-    let root = Rigid { translation: points[0], rotation: Quat::IDENTITY };
+    let root = RigidTransform { translation: points[0], rotation: Quat::IDENTITY };
     let groom = Groom::from_strands([points], 40e-6);
     let base = Material::default();
     // Γ = ρ g π r² L³ / (E π r⁴/4)
@@ -42,11 +42,11 @@ fn cantilever_toward(
     let solver = Solver { sag_free: false, substeps, ..Solver::default() };
     let gravity = down * 9.81;
     let mut simulation =
-        Simulation::new(Arc::new(groom), &[0], &[material], solver, gravity, Rigid::default(), &[]);
+        Simulation::new(Arc::new(groom), &[0], &[material], solver, gravity, RigidTransform::default(), &[]);
     for _ in 0..(8.0 * rate) as u32 {
-        simulation.step(&Drive {
+        simulation.step(&StepInput {
             dt: 1.0 / rate,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             roots: &[root],
             obstacles: &[],
             air: Air::default(),

@@ -5,12 +5,12 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    around::charge::{Charged, ChargedBall, Waypoint},
-    collide::Rigid,
+    collide::RigidTransform,
+    forces::charge::{Charged, ChargedBall, Waypoint},
     groom::Groom,
     material::Material,
     scene::Solver,
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::{f32::consts::PI, sync::Arc};
 
@@ -34,14 +34,15 @@ fn charged(
     let all: Vec<u32> = (0..strands.len() as u32).collect();
     let material = Material { bend: 0.01, drag: 4.0, charge, ..Material::default() };
     let solver = Solver { sag_free: false, ..Solver::default() };
-    let mut simulation = Simulation::new(groom, &all, &[material], solver, gravity, Rigid::default(), &[]);
-    let roots: Vec<Rigid> =
-        strands.iter().map(|s| Rigid { translation: s[0], rotation: Quat::IDENTITY }).collect();
+    let mut simulation =
+        Simulation::new(groom, &all, &[material], solver, gravity, RigidTransform::default(), &[]);
+    let roots: Vec<RigidTransform> =
+        strands.iter().map(|s| RigidTransform { translation: s[0], rotation: Quat::IDENTITY }).collect();
     simulation.set_charged(balls.iter().copied());
     for _ in 0..frames {
-        let report = simulation.step(&Drive {
+        let report = simulation.step(&StepInput {
             dt: 1.0 / 60.0,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             roots: &roots,
             obstacles: &[],
             air: Air::default(),

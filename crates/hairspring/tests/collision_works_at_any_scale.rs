@@ -7,11 +7,11 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    collide::{Hull, Obstacle, Rigid, Sheet, voxelize},
+    collide::{ColliderShape, Hull, RigidTransform, ThinShell, voxelize},
     groom::Groom,
     material::Material,
     scene::Solver,
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -27,23 +27,23 @@ fn cuboid(half: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     ((0..8).map(corner).collect(), triangles)
 }
 
-fn shapes(s: f32) -> [(&'static str, Obstacle); 7] {
+fn shapes(s: f32) -> [(&'static str, ColliderShape); 7] {
     let half = Vec3::new(0.08, 0.03, 0.05) * s;
     let (corners, triangles) = cuboid(half);
     let flat: Vec<Vec3> = corners.iter().map(|p| p.with_y(0.03 * s)).collect();
     [
-        ("sphere", Obstacle::Sphere { center: Vec3::Y * -0.03 * s, radius: 0.06 * s }),
-        ("capsule", Obstacle::Capsule { a: Vec3::X * -0.1 * s, b: Vec3::X * 0.1 * s, radius: 0.03 * s }),
-        ("box", Obstacle::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY }),
-        ("plane", Obstacle::Plane { point: Vec3::Y * 0.03 * s, normal: Vec3::new(0.0, 0.995, 0.0999) }),
-        ("field", Obstacle::Field(Arc::new(voxelize(&corners, &triangles, 0.004 * s)))),
-        ("hull", Obstacle::Hull(Arc::new(Hull::new(&corners).unwrap()))),
-        ("sheet", Obstacle::Sheet(Arc::new(Sheet::new(&flat, &triangles[4..6], 0.004 * s)))),
+        ("sphere", ColliderShape::Sphere { center: Vec3::Y * -0.03 * s, radius: 0.06 * s }),
+        ("capsule", ColliderShape::Capsule { a: Vec3::X * -0.1 * s, b: Vec3::X * 0.1 * s, radius: 0.03 * s }),
+        ("box", ColliderShape::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY }),
+        ("plane", ColliderShape::Plane { point: Vec3::Y * 0.03 * s, normal: Vec3::new(0.0, 0.995, 0.0999) }),
+        ("field", ColliderShape::Field(Arc::new(voxelize(&corners, &triangles, 0.004 * s)))),
+        ("hull", ColliderShape::Hull(Arc::new(Hull::new(&corners).unwrap()))),
+        ("sheet", ColliderShape::Sheet(Arc::new(ThinShell::new(&flat, &triangles[4..6], 0.004 * s)))),
     ]
 }
 
 /// Where points are after a second, and how deep the deepest was, over the scale.
-fn fall(shape: &Obstacle, s: f32) -> (Vec<Vec3>, f32) {
+fn fall(shape: &ColliderShape, s: f32) -> (Vec<Vec3>, f32) {
     let strands = (0..16).map(|k| {
         let root = Vec3::new((k as f32 - 7.5) * 0.004, 0.06, 0.0) * s;
         let way = Vec3::new(0.0, 0.3, 0.95).normalize() * (LENGTH * s / 19.0);
@@ -51,23 +51,24 @@ fn fall(shape: &Obstacle, s: f32) -> (Vec<Vec3>, f32) {
     });
     let groom = Arc::new(Groom::from_strands(strands, 40e-6 * s));
     let all: Vec<u32> = (0..16).collect();
-    let roots: Vec<Rigid> =
-        (0..16).map(|k| Rigid { translation: groom.strand(k)[0], rotation: Quat::IDENTITY }).collect();
+    let roots: Vec<RigidTransform> = (0..16)
+        .map(|k| RigidTransform { translation: groom.strand(k)[0], rotation: Quat::IDENTITY })
+        .collect();
     let material = Material::default();
     let material =
         Material { young: material.young * s * s, shear: material.shear * s * s, drag: 0.0, ..material };
     let solver = Solver { sag_free: false, ..Solver::default() };
     let gravity = Vec3::Y * -9.81 * s;
-    let anchor = Rigid::default();
+    let anchor = RigidTransform::default();
     let mut simulation = Simulation::new(groom, &all, &[material], solver, gravity, anchor, &[]);
     let mut deepest = 0.0f32;
     for frame in 0..60 {
         let at = |frame: u32| {
             let phase = 0.1 * frame as f32;
-            Rigid { translation: Vec3::Z * (0.01 * s * (1.0 - phase.cos())), ..anchor }
+            RigidTransform { translation: Vec3::Z * (0.01 * s * (1.0 - phase.cos())), ..anchor }
         };
-        let obstacles = [MovingObstacle { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
-        simulation.step(&Drive {
+        let obstacles = [MovingCollider { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
+        simulation.step(&StepInput {
             dt: FRAME,
             anchor,
             roots: &roots,

@@ -5,11 +5,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::{Obstacle, Rigid},
+    collide::{ColliderShape, RigidTransform},
     groom::Groom,
     material::{Material, Model},
     scene::{Response, Solver},
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -24,19 +24,21 @@ fn land(model: Model, contact: Response) -> [f32; 3] {
     });
     let groom = Arc::new(Groom::from_strands(strands, 40e-6));
     let all: Vec<u32> = (0..16).collect();
-    let roots: Vec<Rigid> =
-        all.iter().map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() }).collect();
+    let roots: Vec<RigidTransform> = all
+        .iter()
+        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
+        .collect();
     let solver = Solver { contact, sag_free: false, ..Solver::default() };
     let materials = [Material { model, ..Material::default() }];
-    let anchor = Rigid::default();
+    let anchor = RigidTransform::default();
     let mut simulation = Simulation::new(groom, &all, &materials, solver, Vec3::NEG_Y * 9.81, anchor, &[]);
-    let shape = Obstacle::Sphere { center: Vec3::ZERO, radius: 0.1 };
-    let obstacles = [MovingObstacle::at_rest(shape, Rigid::default())];
+    let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };
+    let obstacles = [MovingCollider::at_rest(shape, RigidTransform::default())];
     let mut deepest = 0.0f32;
     let mut last = [0.0f32; 2];
     for frame in 0..FRAMES[0] {
         let (dt, air) = (1.0 / 60.0, Air::default());
-        simulation.step(&Drive { dt, anchor, roots: &roots, obstacles: &obstacles, air });
+        simulation.step(&StepInput { dt, anchor, roots: &roots, obstacles: &obstacles, air });
         let measure = simulation.measure(&obstacles);
         assert_eq!(measure.non_finite, 0);
         assert!(measure.stretch_max < 0.011, "{model:?}, {contact:?}: {measure:?}");

@@ -5,11 +5,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model},
     scene::{Neighbours, Solver, bench},
-    simulation::{Air, Drive, Hold, NeighboursReport, Simulation},
+    simulation::{Air, Hold, NeighboursReport, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursRepor
     let material = Material { bend: 0.01, drag: 1.0, model: Model::Curvature, ..Material::default() };
     let gravity = Vec3::NEG_Y * 9.81;
     let mut simulation =
-        Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
+        Simulation::new(groom.clone(), &all, &[material], solver, gravity, RigidTransform::default(), &[]);
     let radius = Some(0.001);
     simulation.set_neighbours(&Neighbours { on: true, radius, friction: 0.0, ..Neighbours::default() });
     let hold = |strand: usize, point: usize| Hold {
@@ -37,11 +37,12 @@ fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursRepor
     let holds: Vec<Hold> =
         (0..bars).flat_map(|bar| (2..strands[bar].len()).map(move |i| hold(bar, i))).collect();
     simulation.set_holds(&holds);
-    let roots: Vec<Rigid> = strands.iter().map(|s| Rigid { translation: s[0], ..Rigid::default() }).collect();
+    let roots: Vec<RigidTransform> =
+        strands.iter().map(|s| RigidTransform { translation: s[0], ..RigidTransform::default() }).collect();
     for _ in 0..frames {
-        let drive = Drive {
+        let drive = StepInput {
             dt: bench::FRAME,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             roots: &roots,
             obstacles: &[],
             air: Air::default(),

@@ -5,11 +5,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model},
     scene::{Integrator, Solver, Wind},
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
     validate::{Method, case, drag_coefficient},
 };
 use std::sync::Arc;
@@ -73,13 +73,13 @@ fn a_hair_meets_less_drag_along_itself() {
         let material = Material { bend: 0.0, damping: 0.0, drag: 1.0, ..Material::default() };
         let solver = Solver { sag_free: false, ..Solver::default() };
         let mut simulation =
-            Simulation::new(groom, &[0], &[material], solver, Vec3::ZERO, Rigid::default(), &[]);
+            Simulation::new(groom, &[0], &[material], solver, Vec3::ZERO, RigidTransform::default(), &[]);
         let wind = Wind { velocity: Vec3::X, ..Wind::default() };
         for _ in 0..60 {
-            simulation.step(&Drive {
+            simulation.step(&StepInput {
                 dt: 1.0 / 60.0,
-                anchor: Rigid::default(),
-                roots: &[Rigid::default()],
+                anchor: RigidTransform::default(),
+                roots: &[RigidTransform::default()],
                 obstacles: &[],
                 air: Air { wind, ..Air::default() },
             });

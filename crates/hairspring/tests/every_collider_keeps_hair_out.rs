@@ -8,17 +8,17 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    collide::{Hull, Obstacle, ObstaclePose, Rigid, Sheet},
+    collide::{ColliderPose, ColliderShape, Hull, RigidTransform, ThinShell},
     groom::Groom,
     material::{Material, Model},
     scene::Solver,
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use std::sync::Arc;
 
 const FRAME: f32 = 1.0 / 60.0;
 
-fn shapes() -> [(&'static str, Obstacle); 6] {
+fn shapes() -> [(&'static str, ColliderShape); 6] {
     // A dozen points on the ball of 6 cm, none of which sees all others: a hull of twenty faces.
     let points: Vec<Vec3> = (0..12)
         .map(|k| {
@@ -40,15 +40,22 @@ fn shapes() -> [(&'static str, Obstacle); 6] {
         .collect();
     let turned = Mat3::from_quat(Quat::from_euler(glam::EulerRot::XYZ, 0.3, 0.8, 0.2));
     [
-        ("sphere", Obstacle::Sphere { center: Vec3::ZERO, radius: 0.06 }),
-        ("capsule", Obstacle::Capsule { a: Vec3::X * -0.1, b: Vec3::X * 0.1, radius: 0.03 }),
+        ("sphere", ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.06 }),
+        ("capsule", ColliderShape::Capsule { a: Vec3::X * -0.1, b: Vec3::X * 0.1, radius: 0.03 }),
         (
             "box",
-            Obstacle::Cuboid { center: Vec3::ZERO, half: Vec3::new(0.08, 0.05, 0.06), axes: Mat3::IDENTITY },
+            ColliderShape::Cuboid {
+                center: Vec3::ZERO,
+                half: Vec3::new(0.08, 0.05, 0.06),
+                axes: Mat3::IDENTITY,
+            },
         ),
-        ("box on its corner", Obstacle::Cuboid { center: Vec3::ZERO, half: Vec3::splat(0.05), axes: turned }),
-        ("hull", Obstacle::Hull(Arc::new(Hull::new(&points).unwrap()))),
-        ("sheet", Obstacle::Sheet(Arc::new(Sheet::new(&square, &triangles, 0.005)))),
+        (
+            "box on its corner",
+            ColliderShape::Cuboid { center: Vec3::ZERO, half: Vec3::splat(0.05), axes: turned },
+        ),
+        ("hull", ColliderShape::Hull(Arc::new(Hull::new(&points).unwrap()))),
+        ("sheet", ColliderShape::Sheet(Arc::new(ThinShell::new(&square, &triangles, 0.005)))),
     ]
 }
 
@@ -60,9 +67,9 @@ fn a_shape_goes_through_a_curtain() {
     });
     let groom = Arc::new(Groom::from_strands(strands, 40e-6));
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots: Vec<Rigid> = all
+    let roots: Vec<RigidTransform> = all
         .iter()
-        .map(|s| Rigid { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
+        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
         .collect();
     for ((name, shape), model) in
         shapes().into_iter().flat_map(|s| Model::ALL.map(|model| (s.clone(), model)))
@@ -73,22 +80,22 @@ fn a_shape_goes_through_a_curtain() {
             &[Material { model, ..Material::default() }],
             Solver::default(),
             Vec3::new(0.0, -9.81, 0.0),
-            Rigid::default(),
+            RigidTransform::default(),
             &[],
         );
         // In at 1 m/s, a second in the hair, and away to where no strand reaches.
         let at = |frame: u32| {
             let t = frame as f32 * FRAME;
             let z = if t < 1.3 { (t - 0.3).min(0.15) } else { 0.15 + 10.0 * (t - 1.3) };
-            Rigid { translation: Vec3::Z * z, ..Rigid::default() }
+            RigidTransform { translation: Vec3::Z * z, ..RigidTransform::default() }
         };
         let (mut deepest, mut longest, mut pushed) = (0.0f32, 0.0f64, 0.0f32);
         let mut points = vec![Vec3::ZERO; simulation.point_count()];
         for frame in 0..400 {
-            let obstacles = [MovingObstacle { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
-            simulation.step(&Drive {
+            let obstacles = [MovingCollider { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
+            simulation.step(&StepInput {
                 dt: FRAME,
-                anchor: Rigid::default(),
+                anchor: RigidTransform::default(),
                 roots: &roots,
                 obstacles: &obstacles,
                 air: Air::default(),
@@ -124,22 +131,23 @@ fn row(root: Vec3, way: Vec3, length: f32) -> Arc<Groom> {
 /// every frame and how deep the deepest is.
 fn play(
     groom: &Arc<Groom>,
-    shape: &Obstacle,
+    shape: &ColliderShape,
     gravity: Vec3,
     frames: u32,
     mut look: impl FnMut(&[Vec3], f64),
 ) {
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let rigid = |s: u32| Rigid { translation: groom.strand(s as usize)[0], rotation: Quat::IDENTITY };
-    let roots: Vec<Rigid> = all.iter().map(|s| rigid(*s)).collect();
-    let (anchor, materials) = (Rigid::default(), [Material::default()]);
+    let rigid =
+        |s: u32| RigidTransform { translation: groom.strand(s as usize)[0], rotation: Quat::IDENTITY };
+    let roots: Vec<RigidTransform> = all.iter().map(|s| rigid(*s)).collect();
+    let (anchor, materials) = (RigidTransform::default(), [Material::default()]);
     let solver = Solver { sag_free: false, ..Solver::default() };
-    let rest = ObstaclePose::new(shape.clone(), anchor.matrix(), anchor.matrix(), 1.0);
+    let rest = ColliderPose::new(shape.clone(), anchor.matrix(), anchor.matrix(), 1.0);
     let mut simulation = Simulation::new(groom.clone(), &all, &materials, solver, gravity, anchor, &[rest]);
-    let obstacles = [MovingObstacle { shape: shape.clone(), start: anchor, end: anchor }];
+    let obstacles = [MovingCollider { shape: shape.clone(), start: anchor, end: anchor }];
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
     for _ in 0..frames {
-        simulation.step(&Drive {
+        simulation.step(&StepInput {
             dt: FRAME,
             anchor,
             roots: &roots,
@@ -155,7 +163,7 @@ fn play(
 fn a_sheet_has_two_sides() {
     let square =
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, z)| Vec3::new(x, 0.0, z) * 0.2);
-    let sheet = Obstacle::Sheet(Arc::new(Sheet::new(&square, &[[0, 1, 2], [0, 2, 3]], 0.004)));
+    let sheet = ColliderShape::Sheet(Arc::new(ThinShell::new(&square, &[[0, 1, 2], [0, 2, 3]], 0.004)));
     // Falls from 1 cm above, then rises from 1 cm below, where gravity points up.
     for side in [1.0, -1.0] {
         let groom = row(Vec3::Y * (0.01 * side), Vec3::new(0.0, 0.1 * side, 1.0).normalize(), 0.15);
@@ -176,8 +184,8 @@ fn what_begins_inside_stays_as_deep_and_no_deeper() {
         (0..8).map(|k| Vec3::new([-0.1, 0.1][k & 1], [-0.1, 0.0][k >> 1 & 1], [-0.1, 0.1][k >> 2])).collect();
     let flat: Vec<Vec3> = [2, 3, 7, 6].map(|k: usize| corners[k]).to_vec();
     for (name, shape) in [
-        ("hull", Obstacle::Hull(Arc::new(Hull::new(&corners).unwrap()))),
-        ("sheet", Obstacle::Sheet(Arc::new(Sheet::new(&flat, &[[0, 1, 2], [0, 2, 3]], 0.003)))),
+        ("hull", ColliderShape::Hull(Arc::new(Hull::new(&corners).unwrap()))),
+        ("sheet", ColliderShape::Sheet(Arc::new(ThinShell::new(&flat, &[[0, 1, 2], [0, 2, 3]], 0.003)))),
     ] {
         // Roots 2 mm under the hull's top, in the middle of the sheet; hair stands out and falls to the side.
         let root = if name == "hull" { Vec3::Y * -0.002 } else { Vec3::ZERO };

@@ -5,11 +5,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model},
     scene::{Integrator, Quality, Solver},
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -40,13 +40,13 @@ fn with_every_model_and_quality() {
                     &[material],
                     solver,
                     gravity,
-                    Rigid::default(),
+                    RigidTransform::default(),
                     &[],
                 );
                 for frame in 0..30 {
                     let x = 0.02 * (std::f32::consts::TAU * 2.0 * frame as f32 / 60.0).sin();
-                    let pose = Rigid { translation: Vec3::X * x, ..Rigid::default() };
-                    simulation.step(&Drive {
+                    let pose = RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() };
+                    simulation.step(&StepInput {
                         dt: 1.0 / 60.0,
                         anchor: pose,
                         roots: &[pose; 2],

@@ -81,7 +81,7 @@ fn lengths_that_overflow_are_refused() {
         // So are settings that come later.
         let plain = SceneGroom { effects: Effects::default(), ..curled.clone() };
         let mut stage = Stage::new(scene(vec![plain])).unwrap();
-        assert!(matches!(stage.retune(scene(vec![curled])), Err(StageError::OutOfRange { .. })));
+        assert!(matches!(stage.update_settings(scene(vec![curled])), Err(StageError::OutOfRange { .. })));
     }
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
     let mesh = Mesh {

@@ -6,11 +6,11 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::{Obstacle, Rigid},
+    collide::{ColliderShape, RigidTransform},
     groom::Groom,
     material::{Material, Model},
     scene::Solver,
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -18,25 +18,27 @@ const STRANDS: u32 = 16;
 const LENGTH: f32 = 0.3;
 
 /// Strands that hang from y = 0 in the plane z = 0.
-fn curtain(model: Model) -> (Simulation, Vec<Rigid>) {
+fn curtain(model: Model) -> (Simulation, Vec<RigidTransform>) {
     let strands = (0..STRANDS).map(|s| {
         let x = 0.005 * (s as f32 - 7.5);
         (0..31).map(move |i| Vec3::new(x, -LENGTH * i as f32 / 30.0, 0.0)).collect::<Vec<_>>()
     });
     let groom = Arc::new(Groom::from_strands(strands, 40e-6));
     let all: Vec<u32> = (0..STRANDS).collect();
-    let roots =
-        all.iter().map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() }).collect();
+    let roots = all
+        .iter()
+        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
+        .collect();
     let materials = [Material { model, ..Material::default() }];
     let gravity = Vec3::NEG_Y * 9.81;
     let simulation =
-        Simulation::new(groom, &all, &materials, Solver::default(), gravity, Rigid::default(), &[]);
+        Simulation::new(groom, &all, &materials, Solver::default(), gravity, RigidTransform::default(), &[]);
     (simulation, roots)
 }
 
 /// A rod along X, at rest in its own origin.
-fn rod(radius: f32) -> Obstacle {
-    Obstacle::Capsule { a: Vec3::X * -0.2, b: Vec3::X * 0.2, radius }
+fn rod(radius: f32) -> ColliderShape {
+    ColliderShape::Capsule { a: Vec3::X * -0.2, b: Vec3::X * 0.2, radius }
 }
 
 /// Strands that the rod, now at the height `y` and at `z`, has gone through: at its height they are behind it, and nowhere in front. (A tail that is flung up behind
@@ -62,14 +64,17 @@ fn hair_goes_along_in_front() {
             for dt in [1.0 / 60.0, 1.0 / 240.0] {
                 let (mut simulation, roots) = curtain(model);
                 let y = -0.1;
-                let at = |z: f32| Rigid { translation: Vec3::new(0.0, y, z), ..Rigid::default() };
+                let at = |z: f32| RigidTransform {
+                    translation: Vec3::new(0.0, y, z),
+                    ..RigidTransform::default()
+                };
                 // From 6 cm behind to 14 cm in front: a strand of 30 cm reaches around that.
                 let (mut z, end) = (-0.06f32, 0.14);
                 while z < end {
                     let next = (z + speed * dt).min(end);
-                    let obstacles = [MovingObstacle { shape: rod(radius), start: at(z), end: at(next) }];
-                    let (anchor, air) = (Rigid::default(), Air::default());
-                    simulation.step(&Drive { dt, anchor, roots: &roots, obstacles: &obstacles, air });
+                    let obstacles = [MovingCollider { shape: rod(radius), start: at(z), end: at(next) }];
+                    let (anchor, air) = (RigidTransform::default(), Air::default());
+                    simulation.step(&StepInput { dt, anchor, roots: &roots, obstacles: &obstacles, air });
                     z = next;
                     let through = if z > radius { passed(&simulation, y, z) } else { 0 };
                     assert_eq!(through, 0, "{what}, {model:?}, {dt} s: strands behind it at {z} m");
@@ -82,25 +87,25 @@ fn hair_goes_along_in_front() {
 
 #[test]
 fn only_what_can_be_passed_through_asks_for_shorter_substeps() {
-    let substeps = |anchor: Rigid, turned: Quat, shape: Obstacle, start: Vec3, end: Vec3| {
+    let substeps = |anchor: RigidTransform, turned: Quat, shape: ColliderShape, start: Vec3, end: Vec3| {
         // Hair at rest: hair that is fast near a thin body asks for shorter substeps too.
         let (mut simulation, mut roots) = curtain(Model::Auto);
-        let place = |translation| Rigid { translation, rotation: turned };
-        let obstacles = [MovingObstacle { shape, start: place(start), end: place(end) }];
+        let place = |translation| RigidTransform { translation, rotation: turned };
+        let obstacles = [MovingCollider { shape, start: place(start), end: place(end) }];
         for root in &mut roots {
             root.translation = anchor.point(Vec3::new(root.translation.x, 0.0, 0.0));
         }
         let air = Air::default();
-        let drive = Drive { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &obstacles, air };
+        let drive = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &obstacles, air };
         simulation.step(&drive).substeps
     };
-    let (here, still) = (Rigid::default(), Quat::IDENTITY);
+    let (here, still) = (RigidTransform::default(), Quat::IDENTITY);
     let below = Vec3::NEG_Y * 0.1;
     // 333 mm in steps of 2.5 mm.
     assert_eq!(substeps(here, still, rod(0.005), below - Vec3::Z * 0.1, below + Vec3::Z * 0.2333), 134);
     assert_eq!(substeps(here, still, rod(0.005), below + Vec3::Y * 2.0, below + Vec3::new(0.0, 2.0, 0.3)), 4);
-    let ball = Obstacle::Sphere { center: Vec3::ZERO, radius: 0.1 };
+    let ball = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };
     assert_eq!(substeps(here, still, ball, below - Vec3::Z * 0.2, below - Vec3::Z * 0.15), 4);
-    let moved = Rigid { translation: Vec3::Z * 0.2, ..here };
+    let moved = RigidTransform { translation: Vec3::Z * 0.2, ..here };
     assert_eq!(substeps(moved, still, rod(0.005), below, below + Vec3::Z * 0.2), 4);
 }

@@ -3,11 +3,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, PRESETS, preset},
     scene::Solver,
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::{f32::consts::TAU, sync::Arc};
 
@@ -54,16 +54,23 @@ impl Scene {
         let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
         let points = groom.points.clone();
         let gravity = Vec3::NEG_Y * 9.81;
-        let simulation =
-            Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
+        let simulation = Simulation::new(
+            groom.clone(),
+            &all,
+            &[material],
+            solver,
+            gravity,
+            RigidTransform::default(),
+            &[],
+        );
         Self { simulation, points, groom, fastest: Vec::new(), resets: 0 }
     }
 
     /// One frame, at the end of which the roots are at `x` [m]; the speed of the fastest point [m/s].
     fn frame(&mut self, x: f32) -> f32 {
-        let pose = Rigid { translation: Vec3::X * x, ..Rigid::default() };
+        let pose = RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() };
         let roots = vec![pose; self.simulation.strand_count()];
-        let drive = Drive { dt: FRAME, anchor: pose, roots: &roots, obstacles: &[], air: Air::default() };
+        let drive = StepInput { dt: FRAME, anchor: pose, roots: &roots, obstacles: &[], air: Air::default() };
         self.resets += self.simulation.step(&drive).reset_strands;
         let before = std::mem::take(&mut self.points);
         self.points = before.clone();

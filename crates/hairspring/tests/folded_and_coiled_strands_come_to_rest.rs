@@ -3,11 +3,11 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model, preset},
     scene::Solver,
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::{f32::consts::TAU, sync::Arc};
 
@@ -44,12 +44,13 @@ fn speeds(strands: &[Vec<Vec3>], material: Material, gravity: Vec3) -> ([f32; 2]
     let all: Vec<u32> = (0..strands.len() as u32).collect();
     let mut points = groom.points.clone();
     let solver = Solver::default();
-    let mut simulation = Simulation::new(groom, &all, &[material], solver, gravity, Rigid::default(), &[]);
+    let mut simulation =
+        Simulation::new(groom, &all, &[material], solver, gravity, RigidTransform::default(), &[]);
     let mut resets = 0;
     let mut frame = |x: f32| {
-        let pose = Rigid { translation: Vec3::X * x, ..Rigid::default() };
+        let pose = RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() };
         let roots = vec![pose; strands.len()];
-        let drive = Drive { dt: FRAME, anchor: pose, roots: &roots, obstacles: &[], air: Air::default() };
+        let drive = StepInput { dt: FRAME, anchor: pose, roots: &roots, obstacles: &[], air: Air::default() };
         resets += simulation.step(&drive).reset_strands;
         let before = points.clone();
         simulation.write_points(&mut points);

@@ -28,7 +28,7 @@ fn points(stage: &Stage) -> Vec<Vec<Vec3>> {
 #[test]
 fn what_is_left_is_there_when_it_is_asked_for() {
     let (mut here, mut left) = (stage(), stage());
-    left.leave_follow_hairs(true);
+    left.set_external_interpolation(true);
     let before = points(&left);
     for _ in 0..20 {
         here.step(1.0 / 60.0);
@@ -59,7 +59,7 @@ fn what_is_left_is_there_when_it_is_asked_for() {
     assert_eq!(points(&left), points(&here));
     left.step(1.0 / 60.0);
     here.step(1.0 / 60.0);
-    left.leave_follow_hairs(false);
+    left.set_external_interpolation(false);
     assert_eq!(points(&left), points(&here));
     assert!(left.strands().all(|s| s.follow.is_none()));
 }

@@ -7,11 +7,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::{Obstacle, Rigid},
+    collide::{ColliderShape, RigidTransform},
     groom::Groom,
     material::{Material, Model},
     scene::{Response, Solver},
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ const SLOPE: f32 = 20.0;
 /// Eight strands across a slope.
 struct Slope {
     simulation: Simulation,
-    roots: Vec<Rigid>,
+    roots: Vec<RigidTransform>,
 }
 
 impl Slope {
@@ -40,24 +40,28 @@ impl Slope {
         let all: Vec<u32> = (0..8).collect();
         let roots = all
             .iter()
-            .map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() })
+            .map(|s| RigidTransform {
+                translation: groom.strand(*s as usize)[0],
+                ..RigidTransform::default()
+            })
             .collect();
         let solver = Solver { sag_free: false, contact: response, ..Solver::default() };
         let angle = SLOPE.to_radians();
         let gravity = Vec3::new(0.0, -angle.cos(), angle.sin()) * GRAVITY;
-        let simulation = Simulation::new(groom, &all, &[material], solver, gravity, Rigid::default(), &[]);
+        let simulation =
+            Simulation::new(groom, &all, &[material], solver, gravity, RigidTransform::default(), &[]);
         Self { simulation, roots }
     }
 
     /// Where all points are after so many frames more, while the slope slips by `by` under them [m].
     fn after(&mut self, frames: usize, by: Vec3) -> Vec<Vec3> {
-        let start = Rigid::default();
-        let end = Rigid { translation: by, ..start };
-        let shape = Obstacle::Plane { point: Vec3::ZERO, normal: Vec3::Y };
-        let obstacles = [MovingObstacle { shape, start, end }];
+        let start = RigidTransform::default();
+        let end = RigidTransform { translation: by, ..start };
+        let shape = ColliderShape::Plane { point: Vec3::ZERO, normal: Vec3::Y };
+        let obstacles = [MovingCollider { shape, start, end }];
         for _ in 0..frames {
             let air = Air::default();
-            self.simulation.step(&Drive {
+            self.simulation.step(&StepInput {
                 dt: DT,
                 anchor: start,
                 roots: &self.roots,

@@ -1,6 +1,6 @@
 //! Promise: hair that falls before the scene begins is where it would have fallen to in it, and lies still from there on.
 //!
-//! Grown hair stands off the skin. `solver.settle` lets it fall first: onto a body that stays, a skinned one whose head is not at the origin as well as a
+//! Grown hair stands off the skin. `solver.preroll` lets it fall first: onto a body that stays, a skinned one whose head is not at the origin as well as a
 //! ball in the world. Where it lies then is the groom: the first frame shows it, balance holds it there as if it had been made so, follow hairs are at rest
 //! beside their guides, and every reset goes back to it.
 
@@ -47,7 +47,7 @@ fn head() -> Scene {
 }
 
 fn with(scene: &Scene, settle: f32, sag_free: bool) -> Stage {
-    let solver = Solver { settle, sag_free, ..Solver::default() };
+    let solver = Solver { preroll: settle, sag_free, ..Solver::default() };
     Stage::new(Scene { solver, ..scene.clone() }).unwrap()
 }
 

@@ -5,11 +5,11 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::{Obstacle, ObstaclePose, Rigid},
+    collide::{ColliderPose, ColliderShape, RigidTransform},
     groom::Groom,
     material::{Material, Model},
     scene::{Integrator, Solver, Volume, VolumeMethod},
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -39,14 +39,14 @@ fn groom() -> Groom {
 struct Head {
     groom: Arc<Groom>,
     simulation: Simulation,
-    pose: Rigid,
+    pose: RigidTransform,
 }
 
 impl Head {
     fn new(model: Model, solver: Solver, volume: VolumeMethod) -> Self {
         let groom = Arc::new(groom());
-        let rest = Rigid::default();
-        let obstacle = ObstaclePose::new(ball(), rest.matrix(), rest.matrix(), 1.0);
+        let rest = RigidTransform::default();
+        let obstacle = ColliderPose::new(ball(), rest.matrix(), rest.matrix(), 1.0);
         let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
         let material = Material { model, drag: 0.1, ..Material::default() };
         let gravity = Vec3::new(0.0, -9.81, 0.0);
@@ -56,20 +56,23 @@ impl Head {
         Self { groom, simulation, pose: rest }
     }
 
-    fn roots(&self, pose: &Rigid) -> Vec<Rigid> {
+    fn roots(&self, pose: &RigidTransform) -> Vec<RigidTransform> {
         (0..self.groom.strand_count())
-            .map(|s| Rigid { translation: pose.point(self.groom.strand(s)[0]), rotation: pose.rotation })
+            .map(|s| RigidTransform {
+                translation: pose.point(self.groom.strand(s)[0]),
+                rotation: pose.rotation,
+            })
             .collect()
     }
 
     /// A frame in which the head goes to `pose`.
-    fn step(&mut self, pose: Rigid) {
+    fn step(&mut self, pose: RigidTransform) {
         let roots = self.roots(&pose);
-        let report = self.simulation.step(&Drive {
+        let report = self.simulation.step(&StepInput {
             dt: FRAME,
             anchor: pose,
             roots: &roots,
-            obstacles: &[MovingObstacle { shape: ball(), start: self.pose, end: pose }],
+            obstacles: &[MovingCollider { shape: ball(), start: self.pose, end: pose }],
             air: Air::default(),
         });
         assert_eq!(report.reset_strands, 0);
@@ -84,14 +87,14 @@ impl Head {
     }
 }
 
-fn ball() -> Obstacle {
-    Obstacle::Sphere { center: Vec3::ZERO, radius: HEAD }
+fn ball() -> ColliderShape {
+    ColliderShape::Sphere { center: Vec3::ZERO, radius: HEAD }
 }
 
 /// A head that sways by 10 cm and turns, as it would walk.
-fn sway(frame: u32) -> Rigid {
+fn sway(frame: u32) -> RigidTransform {
     let t = frame as f32 * FRAME;
-    Rigid {
+    RigidTransform {
         translation: Vec3::new(0.05 * (9.0 * t).sin(), 0.02 * (5.0 * t).sin(), 0.6 * t),
         rotation: Quat::from_rotation_y(0.5 * (7.0 * t).sin()),
     }
@@ -102,8 +105,8 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
 }
 
 /// About the vertical, which gravity does not notice.
-fn elsewhere() -> Rigid {
-    Rigid { rotation: Quat::from_rotation_y(2.0), translation: Vec3::new(5.0, 1.0, -3.0) }
+fn elsewhere() -> RigidTransform {
+    RigidTransform { rotation: Quat::from_rotation_y(2.0), translation: Vec3::new(5.0, 1.0, -3.0) }
 }
 
 const CASES: [(Model, Integrator, VolumeMethod); 5] = [
@@ -119,7 +122,7 @@ fn what_follows_a_teleport_is_what_would_have_followed_elsewhere() {
     for (model, integrator, volume) in CASES {
         let solver = Solver { integrator, ..Solver::default() };
         let [mut here, mut there] = [0; 2].map(|_| Head::new(model, solver, volume));
-        let mut moved = Rigid::default();
+        let mut moved = RigidTransform::default();
         for frame in 1..60 {
             if frame == 30 {
                 moved = elsewhere();
@@ -155,9 +158,13 @@ fn a_jump_is_a_teleport_without_being_called_one() {
 #[test]
 fn what_is_no_jump_is_not_taken_for_one() {
     // A ride at 50 m/s at 24 frames a second goes 2 m a frame, and is felt: it begins in one frame, and there alone hair is carried.
-    let [mut carried, mut felt] = [1.0, f32::MAX]
-        .map(|jump| Head::new(Model::Rod, Solver { jump, ..Solver::default() }, VolumeMethod::Off));
-    let ride = |frame: u32| Rigid { translation: Vec3::Z * (50.0 / 24.0 * frame as f32), ..Rigid::default() };
+    let [mut carried, mut felt] = [1.0, f32::MAX].map(|jump| {
+        Head::new(Model::Rod, Solver { teleport_distance: jump, ..Solver::default() }, VolumeMethod::Off)
+    });
+    let ride = |frame: u32| RigidTransform {
+        translation: Vec3::Z * (50.0 / 24.0 * frame as f32),
+        ..RigidTransform::default()
+    };
     for head in [&mut carried, &mut felt] {
         head.step(ride(1));
     }
@@ -181,7 +188,10 @@ fn inertia_scales_what_hair_feels_of_its_head() {
         for frame in 1..120 {
             let t = frame as f32 * FRAME;
             // Small, so that what hair does is in proportion.
-            head.step(Rigid { translation: Vec3::X * (0.004 * (8.0 * t).sin()), ..Rigid::default() });
+            head.step(RigidTransform {
+                translation: Vec3::X * (0.004 * (8.0 * t).sin()),
+                ..RigidTransform::default()
+            });
             most = most.max(farthest(&rest, &head.seen()));
         }
         most
@@ -193,7 +203,10 @@ fn inertia_scales_what_hair_feels_of_its_head() {
     let mut head = Head::new(Model::Rod, Solver { inertia: 0.0, ..Solver::default() }, VolumeMethod::Off);
     let rest = head.seen();
     for frame in 1..60 {
-        head.step(Rigid { rotation: Quat::from_rotation_y(0.1 * frame as f32), ..Rigid::default() });
+        head.step(RigidTransform {
+            rotation: Quat::from_rotation_y(0.1 * frame as f32),
+            ..RigidTransform::default()
+        });
     }
     let turned = farthest(&rest, &head.seen());
     assert!(turned < 1e-4, "{turned} m after turning");
@@ -204,7 +217,7 @@ fn a_reset_is_the_start_again() {
     for (model, integrator, volume) in CASES {
         let solver = Solver { integrator, ..Solver::default() };
         let mut head = Head::new(model, solver, volume);
-        let (anchor, roots) = (Rigid::default(), head.roots(&Rigid::default()));
+        let (anchor, roots) = (RigidTransform::default(), head.roots(&RigidTransform::default()));
         let run = |head: &mut Head| {
             head.simulation.place(anchor, &roots);
             head.pose = anchor;

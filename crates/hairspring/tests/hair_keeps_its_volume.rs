@@ -7,7 +7,7 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::Material,
     scene::{
@@ -15,7 +15,7 @@ use hairspring::{
         bench::{self, Bench},
         builtin::{BuiltinOptions, Style, scene},
     },
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
     stage::Stage,
 };
 use std::sync::Arc;
@@ -76,14 +76,21 @@ fn opened(volume: Volume, pinch: f32) -> f32 {
     let all: Vec<u32> = (0..(side * side) as u32).collect();
     let solver = Solver { collide_body: false, ..Solver::default() };
     let gravity = Vec3::NEG_Y * 9.81;
-    let mut simulation =
-        Simulation::new(groom.clone(), &all, &[Material::default()], solver, gravity, Rigid::default(), &[]);
+    let mut simulation = Simulation::new(
+        groom.clone(),
+        &all,
+        &[Material::default()],
+        solver,
+        gravity,
+        RigidTransform::default(),
+        &[],
+    );
     simulation.set_volume(&volume);
     let pinched = Vec3::new(pinch, 1.0, pinch);
-    let roots: Vec<Rigid> = (0..side * side)
-        .map(|s| Rigid { translation: groom.strand(s)[0] * pinched, ..Rigid::default() })
+    let roots: Vec<RigidTransform> = (0..side * side)
+        .map(|s| RigidTransform { translation: groom.strand(s)[0] * pinched, ..RigidTransform::default() })
         .collect();
-    simulation.place(Rigid::default(), &roots);
+    simulation.place(RigidTransform::default(), &roots);
     let spread = |simulation: &Simulation| {
         let mut now = vec![Vec3::ZERO; simulation.point_count()];
         simulation.write_points(&mut now);
@@ -92,9 +99,9 @@ fn opened(volume: Volume, pinch: f32) -> f32 {
     };
     let before = spread(&simulation);
     for _ in 0..60 {
-        let drive = Drive {
+        let drive = StepInput {
             dt: bench::FRAME,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             roots: &roots,
             obstacles: &[],
             air: Air::default(),

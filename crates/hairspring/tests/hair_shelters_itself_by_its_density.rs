@@ -3,11 +3,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::Material,
     scene::{Solver, Wind},
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -21,22 +21,22 @@ fn blown(side: usize, spacing: f32, hairs: f32, sheltered: bool) -> [f32; 2] {
     });
     let groom = Arc::new(Groom::from_strands(strands, 35e-6));
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots: Vec<Rigid> = (0..groom.strand_count())
-        .map(|s| Rigid { translation: groom.strand(s)[0], ..Rigid::default() })
+    let roots: Vec<RigidTransform> = (0..groom.strand_count())
+        .map(|s| RigidTransform { translation: groom.strand(s)[0], ..RigidTransform::default() })
         .collect();
     let gravity = Vec3::NEG_Y * 9.81;
     let (solver, material) = (Solver::default(), Material::default());
     let mut simulation =
-        Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
-    simulation.set_hairs(vec![hairs; groom.strand_count()]);
+        Simulation::new(groom.clone(), &all, &[material], solver, gravity, RigidTransform::default(), &[]);
+    simulation.set_hair_multiplicity(vec![hairs; groom.strand_count()]);
     if sheltered {
-        simulation.set_self_shelter(&[]);
+        simulation.set_self_occlusion(&[]);
     }
     let wind = Wind { velocity: Vec3::X, ..Wind::default() };
     for _ in 0..60 {
-        simulation.step(&Drive {
+        simulation.step(&StepInput {
             dt: 1.0 / 60.0,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             roots: &roots,
             obstacles: &[],
             air: Air { wind, ..Air::default() },

@@ -6,12 +6,12 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    around::{Tool, grab::Grab},
-    collide::Rigid,
+    collide::RigidTransform,
+    forces::{Manipulator, grab::Grab},
     groom::Groom,
     material::{Material, Model},
     scene::{Guides, Hand, Integrator, Scene, SceneGroom, Solver},
-    simulation::{Air, Drive, Simulation, ToolId},
+    simulation::{Air, ManipulatorId, Simulation, StepInput},
     stage::Stage,
 };
 use std::sync::Arc;
@@ -24,7 +24,7 @@ const GRAVITY: f32 = 9.81;
 /// Strands that hang from a rail.
 struct Lock {
     simulation: Simulation,
-    roots: Vec<Rigid>,
+    roots: Vec<RigidTransform>,
     points: Vec<Vec3>,
 }
 
@@ -36,18 +36,26 @@ impl Lock {
         });
         let groom = Arc::new(Groom::from_strands(strands, 40e-6));
         let all: Vec<u32> = (0..12).collect();
-        let root = |s: &u32| Rigid { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY };
+        let root =
+            |s: &u32| RigidTransform { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY };
         let roots = all.iter().map(root).collect();
         let gravity = Vec3::NEG_Y * GRAVITY;
-        let simulation =
-            Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
+        let simulation = Simulation::new(
+            groom.clone(),
+            &all,
+            &[material],
+            solver,
+            gravity,
+            RigidTransform::default(),
+            &[],
+        );
         Self { simulation, roots, points: groom.points.clone() }
     }
 
     fn step(&mut self) {
-        let report = self.simulation.step(&Drive {
+        let report = self.simulation.step(&StepInput {
             dt: FRAME,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             roots: &self.roots,
             obstacles: &[],
             air: Air::default(),
@@ -56,8 +64,9 @@ impl Lock {
         self.simulation.write_points(&mut self.points);
     }
 
-    fn carry(&mut self, id: ToolId, way: Vec3) {
-        self.simulation.carry(id, Rigid { translation: way, ..Rigid::default() });
+    fn carry(&mut self, id: ManipulatorId, way: Vec3) {
+        self.simulation
+            .set_manipulator_pose(id, RigidTransform { translation: way, ..RigidTransform::default() });
         self.step();
     }
 }
@@ -67,17 +76,17 @@ fn chain() -> Material {
 }
 
 /// A ball around the points 12 to 16 of every strand.
-fn grab(pull: f32) -> Tool {
+fn grab(pull: f32) -> Manipulator {
     let center = Vec3::NEG_Y * (14.0 * SEGMENT);
-    Tool::Grab(Grab { center, radius: 2.5 * SEGMENT, pull, damping: 1.0 })
+    Manipulator::Grab(Grab { center, radius: 2.5 * SEGMENT, pull, damping: 1.0 })
 }
 
 #[test]
 fn a_grabbed_lock_lags_by_what_hangs_on_it() {
     for (pull, model) in [(60.0, Model::Curvature), (30.0, Model::Rod), (60.0, Model::Springs)] {
         let mut lock = Lock::new(Material { model, ..chain() }, Solver::default());
-        let id = lock.simulation.take(grab(pull), Rigid::default());
-        let held: Vec<_> = lock.simulation.held(id).collect();
+        let id = lock.simulation.add_manipulator(grab(pull), RigidTransform::default());
+        let held: Vec<_> = lock.simulation.attached_points(id).collect();
         assert_eq!(held.len(), 12 * 5, "{model:?}");
         // Up by 6 cm and out by 3, so that the hand carries what it holds, and then to the side at 0.3 m/s.
         let lift = |frame: u32| 0.06 * (frame as f32 / 60.0).min(1.0);
@@ -115,23 +124,23 @@ fn a_grabbed_lock_lags_by_what_hangs_on_it() {
 #[test]
 fn a_released_lock_has_the_hands_speed_and_comes_home() {
     let mut lock = Lock::new(Material { damping: 0.02, drag: 0.0, ..Material::default() }, Solver::default());
-    let id = lock.simulation.take(grab(60.0), Rigid::default());
+    let id = lock.simulation.add_manipulator(grab(60.0), RigidTransform::default());
     // A pendulum's way about the rail, so that hair is neither slack nor torn: slowly aside, then back to the lowest place at 0.25 m/s.
     let turn = 0.03;
     let at = |frame: u32| {
         let angle = if frame < 90 { 0.3 * frame as f32 / 90.0 } else { 0.3 - turn * (frame - 90) as f32 };
-        Rigid { rotation: Quat::from_rotation_x(angle), translation: Vec3::ZERO }
+        RigidTransform { rotation: Quat::from_rotation_x(angle), translation: Vec3::ZERO }
     };
     let speed = turn / FRAME * 14.0 * SEGMENT;
     for frame in 1..=100 {
-        lock.simulation.carry(id, at(frame));
+        lock.simulation.set_manipulator_pose(id, at(frame));
         lock.step();
     }
     let before = lock.points.clone();
     let released = lock.simulation.energy();
-    lock.simulation.let_go(id);
-    assert_eq!(lock.simulation.held(id).count(), 0);
-    lock.simulation.carry(id, at(400));
+    lock.simulation.remove_manipulator(id);
+    assert_eq!(lock.simulation.attached_points(id).count(), 0);
+    lock.simulation.set_manipulator_pose(id, at(400));
     lock.step();
     let mean = |points: &[Vec3]| (0..12).map(|s| points[s * POINTS + 14]).sum::<Vec3>() / 12.0;
     let after = (mean(&lock.points) - mean(&before)) / FRAME;
@@ -150,13 +159,13 @@ fn a_released_lock_has_the_hands_speed_and_comes_home() {
 fn a_released_lock_hangs_where_it_hung() {
     let mut lock = Lock::new(Material { damping: 0.02, ..Material::default() }, Solver::default());
     let rest = lock.points.clone();
-    let id = lock.simulation.take(grab(60.0), Rigid::default());
+    let id = lock.simulation.add_manipulator(grab(60.0), RigidTransform::default());
     for frame in 1..=60 {
         lock.carry(id, Vec3::new(0.05, 0.06, 0.08) * (frame as f32 / 60.0));
     }
     let off = |lock: &Lock| lock.points.iter().zip(&rest).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
     let held = off(&lock);
-    lock.simulation.let_go(id);
+    lock.simulation.remove_manipulator(id);
     for _ in 0..600 {
         lock.step();
     }
@@ -167,8 +176,8 @@ fn a_released_lock_hangs_where_it_hung() {
 #[test]
 fn a_pin_holds_while_its_lock_is_pulled_by_the_root() {
     let mut lock = Lock::new(chain(), Solver::default());
-    let id = lock.simulation.take(grab(60.0), Rigid::default());
-    let held: Vec<_> = lock.simulation.held(id).collect();
+    let id = lock.simulation.add_manipulator(grab(60.0), RigidTransform::default());
+    let held: Vec<_> = lock.simulation.attached_points(id).collect();
     let homes = lock.points.clone();
     for frame in 0..120 {
         let way = 0.03 * (std::f32::consts::TAU * 2.0 * frame as f32 * FRAME).sin();
@@ -192,7 +201,7 @@ fn a_hand_that_jumps_away_neither_tears_nor_blows_up() {
     for integrator in &Integrator::ALL[2..] {
         let mut lock =
             Lock::new(Material::default(), Solver { integrator: *integrator, ..Solver::default() });
-        let id = lock.simulation.take(grab(1000.0), Rigid::default());
+        let id = lock.simulation.add_manipulator(grab(1000.0), RigidTransform::default());
         for frame in 0..60 {
             let away = if frame / 10 % 2 == 0 { 0.0 } else { 5.0 };
             lock.carry(id, Vec3::new(away, away, 0.0));
@@ -202,7 +211,7 @@ fn a_hand_that_jumps_away_neither_tears_nor_blows_up() {
                 assert!(measure.stretch_max < 0.011, "{integrator:?}: {}", measure.stretch_max);
             }
         }
-        lock.simulation.let_go(id);
+        lock.simulation.remove_manipulator(id);
         for _ in 0..300 {
             lock.step();
         }
@@ -217,12 +226,12 @@ fn a_scenes_hands_begin_move_and_end_as_they_say() {
     let strand = (0..POINTS).map(|i| Vec3::new(0.0, -SEGMENT * i as f32, 0.0)).collect::<Vec<_>>();
     let groom =
         SceneGroom { groom: Groom::from_strands([strand], 40e-6), guides: Guides::All, ..Default::default() };
-    let Tool::Grab(ball) = grab(60.0) else { unreachable!() };
+    let Manipulator::Grab(ball) = grab(60.0) else { unreachable!() };
     let hand = Hand {
         path: vec![[0.5, 0.0, 0.0, 0.0], [1.0, 0.08, 0.03, 0.0]],
         from: 0.5,
         until: Some(1.5),
-        ..Hand::new(Tool::Grab(ball))
+        ..Hand::new(Manipulator::Grab(ball))
     };
     let scene =
         Scene { grooms: vec![groom], gravity: Vec3::NEG_Y * GRAVITY, hands: vec![hand], ..Scene::default() };
@@ -252,14 +261,17 @@ fn a_scenes_hands_begin_move_and_end_as_they_say() {
     assert!(apart < 1e-5, "a reset lets go of everything: {apart} m apart");
     // An app's hand does the same.
     stage.reset();
-    let id = stage.take(Tool::Grab(ball), Rigid::default());
+    let id = stage.add_manipulator(Manipulator::Grab(ball), RigidTransform::default());
     for frame in 1..=20 {
-        stage.carry(
+        stage.set_manipulator_pose(
             id,
-            Rigid { translation: Vec3::new(0.004, 0.0015, 0.0) * frame as f32, ..Rigid::default() },
+            RigidTransform {
+                translation: Vec3::new(0.004, 0.0015, 0.0) * frame as f32,
+                ..RigidTransform::default()
+            },
         );
         stage.step(FRAME);
     }
     assert!(held(&stage).distance(home + Vec3::new(0.08, 0.03, 0.0)) < 2e-3, "{}", held(&stage));
-    stage.let_go(id);
+    stage.remove_manipulator(id);
 }

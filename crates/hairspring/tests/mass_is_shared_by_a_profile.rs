@@ -5,11 +5,11 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model},
     scene::{Integrator, Solver, Wind, bench::Bench},
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::{f64::consts::PI, sync::Arc};
 
@@ -20,16 +20,16 @@ const MODELS: [Model; 3] = [Model::Curvature, Model::Rod, Model::Springs];
 
 fn strand(points: Vec<Vec3>, material: Material, solver: Solver, gravity: Vec3) -> Simulation {
     let groom = Groom::from_strands([points], RADIUS as f32);
-    Simulation::new(Arc::new(groom), &[0], &[material], solver, gravity, Rigid::default(), &[])
+    Simulation::new(Arc::new(groom), &[0], &[material], solver, gravity, RigidTransform::default(), &[])
 }
 
 /// Steps a strand with its root at the origin.
 fn step(simulation: &mut Simulation, dt: f64, wind: Vec3) -> Vec<Vec3> {
     let wind = Wind { velocity: wind, ..Wind::default() };
-    simulation.step(&Drive {
+    simulation.step(&StepInput {
         dt: dt as f32,
-        anchor: Rigid::default(),
-        roots: &[Rigid::default()],
+        anchor: RigidTransform::default(),
+        roots: &[RigidTransform::default()],
         obstacles: &[],
         air: Air { wind, ..Air::default() },
     });

@@ -7,7 +7,7 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::{Obstacle, Rigid},
+    collide::{ColliderShape, RigidTransform},
     groom::Groom,
     material::{Material, Model},
     scene::{
@@ -15,7 +15,7 @@ use hairspring::{
         bench::{self, Bench},
         builtin::{BuiltinOptions, Style, scene},
     },
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
     stage::Stage,
 };
 use std::sync::Arc;
@@ -65,10 +65,10 @@ fn threads_do_not_show_in_a_whole_scene() {
 #[test]
 fn neighbours_do_not_show_in_contact() {
     let groom = Arc::new(bench::groom(8, 24));
-    let obstacle = MovingObstacle {
-        shape: Obstacle::Sphere { center: Vec3::ZERO, radius: bench::RADIUS },
-        start: Rigid::default(),
-        end: Rigid::default(),
+    let obstacle = MovingCollider {
+        shape: ColliderShape::Sphere { center: Vec3::ZERO, radius: bench::RADIUS },
+        start: RigidTransform::default(),
+        end: RigidTransform::default(),
     };
     let fall = |strands: &[u32]| {
         let mut simulation = Simulation::new(
@@ -77,17 +77,20 @@ fn neighbours_do_not_show_in_contact() {
             &[Material { bend: 0.01, ..Material::default() }],
             Solver { sag_free: false, ..Solver::default() },
             Vec3::new(0.0, -9.81, 0.0),
-            Rigid::default(),
+            RigidTransform::default(),
             &[],
         );
-        let roots: Vec<Rigid> = strands
+        let roots: Vec<RigidTransform> = strands
             .iter()
-            .map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() })
+            .map(|s| RigidTransform {
+                translation: groom.strand(*s as usize)[0],
+                ..RigidTransform::default()
+            })
             .collect();
         for _ in 0..90 {
-            simulation.step(&Drive {
+            simulation.step(&StepInput {
                 dt: bench::FRAME,
-                anchor: Rigid::default(),
+                anchor: RigidTransform::default(),
                 roots: &roots,
                 obstacles: std::slice::from_ref(&obstacle),
                 air: Air::default(),
@@ -132,14 +135,26 @@ fn neighbours_do_not_show_in(groom: Arc<Groom>) {
             let material = Material { model, ..Material::default() };
             let solver = Solver { sag_free: false, ..Solver::default() };
             let gravity = Vec3::NEG_Y * 9.81;
-            let mut simulation =
-                Simulation::new(groom.clone(), strands, &[material], solver, gravity, Rigid::default(), &[]);
-            let root = |s: &u32| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() };
-            let roots: Vec<Rigid> = strands.iter().map(root).collect();
+            let mut simulation = Simulation::new(
+                groom.clone(),
+                strands,
+                &[material],
+                solver,
+                gravity,
+                RigidTransform::default(),
+                &[],
+            );
+            let root = |s: &u32| RigidTransform {
+                translation: groom.strand(*s as usize)[0],
+                ..RigidTransform::default()
+            };
+            let roots: Vec<RigidTransform> = strands.iter().map(root).collect();
             for frame in 0..60 {
-                let anchor =
-                    Rigid { translation: Vec3::X * (0.05 * (frame as f32).sin()), ..Rigid::default() };
-                simulation.step(&Drive {
+                let anchor = RigidTransform {
+                    translation: Vec3::X * (0.05 * (frame as f32).sin()),
+                    ..RigidTransform::default()
+                };
+                simulation.step(&StepInput {
                     dt: 1.0 / 60.0,
                     anchor,
                     roots: &roots,

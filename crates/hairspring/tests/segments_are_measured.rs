@@ -5,11 +5,11 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    collide::{Obstacle, ObstaclePose, Rigid},
+    collide::{ColliderPose, ColliderShape, RigidTransform},
     groom::Groom,
     material::{Material, Model},
     scene::Solver,
-    simulation::{Measure, MovingObstacle, Simulation},
+    simulation::{Measure, MovingCollider, Simulation},
 };
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -20,11 +20,11 @@ const SEGMENT: f32 = 0.02;
 const MIDDLE: Vec3 = Vec3::new(4.5 * SEGMENT, 0.0, 0.0);
 
 /// Measures the strand as it is authored against `shape`, which it was told of at rest or not.
-fn measure(model: Model, shape: &Obstacle, told: bool) -> Measure {
+fn measure(model: Model, shape: &ColliderShape, told: bool) -> Measure {
     let points = (0..12).map(|i| Vec3::X * (SEGMENT * i as f32));
     let groom = Arc::new(Groom::from_strands([points.collect::<Vec<_>>()], 40e-6));
-    let still = Rigid::default();
-    let rest = ObstaclePose::new(shape.clone(), still.matrix(), still.matrix(), 1.0);
+    let still = RigidTransform::default();
+    let rest = ColliderPose::new(shape.clone(), still.matrix(), still.matrix(), 1.0);
     let simulation = Simulation::new(
         groom,
         &[0],
@@ -34,22 +34,22 @@ fn measure(model: Model, shape: &Obstacle, told: bool) -> Measure {
         still,
         if told { std::slice::from_ref(&rest) } else { &[] },
     );
-    simulation.measure(&[MovingObstacle { shape: shape.clone(), start: still, end: still }])
+    simulation.measure(&[MovingCollider { shape: shape.clone(), start: still, end: still }])
 }
 
 /// Shapes that reach `depth` [m] over the middle of the fifth segment from below, and over nothing else.
-fn shapes(depth: f32) -> [(&'static str, Obstacle); 3] {
+fn shapes(depth: f32) -> [(&'static str, ColliderShape); 3] {
     let top = MIDDLE + Vec3::Y * depth;
     let radius = 0.008;
     let below = top - Vec3::Y * radius;
     // A box on its edge: a place on the way down from the edge is 1/√2 as far from both faces.
     let (half, edge) = (0.05, MIDDLE + Vec3::Y * (depth * 2f32.sqrt()));
     [
-        ("ball", Obstacle::Sphere { center: below, radius }),
-        ("rod", Obstacle::Capsule { a: below - Vec3::Z, b: below + Vec3::Z, radius }),
+        ("ball", ColliderShape::Sphere { center: below, radius }),
+        ("rod", ColliderShape::Capsule { a: below - Vec3::Z, b: below + Vec3::Z, radius }),
         (
             "edge",
-            Obstacle::Cuboid {
+            ColliderShape::Cuboid {
                 center: edge - Vec3::Y * (half * 2f32.sqrt()),
                 half: Vec3::splat(half),
                 axes: Mat3::from_quat(Quat::from_rotation_z(std::f32::consts::FRAC_PI_4)),
@@ -95,7 +95,8 @@ fn what_is_clear_is_not_counted() {
 
 #[test]
 fn what_begins_inside_where_the_root_holds_it_is_counted_apart() {
-    let ball = |x: f32, y: f32| Obstacle::Sphere { center: Vec3::new(SEGMENT + x, y, 0.0), radius: 0.008 };
+    let ball =
+        |x: f32, y: f32| ColliderShape::Sphere { center: Vec3::new(SEGMENT + x, y, 0.0), radius: 0.008 };
     for model in Model::ALL {
         // The held end is the deepest place, 3 mm; at the first eighth it is √(5² + 2.5²) from the middle.
         let found = measure(model, &ball(0.0, -0.005), false);
@@ -121,7 +122,7 @@ proptest! {
         let e = b - a;
         let at = (-a.dot(e) / e.length_squared().max(1e-12)).clamp(0.0, 1.0);
         let exact = a.lerp(b, at).length() - radius;
-        let found = Obstacle::Sphere { center: Vec3::ZERO, radius }.least_distance(a, b);
+        let found = ColliderShape::Sphere { center: Vec3::ZERO, radius }.least_distance(a, b);
         prop_assert!(found > exact - 1e-6, "{found} is less than {exact}");
         prop_assert!(exact > 0.0 || found < exact + e.length() / 8.0 + 1e-6, "{found}, and it is {exact}");
     }
@@ -130,7 +131,7 @@ proptest! {
 #[test]
 fn a_corner_is_cut_by_half_of_what_is_left_of_it() {
     // From one face of a box to the other across its edge: the middle is as deep as either end is far from the edge, halved.
-    let shape = Obstacle::Cuboid { center: Vec3::ZERO, half: Vec3::splat(0.1), axes: Mat3::IDENTITY };
+    let shape = ColliderShape::Cuboid { center: Vec3::ZERO, half: Vec3::splat(0.1), axes: Mat3::IDENTITY };
     for cut in [0.001f32, 0.01, 0.05] {
         let [a, b] = [Vec3::new(0.1 - 2.0 * cut, 0.1, 0.02), Vec3::new(0.1, 0.1 - 2.0 * cut, 0.02)];
         let found = shape.least_distance(a, b);

@@ -9,11 +9,11 @@
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    collide::{Hull, Obstacle, ObstaclePose, Rigid, Sheet, voxelize},
+    collide::{ColliderPose, ColliderShape, Hull, RigidTransform, ThinShell, voxelize},
     groom::Groom,
     material::{Material, Model},
     scene::{Integrator, Solver},
-    simulation::{Air, Drive, Measure, MovingObstacle, Simulation},
+    simulation::{Air, Measure, MovingCollider, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -22,42 +22,48 @@ const SEGMENT: f32 = 0.02;
 const STRANDS: u32 = 10;
 
 /// Strands that stand out along X, 1 mm above the origin's height, and begin at each tenth of a segment, none of them with a point at the origin.
-fn hair(model: Model, rest: &[ObstaclePose]) -> (Simulation, Vec<Rigid>) {
+fn hair(model: Model, rest: &[ColliderPose]) -> (Simulation, Vec<RigidTransform>) {
     hair_of(&Material { model, drag: 0.5, ..Material::default() }, Solver::default(), rest)
 }
 
 /// The same, of this material and solved so.
-fn hair_of(material: &Material, solver: Solver, rest: &[ObstaclePose]) -> (Simulation, Vec<Rigid>) {
+fn hair_of(material: &Material, solver: Solver, rest: &[ColliderPose]) -> (Simulation, Vec<RigidTransform>) {
     let strands = (0..STRANDS).map(|s| {
         let root = Vec3::new(-0.09 - 0.1 * SEGMENT * (s as f32 + 0.5), 1e-3, 0.01 * (s as f32 - 4.5));
         (0..16).map(move |i| root + Vec3::X * (SEGMENT * i as f32)).collect::<Vec<_>>()
     });
     let groom = Arc::new(Groom::from_strands(strands, 40e-6));
     let all: Vec<u32> = (0..STRANDS).collect();
-    let roots =
-        all.iter().map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() }).collect();
+    let roots = all
+        .iter()
+        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
+        .collect();
     let simulation = Simulation::new(
         groom,
         &all,
         std::slice::from_ref(material),
         Solver { sag_free: false, ..solver },
         Vec3::NEG_Y * 9.81,
-        Rigid::default(),
+        RigidTransform::default(),
         rest,
     );
     (simulation, roots)
 }
 
-fn step(simulation: &mut Simulation, roots: &[Rigid], obstacles: &[MovingObstacle]) -> Measure {
-    let (anchor, air) = (Rigid::default(), Air::default());
-    simulation.step(&Drive { dt: FRAME, anchor, roots, obstacles, air });
+fn step(simulation: &mut Simulation, roots: &[RigidTransform], obstacles: &[MovingCollider]) -> Measure {
+    let (anchor, air) = (RigidTransform::default(), Air::default());
+    simulation.step(&StepInput { dt: FRAME, anchor, roots, obstacles, air });
     let measure = simulation.measure(obstacles);
     assert_eq!(measure.non_finite, 0);
     measure
 }
 
-fn still(shape: &Obstacle) -> [MovingObstacle; 1] {
-    [MovingObstacle { shape: shape.clone(), start: Rigid::default(), end: Rigid::default() }]
+fn still(shape: &ColliderShape) -> [MovingCollider; 1] {
+    [MovingCollider {
+        shape: shape.clone(),
+        start: RigidTransform::default(),
+        end: RigidTransform::default(),
+    }]
 }
 
 fn points(simulation: &Simulation) -> Vec<Vec3> {
@@ -77,7 +83,7 @@ fn worst(a: Measure, b: Measure) -> Measure {
     }
 }
 
-fn shapes() -> [(&'static str, Obstacle); 5] {
+fn shapes() -> [(&'static str, ColliderShape); 5] {
     let corners: Vec<Vec3> =
         (0..8).map(|k| Vec3::new([-0.4, 0.0][k & 1], [-0.2, 0.0][k >> 1 & 1], [-0.2, 0.2][k >> 2])).collect();
     // A cloth of 2 mm on both sides whose upper side is at the origin's height and whose rim is at x = 0, but for its thickness.
@@ -86,11 +92,14 @@ fn shapes() -> [(&'static str, Obstacle); 5] {
     let center = Vec3::new(-0.2, -0.1, 0.0);
     let (a, b) = (Vec3::new(0.05, -0.03, -0.2), Vec3::new(0.05, -0.03, 0.2));
     [
-        ("box", Obstacle::Cuboid { center, half: Vec3::new(0.2, 0.1, 0.2), axes: Mat3::IDENTITY }),
-        ("hull", Obstacle::Hull(Arc::new(Hull::new(&corners).unwrap()))),
-        ("rim of a sheet", Obstacle::Sheet(Arc::new(Sheet::new(&cloth, &[[0, 1, 2], [0, 2, 3]], 0.002)))),
-        ("rod of 1 cm", Obstacle::Capsule { a, b, radius: 0.005 }),
-        ("ball of 16 mm", Obstacle::Sphere { center: Vec3::new(0.05, -0.03, 0.005), radius: 0.008 }),
+        ("box", ColliderShape::Cuboid { center, half: Vec3::new(0.2, 0.1, 0.2), axes: Mat3::IDENTITY }),
+        ("hull", ColliderShape::Hull(Arc::new(Hull::new(&corners).unwrap()))),
+        (
+            "rim of a sheet",
+            ColliderShape::Sheet(Arc::new(ThinShell::new(&cloth, &[[0, 1, 2], [0, 2, 3]], 0.002))),
+        ),
+        ("rod of 1 cm", ColliderShape::Capsule { a, b, radius: 0.005 }),
+        ("ball of 16 mm", ColliderShape::Sphere { center: Vec3::new(0.05, -0.03, 0.005), radius: 0.008 }),
     ]
 }
 
@@ -138,7 +147,7 @@ fn hair_falls_over_edges_and_lies_on_them() {
 }
 
 /// The field of blocks that overlap: their middles, half edges and turns about x [rad].
-fn blocks(blocks: impl IntoIterator<Item = (Vec3, Vec3, f32)>, cell: f32) -> Obstacle {
+fn blocks(blocks: impl IntoIterator<Item = (Vec3, Vec3, f32)>, cell: f32) -> ColliderShape {
     // Quads around a block, seen from outside: corner k is on the far side along x, y, z by its bits.
     const FACES: [[u32; 4]; 6] =
         [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -152,7 +161,7 @@ fn blocks(blocks: impl IntoIterator<Item = (Vec3, Vec3, f32)>, cell: f32) -> Obs
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    Obstacle::Field(Arc::new(voxelize(&corners, &triangles, cell)))
+    ColliderShape::Field(Arc::new(voxelize(&corners, &triangles, cell)))
 }
 
 #[test]
@@ -205,7 +214,7 @@ fn ridges_and_creases_are_met_wherever_they_cross_a_segment() {
 }
 
 /// A heap of blocks under the hair, whose walls face each other at all angles; `seed` says which.
-fn heap(seed: u64) -> Obstacle {
+fn heap(seed: u64) -> ColliderShape {
     let mut bits = seed;
     // A number from 0 to 1 by chance (SplitMix64; Steele, Lea & Flood 2014).
     let mut next = || {
@@ -237,14 +246,14 @@ fn what_walls_lead_to_and_fro_gets_out_beside_them() {
         let (mut simulation, roots) = hair(model, &[]);
         let sway = |frame: i32| {
             let translation = Vec3::new(0.02, 0.0, 0.04) * (frame as f32 * 0.3).sin();
-            Rigid { translation, ..Rigid::default() }
+            RigidTransform { translation, ..RigidTransform::default() }
         };
         let mut all = Measure::default();
         for frame in 0..120 {
             let (start, end) = (sway(frame), sway(frame + 1));
             all = worst(
                 all,
-                step(&mut simulation, &roots, &[MovingObstacle { shape: shape.clone(), start, end }]),
+                step(&mut simulation, &roots, &[MovingCollider { shape: shape.clone(), start, end }]),
             );
         }
         if all.segment_depth >= 1e-3 || all.max_depth >= 3e-4 || all.stretch_max >= 0.011 {
@@ -261,9 +270,9 @@ fn what_walls_lead_to_and_fro_gets_out_beside_them() {
 fn what_was_authored_across_a_shape_stays_as_it_is() {
     for model in Model::ALL {
         // A ball in the middle of a segment of each strand, whose ends are outside.
-        let shape = Obstacle::Sphere { center: Vec3::new(0.05, -0.003, 0.0), radius: 0.006 };
-        let rigid = Rigid::default().matrix();
-        let (mut simulation, roots) = hair(model, &[ObstaclePose::new(shape.clone(), rigid, rigid, 1.0)]);
+        let shape = ColliderShape::Sphere { center: Vec3::new(0.05, -0.003, 0.0), radius: 0.006 };
+        let rigid = RigidTransform::default().matrix();
+        let (mut simulation, roots) = hair(model, &[ColliderPose::new(shape.clone(), rigid, rigid, 1.0)]);
         let (mut free, _) = hair(model, &[]);
         let obstacles = still(&shape);
         step(&mut simulation, &roots, &obstacles);
@@ -278,8 +287,8 @@ fn what_was_authored_across_a_shape_stays_as_it_is() {
 fn where_nothing_is_near_nothing_changes() {
     for (name, shape) in shapes() {
         for model in Model::ALL {
-            let far = Rigid { translation: Vec3::Y * 3.0, ..Rigid::default() };
-            let obstacles = [MovingObstacle { shape: shape.clone(), start: far, end: far }];
+            let far = RigidTransform { translation: Vec3::Y * 3.0, ..RigidTransform::default() };
+            let obstacles = [MovingCollider { shape: shape.clone(), start: far, end: far }];
             let (mut simulation, roots) = hair(model, &[]);
             let (mut free, _) = hair(model, &[]);
             for _ in 0..30 {
@@ -295,13 +304,13 @@ fn where_nothing_is_near_nothing_changes() {
 fn beside_what_is_round_for_their_length_points_alone_are_looked_at() {
     // 12 % of a radius: beside the first ball 2 cm may be left, beside the second not.
     let ball =
-        |radius: f32| still(&Obstacle::Sphere { center: Vec3::new(0.05, -radius - 0.01, 0.0), radius });
+        |radius: f32| still(&ColliderShape::Sphere { center: Vec3::new(0.05, -radius - 0.01, 0.0), radius });
     for model in Model::ALL {
-        let lie = |obstacles: &[MovingObstacle]| {
+        let lie = |obstacles: &[MovingCollider]| {
             let lie = |segments: bool| {
                 let (mut simulation, roots) = hair_of(
                     &Material { model, ..Material::default() },
-                    Solver { segments, ..Solver::default() },
+                    Solver { segment_contacts: segments, ..Solver::default() },
                     &[],
                 );
                 (0..60).for_each(|_| _ = step(&mut simulation, &roots, obstacles));
@@ -319,10 +328,10 @@ fn beside_what_is_round_for_their_length_points_alone_are_looked_at() {
 #[test]
 fn what_nothing_keeps_short_is_looked_at_beside_any_ball() {
     // Round for 2 cm; but hair on it is as soft as gum, and Verlet's lets itself be stretched.
-    let obstacles = still(&Obstacle::Sphere { center: Vec3::new(0.05, -0.19, 0.0), radius: 0.18 });
+    let obstacles = still(&ColliderShape::Sphere { center: Vec3::new(0.05, -0.19, 0.0), radius: 0.18 });
     let gum = Material { model: Model::Curvature, young: 1e4, ..Material::default() };
     let fall = |integrator: Integrator, segments: bool| {
-        let solver = Solver { segments, integrator, ..Solver::default() };
+        let solver = Solver { segment_contacts: segments, integrator, ..Solver::default() };
         let (mut simulation, roots) = hair_of(&gum, solver, &[]);
         let longer = |_| step(&mut simulation, &roots, &obstacles).stretch_max;
         let longest = (0..60).map(longer).fold(0.0, f64::max);
@@ -337,12 +346,15 @@ fn what_nothing_keeps_short_is_looked_at_beside_any_ball() {
 
 #[test]
 fn what_pressed_segments_is_forgotten_where_none_is_looked_at() {
-    let rod =
-        Obstacle::Capsule { a: Vec3::new(0.03, -0.02, -1.0), b: Vec3::new(0.03, -0.02, 1.0), radius: 0.01 };
-    let away = |radius: f32| still(&Obstacle::Sphere { center: Vec3::Y * 9.0, radius });
+    let rod = ColliderShape::Capsule {
+        a: Vec3::new(0.03, -0.02, -1.0),
+        b: Vec3::new(0.03, -0.02, 1.0),
+        radius: 0.01,
+    };
+    let away = |radius: f32| still(&ColliderShape::Sphere { center: Vec3::Y * 9.0, radius });
     for model in Model::ALL {
         // Nothing is near in between: whether segments are looked at there or not, they begin anew; also in a simulation that takes over in the midst.
-        let meet_again = |between: &[MovingObstacle], taken_over: bool| {
+        let meet_again = |between: &[MovingCollider], taken_over: bool| {
             let (mut simulation, roots) = hair(model, &[]);
             // So short in between that what is forgotten would be pressed again.
             for (obstacles, frames) in [(&still(&rod)[..], 60), (between, 1), (&still(&rod)[..], 20)] {

@@ -6,9 +6,9 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::{Flow, Shelter, Turbulence, WindSource},
-    around::{Tool, grab::Grab},
-    collide::Rigid,
+    air::{Flow, Turbulence, WindOcclusion, WindSource},
+    collide::RigidTransform,
+    forces::{Manipulator, grab::Grab},
     groom::Groom,
     material::{Material, Model},
     scene::{
@@ -16,7 +16,7 @@ use hairspring::{
         Wind,
         builtin::{self, BuiltinOptions},
     },
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
     stage::{Stage, StageError},
 };
 use std::sync::Arc;
@@ -63,7 +63,7 @@ fn head() -> Scene {
     let fan = Flow::Fan { center: Vec3::Z, axis: Vec3::NEG_Z, radius: 0.1, speed: 3.0, spread: 11.8 };
     scene.wind_sources = vec![WindSource { joint: None, shape: fan, gust: 0.0, gust_rate: 0.0 }];
     scene.turbulence = Turbulence { strength: 0.3, ..Turbulence::default() };
-    scene.shelter = Shelter { hair: 20.0, ..Shelter::default() };
+    scene.wind_occlusion = WindOcclusion { hair: 20.0, ..WindOcclusion::default() };
     scene.volume = Volume { method: VolumeMethod::Density, ..Volume::default() };
     scene.colliders =
         vec![Collider { joint: None, shape: Shape::Sphere { center: Vec3::ZERO, radius: 0.05 } }];
@@ -75,20 +75,27 @@ fn the_same_settings_change_no_bit() {
     let scene = head();
     let settings = settings_of(&scene);
     let mut stages = [0; 3].map(|_| Stage::new(scene.clone()).unwrap());
-    let hold =
-        Tool::Grab(Grab { center: Vec3::new(0.08, -0.05, 0.0), radius: 0.05, pull: 60.0, damping: 1.0 });
+    let hold = Manipulator::Grab(Grab {
+        center: Vec3::new(0.08, -0.05, 0.0),
+        radius: 0.05,
+        pull: 60.0,
+        damping: 1.0,
+    });
     for stage in &mut stages {
         play(stage, 20);
-        let id = stage.take(hold, Rigid::default());
-        stage.carry(id, Rigid { translation: Vec3::X * 0.01, ..Rigid::default() });
+        let id = stage.add_manipulator(hold, RigidTransform::default());
+        stage.set_manipulator_pose(
+            id,
+            RigidTransform { translation: Vec3::X * 0.01, ..RigidTransform::default() },
+        );
         play(stage, 5);
     }
     let [untouched, same, fresh] = &mut stages;
-    same.retune(settings.clone()).unwrap();
+    same.update_settings(settings.clone()).unwrap();
     assert_eq!(same.scene(), untouched.scene());
-    // No material has a ghost: the switch does nothing but that rest shapes are found anew.
-    let solver = Solver { ghost: false, ..settings.solver };
-    fresh.retune(Scene { solver, ..settings }).unwrap();
+    // No material has a global shape: the switch does nothing but that rest shapes are found anew.
+    let solver = Solver { global_shape: false, ..settings.solver };
+    fresh.update_settings(Scene { solver, ..settings }).unwrap();
     for frame in 0..30 {
         [&mut *untouched, &mut *same, &mut *fresh].into_iter().for_each(|stage| play(stage, 1));
         let expected = points(untouched);
@@ -98,7 +105,7 @@ fn the_same_settings_change_no_bit() {
     }
 }
 
-const ROOT: Rigid = Rigid { rotation: glam::Quat::IDENTITY, translation: Vec3::ZERO };
+const ROOT: RigidTransform = RigidTransform { rotation: glam::Quat::IDENTITY, translation: Vec3::ZERO };
 
 /// Strands that stick out to the side, bowed, curled and straight ones.
 fn stuck_out() -> Groom {
@@ -129,10 +136,10 @@ fn falling(groom: &Arc<Groom>, model: Model, integrator: Integrator) -> Simulati
 
 /// A frame; how many strands were put back because they were not finite.
 fn fall(simulation: &mut Simulation, groom: &Groom) -> usize {
-    let root = |s: usize| Rigid { translation: groom.strand(s)[0], ..ROOT };
-    let roots: Vec<Rigid> = (0..groom.strand_count()).map(root).collect();
+    let root = |s: usize| RigidTransform { translation: groom.strand(s)[0], ..ROOT };
+    let roots: Vec<RigidTransform> = (0..groom.strand_count()).map(root).collect();
     let air = Air::default();
-    simulation.step(&Drive { dt: FRAME, anchor: ROOT, roots: &roots, obstacles: &[], air }).reset_strands
+    simulation.step(&StepInput { dt: FRAME, anchor: ROOT, roots: &roots, obstacles: &[], air }).reset_strands
 }
 
 fn places(simulation: &Simulation) -> Vec<Vec3> {
@@ -229,7 +236,7 @@ fn changed_smoothly(stage: &mut Stage, settings: &Scene, what: &str, bound: f32)
     let before = points(stage);
     play(stage, 1);
     let here = points(stage);
-    stage.retune(settings.clone()).unwrap();
+    stage.update_settings(settings.clone()).unwrap();
     assert!(points(stage) == here, "{what}: points are elsewhere");
     play(stage, 1);
     let jump = points(stage)
@@ -259,7 +266,7 @@ fn gravity_and_stiffness_come_and_go() {
     }
     // Left alone it hangs as one that nothing was ever changed of.
     let still = Scene { wind: Wind::default(), ..settings };
-    stage.retune(still).unwrap();
+    stage.update_settings(still).unwrap();
     play(&mut stage, 600);
     let apart = farthest(&points(&stage), &lock().grooms[0].groom.points);
     assert!(apart < 2e-3, "{apart} m off in the end");
@@ -281,7 +288,7 @@ fn wind_and_effects_come() {
     let before = points(&stage);
     settings.grooms[0].effects = Effects { clump: 1.0, ..Effects::default() };
     settings.grooms[0].look.variation = 0.9;
-    stage.retune(settings).unwrap();
+    stage.update_settings(settings).unwrap();
     assert!(farthest(&points(&stage), &before) > 1e-3);
     assert_eq!(stage.strands().next().unwrap().look.variation, 0.9);
 }
@@ -294,13 +301,13 @@ fn colliders_come_and_go() {
     let settings = settings_of(&scene);
     let ball = Shape::Sphere { center: Vec3::new(0.02, -0.15, -0.02), radius: 0.03 };
     let colliders = vec![Collider { joint: None, shape: ball.clone() }];
-    stage.retune(Scene { colliders, ..settings.clone() }).unwrap();
+    stage.update_settings(Scene { colliders, ..settings.clone() }).unwrap();
     assert_eq!(stage.obstacles().len(), 1);
     play(&mut stage, 60);
     let ball = ball.obstacle().unwrap();
     let inside = |stage: &Stage| points(stage).iter().map(|p| -ball.distance(*p)).fold(0.0, f32::max);
     assert!(inside(&stage) < 1e-4, "{} m inside", inside(&stage));
-    stage.retune(settings).unwrap();
+    stage.update_settings(settings).unwrap();
     assert!(stage.obstacles().is_empty());
     play(&mut stage, 600);
     let apart = farthest(&points(&stage), &scene.grooms[0].groom.points);
@@ -311,7 +318,7 @@ fn colliders_come_and_go() {
 fn a_hand_goes_on_while_its_settings_are_there() {
     let mut scene = lock();
     let grab = Grab { center: Vec3::new(0.03, -0.2, 0.0), radius: 0.05, pull: 60.0, damping: 1.0 };
-    let mut hand = Hand::new(Tool::Grab(grab));
+    let mut hand = Hand::new(Manipulator::Grab(grab));
     hand.path = vec![[0.0; 4], [0.2, 0.0, 0.1, 0.1]];
     scene.hands = vec![hand];
     let mut stage = Stage::new(scene.clone()).unwrap();
@@ -319,12 +326,12 @@ fn a_hand_goes_on_while_its_settings_are_there() {
     let held = points(&stage);
     let mut settings = settings_of(&scene);
     settings.grooms[0].materials[0].model = Model::Springs;
-    stage.retune(settings.clone()).unwrap();
+    stage.update_settings(settings.clone()).unwrap();
     play(&mut stage, 30);
     let slipped = points(&stage)[23].distance(held[23]);
     assert!(slipped < 0.03, "{slipped} m: another model is held as well");
     settings.hands.clear();
-    stage.retune(settings).unwrap();
+    stage.update_settings(settings).unwrap();
     play(&mut stage, 300);
     let apart = farthest(&points(&stage), &scene.grooms[0].groom.points);
     assert!(apart < 0.01, "{apart} m off after it has let go");
@@ -348,7 +355,7 @@ fn what_is_refused_changes_nothing() {
         (source, joint("a source of wind")),
         (none, StageError::GroomCount { settings: 0, grooms: 2 }),
     ] {
-        assert_eq!(refused.retune(wrong), Err(error));
+        assert_eq!(refused.update_settings(wrong), Err(error));
         assert_eq!(refused.scene(), untouched.scene());
     }
     for frame in 0..10 {

@@ -3,18 +3,18 @@
 //!
 //! Closed forms are those of ropes and blocks: over a smooth bar the tension is the same on both sides, so that the bar bears N = |T u₁ − T u₂|; what is
 //! pressed with N sticks where it is pulled aside with less than μN, and slides where with more. Momentum, which impulses keep to rounding, has its test
-//! beside the code (`neighbours/tests.rs`).
+//! beside the code (`strand_contact/tests.rs`).
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    collide::{Obstacle, Rigid},
+    collide::{ColliderShape, RigidTransform},
     groom::Groom,
     material::{Material, Model},
     scene::{
         Neighbours, Solver, Volume, VolumeMethod,
         bench::{self, Bench},
     },
-    simulation::{Air, Drive, Hold, Simulation},
+    simulation::{Air, Hold, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -24,8 +24,8 @@ const ON: Neighbours = Neighbours { on: true, radius: Some(0.001), friction: 0.0
 struct Strands {
     groom: Arc<Groom>,
     simulation: Simulation,
-    roots: Vec<Rigid>,
-    bodies: Vec<hairspring::simulation::MovingObstacle>,
+    roots: Vec<RigidTransform>,
+    bodies: Vec<hairspring::simulation::MovingCollider>,
 }
 
 impl Strands {
@@ -33,18 +33,28 @@ impl Strands {
         let groom = Arc::new(Groom::from_strands(strands, 4e-5));
         let all: Vec<u32> = (0..strands.len() as u32).collect();
         let solver = Solver { sag_free: false, ..Solver::default() };
-        let mut simulation =
-            Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
+        let mut simulation = Simulation::new(
+            groom.clone(),
+            &all,
+            &[material],
+            solver,
+            gravity,
+            RigidTransform::default(),
+            &[],
+        );
         simulation.set_neighbours(&neighbours);
-        let roots = strands.iter().map(|s| Rigid { translation: s[0], ..Rigid::default() }).collect();
+        let roots = strands
+            .iter()
+            .map(|s| RigidTransform { translation: s[0], ..RigidTransform::default() })
+            .collect();
         Self { groom, simulation, roots, bodies: Vec::new() }
     }
 
     fn play(&mut self, seconds: f32) {
         for _ in 0..(seconds * 60.0).round() as u32 {
-            let report = self.simulation.step(&Drive {
+            let report = self.simulation.step(&StepInput {
                 dt: bench::FRAME,
-                anchor: Rigid::default(),
+                anchor: RigidTransform::default(),
                 roots: &self.roots,
                 obstacles: &self.bodies,
                 air: Air::default(),
@@ -199,11 +209,14 @@ fn squeezed(neighbours: Neighbours) -> f32 {
         let wall = |side: f32| {
             let at = |frame: i32| {
                 let in_by = 0.003 * (frame as f32 / 60.0).min(1.0);
-                Rigid { translation: Vec3::X * (side * (0.009 - in_by)), ..Rigid::default() }
+                RigidTransform {
+                    translation: Vec3::X * (side * (0.009 - in_by)),
+                    ..RigidTransform::default()
+                }
             };
             let (center, half) = (Vec3::new(side * 0.02, -0.13, 0.0), Vec3::new(0.02, 0.04, 0.1));
-            hairspring::simulation::MovingObstacle {
-                shape: Obstacle::Cuboid { center, half, axes: Mat3::IDENTITY },
+            hairspring::simulation::MovingCollider {
+                shape: ColliderShape::Cuboid { center, half, axes: Mat3::IDENTITY },
                 start: at(frame),
                 end: at(frame + 1),
             }
@@ -248,7 +261,8 @@ fn at_rest_nothing_moves() {
     ] {
         let groom = Arc::new(Groom::from_strands(&all, 4e-5));
         let names: Vec<u32> = (0..25).collect();
-        let roots: Vec<Rigid> = all.iter().map(|s| Rigid { translation: s[0], ..Rigid::default() }).collect();
+        let roots: Vec<RigidTransform> =
+            all.iter().map(|s| RigidTransform { translation: s[0], ..RigidTransform::default() }).collect();
         let played = |neighbours: Neighbours| {
             let mut simulation = Simulation::new(
                 groom.clone(),
@@ -256,15 +270,15 @@ fn at_rest_nothing_moves() {
                 &[Material::default()],
                 Solver::default(),
                 GRAVITY,
-                Rigid::default(),
+                RigidTransform::default(),
                 &[],
             );
             simulation.set_neighbours(&neighbours);
             let mut step = || {
                 let air = Air::default();
-                simulation.step(&Drive {
+                simulation.step(&StepInput {
                     dt: bench::FRAME,
-                    anchor: Rigid::default(),
+                    anchor: RigidTransform::default(),
                     roots: &roots,
                     obstacles: &[],
                     air,

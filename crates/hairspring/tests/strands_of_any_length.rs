@@ -5,11 +5,11 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model},
     scene::Solver,
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -46,8 +46,8 @@ fn mixed() -> Groom {
     Groom::from_strands(strands, 40e-6)
 }
 
-fn step(simulation: &mut Simulation, strands: usize, pose: Rigid) {
-    let report = simulation.step(&Drive {
+fn step(simulation: &mut Simulation, strands: usize, pose: RigidTransform) {
+    let report = simulation.step(&StepInput {
         dt: 1.0 / 60.0,
         anchor: pose,
         roots: &vec![pose; strands],
@@ -70,12 +70,12 @@ fn from_three_points_to_a_thousand_and_from_a_millimetre_to_two_metres() {
             &[material],
             Solver::default(),
             Vec3::NEG_Y * 9.81,
-            Rigid::default(),
+            RigidTransform::default(),
             &[],
         );
         assert_eq!(simulation.point_count(), groom.points.len(), "no point is left out");
         let mut points = vec![Vec3::ZERO; groom.points.len()];
-        (0..120).for_each(|_| step(&mut simulation, count, Rigid::default()));
+        (0..120).for_each(|_| step(&mut simulation, count, RigidTransform::default()));
         simulation.write_points(&mut points);
         let moved: f32 =
             points.iter().zip(&groom.points).map(|(a, b)| a.distance(*b)).sum::<f32>() / points.len() as f32;
@@ -83,12 +83,16 @@ fn from_three_points_to_a_thousand_and_from_a_millimetre_to_two_metres() {
 
         for frame in 0..60 {
             let x = 0.05 * (std::f32::consts::TAU * 2.0 * frame as f32 / 60.0).sin();
-            step(&mut simulation, count, Rigid { translation: Vec3::X * x, ..Rigid::default() });
+            step(
+                &mut simulation,
+                count,
+                RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() },
+            );
             let m = simulation.measure(&[]);
             assert_eq!(m.non_finite, 0, "{model:?}, frame {frame}");
         }
         for _ in 0..30 {
-            step(&mut simulation, count, Rigid::default());
+            step(&mut simulation, count, RigidTransform::default());
         }
         let m = simulation.measure(&[]);
         println!("{model:?}: {moved:e} m at rest, after the shake {m:?}");
@@ -112,13 +116,20 @@ fn long_strands_come_to_rest() {
             let material = Material { model, bend: 4.0, ..Material::default() };
             let solver = Solver { substeps, ..Solver::default() };
             let gravity = Vec3::NEG_Y * 9.81;
-            let mut simulation =
-                Simulation::new(groom.clone(), &all, &[material], solver, gravity, Rigid::default(), &[]);
+            let mut simulation = Simulation::new(
+                groom.clone(),
+                &all,
+                &[material],
+                solver,
+                gravity,
+                RigidTransform::default(),
+                &[],
+            );
             // The fastest strand's mean speed [m/s].
             let speed = |simulation: &mut Simulation| {
                 let [mut before, mut after] = [(); 2].map(|()| vec![Vec3::ZERO; groom.points.len()]);
                 simulation.write_points(&mut before);
-                step(simulation, strands.len(), Rigid::default());
+                step(simulation, strands.len(), RigidTransform::default());
                 simulation.write_points(&mut after);
                 let (mut at, mut fastest) = (0, 0.0f32);
                 for (points, _) in strands {
@@ -130,15 +141,19 @@ fn long_strands_come_to_rest() {
                 }
                 fastest
             };
-            (0..120).for_each(|_| step(&mut simulation, strands.len(), Rigid::default()));
+            (0..120).for_each(|_| step(&mut simulation, strands.len(), RigidTransform::default()));
             let at_rest = speed(&mut simulation);
             for frame in 0..60 {
                 let x = 0.05 * (std::f32::consts::TAU * 2.0 * frame as f32 / 60.0).sin();
-                step(&mut simulation, strands.len(), Rigid { translation: Vec3::X * x, ..Rigid::default() });
+                step(
+                    &mut simulation,
+                    strands.len(),
+                    RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() },
+                );
             }
             // With four substeps, segments of 1 mm are too soft for the style that they are to hold, and take their time.
             let seconds = if substeps == 4 { 8 } else { 2 };
-            (0..60 * seconds).for_each(|_| step(&mut simulation, strands.len(), Rigid::default()));
+            (0..60 * seconds).for_each(|_| step(&mut simulation, strands.len(), RigidTransform::default()));
             let shaken = speed(&mut simulation);
             println!(
                 "{model:?}, {substeps} substeps: {at_rest} m/s at rest, {shaken} m/s {seconds} seconds after a shake"
@@ -163,8 +178,9 @@ fn the_root_carries_place_direction_and_twist() {
         .collect();
     let groom = Arc::new(Groom::from_strands([strand.clone()], 60e-6));
     let axis = (strand[1] - strand[0]).normalize();
-    let twist = Rigid { translation: Vec3::ZERO, rotation: Quat::from_axis_angle(axis, 1.5) };
-    let tilt = Rigid { translation: Vec3::new(0.3, -0.2, 0.1), rotation: Quat::from_rotation_z(1.0) };
+    let twist = RigidTransform { translation: Vec3::ZERO, rotation: Quat::from_axis_angle(axis, 1.5) };
+    let tilt =
+        RigidTransform { translation: Vec3::new(0.3, -0.2, 0.1), rotation: Quat::from_rotation_z(1.0) };
     for model in [Model::Auto, Model::Rod, Model::Springs, Model::Curvature] {
         for pose in [twist, tilt] {
             let material = Material { model, bend: 20.0, ..Material::default() };
@@ -175,12 +191,12 @@ fn the_root_carries_place_direction_and_twist() {
                 &[material],
                 Solver::default(),
                 Vec3::ZERO,
-                Rigid::default(),
+                RigidTransform::default(),
                 &[],
             );
             for frame in 1..=120 {
                 let share = (frame as f32 / 60.0).min(1.0);
-                let on_the_way = Rigid {
+                let on_the_way = RigidTransform {
                     translation: pose.translation * share,
                     rotation: Quat::IDENTITY.slerp(pose.rotation, share),
                 };

@@ -6,11 +6,11 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::{Obstacle, ObstaclePose, Rigid},
+    collide::{ColliderPose, ColliderShape, RigidTransform},
     groom::Groom,
     material::{Material, Model, PRESETS, preset},
     scene::{Solver, Volume, VolumeMethod, bench::Bench},
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -54,12 +54,19 @@ fn limp_hair_hangs_as_long_as_it_was_drawn() {
         let material = Material { model, bend: 0.0, ..Material::default() };
         let solver = Solver { sag_free: false, ..Solver::default() };
         let gravity = Vec3::NEG_Y * 9.81;
-        let mut simulation =
-            Simulation::new(groom.clone(), &[0], &[material], solver, gravity, Rigid::default(), &[]);
-        let drive = Drive {
+        let mut simulation = Simulation::new(
+            groom.clone(),
+            &[0],
+            &[material],
+            solver,
+            gravity,
+            RigidTransform::default(),
+            &[],
+        );
+        let drive = StepInput {
             dt: 1.0 / 60.0,
-            anchor: Rigid::default(),
-            roots: &[Rigid { translation: root, ..Rigid::default() }],
+            anchor: RigidTransform::default(),
+            roots: &[RigidTransform { translation: root, ..RigidTransform::default() }],
             obstacles: &[],
             air: Air::default(),
         };
@@ -101,7 +108,7 @@ fn shaken(
     (materials, method): (&[Material], VolumeMethod),
     gravity: f32,
     frames: impl Fn(u32) -> f32,
-    motion: impl Fn(f32) -> Rigid,
+    motion: impl Fn(f32) -> RigidTransform,
 ) -> Simulation {
     let line = |n: usize, length: f32| -> Vec<Vec3> {
         (0..n).map(|i| Vec3::new(0.3, 1.0 + length * i as f32 / (n - 1) as f32, 0.0)).collect()
@@ -118,18 +125,18 @@ fn shaken(
     let groom = Arc::new(groom);
     let root = groom.strand(0)[0];
     let gravity = Vec3::new(0.0, -gravity, 0.0);
-    let head = Obstacle::Sphere { center: Vec3::Y * -HEAD, radius: HEAD };
-    let at_rest = Rigid { translation: root, ..Rigid::default() };
+    let head = ColliderShape::Sphere { center: Vec3::Y * -HEAD, radius: HEAD };
+    let at_rest = RigidTransform { translation: root, ..RigidTransform::default() };
     let alone = method == VolumeMethod::Off;
-    let rest = ObstaclePose::new(head.clone(), at_rest.matrix(), at_rest.matrix(), 1.0);
+    let rest = ColliderPose::new(head.clone(), at_rest.matrix(), at_rest.matrix(), 1.0);
     let mut simulation = Simulation::new(
         groom,
         &(0..count as u32).collect::<Vec<_>>(),
         materials,
         // The solver bears a jump by itself.
-        Solver { jump: f32::MAX, ..Solver::default() },
+        Solver { teleport_distance: f32::MAX, ..Solver::default() },
         gravity,
-        Rigid::default(),
+        RigidTransform::default(),
         if alone { &[] } else { std::slice::from_ref(&rest) },
     );
     simulation.set_volume(&Volume { method, ..Volume::default() });
@@ -140,10 +147,10 @@ fn shaken(
         time += dt;
         frame += 1;
         let pose = motion(time.min(VIOLENCE));
-        let pose = Rigid { translation: pose.translation + root, rotation: pose.rotation };
-        let body = [MovingObstacle { shape: head.clone(), start: before, end: pose }];
+        let pose = RigidTransform { translation: pose.translation + root, rotation: pose.rotation };
+        let body = [MovingCollider { shape: head.clone(), start: before, end: pose }];
         before = pose;
-        let report = simulation.step(&Drive {
+        let report = simulation.step(&StepInput {
             dt,
             anchor: pose,
             roots: &vec![pose; count],
@@ -186,16 +193,16 @@ fn violence(cases: Vec<(Vec<Material>, VolumeMethod)>) {
     let even = |_: u32| 1.0 / 60.0;
     // From 1 to 100 ms.
     let uneven = |f: u32| 0.001 + 0.099 * ((f.wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32);
-    let at = |translation: Vec3| Rigid { translation, ..Rigid::default() };
+    let at = |translation: Vec3| RigidTransform { translation, ..RigidTransform::default() };
     // 5 m in one frame, there and back.
     let teleport = |t: f32| at(Vec3::X * if t.fract() < 0.5 { 5.0 } else { 0.0 });
-    let spin = |t: f32| Rigid {
+    let spin = |t: f32| RigidTransform {
         rotation: Quat::from_rotation_y((t * 720.0 % 360.0).to_radians()),
-        ..Rigid::default()
+        ..RigidTransform::default()
     };
     let shake = |t: f32| at(Vec3::X * (0.2 * (std::f32::consts::TAU * 2.0 * t).sin()));
     cases.into_par_iter().for_each(|(materials, method)| {
-        let check = |what, gravity, frames: &dyn Fn(u32) -> f32, motion: &dyn Fn(f32) -> Rigid| {
+        let check = |what, gravity, frames: &dyn Fn(u32) -> f32, motion: &dyn Fn(f32) -> RigidTransform| {
             let end = shaken(what, (&materials, method), gravity, frames, motion).measure(&[]);
             assert!(end.stretch_max < 0.011, "{what}, {method:?}: {end:?} of {materials:?}");
         };
@@ -218,19 +225,19 @@ fn a_strand_that_turns_non_finite_is_put_back_and_counted_and_the_others_do_not_
             &[],
             Solver { sag_free: false, ..Solver::default() },
             Vec3::new(0.0, -9.81, 0.0),
-            Rigid::default(),
+            RigidTransform::default(),
             &[],
         )
     };
-    let pose = |x: f32| Rigid { translation: Vec3::X * x, ..Rigid::default() };
+    let pose = |x: f32| RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() };
     let run = |poisoned: Option<u32>| {
         let mut simulation = start();
         let mut resets = 0;
         for frame in 0..60 {
             let bad = if Some(frame) == poisoned { f32::NAN } else { 0.1 };
-            let report = simulation.step(&Drive {
+            let report = simulation.step(&StepInput {
                 dt: 1.0 / 60.0,
-                anchor: Rigid::default(),
+                anchor: RigidTransform::default(),
                 roots: &[pose(0.0), pose(bad)],
                 obstacles: &[],
                 air: Air::default(),

@@ -10,11 +10,11 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model, PRESETS, preset},
     scene::Solver,
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -61,9 +61,9 @@ fn so_does_one_whose_mass_has_a_profile() {
 fn stays_where_it_was_authored(mass_profile: &[f32]) {
     let groom = Arc::new(groom());
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots: Vec<Rigid> = all
+    let roots: Vec<RigidTransform> = all
         .iter()
-        .map(|s| Rigid { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
+        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
         .collect();
     for (name, model) in PRESETS.iter().flat_map(|name| Model::ALL.map(|model| (*name, model))) {
         let planar = model == Model::Curvature;
@@ -73,7 +73,7 @@ fn stays_where_it_was_authored(mass_profile: &[f32]) {
             &[Material { model, mass_profile: mass_profile.to_vec(), ..preset(name).unwrap() }],
             Solver::default(),
             Vec3::new(0.0, -9.81, 0.0),
-            Rigid::default(),
+            RigidTransform::default(),
             &[],
         );
         let mut out = vec![Vec3::ZERO; simulation.point_count()];
@@ -89,9 +89,9 @@ fn stays_where_it_was_authored(mass_profile: &[f32]) {
         };
         assert!(error(&out).1 < 1e-6, "{name}, {model:?}: the first frame is the file");
         for _ in 0..60 {
-            simulation.step(&Drive {
+            simulation.step(&StepInput {
                 dt: 1.0 / 60.0,
-                anchor: Rigid::default(),
+                anchor: RigidTransform::default(),
                 roots: &roots,
                 obstacles: &[],
                 air: Air::default(),
@@ -125,7 +125,7 @@ fn what_the_start_changed_is_reported() {
             &[Material { model, young, ..Material::default() }],
             Solver { substeps, ..Solver::default() },
             Vec3::new(0.0, -9.81, 0.0),
-            Rigid::default(),
+            RigidTransform::default(),
             &[],
         );
         simulation.start()

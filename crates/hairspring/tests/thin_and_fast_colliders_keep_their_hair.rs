@@ -3,11 +3,11 @@
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    collide::{Obstacle, Rigid},
+    collide::{ColliderShape, RigidTransform},
     groom::Groom,
     material::Material,
     scene::Solver,
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -16,23 +16,25 @@ const POINTS: usize = 32;
 const LENGTH: f32 = 0.25;
 
 /// A simulation of strands that start at `roots` and run in the direction `along`.
-fn hair(roots: impl Iterator<Item = Vec3>, along: Vec3, sag_free: bool) -> (Simulation, Vec<Rigid>) {
+fn hair(roots: impl Iterator<Item = Vec3>, along: Vec3, sag_free: bool) -> (Simulation, Vec<RigidTransform>) {
     let strands = roots.map(|root| {
         (0..POINTS).map(move |i| root + along * (LENGTH * i as f32 / (POINTS - 1) as f32)).collect::<Vec<_>>()
     });
     let groom = Arc::new(Groom::from_strands(strands, 40e-6));
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots =
-        all.iter().map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() }).collect();
+    let roots = all
+        .iter()
+        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
+        .collect();
     let solver = Solver { sag_free, ..Solver::default() };
     let gravity = Vec3::NEG_Y * 9.81;
     let simulation =
-        Simulation::new(groom, &all, &[Material::default()], solver, gravity, Rigid::default(), &[]);
+        Simulation::new(groom, &all, &[Material::default()], solver, gravity, RigidTransform::default(), &[]);
     (simulation, roots)
 }
 
 /// Hanging strands whose roots are scattered by up to 8 mm in height and 9 mm in depth.
-fn curtain(strands: usize) -> (Simulation, Vec<Rigid>) {
+fn curtain(strands: usize) -> (Simulation, Vec<RigidTransform>) {
     let scatter = |s: usize, k: usize| ((s * 7919 + k * 104_729) % 1009) as f32 / 1009.0 - 0.5;
     let root = move |s: usize| {
         let x = 0.3 * (s as f32 / (strands - 1) as f32 - 0.5);
@@ -41,9 +43,9 @@ fn curtain(strands: usize) -> (Simulation, Vec<Rigid>) {
     hair((0..strands).map(root), Vec3::NEG_Y, true)
 }
 
-fn step(simulation: &mut Simulation, roots: &[Rigid], obstacle: MovingObstacle) {
-    let (anchor, air, obstacles) = (Rigid::default(), Air::default(), [obstacle]);
-    simulation.step(&Drive { dt: FRAME, anchor, roots, obstacles: &obstacles, air });
+fn step(simulation: &mut Simulation, roots: &[RigidTransform], obstacle: MovingCollider) {
+    let (anchor, air, obstacles) = (RigidTransform::default(), Air::default(), [obstacle]);
+    simulation.step(&StepInput { dt: FRAME, anchor, roots, obstacles: &obstacles, air });
     assert_eq!(simulation.measure(&obstacles).non_finite, 0);
 }
 
@@ -67,22 +69,22 @@ fn caught(simulation: &Simulation, y: f32, z: f32) -> usize {
 }
 
 /// Drags a shape 15 cm through `strands` hanging strands, 5 cm below their roots, and keeps it there for `frames`; how many strands it holds at the end.
-fn drag(shape: &Obstacle, speed: f32, frames: usize, strands: usize) -> usize {
+fn drag(shape: &ColliderShape, speed: f32, frames: usize, strands: usize) -> usize {
     let (mut simulation, roots) = curtain(strands);
     let y = -0.05;
-    let at = |z: f32| Rigid { translation: Vec3::new(0.0, y, z), ..Rigid::default() };
+    let at = |z: f32| RigidTransform { translation: Vec3::new(0.0, y, z), ..RigidTransform::default() };
     let (mut z, end) = (-0.1f32, 0.05);
     let moving = (0.15 / (speed * FRAME)).ceil() as usize;
     for _ in 0..moving + frames {
         let next = (z + speed * FRAME).min(end);
-        step(&mut simulation, &roots, MovingObstacle { shape: shape.clone(), start: at(z), end: at(next) });
+        step(&mut simulation, &roots, MovingCollider { shape: shape.clone(), start: at(z), end: at(next) });
         z = next;
     }
     caught(&simulation, y, z)
 }
 
-fn rod(radius: f32) -> Obstacle {
-    Obstacle::Capsule { a: Vec3::X * -0.2, b: Vec3::X * 0.2, radius }
+fn rod(radius: f32) -> ColliderShape {
+    ColliderShape::Capsule { a: Vec3::X * -0.2, b: Vec3::X * 0.2, radius }
 }
 
 #[test]
@@ -98,7 +100,7 @@ fn a_rod_of_1_mm_radius_keeps_its_hair() {
 fn a_thin_box_keeps_its_hair() {
     for thickness in [0.002, 0.001] {
         let half = Vec3::new(0.2, 0.005, 0.5 * thickness);
-        let shape = Obstacle::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY };
+        let shape = ColliderShape::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY };
         assert_eq!(drag(&shape, 0.5, 20, 200), 200, "{thickness} m thick");
         let slowly = drag(&shape, 0.0533, 20, 200);
         assert!(slowly >= 195, "{thickness} m thick, slowly: {slowly} of 200");
@@ -119,9 +121,9 @@ fn hair_that_falls_on_a_thin_rod_lies_over_it() {
         let root = |s: usize| Vec3::new(-0.05 - 0.0004 * (s % 20) as f32, 0.0, 0.0015 * (s as f32 - 100.0));
         let (mut simulation, roots) = hair((0..200).map(root), Vec3::X, false);
         let y = -height - radius;
-        let shape = Obstacle::Capsule { a: Vec3::new(0.0, y, -0.2), b: Vec3::new(0.0, y, 0.2), radius };
+        let shape = ColliderShape::Capsule { a: Vec3::new(0.0, y, -0.2), b: Vec3::new(0.0, y, 0.2), radius };
         for _ in 0..300 {
-            step(&mut simulation, &roots, MovingObstacle::at_rest(shape.clone(), Rigid::default()));
+            step(&mut simulation, &roots, MovingCollider::at_rest(shape.clone(), RigidTransform::default()));
         }
         let over = |strand: &&[Vec3]| {
             let crosses = |pair: &&[Vec3]| (pair[0].x < 0.0) != (pair[1].x < 0.0);

@@ -49,7 +49,7 @@ fn after_ten_minutes_the_body_is_where_its_clip_has_it() {
         let rate = FrameRate::new(frames, seconds).unwrap();
         let mut stage = Stage::new(scene(1)).unwrap();
         (0..count).for_each(|_| _ = stage.advance_frame(rate));
-        stage.show();
+        stage.update_render_points();
         let time = rate.time_of(count);
         assert_eq!(stage.time(), time, "at {rate} Hz");
         let off = (f64::from(root(&stage)) - 0.1 * time).abs();
@@ -61,7 +61,7 @@ fn after_ten_minutes_the_body_is_where_its_clip_has_it() {
 fn steps_of_any_length_add_up_without_loss() {
     let mut stage = Stage::new(scene(1)).unwrap();
     (0..36_000).for_each(|_| _ = stage.advance(1.0 / 60.0));
-    stage.show();
+    stage.update_render_points();
     // What single precision makes of 1/60 s, 36,000 times.
     assert!((stage.time() - 36_000.0 * f64::from(1.0_f32 / 60.0)).abs() < 1e-9);
     assert!((root(&stage) - 60.0).abs() < 1e-4, "{}", root(&stage));

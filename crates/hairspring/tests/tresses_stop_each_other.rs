@@ -6,11 +6,11 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::{Material, Model},
     scene::{Neighbours, Solver, Volume, VolumeMethod},
-    simulation::{Air, Drive, Simulation},
+    simulation::{Air, Simulation, StepInput},
 };
 use std::sync::Arc;
 
@@ -59,7 +59,7 @@ fn simulation(strands: &[Vec<Vec3>], material: Material, sag_free: bool) -> Simu
     let groom = Arc::new(Groom::from_strands(strands, 35e-6));
     let all: Vec<u32> = (0..strands.len() as u32).collect();
     let solver = Solver { sag_free, ..Solver::default() };
-    Simulation::new(groom, &all, &[material], solver, Vec3::NEG_Y * 9.81, Rigid::default(), &[])
+    Simulation::new(groom, &all, &[material], solver, Vec3::NEG_Y * 9.81, RigidTransform::default(), &[])
 }
 
 fn points(simulation: &Simulation) -> Vec<Vec3> {
@@ -103,13 +103,15 @@ impl Tresses {
         let material = Material { bend: 0.05, drag: 0.1, ..Material::default() };
         let mut simulation = simulation(&strands, material, false);
         meets.set(&mut simulation);
-        let roots: Vec<Rigid> =
-            strands.iter().map(|s| Rigid { translation: s[0], ..Rigid::default() }).collect();
+        let roots: Vec<RigidTransform> = strands
+            .iter()
+            .map(|s| RigidTransform { translation: s[0], ..RigidTransform::default() })
+            .collect();
         let mut farthest = f32::NEG_INFINITY;
         for _ in 0..(seconds * fps).round() as u32 {
-            let drive = Drive {
+            let drive = StepInput {
                 dt: 1.0 / fps,
-                anchor: Rigid::default(),
+                anchor: RigidTransform::default(),
                 roots: &roots,
                 obstacles: &[],
                 air: Air::default(),
@@ -199,10 +201,12 @@ fn shaken(strands: usize, meets: Meets, fps: f32) -> f32 {
         // 5 cm to each side at 2.5 Hz, from rest.
         let aside = 0.05 * (2.0 * t).min(1.0).powi(2) * (std::f32::consts::TAU * 2.5 * t).sin();
         let shift = Vec3::X * aside;
-        let roots: Vec<Rigid> =
-            strands.iter().map(|s| Rigid { translation: s[0] + shift, ..Rigid::default() }).collect();
-        let anchor = Rigid { translation: shift, rotation: Quat::IDENTITY };
-        let drive = Drive { dt: 1.0 / fps, anchor, roots: &roots, obstacles: &[], air: Air::default() };
+        let roots: Vec<RigidTransform> = strands
+            .iter()
+            .map(|s| RigidTransform { translation: s[0] + shift, ..RigidTransform::default() })
+            .collect();
+        let anchor = RigidTransform { translation: shift, rotation: Quat::IDENTITY };
+        let drive = StepInput { dt: 1.0 / fps, anchor, roots: &roots, obstacles: &[], air: Air::default() };
         assert_eq!(simulation.step(&drive).reset_strands, 0);
     }
     let now = points(&simulation);

@@ -5,12 +5,12 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    air::{Flow, Shelter, Source, Turbulence},
-    collide::{Obstacle, ObstaclePose, Rigid},
+    air::{Flow, Source, Turbulence, WindOcclusion},
+    collide::{ColliderPose, ColliderShape, RigidTransform},
     groom::Groom,
     material::Material,
     scene::{Solver, Wind},
-    simulation::{Air, Drive, MovingObstacle, Simulation},
+    simulation::{Air, MovingCollider, Simulation, StepInput},
 };
 use std::{f32::consts::PI, sync::Arc};
 
@@ -18,7 +18,7 @@ const FAN: Flow = Flow::Fan { center: Vec3::ZERO, axis: Vec3::Z, radius: 0.1, sp
 
 /// What blows at rest and without gusts.
 fn still(flow: Flow) -> Source {
-    Source { flow, pose: Rigid::default(), factor: 1.0 }
+    Source { flow, pose: RigidTransform::default(), factor: 1.0 }
 }
 
 /// The integral of `f` over a disc of `radius` across the z axis at `z`.
@@ -45,7 +45,7 @@ fn a_fan_has_its_speed_at_its_mouth_nothing_behind_and_keeps_its_momentum() {
     }
     let turned = Source {
         flow: FAN,
-        pose: Rigid { rotation: Quat::from_rotation_y(PI / 2.0), translation: Vec3::Y },
+        pose: RigidTransform { rotation: Quat::from_rotation_y(PI / 2.0), translation: Vec3::Y },
         factor: 0.5,
     };
     assert!(turned.velocity(Vec3::new(0.2, 1.0, 0.0)).distance(Vec3::X * 2.0) < 1e-5);
@@ -78,31 +78,37 @@ fn hanging(roots: &[Vec3]) -> Arc<Groom> {
 fn blown(
     groom: &Arc<Groom>,
     air: Air,
-    shelter: &Shelter,
-    obstacles: &[MovingObstacle],
+    occlusion: &WindOcclusion,
+    obstacles: &[MovingCollider],
     frames: u32,
 ) -> Vec<Vec3> {
     let strands: Vec<u32> = (0..groom.strand_count() as u32).collect();
     let rest = (Mat3::IDENTITY, Vec3::ZERO);
     let poses: Vec<_> =
-        obstacles.iter().map(|o| ObstaclePose::new(o.shape.clone(), rest, rest, 1.0)).collect();
+        obstacles.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();
     let mut simulation = Simulation::new(
         groom.clone(),
         &strands,
         &[Material::default()],
         Solver::default(),
         Vec3::NEG_Y * 9.81,
-        Rigid::default(),
+        RigidTransform::default(),
         &poses,
     );
-    simulation.set_shelter(shelter);
-    let roots: Vec<Rigid> = strands
+    simulation.set_wind_occlusion(occlusion);
+    let roots: Vec<RigidTransform> = strands
         .iter()
-        .map(|s| Rigid { translation: groom.strand(*s as usize)[0], ..Rigid::default() })
+        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
         .collect();
     for frame in 0..frames {
         let air = Air { time: frame as f64 / 60.0, ..air };
-        simulation.step(&Drive { dt: 1.0 / 60.0, anchor: Rigid::default(), roots: &roots, obstacles, air });
+        simulation.step(&StepInput {
+            dt: 1.0 / 60.0,
+            anchor: RigidTransform::default(),
+            roots: &roots,
+            obstacles,
+            air,
+        });
     }
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
     simulation.write_points(&mut points);
@@ -119,9 +125,10 @@ fn tip(groom: &Groom, points: &[Vec3], s: usize) -> f32 {
 fn hair_behind_a_fan_does_not_know_of_it_and_hair_before_it_flies() {
     let groom = hanging(&[Vec3::new(0.0, 0.1, -0.3), Vec3::new(0.0, 0.1, 0.3)]);
     let wind = Wind { velocity: Vec3::new(0.5, 0.0, 0.1), gust: 0.5, gust_rate: 1.0 };
-    let alone = blown(&groom, Air { wind, ..Air::default() }, &Shelter::default(), &[], 60);
+    let alone = blown(&groom, Air { wind, ..Air::default() }, &WindOcclusion::default(), &[], 60);
     let sources = [still(FAN)];
-    let both = blown(&groom, Air { wind, sources: &sources, ..Air::default() }, &Shelter::default(), &[], 60);
+    let both =
+        blown(&groom, Air { wind, sources: &sources, ..Air::default() }, &WindOcclusion::default(), &[], 60);
     assert!(alone[groom.range(0)] == both[groom.range(0)], "behind the fan there are other bits");
     let [before, after] = [&alone, &both].map(|points| tip(&groom, points, 1));
     println!("the tip before the fan is blown by {after} m, {before} without it");
@@ -129,24 +136,24 @@ fn hair_behind_a_fan_does_not_know_of_it_and_hair_before_it_flies() {
 }
 
 /// A ball in the way of wind along z.
-fn ball() -> MovingObstacle {
-    let shape = Obstacle::Sphere { center: Vec3::ZERO, radius: 0.06 };
-    MovingObstacle { shape, start: Rigid::default(), end: Rigid::default() }
+fn ball() -> MovingCollider {
+    let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.06 };
+    MovingCollider { shape, start: RigidTransform::default(), end: RigidTransform::default() }
 }
 
 #[test]
 fn a_body_shelters_what_is_behind_it_alone() {
     let groom = hanging(&[Vec3::new(0.0, 0.1, -0.1), Vec3::new(0.0, 0.1, 0.15), Vec3::new(0.3, 0.1, 0.15)]);
     let air = Air { wind: Wind { velocity: Vec3::Z * 0.12, ..Wind::default() }, ..Air::default() };
-    let open = blown(&groom, air, &Shelter::default(), &[ball()], 120);
-    let lee = blown(&groom, air, &Shelter { body: 200.0, ..Shelter::default() }, &[ball()], 120);
+    let open = blown(&groom, air, &WindOcclusion::default(), &[ball()], 120);
+    let lee = blown(&groom, air, &WindOcclusion { body: 200.0, ..WindOcclusion::default() }, &[ball()], 120);
     let tips = [0, 1, 2].map(|s| [&open, &lee].map(|points| tip(&groom, points, s)));
     println!("tips in the open and with shelter, in front, behind and beside: {tips:?} m");
     assert!(open[groom.range(0)] == lee[groom.range(0)], "in front of the ball: {:?} m", tips[0]);
     assert!(open[groom.range(2)] == lee[groom.range(2)], "beside the ball: {:?} m", tips[2]);
     assert!(tips[1][1] < 0.7 * tips[1][0], "behind the ball: {:?} m", tips[1]);
     // Gravity and drag are the same: hair that is swung is braked as much in the lee.
-    let far = Shelter { body: 200.0, reach: 0.05, ..Shelter::default() };
+    let far = WindOcclusion { body: 200.0, reach: 0.05, ..WindOcclusion::default() };
     let out = blown(&groom, air, &far, &[ball()], 120);
     assert!((tip(&groom, &out, 1) / tips[1][0] - 1.0).abs() < 0.02, "the wake has an end");
 }
@@ -156,8 +163,8 @@ fn deep_hair_feels_less_wind() {
     let roots: Vec<Vec3> = (0..240).map(|k| Vec3::new((k % 8) as f32, 0.0, (k / 8) as f32) * 0.005).collect();
     let groom = hanging(&roots);
     let air = Air { wind: Wind { velocity: Vec3::Z * 0.12, ..Wind::default() }, ..Air::default() };
-    let open = blown(&groom, air, &Shelter::default(), &[], 60);
-    let inside = blown(&groom, air, &Shelter { hair: 50.0, ..Shelter::default() }, &[], 60);
+    let open = blown(&groom, air, &WindOcclusion::default(), &[], 60);
+    let inside = blown(&groom, air, &WindOcclusion { hair: 50.0, ..WindOcclusion::default() }, &[], 60);
     let row = |points: &[Vec3], z: usize| (0..8).map(|x| tip(&groom, points, z * 8 + x)).sum::<f32>() / 8.0;
     let tips: Vec<[f32; 2]> = (0..30).step_by(5).map(|z| [row(&open, z), row(&inside, z)]).collect();
     println!("tips in the open and with shelter, from the first row to the last: {tips:?} m");
@@ -179,10 +186,10 @@ fn threads_do_not_show_in_moving_air() {
         turbulence: Turbulence { strength: 0.5, ..Turbulence::default() },
         ..Air::default()
     };
-    let shelter = Shelter { body: 100.0, hair: 50.0, ..Shelter::default() };
+    let occlusion = WindOcclusion { body: 100.0, hair: 50.0, ..WindOcclusion::default() };
     let play = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| blown(&groom, air, &shelter, &[ball()], 30))
+        pool.install(|| blown(&groom, air, &occlusion, &[ball()], 30))
     };
     let one = play(1);
     assert!(one.iter().all(|p| p.is_finite()));

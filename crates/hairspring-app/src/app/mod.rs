@@ -3,7 +3,7 @@
 mod keys;
 mod picture;
 mod scripted;
-mod told;
+mod status_overlay;
 
 use crate::{
     AppError,
@@ -17,7 +17,7 @@ use crate::{
         presets::Presets,
         transport,
     },
-    record::{Recorder, Wish},
+    record::{RecordRequest, Recorder},
     script::Line,
     session::{Action, Session},
     view::View,
@@ -153,7 +153,7 @@ impl App {
         }
     }
 
-    fn record(&mut self, ctx: &egui::Context, wish: Wish) {
+    fn record(&mut self, ctx: &egui::Context, wish: RecordRequest) {
         let Some(snapshot) = self.session.latest() else { return };
         let wake = ctx.clone();
         let gpu = self.painters[0].gpu();
@@ -221,13 +221,13 @@ impl eframe::App for App {
             self.picture(ui, snapshot.as_ref(), &mut actions);
         });
         if let Some(snapshot) = snapshot.as_deref().filter(|_| self.open.panels) {
-            told::corner(ctx, self.rect, egui::Align2::LEFT_BOTTOM, |ui| {
+            status_overlay::corner(ctx, self.rect, egui::Align2::LEFT_BOTTOM, |ui| {
                 inspect::figures(ui, &self.session, snapshot, &notes.join("; "));
             });
             if snapshot.picked.is_some() {
                 // Under the name of a side.
                 let below = egui::Rect::from_min_max(self.rect.min + egui::vec2(0.0, 22.0), self.rect.max);
-                told::corner(ctx, below, egui::Align2::LEFT_TOP, |ui| {
+                status_overlay::corner(ctx, below, egui::Align2::LEFT_TOP, |ui| {
                     inspect::picked(ui, snapshot, &mut actions)
                 });
             }

@@ -1,9 +1,9 @@
 //! The picture, or two side by side, with what is laid over them.
 
-use super::{App, told};
+use super::{App, status_overlay};
 use crate::{
     handle,
-    overlay::{self, Pen},
+    overlay::{self, OverlayPainter},
     session::Action,
     snapshot::Snapshot,
 };
@@ -70,7 +70,13 @@ impl App {
             let picked =
                 snapshot.picked.as_ref().map(|(p, f)| [p.strand, f.guide as usize].map(|s| [p.groom, s]));
             let picked = picked.as_ref().map_or(&[][..], |picked| &picked[..]);
-            overlay::draw(&Pen { painter: &painter, lens, rect }, seen, &self.view, &handles, picked);
+            overlay::draw(
+                &OverlayPainter { painter: &painter, lens, rect },
+                seen,
+                &self.view,
+                &handles,
+                picked,
+            );
             if count > 1 {
                 painter.text(
                     rect.left_top() + egui::vec2(10.0, 8.0),
@@ -85,7 +91,7 @@ impl App {
                 );
             }
             if let Some(value) = self.session.shown() {
-                told::legend(&painter, rect, value, &self.view, seen);
+                status_overlay::legend(&painter, rect, value, &self.view, seen);
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::App;
 use crate::{
     document::builtin_text,
-    record::{Wish, write},
+    record::{RecordRequest, write},
     script::Line,
     session::Action,
     snapshot::Snapshot,
@@ -56,7 +56,7 @@ impl App {
             Line::Find(text) => self.filter = text,
             Line::Show(value) => self.act(Action::Show(value)),
             Line::Switch(name, on) => self.switch(&name, on),
-            Line::Record(kind, path, seconds) => self.record(ctx, Wish { kind, path, seconds }),
+            Line::Record(kind, path, seconds) => self.record(ctx, RecordRequest { kind, path, seconds }),
             // A moment that stands still is soon drawn in full.
             Line::Shot(path)
                 if !self.session.playing() && !self.painters.iter().all(|p| p.is_whole(snapshot)) =>

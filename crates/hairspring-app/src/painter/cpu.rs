@@ -1,7 +1,7 @@
 //! The picture by the CPU, on a thread of its own, as fine as there is time for: the window stays quick, and says what it leaves out.
 
 use super::{Pace, image, once, pane::Pane, smooth};
-use crate::snapshot::{Sight, Snapshot};
+use crate::snapshot::{Snapshot, ViewParameters};
 use eframe::{
     egui::{self, ColorImage, TextureHandle, TextureOptions},
     egui_wgpu::RenderState,
@@ -79,7 +79,7 @@ const SMOOTHNESS: f32 = 0.3;
 struct Job {
     snapshot: Arc<Snapshot>,
     stage: usize,
-    sight: Sight,
+    sight: ViewParameters,
     size: [u32; 2],
     level: usize,
 }
@@ -140,7 +140,7 @@ pub struct CpuPainter {
     busy: Arc<AtomicBool>,
     shows: Shows,
     /// What the picture shows: not drawn again while it is the same.
-    shown: Option<(u64, u64, Sight, [u32; 2])>,
+    shown: Option<(u64, u64, ViewParameters, [u32; 2])>,
     /// The moment of the picture that is seen.
     moment: Option<Arc<Snapshot>>,
     level: usize,
@@ -218,7 +218,7 @@ impl CpuPainter {
         ctx: &egui::Context,
         snapshot: &Arc<Snapshot>,
         stage: usize,
-        sight: &Sight,
+        sight: &ViewParameters,
         size: [u32; 2],
     ) {
         let wanted = (snapshot.scene, snapshot.number, *sight, size);
@@ -240,7 +240,7 @@ impl CpuPainter {
             let job = Job {
                 snapshot: snapshot.clone(),
                 stage,
-                sight: Sight {
+                sight: ViewParameters {
                     every,
                     quality: Quality { shadow_voxels, shadow_texels, smoothness, wisp },
                     ..*sight

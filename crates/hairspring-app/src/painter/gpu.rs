@@ -1,7 +1,7 @@
 //! The picture by the GPU that also draws the window: strands are uploaded, drawn, and shown without coming back.
 
 use super::Pace;
-use crate::snapshot::{Sight, Snapshot};
+use crate::snapshot::{Snapshot, ViewParameters};
 use eframe::{egui::TextureId, egui_wgpu::RenderState, wgpu::FilterMode};
 use hairspring_view::gpu::{Gpu, GpuRenderer};
 use std::sync::Arc;
@@ -11,7 +11,7 @@ pub struct GpuPainter {
     state: RenderState,
     renderer: GpuRenderer,
     texture: Option<(TextureId, [u32; 2])>,
-    shown: Option<(u64, u64, Sight, [u32; 2])>,
+    shown: Option<(u64, u64, ViewParameters, [u32; 2])>,
     took: f32,
     pace: Pace,
     /// Whether colours of the last picture were values.
@@ -52,7 +52,7 @@ impl GpuPainter {
         &mut self,
         snapshot: &Snapshot,
         stage: usize,
-        sight: &Sight,
+        sight: &ViewParameters,
         size: [u32; 2],
     ) -> Option<TextureId> {
         let scenery = snapshot.stages.get(stage)?;

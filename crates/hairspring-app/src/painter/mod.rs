@@ -4,7 +4,7 @@ mod cpu;
 mod gpu;
 mod pane;
 
-use crate::snapshot::{Sight, Snapshot};
+use crate::snapshot::{Snapshot, ViewParameters};
 use cpu::CpuPainter;
 use eframe::{egui, wgpu::DeviceType};
 use gpu::GpuPainter;
@@ -101,7 +101,7 @@ impl Painter {
         ctx: &egui::Context,
         snapshot: &Arc<Snapshot>,
         stage: usize,
-        sight: &Sight,
+        sight: &ViewParameters,
         (rect, size): (egui::Rect, [u32; 2]),
     ) -> Option<egui::Shape> {
         match self {

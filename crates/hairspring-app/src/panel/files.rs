@@ -1,7 +1,7 @@
 //! Opening, saving and recording: the name of a file, typed or chosen in the desktop's dialog.
 
 use crate::{
-    record::{Kind, Wish},
+    record::{Kind, RecordRequest},
     session::Action,
 };
 use eframe::egui::{self, Ui};
@@ -23,7 +23,7 @@ pub enum Decision {
     /// About the session.
     Do(Action),
     /// A record.
-    Record(Wish),
+    Record(RecordRequest),
 }
 
 /// The dialog.
@@ -93,7 +93,9 @@ impl Files {
                     decision = Some(match what {
                         For::Open => Decision::Do(Action::Open(path)),
                         For::Save => Decision::Do(Action::Save(Some(path))),
-                        For::Record(kind) => Decision::Record(Wish { kind, path, seconds: self.seconds }),
+                        For::Record(kind) => {
+                            Decision::Record(RecordRequest { kind, path, seconds: self.seconds })
+                        }
                     });
                 }
             });

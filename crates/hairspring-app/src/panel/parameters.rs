@@ -167,7 +167,7 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
         let shown: Option<toml::Value> =
             held.as_ref().and_then(|value| value.to_string().trim().parse().ok());
         let now = shown.as_ref().or_else(|| key.look_up(document.effective()));
-        let idle = parameter.idle(document, chosen);
+        let idle = parameter.inactive_reason(document, chosen);
         let changed = idle.is_none() && now != key.look_up(document.opened().values());
         let listed = document.groom_key(chosen.0).is_none_or(|key| key != Key::top("builtin"));
         let mut edited = None;

@@ -3,11 +3,11 @@
 mod publish;
 mod work;
 
-use crate::{error::AppError, pulled::Push, snapshot::Snapshot};
+use crate::{drag_limiter::Push, error::AppError, snapshot::Snapshot};
 use glam::Vec3;
 use hairspring::{
-    around::Tool,
-    collide::Rigid,
+    collide::RigidTransform,
+    forces::Manipulator,
     scene::Scene,
     stage::{FrameRate, Value},
 };
@@ -45,15 +45,15 @@ pub enum Order {
     /// Begins anew after so many seconds; `None`: plays on.
     Loop(Option<f64>),
     /// Takes a tool, which moves at once with every `Carry`.
-    Take(Tool, Rigid),
+    Take(Manipulator, RigidTransform),
     /// Moves it.
-    Carry(Rigid),
+    Carry(RigidTransform),
     /// Lets go.
     LetGo,
     /// What is pushed through hair, and where the pointer has it.
     Push(Option<Push>),
     /// Where the body is carried besides its motion.
-    Body(Rigid),
+    Body(RigidTransform),
     /// Which number of each point is wanted.
     Show(Option<Value>),
     /// Picks the strand on a ray; `None`: none.

@@ -2,8 +2,8 @@
 
 use super::{lock, work::Work};
 use crate::{
-    pulled::Pushing,
-    snapshot::{Scenery, Snapshot, Still},
+    drag_limiter::Pushing,
+    snapshot::{Snapshot, StageSnapshot, Still},
 };
 use hairspring::stage::{FrameReport, Stage};
 use std::{
@@ -19,7 +19,7 @@ impl Work {
     pub(super) fn show(&mut self) {
         if std::mem::take(&mut self.unshown) {
             for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
-                let took = stage.show();
+                let took = stage.update_render_points();
                 if k == 0 {
                     self.report.follow = took;
                 }
@@ -44,7 +44,7 @@ impl Work {
         let (Some(snapshot), Some((first, _))) = (Arc::get_mut(&mut next), self.stages.first()) else {
             return;
         };
-        let fresh = |(_, still): &(Stage, Arc<Still>)| Scenery::new(still.clone());
+        let fresh = |(_, still): &(Stage, Arc<Still>)| StageSnapshot::new(still.clone());
         if snapshot.scene != self.scene || snapshot.stages.len() != self.stages.len() {
             snapshot.stages = self.stages.iter().map(fresh).collect();
         }

@@ -2,14 +2,14 @@
 
 use super::{Order, RATE, STEP, Shared, lock};
 use crate::{
+    drag_limiter::{FASTEST, FASTEST_HEAD, Pulled, Pushing},
     error::AppError,
     memory,
-    pulled::{FASTEST, FASTEST_HEAD, Pulled, Pushing},
     snapshot::{Snapshot, Still},
 };
 use hairspring::{
     scene::Scene,
-    simulation::{Energy, Measure, ToolId},
+    simulation::{Energy, ManipulatorId, Measure},
     stage::{FrameReport, Picked, PosedBody, Stage, Value},
 };
 use hairspring_view::gpu::Gpu;
@@ -38,7 +38,7 @@ pub(super) struct Work {
     pub(super) playing: bool,
     pub(super) speed: f32,
     pub(super) end: Option<f64>,
-    pub(super) tool: Option<Vec<ToolId>>,
+    pub(super) tool: Option<Vec<ManipulatorId>>,
     /// Where the body is carried, and a tool, and what is pushed, and where the pointer has them.
     pub(super) body: Pulled,
     pub(super) carried: Pulled,
@@ -173,7 +173,7 @@ impl Work {
                 for ((stage, _), scene) in
                     self.stages.iter_mut().zip([Some(scene), other].into_iter().flatten())
                 {
-                    if let Err(why) = stage.retune(*scene) {
+                    if let Err(why) = stage.update_settings(*scene) {
                         *lock(&self.shared.error) = Some(why.into());
                     }
                 }
@@ -201,7 +201,7 @@ impl Work {
                 self.let_go();
                 let mut taken = Vec::with_capacity(self.stages.len());
                 for (stage, _) in &mut self.stages {
-                    taken.push(stage.take(tool, pose));
+                    taken.push(stage.add_manipulator(tool, pose));
                 }
                 self.tool = Some(taken);
                 self.carried = Pulled::at(pose);
@@ -241,7 +241,7 @@ impl Work {
 
     fn let_go(&mut self) {
         for ((stage, _), id) in self.stages.iter_mut().zip(self.tool.take().into_iter().flatten()) {
-            stage.let_go(id);
+            stage.remove_manipulator(id);
         }
     }
 
@@ -258,7 +258,7 @@ impl Work {
         }
         if self.tool.is_some() && self.carried.go(FASTEST) {
             for ((stage, _), id) in self.stages.iter_mut().zip(self.tool.iter().flatten()) {
-                stage.carry(*id, self.carried.now);
+                stage.set_manipulator_pose(*id, self.carried.now);
             }
         }
         if self.pushing.as_mut().is_some_and(|pushing| pushing.go(body(&self.stages))) {
@@ -269,7 +269,7 @@ impl Work {
     /// Shows all stages where what is pushed is.
     fn place_pushed(&mut self) {
         let (shapes, pose) = self.pushing.as_ref().map(Pushing::placed).unwrap_or_default();
-        self.stages.iter_mut().for_each(|(stage, _)| stage.push_with(shapes, pose));
+        self.stages.iter_mut().for_each(|(stage, _)| stage.set_user_colliders(shapes, pose));
     }
 
     fn advance(&mut self) {
@@ -301,7 +301,7 @@ fn body(stages: &[(Stage, Arc<Still>)]) -> Option<PosedBody<'_>> {
 
 fn open(scene: Scene, card: Option<&Gpu>) -> Result<(Stage, Arc<Still>), AppError> {
     let mut stage = Stage::new(scene)?;
-    stage.leave_follow_hairs(card.is_none_or(|card| card.can_place_among(stage.obstacles())));
+    stage.set_external_interpolation(card.is_none_or(|card| card.can_place_among(stage.obstacles())));
     let still = Arc::new(Still::new(&stage));
     Ok((stage, still))
 }

@@ -1,6 +1,6 @@
 //! Whatever a person, a script or a monkey does.
 
-use crate::{key::Key, parameter::Parameter, pulled::Push};
+use crate::{drag_limiter::Push, key::Key, parameter::Parameter};
 use glam::Vec3;
 use hairspring::stage::Value;
 use std::path::PathBuf;

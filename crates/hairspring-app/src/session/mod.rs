@@ -15,8 +15,8 @@ use crate::{
 };
 use glam::Vec3;
 use hairspring::{
-    around::{Tool, comb::Comb, grab::Grab},
-    collide::Rigid,
+    collide::RigidTransform,
+    forces::{Manipulator, comb::Comb, grab::Grab},
     stage::Value,
 };
 use hairspring_view::gpu::Gpu;
@@ -181,13 +181,13 @@ impl Session {
             Action::Grab(center, radius) => {
                 // In the tool's own space the ball is where it took hold: it is carried by how far it has gone since.
                 let grab = Grab { center: Vec3::ZERO, radius, pull: 60.0, damping: 1.0 };
-                self.player.tell(Order::Take(Tool::Grab(grab), at(center)));
+                self.player.tell(Order::Take(Manipulator::Grab(grab), at(center)));
                 self.held = true;
             }
             Action::Comb(center, half, radius) => {
                 // Tines that are hard, on hair that slides, as in a scene file.
                 let comb = Comb { a: -half, b: half, radius, grip: 1000.0, friction: 3.0 };
-                self.player.tell(Order::Take(Tool::Comb(comb), at(center)));
+                self.player.tell(Order::Take(Manipulator::Comb(comb), at(center)));
                 self.held = true;
             }
             Action::Carry(center) => self.player.tell(Order::Carry(at(center))),
@@ -343,6 +343,6 @@ impl Session {
     }
 }
 
-fn at(place: Vec3) -> Rigid {
-    Rigid { translation: place, ..Rigid::default() }
+fn at(place: Vec3) -> RigidTransform {
+    RigidTransform { translation: place, ..RigidTransform::default() }
 }

@@ -9,7 +9,7 @@ pub use hand::{FINGERS, Hand};
 use crate::{
     orbit::{Lens, NARROW, Orbit},
     session::Session,
-    snapshot::{Scenery, Sight, Snapshot},
+    snapshot::{Snapshot, StageSnapshot, ViewParameters},
 };
 use eframe::egui;
 use glam::Vec3;
@@ -121,11 +121,11 @@ impl Default for View {
 
 impl View {
     /// How the scene is looked at in a picture so many times as wide as high.
-    pub fn sight(&self, scenery: &Scenery, aspect: f32) -> Option<Sight> {
+    pub fn sight(&self, scenery: &StageSnapshot, aspect: f32) -> Option<ViewParameters> {
         let orbit = self.orbit?;
         let camera = orbit.seen(aspect);
         let strands = scenery.still.counts[1] as f32;
-        Some(Sight {
+        Some(ViewParameters {
             camera,
             lit_for: Orbit { turn: 0.3, ..orbit }.camera(),
             exposure: self.exposure,
@@ -163,7 +163,8 @@ impl View {
     /// Looks at all hair.
     pub fn frame(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
         let own = session.document().settings().camera;
-        let bounds = snapshot.stages.first().and_then(Scenery::bounds).unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+        let bounds =
+            snapshot.stages.first().and_then(StageSnapshot::bounds).unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
         let room = Vec3::splat(0.06 * (bounds.1 - bounds.0).length());
         let camera =
             own.unwrap_or_else(|| frame_camera((bounds.0 - room, bounds.1 + room), aspect.max(NARROW)));

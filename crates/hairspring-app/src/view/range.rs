@@ -1,11 +1,11 @@
 //! From which value to which colours go, found from what is seen.
 
 use super::View;
-use crate::snapshot::Scenery;
+use crate::snapshot::StageSnapshot;
 
 impl View {
     /// Finds the range of the colours that are shown: from 0 to what a fiftieth of points that have any exceeds, followed smoothly.
-    pub fn follow_range(&mut self, scenery: &Scenery, guides: bool) {
+    pub fn follow_range(&mut self, scenery: &StageSnapshot, guides: bool) {
         if guides || scenery.values.is_empty() {
             self.range = [0.0, 1.0];
             return;

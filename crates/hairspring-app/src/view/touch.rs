@@ -1,7 +1,10 @@
 //! What the pointer does in the picture: it turns the view, takes handles, and moves what the tool moves.
 
 use super::{FINGERS, Hand, View};
-use crate::{handle::Handle, orbit::Lens, pulled::Push, pushed::Pushed, session::Action, snapshot::Snapshot};
+use crate::{
+    drag_limiter::Push, handle::Handle, orbit::Lens, pointer_collider::Pushed, session::Action,
+    snapshot::Snapshot,
+};
 use eframe::egui;
 use glam::{Vec2, Vec3};
 

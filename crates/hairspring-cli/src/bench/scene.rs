@@ -17,7 +17,7 @@ type StageOfFrame = (&'static str, &'static str, fn(&FrameReport) -> Duration);
 const STAGES: [StageOfFrame; 6] = [
     ("body", "pose, skin, distance field", |r| r.body),
     ("volume", "density of the hair, once a frame", |r| r.step.times.volume),
-    ("forces", "roots, wind, ghosts, charge, hands, once a frame", |r| r.step.times.forces),
+    ("forces", "roots, wind, global shapes, charge, hands, once a frame", |r| r.step.times.forces),
     ("solve", "assembly, solve, projection, contact, strain limit, all substeps", |r| r.step.times.solve),
     ("neighbours", "contacts of strands with each other, all substeps", |r| r.step.times.neighbours),
     ("follow", "hairs that are not simulated", |r| r.follow),

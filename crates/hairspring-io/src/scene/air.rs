@@ -7,11 +7,11 @@ use super::{
 };
 use crate::Problem;
 use glam::Vec3;
-use hairspring::{air::Flow, around::charge::Charged};
+use hairspring::{air::Flow, forces::charge::Charged};
 
-/// Checks `[wind]`, `[[wind_source]]`, `[turbulence]`, `[shelter]` and `[[charged]]`.
+/// Checks `[wind]`, `[[wind_source]]`, `[turbulence]`, `[wind_occlusion]` and `[[charged]]`.
 pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
-    let (wind, turbulence, shelter) = (&scene.wind, &scene.turbulence, &scene.shelter);
+    let (wind, turbulence, occlusion) = (&scene.wind, &scene.turbulence, &scene.wind_occlusion);
     let gusts = |gust: f32, rate: f32| -> [Check; 2] {
         [((0.0..=1.0).contains(&gust), "gust", "0 to 1"), (from_0(rate), "gust_rate", "0 or more [Hz]")]
     };
@@ -30,11 +30,11 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     ];
     first_failure(text, first_line(text, "[turbulence]"), &eddies)?;
     let lee = [
-        (from_0(shelter.body), "body", "0 or more [1/m]"),
-        (from_0(shelter.hair), "hair", "0 or more [1/m]"),
-        (above_0(Some(shelter.reach)), "reach", "above 0 [m]"),
+        (from_0(occlusion.body), "body", "0 or more [1/m]"),
+        (from_0(occlusion.hair), "hair", "0 or more [1/m]"),
+        (above_0(Some(occlusion.reach)), "reach", "above 0 [m]"),
     ];
-    first_failure(text, first_line(text, "[shelter]"), &lee)?;
+    first_failure(text, first_line(text, "[wind_occlusion]"), &lee)?;
     for (charged, line) in scene.charged.iter().zip(lines(text, "[[charged]]")) {
         let balls = [
             (finite(charged.center), "center", "three finite numbers [m]"),

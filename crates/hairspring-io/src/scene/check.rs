@@ -9,7 +9,7 @@ use super::{
 use crate::Problem;
 use glam::Vec3;
 use hairspring::{
-    around::{Tool, ghost::Ghost},
+    forces::{Manipulator, global_shape::GlobalShape},
     groom::MAX_COORDINATE,
     material::Material,
     scene::{Effects, Guides, HairLook, Hand, Shape},
@@ -161,10 +161,10 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     let solver = &scene.solver;
     let solvers = [
         ((1..=64).contains(&solver.substeps), "substeps", "1 to 64"),
-        ((0..=20).contains(&solver.projections), "projections", "0 to 20"),
-        ((0.0..=60.0).contains(&solver.settle), "settle", "0 to 60 [s]"),
+        ((0..=20).contains(&solver.projection_iterations), "projection_iterations", "0 to 20"),
+        ((0.0..=60.0).contains(&solver.preroll), "preroll", "0 to 60 [s]"),
         ((0.0..=1.0).contains(&solver.inertia), "inertia", "0 to 1"),
-        (above_0(Some(solver.jump)), "jump", "above 0 [m]"),
+        (above_0(Some(solver.teleport_distance)), "teleport_distance", "above 0 [m]"),
     ];
     first_failure(text, section("[solver]"), &solvers)?;
     let volume = &scene.volume;
@@ -172,7 +172,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         (above_0(volume.cell), "cell", "above 0 [m]"),
         (from_0(volume.friction), "friction", "0 or more [1/s]"),
         (from_0(volume.pressure), "pressure", "0 or more [m/s]"),
-        (from_0(volume.regain), "regain", "0 or more [1/s]"),
+        (from_0(volume.recovery_rate), "recovery_rate", "0 or more [1/s]"),
     ];
     first_failure(text, section("[volume]"), &volumes)?;
     let neighbours = &scene.neighbours;
@@ -259,20 +259,22 @@ fn hand_ranges(text: &str, from: usize, hand: &Hand) -> Result<(), Problem> {
 }
 
 /// The checks of a tool, all said of the line that it stands in.
-fn tool_checks(tool: &Tool) -> Vec<Check> {
+fn tool_checks(tool: &Manipulator) -> Vec<Check> {
     let place = |ok: bool| (ok, "tool", "at three finite numbers [m]");
     let radius = |r: f32| (above_0(Some(r)), "tool", "given a `radius` above 0 [m]");
     let pull = |f: f32| ((0.0..=1e3).contains(&f), "tool", "given a `pull` from 0 to 1000 [Hz]");
     let damping = |d: f32| ((0.0..=10.0).contains(&d), "tool", "given a `damping` from 0 to 10");
     match *tool {
-        Tool::Grab(g) => vec![place(finite(g.center)), radius(g.radius), pull(g.pull), damping(g.damping)],
-        Tool::Comb(c) => vec![
+        Manipulator::Grab(g) => {
+            vec![place(finite(g.center)), radius(g.radius), pull(g.pull), damping(g.damping)]
+        }
+        Manipulator::Comb(c) => vec![
             place(finite(c.a) && finite(c.b)),
             radius(c.radius),
             ((0.0..=1e4).contains(&c.grip), "tool", "given a `grip` from 0 to 10000 [1/s]"),
             ((0.0..=c.grip).contains(&c.friction), "tool", "given a `friction` from 0 to its `grip` [1/s]"),
         ],
-        Tool::Tie(t) => vec![
+        Manipulator::Tie(t) => vec![
             place(finite(t.center)),
             radius(t.radius),
             (t.axis.try_normalize().is_some(), "tool", "given an `axis` that is finite and not 0"),
@@ -351,14 +353,18 @@ pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Prob
         (from_0(m.drag), "drag", "0 or more"),
         ((0.0..=1.0).contains(&m.friction), "friction", "0 to 1"),
         ((0.0..=1.0).contains(&m.friction_kinetic), "friction_kinetic", "0 to 1"),
-        (ghost(&m.ghost), "ghost", "`pull` 0 to 60 [Hz], `tip` 0 or more, `damping` 0 to 10"),
+        (
+            global_shape_in_range(&m.global_shape),
+            "global_shape",
+            "`pull` 0 to 60 [Hz], `tip` 0 or more, `damping` 0 to 10",
+        ),
         (m.tether == 0.0 || (1.0..=10.0).contains(&m.tether), "tether", "0 (none), or 1 to 10"),
         ((-1e-6..=1e-6).contains(&m.charge), "charge", "-1e-6 to 1e-6 [C/m]"),
     ];
     first_failure(text, from, &checks)
 }
 
-/// Whether a ghost rest shape's numbers are in their ranges.
-fn ghost(ghost: &Ghost) -> bool {
-    (0.0..=60.0).contains(&ghost.pull) && from_0(ghost.tip) && (0.0..=10.0).contains(&ghost.damping)
+/// Whether a global shape's numbers are in their ranges.
+fn global_shape_in_range(shape: &GlobalShape) -> bool {
+    (0.0..=60.0).contains(&shape.pull) && from_0(shape.tip) && (0.0..=10.0).contains(&shape.damping)
 }

@@ -2,9 +2,9 @@
 
 use glam::{EulerRot, Quat, Vec3};
 use hairspring::{
-    air::{Shelter, Turbulence, WindSource},
-    around::charge::Charged,
+    air::{Turbulence, WindOcclusion, WindSource},
     body::Key,
+    forces::charge::Charged,
     groom::{Growth, Thicken},
     scene::{
         Camera, Collider, Effects, Ground, Guides, HairLook, Hand, Neighbours, Shape, Solver, Volume, Wind,
@@ -62,7 +62,7 @@ pub(super) struct SceneFile {
     pub turbulence: Turbulence,
     /// Who stands in the lee.
     #[serde(default)]
-    pub shelter: Shelter,
+    pub wind_occlusion: WindOcclusion,
     /// Charged bodies.
     #[serde(default)]
     pub charged: Vec<Charged>,

@@ -50,7 +50,7 @@ pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<
         clip: &file.clip,
         props: &file.prop,
         collide_body: file.solver.collide_body,
-        settle: file.solver.settle,
+        settle: file.solver.preroll,
         grooms: file.groom.iter().map(|groom| groom.geometry()).collect(),
         radii,
     })

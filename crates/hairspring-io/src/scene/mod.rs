@@ -64,7 +64,7 @@ pub fn read_settings(path: &Path, text: &str) -> Result<Scene> {
 /// Whether two texts of scene files that can both be read differ in nothing but what `Stage::retune` takes up: the hair, the body and its motion are the
 /// same. False where one is no scene file.
 ///
-/// Beside the files, a material's `radius` is geometry, because hair is drawn by it, and so are `guides`, `solver.collide_body` and `solver.settle`. A hull's file is a
+/// Beside the files, a material's `radius` is geometry, because hair is drawn by it, and so are `guides`, `solver.collide_body` and `solver.preroll`. A hull's file is a
 /// setting.
 pub fn same_geometry(a: &str, b: &str) -> bool {
     let (Ok(a_file), Ok(b_file)) = (parse(a), parse(b)) else { return false };

@@ -30,7 +30,7 @@ impl Reader<'_> {
             wind: file.wind,
             wind_sources: file.wind_source.clone(),
             turbulence: file.turbulence,
-            shelter: file.shelter,
+            wind_occlusion: file.wind_occlusion,
             charged: file.charged.clone(),
             gravity: file.gravity,
             solver: file.solver,

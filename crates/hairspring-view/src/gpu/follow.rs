@@ -14,10 +14,10 @@ use crate::frame::HairDraw;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3, Vec4};
 use hairspring::{
-    collide::Obstacle,
-    follow::{FollowLayout, Followed},
+    collide::ColliderShape,
+    follow::{FollowLayout, HairInterpolation},
     scene::Effects,
-    simulation::MovingObstacle,
+    simulation::MovingCollider,
 };
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -113,9 +113,9 @@ pub(super) struct Followers {
 
 impl Gpu {
     /// Whether follow hairs among these colliders can be placed on the card: not among open sheets, and not where fields are too large for it.
-    pub fn can_place_among(&self, obstacles: &[MovingObstacle]) -> bool {
+    pub fn can_place_among(&self, obstacles: &[MovingCollider]) -> bool {
         let numbers: usize = obstacles.iter().map(|o| Shape::of(o).map_or(0, |s| s.numbers.len())).sum();
-        let sheet = |o: &MovingObstacle| matches!(o.shape, Obstacle::Sheet(_));
+        let sheet = |o: &MovingCollider| matches!(o.shape, ColliderShape::Sheet(_));
         !obstacles.iter().any(sheet)
             && numbers as u64 * 4 <= self.device.limits().max_storage_buffer_binding_size
     }
@@ -129,7 +129,7 @@ struct Shape<'a> {
 
 impl<'a> Shape<'a> {
     /// `None`: it holds nothing out, or only the CPU knows how.
-    fn of(obstacle: &'a MovingObstacle) -> Option<Self> {
+    fn of(obstacle: &'a MovingCollider) -> Option<Self> {
         let (turn, at) = obstacle.end.matrix();
         let placed = |turn: Mat3, at: Vec3, kind: u32| {
             let [x, y, z] = [turn.x_axis.extend(at.x), turn.y_axis.extend(at.y), turn.z_axis.extend(at.z)];
@@ -147,16 +147,16 @@ impl<'a> Shape<'a> {
         };
         let alone = |collider| Self { collider, numbers: Default::default() };
         Some(match &obstacle.shape {
-            Obstacle::Sphere { center, radius } => alone(capsule(*center, *center, *radius)),
-            Obstacle::Capsule { a, b, radius } => alone(capsule(*a, *b, *radius)),
-            Obstacle::Cuboid { center, half, axes } => {
+            ColliderShape::Sphere { center, radius } => alone(capsule(*center, *center, *radius)),
+            ColliderShape::Capsule { a, b, radius } => alone(capsule(*a, *b, *radius)),
+            ColliderShape::Cuboid { center, half, axes } => {
                 // In a space of its own it lies along the axes.
                 let placed = placed(turn * *axes, turn * *center + at, CUBOID);
                 alone(Collider { a: half.extend(0.0), ..placed })
             }
-            Obstacle::Plane { point, normal } => planes(vec![normal.extend(normal.dot(*point))]),
-            Obstacle::Hull(hull) => planes(hull.planes().map(|(n, offset)| n.extend(offset)).collect()),
-            Obstacle::Field(grid) if !grid.distances().is_empty() => Self {
+            ColliderShape::Plane { point, normal } => planes(vec![normal.extend(normal.dot(*point))]),
+            ColliderShape::Hull(hull) => planes(hull.planes().map(|(n, offset)| n.extend(offset)).collect()),
+            ColliderShape::Field(grid) if !grid.distances().is_empty() => Self {
                 collider: Collider {
                     a: grid.origin().extend(grid.cell()),
                     size: grid.size().to_array(),
@@ -164,7 +164,7 @@ impl<'a> Shape<'a> {
                 },
                 numbers: grid.distances().into(),
             },
-            Obstacle::Field(_) | Obstacle::Sheet(_) => return None,
+            ColliderShape::Field(_) | ColliderShape::Sheet(_) => return None,
         })
     }
 }
@@ -176,7 +176,7 @@ impl World {
     }
 
     /// Sends colliders, and of their shapes what changed. Returns how many they are.
-    fn send(&mut self, gpu: &Gpu, obstacles: &[MovingObstacle], generation: &mut Generation) -> u32 {
+    fn send(&mut self, gpu: &Gpu, obstacles: &[MovingCollider], generation: &mut Generation) -> u32 {
         let mut shapes: Vec<Shape> = obstacles.iter().filter_map(Shape::of).collect();
         let mut first = 0;
         for shape in &mut shapes {
@@ -238,7 +238,13 @@ impl Groom {
     }
 
     /// Sends how guides carry, and finds the boxes around what they carry.
-    fn send(&mut self, gpu: &Gpu, now: &Followed, [first, colliders]: [u32; 2], generation: &mut Generation) {
+    fn send(
+        &mut self,
+        gpu: &Gpu,
+        now: &HairInterpolation,
+        [first, colliders]: [u32; 2],
+        generation: &mut Generation,
+    ) {
         let carried = |(carrier, at): (&glam::Affine3A, &Vec3)| {
             let m = Mat3::from(carrier.matrix3);
             [m.x_axis.extend(at.x), m.y_axis.extend(at.y), m.z_axis.extend(at.z)]
@@ -319,7 +325,7 @@ impl Followers {
 
     /// Sends what changed of a frame's follow hairs.
     pub fn send(&mut self, gpu: &Gpu, hair: &[HairDraw], generation: &mut Generation) {
-        let mut worlds: Vec<(&[MovingObstacle], u32)> = Vec::new();
+        let mut worlds: Vec<(&[MovingCollider], u32)> = Vec::new();
         self.grooms.resize_with(hair.len(), || None);
         let mut fitting = fitting(gpu, hair);
         for groom in &mut self.grooms {

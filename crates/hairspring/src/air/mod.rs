@@ -9,7 +9,7 @@
 //! | [`gust`] | how wind comes and goes |
 //! | [`source`] | points, vortices and fans |
 //! | [`turbulence`] | curl noise |
-//! | [`shelter`] | T, what a body and hair leave of the wind behind them |
+//! | [`occlusion`] | T, what a body and hair leave of the wind behind them |
 //!
 //! W is the directional wind, the same everywhere and known to every substep: several of them would be one. All else is found once a
 //! frame, at the places that points have at its start and the time of its middle, and frozen for the frame.
@@ -18,12 +18,12 @@
 //! Air is given, not simulated: hair and bodies shelter, but do not turn it aside. A source's own motion is not added to its wind.
 
 mod gust;
-mod shelter;
+mod occlusion;
 mod source;
 mod turbulence;
 
-pub(crate) use shelter::Shade;
-pub use shelter::Shelter;
+pub(crate) use occlusion::OcclusionSampler;
+pub use occlusion::WindOcclusion;
 pub use source::{Flow, Source, WindSource};
 pub(crate) use turbulence::Noise;
 pub use turbulence::Turbulence;
@@ -66,27 +66,27 @@ impl Air<'_> {
     }
 
     /// The air in the middle of a frame of `dt` [s]; `noise` is memory.
-    pub(crate) fn moment<'a>(&'a self, dt: f32, noise: &'a mut Noise) -> Moment<'a> {
+    pub(crate) fn moment<'a>(&'a self, dt: f32, noise: &'a mut Noise) -> AirSample<'a> {
         let middle = self.time + 0.5 * f64::from(dt);
         let way = self.wind.velocity.as_dvec3() * self.gust().travelled(middle);
         let noise = self.turbulence.is_on().then(|| {
             noise.set(&self.turbulence, way, middle);
             &*noise
         });
-        Moment { uniform: self.uniform(0.5 * dt), sources: self.sources, noise }
+        AirSample { uniform: self.uniform(0.5 * dt), sources: self.sources, noise }
     }
 }
 
 /// The air at one time.
 #[derive(Clone, Copy)]
-pub(crate) struct Moment<'a> {
+pub(crate) struct AirSample<'a> {
     /// The wind of all points [m/s].
     pub uniform: Vec3,
     sources: &'a [Source],
     noise: Option<&'a Noise>,
 }
 
-impl Moment<'_> {
+impl AirSample<'_> {
     /// Its velocity at `place` without eddies: what comes from somewhere [m/s].
     pub fn steady(&self, place: Vec3) -> Vec3 {
         self.sources.iter().fold(self.uniform, |sum, source| sum + source.velocity(place))

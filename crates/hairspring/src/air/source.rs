@@ -12,7 +12,7 @@
 //! ```
 
 use super::gust::Gust;
-use crate::collide::Rigid;
+use crate::collide::RigidTransform;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,7 @@ pub struct WindSource {
 
 impl WindSource {
     /// The source as it blows at `time` [s], carried by `pose` since rest; `number`: which of the scene's it is, so that each has its own gusts.
-    pub fn at(&self, number: usize, pose: Rigid, time: f64) -> Source {
+    pub fn at(&self, number: usize, pose: RigidTransform, time: f64) -> Source {
         // Golden angles: no two begin alike.
         let gust = Gust { amount: self.gust, rate: self.gust_rate, phase: 2.4 * (number + 1) as f32 };
         let factor = if self.gust_rate > 0.0 { gust.factor(time) } else { 1.0 };
@@ -129,7 +129,7 @@ pub struct Source {
     /// How it blows, at rest.
     pub flow: Flow,
     /// Where what carries it has gone since rest.
-    pub pose: Rigid,
+    pub pose: RigidTransform,
     /// Its speed over the mean, by gusts [1].
     pub factor: f32,
 }

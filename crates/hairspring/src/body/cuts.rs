@@ -11,7 +11,7 @@
 //! the motion of one of them: the joint that carries the hair, or the topmost one.
 
 use super::{Body, Clip, Trs};
-use crate::collide::Rigid;
+use crate::collide::RigidTransform;
 use glam::{Affine3A, Quat, Vec3};
 
 /// Time in which the teleport distance is the threshold [s]: over longer intervals a genuine motion goes farther, in proportion.
@@ -62,7 +62,7 @@ impl Cuts {
             cuts.trees[*tree].joint = anchor;
         }
         for tree in &mut cuts.trees {
-            let path: Vec<Rigid> =
+            let path: Vec<RigidTransform> =
                 (0..clip.frame_count()).map(|f| world_of(body, clip.frame(f), tree.joint)).collect();
             tree.cuts = find(&path, clip.rate, distance);
         }
@@ -85,7 +85,7 @@ impl Cuts {
     }
 
     /// Where each joint is taken by the cuts after the time `from` until the time `to` [s]; `None` for joints without one. Empty if there is no cut.
-    pub fn between(&self, body: &Body, clip: &Clip, (from, to): (f64, f64)) -> Vec<Option<Rigid>> {
+    pub fn between(&self, body: &Body, clip: &Clip, (from, to): (f64, f64)) -> Vec<Option<RigidTransform>> {
         let (first, last) = (clip.place(from).0, clip.place(to).0);
         let mut moved = Vec::new();
         for (number, tree) in self.trees.iter().enumerate() {
@@ -111,19 +111,19 @@ impl Tree {
 }
 
 /// The motion of a joint's matrix.
-fn step(from: &Affine3A, to: &Affine3A) -> Rigid {
-    Rigid::from_affine(to).after(&Rigid::from_affine(from).inverse())
+fn step(from: &Affine3A, to: &Affine3A) -> RigidTransform {
+    RigidTransform::from_affine(to).after(&RigidTransform::from_affine(from).inverse())
 }
 
 /// Where a joint is in a pose.
-fn world_of(body: &Body, pose: &[Trs], joint: usize) -> Rigid {
+fn world_of(body: &Body, pose: &[Trs], joint: usize) -> RigidTransform {
     let mut world = pose[joint].to_affine();
     let mut parent = body.joints[joint].parent;
     while let Some(p) = parent {
         world = pose[p as usize].to_affine() * world;
         parent = body.joints[p as usize].parent;
     }
-    Rigid::from_affine(&world)
+    RigidTransform::from_affine(&world)
 }
 
 /// Velocity and rotation vector over time of an interval of frames [m, rad a frame].
@@ -134,7 +134,7 @@ struct Pace {
 }
 
 /// The cuts of a joint's path, a pose for each frame: the last frame before each and the first one after it, in order.
-pub(super) fn find(path: &[Rigid], rate: f64, distance: f32) -> Vec<(usize, usize)> {
+pub(super) fn find(path: &[RigidTransform], rate: f64, distance: f32) -> Vec<(usize, usize)> {
     let intervals = path.len().saturating_sub(1);
     let pace = |k: usize| {
         let (a, b) = (&path[k], &path[k + 1]);
@@ -201,12 +201,15 @@ pub(super) fn find(path: &[Rigid], rate: f64, distance: f32) -> Vec<(usize, usiz
 mod tests {
     use super::*;
 
-    fn path(xs: &[f32]) -> Vec<Rigid> {
-        xs.iter().map(|x| Rigid { translation: Vec3::X * *x, ..Rigid::default() }).collect()
+    fn path(xs: &[f32]) -> Vec<RigidTransform> {
+        xs.iter().map(|x| RigidTransform { translation: Vec3::X * *x, ..RigidTransform::default() }).collect()
     }
 
-    fn turns(angles: &[f32]) -> Vec<Rigid> {
-        angles.iter().map(|a| Rigid { rotation: Quat::from_rotation_y(*a), ..Rigid::default() }).collect()
+    fn turns(angles: &[f32]) -> Vec<RigidTransform> {
+        angles
+            .iter()
+            .map(|a| RigidTransform { rotation: Quat::from_rotation_y(*a), ..RigidTransform::default() })
+            .collect()
     }
 
     #[test]

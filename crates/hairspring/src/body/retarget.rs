@@ -2,7 +2,7 @@
 //! names.
 
 use super::{Body, Clip, Joint, Trs, cuts};
-use crate::{collide::Rigid, scene::Solver};
+use crate::{collide::RigidTransform, scene::Solver};
 use glam::{Affine3A, Quat, Vec3};
 
 /// What of the head's travel through the world is kept by [`head_motion`].
@@ -62,9 +62,12 @@ pub fn head_motion(joints: &[Joint], clip: &Clip, name: &str, options: &HeadMoti
     match options.travel {
         Travel::Keep => {}
         Travel::InPlace => {
-            let pose = |(rotation, shift): (&Quat, &Vec3)| Rigid { rotation: *rotation, translation: *shift };
-            let path: Vec<Rigid> = rotations.iter().zip(&shifts).map(pose).collect();
-            let cuts = cuts::find(&path, clip.rate, Solver::default().jump);
+            let pose = |(rotation, shift): (&Quat, &Vec3)| RigidTransform {
+                rotation: *rotation,
+                translation: *shift,
+            };
+            let path: Vec<RigidTransform> = rotations.iter().zip(&shifts).map(pose).collect();
+            let cuts = cuts::find(&path, clip.rate, Solver::default().teleport_distance);
             stay(&mut shifts, clip.rate, rest_frame, &cuts);
         }
         Travel::None => shifts.fill(Vec3::ZERO),

@@ -10,7 +10,7 @@
 //! Between two nodes of which either is more than half a cell from every triangle there is no surface: there both are inside, or neither is. Rows
 //! beside one that is told take after it, one after the other, and what is near a surface stays as it was counted.
 
-use super::{Grid, deep};
+use super::{SignedDistanceField, deep_interior};
 
 /// Rows of a field that pass holes of its mesh; kept for the memory.
 #[derive(Default)]
@@ -27,7 +27,7 @@ impl Holes {
     /// Tells the `open` rows of `grid` (layer, row) anew by those beside them; returns their runs of nodes deeper than the band and the `closed` ones, in order.
     pub fn mend(
         &mut self,
-        grid: &mut Grid,
+        grid: &mut SignedDistanceField,
         open: impl Iterator<Item = [u32; 2]>,
         closed: impl Iterator<Item = [u32; 4]>,
     ) -> &[[u32; 4]] {
@@ -60,13 +60,13 @@ impl Holes {
                     return true;
                 }
                 take_after(grid, row(at) * nx, beside.map(|row| row.map(|row| row * nx)));
-                deep::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell(), runs);
+                deep_interior::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell(), runs);
                 told[row(at)] = true;
                 false
             });
         }
         for &at in &*rows {
-            deep::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell(), runs);
+            deep_interior::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell(), runs);
         }
         runs.sort_unstable();
         runs
@@ -74,7 +74,7 @@ impl Holes {
 }
 
 /// Gives the nodes of the row that begins at node `row` the side that most of the rows `beside` are on.
-fn take_after(grid: &mut Grid, row: usize, beside: [Option<usize>; 4]) {
+fn take_after(grid: &mut SignedDistanceField, row: usize, beside: [Option<usize>; 4]) {
     let far = 0.5 * grid.cell();
     for x in 0..grid.size().x as usize {
         let d = grid.distances[row + x].abs();

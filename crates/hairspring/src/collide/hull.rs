@@ -241,7 +241,7 @@ fn from_triangle<S: Simd>(simd: S, p: V3<S>, corners: &[Vec3; 3], (n, height): (
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::collide::Obstacle;
+    use crate::collide::ColliderShape;
     use glam::Mat3;
 
     fn corners(size: f32) -> Vec<Vec3> {
@@ -255,7 +255,7 @@ mod tests {
         for size in [1e-4, 0.05, 30.0] {
             let hull = Hull::new(&corners(size)).unwrap();
             assert_eq!(hull.faces.len(), 6, "{size}");
-            let cuboid = Obstacle::Cuboid {
+            let cuboid = ColliderShape::Cuboid {
                 center: Vec3::ZERO,
                 half: Vec3::new(1.0, 2.0, 3.0) * size,
                 axes: Mat3::IDENTITY,

@@ -1,27 +1,27 @@
 //! What hair meets: spheres, capsules, boxes, planes, convex hulls, open sheets and the signed distance field of a closed mesh, each moving as
 //! a rigid piece; sheets and fields may deform besides.
 
-mod along;
-mod deep;
-mod grid;
+mod deep_interior;
 mod holes;
 mod hull;
 mod lattice;
-mod obstacle;
+mod mesh_distance;
 mod pose;
-mod rigid;
-mod sheet;
+mod rigid_transform;
+mod sdf;
+mod segment_depth;
+mod shape;
 mod side;
-mod to_mesh;
+mod thin_shell;
 mod voxelize;
 
-pub(crate) use along::{Deepest, STEEP, deepest};
-pub use grid::Grid;
 pub use hull::Hull;
-pub use obstacle::Obstacle;
-pub use pose::ObstaclePose;
+pub use pose::ColliderPose;
 pub(crate) use pose::{contact, surface_displacement};
-pub use rigid::Rigid;
-pub use sheet::Sheet;
+pub use rigid_transform::RigidTransform;
+pub use sdf::SignedDistanceField;
+pub(crate) use segment_depth::{DeepestPoint, STEEP, find_deepest_point};
+pub use shape::ColliderShape;
 pub(crate) use side::{Edges, Side};
+pub use thin_shell::ThinShell;
 pub use voxelize::{Voxelizer, voxelize};

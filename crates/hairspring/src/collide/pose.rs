@@ -1,6 +1,6 @@
 //! A collider as the kernel sees it during a substep: where its shape is, who is near it, and how its surface moves, for eight points in the world at once.
 
-use super::{Grid, Obstacle, obstacle::ball_lanes, side::Edges};
+use super::{ColliderShape, SignedDistanceField, shape::ball_lanes, side::Edges};
 use crate::strand::{
     lanes::{F, LANES, Mask, Row, Simd, V3},
     root::transform,
@@ -19,9 +19,9 @@ const LONG: f32 = 2.0;
 
 /// An obstacle during one substep.
 #[derive(Clone)]
-pub struct ObstaclePose {
+pub struct ColliderPose {
     /// The shape.
-    pub shape: Obstacle,
+    pub shape: ColliderShape,
     /// Pose at the end of the substep.
     pub end: (Mat3, Vec3),
     /// Pose at its start.
@@ -36,9 +36,9 @@ pub struct ObstaclePose {
     pub(crate) edges: Option<Edges>,
 }
 
-impl ObstaclePose {
+impl ColliderPose {
     /// A shape that moves from `start` to `end` in a substep that lasts `share` of an interval.
-    pub fn new(shape: Obstacle, start: (Mat3, Vec3), end: (Mat3, Vec3), share: f32) -> Self {
+    pub fn new(shape: ColliderShape, start: (Mat3, Vec3), end: (Mat3, Vec3), share: f32) -> Self {
         let (center, radius) = shape.bounds();
         let bounds = (end.0 * center + end.1, radius);
         // What does not move does so to the last bit, which a rotation and its inverse do not.
@@ -49,16 +49,16 @@ impl ObstaclePose {
 
     /// Which of eight points may be inside at the end of the substep; the others are not.
     #[inline(always)]
-    pub(crate) fn near<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
+    pub(crate) fn broadphase_test<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let d = p - V3::splat(simd, self.bounds.0);
         let near = d.dot(d).simd_le(F::splat(simd, self.bounds.1 * self.bounds.1));
         if !near.any_true() {
             return near;
         }
         match &self.shape {
-            Obstacle::Field(grid) => near & grid.may_be_inside(simd, self.local(simd, p)),
-            Obstacle::Hull(hull) => near & hull.may_be_inside(simd, self.local(simd, p), V3::zero(simd)),
-            Obstacle::Sheet(sheet) => near & sheet.may_be_inside(simd, self.local(simd, p)),
+            ColliderShape::Field(grid) => near & grid.may_be_inside(simd, self.local(simd, p)),
+            ColliderShape::Hull(hull) => near & hull.may_be_inside(simd, self.local(simd, p), V3::zero(simd)),
+            ColliderShape::Sheet(sheet) => near & sheet.may_be_inside(simd, self.local(simd, p)),
             _ => near,
         }
     }
@@ -71,7 +71,12 @@ impl ObstaclePose {
     ///  ╱  sag ↕    ╲   where that is below what it may, nothing need be looked at
     /// ```
     #[inline(always)]
-    pub(crate) fn may_cut<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> Mask<S> {
+    pub(crate) fn segment_may_intersect<S: Simd>(
+        &self,
+        simd: S,
+        (p, e): (V3<S>, V3<S>),
+        sag: F<S>,
+    ) -> Mask<S> {
         let none = Mask::splat(simd, false);
         let size = e.dot(e);
         let mut may = size.simd_gt(sag * (8.0 * self.shape.roundness()));
@@ -87,11 +92,11 @@ impl ObstaclePose {
             return none;
         }
         match &self.shape {
-            Obstacle::Hull(hull) => {
+            ColliderShape::Hull(hull) => {
                 let turned = transform(simd, &self.end.0.transpose(), e);
                 may & hull.may_be_inside(simd, self.local(simd, p), turned)
             }
-            Obstacle::Field(grid) => {
+            ColliderShape::Field(grid) => {
                 let may = self.between(
                     simd,
                     (p, e),
@@ -101,12 +106,12 @@ impl ObstaclePose {
                     |at| grid.may_be_inside(simd, at),
                 );
                 if may.any_true() && !is_long(simd, grid, e) {
-                    may & self.dips(simd, grid, (p, e), sag)
+                    may & self.sdf_segment_test(simd, grid, (p, e), sag)
                 } else {
                     may
                 }
             }
-            Obstacle::Sheet(sheet) => self.between(
+            ColliderShape::Sheet(sheet) => self.between(
                 simd,
                 (p, e),
                 (size, sheet.cell()),
@@ -120,10 +125,17 @@ impl ObstaclePose {
 
     /// The same of segments that end beside the surface, as most of those have a place in a cell that holds one inside: it is not asked first.
     #[inline(always)]
-    pub(crate) fn may_lie_deep<S: Simd>(&self, simd: S, (p, e): (V3<S>, V3<S>), sag: F<S>) -> Mask<S> {
+    pub(crate) fn segment_may_penetrate<S: Simd>(
+        &self,
+        simd: S,
+        (p, e): (V3<S>, V3<S>),
+        sag: F<S>,
+    ) -> Mask<S> {
         match &self.shape {
-            Obstacle::Field(grid) if !is_long(simd, grid, e) => self.dips(simd, grid, (p, e), sag),
-            _ => self.may_cut(simd, (p, e), sag),
+            ColliderShape::Field(grid) if !is_long(simd, grid, e) => {
+                self.sdf_segment_test(simd, grid, (p, e), sag)
+            }
+            _ => self.segment_may_intersect(simd, (p, e), sag),
         }
     }
 
@@ -138,7 +150,13 @@ impl ObstaclePose {
     ///        ⅓   ╌╌_╌╌    ⅔
     /// ```
     #[inline(always)]
-    fn dips<S: Simd>(&self, simd: S, grid: &Grid, (p, e): (V3<S>, V3<S>), sag: F<S>) -> Mask<S> {
+    fn sdf_segment_test<S: Simd>(
+        &self,
+        simd: S,
+        grid: &SignedDistanceField,
+        (p, e): (V3<S>, V3<S>),
+        sag: F<S>,
+    ) -> Mask<S> {
         let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
         let [third, two] = [1.0 / 3.0, 2.0 / 3.0].map(|part| F::<S>::splat(simd, part));
         let (inner, rise) = grid.slope_lanes(simd, p - e * two);
@@ -194,14 +212,14 @@ impl ObstaclePose {
 
 /// Whether any of the segments is longer than [`LONG`] of the field's cells: those are looked at in more places, by `deepest`.
 #[inline(always)]
-fn is_long<S: Simd>(simd: S, grid: &Grid, e: V3<S>) -> bool {
+fn is_long<S: Simd>(simd: S, grid: &SignedDistanceField, e: V3<S>) -> bool {
     e.dot(e).simd_gt(F::splat(simd, (LONG * grid.cell()).powi(2))).any_true()
 }
 
 /// World distance to the surface, and normal, of eight points at the end of a substep.
 #[inline(always)]
-pub(crate) fn contact<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>, V3<S>) {
-    if let Obstacle::Sphere { radius, .. } = pose.shape {
+pub(crate) fn contact<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> (F<S>, V3<S>) {
+    if let ColliderShape::Sphere { radius, .. } = pose.shape {
         // However it is turned.
         return ball_lanes(p - V3::splat(simd, pose.bounds.0), radius);
     }
@@ -211,14 +229,14 @@ pub(crate) fn contact<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>,
 
 /// The same, and in place of the normal how fast the distance changes with place [1].
 #[inline(always)]
-pub(crate) fn slope<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> (F<S>, V3<S>) {
+pub(crate) fn slope<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> (F<S>, V3<S>) {
     let (distance, slope) = pose.shape.slope_lanes(simd, pose.local(simd, p));
     (distance, transform(simd, &pose.end.0, slope))
 }
 
 /// How far the surface at `p` (world, end of the substep) moved in the substep [m].
 #[inline(always)]
-pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<S>) -> V3<S> {
+pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> V3<S> {
     let (turned, moved) = &pose.motion;
     let rigid = transform(simd, turned, p - V3::splat(simd, pose.end.1)) + V3::splat(simd, *moved);
     let own = |displacement: &dyn Fn(Vec3) -> Vec3| {
@@ -234,8 +252,8 @@ pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ObstaclePose, p: V3<
         V3::load(simd, &rows)
     };
     match &pose.shape {
-        Obstacle::Field(grid) if grid.deforms() => rigid + own(&|at| grid.displacement(at)),
-        Obstacle::Sheet(sheet) if sheet.deforms() => rigid + own(&|at| sheet.displacement(at)),
+        ColliderShape::Field(grid) if grid.deforms() => rigid + own(&|at| grid.displacement(at)),
+        ColliderShape::Sheet(sheet) if sheet.deforms() => rigid + own(&|at| sheet.displacement(at)),
         _ => rigid,
     }
 }

@@ -10,7 +10,7 @@
 //! A capsule has one edge, its axis; a box has edges along three axes. This is the separating-axis test of two edges (Gottschalk, Lin & Manocha 1996, *OBBTree*),
 //! with the axis and its direction fixed by the start of the substep.
 
-use super::{Deepest, Obstacle, STEEP};
+use super::{ColliderShape, DeepestPoint, STEEP};
 use crate::strand::{
     lanes::{F, Mask, Simd, V3},
     root::transform,
@@ -46,14 +46,14 @@ pub(crate) struct Side<S: Simd> {
 
 impl Edges {
     /// The edges of a shape that moves from `start` to `end`; `None` for a shape that is neither a capsule nor a box.
-    pub fn new(shape: &Obstacle, start: (Mat3, Vec3), end: (Mat3, Vec3)) -> Option<Self> {
+    pub fn new(shape: &ColliderShape, start: (Mat3, Vec3), end: (Mat3, Vec3)) -> Option<Self> {
         let (center, turn, half, radius, axes) = match *shape {
-            Obstacle::Capsule { a, b, radius } => {
+            ColliderShape::Capsule { a, b, radius } => {
                 let x = (b - a).normalize_or(Vec3::X);
                 let (y, z) = x.any_orthonormal_pair();
                 (a.midpoint(b), Mat3::from_cols(x, y, z), Vec3::X * (0.5 * a.distance(b)), radius, 1)
             }
-            Obstacle::Cuboid { center, half, axes } => (center, axes, half, 0.0, 3),
+            ColliderShape::Cuboid { center, half, axes } => (center, axes, half, 0.0, 3),
             _ => return None,
         };
         let own = |pose: (Mat3, Vec3)| (pose.0 * turn, pose.0 * center + pose.1);
@@ -84,7 +84,7 @@ impl Edges {
 
     /// The edge that the segments from `a` to `a + e` (world) are nearest to at the end of the substep, whether they began on that side or not.
     #[inline(always)]
-    pub fn nearest<S: Simd>(&self, simd: S, segment: (V3<S>, V3<S>)) -> Deepest<S> {
+    pub fn nearest<S: Simd>(&self, simd: S, segment: (V3<S>, V3<S>)) -> DeepestPoint<S> {
         let any = F::splat(simd, f32::MAX);
         let side = self.side_in(simd, own(simd, &self.end, segment), any);
         self.past(simd, &side, segment, (F::splat(simd, 0.0), any))
@@ -122,7 +122,7 @@ impl Edges {
         side: &Side<S>,
         (a, e): (V3<S>, V3<S>),
         (from, within): (F<S>, F<S>),
-    ) -> Deepest<S> {
+    ) -> DeepestPoint<S> {
         let (a, e) = own(simd, &self.end, (a, e));
         let (size, across) = e.cross(side.axis).length_and_unit();
         let turned = across.dot(side.normal);
@@ -133,7 +133,7 @@ impl Edges {
         let on_edge = e.mul_add(at, a).dot(side.axis).abs().simd_le(half);
         let faces = at.simd_ge(from) & at.simd_le(1.0) & on_edge;
         let clear = size.simd_gt(e.dot(e).sqrt() * STEEP) & turned.abs().simd_gt(TURNED);
-        Deepest {
+        DeepestPoint {
             found: side.known & faces & clear & distance.simd_lt(within),
             distance,
             normal: transform(simd, &self.end.0, normal),

@@ -6,7 +6,7 @@
 //! The layout follows Bridson's SDFGen (*Fluid Simulation for Computer Graphics*, 2nd ed., §4).
 
 use super::{
-    Grid, deep,
+    SignedDistanceField, deep_interior,
     holes::Holes,
     lattice::{self, Lattice},
 };
@@ -26,8 +26,8 @@ pub(super) const BAND: f32 = 2.0;
 const MAX_NODES: usize = lattice::MAX_NODES / 2;
 
 /// Builds the field of a closed mesh with cells of about `cell` [m].
-pub fn voxelize(positions: &[Vec3], triangles: &[[u32; 3]], cell: f32) -> Grid {
-    let mut grid = Grid::default();
+pub fn voxelize(positions: &[Vec3], triangles: &[[u32; 3]], cell: f32) -> SignedDistanceField {
+    let mut grid = SignedDistanceField::default();
     Voxelizer::default().update(&mut grid, positions, None, triangles, None, cell);
     grid
 }
@@ -51,7 +51,7 @@ impl Voxelizer {
     /// is far from everything.
     pub fn update(
         &mut self,
-        grid: &mut Grid,
+        grid: &mut SignedDistanceField,
         positions: &[Vec3],
         before: Option<&[Vec3]>,
         triangles: &[[u32; 3]],
@@ -108,7 +108,7 @@ impl Voxelizer {
         let (open, deep) =
             (self.benches.iter().flat_map(|b| &b.open), self.benches.iter().flat_map(|b| &b.deep));
         let deep = self.holes.mend(grid, open.copied(), deep.copied());
-        deep::extend(grid, deep.iter().copied());
+        deep_interior::extend(grid, deep.iter().copied());
         grid.mark_inside();
     }
 }
@@ -262,7 +262,7 @@ impl Bench {
             // Of a closed mesh as many surfaces are entered as left.
             let at = [z, y].map(|i| i as u32);
             if winding + crossings[nx] == 0 {
-                deep::push(at, distances, lattice.cell, &mut self.deep);
+                deep_interior::push(at, distances, lattice.cell, &mut self.deep);
             } else {
                 self.open.push(at);
             }
@@ -375,7 +375,7 @@ mod tests {
         let whole = voxelize(&positions, &triangles, 0.005);
         // Cut on every side: no surface left or right of the box tells where the inside begins.
         let within = (Vec3::new(-0.05, -0.02, -0.06), Vec3::new(0.04, 0.3, 0.05));
-        let mut part = Grid::default();
+        let mut part = SignedDistanceField::default();
         Voxelizer::default().update(&mut part, &positions, None, &triangles, Some(within), 0.005);
         assert!(part.distances.len() * 3 < whole.distances.len());
         for i in 0..2000u32 {

@@ -1,7 +1,7 @@
 //! Follow hairs stay out of the body: each point inside a collider moves to its surface, eight points at a time.
 
 use crate::{
-    collide::{ObstaclePose, contact},
+    collide::{ColliderPose, contact},
     strand::lanes::{LANES, Row, Simd, V3, load},
 };
 use glam::Vec3;
@@ -9,7 +9,7 @@ use glam::Vec3;
 /// Moves the points of one strand that are deeper inside a collider than their `clearance` (0 or less) [m] to the surface.
 /// The root, its first point, stays on the skin.
 #[inline(always)]
-pub(super) fn keep_out<S: Simd>(simd: S, obstacles: &[ObstaclePose], points: &mut [Vec3], clearance: &[f32]) {
+pub(super) fn keep_out<S: Simd>(simd: S, obstacles: &[ColliderPose], points: &mut [Vec3], clearance: &[f32]) {
     let (Some((_, points)), Some((_, clearance))) = (points.split_first_mut(), clearance.split_first())
     else {
         return;
@@ -28,7 +28,7 @@ pub(super) fn keep_out<S: Simd>(simd: S, obstacles: &[ObstaclePose], points: &mu
         let allowed = load(simd, &rows[3]);
         let mut moved = false;
         for pose in obstacles {
-            if !pose.near(simd, p).any_true() {
+            if !pose.broadphase_test(simd, p).any_true() {
                 continue;
             }
             let (distance, normal) = contact(simd, pose, p);

@@ -18,10 +18,10 @@ mod style;
 pub use choose::{assign_guides, choose_guides};
 
 use crate::{
-    collide::ObstaclePose,
+    collide::ColliderPose,
     groom::{Groom, GuideWeights},
     scene::Effects,
-    simulation::MovingObstacle,
+    simulation::MovingCollider,
     strand::dispatch::dispatch,
 };
 use fearless_simd::Level;
@@ -59,9 +59,9 @@ pub struct Follow {
     carriers: Vec<Affine3A>,
 }
 
-/// What places the follow hairs of one groom as they are now: here, by [`Followed::place`], or by a viewer on a graphics card.
+/// What places the follow hairs of one groom as they are now: here, by [`HairInterpolation::place`], or by a viewer on a graphics card.
 #[derive(Clone, Copy)]
-pub struct Followed<'a> {
+pub struct HairInterpolation<'a> {
     /// What stays.
     pub layout: &'a Arc<FollowLayout>,
     /// What is laid over the hairs.
@@ -71,10 +71,10 @@ pub struct Followed<'a> {
     /// Points of all guides now [m]; shape `[guide points]`.
     pub guide_points: &'a [Vec3],
     /// What hairs are kept out of, as it is at the end of the frame.
-    pub obstacles: &'a [MovingObstacle],
+    pub obstacles: &'a [MovingCollider],
 }
 
-impl std::fmt::Debug for Followed<'_> {
+impl std::fmt::Debug for HairInterpolation<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Followed {{ {} guides }}", self.layout.guides.len())
     }
@@ -113,7 +113,7 @@ impl Follow {
         guides: &[u32],
         weights: &[GuideWeights],
         effects: Effects,
-        obstacles: &[ObstaclePose],
+        obstacles: &[ColliderPose],
     ) -> Self {
         let mut guide_of = vec![u32::MAX; groom.strand_count()];
         let mut guide_offsets = vec![0];
@@ -138,7 +138,7 @@ impl Follow {
     }
 
     /// The same hairs, following the same guides, in another rest pose: that of `groom`, among `obstacles`.
-    pub(crate) fn of(&self, groom: Arc<Groom>, obstacles: &[ObstaclePose]) -> Self {
+    pub(crate) fn of(&self, groom: Arc<Groom>, obstacles: &[ColliderPose]) -> Self {
         let FollowLayout { guides, weights, .. } = &*self.layout;
         let name = |w: &GuideWeights| GuideWeights { guides: w.guides.map(|g| guides[g as usize]), ..*w };
         Self::new(groom, guides, &weights.iter().map(name).collect::<Vec<_>>(), self.effects, obstacles)
@@ -159,9 +159,13 @@ impl Follow {
     }
 
     /// The hairs as they were last carried by guides that are at `guide_points` [m], among `obstacles`.
-    pub fn now<'a>(&'a self, guide_points: &'a [Vec3], obstacles: &'a [MovingObstacle]) -> Followed<'a> {
+    pub fn now<'a>(
+        &'a self,
+        guide_points: &'a [Vec3],
+        obstacles: &'a [MovingCollider],
+    ) -> HairInterpolation<'a> {
         let Self { layout, effects, carriers } = self;
-        Followed { layout, effects: *effects, carriers, guide_points, obstacles }
+        HairInterpolation { layout, effects: *effects, carriers, guide_points, obstacles }
     }
 
     /// Place of a strand among the guides, if it is one.
@@ -210,7 +214,7 @@ impl Follow {
     }
 }
 
-impl Followed<'_> {
+impl HairInterpolation<'_> {
     /// Writes all points of the groom [m]: guides as they are, follow hairs carried by them and kept out of the colliders.
     pub fn place(&self, out: &mut [Vec3]) {
         self.place_every(1, &self.layout.groom.offsets, out);
@@ -220,13 +224,13 @@ impl Followed<'_> {
     ///
     /// - `offsets`: first point of each of these in `out`, and the end; shape `[strands + 1]`.
     pub fn place_every(&self, every: usize, offsets: &[u32], out: &mut [Vec3]) {
-        let poses: Vec<ObstaclePose> = self.obstacles.iter().map(MovingObstacle::now).collect();
+        let poses: Vec<ColliderPose> = self.obstacles.iter().map(MovingCollider::now).collect();
         let strands = split_by(out, offsets).into_par_iter().enumerate();
         strands.with_min_len(64).for_each(|(s, strand)| self.place_strand(s * every, &poses, strand));
     }
 
     /// The same of one strand, kept out of `poses`.
-    pub(crate) fn place_strand(&self, s: usize, poses: &[ObstaclePose], strand: &mut [Vec3]) {
+    pub(crate) fn place_strand(&self, s: usize, poses: &[ColliderPose], strand: &mut [Vec3]) {
         let layout = &**self.layout;
         if let Some(guide) = layout.guide(s) {
             strand.copy_from_slice(&self.guide_points[layout.guide_range(guide)]);

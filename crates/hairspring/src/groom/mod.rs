@@ -60,13 +60,13 @@ pub struct StrandScale {
     pub drag: f32,
     /// Over the damping of the fibre; 0 or more.
     pub damping: f32,
-    /// Over the pull of the ghost rest shape; 0 or more.
-    pub ghost: f32,
+    /// Over the pull of the global shape; 0 or more.
+    pub global_shape: f32,
 }
 
 impl Default for StrandScale {
     fn default() -> Self {
-        Self { bend: 1.0, drag: 1.0, damping: 1.0, ghost: 1.0 }
+        Self { bend: 1.0, drag: 1.0, damping: 1.0, global_shape: 1.0 }
     }
 }
 

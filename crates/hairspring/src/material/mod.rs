@@ -1,6 +1,6 @@
 //! What the hair is made of: constants of the human fibre, and presets of style.
 
-use crate::around::ghost::Ghost;
+use crate::forces::global_shape::GlobalShape;
 use serde::{Deserialize, Serialize};
 
 /// The fibre of one group of strands: physical constants, and dimensionless multipliers for the artist.
@@ -47,8 +47,8 @@ pub struct Material {
     /// Kinetic friction over static, 0 to 1: what holds a strand back that slides faster than a millimetre a second. Default 1: one coefficient for both, with
     /// which nothing jerks as it comes loose.
     pub friction_kinetic: f32,
-    /// Pull to the rest shape, carried by the root; switched by `Solver::ghost`. Default: none.
-    pub ghost: Ghost,
+    /// Pull to the rest shape, carried by the root; switched by `Solver::global_shape`. Default: none.
+    pub global_shape: GlobalShape,
     /// How far a point may get from its root, over how far it was at rest [1], 1 to 10 (a long range attachment); 0, the default: as far as it goes. Not physics:
     /// for hair that is to fall so far and no farther. From 1.01 on it does not act at rest.
     pub tether: f32,
@@ -103,7 +103,7 @@ impl Default for Material {
             drag: 1.0,
             friction: 0.3,
             friction_kinetic: 1.0,
-            ghost: Ghost::default(),
+            global_shape: GlobalShape::default(),
             tether: 0.0,
             charge: 0.0,
         }

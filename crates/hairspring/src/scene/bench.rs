@@ -5,10 +5,10 @@
 
 use super::{Solver, Wind};
 use crate::{
-    collide::{Obstacle, ObstaclePose, Rigid, voxelize},
+    collide::{ColliderPose, ColliderShape, RigidTransform, voxelize},
     groom::Groom,
     material::Material,
-    simulation::{Air, Drive, Measure, MovingObstacle, Simulation, StepReport},
+    simulation::{Air, Measure, MovingCollider, Simulation, StepInput, StepReport},
 };
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
@@ -52,12 +52,12 @@ impl Head {
         }
     }
 
-    fn shape(self) -> Obstacle {
+    fn shape(self) -> ColliderShape {
         match self {
-            Self::Sphere => Obstacle::Sphere { center: Vec3::ZERO, radius: RADIUS },
+            Self::Sphere => ColliderShape::Sphere { center: Vec3::ZERO, radius: RADIUS },
             Self::Field => {
                 let (positions, triangles) = ball();
-                Obstacle::Field(Arc::new(voxelize(&positions, &triangles, 2.0 * RADIUS / FIELD_CELLS)))
+                ColliderShape::Field(Arc::new(voxelize(&positions, &triangles, 2.0 * RADIUS / FIELD_CELLS)))
             }
         }
     }
@@ -91,8 +91,8 @@ pub struct Bench {
     /// The air. Default: still.
     pub wind: Wind,
     roots: Vec<Vec3>,
-    poses: Vec<Rigid>,
-    obstacle: MovingObstacle,
+    poses: Vec<RigidTransform>,
+    obstacle: MovingCollider,
     frame: u32,
 }
 
@@ -128,7 +128,7 @@ impl Bench {
         let groom = Arc::new(groom(strands, points));
         let shape = head.shape();
         let rest = (Mat3::IDENTITY, Vec3::ZERO);
-        let pose = ObstaclePose::new(shape.clone(), rest, rest, 1.0);
+        let pose = ColliderPose::new(shape.clone(), rest, rest, 1.0);
         let roots: Vec<Vec3> = (0..strands as usize).map(|s| groom.strand(s)[0]).collect();
         let all: Vec<u32> = (0..strands).collect();
         // Hair falls from standing out: a start in balance would be one that no fibre holds.
@@ -139,15 +139,22 @@ impl Bench {
             &[material],
             solver,
             Vec3::new(0.0, -9.81, 0.0),
-            Rigid::default(),
+            RigidTransform::default(),
             &[pose],
         );
         Self {
             simulation,
             wind: Wind::default(),
-            poses: roots.iter().map(|p| Rigid { translation: *p, ..Rigid::default() }).collect(),
+            poses: roots
+                .iter()
+                .map(|p| RigidTransform { translation: *p, ..RigidTransform::default() })
+                .collect(),
             roots,
-            obstacle: MovingObstacle { shape, start: Rigid::default(), end: Rigid::default() },
+            obstacle: MovingCollider {
+                shape,
+                start: RigidTransform::default(),
+                end: RigidTransform::default(),
+            },
             frame: 0,
         }
     }
@@ -157,14 +164,14 @@ impl Bench {
         self.frame += 1;
         let at = |frame: u32| {
             let phase = std::f32::consts::TAU * RATE * frame as f32 * FRAME;
-            Rigid { translation: Vec3::X * (AMPLITUDE * phase.sin()), ..Rigid::default() }
+            RigidTransform { translation: Vec3::X * (AMPLITUDE * phase.sin()), ..RigidTransform::default() }
         };
         let (start, end) = (at(self.frame - 1), at(self.frame));
         for (pose, root) in self.poses.iter_mut().zip(&self.roots) {
             pose.translation = end.point(*root);
         }
-        self.obstacle = MovingObstacle { start, end, ..self.obstacle.clone() };
-        self.simulation.step(&Drive {
+        self.obstacle = MovingCollider { start, end, ..self.obstacle.clone() };
+        self.simulation.step(&StepInput {
             dt: FRAME,
             anchor: end,
             roots: &self.poses,

@@ -1,6 +1,6 @@
 //! Hands of a scene: what is held to the hair, from when to when, and how it moves.
 
-use crate::{around::Tool, timed::between};
+use crate::{forces::Manipulator, timed::between};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Hand {
     /// What it holds to the hair, in the space of the body's rest pose [m].
-    pub tool: Tool,
+    pub tool: Manipulator,
     /// Name of the body's joint that moves it; `None`: it stays in the world.
     #[serde(default)]
     pub joint: Option<String>,
@@ -27,7 +27,7 @@ pub struct Hand {
 
 impl Hand {
     /// A hand that stays where it is and never lets go.
-    pub fn new(tool: Tool) -> Self {
+    pub fn new(tool: Manipulator) -> Self {
         Self { tool, joint: None, path: Vec::new(), from: 0.0, until: None }
     }
 
@@ -42,12 +42,12 @@ impl Hand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::around::grab::Grab;
+    use crate::forces::grab::Grab;
 
     #[test]
     fn a_path_is_straight_between_its_keys_and_still_outside() {
         let grab = Grab { center: Vec3::ZERO, radius: 0.1, pull: 60.0, damping: 1.0 };
-        let mut hand = Hand::new(Tool::Grab(grab));
+        let mut hand = Hand::new(Manipulator::Grab(grab));
         assert_eq!(hand.moved(3.0), Vec3::ZERO);
         hand.path = vec![[1.0, 0.0, 0.0, 0.2], [2.0, 0.4, 0.0, 0.2], [4.0, 0.4, 1.0, 0.2]];
         for (time, at) in

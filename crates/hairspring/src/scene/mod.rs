@@ -19,9 +19,9 @@ pub use settings::{
 };
 
 use crate::{
-    air::{Shelter, Turbulence, WindSource},
-    around::charge::Charged,
+    air::{Turbulence, WindOcclusion, WindSource},
     body::{Body, Clip},
+    forces::charge::Charged,
     groom::Groom,
     material::Material,
 };
@@ -81,7 +81,7 @@ pub struct Scene {
     /// Eddies in the air.
     pub turbulence: Turbulence,
     /// Who stands in the lee.
-    pub shelter: Shelter,
+    pub wind_occlusion: WindOcclusion,
     /// Charged bodies.
     pub charged: Vec<Charged>,
     /// Gravity [m/s²]; the default of a scene file is (0, −9.81, 0).

@@ -1,6 +1,6 @@
 //! Settings of a scene that both code and scene files set; each field's default is the value that a file may leave out.
 
-use crate::collide::{Hull, Obstacle};
+use crate::collide::{ColliderShape, Hull};
 use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, sync::Arc};
@@ -60,17 +60,17 @@ pub struct Solver {
     /// How long hair falls from where its groom has it before the scene begins [s], 0 to 60. Where it lies then is its groom from there on: what
     /// [`Solver::sag_free`] puts in balance, and what a reset goes back to. Default 0: grooms are as they are made. For hair that is grown by a rule, 3: it stands
     /// off the skin, and long hair lies still by then.
-    pub settle: f32,
+    pub preroll: f32,
     /// Whether hair collides with the body's mesh. Default true.
     pub collide_body: bool,
     /// What keeps hair out of colliders. Default `both`.
     pub contact: Response,
     /// Whether segments are held out of colliders between their points as well. Default true; where none of them is longer than what it collides with is
     /// round, points alone do.
-    pub segments: bool,
+    pub segment_contacts: bool,
     /// Iterations of fast projection a substep (Goldenthal 2007), 0 to 20; strands of more than 32 points for each may take one for every
     /// 32. Default 3. For the implicit integrators.
-    pub projections: u32,
+    pub projection_iterations: u32,
     /// How a substep is made. Default `backward-euler`.
     pub integrator: Integrator,
     /// How exactly its equations are solved. Default `normal`.
@@ -79,9 +79,9 @@ pub struct Solver {
     pub inertia: f32,
     /// A head that moves farther than this in a frame, over how it moved before, has jumped, and hair is carried along as it is [m], above 0. Default 1:
     /// what moves so in 1/24 s is accelerated by 60 g.
-    pub jump: f32,
-    /// Whether materials' ghost rest shapes pull. Default true; no material has one by default.
-    pub ghost: bool,
+    pub teleport_distance: f32,
+    /// Whether materials' global shapes pull. Default true; no material has one by default.
+    pub global_shape: bool,
 }
 
 /// What answers a point, or a segment, that is inside of a collider (proposal §3.3).
@@ -172,16 +172,16 @@ impl Default for Solver {
         Self {
             substeps: 4,
             sag_free: true,
-            settle: 0.0,
+            preroll: 0.0,
             collide_body: true,
             contact: Response::Both,
-            segments: true,
-            projections: 3,
+            segment_contacts: true,
+            projection_iterations: 3,
             integrator: Integrator::default(),
             quality: Quality::default(),
             inertia: 1.0,
-            jump: 1.0,
-            ghost: true,
+            teleport_distance: 1.0,
+            global_shape: true,
         }
     }
 }
@@ -204,12 +204,12 @@ pub struct Volume {
     /// How fast lost volume is regained, for `incompressible`: the share a second [1/s], 0 or more, and at most all of it in 1/240 s.
     /// Default 30: hair that falls from standing out and is shaken keeps nine tenths of its volume so, three quarters with 10, and a
     /// quarter without a method (`hairspring bench --hair-hair`).
-    pub regain: f32,
+    pub recovery_rate: f32,
 }
 
 impl Default for Volume {
     fn default() -> Self {
-        Self { method: VolumeMethod::Off, cell: None, friction: 3.0, pressure: 0.5, regain: 30.0 }
+        Self { method: VolumeMethod::Off, cell: None, friction: 3.0, pressure: 0.5, recovery_rate: 30.0 }
     }
 }
 
@@ -327,17 +327,19 @@ pub enum Shape {
 
 impl Shape {
     /// The collider of this shape; `None` for the hull of points that span no volume.
-    pub fn obstacle(&self) -> Option<Obstacle> {
+    pub fn obstacle(&self) -> Option<ColliderShape> {
         Some(match *self {
-            Self::Sphere { center, radius } => Obstacle::Sphere { center, radius },
-            Self::Capsule { a, b, radius } => Obstacle::Capsule { a, b, radius },
+            Self::Sphere { center, radius } => ColliderShape::Sphere { center, radius },
+            Self::Capsule { a, b, radius } => ColliderShape::Capsule { a, b, radius },
             Self::Box { center, size, rotation } => {
                 let [x, y, z] = rotation.to_array().map(f32::to_radians);
                 let axes = Mat3::from_rotation_z(z) * Mat3::from_rotation_y(y) * Mat3::from_rotation_x(x);
-                Obstacle::Cuboid { center, half: 0.5 * size, axes }
+                ColliderShape::Cuboid { center, half: 0.5 * size, axes }
             }
-            Self::Plane { point, normal } => Obstacle::Plane { point, normal: normal.normalize_or(Vec3::Y) },
-            Self::Hull { ref points, .. } => Obstacle::Hull(Arc::new(Hull::new(points)?)),
+            Self::Plane { point, normal } => {
+                ColliderShape::Plane { point, normal: normal.normalize_or(Vec3::Y) }
+            }
+            Self::Hull { ref points, .. } => ColliderShape::Hull(Arc::new(Hull::new(points)?)),
         })
     }
 }

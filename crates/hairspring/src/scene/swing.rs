@@ -6,10 +6,10 @@
 
 use super::{Integrator, Scene, Solver, bench::FRAME};
 use crate::{
-    collide::Rigid,
+    collide::RigidTransform,
     groom::Groom,
     material::Material,
-    simulation::{Air, Drive, Energy, Measure, Simulation, StepReport},
+    simulation::{Air, Energy, Measure, Simulation, StepInput, StepReport},
 };
 use glam::{Quat, Vec3};
 use std::sync::Arc;
@@ -113,7 +113,7 @@ impl Sample {
 /// A sample in motion, by steps of any length.
 pub struct Swing {
     simulation: Simulation,
-    roots: Vec<Rigid>,
+    roots: Vec<RigidTransform>,
     /// Length of a step in the time of the simulation [s].
     step: f32,
     /// How many times faster than ours the time of the simulation goes.
@@ -141,7 +141,7 @@ impl Swing {
             .collect();
         let all: Vec<u32> = (0..sample.strand_count() as u32).collect();
         let roots = (0..sample.strand_count())
-            .map(|s| Rigid { translation: sample.groom.strand(s)[0], ..Rigid::default() })
+            .map(|s| RigidTransform { translation: sample.groom.strand(s)[0], ..RigidTransform::default() })
             .collect();
         let simulation = Simulation::new(
             sample.groom.clone(),
@@ -149,7 +149,7 @@ impl Swing {
             &materials,
             Solver { substeps: 1, integrator, ..sample.solver },
             sample.gravity * p2,
-            Rigid::default(),
+            RigidTransform::default(),
             &[],
         );
         Self { simulation, roots, step: (h / pace) as f32, pace }
@@ -157,9 +157,9 @@ impl Swing {
 
     /// Takes one step.
     pub fn step(&mut self) -> StepReport {
-        self.simulation.step(&Drive {
+        self.simulation.step(&StepInput {
             dt: self.step,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             roots: &self.roots,
             obstacles: &[],
             air: Air::default(),

@@ -2,7 +2,7 @@
 
 use super::{Simulation, build::simulated_points};
 use crate::{
-    collide::ObstaclePose,
+    collide::ColliderPose,
     material::Material,
     strand::lanes::{LANES, Row},
 };
@@ -33,7 +33,7 @@ impl Simulation {
     }
 
     /// How deep the segment to each point is at rest, see `sunk`.
-    pub(super) fn authored_depths(&self, obstacles: &[ObstaclePose]) -> Vec<Row> {
+    pub(super) fn authored_depths(&self, obstacles: &[ColliderPose]) -> Vec<Row> {
         let tiles: Vec<Vec<Row>> = self
             .tiles
             .par_iter()

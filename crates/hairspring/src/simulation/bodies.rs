@@ -1,19 +1,19 @@
 //! What stands in the way of wind, and of where hair is pulled to, in a frame.
 
-use super::MovingObstacle;
-use crate::collide::Rigid;
+use super::MovingCollider;
+use crate::collide::RigidTransform;
 use glam::Vec3;
 
 /// All obstacles of a frame.
 #[derive(Clone, Copy)]
 pub(crate) struct Bodies<'a> {
-    obstacles: &'a [MovingObstacle],
-    carried: Option<&'a Rigid>,
+    obstacles: &'a [MovingCollider],
+    carried: Option<&'a RigidTransform>,
 }
 
 impl<'a> Bodies<'a> {
     /// These obstacles, for hair that was `carried` along before the frame.
-    pub fn new((obstacles, carried): (&'a [MovingObstacle], Option<&'a Rigid>)) -> Self {
+    pub fn new((obstacles, carried): (&'a [MovingCollider], Option<&'a RigidTransform>)) -> Self {
         Self { obstacles, carried }
     }
 
@@ -29,12 +29,12 @@ impl<'a> Bodies<'a> {
 
     /// Distance from `place` to the nearest body at the start of the frame, below 0 inside [m].
     pub fn clearance(&self, place: Vec3) -> f32 {
-        let distance = |o: &MovingObstacle| o.shape.distance(o.start(self.carried).inverse_point(place));
+        let distance = |o: &MovingCollider| o.shape.distance(o.start(self.carried).inverse_point(place));
         self.obstacles.iter().map(distance).fold(f32::INFINITY, f32::min)
     }
 }
 
-fn out_of(obstacle: &MovingObstacle, pose: &Rigid, place: Vec3, clearance: f32) -> Vec3 {
+fn out_of(obstacle: &MovingCollider, pose: &RigidTransform, place: Vec3, clearance: f32) -> Vec3 {
     let (distance, normal) = obstacle.shape.distance_and_normal(pose.inverse_point(place));
     place - pose.rotation * normal * (distance - clearance).min(0.0)
 }

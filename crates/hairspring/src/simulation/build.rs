@@ -1,20 +1,23 @@
 //! From a groom to tiles: rest shapes and the sag-free start.
 
-use super::{Simulation, TilePlace, order::Order};
+use super::{Simulation, TilePlace, layout::Order};
 use crate::{
-    air::{Noise, Shade, Shelter},
-    around::{Around, HairField},
-    collide::{ObstaclePose, Rigid},
+    air::{Noise, OcclusionSampler, WindOcclusion},
+    collide::{ColliderPose, RigidTransform},
+    forces::{ForceBuffers, HairField},
     groom::{Groom, StrandScale},
     material::{Material, Model},
     scene::{Integrator, Solver},
     strand::{
         drag::{AIR_KINEMATIC_VISCOSITY, AIR_VISCOSITY},
-        interval::Interval,
+        frame_context::FrameContext,
         lanes::{LANES, Row},
         model::stretch::stiffening,
         rest_shape::{Fibre, RestShape, Start, rest_shape},
-        tile::{Elastic, RestRows, SpanRows, StateRows, StrandRows, history, rest, springs, state, strand},
+        tile::{
+            Elastic, RestRows, SegmentContactRows, StateRows, StrandRows, history, rest, springs, state,
+            strand,
+        },
         truss::{particles, truss},
     },
 };
@@ -28,7 +31,7 @@ pub(super) struct Settings {
     pub(super) solver: Solver,
     pub(super) gravity: Vec3,
     /// Where the anchor was at the end of the last step.
-    pub(super) anchor: Rigid,
+    pub(super) anchor: RigidTransform,
 }
 
 impl Simulation {
@@ -44,8 +47,8 @@ impl Simulation {
         materials: &[Material],
         solver: Solver,
         gravity: Vec3,
-        anchor: Rigid,
-        obstacles: &[ObstaclePose],
+        anchor: RigidTransform,
+        obstacles: &[ColliderPose],
     ) -> Self {
         let fallback = Material::default();
         let material =
@@ -86,38 +89,41 @@ impl Simulation {
             strand: vec![[Row::default(); strand::ROWS]; tiles.len()],
             rest: vec![[Row::default(); rest::ROWS]; first as usize],
             state: vec![[Row::default(); state::ROWS]; first as usize],
-            sunk: Vec::new(),
+            rest_penetration: Vec::new(),
             tethers: Vec::new(),
             longest: strands.iter().map(|s| groom.strand_length(*s as usize)).fold(0.0, f32::max),
             longest_segment: strands
                 .iter()
                 .flat_map(|s| groom.strand(*s as usize).windows(2).map(|w| w[0].distance(w[1])))
                 .fold(0.0, f32::max),
-            hairs: vec![groom.strand_count() as f32 / strands.len() as f32; groom.strand_count()],
-            touched: vec![Row::default(); tiles.len()],
-            spans: vec![SpanRows::default(); if solver.segments { first as usize } else { 0 }],
+            multiplicity: vec![groom.strand_count() as f32 / strands.len() as f32; groom.strand_count()],
+            contact_age: vec![Row::default(); tiles.len()],
+            segment_contacts: vec![
+                SegmentContactRows::default();
+                if solver.segment_contacts { first as usize } else { 0 }
+            ],
             history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],
             holds: Vec::new(),
-            around: Around::default(),
-            ghosts: materials.iter().map(|m| m.ghost).collect(),
-            tools: super::hands::Tools::default(),
+            forces: ForceBuffers::default(),
+            global_shapes: materials.iter().map(|m| m.global_shape).collect(),
+            tools: super::manipulators::Tools::default(),
             charges: materials.iter().map(|m| m.charge).collect(),
             charged: Vec::new(),
             hair_field: HairField::default(),
             volume: None,
             neighbours: None,
             tensions: Default::default(),
-            motion: super::carry::Motion::default(),
+            motion: super::teleport::Motion::default(),
             noise: Noise::default(),
-            shelter: Shelter::default(),
-            shade: Shade::default(),
+            wind_occlusion: WindOcclusion::default(),
+            shade: OcclusionSampler::default(),
             last_h: 0.0,
             groom,
             lanes,
             asked,
             tiles,
             settings: Settings { solver, gravity, anchor },
-            interval: Interval::default(),
+            interval: FrameContext::default(),
             level: super::levels().next().unwrap_or_else(Level::new),
             places,
             start: Start::default(),
@@ -127,12 +133,12 @@ impl Simulation {
         let springs = simulation.tiles.iter().any(|tile| tile.model == Elastic::Springs);
         let rows = |at: usize| simulation.state.iter().map(|rows| rows[at]).collect();
         simulation.tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
-        simulation.sunk = simulation.authored_depths(obstacles);
+        simulation.rest_penetration = simulation.authored_depths(obstacles);
         simulation.tethers = simulation.tethers(materials);
         simulation
     }
 
-    fn fill(&mut self, materials: &[Material], obstacles: &[ObstaclePose]) {
+    fn fill(&mut self, materials: &[Material], obstacles: &[ColliderPose]) {
         let fallback = Material::default();
         let material = |group: u16| materials.get(group as usize).or(materials.last()).unwrap_or(&fallback);
         let gravity =
@@ -363,8 +369,8 @@ impl Lane<'_> {
         &mut self,
         points: &[Vec3],
         shape: &RestShape,
-        anchor: Rigid,
-        obstacles: &[ObstaclePose],
+        anchor: RigidTransform,
+        obstacles: &[ColliderPose],
     ) {
         let lane = self.lane;
         let last = points.len() - 1;

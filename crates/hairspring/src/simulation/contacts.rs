@@ -1,11 +1,11 @@
 //! What colliders hold out now: how many points and segments, with what force, and how many points had a collider looked up.
 
-use super::{MovingObstacle, Simulation};
+use super::{MovingCollider, Simulation};
 use crate::{
-    collide::{Obstacle, Rigid},
+    collide::{ColliderShape, RigidTransform},
     strand::{
         lanes::LANES,
-        tile::{span, state},
+        tile::{segment_contact, state},
     },
 };
 use glam::Vec3;
@@ -27,7 +27,7 @@ pub struct Contacts {
 
 impl Simulation {
     /// Counts the contacts of all strands with `obstacles`, those of the last step.
-    pub fn contacts(&self, obstacles: &[MovingObstacle]) -> Contacts {
+    pub fn contacts(&self, obstacles: &[MovingCollider]) -> Contacts {
         let poses: Vec<_> = obstacles.iter().map(|o| (&o.shape, o.end)).collect();
         // Summed up in order, so that the force has the same bits for any number of threads.
         let of_strands: Vec<Contacts> =
@@ -40,7 +40,7 @@ impl Simulation {
         })
     }
 
-    fn strand_contacts(&self, place: usize, poses: &[(&Obstacle, Rigid)]) -> Contacts {
+    fn strand_contacts(&self, place: usize, poses: &[(&ColliderShape, RigidTransform)]) -> Contacts {
         let (tile, lane) = (place / LANES, place % LANES);
         let (first, stride) = (self.tiles[tile].first as usize, self.tiles[tile].model.stride());
         let root = self.root_position(place);
@@ -48,8 +48,11 @@ impl Simulation {
         // The first two points are the root's.
         for (i, x) in self.particles(place).enumerate().step_by(stride).skip(2) {
             let at = first + i;
-            let point = f64::from(self.state[at][state::PRESS].0[lane]);
-            let segment = self.spans.get(at).map_or(0.0, |rows| f64::from(rows[span::FORCE].0[lane]));
+            let point = f64::from(self.state[at][state::NORMAL_FORCE].0[lane]);
+            let segment = self
+                .segment_contacts
+                .get(at)
+                .map_or(0.0, |rows| f64::from(rows[segment_contact::FORCE].0[lane]));
             out.points += usize::from(point > 0.0);
             out.segments += usize::from(segment > 0.0);
             out.force += point.max(0.0) + segment.max(0.0);
@@ -60,12 +63,12 @@ impl Simulation {
 }
 
 /// Whether a substep asks for the distance of `p` in the world from a shape.
-fn may_touch(shape: &Obstacle, pose: &Rigid, p: Vec3) -> bool {
+fn may_touch(shape: &ColliderShape, pose: &RigidTransform, p: Vec3) -> bool {
     let (center, radius) = shape.bounds();
     let local = pose.inverse_point(p);
     local.distance(center) <= radius
         && match shape {
-            Obstacle::Field(grid) => grid.may_be_inside_at(local),
+            ColliderShape::Field(grid) => grid.may_be_inside_at(local),
             _ => true,
         }
 }

@@ -13,11 +13,11 @@
 //!
 //! # Missing
 //! n is that of the groom at rest. Wind from every side reaches a point along the same path; the lee behind hair and bodies is
-//! [`crate::air::Shelter`].
+//! [`crate::air::WindOcclusion`].
 
 use super::Simulation;
 use crate::{
-    collide::ObstaclePose,
+    collide::ColliderPose,
     strand::{
         drag::AIR_KINEMATIC_VISCOSITY,
         lanes::LANES,
@@ -48,7 +48,7 @@ const LEAST: f32 = 0.02;
 impl Simulation {
     /// Lets hair shelter itself from the air from now on, by how dense the groom is at rest among `obstacles` at rest. Without it every strand is
     /// a lone hair.
-    pub fn set_self_shelter(&mut self, obstacles: &[ObstaclePose]) {
+    pub fn set_self_occlusion(&mut self, obstacles: &[ColliderPose]) {
         let points = || self.strands().flat_map(|s| self.groom.strand(s as usize).iter().copied());
         let low = points().fold(Vec3::INFINITY, Vec3::min);
         let high = points().fold(Vec3::NEG_INFINITY, Vec3::max);
@@ -78,7 +78,7 @@ impl Simulation {
         let mut grid = Grid::new(low, high, edge);
         for (place, s) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let reynolds = self.strand[place / LANES][strand::REYNOLDS].0[place % LANES];
-            let width = self.hairs[*s as usize] * reynolds * AIR_KINEMATIC_VISCOSITY;
+            let width = self.multiplicity[*s as usize] * reynolds * AIR_KINEMATIC_VISCOSITY;
             for w in self.groom.strand(*s as usize).windows(2) {
                 grid.add(w[0], w[1], width);
             }
@@ -130,7 +130,7 @@ impl Grid {
     }
 
     /// The least τ from outside to each cell, its own not counted (Dijkstra 1959); infinite where colliders enclose it.
-    fn depths(&self, obstacles: &[ObstaclePose]) -> Vec<f32> {
+    fn depths(&self, obstacles: &[ColliderPose]) -> Vec<f32> {
         let steps = [1, self.dims[0], self.dims[0] * self.dims[1]];
         let along = |cell: usize, axis: usize| cell / steps[axis] % self.dims[axis];
         let blocked = |cell: usize| {

@@ -1,8 +1,8 @@
 //! What a simulation is judged by: stretch, depth inside colliders, non-finite values.
 
-use super::{MovingObstacle, Simulation};
+use super::{MovingCollider, Simulation};
 use crate::{
-    collide::Rigid,
+    collide::RigidTransform,
     strand::{
         lanes::LANES,
         tile::{rest, state},
@@ -12,7 +12,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 /// Figures over all simulated points at the end of a step. Depth in the distance field of a mesh is depth in the mesh itself
-/// ([`Obstacle::distance_to_surface`](crate::collide::Obstacle::distance_to_surface)); that of hair authored inside is in the field, as the depth of its start is.
+/// ([`ColliderShape::distance_to_surface`](crate::collide::ColliderShape::distance_to_surface)); that of hair authored inside is in the field, as the depth of its start is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measure {
     /// Mean of |ℓ/L − 1| over segments [1].
@@ -43,7 +43,7 @@ pub struct Measure {
 
 impl Simulation {
     /// Measures the state against the colliders at the end of their frame.
-    pub fn measure(&self, obstacles: &[MovingObstacle]) -> Measure {
+    pub fn measure(&self, obstacles: &[MovingCollider]) -> Measure {
         let poses: Vec<_> = obstacles.iter().map(|o| (o, o.end)).collect();
         let (sum, segments, figures) =
             self.places.par_iter().map(|&place| self.measure_strand(place as usize, &poses)).reduce(
@@ -68,7 +68,11 @@ impl Simulation {
         Measure { stretch_mean: sum / segments.max(1) as f64, ..figures }
     }
 
-    fn measure_strand(&self, place: usize, poses: &[(&MovingObstacle, Rigid)]) -> (f64, usize, Measure) {
+    fn measure_strand(
+        &self,
+        place: usize,
+        poses: &[(&MovingCollider, RigidTransform)],
+    ) -> (f64, usize, Measure) {
         let mut out = Measure::default();
         let (mut sum, mut segments) = (0.0, 0);
         let root = self.root_position(place);
@@ -132,10 +136,10 @@ impl Simulation {
 
 /// The obstacles that may be nearer to `p` than `reach` [m], by the balls around them.
 fn near<'a>(
-    poses: &'a [(&MovingObstacle, Rigid)],
+    poses: &'a [(&MovingCollider, RigidTransform)],
     p: Vec3,
     reach: f32,
-) -> impl Iterator<Item = &'a (&'a MovingObstacle, Rigid)> {
+) -> impl Iterator<Item = &'a (&'a MovingCollider, RigidTransform)> {
     poses.iter().filter(move |(o, pose)| {
         let (center, radius) = o.shape.bounds();
         // The ball is known to rounding.

@@ -3,48 +3,51 @@
 mod authored;
 mod bodies;
 mod build;
-mod carry;
 mod contacts;
-mod crowd;
 mod energy;
 mod exposure;
-mod fast;
-mod hands;
+mod external_forces;
 mod hold;
+mod layout;
+mod manipulators;
 mod measure;
-mod meet;
-mod order;
-mod parts;
 mod place;
 mod reset;
 mod step;
-mod surround;
+mod strand_contacts;
+mod strand_parts;
+mod substeps;
 mod take_over;
+mod teleport;
 mod values;
+mod volume;
 
 pub use crate::air::Air;
-pub use crate::neighbours::NeighboursReport;
 pub use crate::strand::rest_shape::Start;
+pub use crate::strand_contact::NeighboursReport;
 pub use crate::volume::VolumeReport;
 pub(crate) use bodies::Bodies;
 pub use contacts::Contacts;
 pub use energy::Energy;
-pub(crate) use fast::PART;
-pub use hands::ToolId;
 pub use hold::Hold;
+pub use manipulators::ManipulatorId;
 pub use measure::Measure;
-pub use step::{Drive, MovingObstacle, StepReport, StepTimes};
+pub use step::{MovingCollider, StepInput, StepReport, StepTimes};
+pub(crate) use substeps::PART;
 
 use crate::{
-    air::{Noise, Shade, Shelter},
-    around::{Around, HairField, charge::ChargedBall, ghost::Ghost},
+    air::{Noise, OcclusionSampler, WindOcclusion},
+    forces::{ForceBuffers, HairField, charge::ChargedBall, global_shape::GlobalShape},
     groom::Groom,
-    neighbours::Neighbours,
     strand::{
-        interval::Interval,
+        frame_context::FrameContext,
         lanes::{LANES, Row},
-        tile::{Elastic, HistoryRows, HoldRows, RestRows, SpanRows, StateRows, StrandRows, state, strand},
+        tile::{
+            Elastic, HistoryRows, HoldRows, RestRows, SegmentContactRows, StateRows, StrandRows, state,
+            strand,
+        },
     },
+    strand_contact::Neighbours,
     volume::Volume,
 };
 use fearless_simd::Level;
@@ -72,11 +75,11 @@ pub struct Simulation {
     state: Vec<StateRows>,
     /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]; as long as `state`, or empty where
     /// none was.
-    sunk: Vec<Row>,
+    rest_penetration: Vec<Row>,
     /// For how much longer each strand counts as one that touches something [s]; one for each tile.
-    touched: Vec<Row>,
+    contact_age: Vec<Row>,
     /// What presses the segment to each point between its ends; empty where segments are no contacts.
-    spans: Vec<SpanRows>,
+    segment_contacts: Vec<SegmentContactRows>,
     /// How far each point may be from its root [m]; empty where no material has a tether.
     tethers: Vec<Row>,
     /// Length of the longest strand [m].
@@ -84,17 +87,17 @@ pub struct Simulation {
     /// Length of the longest segment [m].
     longest_segment: f32,
     /// How many hairs each strand of the groom stands for; shape `[strands of the groom]`.
-    hairs: Vec<f32>,
+    multiplicity: Vec<f32>,
     /// As long as `state` for the integrator of second order, else empty.
     history: Vec<HistoryRows>,
     /// What holds points from outside, for each tile; empty where nothing does.
     holds: Vec<Vec<HoldRows>>,
     /// What acts on points from outside in the last frame.
-    around: Around,
+    forces: ForceBuffers,
     /// Pull of each material to the rest shape; a group past the end uses the last.
-    ghosts: Vec<Ghost>,
+    global_shapes: Vec<GlobalShape>,
     /// What hands hold to the hair.
-    tools: hands::Tools,
+    tools: manipulators::Tools,
     /// Charge of each material's hair [C/m]; a group past the end uses the last.
     charges: Vec<f32>,
     charged: Vec<ChargedBall>,
@@ -106,17 +109,17 @@ pub struct Simulation {
     /// Tensions of the rest shape, of segments and, in the springs model, of triangles' sides; shapes as `state`, the second empty without springs.
     tensions: [Vec<Row>; 2],
     /// How the anchor moved in the last frame.
-    motion: carry::Motion,
+    motion: teleport::Motion,
     /// The air's eddies in the last frame.
     noise: Noise,
     /// How bodies and hair shelter from the wind, and what they left of it in the last frame.
-    shelter: Shelter,
-    shade: Shade,
+    wind_occlusion: WindOcclusion,
+    shade: OcclusionSampler,
     /// Length of the last substep [s].
     last_h: f32,
     settings: build::Settings,
     /// The last step's interval, kept for its memory.
-    interval: Interval,
+    interval: FrameContext,
     level: Level,
     /// Lane of each simulated strand, in the order that the caller named them.
     places: Vec<u32>,
@@ -159,16 +162,17 @@ impl Simulation {
         size_of_val(&self.strand[..])
             + size_of_val(&self.rest[..])
             + size_of_val(&self.state[..])
-            + size_of_val(&self.sunk[..])
-            + size_of_val(&self.touched[..])
-            + size_of_val(&self.spans[..])
+            + size_of_val(&self.rest_penetration[..])
+            + size_of_val(&self.contact_age[..])
+            + size_of_val(&self.segment_contacts[..])
             + size_of_val(&self.tethers[..])
             + size_of_val(&self.history[..])
-            + self.around.bytes()
+            + self.forces.bytes()
             + self.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
             + self.volume.as_ref().map_or(0, |volume| volume.bytes())
             + self.neighbours.as_ref().map_or(0, |neighbours| neighbours.bytes())
-            + (self.lanes.len() + self.asked.len() + self.places.len() + self.hairs.len()) * size_of::<u32>()
+            + (self.lanes.len() + self.asked.len() + self.places.len() + self.multiplicity.len())
+                * size_of::<u32>()
             + self.tiles.len() * size_of::<TilePlace>()
     }
 
@@ -196,9 +200,9 @@ impl Simulation {
     ///
     /// # Panics
     /// If there is not one number for each strand of the groom.
-    pub fn set_hairs(&mut self, hairs: Vec<f32>) {
+    pub fn set_hair_multiplicity(&mut self, hairs: Vec<f32>) {
         assert_eq!(hairs.len(), self.groom.strand_count(), "a number for each strand of the groom");
-        self.hairs = hairs;
+        self.multiplicity = hairs;
     }
 
     /// What charged bodies act on charged hair in the next frame.
@@ -270,7 +274,7 @@ impl Simulation {
     /// How deep the segment to point `i` was authored, 0 or less [m].
     fn sunk(&self, place: usize, i: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
-        self.sunk.get(self.tiles[tile].first as usize + i).map_or(0.0, |row| row.0[lane])
+        self.rest_penetration.get(self.tiles[tile].first as usize + i).map_or(0.0, |row| row.0[lane])
     }
 
     /// World position of a root at the end of the last step.

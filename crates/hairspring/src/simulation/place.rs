@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::{
-    collide::Rigid,
+    collide::RigidTransform,
     strand::{lanes::LANES, tile::strand},
 };
 
@@ -12,7 +12,7 @@ impl Simulation {
     ///
     /// # Panics
     /// If `roots` is not as long as [`Simulation::strand_count`].
-    pub fn place(&mut self, anchor: Rigid, roots: &[Rigid]) {
+    pub fn place(&mut self, anchor: RigidTransform, roots: &[RigidTransform]) {
         assert_eq!(roots.len(), self.places.len(), "one root pose for each simulated strand");
         self.settings.anchor = anchor;
         let turn = anchor.rotation.inverse();

@@ -60,7 +60,7 @@ impl Simulation {
         if let Some(neighbours) = &mut self.neighbours {
             neighbours.forget();
         }
-        self.motion = super::carry::Motion::default();
+        self.motion = super::teleport::Motion::default();
         self.last_h = 0.0;
     }
 
@@ -72,7 +72,7 @@ impl Simulation {
         let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
         let points = simulated_points(self.tiles[tile].model, self.groom.strand(self.lanes[place] as usize))
             .into_owned();
-        self.touched[tile].0[lane] = 0.0;
+        self.contact_age[tile].0[lane] = 0.0;
         let springs = self.tiles[tile].model == Elastic::Springs;
         for i in 0..self.tiles[tile].points as usize {
             let at = |i: usize| points[i.min(points.len() - 1)];
@@ -81,7 +81,7 @@ impl Simulation {
             if let Some(history) = self.history.get_mut(at) {
                 history.iter_mut().for_each(|r| r.0[lane] = 0.0);
             }
-            if let Some(span) = self.spans.get_mut(at) {
+            if let Some(span) = self.segment_contacts.get_mut(at) {
                 span.iter_mut().for_each(|r| r.0[lane] = 0.0);
             }
             let rows = &mut self.state[at];

@@ -3,17 +3,17 @@
 use super::{Bodies, Simulation, TilePlace, reset};
 use crate::{
     air::Air,
-    collide::{Obstacle, ObstaclePose, Rigid},
+    collide::{ColliderPose, ColliderShape, RigidTransform},
     scene::{Integrator, Quality, Solver},
     strand::{
-        interval::{Interval, Substep},
+        frame_context::{FrameContext, Substep},
         lanes::{LANES, Row},
         model::{curvature, rod, springs, straight},
         scratch::Memory,
-        segment::may_be_left,
+        segment::segment_contact_unneeded,
         tile::{
-            Elastic, HistoryRows, HoldRows, RestRows, SpanRows, StateRows, StrandRows, Tile, grip, span,
-            strand, tines,
+            Elastic, HistoryRows, HoldRows, RestRows, SegmentContactRows, StateRows, StrandRows, Tile,
+            anisotropic_drag, position_spring, segment_contact, strand,
         },
     },
 };
@@ -22,46 +22,46 @@ use rayon::prelude::*;
 use std::{cell::RefCell, time::Duration};
 
 /// A frame's input, all at the end of it; the start is where the last step ended.
-pub struct Drive<'a> {
+pub struct StepInput<'a> {
     /// Length of the frame [s], above 0.
     pub dt: f32,
     /// Pose of the frame that roots move with (the head): between frames roots travel on its arc.
-    pub anchor: Rigid,
+    pub anchor: RigidTransform,
     /// World pose of each simulated root, in the order given to [`Simulation::new`]: position [m] and rotation since rest.
-    pub roots: &'a [Rigid],
+    pub roots: &'a [RigidTransform],
     /// Colliders.
-    pub obstacles: &'a [MovingObstacle],
+    pub obstacles: &'a [MovingCollider],
     /// Moving air.
     pub air: Air<'a>,
 }
 
 /// A collider and its pose at the start and the end of a frame.
 #[derive(Clone)]
-pub struct MovingObstacle {
+pub struct MovingCollider {
     /// The shape in its own space.
-    pub shape: Obstacle,
+    pub shape: ColliderShape,
     /// Pose at the start.
-    pub start: Rigid,
+    pub start: RigidTransform,
     /// Pose at the end.
-    pub end: Rigid,
+    pub end: RigidTransform,
 }
 
-impl MovingObstacle {
+impl MovingCollider {
     /// A shape that stays at `pose`.
-    pub fn at_rest(shape: Obstacle, pose: Rigid) -> Self {
+    pub fn at_rest(shape: ColliderShape, pose: RigidTransform) -> Self {
         Self { shape, start: pose, end: pose }
     }
 
     /// As it is at the end of the frame, having moved in all of it.
-    pub fn now(&self) -> ObstaclePose {
-        ObstaclePose::new(self.shape.clone(), self.start.matrix(), self.end.matrix(), 1.0)
+    pub fn now(&self) -> ColliderPose {
+        ColliderPose::new(self.shape.clone(), self.start.matrix(), self.end.matrix(), 1.0)
     }
 
     /// Its start for hair that was carried along by `by` before the frame: the obstacle was too, or it was not, whichever leaves it less far to go.
-    pub(crate) fn start(&self, by: Option<&Rigid>) -> Rigid {
+    pub(crate) fn start(&self, by: Option<&RigidTransform>) -> RigidTransform {
         let Some(by) = by else { return self.start };
         let carried = by.after(&self.start);
-        let far = |from: &Rigid| {
+        let far = |from: &RigidTransform| {
             let turned = 1.0 - from.rotation.dot(self.end.rotation).abs();
             from.translation.distance_squared(self.end.translation) + turned
         };
@@ -85,7 +85,7 @@ pub struct StepReport {
 pub struct StepTimes {
     /// Hair's density and what it does to hair, in each of the volume's intervals.
     pub volume: Duration,
-    /// Roots, wind, ghosts, charge and hands, once a frame.
+    /// Roots, wind, global shapes, charge and hands, once a frame.
     pub forces: Duration,
     /// All substeps of all strands: assembly, solve, projection, contact with colliders, strain limit.
     pub solve: Duration,
@@ -129,13 +129,13 @@ impl Simulation {
     ///
     /// # Panics
     /// If `drive.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
-    pub fn step(&mut self, drive: &Drive) -> StepReport {
+    pub fn step(&mut self, drive: &StepInput) -> StepReport {
         assert_eq!(drive.roots.len(), self.places.len(), "one root pose for each simulated strand");
         assert!(drive.dt > 0.0, "a step takes time");
         let solver = self.settings.solver;
         let carried = self.carry_along(drive);
         // Of bodies with fast limbs each part has as many.
-        let parts = drive.obstacles.iter().map(|o| o.shape.parts() as u32).max().unwrap_or(1);
+        let parts = drive.obstacles.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
         let substeps = ((f64::from(drive.dt) / (substep_length(&solver) * LONGER)).ceil() as u32)
             .max(self.substeps_past(drive, carried.as_ref()))
             .clamp(1, MAX_SUBSTEPS)
@@ -145,7 +145,7 @@ impl Simulation {
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
         if looked_at && !interval.segments {
             // What pressed segments is forgotten: nothing corrects it until they are looked at again.
-            self.spans.fill([Row::default(); span::ROWS]);
+            self.segment_contacts.fill([Row::default(); segment_contact::ROWS]);
         }
         self.begin_tools(&Bodies::new((drive.obstacles, carried.as_ref())));
         let (reset_strands, times) = self.run_in_parts(drive, carried.as_ref(), &mut interval);
@@ -159,24 +159,24 @@ impl Simulation {
     }
 
     /// Runs the interval's substeps; returns how many strands turned non-finite and were reset.
-    pub(super) fn run(&mut self, interval: &Interval) -> usize {
+    pub(super) fn run(&mut self, interval: &FrameContext) -> usize {
         let reset = run(
             self.level,
             interval,
-            Piece {
+            TileRange {
                 tiles: &self.tiles,
                 strand: &self.strand,
                 rest: &self.rest,
                 state: &mut self.state,
                 history: &mut self.history,
-                push: &self.around.push,
-                grip: &self.around.grip,
-                tines: &self.around.tines,
-                air: &self.around.air,
-                sunk: &self.sunk,
-                touched: &mut self.touched,
-                spans: if interval.segments { &mut self.spans } else { &mut [] },
-                tethers: &self.tethers,
+                external_acceleration: &self.forces.external_acceleration,
+                position_spring: &self.forces.position_spring,
+                anisotropic_drag: &self.forces.anisotropic_drag,
+                wind_delta: &self.forces.wind_delta,
+                rest_penetration: &self.rest_penetration,
+                contact_age: &mut self.contact_age,
+                segment_contacts: if interval.segments { &mut self.segment_contacts } else { &mut [] },
+                tether_lengths: &self.tethers,
                 holds: &self.holds,
             },
         );
@@ -184,7 +184,13 @@ impl Simulation {
     }
 
     /// Fills `interval` for a frame; its memory is used again.
-    fn fill_interval(&self, drive: &Drive, carried: Option<&Rigid>, count: u32, interval: &mut Interval) {
+    fn fill_interval(
+        &self,
+        drive: &StepInput,
+        carried: Option<&RigidTransform>,
+        count: u32,
+        interval: &mut FrameContext,
+    ) {
         let from = self.settings.anchor;
         interval.h = drive.dt / count as f32;
         let solver = self.settings.solver;
@@ -198,11 +204,12 @@ impl Simulation {
         interval.continues = (interval.h / self.last_h - 1.0).abs() < 1e-3;
         interval.response = solver.contact;
         // As long as a segment may become: without a limit any is looked at.
-        let may_cut = |o: &MovingObstacle| {
-            !(solver.integrator.limits_strain() && may_be_left(self.longest_segment, o.shape.roundness()))
+        let may_cut = |o: &MovingCollider| {
+            !(solver.integrator.limits_strain()
+                && segment_contact_unneeded(self.longest_segment, o.shape.roundness()))
         };
-        interval.segments = solver.segments && drive.obstacles.iter().any(may_cut);
-        interval.projections = solver.projections;
+        interval.segments = solver.segment_contacts && drive.obstacles.iter().any(may_cut);
+        interval.projection_iterations = solver.projection_iterations;
         interval.gravity = self.settings.gravity;
         interval.anchor = from.matrix();
         interval.substeps.resize_with(count as usize, Substep::default);
@@ -217,15 +224,15 @@ impl Simulation {
             substep.obstacles.extend(drive.obstacles.iter().map(|o| {
                 let start = o.start(carried);
                 let at = |t: f32| start.lerp(&o.end, t).matrix();
-                let (parts, count) = (o.shape.parts(), count as usize);
-                let shape = o.shape.part(k * parts / count);
-                ObstaclePose::new(shape, at(before), at(fraction), parts as f32 / count as f32)
+                let (parts, count) = (o.shape.time_slices(), count as usize);
+                let shape = o.shape.time_slice(k * parts / count);
+                ColliderPose::new(shape, at(before), at(fraction), parts as f32 / count as f32)
             }));
         }
     }
 
     /// Last frame's root poses become the start, the drive's the end, both relative to the anchor.
-    pub(super) fn move_roots(&mut self, drive: &Drive) {
+    pub(super) fn move_roots(&mut self, drive: &StepInput) {
         let turn = drive.anchor.rotation.inverse();
         let tiles = self.strand.par_iter_mut().zip(self.asked.par_chunks(LANES));
         tiles.with_min_len(8 * TILES_PER_TASK).for_each(|(rows, asked)| {
@@ -249,24 +256,24 @@ impl Simulation {
 }
 
 /// The arrays of some tiles.
-struct Piece<'a> {
+struct TileRange<'a> {
     tiles: &'a [TilePlace],
     strand: &'a [StrandRows],
     rest: &'a [RestRows],
     state: &'a mut [StateRows],
     history: &'a mut [HistoryRows],
-    push: &'a [[Row; 3]],
-    grip: &'a [[Row; grip::ROWS]],
-    tines: &'a [[Row; tines::ROWS]],
-    air: &'a [[Row; 3]],
-    sunk: &'a [Row],
-    touched: &'a mut [Row],
-    spans: &'a mut [SpanRows],
-    tethers: &'a [Row],
+    external_acceleration: &'a [[Row; 3]],
+    position_spring: &'a [[Row; position_spring::ROWS]],
+    anisotropic_drag: &'a [[Row; anisotropic_drag::ROWS]],
+    wind_delta: &'a [[Row; 3]],
+    rest_penetration: &'a [Row],
+    contact_age: &'a mut [Row],
+    segment_contacts: &'a mut [SegmentContactRows],
+    tether_lengths: &'a [Row],
     holds: &'a [Vec<HoldRows>],
 }
 
-impl<'a> Piece<'a> {
+impl<'a> TileRange<'a> {
     /// The first `count` tiles, and the others.
     fn split(self, count: usize) -> (Self, Self) {
         let points = (self.tiles[count].first - self.tiles[0].first) as usize;
@@ -275,46 +282,52 @@ impl<'a> Piece<'a> {
         let (rest, more_rest) = self.rest.split_at(points);
         let (state, more_state) = self.state.split_at_mut(points);
         let (history, more_history) = self.history.split_at_mut(points.min(self.history.len()));
-        let (push, more_push) = self.push.split_at(points.min(self.push.len()));
-        let (grip, more_grip) = self.grip.split_at(points.min(self.grip.len()));
-        let (tines, more_tines) = self.tines.split_at(points.min(self.tines.len()));
-        let (air, more_air) = self.air.split_at(points.min(self.air.len()));
-        let (sunk, more_sunk) = self.sunk.split_at(points.min(self.sunk.len()));
-        let (touched, more_touched) = self.touched.split_at_mut(count);
-        let (spans, more_spans) = self.spans.split_at_mut(points.min(self.spans.len()));
-        let (tethers, more_tethers) = self.tethers.split_at(points.min(self.tethers.len()));
+        let (external_acceleration, more_external_acceleration) =
+            self.external_acceleration.split_at(points.min(self.external_acceleration.len()));
+        let (position_spring, more_position_spring) =
+            self.position_spring.split_at(points.min(self.position_spring.len()));
+        let (anisotropic_drag, more_anisotropic_drag) =
+            self.anisotropic_drag.split_at(points.min(self.anisotropic_drag.len()));
+        let (wind_delta, more_wind_delta) = self.wind_delta.split_at(points.min(self.wind_delta.len()));
+        let (rest_penetration, more_rest_penetration) =
+            self.rest_penetration.split_at(points.min(self.rest_penetration.len()));
+        let (contact_age, more_contact_age) = self.contact_age.split_at_mut(count);
+        let (segment_contacts, more_segment_contacts) =
+            self.segment_contacts.split_at_mut(points.min(self.segment_contacts.len()));
+        let (tether_lengths, more_tether_lengths) =
+            self.tether_lengths.split_at(points.min(self.tether_lengths.len()));
         let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
         (
-            Piece {
+            TileRange {
                 tiles,
                 strand,
                 rest,
                 state,
                 history,
-                push,
-                grip,
-                tines,
-                air,
-                sunk,
-                touched,
-                spans,
-                tethers,
+                external_acceleration,
+                position_spring,
+                anisotropic_drag,
+                wind_delta,
+                rest_penetration,
+                contact_age,
+                segment_contacts,
+                tether_lengths,
                 holds,
             },
-            Piece {
+            TileRange {
                 tiles: more_tiles,
                 strand: more_strand,
                 rest: more_rest,
                 state: more_state,
                 history: more_history,
-                push: more_push,
-                grip: more_grip,
-                tines: more_tines,
-                air: more_air,
-                sunk: more_sunk,
-                touched: more_touched,
-                spans: more_spans,
-                tethers: more_tethers,
+                external_acceleration: more_external_acceleration,
+                position_spring: more_position_spring,
+                anisotropic_drag: more_anisotropic_drag,
+                wind_delta: more_wind_delta,
+                rest_penetration: more_rest_penetration,
+                contact_age: more_contact_age,
+                segment_contacts: more_segment_contacts,
+                tether_lengths: more_tether_lengths,
                 holds: more_holds,
             },
         )
@@ -332,21 +345,41 @@ impl<'a> Piece<'a> {
             rest: &self.rest[points.clone()],
             state: &mut self.state[points.clone()],
             history: if self.history.is_empty() { &mut [] } else { &mut self.history[points.clone()] },
-            push: if self.push.is_empty() { &[] } else { &self.push[points.clone()] },
-            grip: if self.grip.is_empty() { &[] } else { &self.grip[points.clone()] },
-            tines: if self.tines.is_empty() { &[] } else { &self.tines[points.clone()] },
-            air: if self.air.is_empty() { &[] } else { &self.air[points.clone()] },
-            sunk: if self.sunk.is_empty() { &[] } else { &self.sunk[points.clone()] },
-            touched: &mut self.touched[k],
-            spans: if self.spans.is_empty() { &mut [] } else { &mut self.spans[points.clone()] },
-            tethers: if self.tethers.is_empty() { &[] } else { &self.tethers[points] },
+            external_acceleration: if self.external_acceleration.is_empty() {
+                &[]
+            } else {
+                &self.external_acceleration[points.clone()]
+            },
+            position_spring: if self.position_spring.is_empty() {
+                &[]
+            } else {
+                &self.position_spring[points.clone()]
+            },
+            anisotropic_drag: if self.anisotropic_drag.is_empty() {
+                &[]
+            } else {
+                &self.anisotropic_drag[points.clone()]
+            },
+            wind_delta: if self.wind_delta.is_empty() { &[] } else { &self.wind_delta[points.clone()] },
+            rest_penetration: if self.rest_penetration.is_empty() {
+                &[]
+            } else {
+                &self.rest_penetration[points.clone()]
+            },
+            contact_age: &mut self.contact_age[k],
+            segment_contacts: if self.segment_contacts.is_empty() {
+                &mut []
+            } else {
+                &mut self.segment_contacts[points.clone()]
+            },
+            tether_lengths: if self.tether_lengths.is_empty() { &[] } else { &self.tether_lengths[points] },
             holds: self.holds.get(k).map_or(&[], |holds| holds),
         }
     }
 }
 
 /// Runs tiles on all threads, halving the arrays until a task is small; true if any point turned non-finite.
-fn run(level: Level, interval: &Interval, mut piece: Piece) -> bool {
+fn run(level: Level, interval: &FrameContext, mut piece: TileRange) -> bool {
     let count = piece.tiles.len();
     if count > TILES_PER_TASK {
         let half = (count / 2).next_multiple_of(TILES_PER_TASK).min(count - 1);

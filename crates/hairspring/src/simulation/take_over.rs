@@ -35,7 +35,8 @@ impl Simulation {
         self.last_h = old.last_h;
         self.interval.segments = old.interval.segments;
         self.charged.clone_from(&old.charged);
-        self.sunk = if old.sunk.is_empty() { Vec::new() } else { vec![Row::default(); self.state.len()] };
+        self.rest_penetration =
+            if old.rest_penetration.is_empty() { Vec::new() } else { vec![Row::default(); self.state.len()] };
         let mut lanes = vec![u32::MAX; old.lanes.len()];
         for k in 0..self.places.len() {
             let (place, from) = (self.places[k] as usize, old.places[k] as usize);
@@ -44,7 +45,7 @@ impl Simulation {
             for (row, was) in rows[..strand::FIRST].iter_mut().zip(&old.strand[from / LANES]) {
                 row.0[place % LANES] = was.0[from % LANES];
             }
-            self.touched[place / LANES].0[place % LANES] = old.touched[from / LANES].0[from % LANES];
+            self.contact_age[place / LANES].0[place % LANES] = old.contact_age[from / LANES].0[from % LANES];
             if self.tiles[place / LANES].model == old.tiles[from / LANES].model {
                 self.take_rows(place, old, from);
             } else {
@@ -67,7 +68,7 @@ impl Simulation {
         let model = self.tiles[place / LANES].model;
         let forces = self.carries_forces() && old.carries_forces();
         let tensions = [Some(state::TENSION), (model == Elastic::Springs).then_some(springs::SIDE)];
-        let kept = |at: usize| !forces && (tensions.contains(&Some(at)) || at == state::PRESS);
+        let kept = |at: usize| !forces && (tensions.contains(&Some(at)) || at == state::NORMAL_FORCE);
         let (tile, was) = (self.tiles[place / LANES], old.tiles[from / LANES]);
         let (lane, from_lane) = (place % LANES, from % LANES);
         for i in 0..tile.points.min(was.points) {
@@ -78,10 +79,12 @@ impl Simulation {
             for at in [rest::CLEARANCE, rest::EXPOSURE] {
                 self.rest[to][at].0[lane] = old.rest[from][at].0[from_lane];
             }
-            if let Some(sunk) = self.sunk.get_mut(to) {
-                sunk.0[lane] = old.sunk[from].0[from_lane];
+            if let Some(sunk) = self.rest_penetration.get_mut(to) {
+                sunk.0[lane] = old.rest_penetration[from].0[from_lane];
             }
-            if let (true, Some(span), Some(was)) = (forces, self.spans.get_mut(to), old.spans.get(from)) {
+            if let (true, Some(span), Some(was)) =
+                (forces, self.segment_contacts.get_mut(to), old.segment_contacts.get(from))
+            {
                 span.iter_mut().zip(was).for_each(|(row, was)| row.0[lane] = was.0[from_lane]);
             }
             if let (Some(history), Some(was)) = (self.history.get_mut(to), old.history.get(from)) {
@@ -107,17 +110,19 @@ impl Simulation {
             for row in [rest::CLEARANCE, rest::EXPOSURE] {
                 self.rest[at][row].0[place % LANES] = old.rest(from, i_was, row);
             }
-            if let Some(sunk) = self.sunk.get_mut(at) {
+            if let Some(sunk) = self.rest_penetration.get_mut(at) {
                 sunk.0[place % LANES] = old.sunk(from, i_was);
             }
             let was_at = old.tiles[from / LANES].first as usize + i_was;
-            if let (true, Some(span), Some(was)) = (forces, self.spans.get_mut(at), old.spans.get(was_at)) {
+            if let (true, Some(span), Some(was)) =
+                (forces, self.segment_contacts.get_mut(at), old.segment_contacts.get(was_at))
+            {
                 span.iter_mut().zip(was).for_each(|(row, was)| row.0[place % LANES] = was.0[from % LANES]);
             }
             if forces {
                 let rows = &mut self.state[at];
                 let was_at = &old.state[was_at];
-                rows[state::PRESS].0[place % LANES] = was_at[state::PRESS].0[from % LANES];
+                rows[state::NORMAL_FORCE].0[place % LANES] = was_at[state::NORMAL_FORCE].0[from % LANES];
                 if stride == was {
                     rows[state::TENSION].0[place % LANES] = was_at[state::TENSION].0[from % LANES];
                 }

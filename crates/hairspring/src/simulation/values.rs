@@ -30,7 +30,7 @@ impl Simulation {
     pub fn contact_at(&self, strand: usize, i: usize) -> f32 {
         let place = self.places[strand] as usize;
         let at = self.tiles[place / LANES].first as usize + i * self.stride(place);
-        self.state[at][state::PRESS].0[place % LANES]
+        self.state[at][state::NORMAL_FORCE].0[place % LANES]
     }
 
     /// How full of hair `place` in the world was when the volume was last measured, over what it is at rest [1]; 0 where nothing asks for the hair's volume.

@@ -4,16 +4,16 @@ use super::{
     PosedBody,
     charged::StagedCharged,
     joints::Joints,
-    pieces,
-    surface::{Making, Surface},
+    rigid_parts,
+    surface::{Surface, SurfaceKind},
     thickness::ThinMesh,
 };
 use crate::{
-    around::charge::ChargedBall,
     body::{self, Body, Cuts, Trs},
-    collide::{Obstacle, ObstaclePose, Rigid},
+    collide::{ColliderPose, ColliderShape, RigidTransform},
+    forces::charge::ChargedBall,
     scene::{Collider, Scene},
-    simulation::MovingObstacle,
+    simulation::MovingCollider,
 };
 use glam::{Affine3A, Vec3};
 
@@ -31,7 +31,7 @@ pub(super) struct StagedBody {
     /// Whether what moves by itself is elsewhere at the start than at rest.
     apart: bool,
     /// Where all of it is carried besides its clip.
-    moved: Rigid,
+    moved: RigidTransform,
     /// The joint that most of the head moves with: hair and fields are kept in its space.
     anchor: usize,
     /// Where the clip cuts.
@@ -39,7 +39,7 @@ pub(super) struct StagedBody {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     /// Those made of meshes, the scene's colliders, its charged bodies, what the app pushes.
-    obstacles: Vec<MovingObstacle>,
+    obstacles: Vec<MovingCollider>,
     /// What moves each obstacle of the first two kinds.
     carriers: Vec<Carrier>,
     /// How many there are of the first kind.
@@ -51,7 +51,7 @@ pub(super) struct StagedBody {
     thin: Option<ThinMesh>,
     charged: StagedCharged,
     /// How many shapes the app pushes, and where their space goes next.
-    pushed: (usize, Rigid),
+    pushed: (usize, RigidTransform),
 }
 
 /// What moves an obstacle.
@@ -145,7 +145,7 @@ impl StagedBody {
             apart: world != rest,
             world,
             rest,
-            moved: Rigid::default(),
+            moved: RigidTransform::default(),
             anchor,
             cuts: Cuts::default(),
             positions: Vec::new(),
@@ -157,7 +157,7 @@ impl StagedBody {
             reach: Reach::new(scene),
             thin: None,
             charged: StagedCharged::default(),
-            pushed: (0, Rigid::default()),
+            pushed: (0, RigidTransform::default()),
         };
         if let Some(body) = &scene.body {
             body.skinned(&staged.world, &mut staged.positions, &mut staged.normals);
@@ -165,7 +165,7 @@ impl StagedBody {
         staged.find_cuts(scene);
         staged.add_surface(scene);
         for (k, sheet) in scene.sheets.iter().enumerate() {
-            staged.add_mesh(scene, Mesh::Sheet(k), Making::Sheet(sheet.thickness));
+            staged.add_mesh(scene, Mesh::Sheet(k), SurfaceKind::Sheet(sheet.thickness));
         }
         staged.meshes = staged.obstacles.len();
         staged.rebuild_surfaces(scene, None);
@@ -179,7 +179,7 @@ impl StagedBody {
     /// Finds the cuts of the scene's clip, as they are by its settings.
     pub(super) fn find_cuts(&mut self, scene: &Scene) {
         if let (Some(body), Some(clip)) = (&scene.body, &scene.clip) {
-            self.cuts = Cuts::new(body, clip, self.anchor, scene.solver.jump);
+            self.cuts = Cuts::new(body, clip, self.anchor, scene.solver.teleport_distance);
         }
     }
 
@@ -189,8 +189,8 @@ impl StagedBody {
         self.obstacles.iter_mut().for_each(|obstacle| obstacle.start = obstacle.end);
     }
 
-    fn add(&mut self, shape: Obstacle, carrier: Carrier) {
-        self.obstacles.push(MovingObstacle::at_rest(shape, Rigid::default()));
+    fn add(&mut self, shape: ColliderShape, carrier: Carrier) {
+        self.obstacles.push(MovingCollider::at_rest(shape, RigidTransform::default()));
         self.carriers.push(carrier);
     }
 
@@ -227,19 +227,23 @@ impl StagedBody {
     }
 
     /// See [`super::Stage::move_body`].
-    pub(super) fn move_to(&mut self, by: Rigid) {
+    pub(super) fn move_to(&mut self, by: RigidTransform) {
         self.moved = by;
     }
 
     /// See [`super::Stage::push_with`].
-    pub(super) fn push_with<'a>(&mut self, shapes: impl Iterator<Item = &'a Obstacle> + Clone, pose: Rigid) {
+    pub(super) fn push_with<'a>(
+        &mut self,
+        shapes: impl Iterator<Item = &'a ColliderShape> + Clone,
+        pose: RigidTransform,
+    ) {
         let (count, first) = (shapes.clone().count(), self.obstacles.len() - self.pushed.0);
         if count == self.pushed.0 {
             // The same, perhaps of another size: it goes on as it moved.
             self.obstacles[first..].iter_mut().zip(shapes).for_each(|(o, shape)| o.shape.clone_from(shape));
         } else {
             self.obstacles.truncate(first);
-            self.obstacles.extend(shapes.map(|shape| MovingObstacle::at_rest(shape.clone(), pose)));
+            self.obstacles.extend(shapes.map(|shape| MovingCollider::at_rest(shape.clone(), pose)));
         }
         self.pushed = (count, pose);
     }
@@ -261,11 +265,11 @@ impl StagedBody {
         // Hair that cannot reach the body meets a field of one cell.
         let cell = (hi - lo).max_element().max(1e-3) / CELLS;
         self.thin = ThinMesh::find(&body.mesh, cell, within);
-        self.add_mesh(scene, Mesh::Closed, Making::Field(cell));
+        self.add_mesh(scene, Mesh::Closed, SurfaceKind::Field(cell));
     }
 
     /// Adds the collider of one of the scene's meshes. What is rigid is made once, in the space of the rest pose.
-    fn add_mesh(&mut self, scene: &Scene, mesh: Mesh, making: Making) {
+    fn add_mesh(&mut self, scene: &Scene, mesh: Mesh, making: SurfaceKind) {
         let Some(body) = mesh.of(scene) else { return };
         if body.skin.is_none() {
             let within = scene.body.as_ref().and_then(|b| self.reach.bounds(&b.mesh.positions, |p| p));
@@ -274,8 +278,8 @@ impl StagedBody {
         }
         let mut rest = body.clone();
         let pieces = match making {
-            Making::Field(cell) => pieces::take(&mut rest, self.anchor, PIECE * cell),
-            Making::Sheet(_) => Vec::new(),
+            SurfaceKind::Field(cell) => rigid_parts::take(&mut rest, self.anchor, PIECE * cell),
+            SurfaceKind::Sheet(_) => Vec::new(),
         };
         let surface = Surface::new(making, &rest);
         let rest = (!pieces.is_empty()).then_some(rest);
@@ -309,7 +313,7 @@ impl StagedBody {
             poses.extend((1..parts).map(|part| {
                 let time = from + (to - from) * (part as f64 / parts as f64);
                 let world = body.world(&self.cuts.sample(clip, time));
-                let anchor = Rigid::from_affine(&world[self.anchor]);
+                let anchor = RigidTransform::from_affine(&world[self.anchor]);
                 (world, anchor)
             }));
         }
@@ -324,7 +328,7 @@ impl StagedBody {
 
     /// Poses the body for the time `to` [s], `from` the time of the last pose; motion since then is what colliders do in this frame. Returns where a cut of
     /// the clip takes the hair, if there is one: cuts are no motion, and colliders that they move start where they are taken.
-    pub(super) fn advance(&mut self, scene: &Scene, (from, to): (f64, f64)) -> Option<Rigid> {
+    pub(super) fn advance(&mut self, scene: &Scene, (from, to): (f64, f64)) -> Option<RigidTransform> {
         self.stand_still();
         let cut = self.cut(scene, (from, to));
         self.pose(scene, to);
@@ -336,7 +340,7 @@ impl StagedBody {
 
     /// Takes what is on the joints that are cut after the time `from` until the time `to` [s] to where the cuts take it, and returns where that is for
     /// the anchor.
-    fn cut(&mut self, scene: &Scene, times: (f64, f64)) -> Option<Rigid> {
+    fn cut(&mut self, scene: &Scene, times: (f64, f64)) -> Option<RigidTransform> {
         let (Some(body), Some(clip)) = (&scene.body, &scene.clip) else { return None };
         let cut = self.cuts.between(body, clip, times);
         let moved = self.moved;
@@ -360,7 +364,7 @@ impl StagedBody {
 
     /// Poses the body for time `time` [s] without motion.
     pub(super) fn place(&mut self, scene: &Scene, time: f64) {
-        self.moved = Rigid::default();
+        self.moved = RigidTransform::default();
         self.pose(scene, time);
         self.rebuild_surfaces(scene, None);
         self.repose(scene, time);
@@ -374,7 +378,7 @@ impl StagedBody {
         } else {
             self.world.clone_from(&self.rest);
         }
-        if self.moved != Rigid::default() {
+        if self.moved != RigidTransform::default() {
             let moved = Affine3A::from_rotation_translation(self.moved.rotation, self.moved.translation);
             self.world.iter_mut().for_each(|joint| *joint = moved * *joint);
         }
@@ -390,7 +394,7 @@ impl StagedBody {
         let carried = |joint: Option<usize>| carried(world, rest, joint);
         for (obstacle, carrier) in obstacles.iter_mut().zip(&*carriers) {
             obstacle.end = match *carrier {
-                Carrier::Fixed => Rigid::default(),
+                Carrier::Fixed => RigidTransform::default(),
                 Carrier::Joint(j) => carried(Some(j)),
                 Carrier::Anchor => anchor,
             };
@@ -400,7 +404,7 @@ impl StagedBody {
     }
 
     /// Where what a joint carries has gone since rest; nowhere without a joint.
-    pub(super) fn carried(&self, joint: Option<usize>) -> Rigid {
+    pub(super) fn carried(&self, joint: Option<usize>) -> RigidTransform {
         carried(&self.world, &self.rest, joint)
     }
 
@@ -428,28 +432,28 @@ impl StagedBody {
     }
 
     /// The frame that roots move with.
-    pub(super) fn anchor(&self) -> Rigid {
-        self.world.get(self.anchor).map_or(Rigid::default(), Rigid::from_affine)
+    pub(super) fn anchor(&self) -> RigidTransform {
+        self.world.get(self.anchor).map_or(RigidTransform::default(), RigidTransform::from_affine)
     }
 
     /// The same at rest.
-    pub(super) fn rest_anchor(&self) -> Rigid {
-        self.rest.get(self.anchor).map_or(Rigid::default(), Rigid::from_affine)
+    pub(super) fn rest_anchor(&self) -> RigidTransform {
+        self.rest.get(self.anchor).map_or(RigidTransform::default(), RigidTransform::from_affine)
     }
 
     /// The colliders and how they moved in the last frame.
-    pub(super) fn obstacles(&self) -> &[MovingObstacle] {
+    pub(super) fn obstacles(&self) -> &[MovingCollider] {
         &self.obstacles
     }
 
     /// Those that are the scene's.
-    pub(super) fn colliders(&self) -> &[MovingObstacle] {
+    pub(super) fn colliders(&self) -> &[MovingCollider] {
         &self.obstacles[self.meshes..self.carriers.len()]
     }
 
     /// The colliders as they are now.
-    pub(super) fn poses(&self) -> Vec<ObstaclePose> {
-        self.obstacles.iter().map(MovingObstacle::now).collect()
+    pub(super) fn poses(&self) -> Vec<ColliderPose> {
+        self.obstacles.iter().map(MovingCollider::now).collect()
     }
 
     /// Vertex positions now [m]; empty without a body.
@@ -464,8 +468,8 @@ impl StagedBody {
 }
 
 /// Where what a joint carries has gone since `rest`, now that joints are at `world`; nowhere without a joint.
-fn carried(world: &[Affine3A], rest: &[Affine3A], joint: Option<usize>) -> Rigid {
-    joint.map_or(Rigid::default(), |j| Rigid::from_affine(&(world[j] * rest[j].inverse())))
+fn carried(world: &[Affine3A], rest: &[Affine3A], joint: Option<usize>) -> RigidTransform {
+    joint.map_or(RigidTransform::default(), |j| RigidTransform::from_affine(&(world[j] * rest[j].inverse())))
 }
 
 /// Model-space matrix of each joint as hair is made on the body: the joints that hang together with `anchor` at rest, and all others, each a thing by

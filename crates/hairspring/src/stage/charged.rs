@@ -1,9 +1,9 @@
 //! The scene's charged bodies, where they are now.
 
 use crate::{
-    around::charge::{Charged, ChargedBall},
-    collide::{Obstacle, Rigid},
-    simulation::MovingObstacle,
+    collide::{ColliderShape, RigidTransform},
+    forces::charge::{Charged, ChargedBall},
+    simulation::MovingCollider,
 };
 use glam::Vec3;
 
@@ -27,11 +27,11 @@ impl StagedCharged {
     }
 
     /// The solid ones, in their order, for hair to collide with.
-    pub(super) fn obstacles(&self, settings: &[Charged]) -> Vec<MovingObstacle> {
+    pub(super) fn obstacles(&self, settings: &[Charged]) -> Vec<MovingCollider> {
         let solid = settings.iter().filter(|c| c.solid);
         let ball = |c: &Charged| {
-            let shape = Obstacle::Sphere { center: Vec3::ZERO, radius: c.radius };
-            MovingObstacle::at_rest(shape, Rigid::default())
+            let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: c.radius };
+            MovingCollider::at_rest(shape, RigidTransform::default())
         };
         solid.map(ball).collect()
     }
@@ -47,8 +47,8 @@ impl StagedCharged {
     pub(super) fn cut(
         &mut self,
         settings: &[Charged],
-        by: impl Fn(usize) -> Option<Rigid>,
-        obstacles: &mut [MovingObstacle],
+        by: impl Fn(usize) -> Option<RigidTransform>,
+        obstacles: &mut [MovingCollider],
     ) {
         let mut obstacles = obstacles.iter_mut();
         for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
@@ -67,8 +67,8 @@ impl StagedCharged {
         &mut self,
         settings: &[Charged],
         time: f64,
-        carried: impl Fn(Option<usize>) -> Rigid,
-        obstacles: &mut [MovingObstacle],
+        carried: impl Fn(Option<usize>) -> RigidTransform,
+        obstacles: &mut [MovingCollider],
     ) {
         let mut obstacles = obstacles.iter_mut();
         for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
@@ -77,7 +77,7 @@ impl StagedCharged {
             if charged.solid
                 && let Some(obstacle) = obstacles.next()
             {
-                obstacle.end = Rigid { translation: ball.centers[1], ..pose };
+                obstacle.end = RigidTransform { translation: ball.centers[1], ..pose };
             }
         }
     }

@@ -3,8 +3,8 @@
 use super::{Strands, body::StagedBody};
 use crate::{
     body::Mesh,
-    collide::{ObstaclePose, Rigid},
-    follow::{Follow, Followed, assign_guides, choose_guides, split_by},
+    collide::{ColliderPose, RigidTransform},
+    follow::{Follow, HairInterpolation, assign_guides, choose_guides, split_by},
     groom::{Groom, GuideWeights},
     material::Material,
     scene::{Effects, Guides, HairLook, Scene, SceneGroom},
@@ -30,7 +30,7 @@ pub(super) struct StagedHair {
     /// Orientation of each simulated root's triangle at rest, inverted; empty while the roots are bound to nothing.
     rest_frames: Vec<Quat>,
     triangles: Vec<[u32; 3]>,
-    roots: Vec<Rigid>,
+    roots: Vec<RigidTransform>,
     turns: Vec<Quat>,
     /// Points of the simulated strands; of use where others follow them.
     guide_points: Vec<Vec3>,
@@ -60,7 +60,7 @@ impl StagedHair {
             mesh.map_or(Vec::new(), |mesh| strands.iter().map(|s| mesh.triangles[triangle(s)]).collect());
         let roots = strands
             .iter()
-            .map(|s| Rigid { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
+            .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
             .collect();
         Self {
             turns: vec![Quat::IDENTITY; strands.len()],
@@ -104,7 +104,7 @@ impl StagedHair {
         for (k, s) in self.strands.iter().enumerate() {
             let root = &self.groom.roots[*s as usize];
             let corners = self.triangles[k].map(|i| body.positions()[i as usize]);
-            self.roots[k] = Rigid {
+            self.roots[k] = RigidTransform {
                 translation: root.position(corners),
                 rotation: (root.frame(corners) * self.rest_frames[k]).normalize(),
             };
@@ -136,7 +136,7 @@ impl StagedHair {
     }
 
     /// What places the follow hairs as they are now, where there are any.
-    fn followed<'a>(&'a self, body: &'a StagedBody) -> Option<Followed<'a>> {
+    fn followed<'a>(&'a self, body: &'a StagedBody) -> Option<HairInterpolation<'a>> {
         Some(self.follow.as_ref()?.now(&self.guide_points, body.obstacles()))
     }
 
@@ -225,7 +225,7 @@ impl StagedHair {
     }
 
     /// Where the simulated roots are, and how they have turned since rest.
-    pub(super) fn roots(&self) -> &[Rigid] {
+    pub(super) fn roots(&self) -> &[RigidTransform] {
         &self.roots
     }
 
@@ -246,7 +246,7 @@ impl StagedHair {
     }
 
     /// Takes the hair as it is in `simulation`, among `obstacles`, for its groom. Nothing is laid over follow hairs for that.
-    pub(super) fn rest_as(&mut self, simulation: &Simulation, body: &StagedBody, obstacles: &[ObstaclePose]) {
+    pub(super) fn rest_as(&mut self, simulation: &Simulation, body: &StagedBody, obstacles: &[ColliderPose]) {
         let effects = self.follow.as_mut().map(|follow| follow.set_effects(Effects::default()));
         self.show(simulation, body);
         let groom = Arc::new(Groom { points: self.points.clone(), ..(*self.groom).clone() });

@@ -3,16 +3,16 @@
 mod body;
 mod charged;
 mod clock;
+mod fast_surface;
 mod hair;
-mod hands;
+mod join_grooms;
 mod joints;
-mod limbs;
-mod pieces;
-mod retune;
-mod settle;
+mod manipulators;
+mod preroll;
+mod rigid_parts;
 mod surface;
 mod thickness;
-mod together;
+mod update_settings;
 mod values;
 mod wind;
 
@@ -21,22 +21,22 @@ pub use thickness::ThinMesh;
 pub use values::{Picked, StrandFigures, Value};
 
 use crate::{
-    around::Tool,
-    collide::{Obstacle, Rigid},
-    follow::Followed,
+    collide::{ColliderShape, RigidTransform},
+    follow::HairInterpolation,
+    forces::Manipulator,
     groom::{Groom, Imprecise, MAX_COORDINATE, bind_roots, first_imprecise},
     scene::{HairLook, Scene},
     simulation::{
-        Air, Contacts, Drive, Energy, Measure, MovingObstacle, NeighboursReport, Simulation, Start,
-        StepReport, ToolId, VolumeReport,
+        Air, Contacts, Energy, ManipulatorId, Measure, MovingCollider, NeighboursReport, Simulation, Start,
+        StepInput, StepReport, VolumeReport,
     },
 };
 use body::StagedBody;
 use clock::Clock;
 use glam::Vec3;
 use hair::StagedHair;
-use hands::StagedHands;
 use joints::Joints;
+use manipulators::StagedHands;
 use std::time::{Duration, Instant};
 use wind::StagedWind;
 
@@ -127,7 +127,7 @@ pub struct Strands<'a> {
     /// How it is drawn.
     pub look: &'a HairLook,
     /// What places its follow hairs, where that is left to who draws them ([`Stage::leave_follow_hairs`]).
-    pub follow: Option<Followed<'a>>,
+    pub follow: Option<HairInterpolation<'a>>,
 }
 
 /// The body as it is now, to draw.
@@ -150,14 +150,14 @@ pub struct Stage {
     /// The simulated strands of all grooms, groom after groom.
     simulation: Simulation,
     /// Their roots.
-    roots: Vec<Rigid>,
+    roots: Vec<RigidTransform>,
     hands: StagedHands,
     clock: Clock,
 }
 
 impl Stage {
     /// Sets the scene up at time 0: the body in the first pose of its clip, the hair at rest on it. Roots without a binding are
-    /// bound to the nearest place of the body. With `solver.settle`, hair falls here, and this takes as long as to play so much of the scene.
+    /// bound to the nearest place of the body. With `solver.preroll`, hair falls here, and this takes as long as to play so much of the scene.
     pub fn new(mut scene: Scene) -> Result<Self, StageError> {
         check(&scene)?;
         if let Some(body) = &scene.body {
@@ -171,10 +171,10 @@ impl Stage {
             let first = hair.last().map_or(0, |hair| hair.first() + hair.simulated_strands().len());
             hair.push(StagedHair::new(groom, first, &scene, &body));
         }
-        if scene.solver.settle > 0.0 {
-            settle::settle(&mut hair, &scene, &body);
+        if scene.solver.preroll > 0.0 {
+            preroll::settle(&mut hair, &scene, &body);
         }
-        let simulation = together::simulation(&hair, &scene, scene.solver, body.anchor(), &body.poses());
+        let simulation = join_grooms::simulation(&hair, &scene, scene.solver, body.anchor(), &body.poses());
         let (wind, hands) = (StagedWind::new(joints.wind), StagedHands::new(joints.hands));
         let mut stage =
             Self { body, wind, hair, simulation, roots: Vec::new(), hands, clock: Clock::ZERO, scene };
@@ -187,10 +187,10 @@ impl Stage {
         self.clock = Clock::ZERO;
         self.body.place(&self.scene, 0.0);
         self.hands.reset();
-        self.simulation.let_go_all();
+        self.simulation.remove_all_manipulators();
         self.pose_roots();
         self.simulation.place(self.body.anchor(), &self.roots);
-        self.show();
+        self.update_render_points();
     }
 
     /// Where the roots are on the posed body.
@@ -204,33 +204,33 @@ impl Stage {
 
     /// Takes a tool to the hair of all grooms as it is now, its space being at `pose` in the world, besides what the scene's hands do. It acts in every
     /// step until it is let go of, or until a reset.
-    pub fn take(&mut self, tool: Tool, pose: Rigid) -> ToolId {
-        self.simulation.take(tool, pose)
+    pub fn add_manipulator(&mut self, tool: Manipulator, pose: RigidTransform) -> ManipulatorId {
+        self.simulation.add_manipulator(tool, pose)
     }
 
     /// Moves a tool: its space goes to `pose` in the next step.
-    pub fn carry(&mut self, id: ToolId, pose: Rigid) {
-        self.simulation.carry(id, pose);
+    pub fn set_manipulator_pose(&mut self, id: ManipulatorId, pose: RigidTransform) {
+        self.simulation.set_manipulator_pose(id, pose);
     }
 
     /// Lets go of a tool, and of what it holds.
-    pub fn let_go(&mut self, id: ToolId) {
-        self.simulation.let_go(id);
+    pub fn remove_manipulator(&mut self, id: ManipulatorId) {
+        self.simulation.remove_manipulator(id);
     }
 
     /// Carries the whole body by `by` besides its clip, from the next step on: a rotation about the world's origin, then a translation [m]. The last
     /// call counts, from where the clip has the body and not from the call before. What moves farther than `Solver::jump` in a step takes its hair along as
     /// it is. Hair without a body stays.
-    pub fn move_body(&mut self, by: Rigid) {
+    pub fn move_body(&mut self, by: RigidTransform) {
         self.body.move_to(by);
     }
 
     /// A body in the world that an app moves, a ball or a hand: closed shapes in a space of its own, which is at `pose`. They are colliders of all hair, the last of
     /// [`Stage::obstacles`], and drawn by nobody here. It goes from where it was to `pose` in the next step and passes on that velocity; it has none where it
     /// appears, which it does with another number of shapes. What is not finite or has no inside is left out; without shapes, there is nothing.
-    pub fn push_with(&mut self, shapes: &[Obstacle], pose: Rigid) {
+    pub fn set_user_colliders(&mut self, shapes: &[ColliderShape], pose: RigidTransform) {
         let place = pose.translation.is_finite() && pose.rotation.is_finite();
-        let solid = |shape: &&Obstacle| {
+        let solid = |shape: &&ColliderShape| {
             let (center, radius) = shape.bounds();
             place && center.is_finite() && radius.is_finite() && shape.half_thickness() > 0.0
         };
@@ -238,12 +238,12 @@ impl Stage {
     }
 
     /// The colliders as they are now, and how they moved in the last step.
-    pub fn obstacles(&self) -> &[MovingObstacle] {
+    pub fn obstacles(&self) -> &[MovingCollider] {
         self.body.obstacles()
     }
 
     /// Those of them that are the scene's own colliders, in its order; hulls that span no volume are left out.
-    pub fn colliders(&self) -> &[MovingObstacle] {
+    pub fn colliders(&self) -> &[MovingCollider] {
         self.body.colliders()
     }
 
@@ -253,28 +253,28 @@ impl Stage {
     }
 
     /// Where what the body's joint of this name carries has gone since rest; nowhere without a joint of that name.
-    pub fn carried(&self, joint: Option<&str>) -> Rigid {
+    pub fn carried(&self, joint: Option<&str>) -> RigidTransform {
         let joint = joint.and_then(|name| self.scene.body.as_ref()?.joint(name));
         self.body.carried(joint)
     }
 
     /// Where the frame is now that roots and fields move with: the joint that carries most of the skin around the roots (the head); the identity without a
     /// body.
-    pub fn body_anchor(&self) -> Rigid {
+    pub fn body_anchor(&self) -> RigidTransform {
         self.body.anchor()
     }
 
     /// Plays `dt` [s] (above 0) of the scene. For frames at a fixed rate, [`Stage::step_frame`] keeps exact time.
     pub fn step(&mut self, dt: f32) -> FrameReport {
         let mut report = self.advance(dt);
-        report.follow = self.show();
+        report.follow = self.update_render_points();
         report
     }
 
     /// Plays one frame at `rate`. Time is a count of such frames, so that it is exact after any number of them.
     pub fn step_frame(&mut self, rate: FrameRate) -> FrameReport {
         let mut report = self.advance_frame(rate);
-        report.follow = self.show();
+        report.follow = self.update_render_points();
         report
     }
 
@@ -307,7 +307,7 @@ impl Stage {
         let Scene { wind, turbulence, .. } = self.scene;
         let air = Air { wind, time: from, sources: self.wind.sources(), turbulence };
         self.simulation.set_charged(self.body.charged().iter().copied());
-        report.step = self.simulation.step(&Drive {
+        report.step = self.simulation.step(&StepInput {
             dt,
             anchor: self.body.anchor(),
             roots: &self.roots,
@@ -320,7 +320,7 @@ impl Stage {
     }
 
     /// Brings the points of all strands up to date after [`Stage::advance`]; how long it took.
-    pub fn show(&mut self) -> Duration {
+    pub fn update_render_points(&mut self) -> Duration {
         let began = Instant::now();
         self.hair.iter_mut().for_each(|hair| hair.show(&self.simulation, &self.body));
         began.elapsed()
@@ -343,7 +343,7 @@ impl Stage {
 
     /// Leaves follow hairs to who draws them, a viewer that places them on a graphics card: a step then finds no more than how guides carry them, which
     /// [`Strands::follow`] gives, and their points stay behind. Off at the start; turned off, they are placed at once.
-    pub fn leave_follow_hairs(&mut self, left: bool) {
+    pub fn set_external_interpolation(&mut self, left: bool) {
         self.hair.iter_mut().for_each(|h| h.leave(left, &self.body));
     }
 

@@ -1,10 +1,10 @@
 //! What hair collides with that is made from meshes: a distance field of a closed one, sheets of open ones. One that deforms is made anew
 //! in the anchor's space, whenever it moved there.
 
-use super::limbs::Limbs;
+use super::fast_surface::FastSurfaceProbe;
 use crate::{
     body::Body,
-    collide::{Grid, Obstacle, Rigid, Sheet, Voxelizer},
+    collide::{ColliderShape, RigidTransform, SignedDistanceField, ThinShell, Voxelizer},
 };
 use glam::{Affine3A, Vec3};
 use std::sync::Arc;
@@ -17,7 +17,7 @@ const SPARE: usize = 4;
 
 /// What becomes of a mesh.
 #[derive(Clone, Copy)]
-pub(super) enum Making {
+pub(super) enum SurfaceKind {
     /// A distance field with cells of this edge [m].
     Field(f32),
     /// A sheet of this thickness [m].
@@ -26,31 +26,31 @@ pub(super) enum Making {
 
 /// Makes the collider of one skinned mesh, again and again.
 pub(super) struct Surface {
-    making: Making,
+    making: SurfaceKind,
     voxelizer: Voxelizer,
     /// Colliders of frames before that were looked at elsewhere when the next was made, for their memory.
-    spare: Vec<Obstacle>,
+    spare: Vec<ColliderShape>,
     /// Vertices in the anchor's space, now and a frame ago.
     now: Vec<Vec3>,
     before: Vec<Vec3>,
     normals: Vec<Vec3>,
-    limbs: Limbs,
+    limbs: FastSurfaceProbe,
 }
 
 /// A body's joints, and the anchor that its colliders are in the space of.
-pub(super) type Pose = (Vec<Affine3A>, Rigid);
+pub(super) type Pose = (Vec<Affine3A>, RigidTransform);
 
-impl Making {
+impl SurfaceKind {
     /// A collider that is nowhere yet.
-    pub fn nothing(self) -> Obstacle {
+    pub fn nothing(self) -> ColliderShape {
         match self {
-            Self::Field(_) => Obstacle::Field(Arc::default()),
-            Self::Sheet(_) => Obstacle::Sheet(Arc::default()),
+            Self::Field(_) => ColliderShape::Field(Arc::default()),
+            Self::Sheet(_) => ColliderShape::Sheet(Arc::default()),
         }
     }
 
     /// The collider of a mesh that does not deform.
-    pub fn rigid(self, body: &Body, within: Option<(Vec3, Vec3)>) -> Obstacle {
+    pub fn rigid(self, body: &Body, within: Option<(Vec3, Vec3)>) -> ColliderShape {
         let mut shape = self.nothing();
         let (positions, triangles) = (&body.mesh.positions, &body.mesh.triangles);
         self.make(&mut shape, &mut Voxelizer::default(), (positions, None), triangles, within);
@@ -60,17 +60,17 @@ impl Making {
     /// Makes `shape` the collider of a mesh with vertices `now` and, where they moved, `before` [m].
     fn make(
         self,
-        shape: &mut Obstacle,
+        shape: &mut ColliderShape,
         voxelizer: &mut Voxelizer,
         (now, before): (&[Vec3], Option<&[Vec3]>),
         triangles: &[[u32; 3]],
         within: Option<(Vec3, Vec3)>,
     ) {
         match (self, shape) {
-            (Self::Field(cell), Obstacle::Field(grid)) => {
+            (Self::Field(cell), ColliderShape::Field(grid)) => {
                 voxelizer.update(Arc::make_mut(grid), now, before, triangles, within, cell);
             }
-            (Self::Sheet(thickness), Obstacle::Sheet(sheet)) => {
+            (Self::Sheet(thickness), ColliderShape::Sheet(sheet)) => {
                 Arc::make_mut(sheet).update(now, before, triangles, within, thickness);
             }
             _ => {}
@@ -79,20 +79,20 @@ impl Making {
 }
 
 /// Whether nobody else looks at a shape.
-fn is_free(shape: &mut Obstacle) -> bool {
+fn is_free(shape: &mut ColliderShape) -> bool {
     match shape {
-        Obstacle::Field(grid) => Arc::get_mut(grid).is_some(),
-        Obstacle::Sheet(sheet) => Arc::get_mut(sheet).is_some(),
+        ColliderShape::Field(grid) => Arc::get_mut(grid).is_some(),
+        ColliderShape::Sheet(sheet) => Arc::get_mut(sheet).is_some(),
         _ => true,
     }
 }
 
 impl Surface {
     /// Of a body that has a skin.
-    pub(super) fn new(making: Making, body: &Body) -> Self {
+    pub(super) fn new(making: SurfaceKind, body: &Body) -> Self {
         let limbs = match making {
-            Making::Field(cell) => Limbs::of_solid(&body.mesh, cell),
-            Making::Sheet(thickness) => Limbs::of_sheet(&body.mesh, thickness),
+            SurfaceKind::Field(cell) => FastSurfaceProbe::of_solid(&body.mesh, cell),
+            SurfaceKind::Sheet(thickness) => FastSurfaceProbe::of_sheet(&body.mesh, thickness),
         };
         Self {
             limbs,
@@ -109,7 +109,7 @@ impl Surface {
     pub(super) fn parts(
         &self,
         body: &Body,
-        (world, anchor): (&[Affine3A], Rigid),
+        (world, anchor): (&[Affine3A], RigidTransform),
         within: Option<(Vec3, Vec3)>,
     ) -> usize {
         let Some(skin) = &body.skin else { return 1 };
@@ -120,13 +120,13 @@ impl Surface {
     /// since the last time.
     pub(super) fn update<'a>(
         &mut self,
-        shape: &mut Obstacle,
+        shape: &mut ColliderShape,
         body: &Body,
         poses: impl Iterator<Item = &'a Pose>,
         within: Option<(Vec3, Vec3)>,
         fresh: bool,
     ) {
-        shape.set_earlier(Vec::new());
+        shape.set_previous_slices(Vec::new());
         let mut earlier = Vec::new();
         for (number, pose) in poses.enumerate() {
             if number > 0 {
@@ -134,13 +134,13 @@ impl Surface {
             }
             self.make(shape, body, pose, within, fresh);
         }
-        shape.set_earlier(earlier);
+        shape.set_previous_slices(earlier);
     }
 
     /// Makes `shape` the collider of `body` in a pose.
     fn make(
         &mut self,
-        shape: &mut Obstacle,
+        shape: &mut ColliderShape,
         body: &Body,
         (world, anchor): &Pose,
         within: Option<(Vec3, Vec3)>,
@@ -151,11 +151,13 @@ impl Surface {
         self.now.iter_mut().for_each(|p| *p = anchor.inverse_point(*p));
         let moved =
             self.now.iter().zip(&self.before).map(|(a, b)| a.distance_squared(*b)).fold(0.0, f32::max);
-        let (Making::Field(fine) | Making::Sheet(fine)) = self.making;
+        let (SurfaceKind::Field(fine) | SurfaceKind::Sheet(fine)) = self.making;
         if !fresh && moved < (STILL * fine).powi(2) {
             match shape {
-                Obstacle::Field(grid) if grid.deforms() => Grid::hold_still(Arc::make_mut(grid)),
-                Obstacle::Sheet(sheet) if sheet.deforms() => Sheet::hold_still(Arc::make_mut(sheet)),
+                ColliderShape::Field(grid) if grid.deforms() => {
+                    SignedDistanceField::hold_still(Arc::make_mut(grid))
+                }
+                ColliderShape::Sheet(sheet) if sheet.deforms() => ThinShell::hold_still(Arc::make_mut(sheet)),
                 _ => {}
             }
             // What little it moved is not lost: it adds up against the surface that was made.
@@ -192,12 +194,12 @@ mod tests {
         };
         let body = Body { mesh, joints: vec![joint("near"), joint("far")], skin: Some(skin) };
         let world = |up: f32| [Affine3A::IDENTITY, Affine3A::from_translation(Vec3::Y * up)];
-        let making = Making::Sheet(0.002);
+        let making = SurfaceKind::Sheet(0.002);
         let (mut surface, mut shape) = (Surface::new(making, &body), making.nothing());
         let mut play = |up: f32, fresh: bool| {
-            let pose = (world(up).to_vec(), Rigid::default());
+            let pose = (world(up).to_vec(), RigidTransform::default());
             surface.update(&mut shape, &body, std::iter::once(&pose), None, fresh);
-            let Obstacle::Sheet(sheet) = &shape else { unreachable!("a sheet is made") };
+            let ColliderShape::Sheet(sheet) = &shape else { unreachable!("a sheet is made") };
             let at = |x: f32| {
                 let p = Vec3::new(x, up * x / 0.3, 0.05);
                 (sheet.distance_and_normal(p).0, sheet.displacement(p).y)

@@ -18,22 +18,22 @@
 use super::{
     band::Band,
     drag::Drag,
-    elements::{Elements, Outset, Walk},
+    elements::{AssemblyCursor, Elements, PredictedState},
+    external,
     lanes::{F, Mask, Simd, Sym3, V3},
     model::Model,
-    outside,
-    prefetch::ask_beyond,
+    prefetch::prefetch_next_tile,
     root::Root,
     scratch::Scratch,
     system::System,
     tile::{Tile, history, state},
 };
-use crate::collide::ObstaclePose;
+use crate::collide::ColliderPose;
 use glam::Vec3;
 
 /// One substep of one tile, as the assembly needs it.
 #[derive(Clone, Copy)]
-pub struct Step<'a, S: Simd> {
+pub struct SubstepContext<'a, S: Simd> {
     /// Which it is of the interval's.
     pub number: usize,
     /// Fraction of the interval that is left at its end.
@@ -53,10 +53,10 @@ pub struct Step<'a, S: Simd> {
     /// Which strands touch something.
     pub touches: Mask<S>,
     /// Colliders, each at the start and the end of it.
-    pub obstacles: &'a [ObstaclePose],
+    pub obstacles: &'a [ColliderPose],
 }
 
-impl<S: Simd> Step<'_, S> {
+impl<S: Simd> SubstepContext<'_, S> {
     /// a of the system above.
     #[inline(always)]
     pub fn inertia(&self) -> f32 {
@@ -68,7 +68,7 @@ impl<S: Simd> Step<'_, S> {
 #[inline(always)]
 pub fn forces<S, M, const B: usize, const N: usize>(
     simd: S,
-    step: &Step<S>,
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) where
@@ -76,39 +76,39 @@ pub fn forces<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let n = tile.rest.len();
-    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, step, tile, scratch);
+    let mut elements = Elements::<S, M, B, N>::begin(simd, Linearization::Forces, step, tile, scratch);
     for i in 0..n {
         if i + 1 < n {
             elements.add_forces(simd, i, tile, scratch);
         } else {
             elements.band = Band::new(simd);
         }
-        elements.band.take_up(simd, M::PROFILE, i, scratch.factors);
+        elements.band.load_pending(simd, M::PROFILE, i, scratch.factors);
         elements.band.force().store(&mut scratch.kick[i]);
-        elements.band.pass(simd, M::PROFILE, i, scratch.factors);
+        elements.band.skip_row(simd, M::PROFILE, i, scratch.factors);
     }
 }
 
 /// What a sweep down makes.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Sweep {
+pub enum Linearization {
     /// Forces, and no factors.
     Forces,
     /// The factors of the system at the start of the substep.
-    First,
+    Initial,
     /// The factors of the system at positions that have moved since (Newton).
-    Again,
+    Newton,
 }
 
-impl Sweep {
+impl Linearization {
     /// How much of a segment's present error of length is news to its tension: all, or nothing once a solve has taken it.
     pub fn news(self) -> f32 {
-        if self == Self::Again { 0.0 } else { 1.0 }
+        if self == Self::Newton { 0.0 } else { 1.0 }
     }
 
     /// How long velocities act until where the solve begins, of a substep of `h` [s].
-    pub fn drift(self, h: f32) -> f32 {
-        if self == Self::First { h } else { 0.0 }
+    pub fn predicted_displacement(self, h: f32) -> f32 {
+        if self == Self::Initial { h } else { 0.0 }
     }
 }
 
@@ -116,8 +116,8 @@ impl Sweep {
 #[inline(always)]
 pub fn assemble<S, M, const B: usize, const N: usize>(
     simd: S,
-    sweep: Sweep,
-    step: &Step<S>,
+    sweep: Linearization,
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) where
@@ -126,7 +126,7 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
 {
     let n = tile.rest.len();
     let mut elements = Elements::<S, M, B, N>::begin(simd, sweep, step, tile, scratch);
-    let acted = outside::any(tile);
+    let acted = external::any(tile);
     let first = M::DRIVEN.next_multiple_of(M::STRIDE);
     // The driven points and the last by themselves: the loop between knows nothing of them.
     for i in 0..first {
@@ -150,8 +150,8 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
 #[inline(always)]
 fn pass_point<S, M, const B: usize, const N: usize>(
     simd: S,
-    (sweep, i, phase, driven): (Sweep, usize, usize, bool),
-    step: &Step<S>,
+    (sweep, i, phase, driven): (Linearization, usize, usize, bool),
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
     elements: &mut Elements<S, M, B, N>,
@@ -160,17 +160,23 @@ fn pass_point<S, M, const B: usize, const N: usize>(
     S: Simd,
     M: Model<S, B, N>,
 {
-    if acted || outside::pressed(simd, M::STRIDE, i, tile) {
-        let Walk { x, way, root_velocity, .. } = elements.walk;
-        let place = outside::Place { i, x, way, root_velocity };
-        outside::add::<S, M, B, N>(simd, (sweep, step), &place, &mut tile.lent(), &mut scratch.lent());
+    if acted || external::pressed(simd, M::STRIDE, i, tile) {
+        let AssemblyCursor { x, way, root_velocity, .. } = elements.walk;
+        let place = external::Place { i, x, way, root_velocity };
+        external::add::<S, M, B, N>(
+            simd,
+            (sweep, step),
+            &place,
+            &mut tile.reborrow(),
+            &mut scratch.reborrow(),
+        );
     }
     // Asked here, so that what it looks at is at hand for what follows.
     let acts_across = M::acts_across(simd, i, tile, scratch);
     add_point(simd, (sweep, i, phase), step, tile, scratch, elements);
     eliminate(simd, (i, driven), scratch, elements);
     if acts_across {
-        eliminate_across::<S, M, B, N>(simd, (sweep, step), i, tile, &mut scratch.lent());
+        eliminate_across::<S, M, B, N>(simd, (sweep, step), i, tile, &mut scratch.reborrow());
     }
 }
 
@@ -178,7 +184,7 @@ fn pass_point<S, M, const B: usize, const N: usize>(
 #[inline(never)]
 fn eliminate_across<S, M, const B: usize, const N: usize>(
     simd: S,
-    (sweep, step): (Sweep, &Step<S>),
+    (sweep, step): (Linearization, &SubstepContext<S>),
     i: usize,
     tile: &Tile,
     scratch: &mut Scratch,
@@ -189,7 +195,7 @@ fn eliminate_across<S, M, const B: usize, const N: usize>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let across = M::across(simd, (step.h, sweep.drift(step.h)), i, tile, scratch);
+            let across = M::across(simd, (step.h, sweep.predicted_displacement(step.h)), i, tile, scratch);
             scratch.across.push(across.eliminate(simd, M::PROFILE, i, scratch.factors));
         },
     );
@@ -210,13 +216,13 @@ fn eliminate<S, M, const B: usize, const N: usize>(
     // An angle of the driven first segment is driven too, of the second it is not.
     let angle = driven && i == 1 && B > 3;
     if angle {
-        band.take_up(simd, M::PROFILE, i, scratch.factors);
+        band.load_pending(simd, M::PROFILE, i, scratch.factors);
         for k in 0..3 {
             band.hold(simd, k);
         }
     }
     if driven && !angle && i < M::DRIVEN {
-        band.pass(simd, M::PROFILE, i, scratch.factors);
+        band.skip_row(simd, M::PROFILE, i, scratch.factors);
     } else {
         band.eliminate(simd, M::PROFILE, i, scratch.factors);
     }
@@ -226,8 +232,8 @@ fn eliminate<S, M, const B: usize, const N: usize>(
 #[inline(always)]
 fn add_point<S, M, const B: usize, const N: usize>(
     simd: S,
-    (sweep, i, phase): (Sweep, usize, usize),
-    step: &Step<S>,
+    (sweep, i, phase): (Linearization, usize, usize),
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
     elements: &mut Elements<S, M, B, N>,
@@ -236,16 +242,16 @@ fn add_point<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let segment = elements.add(simd, i, phase, tile, scratch);
-    if sweep == Sweep::Again {
+    if sweep == Linearization::Newton {
         let old = V3::load(simd, &tile.state[i + 1][state::EDGE..]);
         elements.walk.way += V3::load(simd, &scratch.edges[i + 1]) - old;
     }
-    let Elements { band, walk: Walk { way, root_velocity, ambient, .. }, .. } = elements;
+    let Elements { band, walk: AssemblyCursor { way, root_velocity, ambient, .. }, .. } = elements;
     let (way, root_velocity) = (*way, *root_velocity);
-    ask_beyond(tile.rest, i, step.number);
-    ask_beyond(tile.state, i, 2 * step.number);
-    ask_beyond(tile.state, i, 2 * step.number + 1);
-    ask_beyond(tile.spans, i, step.number);
+    prefetch_next_tile(tile.rest, i, step.number);
+    prefetch_next_tile(tile.state, i, 2 * step.number);
+    prefetch_next_tile(tile.state, i, 2 * step.number + 1);
+    prefetch_next_tile(tile.segment_contacts, i, step.number);
 
     // Mass, air and gravity of point i+1.
     let inv_h = 1.0 / step.h;
@@ -253,7 +259,8 @@ fn add_point<S, M, const B: usize, const N: usize>(
     let v = V3::load(simd, &tile.state[i + 1][state::V..]);
     let (a, inv_h2) = (step.inertia(), inv_h * inv_h);
     let m_h2 = mass * (a * inv_h2);
-    let outset = Outset { sweep, faster: v - root_velocity, share: sweep.drift(step.h), way };
+    let outset =
+        PredictedState { sweep, faster: v - root_velocity, share: sweep.predicted_displacement(step.h), way };
     // p less a/h² of that, and gravity.
     let mut p = if step.second_order {
         let before = &tile.history[i + 1];
@@ -264,23 +271,26 @@ fn add_point<S, M, const B: usize, const N: usize>(
             + (way_before * F::splat(simd, 3.0) - step.moved * F::splat(simd, 9.0))
                 * F::splat(simd, 0.25 * inv_h2)
             - outset.way(simd) * F::splat(simd, a * inv_h2)
-    } else if sweep == Sweep::First {
+    } else if sweep == Linearization::Initial {
         ambient.pull
     } else {
         ambient.pull + (v - root_velocity - outset.way(simd) * F::splat(simd, inv_h)) * F::splat(simd, inv_h)
     };
-    if let Some(push) = tile.push.get(i + 1) {
+    if let Some(push) = tile.external_acceleration.get(i + 1) {
         p += V3::load(simd, push);
     }
     let mut right = p * mass;
     band.add_identity(1, m_h2);
     if phase + 1 == M::STRIDE {
         let u = segment.u;
-        let local = tile.air.get(i + 1).map_or(V3::zero(simd), |air| V3::load(simd, air));
+        let local = tile.wind_delta.get(i + 1).map_or(V3::zero(simd), |air| V3::load(simd, air));
         let drag = Drag::new(simd, tile.strand, &tile.rest[i + 1], V3::splat(simd, step.wind) + local - v, u);
         let (across, along) = (segment.air * drag.across, segment.air * drag.along);
-        let moving =
-            if sweep == Sweep::First { v } else { root_velocity + outset.way(simd) * F::splat(simd, inv_h) };
+        let moving = if sweep == Linearization::Initial {
+            v
+        } else {
+            root_velocity + outset.way(simd) * F::splat(simd, inv_h)
+        };
         let slip = ambient.wind + local - moving;
         right += slip * across + u * (u.dot(slip) * (along - across));
         band.add_diagonal(1, Sym3::outer(u, (along - across) * inv_h).add_identity(across * inv_h));

@@ -33,14 +33,14 @@ pub struct Band<S: Simd, const B: usize, const N: usize> {
     /// Right-hand side.
     b: [F<S>; N],
     /// Between the first point and the last.
-    far: Far<S>,
+    far: LongRangeSpring<S>,
 }
 
 /// A spring between the window's first point and its last, which nothing else couples: all that was eliminated before reaches less far. So their block of the
 /// matrix is −k u uᵀ, of rank one, and stays that: eliminating the first point makes −w uᵀ of it, with w = L⁻¹ k u. Three numbers stand for nine in all
 /// that meets the block, and on the last point, where nothing else of the first comes, the spring leaves (k − wᵀ D⁻¹ w) u uᵀ.
 #[derive(Clone, Copy)]
-struct Far<S: Simd> {
+struct LongRangeSpring<S: Simd> {
     /// Its direction, a unit vector from the first point to the last; or zero.
     u: V3<S>,
     /// Its stiffness [N/m].
@@ -66,21 +66,21 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let nothing = F::<S>::splat(simd, NOTHING);
-        let far = Far { u: V3::zero(simd), k: nothing, pull: nothing };
+        let far = LongRangeSpring { u: V3::zero(simd), k: nothing, pull: nothing };
         Self { a: [[nothing; N]; N], b: [nothing; N], far }
     }
 
     /// Sets the spring between the window's first point and its last, of a [far](Profile::far) profile: it has direction `u` and stiffness `k`, and `pull`s.
     #[inline(always)]
-    pub fn add_far(&mut self, u: V3<S>, k: F<S>, pull: F<S>) {
+    pub fn add_long_range_spring(&mut self, u: V3<S>, k: F<S>, pull: F<S>) {
         self.add_diagonal(0, Sym3::outer(u, k));
         self.add_force(0, u * pull);
-        self.far = Far { u, k, pull };
+        self.far = LongRangeSpring { u, k, pull };
     }
 
     /// Takes up what was [left](Band::leave) of the window's first point, the strand's `i`th, which [`Band::eliminate`] does by itself.
     #[inline(always)]
-    pub fn take_up(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
+    pub fn load_pending(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let rows = profile.rows();
         let ahead = &mut factors[(i + Profile::<B, N>::REACH) * rows..][..rows];
         each!(r of 0 1 2 3, {
@@ -99,7 +99,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     /// Leaves what was said of these `points` after the window's first where their factors will be, with what was left of them before: in the rows `ahead`,
     /// which begin with the next point's.
     #[inline(always)]
-    fn leave(&self, simd: S, profile: Profile<B, N>, points: Range<usize>, ahead: &mut [Work]) {
+    fn store_pending(&self, simd: S, profile: Profile<B, N>, points: Range<usize>, ahead: &mut [Work]) {
         let add = |value: F<S>, row: &mut Work, before: bool| {
             store(if before { value + load(simd, row) } else { value }, row);
         };
@@ -153,7 +153,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 
     /// Cuts the first point off from the rest in the strands where it is not `free`.
     #[inline(always)]
-    pub fn cut(&mut self, simd: S, free: Mask<S>) {
+    pub fn with_checked_lengths(&mut self, simd: S, free: Mask<S>) {
         let zero = F::<S>::splat(simd, 0.0);
         let one = F::<S>::splat(simd, 1.0);
         for r in 0..B {
@@ -175,8 +175,8 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         // A far spring's factors and all that is said of points ahead are too many for the registers: the sooner it is left, the better.
         let late = if profile.is_far() { reach } else { 1 };
         let (own, after) = factors[i * rows..][..(2 * reach + 1) * rows].split_at_mut((reach + 1) * rows);
-        self.leave(simd, profile, 1..late, after);
-        let Far { u, k: mut left, mut pull } = self.far;
+        self.store_pending(simd, profile, 1..late, after);
+        let LongRangeSpring { u, k: mut left, mut pull } = self.far;
         let mut w = [F::<S>::splat(simd, NOTHING); B];
         for (w, u) in w.iter_mut().zip([u.x, u.y, u.z]) {
             *w = u * left;
@@ -246,29 +246,29 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         });
         if profile.is_far() {
             u.store(&mut own[reach * rows..][profile.far_row(B)..rows]);
-            self.leave_far(u, left, pull);
+            self.store_pending_long_range(u, left, pull);
         }
-        self.leave(simd, profile, late..reach + 1, after);
+        self.store_pending(simd, profile, late..reach + 1, after);
     }
 
     /// Says of the window's last point what is left of the far spring once the first has been eliminated or passed.
     #[inline(always)]
-    fn leave_far(&mut self, u: V3<S>, left: F<S>, pull: F<S>) {
+    fn store_pending_long_range(&mut self, u: V3<S>, left: F<S>, pull: F<S>) {
         self.add_diagonal(Profile::<B, N>::REACH, Sym3::outer(u, left));
         self.add_force(Profile::<B, N>::REACH, -(u * pull));
     }
 
     /// Moves on past the strand's `i`th point without eliminating it: those after it meet nothing of it.
     #[inline(always)]
-    pub fn pass(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
+    pub fn skip_row(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
         let (own, after) = factors[(i + reach) * rows..][..(reach + 1) * rows].split_at_mut(rows);
         own.fill(Work::default());
         if profile.is_far() {
-            let Far { u, k, pull } = self.far;
-            self.leave_far(u, k, pull);
+            let LongRangeSpring { u, k, pull } = self.far;
+            self.store_pending_long_range(u, k, pull);
         }
-        self.leave(simd, profile, 1..reach + 1, after);
+        self.store_pending(simd, profile, 1..reach + 1, after);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The walk down a strand that fills the band: what the elastic model and stretch say of each point, and where the solve of a point begins.
 
 use super::{
-    assemble::{Step, Sweep},
+    assemble::{Linearization, SubstepContext},
     band::Band,
     lanes::{F, Simd, V3, Work, load},
     model::{
@@ -21,12 +21,12 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
     pub band: Band<S, B, N>,
     model: M,
     /// Where the walk is.
-    pub walk: Walk<S>,
+    pub walk: AssemblyCursor<S>,
 }
 
 /// Where a walk down a strand is, and what it knows of all of it.
 #[derive(Clone, Copy)]
-pub struct Walk<S: Simd> {
+pub struct AssemblyCursor<S: Simd> {
     at: At<S>,
     /// The next particle, from the root [m].
     pub x: V3<S>,
@@ -35,7 +35,7 @@ pub struct Walk<S: Simd> {
     /// Velocity of the root in the last substep [m/s].
     pub root_velocity: V3<S>,
     /// What acts alike on all points.
-    pub ambient: Ambient<S>,
+    pub ambient: UniformForces<S>,
     /// Half of `strand::DRAG` [Pa s].
     half_drag: F<S>,
     /// See [`stretch`].
@@ -45,7 +45,13 @@ pub struct Walk<S: Simd> {
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
     /// At the root.
     #[inline(always)]
-    pub fn begin(simd: S, sweep: Sweep, step: &Step<S>, tile: &Tile, scratch: &mut Scratch) -> Self {
+    pub fn begin(
+        simd: S,
+        sweep: Linearization,
+        step: &SubstepContext<S>,
+        tile: &Tile,
+        scratch: &mut Scratch,
+    ) -> Self {
         let (drag, damping) = Root::<S>::fibre(simd, tile.strand);
         let zero = V3::zero(simd);
         let mut first = V3::load(simd, &scratch.edges[1]);
@@ -61,7 +67,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             damped: damping * (1.0 / step.h) + 1.0,
             news: sweep.news(),
             drift: [zero; 2],
-            drifting: F::splat(simd, sweep.drift(step.h)),
+            drifting: F::splat(simd, sweep.predicted_displacement(step.h)),
             h: step.h,
         };
         let begin = 2 * Profile::<B, N>::REACH * M::PROFILE.rows();
@@ -72,11 +78,11 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let sideways = Sideways::new(simd, share, step.h, step.touches);
         let root_velocity = V3::load(simd, &tile.state[0][state::V..]);
         let now = step.moved * F::splat(simd, 1.0 / step.h);
-        let ambient = Ambient {
+        let ambient = UniformForces {
             pull: (root_velocity - now).mul_add(F::splat(simd, 1.0 / step.h), V3::splat(simd, step.gravity)),
             wind: V3::splat(simd, step.wind) + (root_velocity - now),
         };
-        let walk = Walk { at, x: zero, way: zero, root_velocity, ambient, half_drag, sideways };
+        let walk = AssemblyCursor { at, x: zero, way: zero, root_velocity, ambient, half_drag, sideways };
         Self { band, model, walk }
     }
 
@@ -153,7 +159,7 @@ pub struct Segment<S: Simd> {
 
 /// What acts alike on all points of strands whose points all move as their roots did.
 #[derive(Clone, Copy)]
-pub struct Ambient<S: Simd> {
+pub struct UniformForces<S: Simd> {
     /// Gravity, and how the root's own motion changes [m/s²].
     pub pull: V3<S>,
     /// The wind that a point feels, where it moves as the root did, and its own velocity [m/s].
@@ -162,17 +168,17 @@ pub struct Ambient<S: Simd> {
 
 /// Where the solve of a point begins, worked out where it is asked for. (Not closures: the compiler may leave those outside of what it builds for the instruction
 /// set, and then each operation in them is a call.)
-pub struct Outset<S: Simd> {
-    pub sweep: Sweep,
+pub struct PredictedState<S: Simd> {
+    pub sweep: Linearization,
     /// Its velocity less the root's [m/s].
     pub faster: V3<S>,
-    /// See [`Sweep::drift`] [s].
+    /// See [`Linearization::predicted_displacement`] [s].
     pub share: f32,
     /// How far it has gone since the start of the substep, of a sweep again [m].
     pub way: V3<S>,
 }
 
-impl<S: Simd> Outset<S> {
+impl<S: Simd> PredictedState<S> {
     /// From where the root takes it [m].
     #[inline(always)]
     pub fn drift(&self, simd: S) -> V3<S> {
@@ -182,6 +188,6 @@ impl<S: Simd> Outset<S> {
     /// From where the substep begins [m].
     #[inline(always)]
     pub fn way(&self, simd: S) -> V3<S> {
-        if self.sweep == Sweep::First { self.drift(simd) } else { self.way }
+        if self.sweep == Linearization::Initial { self.drift(simd) } else { self.way }
     }
 }

@@ -3,25 +3,25 @@
 #[macro_use]
 mod each;
 
-pub(crate) mod across;
 pub(crate) mod assemble;
 pub(crate) mod band;
+pub(crate) mod bordered;
 pub(crate) mod colliders;
+pub(crate) mod contact;
 pub(crate) mod dispatch;
 pub(crate) mod drag;
 pub(crate) mod elements;
-pub(crate) mod fixed;
+pub(crate) mod external;
+pub(crate) mod frame_context;
 pub(crate) mod friction;
 pub(crate) mod integrate;
-pub(crate) mod interval;
 pub(crate) mod lanes;
-pub(crate) mod limit;
 pub(crate) mod mass;
 pub(crate) mod model;
-pub(crate) mod outside;
+pub(crate) mod post_solve;
 pub(crate) mod precision;
+pub(crate) mod precomputed;
 pub(crate) mod prefetch;
-pub(crate) mod press;
 pub(crate) mod profile;
 pub(crate) mod project;
 pub(crate) mod rest_shape;

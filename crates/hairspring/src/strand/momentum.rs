@@ -2,11 +2,10 @@
 //! spring, which all models share, is the gradient of its energy.
 
 use super::{
-    assemble::{Step, Sweep},
+    assemble::{Linearization, SubstepContext},
     band::Band,
     dispatch::{dispatch, dispatch_double},
     elements::Elements,
-    fixed::fix,
     lanes::{F, LANES, Mask, Row, Simd, V3},
     model::{
         Model, Stretching,
@@ -16,6 +15,7 @@ use super::{
         straight::Straight,
         stretch::{Sideways, stretch},
     },
+    precomputed::precompute,
     reference,
     root::Root,
     scratch::Memory,
@@ -68,14 +68,14 @@ fn forces_of(
         rest: &rest_rows,
         state: &mut state_rows,
         history: &mut [],
-        push: &[],
-        grip: &[],
-        tines: &[],
-        air: &[],
-        sunk: &[],
-        touched: &mut Row::default(),
-        spans: &mut [],
-        tethers: &[],
+        external_acceleration: &[],
+        position_spring: &[],
+        anisotropic_drag: &[],
+        wind_delta: &[],
+        rest_penetration: &[],
+        contact_age: &mut Row::default(),
+        segment_contacts: &mut [],
+        tether_lengths: &[],
         holds: &[],
     };
     if model == Elastic::Springs {
@@ -98,7 +98,7 @@ where
     M: Model<S, B, N>,
 {
     let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
-    let step = Step {
+    let step = SubstepContext {
         number: 0,
         left: 0.0,
         h: s.h as f32,
@@ -112,9 +112,9 @@ where
     };
     let mut memory = Memory::default();
     let mut scratch = memory.scratch(s.x.len());
-    fix(simd, step.h, Stretching::Moderate, tile, &mut scratch);
+    precompute(simd, step.h, Stretching::Moderate, tile, &mut scratch);
     scratch.begin(simd, tile.state);
-    let mut elements = Elements::<S, M, B, N>::begin(simd, Sweep::Forces, &step, tile, &mut scratch);
+    let mut elements = Elements::<S, M, B, N>::begin(simd, Linearization::Forces, &step, tile, &mut scratch);
     let mut forces = Forces::default();
     for i in 0..s.x.len() {
         if i + 1 < s.x.len() {
@@ -122,10 +122,10 @@ where
         } else {
             elements.band = Band::new(simd);
         }
-        elements.band.take_up(simd, M::PROFILE, i, scratch.factors);
+        elements.band.load_pending(simd, M::PROFILE, i, scratch.factors);
         forces.0.push(lane(elements.band.force()));
         forces.1.push(if B > 3 { elements.band.right(3).lane(3) as f64 } else { 0.0 });
-        elements.band.pass(simd, M::PROFILE, i, scratch.factors);
+        elements.band.skip_row(simd, M::PROFILE, i, scratch.factors);
     }
     forces
 }

@@ -5,7 +5,7 @@
 /// round and round: to ask again costs less than to see that there is nothing to ask for. A little at every point; all at once would wait for
 /// memory as much as no asking does.
 #[inline(always)]
-pub fn ask_beyond<T>(rows: &[T], i: usize, line: usize) {
+pub fn prefetch_next_tile<T>(rows: &[T], i: usize, line: usize) {
     const LINE: usize = 64;
     #[cfg(all(target_arch = "x86_64", not(miri)))]
     {

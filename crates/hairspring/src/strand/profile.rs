@@ -9,7 +9,7 @@
 pub struct Profile<const B: usize, const N: usize> {
     /// Largest distance of two unknowns that meet.
     half: usize,
-    /// Whether all that meets between the window's first point and its last is one spring, see [`Far`](super::band::Far).
+    /// Whether all that meets between the window's first point and its last is one spring, see [`LongRangeSpring`](super::band::LongRangeSpring).
     far: bool,
 }
 

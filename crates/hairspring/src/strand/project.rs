@@ -9,8 +9,8 @@
 //! The root and the second point are driven.
 
 use super::{
-    fixed::Fixed,
     lanes::{F, Mask, Simd, V3, Work, load, store},
+    precomputed::Precomputed,
     scratch::Scratch,
     tile::{Tile, rest, state, strand},
 };
@@ -56,7 +56,7 @@ pub struct Projection<S: Simd> {
 impl<S: Simd> Projection<S> {
     /// Past the tip.
     #[inline(always)]
-    pub fn begin(simd: S, tile: &Tile, fixed: &[Fixed]) -> Self {
+    pub fn begin(simd: S, tile: &Tile, fixed: &[Precomputed]) -> Self {
         let zero = F::<S>::splat(simd, 0.0);
         let tip = load(simd, &fixed[tile.rest.len() - 1].inverse_mass);
         let (u, enough) = (V3::zero(simd), Enough::of(simd, tile));

@@ -1,7 +1,7 @@
 //! The driven end of a strand: position, direction and frame of its root at any fraction of the interval.
 
 use super::{
-    interval::Substep,
+    frame_context::Substep,
     lanes::{F, Q4, Simd, V3, load},
     tile::{StrandRows, strand},
 };

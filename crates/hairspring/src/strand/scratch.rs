@@ -1,10 +1,9 @@
 //! Working memory of one thread, reused by every tile that it runs.
 
 use super::{
-    across,
-    fixed::Fixed,
+    bordered, contact,
     lanes::{Simd, V3, Work},
-    press,
+    precomputed::Precomputed,
     profile::Profile,
     project,
     tile::StateRows,
@@ -15,13 +14,13 @@ use super::{
 #[derive(Default)]
 pub struct Memory {
     factors: Vec<Work>,
-    across: Vec<across::Eliminated>,
+    across: Vec<bordered::Eliminated>,
     edges: Vec<[Work; 3]>,
     kick: Vec<[Work; 3]>,
     change: Vec<[Work; 3]>,
-    contacts: Vec<[Work; press::scratch::ROWS]>,
+    contacts: Vec<[Work; contact::scratch::ROWS]>,
     pulls: Vec<[Work; project::scratch::ROWS]>,
-    fixed: Vec<Fixed>,
+    fixed: Vec<Precomputed>,
 }
 
 /// What one tile needs of it, cut to the tile's length, so that walks along the strand need no checks.
@@ -29,7 +28,7 @@ pub struct Scratch<'a> {
     /// Factors of the band, point after point, between those that the first and the last would meet; `local_global`'s rows lie over them.
     pub factors: &'a mut [Work],
     /// Springs whose force has been eliminated, the last on top; with room for one a point.
-    pub across: &'a mut Vec<across::Eliminated>,
+    pub across: &'a mut Vec<bordered::Eliminated>,
     /// From each particle's predecessor to it, anew, shape `[points + BEYOND]` [m]; see `state::EDGE`.
     pub edges: &'a mut [[Work; 3]],
     /// What is added to the velocities of `(new − old) / h`, shape `[points]` [m/s]; forces before that. Of integrators other than the
@@ -37,12 +36,12 @@ pub struct Scratch<'a> {
     pub kick: &'a mut [[Work; 3]],
     /// Changes of the positions in one iteration, shape `[points]` [m].
     pub change: &'a mut [[Work; 3]],
-    /// What the solve knows of contact, shape `[points]`; see `press::scratch`.
-    pub contacts: &'a mut [[Work; press::scratch::ROWS]],
+    /// What the solve knows of contact, shape `[points]`; see `contact::scratch`.
+    pub contacts: &'a mut [[Work; contact::scratch::ROWS]],
     /// What projection has worked out of each segment, shape `[points]`; see `project::scratch`.
     pub pulls: &'a mut [[Work; project::scratch::ROWS]],
     /// What stays as it is for an interval, shape `[points]`.
-    pub fixed: &'a mut [Fixed],
+    pub fixed: &'a mut [Precomputed],
 }
 
 /// Most rows of factors a point, those of the rod.
@@ -79,19 +78,19 @@ impl Memory {
             self.kick.resize(points, [Work::default(); 3]);
             self.change.resize(points, [Work::default(); 3]);
             self.edges.resize(points + BEYOND, [Work::default(); 3]);
-            self.contacts.resize(points, [Work::default(); press::scratch::ROWS]);
+            self.contacts.resize(points, [Work::default(); contact::scratch::ROWS]);
             self.pulls.resize(points, [Work::default(); project::scratch::ROWS]);
-            self.fixed.resize(points, Fixed::default());
+            self.fixed.resize(points, Precomputed::default());
         }
     }
 }
 
 impl Scratch<'_> {
-    /// The same, for a function that is no part of the walk: see [`Tile::lent`].
+    /// The same, for a function that is no part of the walk: see [`Tile::reborrow`].
     ///
-    /// [`Tile::lent`]: super::tile::Tile::lent
+    /// [`Tile::reborrow`]: super::tile::Tile::lent
     #[inline(always)]
-    pub fn lent(&mut self) -> Scratch<'_> {
+    pub fn reborrow(&mut self) -> Scratch<'_> {
         let Self { factors, across, edges, kick, change, contacts, pulls, fixed } = self;
         Scratch { factors, across, edges, kick, change, contacts, pulls, fixed }
     }

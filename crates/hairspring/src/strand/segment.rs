@@ -1,5 +1,5 @@
 //! Segments stay outside of colliders as points do: where one cuts a corner that its ends stay out of, its outer end swings out until it is
-//! clear (in `limit`), and from then on the place that cut is pressed in the solve, like a point (`press`).
+//! clear (in `post_solve`), and from then on the place that cut is pressed in the solve, like a point (`contact`).
 //!
 //! ```text
 //!        a ●━━━╲━━━━┓           gap −d at the place s of the segment: the outer end swings about a by d/s,
@@ -16,17 +16,17 @@
 //! A place near the inner end is for the next solve: a strand that is caught, or that lands at 30 m/s, cuts in for a moment.
 
 use super::{
-    assemble::{Step, Sweep},
-    colliders::{contact, deepest, may_lie_deep, surface_displacement},
+    assemble::{Linearization, SubstepContext},
+    colliders::{contact, find_deepest_point, segment_may_penetrate, surface_displacement},
+    contact::{STICK, Surface, nearest, scratch, scratch::SEGMENT},
     friction::Friction,
     lanes::{F, Mask, Simd, Sym3, V3, Work, load, store},
-    limit::{CORRECTIONS, Finish, LIMIT, Link, Particle, out_of},
     model::stretch::STRETCH,
-    press::{STICK, Surface, nearest, scratch, scratch::SEGMENT},
+    post_solve::{CORRECTIONS, LIMIT, Particle, PostSolveParams, SegmentLimit, out_of},
     system::System,
-    tile::{Tile, rest, span, state},
+    tile::{Tile, rest, segment_contact, state},
 };
-use crate::collide::{Deepest, Edges, ObstaclePose, STEEP, Side};
+use crate::collide::{ColliderPose, DeepestPoint, Edges, STEEP, Side};
 use glam::Vec3;
 
 /// How deep a segment may be between its ends, over its length [1]. On a smooth body it is always a little inside: by L/8R of its length over a
@@ -67,38 +67,38 @@ const FARTHEST: f32 = 1.0;
 
 /// Whether no segment of up to `length` [m] need be looked at beside what is round with this `radius` [m]: it lies within what it may, as long as the limit lets
 /// it become.
-pub fn may_be_left(length: f32, radius: f32) -> bool {
+pub fn segment_contact_unneeded(length: f32, radius: f32) -> bool {
     length * (1.0 + LIMIT).powi(2) <= 8.0 * SAG * radius
 }
 
 /// How much deeper than the surface the segment to point `i` may be between its ends [m]: as deep as it was authored, and what a smooth body takes.
 #[inline(always)]
-pub fn sag<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
+pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
     let inner = i - tile.model.stride();
-    let sag = load(simd, &tile.rest[inner][rest::LENGTH]) * SAG;
-    tile.sunk.get(i).map_or(sag, |sunk| sag - load(simd, sunk))
+    let tolerance = load(simd, &tile.rest[inner][rest::LENGTH]) * SAG;
+    tile.rest_penetration.get(i).map_or(tolerance, |sunk| tolerance - load(simd, sunk))
 }
 
 /// Where point `i` may be, which is at `e` from the strand's point before and was at `old`, so that the segment between them is outside of `pose`. What
 /// held it out presses on in the next solve. The point came in at that `distance` from the surface [m]; those that are `caught` are inside still.
 #[inline(always)]
-pub fn clear<S: Simd>(
+pub fn resolve_segment_contact<S: Simd>(
     simd: S,
-    (finish, step, pose): (&Finish, &Step<S>, &ObstaclePose),
+    (finish, step, pose): (&PostSolveParams, &SubstepContext<S>, &ColliderPose),
     tile: &mut Tile,
     (i, old, e): (usize, V3<S>, V3<S>),
-    (inner, link): (&Particle<S>, &Link<S>),
+    (inner, link): (&Particle<S>, &SegmentLimit<S>),
     (distance, caught): (F<S>, Mask<S>),
 ) -> V3<S> {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let a = step.root.position + inner.x;
-    let clear = -sag(simd, tile, i);
+    let clear = -segment_tolerance(simd, tile, i);
     // What ends farther from the surface than it is long has no place inside: a distance changes by no more than the way, but for a field between two
     // nodes on the two sides of a thin wall, where a place near the inner end may be passed over.
     let far = distance.max(0.0);
     let mut may = caught | (far * far).simd_lt(e.dot(e));
     if may.any_true() {
-        may = caught | may_lie_deep(simd, pose, (a + e, e), -clear);
+        may = caught | segment_may_penetrate(simd, pose, (a + e, e), -clear);
     }
     if !may.any_true() {
         return e;
@@ -161,7 +161,7 @@ pub fn clear<S: Simd>(
         }
         let anew = correction.checked_sub(CORRECTIONS).filter(|more| more % OF_EACH == 0);
         if let Some(more) = anew {
-            q = V3::select(cuts, link.clamp(aside(simd, e, more / OF_EACH + 1)), q);
+            q = V3::select(cuts, link.clamp(perturb(simd, e, more / OF_EACH + 1)), q);
             wall = V3::zero(simd);
             continue;
         }
@@ -181,13 +181,16 @@ pub fn clear<S: Simd>(
             let carried = surface_displacement(simd, pose, e.mul_add(pressed.at, a));
             let approach = pressed.normal.dot(carried - way).max(0.0);
             let mass = load(simd, &tile.rest[i][rest::MASS]);
-            let rows = &mut tile.spans[i];
-            let force = load(simd, &rows[span::FORCE]);
+            let rows = &mut tile.segment_contacts[i];
+            let force = load(simd, &rows[segment_contact::FORCE]);
             let deep = (clear - pressed.distance).max(0.0);
             let pressing = pressing & deep.simd_gt(end);
             let more = pressing.select(finish.pressed(force, mass, deep, approach), force);
-            store(more, &mut rows[span::FORCE]);
-            store(pressing.select(pressed.at, load(simd, &rows[span::AT])), &mut rows[span::AT]);
+            store(more, &mut rows[segment_contact::FORCE]);
+            store(
+                pressing.select(pressed.at, load(simd, &rows[segment_contact::AT])),
+                &mut rows[segment_contact::AT],
+            );
             if !finish.project {
                 break;
             }
@@ -207,11 +210,12 @@ pub fn clear<S: Simd>(
 #[inline(always)]
 fn cut<S: Simd>(
     simd: S,
-    (pose, side): (&ObstaclePose, &Option<(&Edges, Side<S>)>),
+    (pose, side): (&ColliderPose, &Option<(&Edges, Side<S>)>),
     (a, q): (V3<S>, V3<S>),
     (from, within): (F<S>, F<S>),
-) -> Deepest<S> {
-    let place = deepest(simd, pose, (a, q), (from, within)).unwrap_or_else(|| Deepest::none(simd));
+) -> DeepestPoint<S> {
+    let place =
+        find_deepest_point(simd, pose, (a, q), (from, within)).unwrap_or_else(|| DeepestPoint::none(simd));
     match side {
         Some((edges, side)) => {
             let past = edges.past(simd, side, (a, q), (from, within));
@@ -223,7 +227,7 @@ fn cut<S: Simd>(
 
 /// `e` turned aside for the `start`th time, from 1 on: each time in another direction, at first a little and at last by [`FARTHEST`].
 #[inline(always)]
-fn aside<S: Simd>(simd: S, e: V3<S>, start: usize) -> V3<S> {
+fn perturb<S: Simd>(simd: S, e: V3<S>, start: usize) -> V3<S> {
     // The additive recurrence R₃, which fills a cube evenly (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"): powers of the root
     // of x⁴ = x + 1.
     const STEPS: Vec3 = Vec3::new(0.819_172_5, 0.671_043_6, 0.549_700_5);
@@ -237,22 +241,22 @@ fn aside<S: Simd>(simd: S, e: V3<S>, start: usize) -> V3<S> {
 /// root, drifts by `drift` and is by then `way` from where the substep began. `stride` is the model's, told and not looked up: the compiler has to know
 /// which entries these are, or all of the band stays in memory.
 #[inline(always)]
-pub fn press_between<S: Simd, const B: usize>(
+pub fn assemble_segment_contact<S: Simd, const B: usize>(
     simd: S,
-    (sweep, step, stride): (Sweep, &Step<S>, usize),
+    (sweep, step, stride): (Linearization, &SubstepContext<S>, usize),
     tile: &mut Tile,
     (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
     system: &mut impl System<S, B>,
     (edges, contacts): (&[[Work; 3]], &mut [[Work; scratch::ROWS]]),
 ) {
     let outer = i + stride;
-    let Some(rows) = tile.spans.get(outer) else { return };
-    let force = load(simd, &rows[span::FORCE]);
+    let Some(rows) = tile.segment_contacts.get(outer) else { return };
+    let force = load(simd, &rows[segment_contact::FORCE]);
     if !force.simd_gt(0.0).any_true() {
         return;
     }
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
-    let at = load(simd, &rows[span::AT]);
+    let at = load(simd, &rows[segment_contact::AT]);
     // From this point to the next, now and where the substep began.
     let mut e = V3::load(simd, &edges[outer]);
     let mut old = V3::load(simd, &tile.state[outer][state::EDGE..]);
@@ -262,15 +266,15 @@ pub fn press_between<S: Simd, const B: usize>(
     }
     let (at, Surface { distance, normal, carried }) =
         nearest_edge(simd, step.obstacles, (x + step.root.position, e), at);
-    store(at, &mut tile.spans[outer][span::AT]);
-    let gap = distance + sag(simd, tile, outer);
+    store(at, &mut tile.segment_contacts[outer][segment_contact::AT]);
+    let gap = distance + segment_tolerance(simd, tile, outer);
 
     // Shut while N could close the gap in a substep; what has gone farther is let go.
     let m_h2 = load(simd, &tile.rest[outer][rest::MASS]) * (1.0 / (step.h * step.h));
     let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
     let force = shut.select(force, zero);
     let gap = shut.select(gap, zero);
-    store(force, &mut tile.spans[outer][span::FORCE]);
+    store(force, &mut tile.segment_contacts[outer][segment_contact::FORCE]);
     if !shut.any_true() {
         return;
     }
@@ -289,7 +293,7 @@ pub fn press_between<S: Simd, const B: usize>(
     let h = F::splat(simd, step.h);
     let drifts = faster * h;
     let (drift_more, way_more) =
-        if sweep == Sweep::First { (drifts, drifts) } else { (V3::zero(simd), e - old) };
+        if sweep == Linearization::Initial { (drifts, drifts) } else { (V3::zero(simd), e - old) };
     let (drift, way) = (drift_more.mul_add(at, drift), way_more.mul_add(at, way));
     let along = |v: V3<S>| v - normal * normal.dot(v);
     let k = shut.select(m_h2 * STRETCH, zero);
@@ -311,7 +315,7 @@ pub fn press_between<S: Simd, const B: usize>(
 #[inline(never)]
 fn nearest_edge<S: Simd>(
     simd: S,
-    obstacles: &[ObstaclePose],
+    obstacles: &[ColliderPose],
     (a, e): (V3<S>, V3<S>),
     at: F<S>,
 ) -> (F<S>, Surface<S>) {
@@ -339,23 +343,23 @@ fn nearest_edge<S: Simd>(
 
 /// The force that presses the segment from point `i` once the solve has moved its ends by `moved`.
 #[inline(always)]
-pub fn relieve_between<S: Simd>(
+pub fn update_segment_contact_multiplier<S: Simd>(
     simd: S,
-    step: &Step<S>,
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     (i, moved): (usize, [V3<S>; 2]),
     contacts: &[[Work; scratch::ROWS]],
 ) {
     let outer = i + tile.model.stride();
-    let Some(rows) = tile.spans.get_mut(outer) else { return };
-    let force = load(simd, &rows[span::FORCE]);
+    let Some(rows) = tile.segment_contacts.get_mut(outer) else { return };
+    let force = load(simd, &rows[segment_contact::FORCE]);
     let shut = force.simd_gt(0.0);
     if !shut.any_true() {
         return;
     }
     let work = &contacts[outer][SEGMENT..];
-    let delta = (moved[1] - moved[0]).mul_add(load(simd, &rows[span::AT]), moved[0]);
+    let delta = (moved[1] - moved[0]).mul_add(load(simd, &rows[segment_contact::AT]), moved[0]);
     let k = load(simd, &tile.rest[outer][rest::MASS]) * (STRETCH / (step.h * step.h));
     let gap = load(simd, &work[scratch::GAP]) + V3::load(simd, &work[scratch::NORMAL..]).dot(delta);
-    store(shut.select((force - k * gap).max(0.0), force), &mut rows[span::FORCE]);
+    store(shut.select((force - k * gap).max(0.0), force), &mut rows[segment_contact::FORCE]);
 }

@@ -1,15 +1,15 @@
 //! The sweep up a strand: the solution point after point, added to its edges.
 
 use super::{
-    assemble::{Step, Sweep},
+    assemble::{Linearization, SubstepContext},
     band::back_substitute,
+    contact::update_contact_multiplier,
     lanes::{F, Simd, V3, load, store},
     model::{Model, Solved},
-    press::relieve,
     profile::Profile,
     project::Projection,
     scratch::Scratch,
-    segment::relieve_between,
+    segment::update_segment_contact_multiplier,
     tile::{Tile, rest, state},
 };
 
@@ -17,8 +17,8 @@ use super::{
 #[inline(always)]
 pub fn substitute<S, M, const B: usize, const N: usize>(
     simd: S,
-    sweep: Sweep,
-    step: &Step<S>,
+    sweep: Linearization,
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) -> Projection<S>
@@ -28,7 +28,7 @@ where
 {
     let zero = V3::zero(simd);
     let n = tile.rest.len();
-    let mut up = Up {
+    let mut up = BackSubstitution {
         root_velocity: V3::load(simd, &tile.state[0][state::V..]),
         solved: Solved {
             i: n,
@@ -59,7 +59,7 @@ where
 }
 
 /// The walk up a strand.
-struct Up<S: Simd, const N: usize> {
+struct BackSubstitution<S: Simd, const N: usize> {
     /// Velocity of the root in the last substep [m/s].
     root_velocity: V3<S>,
     /// What is known of the point that it was at last.
@@ -67,14 +67,14 @@ struct Up<S: Simd, const N: usize> {
     projection: Projection<S>,
 }
 
-impl<S: Simd, const N: usize> Up<S, N> {
+impl<S: Simd, const N: usize> BackSubstitution<S, N> {
     /// Passes point i; `phase` is i modulo the model's stride, and `tip` tells the last.
     #[inline(always)]
     fn pass_point<M: Model<S, B, N>, const B: usize>(
         &mut self,
         simd: S,
-        (sweep, i, phase, tip): (Sweep, usize, usize, bool),
-        step: &Step<S>,
+        (sweep, i, phase, tip): (Linearization, usize, usize, bool),
+        step: &SubstepContext<S>,
         tile: &mut Tile,
         scratch: &mut Scratch,
     ) {
@@ -93,14 +93,20 @@ impl<S: Simd, const N: usize> Up<S, N> {
             let unknowns = &solved.unknowns;
             let drift = V3::load(simd, &tile.state[i][state::V..]) - *root_velocity;
             delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
-            delta = drift.mul_add(F::splat(simd, sweep.drift(step.h)), delta);
+            delta = drift.mul_add(F::splat(simd, sweep.predicted_displacement(step.h)), delta);
             if phase == 0 {
-                relieve(simd, step, tile, (i, delta), &scratch.contacts[i]);
+                update_contact_multiplier(simd, step, tile, (i, delta), &scratch.contacts[i]);
             }
         }
         if phase == 0 && !tip {
             // Before this point's is added: those of the points after it.
-            relieve_between(simd, step, tile, (i, [delta, solved.moved[M::STRIDE - 1]]), scratch.contacts);
+            update_segment_contact_multiplier(
+                simd,
+                step,
+                tile,
+                (i, [delta, solved.moved[M::STRIDE - 1]]),
+                scratch.contacts,
+            );
         }
         (solved.i, solved.phase) = (i, phase);
         let fixed = &scratch.fixed[i - phase];

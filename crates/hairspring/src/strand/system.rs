@@ -60,12 +60,12 @@ pub trait System<S: Simd, const B: usize> {
 
 /// What was said of the window's points before the walk comes to the first, and of the last nothing: in memory, for what acts on few points. Were it added to
 /// the window, all of that would have to be where both sides of a rare branch find it.
-pub struct Said<'a, const B: usize, const N: usize> {
+pub struct PendingRows<'a, const B: usize, const N: usize> {
     rows: &'a mut [Work],
     profile: Profile<B, N>,
 }
 
-impl<'a, const B: usize, const N: usize> Said<'a, B, N> {
+impl<'a, const B: usize, const N: usize> PendingRows<'a, B, N> {
     /// Of the points from the strand's `i`th on.
     #[inline(always)]
     pub fn new(profile: Profile<B, N>, i: usize, factors: &'a mut [Work]) -> Self {
@@ -74,7 +74,7 @@ impl<'a, const B: usize, const N: usize> Said<'a, B, N> {
     }
 }
 
-impl<S: Simd, const B: usize, const N: usize> System<S, B> for Said<'_, B, N> {
+impl<S: Simd, const B: usize, const N: usize> System<S, B> for PendingRows<'_, B, N> {
     #[inline(always)]
     fn add(&mut self, (p, j): (usize, usize), (q, k): (usize, usize), value: F<S>) {
         let row = &mut self.rows[self.profile.said(p * B + j, q * B + k)];

@@ -1,11 +1,10 @@
 //! The kernel's pieces, each held against scalar f64.
 
 use super::{
-    across::Across,
-    assemble::{Step, Sweep, assemble},
+    assemble::{Linearization, SubstepContext, assemble},
     band::{Band, back_substitute},
+    bordered::BorderedConstraint,
     dispatch::{dispatch, dispatch_double},
-    fixed::fix,
     lanes::{F, LANES, Mask, Row, Simd, V3, Work},
     model::{
         Stretching,
@@ -16,6 +15,7 @@ use super::{
         springs::{BEND, Springs, TORSION},
         straight::Straight,
     },
+    precomputed::precompute,
     profile::Profile,
     reference::{self, dense_solve},
     root::Root,
@@ -73,16 +73,16 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
             band.add_right((0, r - i * B), f(b[r]));
         }
         if let Some(Held { far: (u, k, pull), .. }) = held.get(i) {
-            band.add_far(splat(simd, *u), f(*k), f(*pull));
+            band.add_long_range_spring(splat(simd, *u), f(*k), f(*pull));
         }
         if i < driven {
-            band.pass(simd, profile, i, &mut factors);
+            band.skip_row(simd, profile, i, &mut factors);
         } else {
             band.eliminate(simd, profile, i, &mut factors);
         }
         if let Some((u, c, k, longer)) = held.get(i).and_then(|held| held.across) {
             let gradient = c.map(|c| splat(simd, u * c));
-            let across = Across { gradient, longer: f(longer), stiffness: f(k) };
+            let across = BorderedConstraint { gradient, longer: f(longer), stiffness: f(k) };
             eliminated.push(across.eliminate(simd, profile, i, &mut factors));
         }
     }
@@ -385,14 +385,14 @@ fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, V
         rest: &rest_rows,
         state: &mut state_rows,
         history: &mut [],
-        push: &[],
-        grip: &[],
-        tines: &[],
-        air: &[],
-        sunk: &[],
-        touched: &mut Row::default(),
-        spans: &mut [],
-        tethers: &[],
+        external_acceleration: &[],
+        position_spring: &[],
+        anisotropic_drag: &[],
+        wind_delta: &[],
+        rest_penetration: &[],
+        contact_age: &mut Row::default(),
+        segment_contacts: &mut [],
+        tether_lengths: &[],
         holds: &[],
     };
     let mut edges = vec![DVec3::ZERO; n];
@@ -418,7 +418,7 @@ fn solve_substep<S: Simd>(
     edges: &mut [DVec3],
 ) {
     let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
-    let step = Step {
+    let step = SubstepContext {
         number: 0,
         left: 0.0,
         h: s.h as f32,
@@ -431,7 +431,7 @@ fn solve_substep<S: Simd>(
         obstacles: &[],
     };
     scratch.begin(simd, tile.state);
-    fix(simd, step.h, Stretching::Moderate, tile, scratch);
+    precompute(simd, step.h, Stretching::Moderate, tile, scratch);
     solve_once(simd, &step, tile, scratch);
     for (edge, row) in edges.iter_mut().zip(&*scratch.edges) {
         *edge = lane(V3::load(simd, row));
@@ -439,23 +439,23 @@ fn solve_substep<S: Simd>(
 }
 
 #[inline(always)]
-fn solve_once<S: Simd>(simd: S, step: &Step<S>, tile: &mut Tile, scratch: &mut Scratch) {
+fn solve_once<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &mut Tile, scratch: &mut Scratch) {
     match tile.model {
         Elastic::Straight => {
-            assemble::<S, Straight, 3, 9>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Straight, 3, 9>(simd, Sweep::First, step, tile, scratch);
+            assemble::<S, Straight, 3, 9>(simd, Linearization::Initial, step, tile, scratch);
+            substitute::<S, Straight, 3, 9>(simd, Linearization::Initial, step, tile, scratch);
         }
         Elastic::Curvature => {
-            assemble::<S, Curvature<S>, 3, 9>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Curvature<S>, 3, 9>(simd, Sweep::First, step, tile, scratch);
+            assemble::<S, Curvature<S>, 3, 9>(simd, Linearization::Initial, step, tile, scratch);
+            substitute::<S, Curvature<S>, 3, 9>(simd, Linearization::Initial, step, tile, scratch);
         }
         Elastic::Rod => {
-            assemble::<S, Rod<S>, 4, 11>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Rod<S>, 4, 11>(simd, Sweep::First, step, tile, scratch);
+            assemble::<S, Rod<S>, 4, 11>(simd, Linearization::Initial, step, tile, scratch);
+            substitute::<S, Rod<S>, 4, 11>(simd, Linearization::Initial, step, tile, scratch);
         }
         Elastic::Springs => {
-            assemble::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
-            substitute::<S, Springs, 3, 12>(simd, Sweep::First, step, tile, scratch);
+            assemble::<S, Springs, 3, 12>(simd, Linearization::Initial, step, tile, scratch);
+            substitute::<S, Springs, 3, 12>(simd, Linearization::Initial, step, tile, scratch);
         }
     }
 }

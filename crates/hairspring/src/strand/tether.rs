@@ -10,10 +10,10 @@
 //! is pulled back in the solve, by a spring that all of the strand knows of; what that could not know (a fall, twenty times its weight) ends in `limit`.
 
 use super::{
-    assemble::Step,
+    assemble::SubstepContext,
     lanes::{F, Mask, Simd, Sym3, V3, load},
-    limit::{Link, Particle},
     model::stretch::STRETCH,
+    post_solve::{Particle, SegmentLimit},
     system::System,
     tile::{Tile, rest},
 };
@@ -25,30 +25,30 @@ const SLACK: f32 = 1e-3;
 #[inline(always)]
 pub fn pull<S: Simd, const B: usize>(
     simd: S,
-    step: &Step<S>,
+    step: &SubstepContext<S>,
     tile: &Tile,
     (i, x, drift): (usize, V3<S>, V3<S>),
     system: &mut impl System<S, B>,
 ) {
-    let Some(reach) = tile.tethers.get(i) else { return };
+    let Some(reach) = tile.tether_lengths.get(i) else { return };
     let (size, out) = x.length_and_unit();
-    let beyond = size - load(simd, reach);
-    let far = beyond.simd_gt(0.0);
+    let excess = size - load(simd, reach);
+    let far = excess.simd_gt(0.0);
     if !far.any_true() {
         return;
     }
     // Like a segment's: there is nothing that it should give way to.
     let k = load(simd, &tile.rest[i][rest::MASS]) * (STRETCH / (step.h * step.h));
     let zero = F::splat(simd, 0.0);
-    let (k, beyond) = (far.select(k, zero), far.select(beyond, zero));
+    let (k, excess) = (far.select(k, zero), far.select(excess, zero));
     system.add_diagonal(1, Sym3::outer(out, k));
-    system.add_force(1, out * (k * -(beyond + out.dot(drift))));
+    system.add_force(1, out * (k * -(excess + out.dot(drift))));
 }
 
 /// Whether point `i`, at `x` from the root, is beyond its tether.
 #[inline(always)]
-pub fn beyond<S: Simd>(simd: S, tile: &Tile, i: usize, x: V3<S>) -> Mask<S> {
-    let Some(reach) = tile.tethers.get(i) else { return Mask::splat(simd, false) };
+pub fn exceeds_lra<S: Simd>(simd: S, tile: &Tile, i: usize, x: V3<S>) -> Mask<S> {
+    let Some(reach) = tile.tether_lengths.get(i) else { return Mask::splat(simd, false) };
     let reach = load(simd, reach) * (1.0 + SLACK);
     x.dot(x).simd_gt(reach * reach)
 }
@@ -59,19 +59,19 @@ pub fn beyond<S: Simd>(simd: S, tile: &Tile, i: usize, x: V3<S>) -> Mask<S> {
 /// Straight toward the root as far as the segment may shorten, and only then aside: a segment that points away from the root would have to swing by √(2 l δ)
 /// to come back by δ at its length, which is motion out of nothing.
 #[inline(always)]
-pub fn tethered<S: Simd>(
+pub fn apply_lra<S: Simd>(
     simd: S,
     tile: &Tile,
     i: usize,
-    (at, link): (&Particle<S>, &Link<S>),
+    (at, link): (&Particle<S>, &SegmentLimit<S>),
     e: V3<S>,
 ) -> V3<S> {
     let x = at.x + e;
-    let far = beyond(simd, tile, i, x);
+    let far = exceeds_lra(simd, tile, i, x);
     if !far.any_true() {
         return e;
     }
-    let reach = load(simd, &tile.tethers[i]) * (1.0 + SLACK);
+    let reach = load(simd, &tile.tether_lengths[i]) * (1.0 + SLACK);
     let (size, out) = x.length_and_unit();
     let pulled = e - out * (size - reach);
     let l = link.within(pulled.length_and_unit().0);

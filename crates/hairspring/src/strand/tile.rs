@@ -18,7 +18,7 @@ pub mod state {
     /// The frame's normal on the segment from this point to the next, 3 rows.
     pub const NORMAL: usize = 7;
     /// Force with which a collider holds this point out, found by the last substep; 0 without contact [N].
-    pub const PRESS: usize = 10;
+    pub const NORMAL_FORCE: usize = 10;
     /// Rows a point.
     pub const ROWS: usize = 11;
 }
@@ -106,7 +106,7 @@ pub mod springs {
 }
 
 /// Rows of what presses a segment between its ends, carried from substep to substep.
-pub mod span {
+pub mod segment_contact {
     /// Force with which a collider holds it out there; 0 without contact [N].
     pub const FORCE: usize = 0;
     /// Where: 0 at the segment's beginning, 1 at its end.
@@ -144,7 +144,7 @@ pub mod hold {
 }
 
 /// Rows of how a point is gripped.
-pub mod grip {
+pub mod position_spring {
     /// Stiffness of the spring that pulls it to a place, over its mass [1/s²].
     pub const STIFFNESS: usize = 0;
     /// How fast it takes on a velocity [1/s].
@@ -156,11 +156,11 @@ pub mod grip {
 }
 
 /// Rows of how a point is taken along across its strand.
-pub mod tines {
+pub mod anisotropic_drag {
     /// How fast it takes on a velocity [1/s].
     pub const BRAKE: usize = 0;
     /// That velocity, times how fast [m/s²], 3 rows.
-    pub const CARRY: usize = 1;
+    pub const ACCELERATION: usize = 1;
     /// Rows a point.
     pub const ROWS: usize = 4;
 }
@@ -182,7 +182,7 @@ pub type RestRows = [Row; rest::ROWS];
 pub type StateRows = [Row; state::ROWS];
 
 /// What presses the segment to one point of eight strands between its ends.
-pub type SpanRows = [Row; span::ROWS];
+pub type SegmentContactRows = [Row; segment_contact::ROWS];
 
 /// What the integrator of second order remembers of one point.
 pub type HistoryRows = [Row; history::ROWS];
@@ -203,22 +203,22 @@ pub struct Tile<'a> {
     /// Acceleration from outside, frozen for the interval [m/s²]: shape `[points]`, empty where there is none. Where a point is gripped, it is
     /// that at the root, at rest in the world, at the end of the interval: stiffness times the place, from the root, that it is pulled to, and
     /// brake times the velocity that it takes on are part of it.
-    pub push: &'a [[Row; 3]],
-    /// How points are gripped, frozen for the interval, see `grip`: shape `[points]`, empty where none is.
-    pub grip: &'a [[Row; grip::ROWS]],
-    /// How points are taken along across their strands, frozen for the interval, see `tines`: shape `[points]`, empty where none is.
-    pub tines: &'a [[Row; tines::ROWS]],
+    pub external_acceleration: &'a [[Row; 3]],
+    /// How points are gripped, frozen for the interval, see `position_spring`: shape `[points]`, empty where none is.
+    pub position_spring: &'a [[Row; position_spring::ROWS]],
+    /// How points are taken along across their strands, frozen for the interval, see `anisotropic_drag`: shape `[points]`, empty where none is.
+    pub anisotropic_drag: &'a [[Row; anisotropic_drag::ROWS]],
     /// Velocity of the air besides the wind of all points, frozen for the interval [m/s]: shape `[points]`, empty where there is none.
-    pub air: &'a [[Row; 3]],
+    pub wind_delta: &'a [[Row; 3]],
     /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]: shape `[points]`, empty where none
     /// was.
-    pub sunk: &'a [Row],
+    pub rest_penetration: &'a [Row],
     /// For how much longer each strand counts as one that touches something [s].
-    pub touched: &'a mut Row,
-    /// What presses the segment to each point between its ends, see `span`: shape `[points]`, empty where segments are no contacts.
-    pub spans: &'a mut [SpanRows],
+    pub contact_age: &'a mut Row,
+    /// What presses the segment to each point between its ends, see `segment_contact`: shape `[points]`, empty where segments are no contacts.
+    pub segment_contacts: &'a mut [SegmentContactRows],
     /// How far each point may be from its root [m]: shape `[points]`, empty where none is held so.
-    pub tethers: &'a [Row],
+    pub tether_lengths: &'a [Row],
     /// What holds or pulls points, sorted by point.
     pub holds: &'a [HoldRows],
 }
@@ -226,22 +226,23 @@ pub struct Tile<'a> {
 impl Tile<'_> {
     /// The same tile, of which the compiler knows that its arrays are equally long.
     #[inline(always)]
-    pub fn cut(&mut self) -> Tile<'_> {
+    pub fn with_equal_lengths(&mut self) -> Tile<'_> {
         let points = self.rest.len();
         let all_or_none = |none: bool| if none { 0 } else { points };
         let history = all_or_none(self.history.is_empty());
-        let spans = all_or_none(self.spans.is_empty());
+        let spans = all_or_none(self.segment_contacts.is_empty());
         Tile {
             state: &mut self.state[..points],
             history: &mut self.history[..history],
-            push: &self.push[..all_or_none(self.push.is_empty())],
-            grip: &self.grip[..all_or_none(self.grip.is_empty())],
-            tines: &self.tines[..all_or_none(self.tines.is_empty())],
-            air: &self.air[..all_or_none(self.air.is_empty())],
-            sunk: &self.sunk[..all_or_none(self.sunk.is_empty())],
-            touched: self.touched,
-            spans: &mut self.spans[..spans],
-            tethers: &self.tethers[..all_or_none(self.tethers.is_empty())],
+            external_acceleration: &self.external_acceleration
+                [..all_or_none(self.external_acceleration.is_empty())],
+            position_spring: &self.position_spring[..all_or_none(self.position_spring.is_empty())],
+            anisotropic_drag: &self.anisotropic_drag[..all_or_none(self.anisotropic_drag.is_empty())],
+            wind_delta: &self.wind_delta[..all_or_none(self.wind_delta.is_empty())],
+            rest_penetration: &self.rest_penetration[..all_or_none(self.rest_penetration.is_empty())],
+            contact_age: self.contact_age,
+            segment_contacts: &mut self.segment_contacts[..spans],
+            tether_lengths: &self.tether_lengths[..all_or_none(self.tether_lengths.is_empty())],
             ..*self
         }
     }
@@ -249,9 +250,9 @@ impl Tile<'_> {
     /// The same tile, for a function that is no part of the walk. Were the walk's own lent out, the compiler would look up in memory where its arrays are, and how
     /// long, at every point again.
     #[inline(always)]
-    pub fn lent(&mut self) -> Tile<'_> {
-        let Self { state, history, touched, spans, .. } = self;
-        Tile { state, history, touched, spans, ..*self }
+    pub fn reborrow(&mut self) -> Tile<'_> {
+        let Self { state, history, contact_age: touched, segment_contacts: spans, .. } = self;
+        Tile { state, history, contact_age: touched, segment_contacts: spans, ..*self }
     }
 }
 

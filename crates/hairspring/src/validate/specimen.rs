@@ -2,11 +2,11 @@
 
 use super::{Failure, Method};
 use crate::{
-    collide::{Obstacle, ObstaclePose, Rigid},
+    collide::{ColliderPose, ColliderShape, RigidTransform},
     groom::Groom,
     material::Material,
     scene::{Solver, Wind},
-    simulation::{Air, Drive, Hold, MovingObstacle, Simulation},
+    simulation::{Air, Hold, MovingCollider, Simulation, StepInput},
 };
 use glam::{DQuat, DVec3, Mat3, Vec3};
 use std::{
@@ -64,7 +64,7 @@ pub struct Setup {
     /// [m/s²].
     pub gravity: DVec3,
     /// What it may touch.
-    pub obstacle: Option<Obstacle>,
+    pub obstacle: Option<ColliderShape>,
     /// Velocity of the air [m/s].
     pub wind: DVec3,
     /// Whether `points` are in balance under gravity, as a groom's are, instead of natural.
@@ -170,8 +170,8 @@ pub const FOLLICLE: f64 = 1e-3;
 /// A strand in simulation.
 pub struct Specimen {
     simulation: Simulation,
-    root: Rigid,
-    obstacles: Vec<MovingObstacle>,
+    root: RigidTransform,
+    obstacles: Vec<MovingCollider>,
     wind: Vec3,
     substep: f64,
     at: Vec<Vec3>,
@@ -180,7 +180,7 @@ pub struct Specimen {
 impl Specimen {
     /// Sets it up, in its natural shape and at rest.
     pub fn new(setup: Setup, method: Method) -> Self {
-        let root = Rigid { translation: setup.points[0], ..Rigid::default() };
+        let root = RigidTransform { translation: setup.points[0], ..RigidTransform::default() };
         let count = setup.points.len();
         let groom = Arc::new(Groom::from_strands([setup.points], RADIUS as f32));
         let at = groom.points.clone();
@@ -192,15 +192,20 @@ impl Specimen {
         };
         let material = Material { model: method.model, ..setup.material };
         let rest = (Mat3::IDENTITY, Vec3::ZERO);
-        let obstacles: Vec<MovingObstacle> = setup
+        let obstacles: Vec<MovingCollider> = setup
             .obstacle
             .into_iter()
-            .map(|shape| MovingObstacle { shape, start: Rigid::default(), end: Rigid::default() })
+            .map(|shape| MovingCollider {
+                shape,
+                start: RigidTransform::default(),
+                end: RigidTransform::default(),
+            })
             .collect();
-        let poses: Vec<ObstaclePose> =
-            obstacles.iter().map(|o| ObstaclePose::new(o.shape.clone(), rest, rest, 1.0)).collect();
+        let poses: Vec<ColliderPose> =
+            obstacles.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();
         let gravity = setup.gravity.as_vec3();
-        let simulation = Simulation::new(groom, &[0], &[material], solver, gravity, Rigid::default(), &poses);
+        let simulation =
+            Simulation::new(groom, &[0], &[material], solver, gravity, RigidTransform::default(), &poses);
         debug_assert_eq!(simulation.point_count(), count);
         let (wind, substep) = (setup.wind.as_vec3(), FRAME / method.substeps as f64);
         Self { simulation, root, obstacles, wind, substep, at }
@@ -254,9 +259,9 @@ impl Specimen {
     }
 
     fn advance(&mut self, dt: f64) -> Result<(), Failure> {
-        let report = self.simulation.step(&Drive {
+        let report = self.simulation.step(&StepInput {
             dt: dt as f32,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             roots: &[self.root],
             obstacles: &self.obstacles,
             air: Air { wind: Wind { velocity: self.wind, ..Wind::default() }, ..Air::default() },

@@ -3,7 +3,7 @@
 //! Every sum is made slab by slab in f64 and the slabs' in their order, so any thread count gives the same bits. Of each row of cells only the
 //! span from the first to the last with pressure is touched.
 
-use super::window::Window;
+use super::grid_bounds::GridBounds;
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -20,7 +20,7 @@ pub const ITERATIONS: u32 = 24;
 /// One system and its solution. All arrays have the shape of the window's nodes.
 #[derive(Default)]
 pub struct Solve {
-    window: Window,
+    window: GridBounds,
     /// Of the nodes; 0 where there is no hair and where it cannot move.
     pub inverse_mass: Vec<f32>,
     /// Inverse diagonal; 0 in cells that have no pressure.
@@ -31,7 +31,7 @@ pub struct Solve {
     residual: Vec<f32>,
     pressure: Vec<f32>,
     /// What the last system's pressures were, and its window; none where a frame begins.
-    last: (Window, Vec<f32>),
+    last: (GridBounds, Vec<f32>),
     direction: Vec<f32>,
     image: Vec<f32>,
     /// M⁻¹ Dᵀ of what was applied last, a component each.
@@ -104,7 +104,7 @@ impl Solve {
     }
 
     /// A new system, all 0 but the pressures, which are the last one's.
-    pub fn begin(&mut self, window: Window) {
+    pub fn begin(&mut self, window: GridBounds) {
         self.last.0 = self.window;
         std::mem::swap(&mut self.last.1, &mut self.pressure);
         self.window = window;

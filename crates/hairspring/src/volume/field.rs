@@ -1,8 +1,8 @@
 //! What the sums of all points come to at each node and cell.
 
 use super::{
+    grid_bounds::GridBounds,
     splat::{NODE, ROOM, Sums, Units},
-    window::Window,
 };
 use rayon::prelude::*;
 
@@ -17,7 +17,7 @@ pub const BRAKE: [[usize; 3]; 3] = [[3, 6, 8], [6, 4, 7], [8, 7, 5]];
 #[derive(Default)]
 pub struct Field {
     /// Where.
-    pub window: Window,
+    pub window: GridBounds,
     /// Mean velocity at each node [m/s], and its mass in that of the largest point; shape `[nodes]`.
     pub nodes: Vec<[f32; 4]>,
     /// Mean direction of the strands at each node, as long as they agree on it [1], and the root of the mean square of what velocities differ
@@ -42,7 +42,7 @@ impl Field {
     }
 
     /// Adds up what each thread has summed.
-    pub fn collect(&mut self, window: Window, units: &Units, sums: &[Sums]) {
+    pub fn collect(&mut self, window: GridBounds, units: &Units, sums: &[Sums]) {
         self.window = window;
         let (count, slab) = (window.nodes(), window.slab());
         self.nodes.resize(count, [0.0; 4]);

@@ -2,8 +2,8 @@
 
 use super::{
     field::{BRAKE, PUSH, TAKEN},
+    grid_bounds::{GridBounds, GridTransform, Placed},
     splat::Tiles,
-    window::{Chart, Placed, Window},
 };
 use crate::strand::{
     lanes::{LANES, Row},
@@ -17,7 +17,13 @@ const TILES_PER_TASK: usize = 32;
 type Points<'a> = (&'a mut [[Row; 3]], &'a mut [[Row; 3]]);
 
 /// Puts the acceleration of every point in the place of what it was, in the sum too, on all threads; 0 outside of the window.
-pub fn all(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; PUSH]], (taken, push): Points<'_>) {
+pub fn all(
+    tiles: &Tiles,
+    chart: &GridTransform,
+    window: &GridBounds,
+    field: &[[f32; PUSH]],
+    (taken, push): Points<'_>,
+) {
     let count = tiles.count();
     if count <= TILES_PER_TASK {
         return gather(tiles, chart, window, field, (taken, push));
@@ -35,8 +41,8 @@ pub fn all(tiles: &Tiles, chart: &Chart, window: &Window, field: &[[f32; PUSH]],
 #[expect(clippy::needless_range_loop, reason = "a lane is one point, in several rows")]
 fn gather(
     tiles: &Tiles,
-    chart: &Chart,
-    window: &Window,
+    chart: &GridTransform,
+    window: &GridBounds,
     field: &[[f32; PUSH]],
     (acceleration, push): Points<'_>,
 ) {

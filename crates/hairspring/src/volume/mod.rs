@@ -37,16 +37,16 @@ mod crossing;
 mod density;
 mod field;
 mod gather;
+mod grid_bounds;
 mod incompressible;
 mod rest;
 mod sample;
 mod splat;
 #[cfg(test)]
 mod tests;
-mod window;
 
 use crate::{
-    collide::{ObstaclePose, Rigid},
+    collide::{ColliderPose, RigidTransform},
     scene::{self, VolumeMethod},
     strand::{
         lanes::Row,
@@ -57,12 +57,12 @@ use brakes::fill_push;
 use crossing::Crossing;
 use field::Field;
 use glam::{Mat3, Vec3};
+use grid_bounds::{GridBounds, GridTransform};
 use incompressible::Projection;
 use rayon::prelude::*;
 use rest::Rest;
 pub(crate) use sample::Density;
 use splat::{Extent, OwnRows, Sums, Tiles, Units, own};
-use window::{Chart, Window};
 
 /// Most nodes of a window: those of a head of long hair in every direction in cells of a centimetre, and 75 MB for each thread.
 const MOST_NODES: f32 = (1 << 21) as f32;
@@ -124,13 +124,13 @@ pub struct VolumeReport {
 
 /// When an interval begins: where the anchor is then, and which part of their way in the frame roots have gone [1].
 pub(crate) struct Now {
-    pub anchor: Rigid,
+    pub anchor: RigidTransform,
     pub gone: f32,
 }
 
 impl Now {
-    fn chart(&self, cell: f32) -> Chart {
-        Chart::on_the_way(&self.anchor, cell, self.gone)
+    fn chart(&self, cell: f32) -> GridTransform {
+        GridTransform::on_the_way(&self.anchor, cell, self.gone)
     }
 }
 
@@ -145,7 +145,7 @@ pub(crate) struct AtRest<'a> {
     /// Shape `[points]` of all tiles.
     pub state: &'a [StateRows],
     /// Where the anchor is.
-    pub anchor: Rigid,
+    pub anchor: RigidTransform,
     /// Mean segment of the strands [m].
     pub segment: f32,
     /// The longest strand [m].
@@ -171,7 +171,7 @@ impl Volume {
         let grain = rest::grain(&tiles, &at.anchor, at.segment.max(1e-4));
         let asked = settings.cell.unwrap_or(grain.cell);
         // Hair reaches no farther from its roots than it is long.
-        let extent = Extent::of(&tiles, &Chart::new(&at.anchor, 1.0), Vec3::ZERO);
+        let extent = Extent::of(&tiles, &GridTransform::new(&at.anchor, 1.0), Vec3::ZERO);
         let reach = rest::reach((extent.lo, extent.hi), at.length);
         let size = (reach.1 - reach.0).max(Vec3::splat(asked));
         let mut cell = asked.max((size.element_product() / (0.5 * MOST_NODES)).cbrt());
@@ -210,7 +210,7 @@ impl Volume {
         let cells = (&at.anchor, cell, grain.cell);
         volume.rest.measure((at.strand, at.state, &volume.firsts), &mut own, cells, work);
         volume.own = own;
-        volume.taken_up = [taken_up(&volume.field.fill); 2];
+        volume.taken_up = [fill_ratio(&volume.field.fill); 2];
         Some(volume)
     }
 
@@ -248,17 +248,17 @@ impl Volume {
 
     /// Most nodes that it ever has.
     pub fn most_nodes(&self) -> usize {
-        Window::around(self.reach.0 / self.cell, self.reach.1 / self.cell).nodes()
+        GridBounds::around(self.reach.0 / self.cell, self.reach.1 / self.cell).nodes()
     }
 
     /// How full of hair every place was when it was last measured, and the anchor at `anchor`.
-    pub fn density(&self, anchor: Rigid) -> Density<'_> {
+    pub fn density(&self, anchor: RigidTransform) -> Density<'_> {
         Density::new(&self.field, self.cell, anchor)
     }
 
     /// The window of hair of this extent, as far as it can reach from its roots: what is beyond is lost. Where roots have gone so far from where they are at
     /// rest in the anchor's space that nodes would be too many, it is what hair reaches from there; what is elsewhere then meets nothing.
-    fn window(&self, extent: &Extent) -> Window {
+    fn window(&self, extent: &Extent) -> GridBounds {
         let rest = [self.reach.0 / self.cell, self.reach.1 / self.cell];
         let within = |[lo, hi]: [Vec3; 2]| [extent.lo, extent.hi].map(|corner| corner.clamp(lo, hi));
         let reach = rest::reach((extent.roots[0], extent.roots[1]), self.length / self.cell);
@@ -267,7 +267,7 @@ impl Volume {
         if (hi - lo + RING).element_product() > MOST_NODES || far > FARTHEST {
             [lo, hi] = within(rest);
         }
-        Window::around(lo, hi)
+        GridBounds::around(lo, hi)
     }
 
     /// Begins a frame in which nothing of this acts yet. Pressures of the intervals in it begin with those of the last; those of its first do not, so that a frame
@@ -296,7 +296,7 @@ impl Volume {
             sums.add(&tiles.part(part, parts), &chart, &window, &units);
         });
         self.field.collect(window, &units, sums);
-        self.taken_up[1] = taken_up(&self.field.fill);
+        self.taken_up[1] = fill_ratio(&self.field.fill);
     }
 
     /// Finds the accelerations of all points for an interval of `dt` [s] that has been measured, and puts them in the place of the last interval's in
@@ -306,7 +306,7 @@ impl Volume {
         dt: f32,
         (strand, state): (&[StrandRows], &[StateRows]),
         now: &Now,
-        obstacles: (&[ObstaclePose], f32),
+        obstacles: (&[ColliderPose], f32),
         push: &mut [[Row; 3]],
     ) {
         match self.settings.method {
@@ -325,9 +325,9 @@ impl Volume {
     }
 
     /// Acceleration by the pressure of crowded cells.
-    fn press(&mut self, dt: f32, anchor: &Rigid) {
+    fn press(&mut self, dt: f32, anchor: &RigidTransform) {
         let (field, rest, window) = (&self.field, &self.rest, self.field.window);
-        let excess = |cell: usize| rest.excess(&window, cell, field.fill[cell]);
+        let excess = |cell: usize| rest.over_density(&window, cell, field.fill[cell]);
         density::pressures(field, excess, &mut self.pressures);
         let push = density::Push::new(field, &self.pressures, self.settings.pressure, self.cell, dt);
         let turn = Mat3::from_quat(anchor.rotation);
@@ -336,7 +336,7 @@ impl Volume {
     }
 
     /// Acceleration that makes velocities free of divergence where hair is full.
-    fn project(&mut self, dt: f32, anchor: &Rigid, obstacles: (&[ObstaclePose], f32)) {
+    fn project(&mut self, dt: f32, anchor: &RigidTransform, obstacles: (&[ColliderPose], f32)) {
         let (field, rest, window, cell) = (&self.field, &self.rest, self.field.window, self.cell);
         let turn = Mat3::from_quat(anchor.rotation);
         let back = turn.transpose();
@@ -347,9 +347,11 @@ impl Volume {
                 None => (back * Vec3::new(node[0], node[1], node[2]), false),
             }
         };
-        let regain = self.settings.regain.min(1.0 / dt);
+        let regain = self.settings.recovery_rate.min(1.0 / dt);
         let wanted = |c: usize| {
-            4.0 * cell * regain * rest.excess(&window, c, field.fill[c]).clamp(0.0, density::MOST_EXCESS)
+            4.0 * cell
+                * regain
+                * rest.over_density(&window, c, field.fill[c]).clamp(0.0, density::MOST_EXCESS)
         };
         self.projection.project(field, to_lattice, wanted);
         let brakes = (brakes::friction(&self.settings, dt), self.crossing(dt));
@@ -359,7 +361,7 @@ impl Volume {
 }
 
 /// The part of the points' rooms that is filled once [1]: what is fuller than full has lost it.
-fn taken_up(fill: &[f32]) -> f64 {
+fn fill_ratio(fill: &[f32]) -> f64 {
     let (all, once) = fill
         .iter()
         .fold((0.0, 0.0), |(all, once), fill| (all + f64::from(*fill), once + f64::from(fill.min(1.0))));
@@ -367,7 +369,7 @@ fn taken_up(fill: &[f32]) -> f64 {
 }
 
 /// Velocity of the collider that `place` [m] is in at the start of a substep of `h` [s], in the world [m/s].
-fn solid((obstacles, h): (&[ObstaclePose], f32), place: Vec3) -> Option<Vec3> {
+fn solid((obstacles, h): (&[ColliderPose], f32), place: Vec3) -> Option<Vec3> {
     obstacles.iter().find_map(|o| {
         let local = o.start.0.transpose() * (place - o.start.1);
         (o.shape.distance(local) < 0.0).then(|| (o.end.0 * local + o.end.1 - place) / h)

@@ -2,11 +2,11 @@
 
 use super::{
     field::Field,
+    grid_bounds::{GridBounds, GridTransform, Placed},
     splat::{Extent, OwnRows, ROOM, Sums, Tiles, Units, own},
-    window::{Chart, Placed, Window},
 };
 use crate::{
-    collide::Rigid,
+    collide::RigidTransform,
     strand::{
         lanes::LANES,
         tile::{StateRows, StrandRows},
@@ -37,11 +37,11 @@ pub struct Grain {
 ///
 /// The spacing is that of the strands around the mean point: with N points in a cell of edge c, n = ℓ Σ N (N − 1) / (c³ Σ N) is the length of
 /// the others' strands per volume around it, whose cross-section each shares with n others: 1/√n apart.
-pub fn grain(tiles: &Tiles, anchor: &Rigid, segment: f32) -> Grain {
+pub fn grain(tiles: &Tiles, anchor: &RigidTransform, segment: f32) -> Grain {
     let (mut cell, mut spacing) = (segment, segment);
     let mut occupied: Vec<u64> = Vec::new();
     for _ in 0..64 {
-        let chart = Chart::new(anchor, cell);
+        let chart = GridTransform::new(anchor, cell);
         occupied.clear();
         for (strand, state, own) in tiles.iter() {
             let mut places = chart.roots(strand, IVec3::ZERO);
@@ -70,13 +70,13 @@ pub fn grain(tiles: &Tiles, anchor: &Rigid, segment: f32) -> Grain {
 /// How full cells are at rest, where that is more than full.
 #[derive(Default)]
 pub struct Rest {
-    window: Window,
+    window: GridBounds,
     fill: Vec<f32>,
 }
 
 impl Rest {
     /// How much fuller than it may be a cell of `window` is, when it is this full; 0 or less: it is not [1].
-    pub fn excess(&self, window: &Window, cell: usize, fill: f32) -> f32 {
+    pub fn over_density(&self, window: &GridBounds, cell: usize, fill: f32) -> f32 {
         let at = if *window == self.window { Some(cell) } else { self.window.index(window.place(cell)) };
         fill - SLACK * at.map_or(1.0, |at| self.fill[at].max(1.0))
     }
@@ -90,12 +90,12 @@ impl Rest {
         &mut self,
         tiles: (&[StrandRows], &[StateRows], &[u32]),
         own: &mut [OwnRows],
-        (anchor, cell, grain): (&Rigid, f32, f32),
+        (anchor, cell, grain): (&RigidTransform, f32, f32),
         (sums, field): (&mut Sums, &mut Field),
     ) {
         let (strand, state, firsts) = tiles;
         let fine = cell.min(grain);
-        let chart = Chart::new(anchor, fine);
+        let chart = GridTransform::new(anchor, fine);
         // What is a cell of the fine lattice, in the lattice's.
         let share = (fine / cell).powi(3);
         let Some(window) = fill(&Tiles { firsts, strand, state, own }, &chart, sums, field) else { return };
@@ -113,7 +113,7 @@ impl Rest {
                 }
             }
         }
-        let chart = Chart::new(anchor, cell);
+        let chart = GridTransform::new(anchor, cell);
         let Some(window) = fill(&Tiles { firsts, strand, state, own }, &chart, sums, field) else { return };
         self.window = window;
         self.fill.clone_from(&field.fill);
@@ -121,12 +121,12 @@ impl Rest {
 }
 
 /// Finds how full the cells of hair are; the window around it, or `None` where there is none.
-fn fill(tiles: &Tiles, chart: &Chart, sums: &mut Sums, field: &mut Field) -> Option<Window> {
+fn fill(tiles: &Tiles, chart: &GridTransform, sums: &mut Sums, field: &mut Field) -> Option<GridBounds> {
     let extent = Extent::of(tiles, chart, Vec3::ZERO);
     if !(extent.lo.is_finite() && extent.hi.is_finite()) {
         return None;
     }
-    let window = Window::around(extent.lo, extent.hi);
+    let window = GridBounds::around(extent.lo, extent.hi);
     // Any mass will do, rooms are sums of their own.
     let units = Units { mass: 1.0, momentum: 0.0, energy: 0.0, speed: 0.0, carried: Vec3::ZERO };
     sums.clear(window.nodes());

@@ -1,19 +1,19 @@
 //! The lattice of a frame, read at any place.
 
-use super::{field::Field, window::Window};
-use crate::collide::Rigid;
+use super::{field::Field, grid_bounds::GridBounds};
+use crate::collide::RigidTransform;
 use glam::Vec3;
 
 /// How full of hair every place is.
 pub(crate) struct Density<'a> {
     field: &'a Field,
     cell: f32,
-    anchor: Rigid,
+    anchor: RigidTransform,
 }
 
 impl<'a> Density<'a> {
     /// What `field` holds on a lattice with cells of `cell` [m], where the anchor is at `anchor`.
-    pub(super) fn new(field: &'a Field, cell: f32, anchor: Rigid) -> Self {
+    pub(super) fn new(field: &'a Field, cell: f32, anchor: RigidTransform) -> Self {
         Self { field, cell, anchor }
     }
 
@@ -64,7 +64,7 @@ impl<'a> Density<'a> {
 
     /// Index of the node below `at` whose seven neighbours above are of the window too, and how far above it `at` is.
     fn corner(&self, at: Vec3) -> Option<(usize, Vec3)> {
-        let Window { dims, .. } = self.field.window;
+        let GridBounds { dims, .. } = self.field.window;
         let floor = at.floor();
         let [x, y, z] = floor.to_array();
         let inside = (0..3).all(|k| floor[k] >= 0.0 && floor[k] + 1.0 < dims[k] as f32);

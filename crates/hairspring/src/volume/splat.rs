@@ -2,7 +2,7 @@
 //!
 //! Sums are whole numbers, so that they have the same bits in any order, and each thread may have a grid of its own.
 
-use super::window::{Chart, Placed, Window, nearest};
+use super::grid_bounds::{GridBounds, GridTransform, Placed, nearest};
 use crate::strand::{
     lanes::{LANES, Row},
     tile::{StateRows, StrandRows, state},
@@ -104,7 +104,7 @@ impl Extent {
     };
 
     /// Of these points, velocities counted from `carried` [m/s]; what is not finite does not count.
-    pub fn of(tiles: &Tiles, chart: &Chart, carried: Vec3) -> Self {
+    pub fn of(tiles: &Tiles, chart: &GridTransform, carried: Vec3) -> Self {
         let (mut lo, mut hi) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
         let mut speed = [0.0_f32; LANES];
         let mut roots = Self::NONE.roots;
@@ -205,7 +205,7 @@ impl Sums {
     }
 
     /// Adds points to the nodes of `window`.
-    pub fn add(&mut self, tiles: &Tiles, chart: &Chart, window: &Window, units: &Units) {
+    pub fn add(&mut self, tiles: &Tiles, chart: &GridTransform, window: &GridBounds, units: &Units) {
         let [_, _, row, _, slab, _, both, _] = window.corners();
         let (per_speed, per_energy) = (units.momentum / units.mass, units.energy / units.mass);
         for (strand, state, own) in tiles.iter() {

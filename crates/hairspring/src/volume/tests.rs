@@ -3,7 +3,7 @@
 
 use super::{AtRest, Now, Volume, conjugate::TOLERANCE, field::Field, incompressible::Projection};
 use crate::{
-    collide::Rigid,
+    collide::RigidTransform,
     scene::{self, VolumeMethod},
     strand::{
         lanes::{LANES, Row},
@@ -39,7 +39,7 @@ impl Bundle {
             state: vec![[Row::default(); state::ROWS]; tiles * POINTS],
             mass: vec![Row::default(); tiles * POINTS],
         };
-        bundle.set(|p| (p, Vec3::ZERO), &Rigid::default());
+        bundle.set(|p| (p, Vec3::ZERO), &RigidTransform::default());
         for s in 0..SIDE * SIDE {
             for i in 0..POINTS {
                 bundle.mass[s / LANES * POINTS + i].0[s % LANES] = 1e-9 * (1 + s % 3) as f32;
@@ -59,7 +59,7 @@ impl Bundle {
     }
 
     /// Puts every point where `of` its rest says, with that velocity, seen from `anchor`.
-    fn set(&mut self, of: impl Fn(Vec3) -> (Vec3, Vec3), anchor: &Rigid) {
+    fn set(&mut self, of: impl Fn(Vec3) -> (Vec3, Vec3), anchor: &RigidTransform) {
         for s in 0..SIDE * SIDE {
             let (tile, lane) = (s / LANES, s % LANES);
             let root = of(Self::rest(s, 0)).0;
@@ -86,7 +86,7 @@ impl Bundle {
             mass: self.mass.clone(),
             strand: &self.strand,
             state: &self.state,
-            anchor: Rigid::default(),
+            anchor: RigidTransform::default(),
             segment: APART,
             length: APART * POINTS as f32,
         };
@@ -94,7 +94,7 @@ impl Bundle {
     }
 
     /// The accelerations that it gets, of all points.
-    fn exchange(&self, volume: &mut Volume, anchor: &Rigid) -> Vec<Vec3> {
+    fn exchange(&self, volume: &mut Volume, anchor: &RigidTransform) -> Vec<Vec3> {
         let mut push = vec![[Row::default(); 3]; self.state.len()];
         let now = Now { anchor: *anchor, gone: 1.0 };
         volume.begin_frame();
@@ -113,11 +113,11 @@ fn a_rest_is_left_alone_in_every_pose_of_the_head() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
-        let push = bundle.exchange(&mut volume, &Rigid::default());
+        let push = bundle.exchange(&mut volume, &RigidTransform::default());
         assert!(push.iter().all(|a| *a == Vec3::ZERO), "{method:?}: hair at rest is pushed");
         for k in 1..20 {
             let rotation = Quat::from_euler(glam::EulerRot::XYZ, 0.3 * k as f32, 0.7, -0.2 * k as f32);
-            let anchor = Rigid { rotation, translation: Vec3::new(1.0, 2.0, 30.0) };
+            let anchor = RigidTransform { rotation, translation: Vec3::new(1.0, 2.0, 30.0) };
             bundle.set(|p| (p, Vec3::ZERO), &anchor);
             let push = bundle.exchange(&mut volume, &anchor);
             let most = push.iter().map(|a| a.length()).fold(0.0, f32::max);
@@ -132,9 +132,12 @@ fn what_moves_together_is_not_braked() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
-        bundle.set(|p| (p, Vec3::new(3.0, -1.0, 2.0)), &Rigid::default());
-        let most =
-            bundle.exchange(&mut volume, &Rigid::default()).iter().map(|a| a.length()).fold(0.0, f32::max);
+        bundle.set(|p| (p, Vec3::new(3.0, -1.0, 2.0)), &RigidTransform::default());
+        let most = bundle
+            .exchange(&mut volume, &RigidTransform::default())
+            .iter()
+            .map(|a| a.length())
+            .fold(0.0, f32::max);
         // All of it in a frame would be 220 m/s².
         assert!(most < 0.05, "{method:?}: {most} m/s²");
     }
@@ -148,8 +151,8 @@ fn strands_that_cross_stop_each_other_and_slide_along_each_other() {
         // Half of the points one way and half the other, wherever they are; what of it is taken in an interval [1].
         let mut taken = |direction: Vec3| {
             let side = |p: Vec3| if (1e5 * (p.x + p.z)) as i32 & 1 == 0 { 1.0 } else { -1.0 };
-            bundle.set(|p| (p, direction * side(p)), &Rigid::default());
-            let push = bundle.exchange(&mut volume, &Rigid::default());
+            bundle.set(|p| (p, direction * side(p)), &RigidTransform::default());
+            let push = bundle.exchange(&mut volume, &RigidTransform::default());
             let velocity = |k: usize| {
                 let rows = &bundle.state[k / LANES];
                 Vec3::from([0, 1, 2].map(|c| rows[state::V + c].0[k % LANES]))
@@ -172,8 +175,8 @@ fn pressure_and_friction_keep_momentum() {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
         let swirl = |p: Vec3| Vec3::new((90.0 * p.z).sin(), (150.0 * p.x).cos(), -20.0 * p.x) + Vec3::Y;
-        bundle.set(|p| (p * Vec3::new(0.7, 1.0, 0.8), swirl(p)), &Rigid::default());
-        let push = bundle.exchange(&mut volume, &Rigid::default());
+        bundle.set(|p| (p * Vec3::new(0.7, 1.0, 0.8), swirl(p)), &RigidTransform::default());
+        let push = bundle.exchange(&mut volume, &RigidTransform::default());
         let (mut sum, mut size) = (Vec3::ZERO, 0.0);
         for (m, a) in bundle.masses().zip(&push) {
             (sum, size) = (sum + m * *a, size + m * a.length());
@@ -189,8 +192,8 @@ fn what_is_squeezed_is_pressed_apart() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
-        bundle.set(|p| (p * Vec3::new(0.6, 1.0, 1.0), Vec3::ZERO), &Rigid::default());
-        let push = bundle.exchange(&mut volume, &Rigid::default());
+        bundle.set(|p| (p * Vec3::new(0.6, 1.0, 1.0), Vec3::ZERO), &RigidTransform::default());
+        let push = bundle.exchange(&mut volume, &RigidTransform::default());
         let share = volume.report().share;
         assert!((0.55..0.75).contains(&share), "{method:?}: {share} of the volume at 0.6 of the width");
         for (side, outward) in [(0..SIDE / 4, -1.0), (3 * SIDE / 4..SIDE, 1.0)] {
@@ -207,8 +210,8 @@ fn no_divergence_is_left_where_hair_is_full() {
     let mut bundle = Bundle::new();
     let mut volume = bundle.volume(VolumeMethod::Incompressible);
     // Falls in on itself, and is heavier on one side than on the other.
-    bundle.set(|p| (p, Vec3::new(-4.0, 1.0, -2.0) * p), &Rigid::default());
-    bundle.exchange(&mut volume, &Rigid::default());
+    bundle.set(|p| (p, Vec3::new(-4.0, 1.0, -2.0) * p), &RigidTransform::default());
+    bundle.exchange(&mut volume, &RigidTransform::default());
     let field: &Field = &volume.field;
     let mut projection = Projection::default();
     let found = projection.project(field, |_, v| (Vec3::new(v[0], v[1], v[2]), false), |_| 0.0);
@@ -240,10 +243,10 @@ fn threads_do_not_show() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
-        bundle.set(|p| (p * 0.8, Vec3::new(p.z, -p.x, p.y) * 20.0), &Rigid::default());
+        bundle.set(|p| (p * 0.8, Vec3::new(p.z, -p.x, p.y) * 20.0), &RigidTransform::default());
         let mut run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| bundle.exchange(&mut volume, &Rigid::default()))
+            pool.install(|| bundle.exchange(&mut volume, &RigidTransform::default()))
         };
         let one = run(1);
         assert!(one == run(2), "{method:?}: two threads give other bits than one");
@@ -256,7 +259,7 @@ fn what_is_not_finite_does_not_count() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
-        bundle.set(|p| (p * 0.8, p * -3.0), &Rigid::default());
+        bundle.set(|p| (p * 0.8, p * -3.0), &RigidTransform::default());
         for (point, row, x) in [
             (3, state::EDGE, f32::NAN),
             (40, state::V + 1, f32::INFINITY),
@@ -265,7 +268,7 @@ fn what_is_not_finite_does_not_count() {
             bundle.state[point][row].0[5] = x;
         }
         bundle.strand[7][strand::ROOT_END].0[2] = f32::NAN;
-        let push = bundle.exchange(&mut volume, &Rigid::default());
+        let push = bundle.exchange(&mut volume, &RigidTransform::default());
         assert!(push.iter().all(|a| a.is_finite()), "{method:?}");
         assert!(push.iter().any(|a| a.length() > 0.1), "{method:?}: the others are pushed");
         for k in [3 * LANES + 5, 40 * LANES + 5, 90 * LANES + 5, 7 * POINTS * LANES + 2] {

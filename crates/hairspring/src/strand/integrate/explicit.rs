@@ -10,7 +10,7 @@ use super::outside;
 use crate::{
     scene::Integrator,
     strand::{
-        assemble::{Step, forces},
+        assemble::{SubstepContext, forces},
         lanes::{F, Simd, V3, load},
         model::Model,
         scratch::Scratch,
@@ -23,7 +23,7 @@ use crate::{
 pub fn advance<S, M, const B: usize, const N: usize>(
     simd: S,
     integrator: Integrator,
-    step: &Step<S>,
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) where

@@ -12,7 +12,7 @@ use super::outside;
 use crate::{
     scene::Integrator,
     strand::{
-        assemble::Step,
+        assemble::SubstepContext,
         lanes::{F, Simd, V3, load},
         scratch::Scratch,
         tile::{Elastic, Tile, rest, state},
@@ -28,7 +28,7 @@ const KEPT: f32 = 0.9;
 pub fn advance<S: Simd>(
     simd: S,
     integrator: Integrator,
-    step: &Step<S>,
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) {

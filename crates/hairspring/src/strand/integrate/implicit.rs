@@ -2,8 +2,8 @@
 //! or, for high quality, Newton iterations with a line search.
 
 use crate::strand::{
-    assemble::{Step, Sweep, assemble},
-    interval::Interval,
+    assemble::{Linearization, SubstepContext, assemble},
+    frame_context::FrameContext,
     lanes::{F, Simd, V3, load},
     model::Model,
     project::Projection,
@@ -16,8 +16,8 @@ use crate::strand::{
 #[inline(always)]
 pub fn advance<S, M, const B: usize, const N: usize>(
     simd: S,
-    interval: &Interval,
-    step: &Step<S>,
+    interval: &FrameContext,
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) where
@@ -28,7 +28,7 @@ pub fn advance<S, M, const B: usize, const N: usize>(
     // Where springs are stiffer they have taken more of a load in the solve, and projection's part is noise.
     let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
     let force = F::splat(simd, step.inertia() / (step.h * step.h)) / stiffening;
-    let granted = granted(simd, interval.projections, tile);
+    let granted = granted(simd, interval.projection_iterations, tile);
     for iteration in 1.. {
         let asked = granted.simd_ge(iteration as f32);
         if !asked.any_true() || !projection.settle(simd, M::STRIDE, (force, asked), tile, scratch) {
@@ -56,8 +56,8 @@ const CONVERGED: f32 = 1e-5;
 #[inline(always)]
 fn solve<S, M, const B: usize, const N: usize>(
     simd: S,
-    interval: &Interval,
-    step: &Step<S>,
+    interval: &FrameContext,
+    step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) -> Projection<S>
@@ -65,8 +65,8 @@ where
     S: Simd,
     M: Model<S, B, N>,
 {
-    assemble::<S, M, B, N>(simd, Sweep::First, step, tile, scratch);
-    let projection = substitute::<S, M, B, N>(simd, Sweep::First, step, tile, scratch);
+    assemble::<S, M, B, N>(simd, Linearization::Initial, step, tile, scratch);
+    let projection = substitute::<S, M, B, N>(simd, Linearization::Initial, step, tile, scratch);
     if interval.iterations == 1 {
         return projection;
     }
@@ -77,8 +77,8 @@ where
     let points = tile.rest.len();
     for _ in 1..interval.iterations {
         scratch.kick[..points].copy_from_slice(&scratch.edges[..points]);
-        assemble::<S, M, B, N>(simd, Sweep::Again, step, tile, scratch);
-        substitute::<S, M, B, N>(simd, Sweep::Again, step, tile, scratch);
+        assemble::<S, M, B, N>(simd, Linearization::Newton, step, tile, scratch);
+        substitute::<S, M, B, N>(simd, Linearization::Newton, step, tile, scratch);
         let (mut size, mut length) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 0.0));
         let mut change = V3::zero(simd);
         for i in M::DRIVEN..points {

@@ -10,7 +10,7 @@
 
 use super::outside;
 use crate::strand::{
-    assemble::Step,
+    assemble::SubstepContext,
     band::Band,
     lanes::{F, Simd, V3, Work, load},
     model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
@@ -38,7 +38,7 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
     scratch.factors[..2 * BEFORE * ROWS].fill(Work::default());
     for i in 0..n {
         let mut band = Band::<S, 1, 3>::new(simd);
-        band.take_up(simd, PROFILE, i, scratch.factors);
+        band.load_pending(simd, PROFILE, i, scratch.factors);
         if i + 1 < n {
             let [alpha, beta, stretch, bend] = weights(simd, h, tile, i);
             let mass = load(simd, &tile.rest[i + 1][rest::MASS]);
@@ -54,7 +54,7 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
         }
         // Points that do not move are cut off.
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
-        band.cut(simd, free);
+        band.with_checked_lengths(simd, free);
         band.eliminate(simd, PROFILE, i, scratch.factors);
     }
 }
@@ -76,7 +76,13 @@ fn weights<S: Simd>(simd: S, h: f32, tile: &Tile, i: usize) -> [F<S>; 4] {
 
 /// Leaves the new edges in `scratch.edges` after so many iterations.
 #[inline(always)]
-pub fn advance<S: Simd>(simd: S, iterations: u32, step: &Step<S>, tile: &mut Tile, scratch: &mut Scratch) {
+pub fn advance<S: Simd>(
+    simd: S,
+    iterations: u32,
+    step: &SubstepContext<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) {
     let zero = V3::zero(simd);
     let n = tile.rest.len();
     let h = F::<S>::splat(simd, step.h);

@@ -8,19 +8,19 @@ mod implicit;
 mod local_global;
 
 use super::{
-    assemble::Step,
+    assemble::SubstepContext,
     drag::Drag,
-    fixed::fix,
-    interval::Interval,
+    frame_context::FrameContext,
     lanes::{F, Mask, Simd, V3, load, store},
-    limit::{Finish, LIMIT, limit},
     model::{Model, Stretching},
+    post_solve::{LIMIT, PostSolveParams, post_solve},
+    precomputed::precompute,
     root::Root,
     scratch::Memory,
-    tile::{Tile, grip, rest, span, state, tines},
+    tile::{Tile, anisotropic_drag, position_spring, rest, segment_contact, state},
 };
 use crate::{
-    collide::ObstaclePose,
+    collide::ColliderPose,
     scene::{Integrator, Response},
 };
 
@@ -28,7 +28,7 @@ use crate::{
 #[inline(always)]
 pub fn run_tile<S, M, const B: usize, const N: usize>(
     simd: S,
-    interval: &Interval,
+    interval: &FrameContext,
     tile: &mut Tile,
     memory: &mut Memory,
 ) where
@@ -36,12 +36,12 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let scratch = &mut memory.scratch(tile.rest.len());
-    let tile = &mut tile.cut();
+    let tile = &mut tile.with_equal_lengths();
     let stretching = match interval.integrator {
         Integrator::ExplicitEuler | Integrator::Verlet => Stretching::Fibre,
         _ => Stretching::Moderate,
     };
-    fix(simd, interval.h, stretching, tile, scratch);
+    precompute(simd, interval.h, stretching, tile, scratch);
     scratch.begin(simd, tile.state);
     if interval.integrator == Integrator::LocalGlobal {
         local_global::factor(simd, interval.h, tile, scratch);
@@ -72,7 +72,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
         (V3::load(simd, next) - behind).store(next);
 
         let second_order = interval.integrator == Integrator::Bdf2 && continues;
-        let step = Step {
+        let step = SubstepContext {
             number,
             left: 1.0 - substep.fraction,
             h: interval.h,
@@ -84,7 +84,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
             touches: touching(simd, interval, &substep.obstacles, tile),
             obstacles: &substep.obstacles,
         };
-        let mut finish = Finish { limit: largest_strain, press: 0.0, project: true, kicks: false };
+        let mut finish = PostSolveParams { limit: largest_strain, press: 0.0, project: true, kicks: false };
         match interval.integrator {
             Integrator::BackwardEuler | Integrator::Bdf2 => {
                 implicit::advance::<S, M, B, N>(simd, interval, &step, tile, scratch);
@@ -105,7 +105,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
                 finish.kicks = true;
             }
         }
-        limit(simd, M::STRIDE, &finish, &step, tile, scratch);
+        post_solve(simd, M::STRIDE, &finish, &step, tile, scratch);
         continues = true;
     }
 }
@@ -113,7 +113,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
 /// Acceleration of point `i` by gravity, by what pushes and grips it and by the air it moves through [m/s²]; `u` is the segment from it, `x` where it
 /// is, from the root.
 #[inline(always)]
-fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, [u, x]: [V3<S>; 2]) -> V3<S> {
+fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u, x]: [V3<S>; 2]) -> V3<S> {
     let (stride, zero) = (tile.model.stride(), F::<S>::splat(simd, 0.0));
     let length = |i: usize| load(simd, &tile.rest[i][rest::LENGTH]);
     // Air takes hold of the half segments around a point, not of what is no part of the fibre.
@@ -123,27 +123,28 @@ fn outside<S: Simd>(simd: S, step: &Step<S>, tile: &Tile, i: usize, [u, x]: [V3<
     let stable = |coefficient: F<S>| (drag * coefficient).min(1.0 / step.h);
     let v = V3::load(simd, &tile.state[i][state::V..]);
     let nothing = V3::zero(simd);
-    let air = tile.air.get(i).map_or(nothing, |air| V3::load(simd, air));
+    let air = tile.wind_delta.get(i).map_or(nothing, |air| V3::load(simd, air));
     let slip = V3::splat(simd, step.wind) + air - v;
     let coefficients = Drag::new(simd, tile.strand, &tile.rest[i], slip, u);
     let (across, along) = (stable(coefficients.across), stable(coefficients.along));
     let dragged = slip * across + u * (u.dot(slip) * (along - across));
-    let push = tile.push.get(i).map_or(nothing, |push| V3::load(simd, push));
+    let push = tile.external_acceleration.get(i).map_or(nothing, |push| V3::load(simd, push));
     let free = dragged + V3::splat(simd, step.gravity) + push;
-    if tile.grip.is_empty() && tile.tines.is_empty() {
+    if tile.position_spring.is_empty() && tile.anisotropic_drag.is_empty() {
         return free;
     }
     let (h, one) = (F::<S>::splat(simd, step.h), F::<S>::splat(simd, 1.0));
     let (mut pulled, mut yielding) = (free, one);
-    if let Some(rows) = tile.grip.get(i) {
-        let (stiffness, brake) = (load(simd, &rows[grip::STIFFNESS]), load(simd, &rows[grip::BRAKE]));
-        let late = V3::load(simd, &rows[grip::WAY..]) * F::splat(simd, step.left);
+    if let Some(rows) = tile.position_spring.get(i) {
+        let (stiffness, brake) =
+            (load(simd, &rows[position_spring::STIFFNESS]), load(simd, &rows[position_spring::BRAKE]));
+        let late = V3::load(simd, &rows[position_spring::WAY..]) * F::splat(simd, step.left);
         pulled = pulled - late - (x + v * h - step.moved) * stiffness - v * brake;
         yielding += (stiffness * h + brake) * h;
     }
-    if let Some(rows) = tile.tines.get(i) {
-        let brake = load(simd, &rows[tines::BRAKE]);
-        let slip = V3::load(simd, &rows[tines::CARRY..]) - v * brake;
+    if let Some(rows) = tile.anisotropic_drag.get(i) {
+        let brake = load(simd, &rows[anisotropic_drag::BRAKE]);
+        let slip = V3::load(simd, &rows[anisotropic_drag::ACCELERATION..]) - v * brake;
         pulled += slip - u * u.dot(slip);
         yielding += brake * h;
     }
@@ -157,22 +158,27 @@ const TOUCHED: f32 = 0.1;
 /// Which strands touch a collider or are gripped, or did so a moment ago; all of them, where any touch each other. What a contact throws comes back to it, and is
 /// braked on its way as in contact: what counts as free in between gathers speed from each throw.
 #[inline(always)]
-fn touching<S: Simd>(simd: S, interval: &Interval, obstacles: &[ObstaclePose], tile: &mut Tile) -> Mask<S> {
+fn touching<S: Simd>(
+    simd: S,
+    interval: &FrameContext,
+    obstacles: &[ColliderPose],
+    tile: &mut Tile,
+) -> Mask<S> {
     let mut most = F::<S>::splat(simd, if interval.meets { 1.0 } else { 0.0 });
     if !obstacles.is_empty() {
         for rows in tile.state.iter() {
-            most = most.max(load(simd, &rows[state::PRESS]));
+            most = most.max(load(simd, &rows[state::NORMAL_FORCE]));
         }
-        for rows in tile.spans.iter() {
-            most = most.max(load(simd, &rows[span::FORCE]));
+        for rows in tile.segment_contacts.iter() {
+            most = most.max(load(simd, &rows[segment_contact::FORCE]));
         }
     }
-    for rows in tile.grip {
-        most = most.max(load(simd, &rows[grip::STIFFNESS]));
+    for rows in tile.position_spring {
+        most = most.max(load(simd, &rows[position_spring::STIFFNESS]));
     }
     let zero = F::<S>::splat(simd, 0.0);
-    let left = (load(simd, tile.touched) - interval.h).max(0.0);
+    let left = (load(simd, tile.contact_age) - interval.h).max(0.0);
     let left = most.simd_gt(zero).select(F::splat(simd, TOUCHED), left);
-    store(left, tile.touched);
+    store(left, tile.contact_age);
     most.simd_gt(zero) | left.simd_gt(zero)
 }

@@ -2,7 +2,7 @@
 //! *A Mass Spring Model for Hair Simulation*, §3; where we deviate is said in [`springs`](super::springs).
 
 use crate::strand::{
-    across::Across,
+    bordered::BorderedConstraint,
     lanes::{F, Mask, Row, Simd, V3, load},
     root::Root,
     scratch::Scratch,
@@ -37,7 +37,7 @@ pub fn across<S: Simd>(
     i: usize,
     tile: &Tile,
     scratch: &Scratch,
-) -> Across<S> {
+) -> BorderedConstraint<S> {
     let p = after(simd, i, scratch);
     let rest = &tile.rest[i];
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
@@ -53,7 +53,7 @@ pub fn across<S: Simd>(
         drift = (v - v0).mul_add(c, drift);
     }
     let longer = direction.dot(drift).mul_add(F::splat(simd, drifting), longer / damped);
-    Across { gradient: c.map(|c| direction * c), longer, stiffness: k * damped }
+    BorderedConstraint { gradient: c.map(|c| direction * c), longer, stiffness: k * damped }
 }
 
 /// The heights of a tetrahedron: the points p, q, r, v, and whether from the face pqr to v, or from the edge pq to the edge rv.

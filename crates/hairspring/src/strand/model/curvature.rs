@@ -7,10 +7,10 @@ use super::{
 use crate::strand::{
     band::Band,
     dispatch::{dispatch, dispatch_double},
-    fixed::Fixed,
+    frame_context::FrameContext,
     integrate::run_tile,
-    interval::Interval,
     lanes::{Simd, V3, load},
+    precomputed::Precomputed,
     root::Root,
     scratch::{Memory, Scratch},
     tile::{Tile, rest},
@@ -46,11 +46,11 @@ impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
     }
 
     #[inline(always)]
-    fn take(_: S, _: &Solved<S, 9>, _: &mut Tile, _: &[Fixed]) {}
+    fn take(_: S, _: &Solved<S, 9>, _: &mut Tile, _: &[Precomputed]) {}
 }
 
 /// One tile through an interval, on the widest lanes that there are.
-pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
+pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     if tile.double {
         dispatch_double!(level, simd => run_tile::<_, Curvature<_>, 3, 9>(simd, interval, tile, memory));
     } else {

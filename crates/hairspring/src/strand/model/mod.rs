@@ -21,10 +21,10 @@ pub mod stretch;
 pub use stretch::Stretching;
 
 use super::{
-    across::Across,
     band::Band,
-    fixed::Fixed,
+    bordered::BorderedConstraint,
     lanes::{F, Simd, V3},
+    precomputed::Precomputed,
     profile::Profile,
     root::Root,
     scratch::Scratch,
@@ -46,7 +46,7 @@ pub struct At<S: Simd> {
     pub inverse_length: [F<S>; 2],
     /// 1 + τ/h: how much stiffer bending is in the matrix, for its damping τ.
     pub damped: F<S>,
-    /// How much of the present errors of length is news to the tensions, see `Sweep::news`.
+    /// How much of the present errors of length is news to the tensions, see `Linearization::news`.
     pub news: f32,
     /// By how much they change until where the solve begins, as their points' velocities say [m].
     pub drift: [V3<S>; 2],
@@ -70,7 +70,7 @@ pub struct Solved<S: Simd, const N: usize> {
     pub unknowns: [F<S>; N],
     /// Stiffness of the spring along the strand's segment at it [N/m].
     pub along: F<S>,
-    /// How much of the errors of length before the solve is news to the tensions, see `Sweep::news`.
+    /// How much of the errors of length before the solve is news to the tensions, see `Linearization::news`.
     pub news: f32,
 }
 
@@ -116,10 +116,10 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// That spring, in a substep of length h whose velocities act for so long until the solve begins, both in the pair [s]; of no stiffness in a model that knows
     /// none.
     #[inline(always)]
-    fn across(simd: S, _: (f32, f32), _: usize, _: &Tile, _: &Scratch) -> Across<S> {
-        Across::none(simd)
+    fn across(simd: S, _: (f32, f32), _: usize, _: &Tile, _: &Scratch) -> BorderedConstraint<S> {
+        BorderedConstraint::none(simd)
     }
 
     /// Takes what the solve found besides displacements.
-    fn take(simd: S, solved: &Solved<S, N>, tile: &mut Tile, fixed: &[Fixed]);
+    fn take(simd: S, solved: &Solved<S, N>, tile: &mut Tile, fixed: &[Precomputed]);
 }

@@ -29,10 +29,10 @@ use super::{
 use crate::strand::{
     band::Band,
     dispatch::{dispatch, dispatch_double},
-    fixed::Fixed,
+    frame_context::FrameContext,
     integrate::run_tile,
-    interval::Interval,
     lanes::{F, Simd, V3, load},
+    precomputed::Precomputed,
     root::Root,
     scratch::{Memory, Scratch},
     system::System,
@@ -191,7 +191,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
     }
 
     #[inline(always)]
-    fn take(simd: S, solved: &Solved<S, 11>, tile: &mut Tile, _: &[Fixed]) {
+    fn take(simd: S, solved: &Solved<S, 11>, tile: &mut Tile, _: &[Precomputed]) {
         let u = solved.edges[0].length_and_unit().1;
         let turn = solved.unknowns[3].max(-LARGEST_TURN).min(LARGEST_TURN);
         let row = &mut tile.state[solved.i][state::NORMAL..];
@@ -201,7 +201,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
 }
 
 /// One tile through an interval, on the widest lanes that there are.
-pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
+pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     if tile.double {
         dispatch_double!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, memory));
     } else {

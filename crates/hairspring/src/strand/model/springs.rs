@@ -19,13 +19,13 @@ use super::{
     altitude::{self, after, flattened},
 };
 use crate::strand::{
-    across::Across,
     band::Band,
+    bordered::BorderedConstraint,
     dispatch::dispatch,
-    fixed::Fixed,
+    frame_context::FrameContext,
     integrate::run_tile,
-    interval::Interval,
     lanes::{F, Simd, Sym3, V3, load, store},
+    precomputed::Precomputed,
     profile::Profile,
     root::Root,
     scratch::{Memory, Scratch},
@@ -56,7 +56,7 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
     }
 
     #[inline(always)]
-    fn across(simd: S, times: (f32, f32), i: usize, tile: &Tile, scratch: &Scratch) -> Across<S> {
+    fn across(simd: S, times: (f32, f32), i: usize, tile: &Tile, scratch: &Scratch) -> BorderedConstraint<S> {
         altitude::across(simd, times, i, tile, scratch)
     }
 
@@ -95,11 +95,11 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
             load(simd, &rest[springs::K3]),
             [at.damped, at.drifting],
         );
-        band.add_far(u, k, pull);
+        band.add_long_range_spring(u, k, pull);
     }
 
     #[inline(always)]
-    fn take(simd: S, solved: &Solved<S, 12>, tile: &mut Tile, fixed: &[Fixed]) {
+    fn take(simd: S, solved: &Solved<S, 12>, tile: &mut Tile, fixed: &[Precomputed]) {
         let i = solved.i;
         let extra = i - solved.phase + 1;
         let side = load(simd, &tile.rest[extra][springs::SIDES]);
@@ -111,7 +111,7 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
 }
 
 /// One tile through an interval, on the widest lanes that there are.
-pub fn run(level: Level, interval: &Interval, tile: &mut Tile, memory: &mut Memory) {
+pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     dispatch!(level, simd => run_tile::<_, Springs, 3, 12>(simd, interval, tile, memory));
 }
 

@@ -160,7 +160,7 @@ fn pigment_takes_the_place_of_colours_in_one_step_and_gives_it_back() {
         document.set_all(edits).unwrap();
     }
     assert!(document.text().contains("melanin = 0.6") && !document.text().contains("color"));
-    let idle = |document: &Document, name: &str| parameter(name).idle(document, (0, 0)).is_some();
+    let idle = |document: &Document, name: &str| parameter(name).inactive_reason(document, (0, 0)).is_some();
     assert!(idle(&document, "look.root_color") && idle(&document, "look.tip_color"));
     assert!(!idle(&document, "look.melanin_redness"));
     document.step(Way::Back).unwrap();
@@ -237,13 +237,13 @@ fn hairs_are_counted_anew_when_the_slider_is_let_go_of() {
 fn a_tooltip_names_range_unit_and_default() {
     let of = |name: &str| {
         let (parameter, head) = (parameter(name), document(HEAD));
-        tip(parameter, parameter.idle(&head, (0, 0)), parameter.key(0, 0).look_up(head.defaults()))
+        tip(parameter, parameter.inactive_reason(&head, (0, 0)), parameter.key(0, 0).look_up(head.defaults()))
     };
     for (name, line) in [
         ("damping", "0 to 0.2 s; default 0.015 s\n"),
         ("effects.clump", "0 to 1; default 0\n"),
         ("wind.velocity", "-20 to 20 m/s each; default 0, 0, 0 m/s\n"),
-        ("solver.segments", "on or off; default on\n"),
+        ("solver.segment_contacts", "on or off; default on\n"),
         ("style", "straight, wavy, curly, coily, short-fur; default wavy\n"),
         ("look.melanin", "0 to 1; default none\n"),
         ("strands", "100 to 200000; default 100000\n"),

@@ -1,0 +1,141 @@
+//! What the window says over the picture: progress, messages, figures, what colours stand for.
+
+use super::{App, MESSAGE};
+use crate::{snapshot::StageSnapshot, view::View};
+use eframe::egui::{self, Color32, Ui};
+use hairspring::stage::Value;
+
+/// How far a message stands below the picture's upper edge [points].
+const MESSAGE_TOP: f32 = 66.0;
+/// Width of what says what colours stand for, and its distance from the edge [points].
+const LEGEND: f32 = 190.0;
+
+impl App {
+    /// Progress of a record, and the last message.
+    pub(super) fn tell(&mut self, ctx: &egui::Context) {
+        if let Some(recorder) = &self.recorder {
+            let (done, all) = recorder.progress();
+            let mut stopped = false;
+            egui::Window::new("Recording").collapsible(false).resizable(false).show(ctx, |ui| {
+                ui.add(
+                    egui::ProgressBar::new(done as f32 / all as f32).text(format!("{done} of {all} frames")),
+                );
+                stopped = ui.button("Stop").clicked();
+            });
+            if stopped && let Some(recorder) = self.recorder.take() {
+                match recorder.stop(&mut self.session) {
+                    Ok(said) => self.say(said, false),
+                    Err(why) => self.say(why.to_string(), true),
+                }
+            }
+        }
+        let Some((text, wrong, since)) = &self.message else { return };
+        if since.elapsed() > MESSAGE {
+            self.message = None;
+            return;
+        }
+        let color = if *wrong { Color32::LIGHT_RED } else { Color32::LIGHT_GREEN };
+        let shown = egui::Area::new(egui::Id::unique("message"))
+            // In the middle of the picture, below what colours stand for and beside what is said of a strand.
+            .pivot(egui::Align2::CENTER_TOP)
+            .fixed_pos(self.whole.center_top() + egui::vec2(0.0, MESSAGE_TOP))
+            .sense(egui::Sense::click())
+            .show(ctx, |ui| {
+                ui.style_mut().interaction.selectable_labels = false;
+                egui::Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.set_max_width((self.whole.width() - 2.0 * LEGEND).max(240.0));
+                    ui.colored_label(color, text);
+                });
+            });
+        // Who has read it may have it away.
+        if shown.response.on_hover_text("Click: away").clicked() {
+            self.message = None;
+        }
+        ctx.request_repaint_after(MESSAGE);
+    }
+}
+
+/// Text in a corner of the picture, on the left.
+pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2, show: impl FnOnce(&mut Ui)) {
+    let inside = rect.shrink2(egui::vec2(10.0, 10.0));
+    egui::Area::new(egui::Id::unique(("figures", align.y() == egui::Align::TOP)))
+        .fixed_pos(align.pos_in_rect(&inside))
+        .pivot(align)
+        .show(ctx, |ui| {
+            ui.style_mut().interaction.selectable_labels = false;
+            // A figure stays in the line of its name.
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            egui::Frame::new()
+                .fill(Color32::from_black_alpha(120))
+                .corner_radius(4.0)
+                .inner_margin(6.0)
+                .show(ui, show);
+        });
+}
+
+/// What colours stand for.
+pub(super) fn legend(
+    painter: &egui::Painter,
+    rect: egui::Rect,
+    value: Value,
+    view: &View,
+    scenery: &StageSnapshot,
+) {
+    let at = rect.right_top() + egui::vec2(-LEGEND, 14.0);
+    let text = |place: egui::Pos2, align, text: String| {
+        painter.text(place, align, text, egui::FontId::proportional(13.0), Color32::from_white_alpha(220));
+    };
+    let unit = match value.unit() {
+        "1" => "",
+        unit => unit,
+    };
+    text(at, egui::Align2::LEFT_TOP, value.name().to_owned());
+    if value == Value::Guide {
+        return;
+    }
+    if value == Value::Density && scenery.volume.is_none() {
+        let right = at + egui::vec2(LEGEND - 20.0, 18.0);
+        text(right, egui::Align2::RIGHT_TOP, "known with Hair on hair (Volume)".into());
+        return;
+    }
+    let (bar, height) =
+        (egui::Rect::from_min_size(at + egui::vec2(0.0, 20.0), egui::vec2(170.0, 10.0)), 10.0);
+    for k in 0..34 {
+        let share = k as f32 / 33.0;
+        let c = crate::ramp::color(share, [0.0, 1.0]).to_array().map(|x| (x.powf(1.0 / 2.2) * 255.0) as u8);
+        let piece =
+            egui::Rect::from_min_size(bar.min + egui::vec2(5.0 * k as f32, 0.0), egui::vec2(5.0, height));
+        painter.rect_filled(piece, 0.0, Color32::from_rgb(c[0], c[1], c[2]));
+    }
+    text(bar.left_bottom(), egui::Align2::LEFT_TOP, "0".into());
+    text(bar.right_bottom(), egui::Align2::RIGHT_TOP, readable(view.range[1], unit));
+}
+
+/// A number in three digits, with the unit's prefix.
+fn readable(value: f32, unit: &str) -> String {
+    let (scale, prefix) = match value {
+        v if unit.is_empty() && v < 0.1 => (1e2, "%"),
+        v if unit.is_empty() || v >= 0.1 => (1.0, ""),
+        v if v >= 1e-4 => (1e3, "m"),
+        v if v >= 1e-7 => (1e6, "µ"),
+        _ => (1e9, "n"),
+    };
+    let value = value * scale;
+    let digits = (2.0 - value.max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{value:.digits$} {prefix}{unit}").trim_end().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::readable;
+
+    #[test]
+    fn numbers_of_the_legend_can_be_read() {
+        assert_eq!(readable(5.462e-6, "N"), "5.46 µN");
+        assert_eq!(readable(2.0e-3, "m/s"), "2.00 mm/s");
+        assert_eq!(readable(1.25, "m/s"), "1.25 m/s");
+        assert_eq!(readable(123.4, "rad"), "123 rad");
+        assert_eq!(readable(8.62e-5, ""), "0.00862 %");
+        assert_eq!(readable(0.82, ""), "0.820");
+    }
+}

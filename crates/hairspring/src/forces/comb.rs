@@ -1,0 +1,86 @@
+//! A comb: a row of tines that goes through hair.
+//!
+//! ```text
+//!    a ●━┯━┯━┯━┯━● b      between tines hair slides along itself, and goes with the comb across itself
+//!        │ │ │ │
+//!
+//!    a = w [ (c⊥ − c∥) (I − u uᵀ) + c∥ I ] (V − v)        u along the strand;   w = 1 − (d/r)², d the distance from a–b, its mean over the frame
+//! ```
+//!
+//! Hair that lies across the comb's way is taken along until it is taut; hair that lies along it is drawn through, with friction, to the tip. V
+//! is the comb's velocity at the point.
+//!
+//! # Missing
+//! Tines by themselves: hair is not parted into as many locks as the comb has gaps.
+
+use super::StrandView;
+use crate::collide::RigidTransform;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// A capsule that takes hair along across itself.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Comb {
+    /// One end of the row of tines [m], in the space that it moves with.
+    pub a: Vec3,
+    /// The other end [m].
+    pub b: Vec3,
+    /// How far it reaches around the line between them [m], above 0: half the length of the tines.
+    pub radius: f32,
+    /// How fast hair takes on the comb's velocity across itself, c⊥ [1/s], 0 to 10000. Default 1000: within a substep, tines are hard.
+    #[serde(default = "firm")]
+    pub grip: f32,
+    /// The same along itself, c∥ [1/s], 0 to `grip`. Default 3: hair on plastic slides, with some pull.
+    #[serde(default = "slick")]
+    pub friction: f32,
+}
+
+fn firm() -> f32 {
+    1000.0
+}
+
+fn slick() -> f32 {
+    3.0
+}
+
+/// Fastest that a comb takes hair along [m/s].
+const FASTEST: f32 = 20.0;
+
+/// Most places of a point's way through the comb in a frame that are looked at.
+const PLACES: f32 = 16.0;
+
+impl Comb {
+    /// w of the formula at `p` [m], in the comb's space.
+    fn weight(&self, p: Vec3) -> f32 {
+        let axis = self.b - self.a;
+        let t = ((p - self.a).dot(axis) / axis.length_squared().max(1e-12)).clamp(0.0, 1.0);
+        (1.0 - p.distance_squared(self.a + axis * t) / (self.radius * self.radius)).max(0.0)
+    }
+
+    /// Mean of the weight along the way from `from` to `to` [m], in the comb's space.
+    fn mean_weight(&self, from: Vec3, to: Vec3) -> f32 {
+        let places = (2.0 * from.distance(to) / self.radius).ceil().clamp(1.0, PLACES);
+        let at = |k: u32| from.lerp(to, (k as f32 + 0.5) / places);
+        (0..places as u32).map(|k| self.weight(at(k))).sum::<f32>() / places
+    }
+
+    /// Takes a strand's points along while the comb goes between two `poses`.
+    pub(super) fn act(&self, poses: [RigidTransform; 2], strand: &mut StrandView, points: usize) {
+        let root = strand.roots()[0].translation;
+        let dt = strand.frame.dt;
+        let mut x = root + strand.segment(1).0;
+        for i in 2..points {
+            let (edge, v) = strand.segment(i);
+            x += edge;
+            let [from, to] = [poses[0].inverse_point(x), poses[1].inverse_point(x + v * dt)];
+            let weight = self.mean_weight(from, to);
+            if weight > 0.0 {
+                let at = from.midpoint(to);
+                let velocity = ((poses[1].point(at) - poses[0].point(at)) / dt).clamp_length_max(FASTEST);
+                strand.add_transverse_drag(i, velocity, (self.grip - self.friction).max(0.0) * weight);
+                strand.add_velocity_drag(i, velocity, self.friction * weight);
+            }
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! The field of charged hair: what drives a head of hair apart, and stands it on end.
+//!
+//! ```text
+//! E(x) = k Σ q_n (x − x_n) / (|x − x_n|² + ε²)^(3/2),   n: nodes of a lattice around all hair, 16 along its longest side, ε: its cell
+//! ```
+//!
+//! Charge is laid on the nodes with trilinear weights (a cloud in a cell: Hockney & Eastwood 1988, *Computer Simulation Using Particles*, ch. 5), the
+//! field is summed from all nodes to all nodes, softened by a cell (Plummer 1911), and taken by points with the same weights: what a strand
+//! leaves does not push itself, and momentum is kept. Charge is counted in electrons, whole numbers, so that threads may add in any order.
+
+use super::{
+    FrameMotion, StrandBatch, StrandView,
+    charge::{BREAKDOWN, COULOMB},
+};
+use glam::Vec3;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicI32, AtomicI64, Ordering::Relaxed};
+
+/// Cells along the longest side of the hair: some 3 cm for long hair, below which it is hair on hair that counts. Their number bounds the
+/// sum of all nodes on all, a million for a ball of hair.
+const CELLS: f32 = 15.0;
+
+/// Charge of an electron [C].
+const ELECTRON: f64 = 1.602e-19;
+
+/// Charge of all hair on a lattice, and its field.
+#[derive(Default)]
+pub(crate) struct HairField {
+    /// Lowest and highest place of a point, as [`ordered`] numbers.
+    lo: [AtomicI32; 3],
+    hi: [AtomicI32; 3],
+    /// Where the lowest node is [m].
+    origin: Vec3,
+    /// Edge of a cell [m].
+    cell: f32,
+    dims: [usize; 3],
+    /// Electrons on each node, those that are missing.
+    charges: Vec<AtomicI64>,
+    /// Nodes with charge: where, and how much [C].
+    loaded: Vec<(Vec3, f32)>,
+    /// Field at each node [V/m].
+    field: Vec<Vec3>,
+}
+
+impl HairField {
+    /// Finds the field of strands with so much `charge` [C/m] each, that of all the hairs that it stands for.
+    pub fn find(
+        &mut self,
+        strands: &mut StrandBatch,
+        frame: &FrameMotion,
+        charge: impl Fn(usize) -> f32 + Sync,
+    ) {
+        self.clear();
+        strands.each(frame, &|strand| self.reach(strand));
+        self.lay_out();
+        strands.each(frame, &|strand| self.load(charge(strand.strand), strand));
+        self.solve();
+    }
+
+    /// No hair.
+    fn clear(&mut self) {
+        self.lo = [i32::MAX; 3].map(AtomicI32::new);
+        self.hi = [i32::MIN; 3].map(AtomicI32::new);
+        self.dims = [0; 3];
+    }
+
+    /// Makes the lattice reach around a strand.
+    fn reach(&self, strand: &StrandView) {
+        let root = strand.roots()[0].translation;
+        let places = || strand.points().map(|(x, _)| root + x).filter(|p| p.is_finite());
+        let lo = places().fold(Vec3::INFINITY, Vec3::min).to_array();
+        let hi = places().fold(Vec3::NEG_INFINITY, Vec3::max).to_array();
+        for k in 0..3 {
+            self.lo[k].fetch_min(ordered(lo[k]), Relaxed);
+            self.hi[k].fetch_max(ordered(hi[k]), Relaxed);
+        }
+    }
+
+    /// Lays out the lattice around all strands that it reaches around.
+    fn lay_out(&mut self) {
+        let [lo, hi] =
+            [&self.lo, &self.hi].map(|k| Vec3::from([0, 1, 2].map(|i| number(k[i].load(Relaxed)))));
+        let size = hi - lo;
+        // False for NaN: there is no strand.
+        let any = size.min_element() >= 0.0 && size.max_element() < f32::MAX;
+        if !any {
+            return;
+        }
+        self.cell = (size.max_element() / CELLS).max(1e-6);
+        self.origin = lo;
+        self.dims = (size / self.cell).to_array().map(|n| n.ceil().max(1.0) as usize + 1);
+        // Memory for any lattice, so that no later frame asks for more; rounding may add a cell.
+        let most = (CELLS as usize + 2).pow(3);
+        self.loaded.reserve(most.saturating_sub(self.loaded.len()));
+        self.field.reserve(most.saturating_sub(self.field.len()));
+        self.charges.resize_with(most, AtomicI64::default);
+        self.charges.iter_mut().for_each(|charge| *charge.get_mut() = 0);
+    }
+
+    /// Lays `charge` [C/m] of a strand on the lattice.
+    fn load(&self, charge: f32, strand: &StrandView) {
+        let root = strand.roots()[0].translation;
+        for (i, (x, _)) in strand.points().enumerate() {
+            let electrons = f64::from(charge) * f64::from(strand.length(i)) / ELECTRON;
+            for (node, weight) in self.around(root + x).into_iter().flatten() {
+                self.charges[node].fetch_add((electrons * f64::from(weight)) as i64, Relaxed);
+            }
+        }
+    }
+
+    /// Finds the field of what lies on the lattice.
+    fn solve(&mut self) {
+        let nodes: usize = self.dims.iter().product();
+        let ([nx, ny, _], origin, cell) = (self.dims, self.origin, self.cell);
+        let place =
+            |n: usize| origin + Vec3::new((n % nx) as f32, (n / nx % ny) as f32, (n / nx / ny) as f32) * cell;
+        let charges = &self.charges[..nodes];
+        let charge = |n: usize| (charges[n].load(Relaxed) as f64 * ELECTRON) as f32;
+        self.loaded.clear();
+        self.loaded.extend((0..nodes).map(|n| (place(n), charge(n))).filter(|(_, charge)| *charge != 0.0));
+        self.field.clear();
+        self.field.resize(nodes, Vec3::ZERO);
+        let loaded = &self.loaded;
+        self.field.par_iter_mut().with_min_len(64).enumerate().for_each(|(n, field)| {
+            // Points only ask nodes that they charge.
+            if charges[n].load(Relaxed) == 0 {
+                return;
+            }
+            let at = place(n);
+            let sum: Vec3 = loaded
+                .iter()
+                .map(|(from, charge)| {
+                    let d = at - *from;
+                    let r2 = d.length_squared() + cell * cell;
+                    d * (charge / (r2 * r2.sqrt()))
+                })
+                .sum();
+            *field = (sum * COULOMB).clamp_length_max(BREAKDOWN);
+        });
+    }
+
+    /// The field at `place` in the world [V/m].
+    pub fn field(&self, place: Vec3) -> Vec3 {
+        self.around(place).into_iter().flatten().map(|(node, weight)| self.field[node] * weight).sum()
+    }
+
+    /// The corners of the cell that `place` is in, and its weight in each; `None` beyond the lattice.
+    fn around(&self, place: Vec3) -> Option<[(usize, f32); 8]> {
+        let [nx, ny, nz] = self.dims;
+        let at = (place - self.origin) / self.cell;
+        let last = Vec3::new(nx as f32, ny as f32, nz as f32) - 1.0;
+        // False for NaN, and where there is no lattice.
+        let inside = at.min_element() >= 0.0 && (last - at).min_element() >= 0.0;
+        if !inside {
+            return None;
+        }
+        let floor = at.floor().min(last - 1.0);
+        let f = at - floor;
+        let first = (floor.z as usize * ny + floor.y as usize) * nx + floor.x as usize;
+        Some(std::array::from_fn(|corner| {
+            let [x, y, z] = [corner & 1, corner >> 1 & 1, corner >> 2];
+            let side = |upper: usize, f: f32| if upper == 1 { f } else { 1.0 - f };
+            (first + x + nx * (y + ny * z), side(x, f.x) * side(y, f.y) * side(z, f.z))
+        }))
+    }
+}
+
+/// A whole number that is larger where `x` is.
+fn ordered(x: f32) -> i32 {
+    let bits = x.to_bits() as i32;
+    if bits < 0 { bits ^ i32::MAX } else { bits }
+}
+
+/// The number that has this [`ordered`] one.
+fn number(ordered: i32) -> f32 {
+    f32::from_bits((if ordered < 0 { ordered ^ i32::MAX } else { ordered }) as u32)
+}

@@ -1,0 +1,121 @@
+//! One strand, as an effect sees it: where its points are at the start of a frame, and what acts on them in it.
+
+use super::FrameMotion;
+use crate::{
+    collide::RigidTransform,
+    strand::{
+        lanes::Row,
+        tile::{RestRows, StateRows, StrandRows, anisotropic_drag, position_spring, rest, state, strand},
+    },
+};
+use glam::{Quat, Vec3};
+
+/// One strand in a frame. Points are counted as the groom does; the extra particles of the springs model go with them.
+pub(crate) struct StrandView<'a> {
+    /// The strand, as an index of the groom.
+    pub strand: usize,
+    /// The frame.
+    pub frame: &'a FrameMotion,
+    pub(super) lane: usize,
+    pub(super) stride: usize,
+    pub(super) rows: &'a StrandRows,
+    pub(super) rest: &'a [RestRows],
+    pub(super) state: &'a [StateRows],
+    pub(super) external_acceleration: &'a mut [[Row; 3]],
+    pub(super) position_spring: &'a mut [[Row; position_spring::ROWS]],
+    pub(super) anisotropic_drag: &'a mut [[Row; anisotropic_drag::ROWS]],
+    pub(super) wind_delta: &'a mut [[Row; 3]],
+}
+
+impl<'a> StrandView<'a> {
+    /// The root at the start and at the end of the frame: place and rotation since rest, in the world.
+    pub fn roots(&self) -> [RigidTransform; 2] {
+        let number = |row: usize| self.rows[row].0[self.lane];
+        let [start, end] = self.frame.anchor;
+        [(start, strand::ROOT_START, strand::TURN_START), (end, strand::ROOT_END, strand::TURN_END)].map(
+            |(anchor, root, turn)| RigidTransform {
+                translation: anchor.point(Vec3::from([0, 1, 2].map(|k| number(root + k)))),
+                rotation: anchor.rotation * Quat::from_array([0, 1, 2, 3].map(|k| number(turn + k))),
+            },
+        )
+    }
+
+    /// Place from the root [m] and velocity [m/s] of every point of the strand at the start of the frame, root first.
+    pub fn points(&self) -> impl Iterator<Item = (Vec3, Vec3)> + use<'a> {
+        let (state, lane) = (self.state, self.lane);
+        let vector = move |rows: &StateRows, at: usize| Vec3::from([0, 1, 2].map(|k| rows[at + k].0[lane]));
+        let particles = state.iter().scan(Vec3::ZERO, move |x, rows| {
+            *x += vector(rows, state::EDGE);
+            Some((*x, vector(rows, state::V)))
+        });
+        particles.step_by(self.stride).take(self.rows[strand::POINTS].0[lane] as usize)
+    }
+
+    /// Length of hair that is point `i`'s: half of the segments around it [m].
+    pub fn length(&self, i: usize) -> f32 {
+        let length = |i: usize| self.rest[i * self.stride][rest::LENGTH].0[self.lane];
+        0.5 * (length(i) + if i > 0 { length(i - 1) } else { 0.0 })
+    }
+
+    /// Mass of point `i` [kg].
+    pub fn mass(&self, i: usize) -> f32 {
+        self.rest[i * self.stride][rest::MASS].0[self.lane]
+    }
+
+    /// How deep point `i` may be inside a collider, 0 or less [m].
+    pub fn clearance(&self, i: usize) -> f32 {
+        self.rest[i * self.stride][rest::CLEARANCE].0[self.lane]
+    }
+
+    /// From point `i − 1` to point `i` at the start of the frame [m], and the velocity of point `i` [m/s]; `i` is 1 or more.
+    pub fn segment(&self, i: usize) -> (Vec3, Vec3) {
+        let vector = |i: usize, at: usize| Vec3::from([0, 1, 2].map(|k| self.state[i][at + k].0[self.lane]));
+        let last = i * self.stride;
+        let edge = (last + 1 - self.stride..=last).map(|i| vector(i, state::EDGE)).sum();
+        (edge, vector(last, state::V))
+    }
+
+    /// Accelerates point `i` by `a` [m/s²].
+    pub fn accelerate(&mut self, i: usize, a: Vec3) {
+        let rows = &mut self.external_acceleration[i * self.stride];
+        for (row, a) in rows.iter_mut().zip(a.to_array()) {
+            row.0[self.lane] += a;
+        }
+    }
+
+    /// Pulls point `i` to a place that goes from `from` to `to` in the frame, both from where the root is then [m], by a spring of `stiffness` over
+    /// the point's mass [1/s²].
+    pub fn add_position_spring(&mut self, i: usize, [from, to]: [Vec3; 2], stiffness: f32) {
+        let rows = &mut self.position_spring[i * self.stride];
+        rows[position_spring::STIFFNESS].0[self.lane] += stiffness;
+        for (row, way) in rows[position_spring::WAY..].iter_mut().zip((to - from).to_array()) {
+            row.0[self.lane] += way * stiffness;
+        }
+        self.accelerate(i, to * stiffness);
+    }
+
+    /// Lets point `i` take on `velocity` [m/s] at `rate` [1/s].
+    pub fn add_velocity_drag(&mut self, i: usize, velocity: Vec3, rate: f32) {
+        self.position_spring[i * self.stride][position_spring::BRAKE].0[self.lane] += rate;
+        self.accelerate(i, velocity * rate);
+    }
+
+    /// Lets point `i` take on `velocity` [m/s] across its strand at `rate` [1/s].
+    pub fn add_transverse_drag(&mut self, i: usize, velocity: Vec3, rate: f32) {
+        let rows = &mut self.anisotropic_drag[i * self.stride];
+        rows[anisotropic_drag::BRAKE].0[self.lane] += rate;
+        for (row, carry) in
+            rows[anisotropic_drag::ACCELERATION..].iter_mut().zip((velocity * rate).to_array())
+        {
+            row.0[self.lane] += carry;
+        }
+    }
+
+    /// Moves the air at point `i` by `velocity` [m/s], on top of the wind of all points.
+    pub fn add_wind(&mut self, i: usize, velocity: Vec3) {
+        let rows = &mut self.wind_delta[i * self.stride];
+        for (row, v) in rows.iter_mut().zip(velocity.to_array()) {
+            row.0[self.lane] += v;
+        }
+    }
+}

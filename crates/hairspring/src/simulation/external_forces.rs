@@ -1,0 +1,135 @@
+//! What acts on points from outside in a frame: the hair volume first, then each effect.
+
+use super::{Bodies, Simulation, StepInput};
+use crate::{
+    collide::RigidTransform,
+    forces::{Charges, ForceMask, FrameMotion, StrandBatch, StrandView, WindSampler},
+    strand::frame_context::FrameContext,
+    volume::Now,
+};
+use std::time::{Duration, Instant};
+
+impl Simulation {
+    /// Finds what acts on all points in the frame, of the hair volume for an interval of it alone, and moves the roots; hair was `carried` along before it. What the
+    /// hair volume took.
+    pub(super) fn exchange(
+        &mut self,
+        drive: &StepInput,
+        carried: Option<&RigidTransform>,
+        interval: &FrameContext,
+    ) -> Duration {
+        let global_shapes = self.settings.solver.global_shape
+            && self.global_shapes.iter().any(|global_shape| global_shape.is_on());
+        let charged = self.charges.iter().any(|charge| *charge != 0.0);
+        let pressed = self.is_pressed();
+        let occluded = self.wind_occlusion.is_on() && drive.air.moves();
+        let gripped = global_shapes || charged || !self.tools.used.is_empty();
+        let tines = self.tools.used.iter().any(|used| !used.tool.binds());
+        let blown = occluded || drive.air.varies();
+        let kinds = ForceMask {
+            external_acceleration: pressed,
+            position_spring: gripped,
+            anisotropic_drag: tines,
+            wind_delta: blown,
+        };
+        self.forces.prepare(self.state.len(), kinds);
+        let anchor = self.settings.anchor;
+        let bodies = Bodies::new((drive.obstacles, carried));
+        let began = Instant::now();
+        if let Some(volume) = self.volume.as_mut().filter(|_| pressed || occluded) {
+            volume.begin_frame();
+            // Roots are moved below.
+            let now = Now { anchor, gone: 1.0 };
+            let hair = (&self.strand[..], &self.state[..]);
+            volume.measure(hair, &now);
+            if pressed {
+                let first = (&interval.substeps[0].obstacles[..], interval.h);
+                let dt = interval.now.len() as f32 * interval.h;
+                volume.exchange(dt, hair, &now, first, &mut self.forces.external_acceleration);
+            }
+        }
+        let volume_took = began.elapsed();
+        self.move_roots(drive);
+        if !gripped && !blown {
+            return volume_took;
+        }
+        let frame = FrameMotion { anchor: [anchor, drive.anchor], dt: drive.dt };
+        let mut strands = StrandBatch {
+            tiles: &self.tiles,
+            lanes: &self.lanes,
+            strand: &self.strand,
+            rest: &self.rest,
+            state: &self.state,
+            external_acceleration: &mut self.forces.external_acceleration,
+            position_spring: &mut self.forces.position_spring,
+            anisotropic_drag: &mut self.forces.anisotropic_drag,
+            wind_delta: &mut self.forces.wind_delta,
+        };
+        let charge_of = |strand: usize| {
+            of_group(&self.charges, self.groom.group(strand) as usize).copied().unwrap_or(0.0)
+        };
+        if charged {
+            self.charged.iter_mut().for_each(|ball| ball.carry(carried));
+            // Those that follow are charged as their guides.
+            let of_all = |strand: usize| charge_of(strand) * self.multiplicity[strand];
+            self.hair_field.find(&mut strands, &frame, of_all);
+        }
+        let air = drive.air.moment(drive.dt, &mut self.noise);
+        let shade = self.volume.as_ref().filter(|_| occluded).map(|volume| {
+            let hair = volume.density(anchor);
+            self.shade.reserve(volume.most_nodes());
+            self.shade.cast(&self.wind_occlusion, &air, &bodies, &hair);
+            (&self.shade, hair)
+        });
+        let blow = WindSampler { air, shade };
+        let charges = Charges { balls: &self.charged, hair: &self.hair_field };
+        let (groom, shape_of) = (&self.groom, &self.global_shapes);
+        let tools = &self.tools.used;
+        let act = |strand: &mut StrandView| {
+            let s = strand.strand;
+            let group = groom.group(s) as usize;
+            if let Some(global_shape) = of_group(shape_of, group).filter(|_| global_shapes) {
+                global_shape.add(groom.scale(s).global_shape, groom.strand(s), strand);
+            }
+            if charged {
+                charges.add(charge_of(s), strand);
+            }
+            for used in tools {
+                used.act(&bodies, strand, groom.range(s).len());
+            }
+            if blown {
+                blow.add(strand);
+            }
+        };
+        strands.each(&frame, &act);
+        volume_took
+    }
+}
+
+impl Simulation {
+    /// Lets strands meet as a volume again, with the anchor at `anchor`, for those of the interval's substeps that are to be run now.
+    pub(super) fn exchange_again(&mut self, anchor: RigidTransform, interval: &FrameContext) {
+        let Some(volume) = &mut self.volume else { return };
+        let now = Now { anchor, gone: interval.begun().0 };
+        let hair = (&self.strand[..], &self.state[..]);
+        volume.measure(hair, &now);
+        let first = (&interval.substeps[interval.now.start].obstacles[..], interval.h);
+        volume.exchange(
+            interval.now.len() as f32 * interval.h,
+            hair,
+            &now,
+            first,
+            &mut self.forces.external_acceleration,
+        );
+    }
+
+    /// Whether strands meet as a volume.
+    pub(super) fn is_pressed(&self) -> bool {
+        self.volume.as_ref().is_some_and(|volume| volume.acts())
+    }
+}
+
+/// What is said of a group; one past the end has the last's.
+fn of_group<T>(all: &[T], group: usize) -> Option<&T> {
+    all.get(group).or(all.last())
+}

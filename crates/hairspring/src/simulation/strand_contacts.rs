@@ -1,0 +1,121 @@
+//! Strands that meet their neighbours one by one, between substeps.
+
+use super::Simulation;
+use crate::{
+    scene,
+    strand::{
+        frame_context::FrameContext,
+        lanes::LANES,
+        tile::{hold, rest, state, strand},
+    },
+    strand_contact::{Hair, Neighbours, NeighboursReport},
+};
+use glam::{Mat3, Vec3};
+use std::collections::HashMap;
+
+impl Simulation {
+    /// Lets strands meet each other one by one from now on, or no more. As they are now counts as their rest: nowhere are they thicker than there is room.
+    pub fn set_neighbours(&mut self, settings: &scene::Neighbours) {
+        let mut hair = Hair::default();
+        if settings.on {
+            let mut known = HashMap::new();
+            for place in &self.places {
+                let strand = self.lanes[*place as usize] as usize;
+                let points = self.groom.strand(strand);
+                let next = hair.strand_count() as u32;
+                let bits: &[u32] = bytemuck::cast_slice(points);
+                match *known.entry((self.groom.group(strand), bits)).or_insert(next) {
+                    same if same != next => hair.add_same(same),
+                    _ => hair.add_strand(points.len()),
+                }
+            }
+            self.show_neighbours((1.0, self.settings.anchor.matrix()), f32::INFINITY, &mut hair);
+        }
+        self.neighbours = Neighbours::new(settings, hair).map(Box::new);
+    }
+
+    /// What is known of strands that meet each other one by one; `None` where none do.
+    pub fn neighbours(&self) -> Option<NeighboursReport> {
+        self.neighbours.as_ref().map(|neighbours| neighbours.report())
+    }
+
+    /// Gives all points what their neighbours' loads do to them in a substep.
+    pub(super) fn bear_neighbours(&mut self, neighbours: &mut Neighbours, h: f32) {
+        neighbours.apply_warm_start(h);
+        let kicks = &neighbours.hair.v;
+        self.each_velocity(&neighbours.hair, |i, _, rows| {
+            rows.into_iter().zip(kicks[i].to_array()).for_each(|(row, kick)| *row += kick);
+        });
+    }
+
+    /// Lets strands meet at the end of the interval's substep `number`.
+    pub(super) fn meet_neighbours(
+        &mut self,
+        neighbours: &mut Neighbours,
+        interval: &FrameContext,
+        number: usize,
+    ) {
+        let substep = &interval.substeps[number];
+        self.show_neighbours((substep.fraction, substep.anchor), interval.h, &mut neighbours.hair);
+        neighbours.solve_contacts(interval.h);
+        let hair = &neighbours.hair;
+        self.each_velocity(hair, |i, first, rows| {
+            if hair.inverse_mass[i] > 0.0 && first {
+                rows.into_iter().zip(hair.v[i].to_array()).for_each(|(row, v)| *row = v);
+            } else if hair.inverse_mass[i] > 0.0 {
+                let change = neighbours.change(i).to_array();
+                rows.into_iter().zip(change).for_each(|(row, change)| *row += change);
+            }
+        });
+    }
+
+    /// Writes where all points are, with roots at a fraction of the frame and the anchor's pose there, how they move, what they weigh and how they bend in
+    /// a substep of `h` [s].
+    fn show_neighbours(&self, (fraction, (m, t)): (f32, (Mat3, Vec3)), h: f32, hair: &mut Hair) {
+        let mut i = 0;
+        for (k, place) in self.places.iter().map(|p| *p as usize).enumerate() {
+            let Some(alike) = hair.shown_first(k) else { continue };
+            let (tile, lane) = (place / LANES, place % LANES);
+            let (stride, first) = (self.tiles[tile].model.stride(), self.tiles[tile].first as usize);
+            let damped = 1.0 + self.strand[tile][strand::DAMPING].0[lane] / h;
+            let root = |at: usize| Vec3::from([0, 1, 2].map(|k| self.strand[tile][at + k].0[lane]));
+            let mut x = m * root(strand::ROOT_START).lerp(root(strand::ROOT_END), fraction) + t;
+            for j in 0..self.simulated_points(place) {
+                x += self.vector(place, j, state::EDGE);
+                if j.is_multiple_of(stride) {
+                    hair.x[i] = x;
+                    hair.v[i] = self.vector(place, j, state::V);
+                    let free = j >= self.tiles[tile].model.driven();
+                    hair.inverse_mass[i] =
+                        if free { (alike * self.rest[first + j][rest::MASS].0[lane]).recip() } else { 0.0 };
+                    let rest = |row: usize| self.rest[first + j][row].0[lane];
+                    hair.inverse_length[i] =
+                        if rest(rest::LENGTH) > 0.0 { rest(rest::LENGTH).recip() } else { 0.0 };
+                    // What bends springs lies between its points, and counts for little here.
+                    hair.bend[i] = if stride == 1 { alike * rest(rest::BEND) * damped } else { 0.0 };
+                    i += 1;
+                }
+            }
+            let start = i - self.points(place);
+            for held in self.holds.get(tile).into_iter().flatten() {
+                if held.rows[hold::PINNED].0[lane] > 0.0 {
+                    hair.inverse_mass[start + held.point as usize / stride] = 0.0;
+                }
+            }
+        }
+    }
+
+    /// Shows the velocity of every point, strand after strand in the order given to [`Simulation::new`]: which point of `hair` it is, and whether it is of the first
+    /// of all strands that are the same.
+    fn each_velocity(&mut self, hair: &Hair, mut see: impl FnMut(usize, bool, [&mut f32; 3])) {
+        for (k, place) in self.places.iter().map(|p| *p as usize).enumerate() {
+            let (tile, lane) = (self.tiles[place / LANES], place % LANES);
+            let first = hair.shown_first(k).is_some();
+            for (j, i) in hair.strand(hair.shown(k)).enumerate() {
+                let rows = &mut self.state[tile.first as usize + j * tile.model.stride()];
+                let [x, y, z] = &mut rows[state::V..state::V + 3] else { unreachable!() };
+                see(i, first, [&mut x.0[lane], &mut y.0[lane], &mut z.0[lane]]);
+            }
+        }
+    }
+}

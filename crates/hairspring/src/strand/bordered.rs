@@ -1,0 +1,135 @@
+//! A spring across all four points of a window: its force is an unknown of its own, eliminated right after the window's first point.
+//!
+//! ```text
+//! [ A     g  ] [ x ]   [  b ]     g    gradient of its length at each point      s    by how much it is longer than at rest
+//! [ gᵀ  −1/k ] [ λ ] = [ −s ]     λ    its force, k (s + g·x)
+//!
+//! down, of u, y and d of the first point, and w uᵀ of its far spring:       q = L⁻¹ g₀    h_p = g_p − u_pᵀ D⁻¹ q    h₃ = g₃ + u wᵀ D⁻¹ q
+//!       which leaves κ h hᵀ and −κ ρ h on the three points after it:        1/κ = 1/k + qᵀ D⁻¹ q                    ρ = s + qᵀ D⁻¹ y
+//! up:                                                                       λ = κ (ρ + h·x)    and then y − λ q in the place of y
+//! ```
+//!
+//! Put into the matrix it would be k g gᵀ, and between the first point and the last a [far](Profile::far) profile has room for one spring only, which is another's.
+//! As an unknown it meets the three points after by what it leaves there, and the first by its own few numbers, which only those points have that need it. The
+//! solution is the same. Such a matrix has pivots of known sign in any order: Vanderbei 1995, *Symmetric Quasidefinite Matrices*.
+
+use super::{
+    lanes::{F, M3, Simd, Sym3, V3, Work, load, store},
+    profile::Profile,
+    system::{PendingRows, System},
+};
+
+/// A spring across all points of a window, where there are four.
+#[derive(Clone, Copy)]
+pub struct BorderedConstraint<S: Simd> {
+    /// The gradient of its length at each point [1].
+    pub gradient: [V3<S>; 4],
+    /// By how much it is longer than at rest where the solve begins [m].
+    pub longer: F<S>,
+    /// Its stiffness [N/m].
+    pub stiffness: F<S>,
+}
+
+/// What the sweep up needs of one whose force has been eliminated.
+#[derive(Clone, Copy)]
+pub struct Eliminated {
+    /// The point that it was eliminated after.
+    pub point: usize,
+    /// κ, ρ, q and h of the three points after, see above.
+    pivot: Work,
+    right: Work,
+    q: [Work; 3],
+    h: [[Work; 3]; 3],
+}
+
+impl<S: Simd> BorderedConstraint<S> {
+    /// None.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        let zero = F::splat(simd, 0.0);
+        Self { gradient: [V3::zero(simd); 4], longer: zero, stiffness: zero }
+    }
+
+    /// The force on each point [N].
+    #[inline(always)]
+    pub fn forces(&self) -> [V3<S>; 4] {
+        let pull = -(self.stiffness * self.longer);
+        let [a, b, c, d] = self.gradient;
+        [a * pull, b * pull, c * pull, d * pull]
+    }
+
+    /// Eliminates its force; point `i`, the first of the four, has been [eliminated](super::band::Band::eliminate) or [passed](super::band::Band::pass).
+    #[inline(always)]
+    pub fn eliminate<const B: usize, const N: usize>(
+        &self,
+        simd: S,
+        profile: Profile<B, N>,
+        i: usize,
+        factors: &mut [Work],
+    ) -> Eliminated {
+        let &Self { gradient: [g0, mut h1, mut h2, h3], longer, stiffness } = self;
+        let point = &factors[(i + Profile::<B, N>::REACH) * profile.rows()..][..profile.rows()];
+        let mut q = [g0.x, g0.y, g0.z];
+        let zero = F::<S>::splat(simd, 0.0);
+        let (mut squares, mut right, mut of_far) = (zero, longer, zero);
+        for k in 0..3 {
+            // From unknown k+1 of the window on.
+            let u = &point[profile.row(k)..];
+            // What is kept of a pivot d is −1/d.
+            let l = q[k] * load(simd, &point[profile.pivot(k)]);
+            for r in k + 1..3 {
+                q[r] = l.mul_add(load(simd, &u[r - k - 1]), q[r]);
+            }
+            h1 = V3::load(simd, &u[B - k - 1..]).mul_add(l, h1);
+            h2 = V3::load(simd, &u[2 * B - k - 1..]).mul_add(l, h2);
+            of_far = l.mul_add(load(simd, &point[profile.far_row(k)]), of_far);
+            squares = (-l).mul_add(q[k], squares);
+            right = (-l).mul_add(load(simd, &u[profile.last(k) - k]), right);
+        }
+        let h = [h1, h2, h3 - V3::load(simd, &point[profile.far_row(B)..]) * of_far];
+        let pivot = stiffness / stiffness.mul_add(squares, F::splat(simd, 1.0));
+        let said = &mut PendingRows::<B, N>::new(profile, i + 1, factors);
+        for p in 0..3 {
+            let scaled = h[p] * pivot;
+            said.add_force(p, -(scaled * right));
+            said.add_diagonal(p, Sym3::outer(h[p], pivot));
+            for (q, h) in h.into_iter().enumerate().skip(p + 1) {
+                said.add_block(p, q, &M3 { rows: [h * scaled.x, h * scaled.y, h * scaled.z] });
+            }
+        }
+        let mut rows = [Work::default(); 5];
+        for (row, value) in rows.iter_mut().zip([pivot, right, q[0], q[1], q[2]]) {
+            store(value, row);
+        }
+        let [pivot, right, q @ ..] = rows;
+        let mut kept = [[Work::default(); 3]; 3];
+        for (rows, h) in kept.iter_mut().zip(h) {
+            h.store(rows);
+        }
+        Eliminated { point: i, pivot, right, q, h: kept }
+    }
+}
+
+impl Eliminated {
+    /// Puts its force, which follows from the unknowns of the three points after it, on the right of its own point.
+    #[inline(always)]
+    pub fn put_back<S: Simd, const B: usize, const N: usize>(
+        &self,
+        simd: S,
+        profile: Profile<B, N>,
+        after: &[F<S>; N],
+        factors: &mut [Work],
+    ) {
+        let mut length = load(simd, &self.right);
+        for (p, h) in self.h.iter().enumerate() {
+            let x = V3 { x: after[p * B], y: after[p * B + 1], z: after[p * B + 2] };
+            length += V3::load(simd, h).dot(x);
+        }
+        let force = length * load(simd, &self.pivot);
+        let point = &mut factors[(self.point + Profile::<B, N>::REACH) * profile.rows()..][..profile.rows()];
+        for (k, q) in self.q.iter().enumerate() {
+            let right = &mut point[profile.row(k) + profile.last(k) - k];
+            store((-force).mul_add(load(simd, q), load(simd, right)), right);
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Two segments that are near each other: what impulse parts them, rubs and holds.
+//!
+//! With n from the second to the first, g the gap [m], u their relative velocity where they are nearest, w the shares of the four points there,
+//! W what that velocity changes by for a unit of impulse (`response`), and d the way that they have slid since they last held [m]:
+//!
+//! ```text
+//! along n     P ← max(least, P − (u·n + G) / W)        G = g/h ahead of contact, RECOVERY g/h inside
+//! across it   Q ← Q − (u_across + RECOVERY d/h) / W,   cut to |Q| ≤ μ max(P, 0) + h S
+//! ```
+//!
+//! P and Q are the impulses of the whole substep, its load included. A bond pulls too: least is −h S where segments hold together, S the stiction [N], and
+//! 0 where they do not. What has been at such a bound in two substeps in turn lets go.
+
+use super::{closest::closest, hair::Hair, response::Response};
+use glam::{Mat3, Vec3};
+
+/// Share of an overlap, or of a slip, that is taken back in a substep [1]. With x the overlap and η the share of what moves that an impulse stops, loads settle as
+/// x''' + η x'' + η (RECOVERY + LASTING) x' + η RECOVERY LASTING x = 0, which rings where η < RECOVERY LASTING / (RECOVERY + LASTING): a seventh.
+const RECOVERY: f32 = 0.2;
+
+/// Share of an impulse that counts as load, where it adds to one [1]; what takes of a load counts whole, so that what is let go of is not thrown.
+const LASTING: f32 = 0.5;
+
+/// Gap over the sum of the radii up to which segments are near each other, and bonds hold [1].
+pub const NEAR: f32 = 0.15;
+
+/// Cosine between one substep's normal and the next where an end of a segment has passed the other [1]; between segments that cross, any turn of more than a
+/// right angle is a passage.
+const PASSED: f32 = -0.7;
+
+/// What all contacts go by.
+pub struct SolverParams {
+    /// Length of a substep [s].
+    pub h: f32,
+    /// Coulomb friction [1].
+    pub friction: f32,
+    /// Force that two segments hold together with [N].
+    pub stiction: f32,
+}
+
+/// Two segments that are near each other.
+#[derive(Clone, Copy)]
+pub struct Contact {
+    /// The segments, the lesser first.
+    pub pair: [u32; 2],
+    /// Where on each, as a share of its length.
+    at: [f32; 2],
+    /// From the second to the first.
+    normal: Vec3,
+    /// Between their surfaces; negative inside [m].
+    gap: f32,
+    /// How far the first has slid along the second since they last held [m].
+    slip: Vec3,
+    /// Force on the first that is carried, along the normal and across it [N].
+    load: Force,
+    /// What acted in the last substep [N].
+    last: Force,
+    /// Impulse found in this substep [N s].
+    impulse: Force,
+    bond: Bond,
+    /// Whether they slide, or a bond is torn at, in this substep.
+    at_bound: bool,
+}
+
+/// How the two sides of a contact give way, within one substep.
+pub struct ContactResponse {
+    each: [Response; 2],
+    /// W [1/kg]; 0 where neither can move.
+    give: f32,
+}
+
+impl ContactResponse {
+    /// Of a contact in a substep of `h` [s].
+    pub fn of(contact: &Contact, hair: &Hair, h: f32) -> Self {
+        let sides = [0, 1].map(|k| (contact.pair[k], contact.at[k]));
+        let each = sides.map(|(i, s)| Response::of(i, s, hair, h));
+        Self {
+            each,
+            give: sides.iter().zip(&each).map(|((i, s), side)| side.inverse_effective_mass(*i, *s)).sum(),
+        }
+    }
+
+    /// Changes velocities by an impulse on the first [N s], and the opposite on the second.
+    fn apply_impulse(&self, impulse: Vec3, hair: &mut Hair) {
+        self.each[0].apply_impulse(impulse, hair);
+        self.each[1].apply_impulse(-impulse, hair);
+    }
+}
+
+/// What acts on the first segment of a pair.
+#[derive(Clone, Copy, Default)]
+struct Force {
+    along: f32,
+    across: Vec3,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Bond {
+    None,
+    Holds,
+    /// Has been at its bound for one substep.
+    Torn,
+}
+
+impl Contact {
+    /// The contact of two segments now, which were as in `old` before the substep of `h` [s]; `None` where they are not near.
+    pub fn find(pair: [u32; 2], old: Option<&Contact>, hair: &Hair, h: f32) -> Option<Self> {
+        let [a, b] = pair.map(|s| hair.ends(s));
+        let (s, t) = closest(a, b);
+        let apart = a[0].lerp(a[1], s) - b[0].lerp(b[1], t);
+        let mut distance = apart.length();
+        let within = hair.radius[pair[0] as usize] + hair.radius[pair[1] as usize];
+        let across = || (a[1] - a[0]).cross(b[1] - b[0]).try_normalize().unwrap_or(Vec3::Y);
+        let mut normal = if distance > 1e-6 * within {
+            apart / distance
+        } else {
+            old.map_or_else(across, |old| old.normal)
+        };
+        if let Some(old) = old {
+            let inner = |s: f32| s > 0.0 && s < 1.0;
+            let turned = normal.dot(old.normal);
+            // What is through by more than its thickness is through.
+            if distance < within && turned < if inner(s) && inner(t) { 0.0 } else { PASSED } {
+                (distance, normal) = (-distance, -normal);
+            }
+        }
+        let mut contact = Self {
+            pair,
+            at: [s, t],
+            normal,
+            gap: distance - within,
+            slip: Vec3::ZERO,
+            load: Force::default(),
+            last: Force::default(),
+            impulse: Force::default(),
+            bond: Bond::None,
+            at_bound: false,
+        };
+        let velocity = contact.velocity(hair);
+        if let Some(old) = old {
+            let flat = |v: Vec3| v - normal * normal.dot(v);
+            contact.bond = old.bond;
+            contact.last = Force { across: flat(old.last.across), ..old.last };
+            contact.load = Force { across: flat(old.load.across), ..old.load };
+            if old.last.along > 0.0 || old.bond != Bond::None {
+                contact.slip = flat(old.slip + velocity * h);
+            }
+        }
+        let near = contact.gap < NEAR * within || contact.gap < -h * normal.dot(velocity);
+        near.then_some(contact)
+    }
+
+    /// Velocity of the first segment relative to the second, where they are nearest [m/s].
+    fn velocity(&self, hair: &Hair) -> Vec3 {
+        let v = |segment: u32, s: f32| hair.v[segment as usize].lerp(hair.v[segment as usize + 1], s);
+        v(self.pair[0], self.at[0]) - v(self.pair[1], self.at[1])
+    }
+
+    /// Changes velocities by an impulse on the first segment [N s], and the opposite on the second.
+    fn strike(&self, impulse: Vec3, hair: &mut Hair) {
+        for (side, (segment, s)) in [1.0, -1.0].into_iter().zip(self.pair.into_iter().zip(self.at)) {
+            for (i, share) in [(segment as usize, 1.0 - s), (segment as usize + 1, s)] {
+                hair.v[i] += impulse * (side * share * hair.inverse_mass[i]);
+            }
+        }
+    }
+
+    /// Adds to velocities what the load does in a substep of `h` [s].
+    pub fn apply_warm_start(&self, h: f32, hair: &mut Hair) {
+        let force = self.normal * self.load.along + self.load.across;
+        if force != Vec3::ZERO {
+            self.strike(force * h, hair);
+        }
+    }
+
+    /// One sweep's change of velocities. How the `sides` give way is found where it is first asked for.
+    pub fn solve(&mut self, sides: &mut Option<ContactResponse>, rules: &SolverParams, hair: &mut Hair) {
+        let SolverParams { h, friction, stiction } = *rules;
+        let velocity = self.velocity(hair);
+        let along = self.normal.dot(velocity);
+        let bound = if self.bond == Bond::None { 0.0 } else { stiction * h };
+        let ahead = self.gap > 0.0 && self.bond == Bond::None;
+        let aim = self.gap / h * if ahead { 1.0 } else { RECOVERY };
+        let before = self.load.along * h + self.impulse.along;
+        let rubbed = self.load.across * h + self.impulse.across;
+        if bound == 0.0 && before == 0.0 && rubbed == Vec3::ZERO && along + aim >= 0.0 {
+            return;
+        }
+        let sides = sides.get_or_insert_with(|| ContactResponse::of(self, hair, h));
+        if sides.give <= 0.0 {
+            return;
+        }
+        let asked = before - (along + aim) / sides.give;
+        let now = asked.max(-bound);
+
+        let across = velocity - self.normal * along + self.slip * (RECOVERY / h);
+        let asked_across = rubbed - across / sides.give;
+        let cone = friction * now.max(0.0) + bound;
+        let held = asked_across.clamp_length_max(cone);
+        // Where nothing presses there is nothing to slide on.
+        self.at_bound =
+            (bound > 0.0 && asked < -bound) || (cone > 0.0 && asked_across.length_squared() > cone * cone);
+
+        let change = self.normal * (now - before) + (held - rubbed);
+        if change.is_finite() {
+            self.impulse.along += now - before;
+            self.impulse.across += held - rubbed;
+            sides.apply_impulse(change, hair);
+        }
+    }
+
+    /// Ends the substep: what acted in it and in the one before is the load of the next.
+    pub fn carry(&mut self, rules: &SolverParams) {
+        let share = if self.impulse.along < 0.0 { 1.0 } else { LASTING };
+        let total = Force {
+            along: self.load.along + self.impulse.along * (share / rules.h),
+            across: self.load.across + self.impulse.across * (LASTING / rules.h),
+        };
+        let Force { along, across } = self.last;
+        self.load.along =
+            if total.along * along > 0.0 { total.along.abs().min(along.abs()).copysign(along) } else { 0.0 };
+        self.load.across = if total.across.dot(across) > 0.0 {
+            total.across.clamp_length_max(across.length())
+        } else {
+            Vec3::ZERO
+        };
+        (self.last, self.impulse) = (total, Force::default());
+        self.bond = match (self.bond, self.at_bound) {
+            (Bond::None, false) if rules.stiction > 0.0 && total.along > 0.0 && self.gap <= 0.0 => {
+                Bond::Holds
+            }
+            (Bond::None, _) | (Bond::Torn, true) => Bond::None,
+            (_, true) => Bond::Torn,
+            (_, false) => Bond::Holds,
+        };
+        if self.at_bound {
+            self.slip = Vec3::ZERO;
+        }
+    }
+
+    /// The pair was turned as a whole.
+    pub fn turn(&mut self, by: &Mat3) {
+        for v in [&mut self.normal, &mut self.slip, &mut self.load.across, &mut self.last.across] {
+            *v = *by * *v;
+        }
+    }
+
+    /// Whether the two press each other.
+    pub fn presses(&self) -> bool {
+        self.last.along > 0.0
+    }
+
+    /// Whether they hold together.
+    pub fn holds(&self) -> bool {
+        self.bond != Bond::None
+    }
+
+    /// Force along the normal in the last substep, negative where it pulls [N].
+    pub fn force(&self) -> f32 {
+        self.last.along
+    }
+
+    /// How deep they are in each other [m].
+    pub fn depth(&self) -> f32 {
+        (-self.gap).max(0.0)
+    }
+}
