@@ -71,7 +71,10 @@ fn monkey(minutes: &str) -> Result<(), String> {
 
 fn lint() -> Result<(), String> {
     run::cargo(&["fmt", "--all", "--check"], &[])?;
-    run::cargo(&["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"], &[])?;
+    run::cargo(
+        &["clippy", "--release", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"],
+        &[],
+    )?;
     run::cargo(&["doc", "--release", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")])?;
     // Advisories are left out: their database comes over the network, on which no check of ours may depend.
     run::cargo(&["deny", "--workspace", "check", "bans", "licenses", "sources"], &[])

@@ -12,7 +12,9 @@ const ALWAYS_THE_SAME: (&str, &str) = ("PROPTEST_RNG_SEED", "1");
 
 /// Runs every test of the workspace in release, the profile of the program, so that both share one build.
 pub fn all() -> Result<(), String> {
-    let arguments = ["test", "--release", "--workspace", "--no-fail-fast"];
+    // The build without SIMD is compiled for its own test; with the feature the table of the bench has its row.
+    let arguments =
+        ["test", "--release", "--workspace", "--no-fail-fast", "--features", "hairspring-cli/scalar"];
     println!("$ cargo {}", arguments.join(" "));
     let mut child = run::command(&arguments, &[ALWAYS_THE_SAME])
         .stdout(Stdio::piped())

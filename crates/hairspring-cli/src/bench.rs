@@ -34,9 +34,9 @@ use std::{path::PathBuf, time::Instant};
 /// `--scene` plays a scene instead and prints medians of its frames: what each stage takes, a point and substep of the
 /// solve, how many points and segments colliders hold out, and how many points have a collider looked up.
 ///
-/// `--table` steps the scene for every elastic model on every instruction set that this processor has, and as the same
-/// code built without SIMD (scalar), turn by turn in one process, so that whatever else the machine does slows all of
-/// them alike.
+/// `--table` steps the scene for every elastic model on every instruction set that this processor has, turn by turn in
+/// one process, so that whatever else the machine does slows all of them alike. Built with `--features scalar`, it has a
+/// last row of the same code without SIMD.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:

@@ -1,6 +1,6 @@
 //! Promise: the settings of a scene file are read apart from its geometry, at once, and the two together are the scene.
 //!
-//! What `Stage::retune` is to take up is what reading the whole scene gives, without a file being opened or a hair grown; and two texts tell whether they
+//! What `Stage::update_settings` is to take up is what reading the whole scene gives, without a file being opened or a hair grown; and two texts tell whether they
 //! differ in anything else.
 
 #[path = "common/scenes.rs"]

@@ -2,7 +2,7 @@
 //! of its group in `docs/parameters`, with its unit, its range and the default that the code has; it has two pictures of values that the
 //! table of pictures names, or says why not. The group's page and the summary list its parameters in one order, and the group's page says of
 //! each what its page does. Every page is in the summary, once, every link of every page and of the README leads to a file, no page is led
-//! to by the summary alone, every picture is shown, and the scenes of the book can be read.
+//! to by the summary alone, every picture is shown, and the scenes of the book can be read. The glossary is in order, and names files that are there.
 
 use hairspring::{
     air::{Turbulence, WindOcclusion, WindSource},
@@ -209,6 +209,28 @@ fn every_link_leads_somewhere() {
     let linked = links(files(&docs(), "md").into_iter().chain([docs().join("../README.md")]));
     for picture in files(&docs(), "jpg") {
         assert!(linked.contains(&picture.canonicalize().unwrap()), "no page shows {}", picture.display());
+    }
+}
+
+#[test]
+fn the_glossary_is_in_order_and_names_files_that_exist() {
+    let page = read(&docs().join("glossary.md"));
+    let source = docs().join("../crates/hairspring/src");
+    let rows: Vec<Vec<&str>> = page
+        .lines()
+        .filter(|line| line.starts_with("| "))
+        .skip(1)
+        .map(|line| line.split('|').map(str::trim).collect())
+        .filter(|cells: &Vec<&str>| !cells[1].starts_with('-'))
+        .collect();
+    assert!(rows.len() > 50, "{} terms", rows.len());
+    let terms: Vec<&str> = rows.iter().map(|cells| cells[1]).collect();
+    assert!(terms.is_sorted(), "the terms are not in order: {terms:?}");
+    for cells in &rows {
+        assert!(cells[2].ends_with('.'), "{}: its meaning is no sentence", cells[1]);
+        for file in cells[3].split('`').skip(1).step_by(2) {
+            assert!(source.join(file).exists(), "{} is in {file}, which does not exist", cells[1]);
+        }
     }
 }
 

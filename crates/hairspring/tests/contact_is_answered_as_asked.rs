@@ -1,4 +1,4 @@
-//! Promise: all responses to contact keep hair out of a body, each in its way (proposal §3.3): by projection no point is ever inside, by penalty what lands sinks
+//! Promise: all responses to contact keep hair out of a body, each in its way (Sams 2014, §3.3): by projection no point is ever inside, by penalty what lands sinks
 //! in for a moment and comes out, and with both it is never inside either.
 //!
 //! A curtain falls on a ball, every model; the same groom, the same body, the same two seconds.

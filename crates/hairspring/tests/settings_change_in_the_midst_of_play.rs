@@ -24,7 +24,7 @@ use std::sync::Arc;
 const FRAME: f32 = 1.0 / 60.0;
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
-/// What an app hands to `retune`: the settings without geometry.
+/// What an app hands to `update_settings`: the settings without geometry.
 fn settings_of(scene: &Scene) -> Scene {
     let bare = |groom: &SceneGroom| SceneGroom { groom: Groom::default(), ..groom.clone() };
     Scene {

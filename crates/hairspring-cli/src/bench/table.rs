@@ -19,9 +19,10 @@ const MODELS: [Model; 3] = [Model::Curvature, Model::Rod, Model::Springs];
 const TURN: u32 = 5;
 
 /// Name of the row of the library that is built without SIMD.
+#[cfg(feature = "scalar")]
 const SCALAR: &str = "scalar";
 
-/// What the compiler was allowed throughout the program. The scalar row has no more; the others add their instruction set at run time.
+/// What the compiler was allowed throughout the program. A scalar row has no more; the others add their instruction set at run time.
 const COMPILED_FOR: &[(&str, bool)] = &[
     ("sse2", cfg!(target_feature = "sse2")),
     ("sse4.2", cfg!(target_feature = "sse4.2")),
@@ -38,10 +39,13 @@ pub(super) struct Cell {
     simd: String,
 }
 
-/// The figures of the table, a row of models for each instruction set, the best first and none at all last.
+/// The figures of the table, a row of models for each instruction set, the best first; with the feature `scalar`, none at all last.
 pub(super) fn cells() -> Vec<Cell> {
     let row = |simd: String| MODELS.map(|model| Cell { model, simd: simd.clone() });
-    Simulation::instruction_sets().into_iter().chain([SCALAR.into()]).flat_map(row).collect()
+    let sets = Simulation::instruction_sets().into_iter();
+    #[cfg(feature = "scalar")]
+    let sets = sets.chain([SCALAR.into()]);
+    sets.flat_map(row).collect()
 }
 
 /// Measures and prints the table.
@@ -77,15 +81,21 @@ pub(super) fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     drop(progress);
     if options.json {
-        let scalar = &times[times.len() - MODELS.len()..];
-        let scalar = scalar.iter().map(|times| times.per_point(options)).cycle();
-        let each = cells.iter().zip(&times).zip(scalar);
-        say(Value::from_iter(each.map(|((cell, times), scalar)| object(options, cell, times, scalar))));
+        let last = &times[times.len() - MODELS.len()..];
+        let last = last.iter().map(|times| times.per_point(options)).cycle();
+        let each = cells.iter().zip(&times).zip(last);
+        let over = baseline(&cells);
+        say(Value::from_iter(each.map(|((cell, times), last)| object(options, cell, times, (over, last)))));
     } else {
         let figures: Vec<f64> = times.iter().map(|times| times.per_point(options)).collect();
         print(options, &cells, &figures);
     }
     Ok(())
+}
+
+/// Name of the last row, which the others are compared with.
+fn baseline(cells: &[Cell]) -> &str {
+    cells.last().map_or("", |cell| &cell.simd)
 }
 
 /// Names of what the whole program was compiled for.
@@ -110,6 +120,7 @@ macro_rules! bench {
 
 /// What steps a cell's hair by a frame.
 fn stepper(options: &Options, cell: &Cell) -> Box<dyn FnMut()> {
+    #[cfg(feature = "scalar")]
     if cell.simd == SCALAR {
         let mut bench = bench!(hairspring_scalar, options, cell);
         return Box::new(move || _ = bench.step());
@@ -119,9 +130,9 @@ fn stepper(options: &Options, cell: &Cell) -> Box<dyn FnMut()> {
     Box::new(move || _ = bench.step())
 }
 
-/// A figure for machines, under the keys of a bench without `--table`, and what only a table has; `scalar` is the figure of its model
-/// without SIMD.
-fn object(options: &Options, cell: &Cell, times: &Times, scalar: f64) -> Value {
+/// A figure for machines, under the keys of a bench without `--table`, and what only a table has; `over` is the row that speedups are over, and `last` the
+/// figure of its model there.
+fn object(options: &Options, cell: &Cell, times: &Times, (over, last): (&str, f64)) -> Value {
     json!({
         "model": cell.model.name(),
         "simd": cell.simd,
@@ -135,13 +146,14 @@ fn object(options: &Options, cell: &Cell, times: &Times, scalar: f64) -> Value {
         "ms_per_frame_median": times.rank(0.5),
         "ms_per_frame_p95": times.rank(0.95),
         "ns_per_point_substep": times.per_point(options),
-        "times_as_fast_as_scalar": scalar / times.per_point(options),
+        "speedup": last / times.per_point(options),
+        "speedup_over": over,
         "frames_in_turn": TURN,
         "compiled_for": compiled_for(),
     })
 }
 
-/// The table for people: each figure, and how many times as fast as the last row of its column, the scalar one.
+/// The table for people: each figure, and its speedup over the last row of its column.
 fn print(options: &Options, cells: &[Cell], figures: &[f64]) {
     say_scene(options);
     say(format_args!(
@@ -153,22 +165,27 @@ fn print(options: &Options, cells: &[Cell], figures: &[f64]) {
         options.frames
     ));
     say(format_args!(
-        "figures  ns a point and substep per core (wall time x threads), medians of the {} frames; in brackets times as fast as scalar",
-        options.frames
+        "figures  ns a point and substep per core (wall time x threads), medians of the {} frames; in brackets the speedup over {}",
+        options.frames,
+        baseline(cells)
     ));
     say("         a step is all of it, contact too; reading positions and measuring are not in it");
-    say(format_args!(
-        "scalar   the same code on one number at a time, compiled like the whole program for: {}",
-        compiled_for().join(", ")
-    ));
+    if cfg!(feature = "scalar") {
+        say(format_args!(
+            "scalar   the same code on one number at a time, compiled like the whole program for: {}",
+            compiled_for().join(", ")
+        ));
+    } else {
+        say("scalar   left out: build with --features scalar to measure the code without SIMD too");
+    }
     let line = |name: &str, cells: [String; MODELS.len()]| {
         let cells: String = cells.iter().map(|cell| format!("{cell:>18}")).collect();
         say(format_args!("{name:<9}{cells}"));
     };
     line("", MODELS.map(|model| model.name().to_owned()));
-    let scalar = &figures[figures.len() - MODELS.len()..];
+    let last = &figures[figures.len() - MODELS.len()..];
     for (row, cell) in figures.chunks(MODELS.len()).zip(cells.iter().step_by(MODELS.len())) {
-        let text = |k: usize| format!("{:.2} ({:.1} x)", row[k], scalar[k] / row[k]);
+        let text = |k: usize| format!("{:.2} ({:.1} x)", row[k], last[k] / row[k]);
         line(&cell.simd, std::array::from_fn(text));
     }
 }

@@ -25,7 +25,7 @@ rest:</p>
 <pre>E = ½ B |r|²          B = EI/L</pre>
 <p>E is Young's modulus of keratin, A the area of a fibre and I = πr⁴/4: hair is hard to stretch and easy to bend. A segment of hair rings at
 some 10⁵ rad/s lengthwise and swings at some 10 rad/s as a whole. A system whose fastest motion nobody wants to see and whose slowest is the
-picture is called <em>stiff</em>, and stiffness is what tells the methods below apart. <small>Proposal §3.1; Lengyel 2012; the springs of bending
+picture is called <em>stiff</em>, and stiffness is what tells the methods below apart. <small>Sams 2014, §3.1; Lengyel 2012; the springs of bending
 after Bergou et al. 2008, <i>Discrete Elastic Rods</i>.</small></p>
 ";
 
@@ -33,14 +33,14 @@ after Bergou et al. 2008, <i>Discrete Elastic Rods</i>.</small></p>
 pub const QUESTION: &str = "\
 <h2>The methods</h2>
 <p>From positions x and velocities v now, what are they a time h later, x⁺ and v⁺? The acceleration a = f/m is known where the points are now; an
-<em>explicit</em> method uses it, an <em>implicit</em> one asks for the acceleration where they will be. <small>Proposal §3.2.</small></p>
+<em>explicit</em> method uses it, an <em>implicit</em> one asks for the acceleration where they will be. <small>Sams 2014, §3.2.</small></p>
 ";
 
 /// Contact, which is the same for all.
 pub const CONTACT: &str = "\
 <h2>Contact</h2>
 <p>All methods meet the head in the same way, after their own positions are found: a point inside is moved to the nearest place outside, its
-motion inwards is dropped, and friction holds it back along the surface by up to μ times that push. <small>Proposal §3.3; Liu et al.
+motion inwards is dropped, and friction holds it back along the surface by up to μ times that push. <small>Sams 2014, §3.3; Liu et al.
 2013.</small></p>
 ";
 
@@ -50,7 +50,7 @@ pub fn lesson(integrator: Integrator) -> Lesson {
         Integrator::ExplicitEuler => Lesson {
             title: "Explicit Euler",
             equations: "x⁺ = x + h v\nv⁺ = v + h a(x, v)",
-            source: "Proposal §3.2; Müller et al. 2008, Real Time Physics, §3.3",
+            source: "Sams 2014, §3.2; Müller et al. 2008, Real Time Physics, §3.3",
             text: "It follows the tangent, and so always leaves a circle on the outside: a spring that rings at ω grows by √(1 + h²ω²) in every \
                    step. There is no step at which it does not, only steps so short that the growth is not seen yet, and hair's \
                    lengthwise ω puts those far below a microsecond. It is here to show why the others exist.",
@@ -58,7 +58,7 @@ pub fn lesson(integrator: Integrator) -> Lesson {
         Integrator::Verlet => Lesson {
             title: "Verlet",
             equations: "a  = f(x, v) / m\nx⁺ = 2x − x⁻ + h² a  =  x + h v + h² a\nv⁺ = (x⁺ − x) / h",
-            source: "Proposal §3.2; Müller et al. 2008, Real Time Physics, §3.3",
+            source: "Sams 2014, §3.2; Müller et al. 2008, Real Time Physics, §3.3",
             text: "The velocity is not stored but read off the last two positions, so that force acts on position at once. That small change keeps \
                    circles closed: energy wavers about its value and does not grow, as long as h ω &lt; 2. Beyond that it blows up like explicit \
                    Euler. With ω from the shortest segment the bound is about h &lt; L √(ρ/E), the time that sound takes \
@@ -67,7 +67,7 @@ pub fn lesson(integrator: Integrator) -> Lesson {
         Integrator::BackwardEuler => Lesson {
             title: "Backward Euler (the default)",
             equations: "x⁺ = x + h v⁺\nv⁺ = v + h a(x⁺, v⁺)\n\nlinearised, for Δ = x⁺ − x:   (M/h² + D/h + K) Δ = M v/h + f(x)",
-            source: "Proposal §3.2; Baraff & Witkin 1998, Large Steps in Cloth Simulation; Tariq & Bavoil 2010; Goldenthal et al. 2007",
+            source: "Sams 2014, §3.2; Baraff & Witkin 1998, Large Steps in Cloth Simulation; Tariq & Bavoil 2010; Goldenthal et al. 2007",
             text: "The unknown stands on both sides, so a linear system is solved; every force reaches at most the next but one point, the matrix is a \
                    narrow band, and one sweep down and up the strand solves it exactly. A spring that rings at ω now shrinks by \
                    1/√(1 + h²ω²): whatever is too fast for the step dies instead of growing. The price is that the swing dies a \
@@ -93,7 +93,7 @@ pub fn lesson(integrator: Integrator) -> Lesson {
         Integrator::Ftl => Lesson {
             title: "Follow the leader",
             equations: "p  = x + h v + h² g\nfrom root to tip:  x⁺ᵢ₊₁ = x⁺ᵢ + L û(x⁺ᵢ → pᵢ₊₁)\nv⁺ = (x⁺ − x) / h",
-            source: "Proposal §2.1.2; Müller, Kim, Chentanez 2012, Fast Simulation of Inextensible Hair and Fur, §4.1",
+            source: "Sams 2014, §2.1.2; Müller, Kim, Chentanez 2012, Fast Simulation of Inextensible Hair and Fur, §4.1",
             text: "Every point is pulled to its distance from the one before, root to tip, once: no length is wrong until contact moves a point, and no step is too long. But \
                    a point never pulls back at its leader. It moves as if the leader were infinitely heavier, which makes a whip of a \
                    chain: the points near the tip get energy from nowhere. Nothing bends it either, so curls hang out straight.",

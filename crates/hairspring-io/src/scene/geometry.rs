@@ -1,4 +1,4 @@
-//! What hair, body and motion are made of: all that `Stage::retune` leaves as it is.
+//! What hair, body and motion are made of: all that `Stage::update_settings` leaves as it is.
 
 use super::{
     Reader, body, builtin,

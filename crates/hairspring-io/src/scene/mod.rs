@@ -50,7 +50,7 @@ pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
     Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs, notes })
 }
 
-/// Reads the settings of such a text, at once: the scene of [`read_scene_text`] without its geometry, for `Stage::retune`. Grooms are there, with their
+/// Reads the settings of such a text, at once: the scene of [`read_scene_text`] without its geometry, for `Stage::update_settings`. Grooms are there, with their
 /// materials, guides, effects and look, and have no strands; there is no body, collision mesh, sheet or clip. No file is opened but those of
 /// colliders' hulls.
 ///
@@ -61,7 +61,7 @@ pub fn read_settings(path: &Path, text: &str) -> Result<Scene> {
     Reader::new(path, text).settings(&file)
 }
 
-/// Whether two texts of scene files that can both be read differ in nothing but what `Stage::retune` takes up: the hair, the body and its motion are the
+/// Whether two texts of scene files that can both be read differ in nothing but what `Stage::update_settings` takes up: the hair, the body and its motion are the
 /// same. False where one is no scene file.
 ///
 /// Beside the files, a material's `radius` is geometry, because hair is drawn by it, and so are `guides`, `solver.collide_body` and `solver.preroll`. A hull's file is a

@@ -1,4 +1,4 @@
-//! What `Stage::retune` takes up: a scene without its geometry.
+//! What `Stage::update_settings` takes up: a scene without its geometry.
 
 use super::{Reader, builtin, file::SceneFile, material};
 use crate::Result;

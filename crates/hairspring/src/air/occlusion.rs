@@ -1,4 +1,4 @@
-//! Shelter: what bodies and hair leave of the wind behind them.
+//! Wind occlusion: what bodies and hair leave of the wind behind them.
 //!
 //! ```text
 //!  wind ⇉    ⇉ → ( body ) ·   · → ⇉     T = e^(−τ),   τ = ∫₀^reach (1 − s/reach) ( β inside a body + η fill ) ds,   s upwind from the point

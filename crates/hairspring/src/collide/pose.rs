@@ -210,7 +210,7 @@ impl ColliderPose {
     }
 }
 
-/// Whether any of the segments is longer than [`LONG`] of the field's cells: those are looked at in more places, by `deepest`.
+/// Whether any of the segments is longer than [`LONG`] of the field's cells: those are looked at in more places, by `find_deepest_point`.
 #[inline(always)]
 fn is_long<S: Simd>(simd: S, grid: &SignedDistanceField, e: V3<S>) -> bool {
     e.dot(e).simd_gt(F::splat(simd, (LONG * grid.cell()).powi(2))).any_true()

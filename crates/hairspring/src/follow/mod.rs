@@ -7,7 +7,7 @@
 //! p = Σ w (x + R (p₀ − g₀))
 //! ```
 //!
-//! which is the rest offset kept in the guide's frame (DESIGN §7) without an offset to store: at rest R = I and p = p₀ to the
+//! which is the rest offset kept in the guide's frame without an offset to store: at rest R = I and p = p₀ to the
 //! bit of a rounding.
 
 mod carry;

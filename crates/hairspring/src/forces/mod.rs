@@ -1,6 +1,6 @@
 //! What the world does to points besides gravity, bodies and holds: found once a frame, frozen for its substeps.
 //!
-//! Everything here adds to a point's own block of the diagonal and to its right-hand side (DESIGN §5): it is implicit, and couples no two strands.
+//! Everything here adds to a point's own block of the diagonal and to its right-hand side: it is implicit, and couples no two strands.
 //! The hair volume writes first, then each effect adds its part, strand by strand, one file an effect:
 //!
 //! | effect | |

@@ -17,7 +17,7 @@ pub enum Guides {
     All,
 }
 
-/// What is laid over follow hairs after the guides have placed them (DESIGN §7). All off by default.
+/// What is laid over follow hairs after the guides have placed them. All off by default.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Effects {
@@ -84,7 +84,7 @@ pub struct Solver {
     pub global_shape: bool,
 }
 
-/// What answers a point, or a segment, that is inside of a collider (proposal §3.3).
+/// What answers a point, or a segment, that is inside of a collider (Sams 2014, §3.3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Response {
@@ -104,7 +104,7 @@ impl Response {
     pub const ALL: [Response; 3] = [Self::Both, Self::Penalty, Self::Projection];
 }
 
-/// How positions and velocities come out of a substep (DESIGN §4); all on the same strands, to be compared.
+/// How positions and velocities come out of a substep; all on the same strands, to be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integrator {
@@ -186,7 +186,7 @@ impl Default for Solver {
     }
 }
 
-/// How hair meets hair (DESIGN §5): the simulated strands of all grooms, each weighing what the hairs weigh that follow it.
+/// How hair meets hair: the simulated strands of all grooms, each weighing what the hairs weigh that follow it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Volume {

@@ -212,7 +212,7 @@ impl StagedBody {
     }
 
     /// Takes up other colliders and charged bodies in the midst of the play, at `time` [s]: where they are now, without motion.
-    pub(super) fn retune(&mut self, scene: &Scene, joints: &Joints, time: f64) {
+    pub(super) fn update_settings(&mut self, scene: &Scene, joints: &Joints, time: f64) {
         let pushed = self.obstacles.split_off(self.obstacles.len() - self.pushed.0);
         self.obstacles.truncate(self.meshes);
         self.carriers.truncate(self.meshes);
@@ -231,8 +231,8 @@ impl StagedBody {
         self.moved = by;
     }
 
-    /// See [`super::Stage::push_with`].
-    pub(super) fn push_with<'a>(
+    /// See [`super::Stage::set_user_colliders`].
+    pub(super) fn set_user_colliders<'a>(
         &mut self,
         shapes: impl Iterator<Item = &'a ColliderShape> + Clone,
         pose: RigidTransform,

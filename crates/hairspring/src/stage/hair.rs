@@ -79,7 +79,7 @@ impl StagedHair {
         }
     }
 
-    /// See [`super::Stage::leave_follow_hairs`].
+    /// See [`super::Stage::set_external_interpolation`].
     pub(super) fn leave(&mut self, left: bool, body: &StagedBody) {
         if std::mem::replace(&mut self.left, left) && !left {
             self.place_followers(body);
@@ -87,7 +87,7 @@ impl StagedHair {
     }
 
     /// Takes up other settings in the midst of the play; whether the materials, and whether the effects are others than before.
-    pub(super) fn retune(&mut self, settings: SceneGroom) -> (bool, bool) {
+    pub(super) fn update_settings(&mut self, settings: SceneGroom) -> (bool, bool) {
         let SceneGroom { materials, effects, look, .. } = settings;
         self.look = look;
         let laid = self.follow.as_mut().is_some_and(|follow| follow.set_effects(effects) != effects);

@@ -31,7 +31,7 @@ impl StagedHands {
 
     /// Takes up the hands `now` in place of those `before`: a hand of the same settings goes on with its work, all others let go, and new ones are
     /// yet to begin.
-    pub(super) fn retune(
+    pub(super) fn update_settings(
         &mut self,
         (before, now): (&[Hand], &[Hand]),
         joints: Vec<Option<usize>>,

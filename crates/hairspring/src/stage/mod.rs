@@ -126,7 +126,7 @@ pub struct Strands<'a> {
     pub groom: &'a Groom,
     /// How it is drawn.
     pub look: &'a HairLook,
-    /// What places its follow hairs, where that is left to who draws them ([`Stage::leave_follow_hairs`]).
+    /// What places its follow hairs, where that is left to who draws them ([`Stage::set_external_interpolation`]).
     pub follow: Option<HairInterpolation<'a>>,
 }
 
@@ -182,7 +182,7 @@ impl Stage {
         Ok(stage)
     }
 
-    /// Back to time 0; no tool is in use, and the body goes by its clip alone. What [`Stage::push_with`] brought stays where it is.
+    /// Back to time 0; no tool is in use, and the body goes by its clip alone. What [`Stage::set_user_colliders`] brought stays where it is.
     pub fn reset(&mut self) {
         self.clock = Clock::ZERO;
         self.body.place(&self.scene, 0.0);
@@ -234,7 +234,7 @@ impl Stage {
             let (center, radius) = shape.bounds();
             place && center.is_finite() && radius.is_finite() && shape.half_thickness() > 0.0
         };
-        self.body.push_with(shapes.iter().filter(solid), pose);
+        self.body.set_user_colliders(shapes.iter().filter(solid), pose);
     }
 
     /// The colliders as they are now, and how they moved in the last step.

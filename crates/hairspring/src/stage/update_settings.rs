@@ -40,7 +40,7 @@ impl Stage {
         let grooms = std::mem::take(&mut self.scene.grooms);
         let scene = &self.scene;
         if (&before.colliders, &before.charged) != (&scene.colliders, &scene.charged) {
-            self.body.retune(scene, &joints, self.clock.time());
+            self.body.update_settings(scene, &joints, self.clock.time());
         }
         if before.solver.teleport_distance != scene.solver.teleport_distance {
             self.body.find_cuts(scene);
@@ -49,7 +49,7 @@ impl Stage {
             self.wind = StagedWind::new(joints.wind);
         }
         if before.hands != scene.hands {
-            self.hands.retune((&before.hands, &scene.hands), joints.hands, &mut self.simulation);
+            self.hands.update_settings((&before.hands, &scene.hands), joints.hands, &mut self.simulation);
         }
         let rests = |scene: &Scene| {
             (scene.gravity, scene.solver, scene.volume, scene.wind_occlusion, scene.neighbours)
@@ -58,7 +58,7 @@ impl Stage {
             != rests(scene);
         let [mut made, mut laid] = [fresh, false];
         for (hair, groom) in self.hair.iter_mut().zip(grooms) {
-            let other = hair.retune(groom);
+            let other = hair.update_settings(groom);
             (made, laid) = (made | other.0, laid | other.1);
         }
         if made {

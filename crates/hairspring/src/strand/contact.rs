@@ -6,7 +6,7 @@
 //!
 //! The normal force N is carried from substep to substep like a segment's tension (an augmented Lagrangian, Alart & Curnier 1991, *A
 //! Mixed Formulation for Frictional Contact Problems*), so that tension, weight and N are in balance in one solve. Were contact
-//! only what [`super::limit`] makes of it, a taut strand over a cylinder would sink in and be pushed out again in every
+//! only what [`super::post_solve`] makes of it, a taut strand over a cylinder would sink in and be pushed out again in every
 //! substep, from root to tip: half a millimetre along the surface each time, which ran it off toward its root.
 //!
 //! Friction is −μN s/|s| of the slide s along the surface, with |s| of the substep before (the lagged secant of Li et al. 2020,
@@ -15,7 +15,7 @@
 //! 13 µm/s under its own weight, at four substeps). What is stiffer creeps less and is slower to start where it is pulled a little harder than
 //! friction holds, since its slide grows from substep to substep by that ratio.
 //!
-//! Only points with N > 0 take part. It begins in `limit`, with the push that a point needed.
+//! Only points with N > 0 take part. It begins in `post_solve`, with the push that a point needed.
 
 use super::{
     assemble::SubstepContext,
@@ -96,7 +96,7 @@ pub struct Surface<S: Simd> {
     pub carried: V3<S>,
 }
 
-/// The surface that is nearest to `world`. A function by itself, for all models and sweeps, like `limit`'s `place`.
+/// The surface that is nearest to `world`. A function by itself, for all models and sweeps, like `post_solve`'s `place`.
 #[inline(never)]
 pub fn nearest<S: Simd>(simd: S, obstacles: &[ColliderPose], world: V3<S>) -> Surface<S> {
     simd.vectorize(

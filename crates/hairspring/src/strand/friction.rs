@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The way from one to the other is Stribeck's (1902, *Die wesentlichen Eigenschaften der Gleit- und Rollenlager*), with a fraction in place of the exponential
-//! of Canudas de Wit et al. 1995, *A New Model for Control of Systems with Friction*, and their v_s. A step at the speed that [`super::press`] tells from
+//! of Canudas de Wit et al. 1995, *A New Model for Control of Systems with Friction*, and their v_s. A step at the speed that [`super::contact`] tells from
 //! rest, 5 µm/s, would let go whatever trembles.
 
 use super::{

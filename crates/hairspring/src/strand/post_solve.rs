@@ -182,7 +182,7 @@ fn project_particle<S: Simd>(
     }
     let mut press = load(simd, &tile.state[i][state::NORMAL_FORCE]);
     let mut e = link.clamp(apply_lra(simd, tile, i, (at, link), e));
-    // Summed from the root, like in `press`: far from the world's origin a sum there would lose digits at every point.
+    // Summed from the root, like in `contact`: far from the world's origin a sum there would lose digits at every point.
     let in_world = |e: V3<S>| step.root.position + (at.x + e);
     for pose in step.obstacles {
         let world = in_world(e);

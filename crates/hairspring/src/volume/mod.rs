@@ -12,7 +12,7 @@
 //!   FLIP and the rest by PIC (Zhu & Bridson 2005, as McAdams 2009), in a blend that does not depend on the length of the interval.
 //! - R is what hair takes from hair that goes across it, a matrix, see `crossing`. Pressure and friction do not know of strands that go through each other within a cell.
 //!
-//! All of it is a rate or exact for an interval of any length, and intervals are as long at any frame rate (`simulation/parts.rs`): results depend on the frame
+//! All of it is a rate or exact for an interval of any length, and intervals are as long at any frame rate (`simulation/strand_parts.rs`): results depend on the frame
 //! rate as little as the strands do.
 //!
 //! # The five steps of McAdams 2009 here
