@@ -199,10 +199,10 @@ pub const ALL: &[Parameter] = parameters! {
         Material "shear", "Shear modulus", "Pa", scale(1e7, 1e11), "Shear modulus, which resists twisting. Human hair: 0.89e9.";
     }
     Weight {
-        Scene "gravity", "Gravity", "m/s²", Kind::Vector { reach: 30.0 }, "Which way things fall, and how fast. Hair that starts in balance is put in balance under every gravity anew: it keeps its shape, and swings otherwise. To see it give way, switch off \"Starts in balance\" (Solver).";
+        Scene "gravity", "Gravity", "m/s²", Kind::Vector { reach: 30.0 }, "Direction and magnitude of gravity. With a sag-free start, hair is in static balance under any gravity: it keeps its shape and only swings differently. To see it give way, turn \"Sag-free start\" (Solver) off.";
         Material "density", "Density", "kg/m³", number(100.0, 5000.0), "Density of the fiber. Dry human hair: 1310.";
         Material "mass_profile", "Mass profile", "", Kind::Profile, "Relative mass from root to tip, linear in between. Only ratios count: 1, 3 is three times as heavy at the tip.";
-        Material "radius", "Fibre radius", "m", Kind::Maybe { min: 1e-5, max: 2e-4, from: 3.5e-5, without: "as the groom has it" }, "Of the fibre, in place of the groom's own. Human hair: 25e-6 to 50e-6. It begins the scene anew.";
+        Material "radius", "Fiber radius", "m", Kind::Maybe { min: 1e-5, max: 2e-4, from: 3.5e-5, without: "from the groom" }, "Radius of the fiber, instead of the one in the groom. Human hair: 25e-6 to 50e-6. Restarts the scene.";
     }
     Motion {
         Groom "motion", "Built-in motion", "", Kind::Switch, "Whether the built-in head nods, turns and shakes when the scene has no motion of its own.";
@@ -238,16 +238,16 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "volume.friction", "Volume friction", "1/s", number(0.0, 30.0), "How fast hair takes on the velocity of the hair around it.";
         Scene "volume.pressure", "Pressure", "m/s", number(0.0, 3.0), "density: speed at which a compressed region spreads.";
         Scene "volume.recovery_rate", "Volume recovery rate", "1/s", number(0.0, 100.0), "incompressible: share of the lost volume that is recovered per second.";
-        Scene "volume.cell", "Cell size", "m", Kind::Maybe { min: 0.002, max: 0.1, from: 0.015, without: "found by itself" }, "Edge of a grid cell. By default the smallest one that holds eight points at rest.";
+        Scene "volume.cell", "Cell size", "m", Kind::Maybe { min: 0.002, max: 0.1, from: 0.015, without: "automatic" }, "Edge of a grid cell. By default the smallest one that holds eight points at rest.";
         Scene "neighbours.on", "Strand contacts", "", Kind::Switch, "Whether simulated strands collide with each other one by one. Exact and slow: for guides and small scenes.";
-        Scene "neighbours.radius", "Radius of a strand", "m", Kind::Maybe { min: 0.0002, max: 0.02, from: 0.002, without: "found by itself" }, "With the hairs that it stands for; nowhere more than half of the way to the next at rest. Left out, half of that way in the mean.";
+        Scene "neighbours.radius", "Strand radius", "m", Kind::Maybe { min: 0.0002, max: 0.02, from: 0.002, without: "automatic" }, "Radius of a strand with the hairs that it stands for, at most half the distance to the nearest strand at rest. By default it is found from the hair.";
         Scene "neighbours.friction", "Strand friction", "", number(0.0, 1.0), "Coulomb friction between strands.";
         Scene "neighbours.stiction", "Stiction", "N", number(0.0, 1e-4), "Force that touching segments resist before they separate. A hair of 25 cm weighs 1.6e-5.";
     }
     Look {
         Groom "look.root_color", "Root color", "", Kind::Color, "Color of a thick lock of hair at the root.";
         Groom "look.tip_color", "Tip color", "", Kind::Color, "Color of a thick lock of hair at the tip.";
-        Groom "look.melanin", "Melanin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "the two colours" }, "Pigment concentration, instead of the two colors: 0 is white, 1 is black.";
+        Groom "look.melanin", "Melanin", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "the two colors" }, "Pigment concentration, instead of the two colors: 0 is white, 1 is black.";
         Groom "look.melanin_redness", "Redness", "", number(0.0, 1.0), "Share of reddish pigment: brown to red.";
         Groom "look.dye", "Dye", "", Kind::Color, "Dye over melanin or the colors, as it looks on white hair. White: no dye.";
         Groom "look.variation", "Variation", "", number(0.0, 1.0), "Variation of the pigment from strand to strand.";
@@ -257,8 +257,8 @@ pub const ALL: &[Parameter] = parameters! {
         Groom "look.backlight", "Backlight", "×", number(0.0, 4.0), "Strength of the light transmitted from behind.";
         Groom "look.scatter", "Scatter", "×", number(0.0, 4.0), "Strength of the light scattered from strand to strand.";
         Groom "look.shadow", "Shadow", "×", number(0.0, 4.0), "How strongly strands shadow what is behind them.";
-        Scene "body.color", "Skin color", "", Kind::MaybeColor { from: [0.5, 0.3, 0.23], without: "as its file has it" }, "Color of the whole body, instead of its file's.";
-        Scene "body.roughness", "Skin roughness", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "as its file has it" }, "From glossy to matte, instead of the body file's.";
+        Scene "body.color", "Skin color", "", Kind::MaybeColor { from: [0.5, 0.3, 0.23], without: "from the file" }, "Color of the whole body, instead of its file's.";
+        Scene "body.roughness", "Skin roughness", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "from the file" }, "From glossy to matte, instead of the body file's.";
         Scene "ground.on", "Ground", "", Kind::Switch, "Whether a level floor receives the shadow of body and hair. It is only drawn: to collide, add a collider.";
         Scene "ground.height", "… height", "m", Kind::Maybe { min: -2.0, max: 2.0, from: 0.0, without: "under the body" }, "Height along the up axis. By default the lowest point of the body at rest. Everything below it is hidden.";
         Scene "ground.color", "… color", "", Kind::MaybeColor { from: [0.4, 0.37, 0.33], without: "shadow alone" }, "Color of the floor, which fades into the backdrop. By default only its shadow is drawn.";

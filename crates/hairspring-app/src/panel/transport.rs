@@ -72,7 +72,7 @@ pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<
         ui.separator();
         let shown = session.shown();
         let name = shown.map_or("Natural", Value::name);
-        egui::ComboBox::from_label("Colour").selected_text(name).show_ui(ui, |ui| {
+        egui::ComboBox::from_label("Color").selected_text(name).show_ui(ui, |ui| {
             if ui.selectable_label(shown.is_none(), "Natural").clicked() {
                 actions.push(Action::Show(None));
             }

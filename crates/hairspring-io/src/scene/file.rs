@@ -60,7 +60,7 @@ pub(super) struct SceneFile {
     /// Eddies in the air.
     #[serde(default)]
     pub turbulence: Turbulence,
-    /// Who stands in the lee.
+    /// Wind occlusion by bodies and by hair.
     #[serde(default)]
     pub wind_occlusion: WindOcclusion,
     /// Charged bodies.

@@ -323,7 +323,7 @@ fn a_group_is_found_by_its_name() {
     assert!(named(&panel, "Colliders") && named(&panel, "Friction"));
     panel.filter.replace("camera".into());
     panel.harness.run_steps(3);
-    assert!(named(&panel, "Stands at"));
+    assert!(named(&panel, "Camera position"));
 }
 
 #[test]
