@@ -74,12 +74,12 @@ const ALL: &[Field] = fields! {
     given "normal", "Normal", "", Kind::Number, "Which way is out of what is solid. Any length above 0.";
     given "axis", "Axis", "", Kind::Number, "Its direction. Any length above 0. Pull the arrow's tip in the picture.";
     given "size", "Edges", "m", Kind::Number, "Length of its edges.";
-    maybe "rotation", "Turned by", "°", Kind::Number, "How it is turned: about X, then Y, then Z.";
+    maybe "rotation", "Rotation", "°", Kind::Number, "How it is turned: about X, then Y, then Z.";
     given "radius", "Radius", "m", Kind::Number, "How far it reaches from its middle or axis, above 0.";
     given "speed", "Speed", "m/s", Kind::Number, "Of the air, at the mouth or the radius. Below 0: the other way round.";
     maybe "spread", "Spread", "°", Kind::Number, "Angle from the jet's axis to its edge, 0 to 80.";
-    maybe "gust", "Gusts", "", Kind::Number, "How much gusts add and take, as a share, 0 to 1.";
-    maybe "gust_rate", "Gusts a second", "Hz", Kind::Number, "How often they come.";
+    maybe "gust", "Gust amount", "", Kind::Number, "How much gusts add and take, as a share, 0 to 1.";
+    maybe "gust_rate", "Gust rate", "Hz", Kind::Number, "How often they come.";
     given "charge", "Charge", "C", Kind::Number, "Static charge. Hair of the other sign is pulled, of the same sign pushed. A rubbed balloon: -1e-7.";
     maybe "solid", "Solid", "", Kind::Switch, "Whether hair collides with the ball.";
     maybe "joint", "Carried by", "", Kind::Joint, "The body's joint that carries it.";
@@ -96,7 +96,7 @@ const ALL: &[Field] = fields! {
     maybe "keys", "Keys", "", MOTION, "Where the whole body is at a time: it goes from key to key as a rigid piece, and rests at each.";
     maybe "points", "Corners", "", CORNERS, "Points whose convex hull it is.";
     maybe "time", "Time", "s", Kind::Number, "When. Each key is later than the one before.";
-    maybe "position", "Moved by", "m", Kind::Number, "How far it has gone from where it was.";
+    maybe "position", "Position", "m", Kind::Number, "How far it has gone from where it was.";
     maybe "pivot", "Turns about", "m", Kind::Number, "The point of the body that its motion turns it about.";
 };
 

@@ -279,7 +279,7 @@ fn a_change_does_not_widen_the_panel() {
 #[test]
 fn a_search_leaves_the_groups_as_they_were() {
     let mut panel = panel(HEAD, "");
-    let open = |panel: &Panel| panel.harness.query_all_by_label("Highlights").count();
+    let open = |panel: &Panel| panel.harness.query_all_by_label("Specular").count();
     assert_eq!(open(&panel), 0);
     panel.filter.replace("highlights".into());
     panel.harness.run_steps(3);
