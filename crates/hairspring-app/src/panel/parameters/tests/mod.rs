@@ -281,7 +281,7 @@ fn a_search_leaves_the_groups_as_they_were() {
     let mut panel = panel(HEAD, "");
     let open = |panel: &Panel| panel.harness.query_all_by_label("Specular").count();
     assert_eq!(open(&panel), 0);
-    panel.filter.replace("highlights".into());
+    panel.filter.replace("specular".into());
     panel.harness.run_steps(3);
     assert!(open(&panel) > 0);
     panel.filter.replace(String::new());
