@@ -15,7 +15,7 @@ fn a_session_opens_plays_changes_records_saves_and_opens_again() {
     let script = format!(
         "wait 5\npause\n\
          set wind.velocity [2.0, 0.0, -1.0]\nset wind.gust 0.5\nset wind.gust_rate 0.7\nset turbulence.strength 0.4\n\
-         set solver.substeps 3\nset solver.projections 2\nset volume.method \"density\"\nset volume.friction 5.0\n\
+         set solver.substeps 3\nset solver.projection_iterations 2\nset volume.method \"density\"\nset volume.friction 5.0\n\
          set builtin.look.roughness 0.5\nset gravity [0.0, -5.0, 0.0]\nwait 10\n\
          set solver.inertia 0.5\nundo\nredo\nundo\n\
          hand ball\ndrag 0.2 0.5 0.7 0.5 12\nhand grab\ndrag 0.5 0.5 0.7 0.7 12\nhand head\ndrag 0.5 0.4 0.6 0.4 8\nhand comb\ndrag 0.5 0.5 0.6 0.7 12\nhand hand\ndrag 0.3 0.3 0.4 0.7 12\nhand look\ndrag 0.5 0.5 0.6 0.5 4\n\

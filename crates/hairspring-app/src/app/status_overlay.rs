@@ -95,7 +95,7 @@ pub(super) fn legend(
     }
     if value == Value::Density && scenery.volume.is_none() {
         let right = at + egui::vec2(LEGEND - 20.0, 18.0);
-        text(right, egui::Align2::RIGHT_TOP, "known with Hair on hair (Volume)".into());
+        text(right, egui::Align2::RIGHT_TOP, "known with a volume method (Volume)".into());
         return;
     }
     let (bar, height) =
