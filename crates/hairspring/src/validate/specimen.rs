@@ -29,14 +29,6 @@ pub const YOUNG: f64 = 3.9e9;
 /// Bending stiffness EI of human hair [N m²].
 pub const BENDING: f64 = YOUNG * FRAC_PI_4 * RADIUS * RADIUS * RADIUS * RADIUS;
 
-/// Bending stiffness of a limp strand over that of hair [1].
-///
-/// Not 0: where it is blown or pressed along itself, a strand without any has unstable equations, and the more points it has the faster it follows them. In a wind U along it that is faster than its transverse waves,
-/// √(T/ρA), the strand flutters: m ÿ + C (ẏ + U y') = (T y')' − EI y'''' has growing solutions for EI = 0 (Whitham 1974,
-/// *Linear and Nonlinear Waves*, §3.1, of waves that outrun others), and none from a ten-thousandth of hair's EI on, for 0.25 m in 5 m/s at 256 points.
-/// Pressed along itself, it buckles at any length.
-const LIMP: f32 = 1e-3;
-
 /// Mass of a specimen over its length, ρA [kg/m].
 pub const LINE_DENSITY: f64 = DENSITY * PI * RADIUS * RADIUS;
 
@@ -108,7 +100,7 @@ impl Setup {
         setup
     }
 
-    /// A chain: a strand without bending stiffness, damping or drag.
+    /// A strand without bending stiffness in air that does not move it: a chain.
     pub fn chain(points: Vec<Vec3>) -> Self {
         let material = Material {
             radius: Some(RADIUS as f32),
@@ -126,13 +118,6 @@ impl Setup {
             wind: DVec3::ZERO,
             in_balance: false,
         }
-    }
-
-    /// The same with [`LIMP`] of hair's bending stiffness.
-    pub fn limp(points: Vec<Vec3>) -> Self {
-        let mut setup = Self::chain(points);
-        setup.material.bend = LIMP;
-        setup
     }
 }
 
