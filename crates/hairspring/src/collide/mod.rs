@@ -5,7 +5,6 @@ mod deep_interior;
 mod holes;
 mod hull;
 mod lattice;
-mod mesh_distance;
 mod pose;
 mod rigid_transform;
 mod sdf;

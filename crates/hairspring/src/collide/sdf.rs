@@ -21,9 +21,8 @@ pub struct SignedDistanceField {
     pub(super) distances: Vec<f32>,
     /// Number of the nearest triangle at each node of the band, anything at others; as many as nodes.
     pub(super) nearest: Vec<u32>,
-    /// Corners of the triangles, in the field's space [m].
-    pub(super) triangles: Vec<[Vec3; 3]>,
-    /// How far they moved during the last interval, in the field's space [m]; empty: the surface is rigid.
+    /// Corners of the triangles, and how far they moved during the last interval, in the field's space [m]; empty: the surface is rigid.
+    triangles: Vec<[Vec3; 3]>,
     moved: Vec<[Vec3; 3]>,
     /// What it was at equal parts of the last interval, before the last of them, where it moved far in that; empty: this all along.
     pub(super) previous_slices: Vec<Arc<SignedDistanceField>>,
@@ -70,10 +69,10 @@ impl SignedDistanceField {
         self.distances[lattice.nodes()..].fill(f32::MAX);
         self.nearest.resize(lattice.nodes(), 0);
         self.triangles.clear();
-        self.triangles.extend(triangles.iter().map(|t| t.map(|i| positions[i as usize])));
         self.moved.clear();
         self.previous_slices.clear();
         if let Some(before) = before {
+            self.triangles.extend(triangles.iter().map(|t| t.map(|i| positions[i as usize])));
             let moved = |i: u32| positions[i as usize] - before[i as usize];
             self.moved.extend(triangles.iter().map(|t| t.map(moved)));
         }

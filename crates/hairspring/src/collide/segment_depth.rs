@@ -18,23 +18,14 @@ impl ColliderShape {
     /// The least distance on the way from `a` to `b` [m] in the collider's own space, of the eight places at each eighth of it; negative
     /// inside. Where that is far from negative, of its middle alone.
     pub fn least_distance(&self, a: Vec3, b: Vec3) -> f32 {
-        least(a, b, |p| self.distance(p))
+        let middle = self.distance(a.midpoint(b));
+        // A field's gradient is not quite of length 1: twice what could be nearer than the middle.
+        if middle > a.distance(b) {
+            return middle;
+        }
+        let places = (1..=PLACES).map(|k| a.lerp(b, k as f32 / PLACES as f32));
+        places.map(|p| self.distance(p)).fold(middle, f32::min)
     }
-
-    /// The same of [`ColliderShape::distance_to_surface`].
-    pub fn least_distance_to_surface(&self, a: Vec3, b: Vec3) -> f32 {
-        least(a, b, |p| self.distance_to_surface(p))
-    }
-}
-
-fn least(a: Vec3, b: Vec3, distance: impl Fn(Vec3) -> f32) -> f32 {
-    let middle = distance(a.midpoint(b));
-    // A field's gradient is not quite of length 1: twice what could be nearer than the middle.
-    if middle > a.distance(b) {
-        return middle;
-    }
-    let places = (1..=PLACES).map(|k| a.lerp(b, k as f32 / PLACES as f32));
-    places.map(distance).fold(middle, f32::min)
 }
 
 impl ColliderPose {

@@ -11,8 +11,7 @@ use crate::{
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Figures over all simulated points at the end of a step. Depth in the distance field of a mesh is depth in the mesh itself
-/// ([`ColliderShape::distance_to_surface`](crate::collide::ColliderShape::distance_to_surface)); that of hair authored inside is in the field, as the depth of its start is.
+/// Figures over all simulated points at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measure {
     /// Mean of |ℓ/L − 1| over segments [1].
@@ -95,11 +94,7 @@ impl Simulation {
             if i % stride == 0 && i >= 2 * stride {
                 let clearance = self.rest(place, i, rest::CLEARANCE);
                 let depth = near(poses, root + x, clearance)
-                    .map(|(o, pose)| {
-                        let p = pose.inverse_point(root + x);
-                        let inside = clearance < 0.0;
-                        clearance - if inside { o.shape.distance(p) } else { o.shape.distance_to_surface(p) }
-                    })
+                    .map(|(o, pose)| clearance - o.shape.distance(pose.inverse_point(root + x)))
                     .fold(0.0, f32::max) as f64;
                 out.max_depth = out.max_depth.max(depth);
                 out.inside_points += (depth > 1e-6) as usize;
@@ -109,11 +104,7 @@ impl Simulation {
                 let (mut depth, mut held) = (0f64, 0f64);
                 for (o, pose) in near(poses, a.midpoint(b), sunk + 0.5 * a.distance(b)) {
                     let [a, b] = [a, b].map(|p| pose.inverse_point(p));
-                    let least = if sunk < 0.0 {
-                        o.shape.least_distance(a, b)
-                    } else {
-                        o.shape.least_distance_to_surface(a, b)
-                    };
+                    let least = o.shape.least_distance(a, b);
                     let begins = if begins_held { o.shape.distance(a).min(sunk) } else { sunk };
                     depth = depth.max(f64::from(begins - least));
                     held = held.max(f64::from(sunk - least.max(begins)));
