@@ -250,7 +250,7 @@ fn a_tooltip_names_range_unit_and_default() {
     ] {
         assert!(of(name).contains(line), "{}", of(name));
     }
-    assert!(of("look.melanin_redness").starts_with("Counts only while Melanin"));
+    assert!(of("look.melanin_redness").starts_with("No effect unless \"Melanin\""));
 }
 
 #[test]
