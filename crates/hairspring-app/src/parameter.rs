@@ -256,7 +256,7 @@ pub const ALL: &[Parameter] = parameters! {
         Groom "look.specular", "Specular", "×", number(0.0, 4.0), "Strength of the highlights.";
         Groom "look.backlight", "Backlight", "×", number(0.0, 4.0), "Strength of the light transmitted from behind.";
         Groom "look.scatter", "Scatter", "×", number(0.0, 4.0), "Strength of the light scattered from strand to strand.";
-        Groom "look.shadow", "Shadow", "×", number(0.0, 4.0), "How strongly strands shadow what is behind them.";
+        Groom "look.shadow", "Shadow", "×", number(0.0, 4.0), "Strength of the shadows cast by strands.";
         Scene "body.color", "Skin color", "", Kind::MaybeColor { from: [0.5, 0.3, 0.23], without: "from the file" }, "Color of the whole body, instead of its file's.";
         Scene "body.roughness", "Skin roughness", "", Kind::Maybe { min: 0.0, max: 1.0, from: 0.5, without: "from the file" }, "From glossy to matte, instead of the body file's.";
         Scene "ground.on", "Ground", "", Kind::Switch, "Whether a level floor receives the shadow of body and hair. It is only drawn: to collide, add a collider.";
