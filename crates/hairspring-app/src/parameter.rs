@@ -175,7 +175,7 @@ pub const ALL: &[Parameter] = parameters! {
         Groom "grow.points", "Points per hair", "", Kind::Count { min: 3, max: 64 }, "More points bend more finely and cost proportionally more time.";
         Groom "thicken.copies", "Copies per strand", "", Kind::Count { min: 0, max: 20 }, "Follow hairs added around each strand of the file.";
         Groom "thicken.radius", "… radius", "m", number(0.0, 0.01), "Radius of the disc on the skin in which the copies grow.";
-        Groom "thicken.tip", "… spread at the tip", "×", number(0.0, 10.0), "Distance of a copy from its strand at the tip, relative to that at the root.";
+        Groom "thicken.tip", "… tip spread", "×", number(0.0, 10.0), "Distance of a copy from its strand at the tip, relative to that at the root.";
         Material "preset", "Material", "", Kind::Choice(&["none", "straight", "wavy", "curly", "coily", "short-fur"]), "Preset for everything that is not set below. none: a lone human hair.";
         Material "tether", "Tether", "×", number(0.0, 3.0), "Largest distance of a point from its root, relative to that at rest: 1.1 lets curls stretch by a tenth. 0: no limit. The scene file refuses values between 0 and 1.";
         Material "global_shape.pull", "Global shape", "Hz", number(0.0, 20.0), "Frequency of a spring that pulls each point to the groomed shape, carried by the head. 0: off. From 1 a style lasts; from 4 hair looks set.";
@@ -219,9 +219,9 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "turbulence.strength", "Turbulence", "m/s", number(0.0, 5.0), "Speed of the eddies that the wind carries along.";
         Scene "turbulence.size", "Eddy size", "m", scale(0.01, 2.0), "Size of the largest eddy.";
         Scene "turbulence.octaves", "Octaves", "", Kind::Count { min: 1, max: 6 }, "Number of eddy sizes, each half as large as the one before.";
-        Scene "wind_occlusion.body", "Wind occlusion by bodies", "1/m", number(0.0, 300.0), "How fast wind falls off inside a body. 100: to a third in a centimeter.";
-        Scene "wind_occlusion.hair", "Wind occlusion by hair", "1/m", number(0.0, 300.0), "How fast wind falls off inside hair.";
-        Scene "wind_occlusion.reach", "Occlusion distance", "m", number(0.05, 3.0), "Distance behind an occluder at which the wind has recovered.";
+        Scene "wind_occlusion.body", "Body occlusion", "1/m", number(0.0, 300.0), "How fast wind falls off inside a body. 100: to a third in a centimeter.";
+        Scene "wind_occlusion.hair", "Hair occlusion", "1/m", number(0.0, 300.0), "How fast wind falls off inside hair.";
+        Scene "wind_occlusion.reach", "Wake length", "m", number(0.05, 3.0), "Distance behind an occluder at which the wind has recovered.";
         Material "drag", "Drag", "×", number(0.0, 5.0), "Drag of the air on a hair, relative to that on a lone hair.";
         Material "charge", "Static charge", "C/m", number(-1e-8, 1e-8), "Charge per length. Charged bodies attract and repel it. 5e-10 rises in the field of a rubbed balloon.";
     }
@@ -237,7 +237,7 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "volume.method", "Volume method", "", Kind::Choice(&["off", "density", "incompressible"]), "off: strands pass through each other. density: pressure where hair is denser than at rest. incompressible: a projection that keeps the density of the rest pose.";
         Scene "volume.friction", "Volume friction", "1/s", number(0.0, 30.0), "How fast hair takes on the velocity of the hair around it.";
         Scene "volume.pressure", "Pressure", "m/s", number(0.0, 3.0), "density: speed at which a compressed region spreads.";
-        Scene "volume.recovery_rate", "Volume recovery rate", "1/s", number(0.0, 100.0), "incompressible: share of the lost volume that is recovered per second.";
+        Scene "volume.recovery_rate", "Volume recovery", "1/s", number(0.0, 100.0), "incompressible: share of the lost volume that is recovered per second.";
         Scene "volume.cell", "Cell size", "m", Kind::Maybe { min: 0.002, max: 0.1, from: 0.015, without: "automatic" }, "Edge of a grid cell. By default the smallest one that holds eight points at rest.";
         Scene "neighbours.on", "Strand contacts", "", Kind::Switch, "Whether simulated strands collide with each other one by one. Exact and slow: for guides and small scenes.";
         Scene "neighbours.radius", "Strand radius", "m", Kind::Maybe { min: 0.0002, max: 0.02, from: 0.002, without: "automatic" }, "Radius of a strand with the hairs that it stands for, at most half the distance to the nearest strand at rest. By default it is found from the hair.";
@@ -271,7 +271,7 @@ pub const ALL: &[Parameter] = parameters! {
     Solver {
         Scene "solver.integrator", "Integrator", "", Kind::Choice(&["backward-euler", "bdf2", "explicit-euler", "verlet", "local-global", "ftl", "dftl"]), "Time integrator of a substep. The explicit ones become unstable; they are there for comparison.";
         Scene "solver.substeps", "Substeps", "", Kind::Count { min: 1, max: 64 }, "Substeps per 1/60 s.";
-        Scene "solver.projection_iterations", "Projection iterations", "", Kind::Count { min: 0, max: 20 }, "Iterations of fast projection per substep, which keep segments at their length.";
+        Scene "solver.projection_iterations", "Iterations", "", Kind::Count { min: 0, max: 20 }, "Iterations of fast projection per substep, which keep segments at their length.";
         Scene "solver.quality", "Quality", "", Kind::Choice(&["normal", "high"]), "normal: one linear solve per substep. high: Newton iterations to convergence.";
         Scene "solver.sag_free", "Sag-free start", "", Kind::Switch, "Whether rest shapes are solved so that the groom is in static balance as authored.";
         Scene "solver.preroll", "Pre-roll", "s", number(0.0, 10.0), "Time that hair falls before the scene begins; its final shape becomes the start. Use 3 for hair that is grown. Restarts the scene.";
