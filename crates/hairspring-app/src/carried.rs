@@ -1,6 +1,7 @@
 //! Where joints have carried what a scene lists: a collider is written down as it is at rest, and met where the head has taken it.
 
-use hairspring::{collide::RigidTransform, stage::Stage};
+use hairspring::math::RigidTransform;
+use hairspring_scene::stage::Stage;
 
 /// How far each entry of a list has gone since rest, in the order of the scene file.
 #[derive(Default)]

@@ -2,10 +2,8 @@
 
 use crate::{player::STEP, pointer_collider::Pushed};
 use glam::{Mat3, Quat, Vec3};
-use hairspring::{
-    collide::{ColliderShape, RigidTransform},
-    stage::PosedBody,
-};
+use hairspring::{collide::ColliderShape, math::RigidTransform};
+use hairspring_scene::stage::PosedBody;
 
 /// Fastest that the pointer takes a tool along, or what is pushed [m/s]: a hand that throws. Where steps take longer than they last, the pointer is that much
 /// faster in the scene than on the desk.
@@ -206,7 +204,8 @@ fn skin(body: &PosedBody, p: Vec3, size: f32) -> Option<(Vec3, Vec3)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hairspring::{body::Mesh, scene::builtin::Hand};
+    use hairspring::body::Mesh;
+    use hairspring_scene::builtin::Hand;
 
     const LENGTH: f32 = Hand::LENGTH;
 

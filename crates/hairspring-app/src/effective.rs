@@ -3,10 +3,10 @@
 use hairspring::{
     groom::{Growth, Thicken},
     material::{Material, PRESETS},
-    scene::{
-        Guides, Scene, SceneGroom, SceneSheet,
-        builtin::{BuiltinOptions, Style},
-    },
+};
+use hairspring_scene::{
+    Guides, Scene, SceneGroom, SceneSheet,
+    builtin::{BuiltinOptions, Style},
 };
 
 fn value(of: &impl serde::Serialize) -> toml::Value {

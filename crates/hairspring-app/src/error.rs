@@ -1,6 +1,6 @@
 //! Why the window cannot do what it was asked to.
 
-use hairspring::stage::StageError;
+use hairspring_scene::stage::StageError;
 use hairspring_view::OutputError;
 
 /// One sentence for the person at the window.

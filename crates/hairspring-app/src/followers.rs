@@ -4,9 +4,9 @@
 
 use glam::{Affine3A, Vec3};
 use hairspring::{
+    collide::MovingCollider,
     follow::{FollowLayout, HairInterpolation},
-    scene::Effects,
-    simulation::MovingCollider,
+    settings::Effects,
 };
 use std::sync::{Arc, OnceLock};
 

@@ -3,7 +3,7 @@
 
 use crate::{document::Document, key::Key, orbit::Lens, session::Action, snapshot::StageSnapshot};
 use glam::{Vec2, Vec3};
-use hairspring::collide::RigidTransform;
+use hairspring::math::RigidTransform;
 use toml_edit::Value;
 
 /// Where the wind's arrow begins in the picture, from its top left corner, over its width and height [1].
@@ -194,7 +194,7 @@ fn list(v: Vec3, parts: f64) -> Value {
 mod tests {
     use super::*;
     use crate::{document::Way, snapshot::Still};
-    use hairspring::scene::Camera;
+    use hairspring_scene::Camera;
     use std::sync::Arc;
 
     const SCENE: &str = "[builtin]\nstrands = 10\nguides = 5\n\

@@ -1,7 +1,7 @@
 //! The camera of the window: turned about what it looks at, moved across, brought nearer.
 
 use glam::{Vec2, Vec3};
-use hairspring::scene::Camera;
+use hairspring_scene::Camera;
 
 /// Nearest that it comes to what it looks at [m].
 const NEAREST: f32 = 0.02;

@@ -10,7 +10,7 @@ use crate::{
 };
 use eframe::egui::{self, Color32, Pos2, Stroke};
 use glam::{Mat3, Vec2, Vec3};
-use hairspring::{collide::ColliderPose, collide::ColliderShape};
+use hairspring::collide::{ColliderPose, ColliderShape};
 use std::collections::HashMap;
 
 /// Pieces of a circle.
@@ -182,7 +182,7 @@ fn rose(pen: &OverlayPainter, from: Vec3, tip: Vec3, color: Color32) {
 fn collider(
     pen: &OverlayPainter,
     scenery: &StageSnapshot,
-    obstacle: &hairspring::simulation::MovingCollider,
+    obstacle: &hairspring::collide::MovingCollider,
     stroke: Stroke,
 ) {
     let pose = obstacle.end;

@@ -3,9 +3,10 @@
 use glam::Vec3;
 use hairspring::{
     body::{Mesh, Part},
-    collide::{ColliderShape, RigidTransform},
-    scene::builtin::{Hand, hand},
+    collide::ColliderShape,
+    math::RigidTransform,
 };
+use hairspring_scene::builtin::{Hand, hand};
 use hairspring_view::MeshDraw;
 use std::{f32::consts::PI, sync::LazyLock};
 

@@ -1,8 +1,8 @@
 //! A scene that is read again on a thread of its own after an edit of its hair, body or motion: the window goes on meanwhile, and shows the one before.
 
 use crate::{AppError, document::Document};
-use hairspring::scene::Scene;
 use hairspring_io::Loaded;
+use hairspring_scene::Scene;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 /// The scene, and the one that is compared with it.

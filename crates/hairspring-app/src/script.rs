@@ -16,7 +16,7 @@
 
 use crate::{AppError, key::Key, record::Kind, view::Hand};
 use glam::Vec2;
-use hairspring::stage::Value;
+use hairspring_scene::stage::Value;
 use std::{collections::VecDeque, path::PathBuf};
 
 /// A line of a script.

@@ -8,10 +8,13 @@ use crate::{
 use glam::{Mat3, Vec3};
 use hairspring::{
     body::{Mesh, Part},
-    collide::RigidTransform,
+    collide::MovingCollider,
     groom::RootBinding,
-    scene::HairLook,
-    simulation::{Energy, Measure, MovingCollider, VolumeReport},
+    math::RigidTransform,
+    simulation::{Energy, Measure, VolumeReport},
+};
+use hairspring_scene::{
+    HairLook,
     stage::{FrameReport, Picked, Stage, StrandFigures, Value},
 };
 use hairspring_view::{Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality};
@@ -328,9 +331,9 @@ impl Thin {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewParameters {
     /// From where.
-    pub camera: hairspring::scene::Camera,
+    pub camera: hairspring_scene::Camera,
     /// The camera that the lamps stand by: it does not turn with the view, so that light stays on the head as one walks around it.
-    pub lit_for: hairspring::scene::Camera,
+    pub lit_for: hairspring_scene::Camera,
     /// Brightness [stops].
     pub exposure: f32,
     /// How much wider than they are hairs are drawn.
@@ -372,7 +375,7 @@ pub struct Snapshot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hairspring::scene::{
+    use hairspring_scene::{
         Guides,
         builtin::{self, BuiltinOptions},
     };

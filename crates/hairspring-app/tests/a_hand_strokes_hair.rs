@@ -4,11 +4,11 @@
 mod support;
 
 use glam::Vec3;
-use hairspring::collide::RigidTransform;
+use hairspring::math::RigidTransform;
 use hairspring_app::{Action, Document, Push, Pushed, Session};
 use support::SMALL;
 
-const LENGTH: f32 = hairspring::scene::builtin::Hand::LENGTH;
+const LENGTH: f32 = hairspring_scene::builtin::Hand::LENGTH;
 
 /// A moment: where what is pushed is, all points [m], how deep the deepest of them is in it [m], and the number of colliders.
 struct Seen {

@@ -80,7 +80,10 @@ fn a_still_of_two_that_are_compared_shows_both_and_what_they_differ_in() {
         assert!(words > 100, "what they differ in stands under each: {words} light pixels");
     }
     let [first, second] = window.state().session().captions();
-    assert!(first.starts_with("Root color: [") && second.contains("Tip color: [0.9, 0, 0]"), "{first}; {second}");
+    assert!(
+        first.starts_with("Root color: [") && second.contains("Tip color: [0.9, 0, 0]"),
+        "{first}; {second}"
+    );
 }
 
 fn press(pos: egui::Pos2, pressed: bool) -> Event {

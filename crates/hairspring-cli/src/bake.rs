@@ -11,8 +11,8 @@ use crate::{
 };
 use clap::Parser;
 use glam::{Vec2, Vec3};
-use hairspring::stage::{FrameRate, Stage};
 use hairspring_io::{Format, ReadOptions, Strands, read_groom, write_strands};
+use hairspring_scene::stage::{FrameRate, Stage};
 use serde_json::json;
 use std::{
     path::{Path, PathBuf},

@@ -13,12 +13,10 @@ use clap::Parser;
 use glam::Vec3;
 use hairspring::{
     material::{Material, Model},
-    scene::{
-        Integrator, Quality, Solver, Volume, VolumeMethod, Wind,
-        bench::{Bench, Head},
-    },
+    settings::{Integrator, Quality, Solver, Volume, VolumeMethod, Wind},
     simulation::Simulation,
 };
+use hairspring_validate::bench::{Bench, Head};
 use serde_json::json;
 use std::{path::PathBuf, time::Instant};
 

@@ -14,14 +14,13 @@ use crate::{
     report::number,
 };
 use clap::Parser;
-use hairspring::{
-    scene::{
-        Guides, Integrator, Scene,
-        builtin::{self, BuiltinOptions, Style},
-        swing::{Sample, TILT},
-    },
+use hairspring::settings::Integrator;
+use hairspring_scene::{
+    Guides, Scene,
+    builtin::{self, BuiltinOptions, Style},
     stage::Stage,
 };
+use hairspring_validate::swing::{Sample, TILT};
 use play::Played;
 use serde_json::{Value, json};
 use std::path::PathBuf;

@@ -10,12 +10,10 @@ use crate::{
     render::{clip, shoot},
 };
 use clap::{Parser, builder::PossibleValuesParser};
-use hairspring::{
-    material::PRESETS,
-    scene::{
-        Guides,
-        builtin::{BuiltinOptions, Style, scene},
-    },
+use hairspring::material::PRESETS;
+use hairspring_scene::{
+    Guides,
+    builtin::{BuiltinOptions, Style, scene},
     stage::FrameRate,
 };
 use serde_json::json;

@@ -1,7 +1,7 @@
 //! Why the program ends without having done its work: one sentence and an exit code.
 
-use hairspring::stage::StageError;
 use hairspring_io::Error as FileError;
+use hairspring_scene::stage::StageError;
 use hairspring_view::{OutputError, gpu::GpuError};
 use std::{fmt, path::Path};
 

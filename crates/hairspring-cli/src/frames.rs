@@ -1,6 +1,7 @@
 //! Frame numbers, sizes and guides as the command line writes them.
 
-use hairspring::{body::Clip, scene::Guides, stage::FrameRate};
+use hairspring::body::Clip;
+use hairspring_scene::{Guides, stage::FrameRate};
 use std::str::FromStr;
 
 /// Frames from `first` to `last`, both included, counted from 1; frame 1 is the rest pose at time 0.

@@ -11,9 +11,9 @@ use glam::Vec3;
 use hairspring::{
     body::{Body, Clip},
     groom::{Groom, Repairs},
-    scene::{Guides, Scene},
 };
 use hairspring_io::{Format, ReadOptions, read_body, read_bones, read_groom, read_motion, read_scene};
+use hairspring_scene::{Guides, Scene};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

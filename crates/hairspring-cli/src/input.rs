@@ -3,11 +3,9 @@
 use crate::{console::Console, fault::Fault, frames};
 use clap::{Args, ValueEnum};
 use glam::Vec3;
-use hairspring::{
-    groom::Repairs,
-    scene::{Guides, Scene, SceneGroom},
-};
+use hairspring::groom::Repairs;
 use hairspring_io::{Axis, Format, ReadOptions, read_groom, read_scene};
+use hairspring_scene::{Guides, Scene, SceneGroom};
 use std::path::{Path, PathBuf};
 
 /// The units of a file that does not say them.

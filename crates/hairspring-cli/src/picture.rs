@@ -3,7 +3,7 @@
 use crate::{fault::Fault, frames};
 use clap::Args;
 use glam::{Quat, Vec3};
-use hairspring::{scene::Camera, stage::Stage};
+use hairspring_scene::{Camera, stage::Stage};
 use hairspring_view::{
     Background, Frame, Ground, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, Timings, frame_camera,
     gpu::{Gpu, GpuRenderer},

@@ -1,7 +1,7 @@
 //! Frame after frame of a scene, until the last or until the user stops it.
 
 use crate::{fault::Fault, interrupt};
-use hairspring::stage::{FrameRate, FrameReport, Stage};
+use hairspring_scene::stage::{FrameRate, FrameReport, Stage};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,8 +12,8 @@ use crate::{
     totals::{self, Totals},
 };
 use clap::Parser;
-use hairspring::{
-    scene::Scene,
+use hairspring_scene::{
+    Scene,
     stage::{FrameRate, Stage},
 };
 use hairspring_view::{ClipWriter, OutputError, read_png};

@@ -1,7 +1,7 @@
 //! What ran and how fast, for people and for machines.
 
 use crate::console::say;
-use hairspring::stage::{FrameReport, Stage};
+use hairspring_scene::stage::{FrameReport, Stage};
 use hairspring_view::Timings;
 use serde_json::{Map, Value, json};
 use std::time::{Duration, Instant};

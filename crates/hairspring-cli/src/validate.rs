@@ -10,11 +10,8 @@ use crate::{
     report::number,
 };
 use clap::Parser;
-use hairspring::{
-    material::Model,
-    scene::Integrator,
-    validate::{CASES, Case, Method, Outcome, SYMBOLS, case},
-};
+use hairspring::{material::Model, settings::Integrator};
+use hairspring_validate::{CASES, Case, Method, Outcome, SYMBOLS, case};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;

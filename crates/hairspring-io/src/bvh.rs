@@ -8,10 +8,8 @@ use crate::{
     units::{apply_to_motion, turn_of},
 };
 use glam::{Quat, Vec3};
-use hairspring::{
-    body::{Body, Clip, Joint, Trs},
-    stage::FrameRate,
-};
+use hairspring::body::{Body, Clip, Joint, Trs};
+use hairspring_scene::stage::FrameRate;
 
 /// One number of a frame's line.
 #[derive(Clone, Copy)]

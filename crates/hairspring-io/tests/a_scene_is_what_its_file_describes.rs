@@ -13,9 +13,10 @@ use hairspring::{
     air::{Flow, Turbulence, WindOcclusion, WindSource},
     body::{Body, Clip},
     forces::{Manipulator, comb::Comb, tie::Tie},
-    scene::{Guides, Hand, Neighbours, Shape, Volume, VolumeMethod},
+    settings::{Neighbours, Volume, VolumeMethod},
 };
 use hairspring_io::Loaded;
+use hairspring_scene::{Guides, Hand, Shape};
 use scenes::{folder, message, read};
 use std::fs;
 

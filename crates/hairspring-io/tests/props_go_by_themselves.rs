@@ -5,7 +5,7 @@
 mod scenes;
 
 use glam::Vec3;
-use hairspring::stage::Stage;
+use hairspring_scene::stage::Stage;
 use scenes::{folder, message, read};
 
 /// A head with hair, and a lid over it with hair of its own and a ball that goes with it: it is lifted by 2 m in a second.

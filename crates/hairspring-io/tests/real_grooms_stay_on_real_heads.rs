@@ -10,13 +10,9 @@ mod common;
 
 use common::data;
 use glam::Vec3;
-use hairspring::{
-    groom::RootBinding,
-    scene::{Guides, Scene},
-    simulation::Measure,
-    stage::Stage,
-};
+use hairspring::{groom::RootBinding, simulation::Measure};
 use hairspring_io::read_scene;
+use hairspring_scene::{Guides, Scene, stage::Stage};
 use std::path::Path;
 
 /// Length of a frame [s].

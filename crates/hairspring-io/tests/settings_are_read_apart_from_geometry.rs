@@ -7,11 +7,9 @@
 mod scenes;
 
 use glam::Vec3;
-use hairspring::{
-    groom::Groom,
-    scene::{Effects, HairLook, Scene, SceneGroom, Shape, builtin},
-};
+use hairspring::{groom::Groom, settings::Effects};
 use hairspring_io::{Error, read_scene_text, read_settings, same_geometry};
+use hairspring_scene::{HairLook, Scene, SceneGroom, Shape, builtin};
 use scenes::{folder, message, read};
 use std::path::Path;
 
@@ -201,7 +199,8 @@ fn what_a_stage_takes_up_is_no_geometry() {
 fn a_stage_takes_up_what_is_read() {
     let folder = folder();
     let path = folder.path().join("scene.toml");
-    let mut stage = hairspring::stage::Stage::new(read_scene_text(&path, BUILTIN).unwrap().value).unwrap();
+    let mut stage =
+        hairspring_scene::stage::Stage::new(read_scene_text(&path, BUILTIN).unwrap().value).unwrap();
     stage.step(1.0 / 60.0);
     let text =
         format!("gravity = [0, -1.6, 0]\n{BUILTIN}[wind]\nvelocity = [0, 0, 3]\n[ground]\non = true\n");

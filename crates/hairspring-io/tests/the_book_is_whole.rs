@@ -9,9 +9,10 @@ use hairspring::{
     forces::charge::Charged,
     groom::{Growth, Thicken},
     material::Material,
-    scene::{Camera, Collider, Effects, Ground, HairLook, Hand, Neighbours, Solver, Volume, Wind},
+    settings::{Effects, Neighbours, Solver, Volume, Wind},
 };
 use hairspring_io::scene::check_text;
+use hairspring_scene::{Camera, Collider, Ground, HairLook, Hand};
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -2,10 +2,8 @@
 //! `HAIRSPRING_MESHES=write` writes the files anew (`cargo xtask meshes`): then draw the scenes that show them, and look.
 
 use glam::{Quat, Vec3, vec3};
-use hairspring::{
-    body::Mesh,
-    scene::builtin::{hand, head},
-};
+use hairspring::body::Mesh;
+use hairspring_scene::builtin::{hand, head};
 use std::{collections::HashMap, f32::consts::TAU, fmt::Write, fs, path::Path};
 
 /// A mesh as its file has it: the lines of its vertices, then those of its groups and faces.

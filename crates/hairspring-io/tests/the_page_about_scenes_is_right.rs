@@ -38,23 +38,20 @@ fn the_page_that_documents_scenes_is_right() {
 fn the_page_leaves_no_setting_out() {
     let page = include_str!("../../../docs/scene.md");
     let material = hairspring::material::Material { radius: Some(1.0), ..Default::default() };
-    let volume = hairspring::scene::Volume { cell: Some(1.0), ..Default::default() };
-    let neighbours = hairspring::scene::Neighbours { radius: Some(1.0), ..Default::default() };
-    let ground = hairspring::scene::Ground {
-        height: Some(1.0),
-        color: Some(Default::default()),
-        ..Default::default()
-    };
+    let volume = hairspring::settings::Volume { cell: Some(1.0), ..Default::default() };
+    let neighbours = hairspring::settings::Neighbours { radius: Some(1.0), ..Default::default() };
+    let ground =
+        hairspring_scene::Ground { height: Some(1.0), color: Some(Default::default()), ..Default::default() };
     for (name, fields) in [
-        ("look", toml::Table::try_from(hairspring::scene::HairLook::default())),
-        ("effects", toml::Table::try_from(hairspring::scene::Effects::default())),
-        ("wind", toml::Table::try_from(hairspring::scene::Wind::default())),
+        ("look", toml::Table::try_from(hairspring_scene::HairLook::default())),
+        ("effects", toml::Table::try_from(hairspring::settings::Effects::default())),
+        ("wind", toml::Table::try_from(hairspring::settings::Wind::default())),
         ("turbulence", toml::Table::try_from(hairspring::air::Turbulence::default())),
         ("wind_occlusion", toml::Table::try_from(hairspring::air::WindOcclusion::default())),
-        ("solver", toml::Table::try_from(hairspring::scene::Solver::default())),
+        ("solver", toml::Table::try_from(hairspring::settings::Solver::default())),
         ("volume", toml::Table::try_from(volume)),
         ("neighbours", toml::Table::try_from(neighbours)),
-        ("camera", toml::Table::try_from(hairspring::scene::Camera::default())),
+        ("camera", toml::Table::try_from(hairspring_scene::Camera::default())),
         ("ground", toml::Table::try_from(ground)),
         ("material", toml::Table::try_from(material)),
     ] {

@@ -7,11 +7,12 @@ use glam::Vec3;
 
 /// Positions after a tenth of a second of the bench scene, in one of the two builds of the library, for each model.
 macro_rules! positions {
-    ($library:ident, $prepare:expr) => {{
+    ($library:ident, $scene:ident, $prepare:expr) => {{
         use $library::{
             material::{Material, Model},
-            scene::{Integrator, Solver, bench::Bench},
+            settings::{Integrator, Solver},
         };
+        use $scene::bench::Bench;
         let cases = Model::ALL.map(|model| (model, Integrator::BackwardEuler));
         cases
             .into_iter()
@@ -32,18 +33,18 @@ macro_rules! positions {
 #[test]
 fn scalar_has_the_bits_of_sse2() {
     let mut there = true;
-    let mut set = |bench: &mut hairspring::scene::bench::Bench| {
+    let mut set = |bench: &mut hairspring_validate::bench::Bench| {
         there &= bench.simulation.use_instruction_set("sse2");
     };
-    let simd = positions!(hairspring, set);
+    let simd = positions!(hairspring, hairspring_validate, set);
     if !there {
         println!("skipped: this processor has no SSE2");
         return;
     }
-    let is_scalar = |bench: &mut hairspring_scalar::scene::bench::Bench| {
+    let is_scalar = |bench: &mut hairspring_scalar::bench::Bench| {
         assert_eq!(bench.simulation.instruction_set(), "scalar");
     };
-    let scalar = positions!(hairspring_scalar, is_scalar);
+    let scalar = positions!(hairspring_scalar, hairspring_scalar, is_scalar);
     for ((name, simd), (_, scalar)) in simd.iter().zip(&scalar) {
         let apart = simd.iter().zip(scalar).filter(|(a, b)| a != b).count();
         assert!(apart == 0, "{name}: {apart} of {} points differ", simd.len());

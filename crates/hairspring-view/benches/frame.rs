@@ -11,11 +11,9 @@
 mod support;
 
 use divan::Bencher;
-use hairspring::{
-    scene::{
-        HairColor, HairLook,
-        builtin::{BuiltinOptions, scene},
-    },
+use hairspring_scene::{
+    HairColor, HairLook,
+    builtin::{BuiltinOptions, scene},
     stage::Stage,
 };
 use hairspring_view::{

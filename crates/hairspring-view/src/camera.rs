@@ -1,7 +1,7 @@
 //! Perspective: from metres to pixels, and the camera that frames a scene by itself.
 
 use glam::Vec3;
-use hairspring::scene::Camera;
+use hairspring_scene::Camera;
 
 /// Nearest distance drawn [m]: closer than a camera could focus.
 pub(crate) const NEAR: f32 = 0.01;

@@ -6,10 +6,9 @@ use crate::{
     lighting::{Background, Lighting},
 };
 use glam::Vec3;
-use hairspring::{
-    body::Part,
-    follow::HairInterpolation,
-    scene::{Camera, HairLook},
+use hairspring::{body::Part, follow::HairInterpolation};
+use hairspring_scene::{
+    Camera, HairLook,
     stage::{PosedBody, Strands},
 };
 

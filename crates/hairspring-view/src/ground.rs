@@ -11,7 +11,7 @@ use crate::{
 };
 use fearless_simd::Level;
 use glam::{Vec2, Vec3, Vec3Swizzles};
-use hairspring::scene::Scene;
+use hairspring_scene::Scene;
 
 /// What a frame's bodies and hair stand on.
 ///

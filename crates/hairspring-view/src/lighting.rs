@@ -1,7 +1,7 @@
 //! The light of a picture: three lamps and a sky.
 
 use glam::{Quat, Vec3};
-use hairspring::scene::Camera;
+use hairspring_scene::Camera;
 
 /// A lamp so far away that its light is parallel.
 #[derive(Clone, Copy, Debug, PartialEq)]

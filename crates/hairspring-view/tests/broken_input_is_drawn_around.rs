@@ -3,7 +3,7 @@
 mod support;
 
 use glam::Vec3;
-use hairspring::scene::{Camera, HairLook};
+use hairspring_scene::{Camera, HairLook};
 use hairspring_view::{Frame, HairDraw, Light, Lighting, MeshDraw, Quality, Renderer, frame_camera};
 
 #[test]

@@ -9,7 +9,7 @@ mod alike;
 mod support;
 
 use alike::{ALIKE, similarity};
-use hairspring::scene::{HairColor, HairLook};
+use hairspring_scene::{HairColor, HairLook};
 use hairspring_view::{Frame, Image, Quality, Renderer, read_png, write_png};
 use std::path::PathBuf;
 

@@ -5,7 +5,7 @@
 //! tone curve (measured here, not assumed), is the area that they cover.
 
 use glam::Vec3;
-use hairspring::scene::{Camera, HairLook};
+use hairspring_scene::{Camera, HairLook};
 use hairspring_view::{Background, Frame, HairDraw, Image, Light, Lighting, Quality, Renderer};
 
 const SIDE: u32 = 96;

@@ -3,10 +3,8 @@
 mod support;
 
 use glam::Vec3;
-use hairspring::{
-    groom::Groom,
-    scene::{Camera, HairLook},
-};
+use hairspring::groom::Groom;
+use hairspring_scene::{Camera, HairLook};
 use hairspring_view::{Frame, HairDraw, Image, Light, Lighting, MeshDraw, Renderer};
 
 const SIDE: u32 = 128;

@@ -4,7 +4,7 @@
 
 mod support;
 
-use hairspring::scene::HairLook;
+use hairspring_scene::HairLook;
 use hairspring_view::{Frame, HairDraw, Image, Quality, Renderer};
 
 #[test]
@@ -22,10 +22,8 @@ fn one_two_and_seven_threads() {
             let mut renderer = Renderer::new(321, 203);
             if warm {
                 let other = support::frame(&hair, &[]);
-                renderer.draw(&Frame {
-                    camera: hairspring::scene::Camera { fov: 11.0, ..other.camera },
-                    ..other
-                });
+                renderer
+                    .draw(&Frame { camera: hairspring_scene::Camera { fov: 11.0, ..other.camera }, ..other });
             }
             renderer.draw(&frame).clone()
         })

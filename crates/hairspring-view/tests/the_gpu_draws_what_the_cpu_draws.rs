@@ -11,12 +11,10 @@ mod support;
 
 use alike::{compare, compare_everywhere, mean};
 use glam::Vec3;
-use hairspring::{
-    body::Mesh,
-    scene::{
-        Camera, Effects, Guides, HairColor, HairLook,
-        builtin::{BuiltinOptions, scene},
-    },
+use hairspring::{body::Mesh, settings::Effects};
+use hairspring_scene::{
+    Camera, Guides, HairColor, HairLook,
+    builtin::{BuiltinOptions, scene},
     stage::Stage,
 };
 use hairspring_view::{Frame, Ground, HairDraw, Lighting, MeshDraw, Quality, gpu::GpuRenderer};

@@ -8,12 +8,10 @@
 mod support;
 
 use glam::Vec3;
-use hairspring::{
-    follow::HairInterpolation,
-    scene::{
-        Collider, Effects, Guides, Scene, Shape,
-        builtin::{BuiltinOptions, scene},
-    },
+use hairspring::{follow::HairInterpolation, settings::Effects};
+use hairspring_scene::{
+    Collider, Guides, Scene, Shape,
+    builtin::{BuiltinOptions, scene},
     stage::Stage,
 };
 use hairspring_view::{HairDraw, gpu::GpuRenderer};
@@ -160,7 +158,6 @@ fn every_shape_keeps_hairs_out_alike() {
 fn sheets_are_left_to_the_cpu() {
     let Some(gpu) = support::card() else { return };
     let mut scene = head(Effects::default(), Vec::new());
-    scene.sheets =
-        vec![hairspring::scene::SceneSheet { body: scene.body.clone().unwrap(), thickness: 0.002 }];
+    scene.sheets = vec![hairspring_scene::SceneSheet { body: scene.body.clone().unwrap(), thickness: 0.002 }];
     assert!(!gpu.gpu().can_place_among(Stage::new(scene).unwrap().obstacles()));
 }

@@ -7,8 +7,8 @@ use glam::Vec3;
 use hairspring::{
     body::{Body, Mesh},
     groom::Groom,
-    scene::{self, Camera, HairLook, Scene},
 };
+use hairspring_scene::{self, Camera, HairLook, Scene};
 use hairspring_view::{Background, Frame, Ground, Image, Lighting, MeshDraw, Renderer};
 
 const SIZE: [u32; 2] = [160, 120];

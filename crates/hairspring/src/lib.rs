@@ -10,16 +10,10 @@ pub mod follow;
 pub mod forces;
 pub mod groom;
 pub mod material;
-pub mod scene;
+pub mod math;
+pub mod settings;
+pub(crate) mod simd;
 pub mod simulation;
-pub mod stage;
 pub(crate) mod strand;
 pub(crate) mod strand_contact;
-pub(crate) mod timed;
-pub mod validate;
 pub(crate) mod volume;
-
-// The README's example is a test.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;

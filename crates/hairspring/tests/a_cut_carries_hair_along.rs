@@ -6,9 +6,12 @@
 use glam::{Quat, Vec3};
 use hairspring::{
     body::{Body, Clip, Joint, Mesh, Skin, Trs},
-    collide::RigidTransform,
     groom::Groom,
-    scene::{Collider, Guides, Scene, SceneGroom, Shape, Solver},
+    math::RigidTransform,
+    settings::Solver,
+};
+use hairspring_scene::{
+    Collider, Guides, Scene, SceneGroom, Shape,
     stage::{FrameRate, Stage},
 };
 

@@ -4,16 +4,14 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::{Flow, Source, Turbulence, WindOcclusion},
-    collide::RigidTransform,
-    forces::{Manipulator, charge::ChargedBall, comb::Comb, global_shape::GlobalShape, grab::Grab, tie::Tie},
-    material::Material,
-    scene::{
-        Neighbours, Solver, Volume, VolumeMethod, Wind,
-        bench::{self, Bench},
-    },
-    simulation::{Air, Simulation, StepInput},
+    air::{Air, Flow, Source, Turbulence, WindOcclusion},
+    forces::{Manipulator, charge::ChargedBall, comb::Comb, grab::Grab, tie::Tie},
+    material::{GlobalShape, Material},
+    math::RigidTransform,
+    settings::{Neighbours, Solver, Volume, VolumeMethod, Wind},
+    simulation::{Simulation, StepInput},
 };
+use hairspring_validate::bench::{self, Bench};
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     cell::Cell,

@@ -7,7 +7,10 @@ use glam::{Quat, Vec3};
 use hairspring::{
     groom::{Groom, GuideWeights},
     material::Material,
-    scene::{Collider, Guides, Scene, SceneGroom, Shape, Solver, Volume, VolumeMethod},
+    settings::{Solver, Volume, VolumeMethod},
+};
+use hairspring_scene::{
+    Collider, Guides, Scene, SceneGroom, Shape,
     stage::{Stage, Value},
 };
 use std::f32::consts::PI;

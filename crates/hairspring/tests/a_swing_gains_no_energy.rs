@@ -3,11 +3,12 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::{Material, Model},
-    scene::{Integrator, Solver},
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Integrator, Solver},
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

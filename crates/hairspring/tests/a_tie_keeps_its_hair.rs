@@ -5,12 +5,14 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::{ColliderShape, RigidTransform},
+    air::Air,
+    collide::{ColliderShape, MovingCollider},
     forces::{Manipulator, comb::Comb, grab::Grab, tie::Tie},
     groom::Groom,
     material::{Material, Model},
-    scene::Solver,
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

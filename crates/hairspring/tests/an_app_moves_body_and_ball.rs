@@ -4,14 +4,10 @@
 //! where it appears. Moments that it does not look at cost nothing, and change nothing.
 
 use glam::{Quat, Vec3};
-use hairspring::{
-    collide::{ColliderShape, RigidTransform},
-    groom::Groom,
-    material::Material,
-    scene::{
-        Guides, Scene, SceneGroom,
-        builtin::{self, BuiltinOptions},
-    },
+use hairspring::{collide::ColliderShape, groom::Groom, material::Material, math::RigidTransform};
+use hairspring_scene::{
+    Guides, Scene, SceneGroom,
+    builtin::{self, BuiltinOptions},
     stage::Stage,
 };
 
@@ -120,8 +116,8 @@ fn a_ball_stays_where_other_settings_come() {
     let mut stage = curtain();
     let center = Vec3::new(0.0, -0.35, 0.03);
     stage.set_user_colliders(&[sphere(0.05)], at(center));
-    let sphere = hairspring::scene::Shape::Sphere { center: Vec3::X, radius: 0.1 };
-    let colliders = vec![hairspring::scene::Collider { joint: None, shape: sphere }];
+    let sphere = hairspring_scene::Shape::Sphere { center: Vec3::X, radius: 0.1 };
+    let colliders = vec![hairspring_scene::Collider { joint: None, shape: sphere }];
     let grooms = vec![SceneGroom { materials: vec![Material::default()], ..SceneGroom::default() }];
     let settings = Scene { colliders, grooms, ..stage.scene().clone() };
     stage.update_settings(settings).unwrap();

@@ -7,13 +7,10 @@
 //! would see, by means that the scene's own code does not use.
 
 use glam::{IVec3, Vec3};
-use hairspring::{
-    body::Mesh,
-    groom::Groom,
-    scene::{
-        Scene,
-        builtin::{BuiltinOptions, Style, scene},
-    },
+use hairspring::{body::Mesh, groom::Groom};
+use hairspring_scene::{
+    Scene,
+    builtin::{BuiltinOptions, Style, scene},
 };
 use std::collections::HashMap;
 

@@ -5,12 +5,13 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     forces::charge::{Charged, ChargedBall, Waypoint},
     groom::Groom,
     material::Material,
-    scene::Solver,
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
 };
 use std::{f32::consts::PI, sync::Arc};
 

@@ -7,11 +7,13 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    collide::{ColliderShape, Hull, RigidTransform, ThinShell, voxelize},
+    air::Air,
+    collide::{ColliderShape, Hull, MovingCollider, ThinShell, voxelize},
     groom::Groom,
     material::Material,
-    scene::Solver,
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

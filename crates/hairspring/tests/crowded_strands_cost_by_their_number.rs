@@ -5,12 +5,14 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::{Material, Model},
-    scene::{Neighbours, Solver, bench},
-    simulation::{Air, Hold, NeighboursReport, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Neighbours, Solver},
+    simulation::{Hold, NeighboursReport, Simulation, StepInput},
 };
+use hairspring_validate::bench;
 use std::sync::Arc;
 
 fn line(from: Vec3, to: Vec3, points: usize) -> Vec<Vec3> {

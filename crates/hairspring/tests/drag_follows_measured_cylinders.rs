@@ -5,13 +5,14 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::{Material, Model},
-    scene::{Integrator, Solver, Wind},
-    simulation::{Air, Simulation, StepInput},
-    validate::{Method, case, drag_coefficient},
+    math::RigidTransform,
+    settings::{Integrator, Solver, Wind},
+    simulation::{Simulation, StepInput},
 };
+use hairspring_validate::{Method, case, drag_coefficient};
 use std::sync::Arc;
 
 #[test]

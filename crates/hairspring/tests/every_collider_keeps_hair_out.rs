@@ -8,11 +8,13 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    collide::{ColliderPose, ColliderShape, Hull, RigidTransform, ThinShell},
+    air::Air,
+    collide::{ColliderPose, ColliderShape, Hull, MovingCollider, ThinShell},
     groom::Groom,
     material::{Material, Model},
-    scene::Solver,
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

@@ -5,11 +5,12 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::{Material, Model},
-    scene::{Integrator, Quality, Solver},
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Integrator, Quality, Solver},
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

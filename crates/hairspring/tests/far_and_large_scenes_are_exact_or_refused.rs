@@ -7,7 +7,10 @@ use glam::Vec3;
 use hairspring::{
     body::{Body, Clip, Mesh, Trs},
     groom::Groom,
-    scene::{Effects, Guides, Scene, SceneGroom, Solver, Volume, VolumeMethod},
+    settings::{Effects, Solver, Volume, VolumeMethod},
+};
+use hairspring_scene::{
+    Guides, Scene, SceneGroom,
     stage::{Stage, StageError},
 };
 

@@ -6,11 +6,13 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::{ColliderShape, RigidTransform},
+    air::Air,
+    collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
-    scene::Solver,
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

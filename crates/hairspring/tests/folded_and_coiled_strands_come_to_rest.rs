@@ -3,11 +3,12 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::{Material, Model, preset},
-    scene::Solver,
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
 };
 use std::{f32::consts::TAU, sync::Arc};
 

@@ -3,11 +3,10 @@
 //! asked for.
 
 use glam::Vec3;
-use hairspring::{
-    scene::{
-        Effects, Guides,
-        builtin::{BuiltinOptions, scene},
-    },
+use hairspring::settings::Effects;
+use hairspring_scene::{
+    Guides,
+    builtin::{BuiltinOptions, scene},
     stage::{Stage, Value},
 };
 

@@ -7,11 +7,13 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::{ColliderShape, RigidTransform},
+    air::Air,
+    collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
-    scene::{Response, Solver},
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Response, Solver},
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

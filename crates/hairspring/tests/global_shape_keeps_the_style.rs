@@ -5,12 +5,12 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::RigidTransform,
-    forces::global_shape::GlobalShape,
+    air::Air,
     groom::{Groom, StrandScale},
-    material::{Material, Model},
-    scene::Solver,
-    simulation::{Air, Simulation, StepInput},
+    material::{GlobalShape, Material, Model},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
 };
 use std::{f32::consts::TAU, sync::Arc};
 

@@ -13,9 +13,9 @@ use hairspring::{
     body::{Body, Clip, Joint, Mesh, Skin, Trs},
     groom::{Groom, bind_roots_where},
     material::Material,
-    scene::{Collider, Guides, Scene, SceneGroom, Shape, Solver, Volume, VolumeMethod},
-    stage::Stage,
+    settings::{Solver, Volume, VolumeMethod},
 };
+use hairspring_scene::{Collider, Guides, Scene, SceneGroom, Shape, stage::Stage};
 
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 const POINTS: usize = 12;

@@ -7,10 +7,11 @@
 use glam::{Quat, Vec3};
 use hairspring::{
     groom::{Groom, Growth, grow},
-    scene::{
-        Collider, Guides, Scene, SceneGroom, Shape, Solver,
-        builtin::{BuiltinOptions, scene as builtin},
-    },
+    settings::Solver,
+};
+use hairspring_scene::{
+    Collider, Guides, Scene, SceneGroom, Shape,
+    builtin::{BuiltinOptions, scene as builtin},
     stage::Stage,
 };
 

@@ -5,11 +5,13 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::{ColliderPose, ColliderShape, RigidTransform},
+    air::Air,
+    collide::{ColliderPose, ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
-    scene::{Integrator, Solver, Volume, VolumeMethod},
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Integrator, Solver, Volume, VolumeMethod},
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

@@ -7,17 +7,19 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::Material,
-    scene::{
-        Guides, Scene, Solver, Volume, VolumeMethod,
-        bench::{self, Bench},
-        builtin::{BuiltinOptions, Style, scene},
-    },
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Solver, Volume, VolumeMethod},
+    simulation::{Simulation, StepInput},
+};
+use hairspring_scene::{
+    Guides, Scene,
+    builtin::{BuiltinOptions, Style, scene},
     stage::Stage,
 };
+use hairspring_validate::bench::{self, Bench};
 use std::sync::Arc;
 
 const METHODS: [VolumeMethod; 2] = [VolumeMethod::Density, VolumeMethod::Incompressible];

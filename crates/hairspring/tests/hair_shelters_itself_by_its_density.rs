@@ -3,11 +3,12 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::Material,
-    scene::{Solver, Wind},
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Solver, Wind},
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

@@ -6,14 +6,15 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     forces::{Manipulator, grab::Grab},
     groom::Groom,
     material::{Material, Model},
-    scene::{Guides, Hand, Integrator, Scene, SceneGroom, Solver},
-    simulation::{Air, ManipulatorId, Simulation, StepInput},
-    stage::Stage,
+    math::RigidTransform,
+    settings::{Integrator, Solver},
+    simulation::{ManipulatorId, Simulation, StepInput},
 };
+use hairspring_scene::{Guides, Hand, Scene, SceneGroom, stage::Stage};
 use std::sync::Arc;
 
 const FRAME: f32 = 1.0 / 60.0;

@@ -5,12 +5,14 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::{Material, Model},
-    scene::{Integrator, Solver, Wind, bench::Bench},
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Integrator, Solver, Wind},
+    simulation::{Simulation, StepInput},
 };
+use hairspring_validate::bench::Bench;
 use std::{f64::consts::PI, sync::Arc};
 
 const RADIUS: f64 = 40e-6;

@@ -7,17 +7,20 @@
 
 use glam::Vec3;
 use hairspring::{
-    collide::{ColliderShape, RigidTransform},
+    air::Air,
+    collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
-    scene::{
-        Guides, Solver, Volume, VolumeMethod,
-        bench::{self, Bench},
-        builtin::{BuiltinOptions, Style, scene},
-    },
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Solver, Volume, VolumeMethod},
+    simulation::{Simulation, StepInput},
+};
+use hairspring_scene::{
+    Guides,
+    builtin::{BuiltinOptions, Style, scene},
     stage::Stage,
 };
+use hairspring_validate::bench::{self, Bench};
 use std::sync::Arc;
 
 fn shaken(threads: usize, method: VolumeMethod) -> Vec<Vec3> {

@@ -5,11 +5,12 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    collide::{ColliderPose, ColliderShape, RigidTransform},
+    collide::{ColliderPose, ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
-    scene::Solver,
-    simulation::{Measure, MovingCollider, Simulation},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Measure, Simulation},
 };
 use proptest::prelude::*;
 use std::sync::Arc;

@@ -9,11 +9,13 @@
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    collide::{ColliderPose, ColliderShape, Hull, RigidTransform, ThinShell, voxelize},
+    air::Air,
+    collide::{ColliderPose, ColliderShape, Hull, MovingCollider, ThinShell, voxelize},
     groom::Groom,
     material::{Material, Model},
-    scene::{Integrator, Solver},
-    simulation::{Air, Measure, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Integrator, Solver},
+    simulation::{Measure, Simulation, StepInput},
 };
 use std::sync::Arc;
 

@@ -6,17 +6,17 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::{Flow, Turbulence, WindOcclusion, WindSource},
-    collide::RigidTransform,
+    air::{Air, Flow, Turbulence, WindOcclusion, WindSource},
     forces::{Manipulator, grab::Grab},
     groom::Groom,
     material::{Material, Model},
-    scene::{
-        Collider, Effects, Guides, Hand, Integrator, Scene, SceneGroom, Shape, Solver, Volume, VolumeMethod,
-        Wind,
-        builtin::{self, BuiltinOptions},
-    },
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Effects, Integrator, Solver, Volume, VolumeMethod, Wind},
+    simulation::{Simulation, StepInput},
+};
+use hairspring_scene::{
+    Collider, Guides, Hand, Scene, SceneGroom, Shape,
+    builtin::{self, BuiltinOptions},
     stage::{Stage, StageError},
 };
 use std::sync::Arc;

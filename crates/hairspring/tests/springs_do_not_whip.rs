@@ -5,15 +5,13 @@
 //! hair, not by the mean.
 
 use glam::Vec3;
-use hairspring::{
-    material::Model,
-    scene::{
-        Guides, Scene,
-        bench::FRAME,
-        builtin::{BuiltinOptions, Style, scene},
-    },
+use hairspring::material::Model;
+use hairspring_scene::{
+    Guides, Scene,
+    builtin::{BuiltinOptions, Style, scene},
     stage::Stage,
 };
+use hairspring_validate::bench::FRAME;
 
 #[test]
 fn a_head_of_curls_settles_calmly() {

@@ -8,10 +8,8 @@
 //! What a model does not reach carries its reason in its case, and must fail: the day it passes, the reason goes. And what docs/validation.md prints of it is
 //! what this build does, so that nobody reads of a day long past.
 
-use hairspring::{
-    material::Model,
-    validate::{CASES, Case, Method, Outcome},
-};
+use hairspring::material::Model;
+use hairspring_validate::{CASES, Case, Method, Outcome};
 use rayon::prelude::*;
 
 fn run_all(method: impl Fn(&Case) -> Method + Sync) -> Vec<Outcome> {
@@ -100,7 +98,7 @@ fn with_other_points_and_substeps() {
         ("incline", &[0.2], 24, 8),
         ("capstan", &[0.2], 32, 4),
     ] {
-        let case = hairspring::validate::case(name).unwrap();
+        let case = hairspring_validate::case(name).unwrap();
         for outcome in case.run(values, Method { points, substeps, ..case.method }) {
             assert!(outcome.pass(), "{points} points, {substeps} substeps: {outcome:?}");
         }
@@ -110,7 +108,7 @@ fn with_other_points_and_substeps() {
 /// A cantilever of any number of points, from one that hardly bends to one that hangs.
 #[test]
 fn a_cantilever_of_32_to_1024_points() {
-    let case = hairspring::validate::case("heavy-cantilever").unwrap();
+    let case = hairspring_validate::case("heavy-cantilever").unwrap();
     let jobs: Vec<(u32, f64)> = [1024, 512, 256, 128, 64, 32]
         .into_iter()
         .flat_map(|points| [0.1, 1.0, 10.0, 100.0, 1000.0].map(|gamma| (points, gamma)))

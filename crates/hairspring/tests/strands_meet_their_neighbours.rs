@@ -7,15 +7,15 @@
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    collide::{ColliderShape, RigidTransform},
+    air::Air,
+    collide::ColliderShape,
     groom::Groom,
     material::{Material, Model},
-    scene::{
-        Neighbours, Solver, Volume, VolumeMethod,
-        bench::{self, Bench},
-    },
-    simulation::{Air, Hold, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Neighbours, Solver, Volume, VolumeMethod},
+    simulation::{Hold, Simulation, StepInput},
 };
+use hairspring_validate::bench::{self, Bench};
 use std::sync::Arc;
 
 const ON: Neighbours = Neighbours { on: true, radius: Some(0.001), friction: 0.0, stiction: 0.0 };
@@ -25,7 +25,7 @@ struct Strands {
     groom: Arc<Groom>,
     simulation: Simulation,
     roots: Vec<RigidTransform>,
-    bodies: Vec<hairspring::simulation::MovingCollider>,
+    bodies: Vec<hairspring::collide::MovingCollider>,
 }
 
 impl Strands {
@@ -215,7 +215,7 @@ fn squeezed(neighbours: Neighbours) -> f32 {
                 }
             };
             let (center, half) = (Vec3::new(side * 0.02, -0.13, 0.0), Vec3::new(0.02, 0.04, 0.1));
-            hairspring::simulation::MovingCollider {
+            hairspring::collide::MovingCollider {
                 shape: ColliderShape::Cuboid { center, half, axes: Mat3::IDENTITY },
                 start: at(frame),
                 end: at(frame + 1),

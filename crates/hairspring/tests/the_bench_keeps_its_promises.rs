@@ -6,12 +6,15 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::{ColliderPose, ColliderShape, RigidTransform},
+    air::Air,
+    collide::{ColliderPose, ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model, PRESETS, preset},
-    scene::{Solver, Volume, VolumeMethod, bench::Bench},
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Solver, Volume, VolumeMethod},
+    simulation::{Simulation, StepInput},
 };
+use hairspring_validate::bench::Bench;
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -10,11 +10,12 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::{Material, Model, PRESETS, preset},
-    scene::Solver,
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

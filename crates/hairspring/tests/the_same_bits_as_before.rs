@@ -8,8 +8,9 @@
 use glam::Vec3;
 use hairspring::{
     material::{Material, Model},
-    scene::{Integrator, Solver, bench::Bench},
+    settings::{Integrator, Solver},
 };
+use hairspring_validate::bench::Bench;
 
 /// Model, integrator, hash without and with fused multiplication.
 const GOLDEN: [(Model, Integrator, [u64; 2]); 7] = [

@@ -3,11 +3,13 @@
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    collide::{ColliderShape, RigidTransform},
+    air::Air,
+    collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::Material,
-    scene::Solver,
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

@@ -10,9 +10,9 @@ use hairspring::{
     body::{Body, Clip, Joint, Mesh, Skin, Trs},
     groom::{Groom, bind_roots},
     material::Material,
-    scene::{Guides, Scene, SceneGroom, SceneSheet, Solver},
-    stage::Stage,
+    settings::Solver,
 };
+use hairspring_scene::{Guides, Scene, SceneGroom, SceneSheet, stage::Stage};
 
 const POINTS: usize = 16;
 const LENGTH: f32 = 0.16;

@@ -7,7 +7,10 @@ use glam::Vec3;
 use hairspring::{
     body::{Body, Clip, Mesh, Trs},
     groom::Groom,
-    scene::{Guides, Scene, SceneGroom, Solver},
+    settings::Solver,
+};
+use hairspring_scene::{
+    Guides, Scene, SceneGroom,
     stage::{FrameRate, Stage},
 };
 

@@ -6,11 +6,12 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    collide::RigidTransform,
+    air::Air,
     groom::Groom,
     material::{Material, Model},
-    scene::{Neighbours, Solver, Volume, VolumeMethod},
-    simulation::{Air, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Neighbours, Solver, Volume, VolumeMethod},
+    simulation::{Simulation, StepInput},
 };
 use std::sync::Arc;
 

@@ -5,12 +5,13 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    air::{Flow, Source, Turbulence, WindOcclusion},
-    collide::{ColliderPose, ColliderShape, RigidTransform},
+    air::{Air, Flow, Source, Turbulence, WindOcclusion},
+    collide::{ColliderPose, ColliderShape, MovingCollider},
     groom::Groom,
     material::Material,
-    scene::{Solver, Wind},
-    simulation::{Air, MovingCollider, Simulation, StepInput},
+    math::RigidTransform,
+    settings::{Solver, Wind},
+    simulation::{Simulation, StepInput},
 };
 use std::{f32::consts::PI, sync::Arc};
 

@@ -8,7 +8,7 @@ use crate::{
     snapshot::Snapshot,
 };
 use eframe::egui::{self, Color32, Sense, Ui};
-use hairspring::stage::Value;
+use hairspring_scene::stage::Value;
 use std::sync::Arc;
 
 impl App {

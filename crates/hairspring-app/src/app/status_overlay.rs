@@ -3,7 +3,7 @@
 use super::{App, MESSAGE};
 use crate::{snapshot::StageSnapshot, view::View};
 use eframe::egui::{self, Color32, Ui};
-use hairspring::stage::Value;
+use hairspring_scene::stage::Value;
 
 /// How far a message stands below the picture's upper edge [points].
 const MESSAGE_TOP: f32 = 66.0;

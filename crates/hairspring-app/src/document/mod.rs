@@ -10,8 +10,8 @@ mod material;
 pub use history::Way;
 
 use crate::{defaults::Reference, effective::effective, error::AppError, key::Key};
-use hairspring::scene::Scene;
 use hairspring_io::{Loaded, read_scene_text, read_settings, same_geometry};
+use hairspring_scene::Scene;
 use history::{Draft, History};
 use std::path::{Path, PathBuf};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};

@@ -6,7 +6,7 @@ use eframe::{
     egui::{self, ColorImage, TextureHandle, TextureOptions},
     egui_wgpu::RenderState,
 };
-use hairspring::scene::Camera;
+use hairspring_scene::Camera;
 use hairspring_view::{Image, Quality, Renderer};
 use std::{
     sync::{

@@ -9,7 +9,7 @@ use crate::{
 };
 use eframe::egui::{self, RichText, Ui};
 use glam::Vec3;
-use hairspring::scene::Camera;
+use hairspring_scene::Camera;
 use toml_edit::Value;
 
 /// Width of names [points].

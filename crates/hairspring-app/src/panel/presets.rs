@@ -2,7 +2,7 @@
 
 use crate::{document::builtin_text, session::Action};
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Ui, vec2};
-use hairspring::stage::Stage;
+use hairspring_scene::stage::Stage;
 use hairspring_view::{Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality, Renderer};
 use std::sync::mpsc::{Receiver, channel};
 

@@ -6,7 +6,7 @@ use crate::{
     view::{Hand, View},
 };
 use eframe::egui::{self, Ui};
-use hairspring::stage::Value;
+use hairspring_scene::stage::Value;
 
 /// The bar under the picture.
 pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions: &mut Vec<Action>) {

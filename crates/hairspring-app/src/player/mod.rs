@@ -5,10 +5,9 @@ mod work;
 
 use crate::{drag_limiter::Push, error::AppError, snapshot::Snapshot};
 use glam::Vec3;
-use hairspring::{
-    collide::RigidTransform,
-    forces::Manipulator,
-    scene::Scene,
+use hairspring::{forces::Manipulator, math::RigidTransform};
+use hairspring_scene::{
+    Scene,
     stage::{FrameRate, Value},
 };
 use hairspring_view::gpu::Gpu;

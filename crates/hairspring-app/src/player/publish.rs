@@ -5,7 +5,7 @@ use crate::{
     drag_limiter::Pushing,
     snapshot::{Snapshot, StageSnapshot, Still},
 };
-use hairspring::stage::{FrameReport, Stage};
+use hairspring_scene::stage::{FrameReport, Stage};
 use std::{
     sync::{Arc, atomic::Ordering::Relaxed},
     time::{Duration, Instant},

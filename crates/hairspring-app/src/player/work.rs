@@ -7,9 +7,9 @@ use crate::{
     memory,
     snapshot::{Snapshot, Still},
 };
-use hairspring::{
-    scene::Scene,
-    simulation::{Energy, ManipulatorId, Measure},
+use hairspring::simulation::{Energy, ManipulatorId, Measure};
+use hairspring_scene::{
+    Scene,
     stage::{FrameReport, Picked, PosedBody, Stage, Value},
 };
 use hairspring_view::gpu::Gpu;

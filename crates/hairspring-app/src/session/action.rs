@@ -2,7 +2,7 @@
 
 use crate::{drag_limiter::Push, key::Key, parameter::Parameter};
 use glam::Vec3;
-use hairspring::stage::Value;
+use hairspring_scene::stage::Value;
 use std::path::PathBuf;
 use toml_edit::Value as Toml;
 

@@ -15,10 +15,10 @@ use crate::{
 };
 use glam::Vec3;
 use hairspring::{
-    collide::RigidTransform,
     forces::{Manipulator, comb::Comb, grab::Grab},
-    stage::Value,
+    math::RigidTransform,
 };
+use hairspring_scene::stage::Value;
 use hairspring_view::gpu::Gpu;
 use scene::folder;
 use std::{

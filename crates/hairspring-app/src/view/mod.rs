@@ -13,7 +13,7 @@ use crate::{
 };
 use eframe::egui;
 use glam::Vec3;
-use hairspring::scene::builtin;
+use hairspring_scene::builtin;
 use hairspring_view::{Quality, frame_camera};
 use std::path::PathBuf;
 use touch::{Drag, Held};

@@ -7,7 +7,7 @@ use crate::{
     input::{Input, Units},
     totals::grouped,
 };
-use hairspring::stage::{FrameRate, FrameReport, Stage};
+use hairspring_scene::stage::{FrameRate, FrameReport, Stage};
 use serde_json::{Map, Value, json};
 use std::{path::Path, time::Duration};
 

@@ -8,7 +8,7 @@ use crate::{
     console::{Console, say},
     fault::Fault,
 };
-use hairspring::{material::Model, scene::Integrator, simulation::Simulation};
+use hairspring::{material::Model, settings::Integrator, simulation::Simulation};
 use serde_json::{Value, json};
 use std::time::Instant;
 
@@ -105,11 +105,12 @@ fn compiled_for() -> Vec<&'static str> {
 
 /// The bench scene as one of the two builds of the library knows it.
 macro_rules! bench {
-    ($library:ident, $options:ident, $cell:ident) => {{
+    ($library:ident, $scene:ident, $options:ident, $cell:ident) => {{
         use $library::{
             material::{Material, Model},
-            scene::{Solver, bench::Bench},
+            settings::Solver,
         };
+        use $scene::bench::Bench;
         let model =
             Model::ALL.into_iter().find(|model| model.name() == $cell.model.name()).unwrap_or_default();
         let material = Material { model, ..Material::default() };
@@ -122,10 +123,10 @@ macro_rules! bench {
 fn stepper(options: &Options, cell: &Cell) -> Box<dyn FnMut()> {
     #[cfg(feature = "scalar")]
     if cell.simd == SCALAR {
-        let mut bench = bench!(hairspring_scalar, options, cell);
+        let mut bench = bench!(hairspring_scalar, hairspring_scalar, options, cell);
         return Box::new(move || _ = bench.step());
     }
-    let mut bench = bench!(hairspring, options, cell);
+    let mut bench = bench!(hairspring, hairspring_validate, options, cell);
     bench.simulation.use_instruction_set(&cell.simd);
     Box::new(move || _ = bench.step())
 }

@@ -1,6 +1,6 @@
 //! What the report says of each method: its equations, where they are from, and what to look for.
 
-use hairspring::scene::Integrator;
+use hairspring::settings::Integrator;
 
 /// A method, for somebody who meets it for the first time.
 pub struct Lesson {

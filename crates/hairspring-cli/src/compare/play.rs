@@ -7,7 +7,7 @@ use crate::{
     interrupt,
     picture::{Studio, View},
 };
-use hairspring::stage::Stage;
+use hairspring_scene::stage::Stage;
 use hairspring_view::encode_png;
 
 /// Pictures of each method, at equal distances, the last at the end.

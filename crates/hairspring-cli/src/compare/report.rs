@@ -6,7 +6,7 @@ use crate::report::{
     document, escape, number,
 };
 use base64::{Engine, engine::general_purpose::STANDARD};
-use hairspring::validate::Axis;
+use hairspring_validate::Axis;
 use std::fmt::Write;
 
 /// Energy above which a curve leaves the plot, in units of what the swing starts with [1].

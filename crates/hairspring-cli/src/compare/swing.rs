@@ -2,10 +2,8 @@
 
 use super::{BOUND, duration};
 use crate::{fault::Fault, interrupt};
-use hairspring::scene::{
-    Integrator,
-    swing::{Sample, Swing},
-};
+use hairspring::settings::Integrator;
+use hairspring_validate::swing::{Sample, Swing};
 
 /// Longest step that is tried [s]: three frames.
 pub const LONGEST: f64 = 0.05;

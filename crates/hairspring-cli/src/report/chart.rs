@@ -1,7 +1,7 @@
 //! A plot as SVG: lines and points, two axes and a legend.
 
 use super::{escape, number};
-use hairspring::validate::Axis;
+use hairspring_validate::Axis;
 use std::fmt::Write;
 
 /// Size of the picture and of the frame in it.

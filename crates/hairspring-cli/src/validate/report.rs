@@ -5,7 +5,7 @@ use crate::report::{
     chart::{Series, svg},
     document, escape,
 };
-use hairspring::validate::{Case, Outcome, Plot};
+use hairspring_validate::{Case, Outcome, Plot};
 use rayon::prelude::*;
 
 /// The page of what `jobs` came to; simulates more for the plots, in parallel.

@@ -5,10 +5,8 @@ use crate::{
     fault::Fault,
     interrupt,
 };
-use hairspring::{
-    material::Model,
-    validate::{Case, Method, Outcome},
-};
+use hairspring::material::Model;
+use hairspring_validate::{Case, Method, Outcome};
 use rayon::prelude::*;
 use std::{
     sync::atomic::{AtomicU32, Ordering::Relaxed},

@@ -7,12 +7,10 @@ use super::{
     sentence::{line_at, line_of_key, unknown},
 };
 use crate::Problem;
-use hairspring::{
-    material,
-    scene::{
-        Scene,
-        builtin::{self, BuiltinOptions, Style},
-    },
+use hairspring::material;
+use hairspring_scene::{
+    Scene,
+    builtin::{self, BuiltinOptions, Style},
 };
 
 /// What is to be built.

@@ -9,11 +9,12 @@ use super::{
 use crate::Problem;
 use glam::Vec3;
 use hairspring::{
-    forces::{Manipulator, global_shape::GlobalShape},
+    forces::Manipulator,
     groom::MAX_COORDINATE,
-    material::Material,
-    scene::{Effects, Guides, HairLook, Hand, Shape},
+    material::{GlobalShape, Material},
+    settings::Effects,
 };
+use hairspring_scene::{Guides, HairLook, Hand, Shape};
 
 /// One check: whether it holds, the key it is about, what is expected.
 pub(super) type Check = (bool, &'static str, &'static str);

@@ -6,10 +6,9 @@ use hairspring::{
     body::Key,
     forces::charge::Charged,
     groom::{Growth, Thicken},
-    scene::{
-        Camera, Collider, Effects, Ground, Guides, HairLook, Hand, Neighbours, Shape, Solver, Volume, Wind,
-    },
+    settings::{Effects, Neighbours, Solver, Volume, Wind},
 };
+use hairspring_scene::{Camera, Collider, Ground, Guides, HairLook, Hand, Shape};
 use serde::{Deserialize, Deserializer, de};
 use std::{collections::BTreeMap, path::PathBuf};
 use toml::Spanned;

@@ -8,10 +8,8 @@ use super::{
     sentence::unknown,
 };
 use crate::{Character, Problem, Result};
-use hairspring::{
-    material::Material,
-    scene::{Scene, SceneSheet, builtin::BuiltinOptions},
-};
+use hairspring::material::Material;
+use hairspring_scene::{Scene, SceneSheet, builtin::BuiltinOptions};
 
 /// What a scene file asks for of geometry.
 #[derive(PartialEq)]

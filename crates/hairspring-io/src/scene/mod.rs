@@ -16,10 +16,8 @@ mod settings;
 
 use crate::{Error, Format, Loaded, Problem, ReadOptions, Result, load, read_body, text::as_text};
 use file::{FileName, SceneFile};
-use hairspring::{
-    groom::Repairs,
-    scene::{Scene, Shape},
-};
+use hairspring::groom::Repairs;
+use hairspring_scene::{Scene, Shape};
 use sentence::{line_at, line_of_key, problem};
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 
 use super::{Reader, builtin, file::SceneFile, material};
 use crate::Result;
-use hairspring::scene::{Collider, Scene, SceneGroom};
+use hairspring_scene::{Collider, Scene, SceneGroom};
 use std::path::Path;
 
 impl Reader<'_> {

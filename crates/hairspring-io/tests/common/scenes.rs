@@ -1,8 +1,9 @@
 //! Scene files beside small files that they name.
 
 use glam::Vec3;
-use hairspring::{groom::Groom, scene::Scene};
+use hairspring::groom::Groom;
 use hairspring_io::{Error, Loaded, read_scene, write_groom};
+use hairspring_scene::Scene;
 use std::{fs, path::Path};
 use tempfile::TempDir;
 

@@ -2,11 +2,9 @@
 //! the library: a table asks for two of them.
 
 use glam::{Quat, Vec3, vec3};
-use hairspring::{
-    body::{Clip, Joint, Trs, retarget},
-    scene::{Ground, Scene},
-};
+use hairspring::body::{Clip, Joint, Trs, retarget};
 use hairspring_io::read_scene;
+use hairspring_scene::{Ground, Scene};
 use std::{error::Error, f32::consts::FRAC_PI_2, fs, path::Path};
 
 /// A scene of the same body and hair, which walks.

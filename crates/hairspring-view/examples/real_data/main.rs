@@ -18,12 +18,12 @@ mod deepmimic;
 mod woman;
 
 use glam::Vec3;
-use hairspring::{
-    scene::Scene,
-    simulation::Measure,
+use hairspring::simulation::Measure;
+use hairspring_io::read_scene;
+use hairspring_scene::{
+    Scene,
     stage::{FrameRate, Stage, StageError},
 };
-use hairspring_io::read_scene;
 use hairspring_view::{
     Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality, Renderer, frame_camera, write_png,
 };

@@ -3,11 +3,9 @@
 //! of one leads into the other.
 
 use glam::{Affine3A, Mat4, Quat, Vec3};
-use hairspring::{
-    body::{Body, Clip, Joint, Mesh, Part, Skin, Trs},
-    scene::Scene,
-};
+use hairspring::body::{Body, Clip, Joint, Mesh, Part, Skin, Trs};
 use hairspring_io::read_scene_text;
+use hairspring_scene::Scene;
 use std::{error::Error, fs, path::Path};
 
 /// Frames a second [Hz]. The file names none; the hand then goes along the head in 2 s.

@@ -14,10 +14,9 @@ use crate::frame::HairDraw;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3, Vec4};
 use hairspring::{
-    collide::ColliderShape,
+    collide::{ColliderShape, MovingCollider},
     follow::{FollowLayout, HairInterpolation},
-    scene::Effects,
-    simulation::MovingCollider,
+    settings::Effects,
 };
 use rayon::prelude::*;
 use std::sync::Arc;

@@ -17,7 +17,7 @@ use super::{
 };
 use fearless_simd::{dispatch, f32x8, prelude::*};
 use glam::{Vec3, Vec4};
-use hairspring::scene::HairLook;
+use hairspring_scene::HairLook;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
 /// Greatest light stored, linear; the tone curve has long been white there.

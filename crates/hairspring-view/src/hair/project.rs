@@ -136,7 +136,7 @@ fn dot<S: Simd>([x, y, z]: [f32x8<S>; 3], d: Vec3) -> f32x8<S> {
 mod tests {
     use super::*;
     use fearless_simd::{Level, dispatch};
-    use hairspring::scene::Camera;
+    use hairspring_scene::Camera;
 
     #[test]
     fn points_fall_where_the_camera_sees_them() {

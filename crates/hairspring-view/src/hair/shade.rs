@@ -9,7 +9,7 @@ use super::color;
 use crate::{body::skin, lighting::Lighting};
 use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
-use hairspring::scene::HairLook;
+use hairspring_scene::HairLook;
 
 /// Points shaded at once.
 pub(crate) const LANES: usize = 8;

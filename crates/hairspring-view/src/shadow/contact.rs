@@ -123,7 +123,7 @@ mod tests {
         ground::Ground,
         lighting::{Background, Lighting},
     };
-    use hairspring::scene::Camera;
+    use hairspring_scene::Camera;
 
     /// The sky from places of the ground under and beside a plate of 2 m at a height [m].
     fn under(height: f32, places: [f32; 3]) -> [f32; 3] {

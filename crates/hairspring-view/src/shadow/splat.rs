@@ -96,7 +96,7 @@ fn pair<S: Simd>(simd: S, row: &[f32; LANES + 1]) -> [f32x8<S>; 2] {
 mod tests {
     use super::*;
     use fearless_simd::{Level, dispatch};
-    use hairspring::scene::HairLook;
+    use hairspring_scene::HairLook;
 
     /// A strand's length times its width is found again in the voxels that it passes, wherever it ends and whatever part of it is broken.
     #[test]

@@ -2,11 +2,8 @@
 #![allow(dead_code)] // Each test file uses its own part of this.
 
 use glam::{Vec2, Vec3};
-use hairspring::{
-    body::Mesh,
-    groom::Groom,
-    scene::{Camera, HairLook},
-};
+use hairspring::{body::Mesh, groom::Groom};
+use hairspring_scene::{Camera, HairLook};
 use hairspring_view::{
     Background, Frame, HairDraw, Lighting, MeshDraw, Quality,
     gpu::{Gpu, GpuError, GpuRenderer},

@@ -28,7 +28,7 @@ pub use source::{Flow, Source, WindSource};
 pub(crate) use turbulence::Noise;
 pub use turbulence::Turbulence;
 
-use crate::scene::Wind;
+use crate::settings::Wind;
 use glam::Vec3;
 use gust::Gust;
 

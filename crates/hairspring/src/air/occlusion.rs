@@ -13,7 +13,7 @@
 //! Air that is kept out goes nowhere: there is no wind around an edge. Followers shelter as their guides.
 
 use super::AirSample;
-use crate::{simulation::Bodies, volume::Density};
+use crate::{collide::FrameColliders, volume::Density};
 use glam::Vec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -67,8 +67,14 @@ impl OcclusionSampler {
     }
 
     /// Finds T at the start of a frame.
-    pub fn cast(&mut self, occlusion: &WindOcclusion, air: &AirSample, bodies: &Bodies, hair: &Density) {
-        let none = Bodies::new((&[], None));
+    pub fn cast(
+        &mut self,
+        occlusion: &WindOcclusion,
+        air: &AirSample,
+        bodies: &FrameColliders,
+        hair: &Density,
+    ) {
+        let none = FrameColliders::new((&[], None));
         let bodies = if occlusion.body > 0.0 { bodies } else { &none };
         let slab = hair.slab();
         self.left.clear();
@@ -91,7 +97,13 @@ impl OcclusionSampler {
 }
 
 /// τ at a place.
-fn depth(occlusion: &WindOcclusion, air: &AirSample, bodies: &Bodies, hair: &Density, from: Vec3) -> f32 {
+fn depth(
+    occlusion: &WindOcclusion,
+    air: &AirSample,
+    bodies: &FrameColliders,
+    hair: &Density,
+    from: Vec3,
+) -> f32 {
     let (mut at, mut way, mut depth) = (from, 0.0, 0.0);
     let calm = CALM * air.steady(from).length();
     for _ in 0..MOST_STEPS {

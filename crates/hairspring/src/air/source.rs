@@ -12,7 +12,7 @@
 //! ```
 
 use super::gust::Gust;
-use crate::collide::RigidTransform;
+use crate::math::RigidTransform;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 

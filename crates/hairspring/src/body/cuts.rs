@@ -11,7 +11,7 @@
 //! the motion of one of them: the joint that carries the hair, or the topmost one.
 
 use super::{Body, Clip, Trs};
-use crate::collide::RigidTransform;
+use crate::math::RigidTransform;
 use glam::{Affine3A, Quat, Vec3};
 
 /// Time in which the teleport distance is the threshold [s]: over longer intervals a genuine motion goes farther, in proportion.
@@ -32,7 +32,7 @@ pub(crate) fn is_teleport(off: f32, turned: f32, distance: f32, dt: f64) -> bool
 
 /// The cuts of a clip that moves a body.
 #[derive(Debug, Default)]
-pub(crate) struct Cuts {
+pub struct Cuts {
     trees: Vec<Tree>,
     /// The tree of each joint.
     tree_of: Vec<usize>,

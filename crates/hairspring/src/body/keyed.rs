@@ -1,7 +1,7 @@
 //! Motion by hand: a body, or a thing beside it, that goes from key to key as one rigid piece.
 
 use super::{Clip, Trs};
-use crate::timed::between;
+use crate::math::between;
 use glam::{Quat, Vec3};
 
 /// Frames a second of the clip [Hz].
@@ -51,7 +51,7 @@ fn at(keys: &[Key], pivot: Vec3, time: f64) -> Trs {
 }
 
 /// 0 to 1 with no speed nor acceleration at both ends (minimum jerk; Flash and Hogan 1985): how people move.
-pub(crate) fn ease(t: f32) -> f32 {
+pub fn ease(t: f32) -> f32 {
     t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
 }
 

@@ -9,8 +9,9 @@ mod pose;
 mod retarget;
 
 pub use clip::{Clip, Trs};
-pub(crate) use cuts::{Cuts, is_teleport};
-pub(crate) use keyed::ease;
+pub use cuts::Cuts;
+pub(crate) use cuts::is_teleport;
+pub use keyed::ease;
 pub use keyed::{Key, beside, keyed};
 pub use mesh::{Mesh, Part};
 pub use nearest::{NearestPlace, NearestTree};

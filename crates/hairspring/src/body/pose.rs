@@ -27,12 +27,12 @@ pub struct Skin {
 
 impl Skin {
     /// From the rest pose to where each joint is whose matrix is in `world`.
-    pub(crate) fn matrices(&self, world: &[Affine3A]) -> Vec<Affine3A> {
+    pub fn matrices(&self, world: &[Affine3A]) -> Vec<Affine3A> {
         world.iter().zip(&self.inverse_bind).map(|(w, b)| *w * *b).collect()
     }
 
     /// Where a vertex is that is at `rest` in the rest pose [m], by those matrices (linear blend skinning).
-    pub(crate) fn place(&self, vertex: usize, rest: Vec3, matrices: &[Affine3A]) -> Vec3 {
+    pub fn place(&self, vertex: usize, rest: Vec3, matrices: &[Affine3A]) -> Vec3 {
         let mut at = Vec3A::ZERO;
         for (j, w) in self.joints[vertex].iter().zip(self.weights[vertex]) {
             if w > 0.0 {
@@ -81,7 +81,7 @@ impl Body {
     }
 
     /// The same body of some of its triangles, by their index, and of the vertices that those use; without parts.
-    pub(crate) fn of_triangles(&self, keep: impl Fn(usize) -> bool) -> Self {
+    pub fn of_triangles(&self, keep: impl Fn(usize) -> bool) -> Self {
         let mut body = self.clone();
         body.mesh.parts.clear();
         let mut index = 0..;

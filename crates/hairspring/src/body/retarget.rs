@@ -2,7 +2,7 @@
 //! names.
 
 use super::{Body, Clip, Joint, Trs, cuts};
-use crate::{collide::RigidTransform, scene::Solver};
+use crate::{math::RigidTransform, settings::Solver};
 use glam::{Affine3A, Quat, Vec3};
 
 /// What of the head's travel through the world is kept by [`head_motion`].

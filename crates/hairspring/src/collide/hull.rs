@@ -7,7 +7,7 @@
 
 use crate::{
     body::nearest_on_triangle,
-    strand::lanes::{F, Mask, Simd, V3},
+    simd::lanes::{F, Mask, Simd, V3},
 };
 use glam::Vec3;
 use parry3d::transformation::try_convex_hull;

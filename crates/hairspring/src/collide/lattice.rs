@@ -1,6 +1,6 @@
 //! Which cell of a regular lattice a place is in, for one point and for eight.
 
-use crate::strand::lanes::{F, LANES, Row, Simd, V3, store};
+use crate::simd::lanes::{F, LANES, Row, Simd, V3, store};
 use glam::{UVec3, Vec3};
 
 /// Most nodes of a lattice: their index is worked out in `f32`, where whole numbers follow each other up to here.

@@ -2,11 +2,12 @@
 //! a rigid piece; sheets and fields may deform besides.
 
 mod deep_interior;
+mod frame_colliders;
 mod holes;
 mod hull;
 mod lattice;
+mod moving_collider;
 mod pose;
-mod rigid_transform;
 mod sdf;
 mod segment_depth;
 mod shape;
@@ -14,10 +15,11 @@ mod side;
 mod thin_shell;
 mod voxelize;
 
+pub(crate) use frame_colliders::FrameColliders;
 pub use hull::Hull;
+pub use moving_collider::MovingCollider;
 pub use pose::ColliderPose;
 pub(crate) use pose::{contact, surface_displacement};
-pub use rigid_transform::RigidTransform;
 pub use sdf::SignedDistanceField;
 pub(crate) use segment_depth::{DeepestPoint, STEEP, find_deepest_point};
 pub use shape::ColliderShape;

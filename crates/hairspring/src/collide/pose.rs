@@ -1,10 +1,7 @@
 //! A collider as the kernel sees it during a substep: where its shape is, who is near it, and how its surface moves, for eight points in the world at once.
 
 use super::{ColliderShape, SignedDistanceField, shape::ball_lanes, side::Edges};
-use crate::strand::{
-    lanes::{F, LANES, Mask, Row, Simd, V3},
-    root::transform,
-};
+use crate::simd::lanes::{F, LANES, Mask, Row, Simd, V3, transform};
 use glam::{Mat3, Vec3};
 
 /// Cells between places that a segment longer than [`LONG`] is looked at on its way past a field [1], and from the outer ones to its ends half of that: it

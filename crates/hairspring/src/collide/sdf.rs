@@ -2,7 +2,7 @@
 
 use super::{lattice::Lattice, voxelize::BAND};
 use crate::body::nearest_on_triangle;
-use crate::strand::lanes::{F, LANES, Mask, Row, Simd, V3, load};
+use crate::simd::lanes::{F, LANES, Mask, Row, Simd, V3, load};
 use fearless_simd::f32x4;
 #[cfg(not(one_lane))]
 use fearless_simd::prelude::*;
@@ -79,7 +79,7 @@ impl SignedDistanceField {
     }
 
     /// The surface is where it was an interval ago.
-    pub(crate) fn hold_still(&mut self) {
+    pub fn hold_still(&mut self) {
         self.moved.clear();
     }
 
@@ -265,18 +265,18 @@ fn mix<S: Simd>(a: F<S>, b: F<S>, t: F<S>) -> F<S> {
 pub(super) mod tests {
     use super::*;
     use crate::{
-        collide::{ColliderShape, RigidTransform, Voxelizer, voxelize},
+        air::Air,
+        collide::{ColliderShape, MovingCollider, Voxelizer, voxelize},
         groom::Groom,
         material::Material,
-        scene::{
-            Solver,
-            builtin::{self, BuiltinOptions},
-        },
-        simulation::{Air, MovingCollider, Simulation, StepInput},
-        strand::dispatch::dispatch,
+        math::RigidTransform,
+        settings::Solver,
+        simd::dispatch::dispatch,
+        simulation::{Simulation, StepInput},
     };
     use fearless_simd::Level;
     use glam::Quat;
+    use hairspring_scene::builtin::{self, BuiltinOptions};
     use std::sync::Arc;
 
     /// Balls of many triangles, turned and overlapping; `whole`: without holes.

@@ -7,7 +7,7 @@
 //! ```
 
 use super::{ColliderPose, ColliderShape, pose::slope};
-use crate::strand::lanes::{F, Mask, Simd, V3};
+use crate::simd::lanes::{F, Mask, Simd, V3};
 use glam::Vec3;
 
 /// Places of a segment that are looked at where it is measured, its end among them. Not its beginning, which is the end of the one before or goes
@@ -331,7 +331,7 @@ mod tests {
     use super::*;
     use crate::{
         collide::{sdf::tests::balls, voxelize},
-        strand::dispatch::dispatch,
+        simd::dispatch::dispatch,
     };
     use fearless_simd::Level;
     use glam::{Mat3, Quat};

@@ -1,10 +1,7 @@
 //! Shapes that hair meets: a distance and a normal, for one point and for eight at once, in the shape's own space.
 
 use super::{Hull, SignedDistanceField, ThinShell};
-use crate::strand::{
-    lanes::{F, Simd, V3},
-    root::transform,
-};
+use crate::simd::lanes::{F, Simd, V3, transform};
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
@@ -126,7 +123,7 @@ impl ColliderShape {
     }
 
     /// Sets the shapes of all parts of a frame but the last, which this is: others of its kind. Only fields and sheets have any.
-    pub(crate) fn set_previous_slices(&mut self, earlier: Vec<ColliderShape>) {
+    pub fn set_previous_slices(&mut self, earlier: Vec<ColliderShape>) {
         if self.time_slices() == 1 && earlier.is_empty() {
             // A copy would be made of what someone looks at.
             return;
@@ -146,7 +143,7 @@ impl ColliderShape {
     }
 
     /// Half of how thick it is where it is thickest [m]: how far its deepest place is from the surface, about; infinite for a plane.
-    pub(crate) fn half_thickness(&self) -> f32 {
+    pub fn half_thickness(&self) -> f32 {
         match self {
             ColliderShape::Sphere { radius, .. } | ColliderShape::Capsule { radius, .. } => *radius,
             ColliderShape::Cuboid { half, .. } => half.min_element(),
@@ -167,7 +164,7 @@ impl ColliderShape {
     }
 
     /// A ball around all of it: its middle and radius [m].
-    pub(crate) fn bounds(&self) -> (Vec3, f32) {
+    pub fn bounds(&self) -> (Vec3, f32) {
         match self {
             ColliderShape::Sphere { center, radius } => (*center, *radius),
             ColliderShape::Capsule { a, b, radius } => (a.midpoint(*b), 0.5 * a.distance(*b) + radius),
@@ -247,7 +244,7 @@ fn cuboid_lanes<S: Simd>(simd: S, l: V3<S>, half: Vec3) -> (F<S>, V3<S>) {
 mod tests {
     use super::*;
     use crate::collide::{ColliderPose, contact};
-    use crate::strand::{
+    use crate::simd::{
         dispatch::dispatch,
         lanes::{LANES, Row},
     };

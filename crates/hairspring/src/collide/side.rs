@@ -11,10 +11,7 @@
 //! with the axis and its direction fixed by the start of the substep.
 
 use super::{ColliderShape, DeepestPoint, STEEP};
-use crate::strand::{
-    lanes::{F, Mask, Simd, V3},
-    root::transform,
-};
+use crate::simd::lanes::{F, Mask, Simd, V3, transform};
 use glam::{Mat3, Vec3};
 
 /// How far outside of the segment, over its length, the place may be that faced an edge when the substep began [1].

@@ -13,7 +13,7 @@
 use super::lattice::Lattice;
 use crate::{
     body::nearest_on_triangle,
-    strand::lanes::{F, LANES, Mask, Row, Simd, V3, load},
+    simd::lanes::{F, LANES, Mask, Row, Simd, V3, load},
 };
 use glam::{UVec3, Vec3};
 use std::sync::Arc;
@@ -161,7 +161,7 @@ impl ThinShell {
     }
 
     /// It is where it was an interval ago.
-    pub(crate) fn hold_still(&mut self) {
+    pub fn hold_still(&mut self) {
         self.moved.clear();
     }
 

@@ -10,7 +10,7 @@ use super::{
     holes::Holes,
     lattice::{self, Lattice},
 };
-use crate::strand::{
+use crate::simd::{
     dispatch::dispatch,
     lanes::{F, LANES, Simd, V3},
 };

@@ -2,7 +2,7 @@
 
 use crate::{
     collide::{ColliderPose, contact},
-    strand::lanes::{LANES, Row, Simd, V3, load},
+    simd::lanes::{LANES, Row, Simd, V3, load},
 };
 use glam::Vec3;
 

@@ -18,11 +18,10 @@ mod style;
 pub use choose::{assign_guides, choose_guides};
 
 use crate::{
-    collide::ColliderPose,
+    collide::{ColliderPose, MovingCollider},
     groom::{Groom, GuideWeights},
-    scene::Effects,
-    simulation::MovingCollider,
-    strand::dispatch::dispatch,
+    settings::Effects,
+    simd::dispatch::dispatch,
 };
 use fearless_simd::Level;
 use glam::{Affine3A, Quat, Vec3};
@@ -138,7 +137,7 @@ impl Follow {
     }
 
     /// The same hairs, following the same guides, in another rest pose: that of `groom`, among `obstacles`.
-    pub(crate) fn of(&self, groom: Arc<Groom>, obstacles: &[ColliderPose]) -> Self {
+    pub fn of(&self, groom: Arc<Groom>, obstacles: &[ColliderPose]) -> Self {
         let FollowLayout { guides, weights, .. } = &*self.layout;
         let name = |w: &GuideWeights| GuideWeights { guides: w.guides.map(|g| guides[g as usize]), ..*w };
         Self::new(groom, guides, &weights.iter().map(name).collect::<Vec<_>>(), self.effects, obstacles)
@@ -169,23 +168,23 @@ impl Follow {
     }
 
     /// Place of a strand among the guides, if it is one.
-    pub(crate) fn guide(&self, strand: usize) -> Option<usize> {
+    pub fn guide(&self, strand: usize) -> Option<usize> {
         self.layout.guide(strand)
     }
 
     /// Where the points of a guide, by its place among the guides, are among all guides' points.
-    pub(crate) fn guide_range(&self, guide: usize) -> std::ops::Range<usize> {
+    pub fn guide_range(&self, guide: usize) -> std::ops::Range<usize> {
         self.layout.guide_range(guide)
     }
 
     /// Place among the guides of the first that a strand follows; its own where it is one.
-    pub(crate) fn first_guide(&self, strand: usize) -> usize {
+    pub fn first_guide(&self, strand: usize) -> usize {
         self.guide(strand).unwrap_or(self.layout.weights[strand].guides[0] as usize)
     }
 
     /// Writes one number a point of all strands, given those of all guides' points: guides have their own, follow hairs those of their first guide where
     /// they ride on it.
-    pub(crate) fn spread(&self, of_guides: &[f32], out: &mut [f32]) {
+    pub fn spread(&self, of_guides: &[f32], out: &mut [f32]) {
         let layout = &*self.layout;
         let strands = split_by(out, &layout.groom.offsets);
         strands.into_par_iter().enumerate().with_min_len(64).for_each(|(s, out)| {
@@ -230,7 +229,7 @@ impl HairInterpolation<'_> {
     }
 
     /// The same of one strand, kept out of `poses`.
-    pub(crate) fn place_strand(&self, s: usize, poses: &[ColliderPose], strand: &mut [Vec3]) {
+    pub fn place_strand(&self, s: usize, poses: &[ColliderPose], strand: &mut [Vec3]) {
         let layout = &**self.layout;
         if let Some(guide) = layout.guide(s) {
             strand.copy_from_slice(&self.guide_points[layout.guide_range(guide)]);
@@ -250,7 +249,7 @@ impl HairInterpolation<'_> {
 }
 
 /// `array` cut at `offsets`.
-pub(crate) fn split_by<'a, T>(array: &'a mut [T], offsets: &[u32]) -> Vec<&'a mut [T]> {
+pub fn split_by<'a, T>(array: &'a mut [T], offsets: &[u32]) -> Vec<&'a mut [T]> {
     let mut rest = array;
     let mut pieces = Vec::with_capacity(offsets.len().saturating_sub(1));
     for w in offsets.windows(2) {

@@ -1,6 +1,6 @@
 //! What is laid over follow hairs: clumps, curls, flyaways.
 
-use crate::scene::Effects;
+use crate::settings::Effects;
 use glam::Vec3;
 
 /// Clump toward the lead guide, then curl, then noise, each growing from nothing at the root.

@@ -8,7 +8,7 @@
 //! outside: hair is pulled around a head and not into it.
 
 use super::StrandView;
-use crate::{collide::RigidTransform, simulation::Bodies};
+use crate::{collide::FrameColliders, math::RigidTransform};
 use glam::Vec3;
 
 /// Most that a bond pulls for what a point is off at the start of a frame [m/s²]: a thousand times its weight, ten times what whipping hair needs. What
@@ -66,7 +66,7 @@ impl Bonds {
         spring: Spring,
         poses: [RigidTransform; 2],
         shares: [f32; 2],
-        bodies: &Bodies,
+        bodies: &FrameColliders,
         strand: &mut StrandView,
     ) {
         let number = strand.strand as u32;

@@ -17,7 +17,7 @@
 //! one groom does not repel another's.
 
 use super::{HairField, StrandView};
-use crate::{collide::RigidTransform, timed::between};
+use crate::math::{RigidTransform, between};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 

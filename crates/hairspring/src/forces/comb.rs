@@ -14,7 +14,7 @@
 //! Tines by themselves: hair is not parted into as many locks as the comb has gaps.
 
 use super::StrandView;
-use crate::collide::RigidTransform;
+use crate::math::RigidTransform;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 

@@ -7,7 +7,7 @@ use super::{
     grab::Grab,
     tie::Tie,
 };
-use crate::{collide::RigidTransform, simulation::Bodies};
+use crate::{collide::FrameColliders, math::RigidTransform};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -57,7 +57,7 @@ impl Manipulator {
 
 impl ActiveManipulator {
     /// Acts on a strand of so many `points` among `bodies`.
-    pub fn act(&self, bodies: &Bodies, strand: &mut StrandView, points: usize) {
+    pub fn act(&self, bodies: &FrameColliders, strand: &mut StrandView, points: usize) {
         match &self.tool {
             Manipulator::Grab(grab) => self.bonds.act(grab.spring(), self.poses, [1.0; 2], bodies, strand),
             Manipulator::Comb(comb) => comb.act(self.poses, strand, points),
@@ -77,7 +77,12 @@ impl ActiveManipulator {
     }
 
     /// Where the tool is a tie that still gathers among `bodies`, lets hair slip through it; `read` writes into `points` those of a strand [m] in the world, by its lane.
-    pub fn slip(&mut self, bodies: &Bodies, points: &mut Vec<Vec3>, read: impl Fn(u32, &mut Vec<Vec3>)) {
+    pub fn slip(
+        &mut self,
+        bodies: &FrameColliders,
+        points: &mut Vec<Vec3>,
+        read: impl Fn(u32, &mut Vec<Vec3>),
+    ) {
         let Manipulator::Tie(tie) = &self.tool else { return };
         if !tie.settles(self.time) {
             return;

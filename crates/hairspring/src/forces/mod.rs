@@ -31,12 +31,9 @@ pub(crate) use strand_view::StrandView;
 pub(crate) use wind::WindSampler;
 
 use crate::{
-    collide::RigidTransform,
-    simulation::TilePlace,
-    strand::{
-        lanes::{LANES, Row},
-        tile::{RestRows, StateRows, StrandRows, anisotropic_drag, position_spring},
-    },
+    math::RigidTransform,
+    simd::lanes::{LANES, Row},
+    strand::tile::{RestRows, StateRows, StrandRows, TilePlace, anisotropic_drag, position_spring},
 };
 
 /// What acts on the points of all tiles in a frame; shapes `[points]` of all tiles, or empty where nothing of the kind is on.

@@ -2,11 +2,9 @@
 
 use super::FrameMotion;
 use crate::{
-    collide::RigidTransform,
-    strand::{
-        lanes::Row,
-        tile::{RestRows, StateRows, StrandRows, anisotropic_drag, position_spring, rest, state, strand},
-    },
+    math::RigidTransform,
+    simd::lanes::Row,
+    strand::tile::{RestRows, StateRows, StrandRows, anisotropic_drag, position_spring, rest, state, strand},
 };
 use glam::{Quat, Vec3};
 

@@ -1,6 +1,9 @@
 //! What the hair is made of: constants of the human fibre, and presets of style.
 
-use crate::forces::global_shape::GlobalShape;
+mod global_shape;
+
+pub use global_shape::GlobalShape;
+
 use serde::{Deserialize, Serialize};
 
 /// The fibre of one group of strands: physical constants, and dimensionless multipliers for the artist.

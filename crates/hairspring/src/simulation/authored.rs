@@ -4,7 +4,7 @@ use super::{Simulation, build::simulated_points};
 use crate::{
     collide::ColliderPose,
     material::Material,
-    strand::lanes::{LANES, Row},
+    simd::lanes::{LANES, Row},
 };
 use rayon::prelude::*;
 

@@ -1,17 +1,19 @@
 //! From a groom to tiles: rest shapes and the sag-free start.
 
-use super::{Simulation, TilePlace, layout::Order};
+use super::{Simulation, layout::Order};
+use crate::strand::tile::TilePlace;
 use crate::{
     air::{Noise, OcclusionSampler, WindOcclusion},
-    collide::{ColliderPose, RigidTransform},
+    collide::ColliderPose,
     forces::{ForceBuffers, HairField},
     groom::{Groom, StrandScale},
     material::{Material, Model},
-    scene::{Integrator, Solver},
+    math::RigidTransform,
+    settings::{Integrator, Solver},
+    simd::lanes::{LANES, Row},
     strand::{
         drag::{AIR_KINEMATIC_VISCOSITY, AIR_VISCOSITY},
         frame_context::FrameContext,
-        lanes::{LANES, Row},
         model::stretch::stiffening,
         rest_shape::{Fibre, RestShape, Start, rest_shape},
         tile::{

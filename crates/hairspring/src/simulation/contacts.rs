@@ -1,12 +1,12 @@
 //! What colliders hold out now: how many points and segments, with what force, and how many points had a collider looked up.
 
-use super::{MovingCollider, Simulation};
+use super::Simulation;
+use crate::collide::MovingCollider;
 use crate::{
-    collide::{ColliderShape, RigidTransform},
-    strand::{
-        lanes::LANES,
-        tile::{segment_contact, state},
-    },
+    collide::ColliderShape,
+    math::RigidTransform,
+    simd::lanes::LANES,
+    strand::tile::{segment_contact, state},
 };
 use glam::Vec3;
 use rayon::prelude::*;

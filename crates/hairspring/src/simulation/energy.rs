@@ -2,9 +2,9 @@
 
 use super::Simulation;
 use crate::{
-    scene::Integrator,
+    settings::Integrator,
+    simd::lanes::LANES,
     strand::{
-        lanes::LANES,
         model::{
             bend::{FOLDED, transport_normal},
             rod::{FOLDING, curved_joint},

@@ -18,9 +18,9 @@
 use super::Simulation;
 use crate::{
     collide::ColliderPose,
+    simd::lanes::LANES,
     strand::{
         drag::AIR_KINEMATIC_VISCOSITY,
-        lanes::LANES,
         tile::{rest, strand},
     },
 };

@@ -1,9 +1,10 @@
 //! What acts on points from outside in a frame: the hair volume first, then each effect.
 
-use super::{Bodies, Simulation, StepInput};
+use super::{Simulation, StepInput};
 use crate::{
-    collide::RigidTransform,
-    forces::{Charges, ForceMask, FrameMotion, StrandBatch, StrandView, WindSampler},
+    collide::FrameColliders,
+    forces::{Charges, ForceMask, FrameMotion, StrandBatch, StrandView, WindSampler, global_shape},
+    math::RigidTransform,
     strand::frame_context::FrameContext,
     volume::Now,
 };
@@ -34,7 +35,7 @@ impl Simulation {
         };
         self.forces.prepare(self.state.len(), kinds);
         let anchor = self.settings.anchor;
-        let bodies = Bodies::new((drive.obstacles, carried));
+        let bodies = FrameColliders::new((drive.obstacles, carried));
         let began = Instant::now();
         if let Some(volume) = self.volume.as_mut().filter(|_| pressed || occluded) {
             volume.begin_frame();
@@ -89,7 +90,7 @@ impl Simulation {
             let s = strand.strand;
             let group = groom.group(s) as usize;
             if let Some(global_shape) = of_group(shape_of, group).filter(|_| global_shapes) {
-                global_shape.add(groom.scale(s).global_shape, groom.strand(s), strand);
+                global_shape::apply(global_shape, groom.scale(s).global_shape, groom.strand(s), strand);
             }
             if charged {
                 charges.add(charge_of(s), strand);

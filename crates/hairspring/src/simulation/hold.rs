@@ -1,9 +1,9 @@
 //! What holds or pulls points from outside: pins, loads, clamped ends.
 
 use super::Simulation;
-use crate::strand::{
-    lanes::{LANES, Row},
-    tile::{Elastic, HoldRows, hold, state},
+use crate::{
+    simd::lanes::{LANES, Row},
+    strand::tile::{Elastic, HoldRows, hold, state},
 };
 use glam::Vec3;
 

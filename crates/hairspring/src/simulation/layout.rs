@@ -6,7 +6,8 @@
 
 use crate::{
     groom::{Curve, Groom},
-    strand::{lanes::LANES, tile::Elastic},
+    simd::lanes::LANES,
+    strand::tile::Elastic,
 };
 use std::cmp::Reverse;
 

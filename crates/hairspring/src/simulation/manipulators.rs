@@ -1,10 +1,11 @@
 //! Hands on the hair: tools that an app takes, moves and lets go of between steps.
 
-use super::{Bodies, Simulation};
+use super::Simulation;
+use crate::collide::FrameColliders;
 use crate::{
-    collide::RigidTransform,
     forces::{ActiveManipulator, Manipulator, bond::Bonds},
-    strand::lanes::LANES,
+    math::RigidTransform,
+    simd::lanes::LANES,
 };
 use glam::Vec3;
 
@@ -81,7 +82,7 @@ impl Simulation {
     }
 
     /// Tools that went along with carried hair start with it; hair slips through ties that gather.
-    pub(super) fn begin_tools(&mut self, bodies: &Bodies) {
+    pub(super) fn begin_tools(&mut self, bodies: &FrameColliders) {
         let mut tools = std::mem::take(&mut self.tools);
         for used in &mut tools.used {
             used.go_along();

@@ -1,12 +1,11 @@
 //! What a simulation is judged by: stretch, depth inside colliders, non-finite values.
 
-use super::{MovingCollider, Simulation};
+use super::Simulation;
+use crate::collide::MovingCollider;
 use crate::{
-    collide::RigidTransform,
-    strand::{
-        lanes::LANES,
-        tile::{rest, state},
-    },
+    math::RigidTransform,
+    simd::lanes::LANES,
+    strand::tile::{rest, state},
 };
 use glam::Vec3;
 use rayon::prelude::*;

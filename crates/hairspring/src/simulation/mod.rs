@@ -1,7 +1,6 @@
 //! Strands in motion: the state of all simulated strands, and one step of it.
 
 mod authored;
-mod bodies;
 mod build;
 mod contacts;
 mod energy;
@@ -22,28 +21,27 @@ mod teleport;
 mod values;
 mod volume;
 
-pub use crate::air::Air;
 pub use crate::strand::rest_shape::Start;
 pub use crate::strand_contact::NeighboursReport;
 pub use crate::volume::VolumeReport;
-pub(crate) use bodies::Bodies;
 pub use contacts::Contacts;
 pub use energy::Energy;
 pub use hold::Hold;
 pub use manipulators::ManipulatorId;
 pub use measure::Measure;
-pub use step::{MovingCollider, StepInput, StepReport, StepTimes};
-pub(crate) use substeps::PART;
+pub use step::{StepInput, StepReport, StepTimes};
+pub use substeps::MAX_TRAVEL;
 
 use crate::{
     air::{Noise, OcclusionSampler, WindOcclusion},
-    forces::{ForceBuffers, HairField, charge::ChargedBall, global_shape::GlobalShape},
+    forces::{ForceBuffers, HairField, charge::ChargedBall},
     groom::Groom,
+    material::GlobalShape,
+    simd::lanes::{LANES, Row},
     strand::{
         frame_context::FrameContext,
-        lanes::{LANES, Row},
         tile::{
-            Elastic, HistoryRows, HoldRows, RestRows, SegmentContactRows, StateRows, StrandRows, state,
+            HistoryRows, HoldRows, RestRows, SegmentContactRows, StateRows, StrandRows, TilePlace, state,
             strand,
         },
     },
@@ -124,21 +122,6 @@ pub struct Simulation {
     /// Lane of each simulated strand, in the order that the caller named them.
     places: Vec<u32>,
     start: Start,
-}
-
-/// Where a tile's points are.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TilePlace {
-    /// Index of its first point, counting the points of all tiles before it.
-    pub first: u32,
-    /// Points of its longest strand.
-    pub points: u32,
-    /// The elastic model of all its strands.
-    pub model: Elastic,
-    /// Whether any fibre is flat.
-    pub flat: bool,
-    /// Whether its strands are solved in double precision.
-    pub double: bool,
 }
 
 impl Simulation {

@@ -1,10 +1,7 @@
 //! Taking a pose without motion: every strand in its rest shape, carried by its root.
 
 use super::Simulation;
-use crate::{
-    collide::RigidTransform,
-    strand::{lanes::LANES, tile::strand},
-};
+use crate::{math::RigidTransform, simd::lanes::LANES, strand::tile::strand};
 
 impl Simulation {
     /// Puts every strand at rest in its authored shape at the given roots (world pose, rotation since rest), in the order

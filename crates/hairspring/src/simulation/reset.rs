@@ -1,10 +1,12 @@
 //! No NaN leaves a step: a strand that turned non-finite goes back to its rest shape, carried by its root.
 
 use super::{Simulation, build::simulated_points};
-use crate::strand::{
-    dispatch::dispatch,
-    lanes::{F, LANES, Row, Simd, load, store},
-    tile::{Elastic, StateRows, springs, state, strand},
+use crate::{
+    simd::{
+        dispatch::dispatch,
+        lanes::{F, LANES, Row, Simd, load, store},
+    },
+    strand::tile::{Elastic, StateRows, springs, state, strand},
 };
 use fearless_simd::Level;
 use glam::{Quat, Vec3};

@@ -1,19 +1,20 @@
 //! One step: a frame of root motion, cut into substeps, every tile through all of them.
 
-use super::{Bodies, Simulation, TilePlace, reset};
+use super::{Simulation, reset};
 use crate::{
     air::Air,
-    collide::{ColliderPose, ColliderShape, RigidTransform},
-    scene::{Integrator, Quality, Solver},
+    collide::{ColliderPose, FrameColliders, MovingCollider},
+    math::RigidTransform,
+    settings::{Integrator, Quality, Solver},
+    simd::lanes::{LANES, Row},
     strand::{
         frame_context::{FrameContext, Substep},
-        lanes::{LANES, Row},
         model::{curvature, rod, springs, straight},
         scratch::Memory,
         segment::segment_contact_unneeded,
         tile::{
             Elastic, HistoryRows, HoldRows, RestRows, SegmentContactRows, StateRows, StrandRows, Tile,
-            anisotropic_drag, position_spring, segment_contact, strand,
+            TilePlace, anisotropic_drag, position_spring, segment_contact, strand,
         },
     },
 };
@@ -33,40 +34,6 @@ pub struct StepInput<'a> {
     pub obstacles: &'a [MovingCollider],
     /// Moving air.
     pub air: Air<'a>,
-}
-
-/// A collider and its pose at the start and the end of a frame.
-#[derive(Clone)]
-pub struct MovingCollider {
-    /// The shape in its own space.
-    pub shape: ColliderShape,
-    /// Pose at the start.
-    pub start: RigidTransform,
-    /// Pose at the end.
-    pub end: RigidTransform,
-}
-
-impl MovingCollider {
-    /// A shape that stays at `pose`.
-    pub fn at_rest(shape: ColliderShape, pose: RigidTransform) -> Self {
-        Self { shape, start: pose, end: pose }
-    }
-
-    /// As it is at the end of the frame, having moved in all of it.
-    pub fn now(&self) -> ColliderPose {
-        ColliderPose::new(self.shape.clone(), self.start.matrix(), self.end.matrix(), 1.0)
-    }
-
-    /// Its start for hair that was carried along by `by` before the frame: the obstacle was too, or it was not, whichever leaves it less far to go.
-    pub(crate) fn start(&self, by: Option<&RigidTransform>) -> RigidTransform {
-        let Some(by) = by else { return self.start };
-        let carried = by.after(&self.start);
-        let far = |from: &RigidTransform| {
-            let turned = 1.0 - from.rotation.dot(self.end.rotation).abs();
-            from.translation.distance_squared(self.end.translation) + turned
-        };
-        if far(&carried) < far(&self.start) { carried } else { self.start }
-    }
 }
 
 /// What a step did.
@@ -147,7 +114,7 @@ impl Simulation {
             // What pressed segments is forgotten: nothing corrects it until they are looked at again.
             self.segment_contacts.fill([Row::default(); segment_contact::ROWS]);
         }
-        self.begin_tools(&Bodies::new((drive.obstacles, carried.as_ref())));
+        self.begin_tools(&FrameColliders::new((drive.obstacles, carried.as_ref())));
         let (reset_strands, times) = self.run_in_parts(drive, carried.as_ref(), &mut interval);
         self.rest_holds();
         self.rest_tools(drive.dt);

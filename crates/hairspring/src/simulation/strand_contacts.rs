@@ -1,11 +1,11 @@
 //! Strands that meet their neighbours one by one, between substeps.
 
 use super::Simulation;
+use crate::settings;
 use crate::{
-    scene,
+    simd::lanes::LANES,
     strand::{
         frame_context::FrameContext,
-        lanes::LANES,
         tile::{hold, rest, state, strand},
     },
     strand_contact::{Hair, Neighbours, NeighboursReport},
@@ -15,7 +15,7 @@ use std::collections::HashMap;
 
 impl Simulation {
     /// Lets strands meet each other one by one from now on, or no more. As they are now counts as their rest: nowhere are they thicker than there is room.
-    pub fn set_neighbours(&mut self, settings: &scene::Neighbours) {
+    pub fn set_neighbours(&mut self, settings: &settings::Neighbours) {
         let mut hair = Hair::default();
         if settings.on {
             let mut known = HashMap::new();

@@ -9,7 +9,7 @@ use super::{
     Simulation, StepInput,
     step::{LONGER, StepTimes},
 };
-use crate::{collide::RigidTransform, strand::frame_context::FrameContext};
+use crate::{math::RigidTransform, strand::frame_context::FrameContext};
 use std::time::Instant;
 
 /// The longest interval for which the volume's accelerations are frozen [s]. Tresses that swing into each other close in by a centimeter in it, about a cell.

@@ -15,13 +15,13 @@
 
 use super::{
     Simulation,
-    step::{MovingCollider, StepInput, substep_length},
+    step::{StepInput, substep_length},
 };
-use crate::{collide::RigidTransform, strand::tile::state};
+use crate::{collide::MovingCollider, math::RigidTransform, strand::tile::state};
 use rayon::prelude::*;
 
 /// Part of a body's half thickness that it may move by in a substep [1]: a strand that it presses is still on the side where it was met.
-pub(crate) const PART: f32 = 0.5;
+pub const MAX_TRAVEL: f32 = 0.5;
 
 /// The same of a body thinner than [`VERY_THIN`] [1].
 const PART_OF_THIN: f32 = 0.25;
@@ -59,7 +59,7 @@ impl Simulation {
             }
             let half = obstacle.shape.half_thickness();
             let very_thin = obstacle.shape.is_thin(VERY_THIN);
-            let (part, most) = if very_thin { (PART_OF_THIN, MOST_OF_SOLID) } else { (PART, MOST) };
+            let (part, most) = if very_thin { (PART_OF_THIN, MOST_OF_SOLID) } else { (MAX_TRAVEL, MOST) };
             let count = (way / (part * half).max(1e-12)).ceil().min(most);
             if count <= 1.0 {
                 continue;
@@ -90,7 +90,7 @@ impl Simulation {
         let (start, end) = (obstacle.start(carried), obstacle.end);
         let (center, radius) = shape.bounds();
         let center = start.point(center);
-        let part = (PART * shape.half_thickness()).max(1e-12);
+        let part = (MAX_TRAVEL * shape.half_thickness()).max(1e-12);
         let slow = part * drive.dt / substep_length(&self.settings.solver) as f32;
         let way_of_strand = |place: usize| {
             let mut x = self.root_position(place);

@@ -11,9 +11,9 @@
 
 use super::Simulation;
 use crate::{
-    scene::Integrator,
+    settings::Integrator,
+    simd::lanes::{LANES, Row},
     strand::{
-        lanes::{LANES, Row},
         model::bend::transport_normal,
         tile::{Elastic, history, rest, springs, state, strand},
         truss::{ASIDE, normal_of, side},

@@ -12,11 +12,9 @@
 use super::{Simulation, StepInput};
 use crate::{
     body::is_teleport,
-    collide::RigidTransform,
-    strand::{
-        lanes::Row,
-        tile::{Elastic, history, state},
-    },
+    math::RigidTransform,
+    simd::lanes::Row,
+    strand::tile::{Elastic, history, state},
 };
 use glam::{Mat3, Quat, Vec3};
 use rayon::prelude::*;

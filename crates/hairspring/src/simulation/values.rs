@@ -1,7 +1,10 @@
 //! What is known of a single point, by its strand (an index of those given to [`Simulation::new`]) and its number in it.
 
 use super::Simulation;
-use crate::strand::{lanes::LANES, tile::rest, tile::state};
+use crate::{
+    simd::lanes::LANES,
+    strand::tile::{rest, state},
+};
 use glam::{DVec3, Vec3};
 
 impl Simulation {

@@ -1,13 +1,12 @@
 //! The volume of the simulated strands: hair on hair, and hair that shelters from the wind.
 
 use super::Simulation;
+use crate::settings;
 use crate::{
     air::WindOcclusion,
-    scene::{self, VolumeMethod},
-    strand::{
-        lanes::{LANES, Row},
-        tile::rest,
-    },
+    settings::VolumeMethod,
+    simd::lanes::{LANES, Row},
+    strand::tile::rest,
     volume::{AtRest, Volume, VolumeReport},
 };
 
@@ -17,7 +16,7 @@ const SHELTER_CELL: f32 = 1.0 / 32.0;
 impl Simulation {
     /// Lets strands meet each other as a volume from now on, or no more. As they are now counts as their rest: how full each place is, and
     /// which part of the volume is whose.
-    pub fn set_volume(&mut self, settings: &scene::Volume) {
+    pub fn set_volume(&mut self, settings: &settings::Volume) {
         let mut mass = vec![Row::default(); self.rest.len()];
         let (mut segments, mut sum, mut longest) = (0_usize, 0.0_f64, 0.0_f32);
         // A strand weighs what the hairs weigh that it stands for; only what it is to the others' counts.
@@ -57,7 +56,7 @@ impl Simulation {
     pub fn set_wind_occlusion(&mut self, occlusion: &WindOcclusion) {
         self.wind_occlusion = *occlusion;
         if occlusion.is_on() && self.volume.is_none() {
-            self.set_volume(&scene::Volume::default());
+            self.set_volume(&settings::Volume::default());
         }
     }
 

@@ -20,7 +20,6 @@ use super::{
     drag::Drag,
     elements::{AssemblyCursor, Elements, PredictedState},
     external,
-    lanes::{F, Mask, Simd, Sym3, V3},
     model::Model,
     prefetch::prefetch_next_tile,
     root::Root,
@@ -29,6 +28,7 @@ use super::{
     tile::{Tile, history, state},
 };
 use crate::collide::ColliderPose;
+use crate::simd::lanes::{F, Mask, Simd, Sym3, V3};
 use glam::Vec3;
 
 /// One substep of one tile, as the assembly needs it.

@@ -12,11 +12,8 @@
 //! rather than by inverted blocks: it is a third fewer operations, because all of the symmetry is used. Golub & Van Loan, *Matrix
 //! Computations*, 4th ed., §4.1.2, §4.3.5. Which unknowns meet is said by a [`Profile`].
 
-use super::{
-    lanes::{F, Mask, Simd, Sym3, V3, Work, load, store},
-    profile::Profile,
-    system::System,
-};
+use super::{profile::Profile, system::System};
+use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, Work, load, store};
 use std::{
     ops::Range,
     sync::atomic::{Ordering, compiler_fence},

@@ -14,10 +14,10 @@
 //! solution is the same. Such a matrix has pivots of known sign in any order: Vanderbei 1995, *Symmetric Quasidefinite Matrices*.
 
 use super::{
-    lanes::{F, M3, Simd, Sym3, V3, Work, load, store},
     profile::Profile,
     system::{PendingRows, System},
 };
+use crate::simd::lanes::{F, M3, Simd, Sym3, V3, Work, load, store};
 
 /// A spring across all points of a window, where there are four.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Queries of colliders from the solve: in single precision, whatever the precision of the solve. A shape is known no better.
 
-use super::lanes::{F, Mask, Simd, V3};
 use crate::collide::{self, ColliderPose, DeepestPoint};
+use crate::simd::lanes::{F, Mask, Simd, V3};
 
 /// Which points, at `p` [m] in the world, may be inside the collider at the end of the substep.
 #[inline(always)]

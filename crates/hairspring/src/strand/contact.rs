@@ -21,12 +21,12 @@ use super::{
     assemble::SubstepContext,
     colliders::{contact, surface_displacement},
     friction::Friction,
-    lanes::{F, Simd, Sym3, V3, Work, load, store},
     model::stretch::STRETCH,
     system::System,
     tile::{Tile, rest, state},
 };
 use crate::collide::ColliderPose;
+use crate::simd::lanes::{F, Simd, Sym3, V3, Work, load, store};
 
 /// Rows of scratch a point, written where any of the eight is in contact.
 pub mod scratch {

@@ -20,10 +20,8 @@
 //!
 //! Each substep freezes k_n and k_t at the velocity at its start, so that drag stays linear in the velocity that is solved for.
 
-use super::{
-    lanes::{F, Simd, V3, load},
-    tile::{RestRows, StrandRows, rest, strand},
-};
+use super::tile::{RestRows, StrandRows, rest, strand};
+use crate::simd::lanes::{F, Simd, V3, load};
 use std::ops::{Add, Div, Mul};
 
 /// Kinematic viscosity ν of air at 20 °C [m²/s].
@@ -66,7 +64,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::validate::drag_coefficient;
+    use hairspring_validate::drag_coefficient;
 
     #[test]
     fn the_fit_is_within_3_percent_of_the_closed_form() {

@@ -3,7 +3,6 @@
 use super::{
     assemble::{Linearization, SubstepContext},
     band::Band,
-    lanes::{F, Simd, V3, Work, load},
     model::{
         At, Model,
         stretch::{SIDEWAYS_BDF2, Sideways, stretch},
@@ -14,6 +13,7 @@ use super::{
     system::System,
     tile::{Tile, rest, state},
 };
+use crate::simd::lanes::{F, Simd, V3, Work, load};
 
 /// The walk down a strand that fills the band: elasticity only.
 pub struct Elements<S: Simd, M, const B: usize, const N: usize> {

@@ -7,7 +7,6 @@ use super::{
     assemble::{Linearization, SubstepContext},
     contact::assemble_contact,
     elements::PredictedState,
-    lanes::{F, Simd, Sym3, V3, load},
     model::Model,
     scratch::Scratch,
     segment::assemble_segment_contact,
@@ -15,6 +14,7 @@ use super::{
     tether,
     tile::{Tile, anisotropic_drag, hold, position_spring, rest, segment_contact, state},
 };
+use crate::simd::lanes::{F, Simd, Sym3, V3, load};
 
 /// Stiffness of a hold in the matrix, over the mass in it [1]: a held point gives way by a millionth of what it would move.
 const HOLD: f32 = 1e6;

@@ -2,7 +2,7 @@
 
 use crate::{
     collide::ColliderPose,
-    scene::{Integrator, Response},
+    settings::{Integrator, Response},
 };
 use glam::{Mat3, Vec3};
 use std::ops::Range;

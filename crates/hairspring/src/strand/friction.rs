@@ -11,10 +11,8 @@
 //! of Canudas de Wit et al. 1995, *A New Model for Control of Systems with Friction*, and their v_s. A step at the speed that [`super::contact`] tells from
 //! rest, 5 µm/s, would let go whatever trembles.
 
-use super::{
-    lanes::{F, Simd, load},
-    tile::{StrandRows, strand},
-};
+use super::tile::{StrandRows, strand};
+use crate::simd::lanes::{F, Simd, load};
 
 /// v_s of the formula: the speed at which friction is halfway from static to kinetic [m/s].
 const SLIDES: f32 = 1e-3;

@@ -4,9 +4,7 @@
 use super::{
     assemble::{Linearization, SubstepContext},
     band::Band,
-    dispatch::{dispatch, dispatch_double},
     elements::Elements,
-    lanes::{F, LANES, Mask, Row, Simd, V3},
     model::{
         Model, Stretching,
         curvature::Curvature,
@@ -21,6 +19,10 @@ use super::{
     scratch::Memory,
     tests::{lane, rows, splat, vector},
     tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, springs, state, strand},
+};
+use crate::simd::{
+    dispatch::{dispatch, dispatch_double},
+    lanes::{F, LANES, Mask, Row, Simd, V3},
 };
 use fearless_simd::Level;
 use glam::{DVec3, Mat3, Vec3};

@@ -10,7 +10,6 @@ use super::{
     assemble::SubstepContext,
     colliders::{self, contact, segment_may_intersect, surface_displacement},
     friction::Friction,
-    lanes::{F, Mask, Simd, V3, load, store},
     scratch::Scratch,
     segment::{resolve_segment_contact, segment_tolerance},
     tether::{apply_lra, exceeds_lra},
@@ -18,6 +17,7 @@ use super::{
     truss::beside,
 };
 use crate::collide::STEEP;
+use crate::simd::lanes::{F, Mask, Simd, V3, load, store};
 
 /// What a substep leaves behind besides positions.
 pub struct PostSolveParams {

@@ -1,11 +1,11 @@
 //! What stays as it is for a whole exchange interval, worked out once: inverse masses and lengths, and the springs along the segments.
 
 use super::{
-    lanes::{F, Simd, Work, load, store},
     model::{Stretching, springs},
     scratch::Scratch,
     tile::{self, Elastic, Tile, hold, rest},
 };
+use crate::simd::lanes::{F, Simd, Work, load, store};
 
 /// What is known of one point of a tile for a whole interval.
 #[derive(Clone, Copy, Default)]

@@ -9,11 +9,11 @@
 //! The root and the second point are driven.
 
 use super::{
-    lanes::{F, Mask, Simd, V3, Work, load, store},
     precomputed::Precomputed,
     scratch::Scratch,
     tile::{Tile, rest, state, strand},
 };
+use crate::simd::lanes::{F, Mask, Simd, V3, Work, load, store};
 use scratch::{C, D};
 
 /// Rows of scratch a segment: the coefficient of the λ before it, and λ without that.

@@ -2,9 +2,9 @@
 
 use super::{
     frame_context::Substep,
-    lanes::{F, Q4, Simd, V3, load},
     tile::{StrandRows, strand},
 };
+use crate::simd::lanes::{F, Q4, Simd, V3, load, transform};
 use glam::{Mat3, Vec3};
 
 /// Root of eight strands at one time.
@@ -55,10 +55,4 @@ impl<S: Simd> Root<S> {
     pub fn fibre(simd: S, rows: &StrandRows) -> (F<S>, F<S>) {
         (load(simd, &rows[strand::DRAG]), load(simd, &rows[strand::DAMPING]))
     }
-}
-
-/// One matrix, the same for all lanes, times a vector of each.
-#[inline(always)]
-pub fn transform<S: Simd>(simd: S, m: &Mat3, v: V3<S>) -> V3<S> {
-    V3::splat(simd, m.x_axis) * v.x + V3::splat(simd, m.y_axis) * v.y + V3::splat(simd, m.z_axis) * v.z
 }

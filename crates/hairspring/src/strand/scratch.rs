@@ -2,13 +2,12 @@
 
 use super::{
     bordered, contact,
-    lanes::{Simd, V3, Work},
     precomputed::Precomputed,
     profile::Profile,
     project,
-    tile::StateRows,
-    tile::state,
+    tile::{StateRows, state},
 };
+use crate::simd::lanes::{Simd, V3, Work};
 
 /// Working memory of one thread, as large as the longest tile that it ran.
 #[derive(Default)]

@@ -18,15 +18,18 @@
 use super::{
     assemble::{Linearization, SubstepContext},
     colliders::{contact, find_deepest_point, segment_may_penetrate, surface_displacement},
-    contact::{STICK, Surface, nearest, scratch, scratch::SEGMENT},
+    contact::{
+        STICK, Surface, nearest,
+        scratch::{self, SEGMENT},
+    },
     friction::Friction,
-    lanes::{F, Mask, Simd, Sym3, V3, Work, load, store},
     model::stretch::STRETCH,
     post_solve::{CORRECTIONS, LIMIT, Particle, PostSolveParams, SegmentLimit, out_of},
     system::System,
     tile::{Tile, rest, segment_contact, state},
 };
 use crate::collide::{ColliderPose, DeepestPoint, Edges, STEEP, Side};
+use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, Work, load, store};
 use glam::Vec3;
 
 /// How deep a segment may be between its ends, over its length [1]. On a smooth body it is always a little inside: by L/8R of its length over a

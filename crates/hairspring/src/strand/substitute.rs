@@ -4,7 +4,6 @@ use super::{
     assemble::{Linearization, SubstepContext},
     band::back_substitute,
     contact::update_contact_multiplier,
-    lanes::{F, Simd, V3, load, store},
     model::{Model, Solved},
     profile::Profile,
     project::Projection,
@@ -12,6 +11,7 @@ use super::{
     segment::update_segment_contact_multiplier,
     tile::{Tile, rest, state},
 };
+use crate::simd::lanes::{F, Simd, V3, load, store};
 
 /// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took. Projection meets the new segments on it.
 #[inline(always)]

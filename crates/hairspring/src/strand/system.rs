@@ -1,9 +1,7 @@
 //! What elements add to: a part of the matrix and of the right-hand side, in the window that the walk is at or in memory ahead of it.
 
-use super::{
-    lanes::{F, M3, Simd, Sym3, V3, Work, load, store},
-    profile::Profile,
-};
+use super::profile::Profile;
+use crate::simd::lanes::{F, M3, Simd, Sym3, V3, Work, load, store};
 
 /// A part of the matrix and the right-hand side that elements add to, of eight strands: some points that follow each other, `B` unknowns each, of which the
 /// first three are its displacement. Upper triangle only: the first of two unknowns is never after the second.

@@ -4,8 +4,6 @@ use super::{
     assemble::{Linearization, SubstepContext, assemble},
     band::{Band, back_substitute},
     bordered::BorderedConstraint,
-    dispatch::{dispatch, dispatch_double},
-    lanes::{F, LANES, Mask, Row, Simd, V3, Work},
     model::{
         Stretching,
         altitude::altitude,
@@ -24,6 +22,10 @@ use super::{
     system::System,
     tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
     truss::ASIDE,
+};
+use crate::simd::{
+    dispatch::{dispatch, dispatch_double},
+    lanes::{F, LANES, Mask, Row, Simd, V3, Work},
 };
 use fearless_simd::Level;
 use glam::{DVec3, Mat3, Vec3};

@@ -11,12 +11,12 @@
 
 use super::{
     assemble::SubstepContext,
-    lanes::{F, Mask, Simd, Sym3, V3, load},
     model::stretch::STRETCH,
     post_solve::{Particle, SegmentLimit},
     system::System,
     tile::{Tile, rest},
 };
+use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, load};
 
 /// How far a spring may let a point be beyond its tether, over the tether's length [1].
 const SLACK: f32 = 1e-3;

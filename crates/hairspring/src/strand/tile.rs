@@ -4,7 +4,7 @@
 //! Strands of different point counts share a tile when neighbours in the order of counts; the shorter ones are padded
 //! with points of rest length zero, which lie on the tip and carry no force.
 
-use super::lanes::Row;
+use crate::simd::lanes::Row;
 
 /// Rows of state a point.
 pub mod state {
@@ -276,4 +276,19 @@ impl Elastic {
     pub fn driven(self) -> usize {
         self.stride() + 1
     }
+}
+
+/// Where a tile's points are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TilePlace {
+    /// Index of its first point, counting the points of all tiles before it.
+    pub first: u32,
+    /// Points of its longest strand.
+    pub points: u32,
+    /// The elastic model of all its strands.
+    pub model: Elastic,
+    /// Whether any fibre is flat.
+    pub flat: bool,
+    /// Whether its strands are solved in double precision.
+    pub double: bool,
 }

@@ -16,13 +16,13 @@
 //! root, three tensions balance what pulls on each particle, and the rest lengths that give them follow.
 
 use super::{
-    lanes::{F, Simd, V3},
     model::{
         bend::transport_normal,
         springs::{BEND, Progressive, TORSION},
     },
     rest_shape::{Fibre, RestPoint, RestShape, Start, fine, rest_shape},
 };
+use crate::simd::lanes::{F, Simd, V3};
 use glam::{DMat3, DVec3, Vec3};
 
 /// How far an extra particle is set aside over the length of its segment, ε [1]. The farther, the more digits single precision has for

@@ -42,7 +42,7 @@ mod tests;
 
 pub(crate) use hair::Hair;
 
-use crate::scene;
+use crate::settings;
 use along::Along;
 use contact::{Contact, ContactResponse, SolverParams};
 use glam::{Mat3, Quat, Vec3};
@@ -56,7 +56,7 @@ const MOST_CONTACTS: usize = 16;
 
 /// Strands that meet each other one by one: what is known of their contacts, and memory.
 pub(crate) struct Neighbours {
-    settings: scene::Neighbours,
+    settings: settings::Neighbours,
     /// The largest radius of a segment [m].
     radius: f32,
     /// See [`NeighboursReport::crowded`].
@@ -96,7 +96,7 @@ pub struct NeighboursReport {
 
 impl Neighbours {
     /// Strands as they are at rest in `hair`; `None` where they are not to meet, or there are not two.
-    pub fn new(settings: &scene::Neighbours, mut hair: Hair) -> Option<Self> {
+    pub fn new(settings: &settings::Neighbours, mut hair: Hair) -> Option<Self> {
         if !settings.on || hair.shown_count() < 2 {
             return None;
         }

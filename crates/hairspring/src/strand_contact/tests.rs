@@ -1,7 +1,7 @@
 //! Two promises of impulses, on hair in the air: they keep momentum, and pairs are all that are near.
 
 use super::{Neighbours, along::Along, closest::closest, grid::Grid, hair::Hair};
-use crate::scene;
+use crate::settings;
 use glam::{DVec3, Vec3};
 
 /// Strands in a heap, of points of 60 µg and more, all free.
@@ -39,7 +39,7 @@ fn momentum_is_kept() {
     let before = (momentum(&hair), hair.v.clone());
     let segments = hair.segments().count();
     let mut neighbours = Neighbours {
-        settings: scene::Neighbours { on: true, stiction: 1e-6, ..Default::default() },
+        settings: settings::Neighbours { on: true, stiction: 1e-6, ..Default::default() },
         radius: 0.001,
         crowded: 0,
         grid: Grid::new(segments),

@@ -4,12 +4,12 @@ use super::{
     crossing::Crossing,
     field::{BRAKE, Field, PUSH},
 };
-use crate::scene;
+use crate::settings;
 use glam::Vec3;
 use rayon::prelude::*;
 
 /// β of full cells for intervals of `dt` [s] [1/s].
-pub fn friction(settings: &scene::Volume, dt: f32) -> f32 {
+pub fn friction(settings: &settings::Volume, dt: f32) -> f32 {
     -(-settings.friction * dt).exp_m1() / dt
 }
 

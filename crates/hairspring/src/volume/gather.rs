@@ -5,9 +5,9 @@ use super::{
     grid_bounds::{GridBounds, GridTransform, Placed},
     splat::Tiles,
 };
-use crate::strand::{
-    lanes::{LANES, Row},
-    tile::state,
+use crate::{
+    simd::lanes::{LANES, Row},
+    strand::tile::state,
 };
 
 /// Tiles that one task runs.

@@ -4,11 +4,9 @@
 //! measured at rest can be told cell by cell. A cell has the index of its lowest corner, a node of the lattice.
 
 use crate::{
-    collide::RigidTransform,
-    strand::{
-        lanes::{LANES, Row},
-        tile::{StateRows, StrandRows, state, strand},
-    },
+    math::RigidTransform,
+    simd::lanes::{LANES, Row},
+    strand::tile::{StateRows, StrandRows, state, strand},
 };
 use glam::{IVec3, Mat3, Vec3};
 

@@ -46,12 +46,11 @@ mod splat;
 mod tests;
 
 use crate::{
-    collide::{ColliderPose, RigidTransform},
-    scene::{self, VolumeMethod},
-    strand::{
-        lanes::Row,
-        tile::{StateRows, StrandRows},
-    },
+    collide::ColliderPose,
+    math::RigidTransform,
+    settings::{self, VolumeMethod},
+    simd::lanes::Row,
+    strand::tile::{StateRows, StrandRows},
 };
 use brakes::fill_push;
 use crossing::Crossing;
@@ -78,7 +77,7 @@ const MOST_GRIDS: usize = 8;
 
 /// The hair volume of some simulated strands: what is known of their rest, and memory.
 pub(crate) struct Volume {
-    settings: scene::Volume,
+    settings: settings::Volume,
     /// Edge of a cell [m].
     cell: f32,
     /// Whether the cell is larger than was asked for, so that their number stays bounded.
@@ -154,7 +153,7 @@ pub(crate) struct AtRest<'a> {
 
 impl Volume {
     /// The volume of strands at rest; `None` where there is nothing to it, or where it is off and not to be `measured` either.
-    pub fn new(settings: &scene::Volume, measured: bool, at: AtRest) -> Option<Self> {
+    pub fn new(settings: &settings::Volume, measured: bool, at: AtRest) -> Option<Self> {
         let largest = at.mass.iter().flat_map(|m| m.0).fold(0.0, f32::max);
         if (settings.method == VolumeMethod::Off && !measured) || largest <= 0.0 {
             return None;

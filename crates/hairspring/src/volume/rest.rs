@@ -6,11 +6,9 @@ use super::{
     splat::{Extent, OwnRows, ROOM, Sums, Tiles, Units, own},
 };
 use crate::{
-    collide::RigidTransform,
-    strand::{
-        lanes::LANES,
-        tile::{StateRows, StrandRows},
-    },
+    math::RigidTransform,
+    simd::lanes::LANES,
+    strand::tile::{StateRows, StrandRows},
 };
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! The lattice of a frame, read at any place.
 
 use super::{field::Field, grid_bounds::GridBounds};
-use crate::collide::RigidTransform;
+use crate::math::RigidTransform;
 use glam::Vec3;
 
 /// How full of hair every place is.

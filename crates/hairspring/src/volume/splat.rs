@@ -3,9 +3,9 @@
 //! Sums are whole numbers, so that they have the same bits in any order, and each thread may have a grid of its own.
 
 use super::grid_bounds::{GridBounds, GridTransform, Placed, nearest};
-use crate::strand::{
-    lanes::{LANES, Row},
-    tile::{StateRows, StrandRows, state},
+use crate::{
+    simd::lanes::{LANES, Row},
+    strand::tile::{StateRows, StrandRows, state},
 };
 use glam::{IVec3, Vec3};
 

@@ -2,13 +2,12 @@
 //! what is squeezed apart, and leaves no divergence where hair is full.
 
 use super::{AtRest, Now, Volume, conjugate::TOLERANCE, field::Field, incompressible::Projection};
+use crate::settings;
 use crate::{
-    collide::RigidTransform,
-    scene::{self, VolumeMethod},
-    strand::{
-        lanes::{LANES, Row},
-        tile::{StateRows, StrandRows, state, strand},
-    },
+    math::RigidTransform,
+    settings::VolumeMethod,
+    simd::lanes::{LANES, Row},
+    strand::tile::{StateRows, StrandRows, state, strand},
 };
 use glam::{Quat, Vec3};
 
@@ -90,7 +89,7 @@ impl Bundle {
             segment: APART,
             length: APART * POINTS as f32,
         };
-        Volume::new(&scene::Volume { method, ..scene::Volume::default() }, false, at).unwrap()
+        Volume::new(&settings::Volume { method, ..settings::Volume::default() }, false, at).unwrap()
     }
 
     /// The accelerations that it gets, of all points.

@@ -8,10 +8,10 @@
 
 use super::outside;
 use crate::{
-    scene::Integrator,
+    settings::Integrator,
+    simd::lanes::{F, Simd, V3, load},
     strand::{
         assemble::{SubstepContext, forces},
-        lanes::{F, Simd, V3, load},
         model::Model,
         scratch::Scratch,
         tile::{Tile, state},

@@ -10,10 +10,10 @@
 
 use super::outside;
 use crate::{
-    scene::Integrator,
+    settings::Integrator,
+    simd::lanes::{F, Simd, V3, load},
     strand::{
         assemble::SubstepContext,
-        lanes::{F, Simd, V3, load},
         scratch::Scratch,
         tile::{Elastic, Tile, rest, state},
         truss::beside,

@@ -1,15 +1,17 @@
 //! Backward Euler and BDF2: one banded solve, linearised at the start of the substep (Baraff & Witkin 1998), then fast projection;
 //! or, for high quality, Newton iterations with a line search.
 
-use crate::strand::{
-    assemble::{Linearization, SubstepContext, assemble},
-    frame_context::FrameContext,
-    lanes::{F, Simd, V3, load},
-    model::Model,
-    project::Projection,
-    scratch::Scratch,
-    substitute::substitute,
-    tile::{Tile, rest, strand},
+use crate::{
+    simd::lanes::{F, Simd, V3, load},
+    strand::{
+        assemble::{Linearization, SubstepContext, assemble},
+        frame_context::FrameContext,
+        model::Model,
+        project::Projection,
+        scratch::Scratch,
+        substitute::substitute,
+        tile::{Tile, rest, strand},
+    },
 };
 
 /// Leaves the new edges in `scratch.edges`.

@@ -9,15 +9,17 @@
 //! half-bandwidth 2, and the same for a whole interval: it is factored once. Solved for the change of x, which keeps its digits in f32.
 
 use super::outside;
-use crate::strand::{
-    assemble::SubstepContext,
-    band::Band,
-    lanes::{F, Simd, V3, Work, load},
-    model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
-    profile::Profile,
-    scratch::Scratch,
-    system::System,
-    tile::{Tile, rest, state},
+use crate::{
+    simd::lanes::{F, Simd, V3, Work, load},
+    strand::{
+        assemble::SubstepContext,
+        band::Band,
+        model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
+        profile::Profile,
+        scratch::Scratch,
+        system::System,
+        tile::{Tile, rest, state},
+    },
 };
 
 /// All of a window meets.

@@ -11,7 +11,6 @@ use super::{
     assemble::SubstepContext,
     drag::Drag,
     frame_context::FrameContext,
-    lanes::{F, Mask, Simd, V3, load, store},
     model::{Model, Stretching},
     post_solve::{LIMIT, PostSolveParams, post_solve},
     precomputed::precompute,
@@ -19,9 +18,10 @@ use super::{
     scratch::Memory,
     tile::{Tile, anisotropic_drag, position_spring, rest, segment_contact, state},
 };
+use crate::simd::lanes::{F, Mask, Simd, V3, load, store};
 use crate::{
     collide::ColliderPose,
-    scene::{Integrator, Response},
+    settings::{Integrator, Response},
 };
 
 /// The substeps of `interval` that are to be run now, for one tile.

@@ -1,12 +1,14 @@
 //! The altitude springs of the springs model, along the shortest height of the tetrahedron of four neighbours, where it is flattened: Selle, Lentine, Fedkiw 2008,
 //! *A Mass Spring Model for Hair Simulation*, §3; where we deviate is said in [`springs`](super::springs).
 
-use crate::strand::{
-    bordered::BorderedConstraint,
-    lanes::{F, Mask, Row, Simd, V3, load},
-    root::Root,
-    scratch::Scratch,
-    tile::{Tile, springs, state},
+use crate::{
+    simd::lanes::{F, Mask, Row, Simd, V3, load},
+    strand::{
+        bordered::BorderedConstraint,
+        root::Root,
+        scratch::Scratch,
+        tile::{Tile, springs, state},
+    },
 };
 
 /// Volume over the rest volume below which an altitude spring acts [1].

@@ -17,7 +17,7 @@
 //! and the Gauss–Newton matrix B JᵀJ is positive semi-definite whatever the strain (cf. Choi & Ko 2002).
 
 use super::joint::Joint;
-use crate::strand::lanes::{F, M3, Simd, Sym3, V3};
+use crate::simd::lanes::{F, M3, Simd, Sym3, V3};
 use glam::DVec3;
 
 /// A joint that bends.

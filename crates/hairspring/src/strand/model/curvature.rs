@@ -4,16 +4,20 @@ use super::{
     At, Model, Solved,
     bend::{bend, transport},
 };
-use crate::strand::{
-    band::Band,
-    dispatch::{dispatch, dispatch_double},
-    frame_context::FrameContext,
-    integrate::run_tile,
-    lanes::{Simd, V3, load},
-    precomputed::Precomputed,
-    root::Root,
-    scratch::{Memory, Scratch},
-    tile::{Tile, rest},
+use crate::{
+    simd::{
+        dispatch::{dispatch, dispatch_double},
+        lanes::{Simd, V3, load},
+    },
+    strand::{
+        band::Band,
+        frame_context::FrameContext,
+        integrate::run_tile,
+        precomputed::Precomputed,
+        root::Root,
+        scratch::{Memory, Scratch},
+        tile::{Tile, rest},
+    },
 };
 use fearless_simd::Level;
 

@@ -8,10 +8,9 @@
 //!  x₂ [   ·      ·         H₁₁    ]
 //! ```
 
-use crate::strand::{
-    band::Band,
-    lanes::{F, M3, Simd, Sym3, V3},
-    system::System,
+use crate::{
+    simd::lanes::{F, M3, Simd, Sym3, V3},
+    strand::{band::Band, system::System},
 };
 
 /// Forces and stiffness of a joint, by its segments.

@@ -21,15 +21,10 @@ pub mod stretch;
 pub use stretch::Stretching;
 
 use super::{
-    band::Band,
-    bordered::BorderedConstraint,
-    lanes::{F, Simd, V3},
-    precomputed::Precomputed,
-    profile::Profile,
-    root::Root,
-    scratch::Scratch,
-    tile::Tile,
+    band::Band, bordered::BorderedConstraint, precomputed::Precomputed, profile::Profile, root::Root,
+    scratch::Scratch, tile::Tile,
 };
+use crate::simd::lanes::{F, Simd, V3};
 
 /// What is known where the elements that begin at point `i` are added: segments i and i+1 around joint i+1.
 #[derive(Clone, Copy)]

@@ -26,17 +26,21 @@ use super::{
     bend::{Bend, FOLDED, bend, transport},
     curvature::turn_in_frame,
 };
-use crate::strand::{
-    band::Band,
-    dispatch::{dispatch, dispatch_double},
-    frame_context::FrameContext,
-    integrate::run_tile,
-    lanes::{F, Simd, V3, load},
-    precomputed::Precomputed,
-    root::Root,
-    scratch::{Memory, Scratch},
-    system::System,
-    tile::{Tile, rest, state, strand},
+use crate::{
+    simd::{
+        dispatch::{dispatch, dispatch_double},
+        lanes::{F, Simd, V3, load},
+    },
+    strand::{
+        band::Band,
+        frame_context::FrameContext,
+        integrate::run_tile,
+        precomputed::Precomputed,
+        root::Root,
+        scratch::{Memory, Scratch},
+        system::System,
+        tile::{Tile, rest, state, strand},
+    },
 };
 use fearless_simd::Level;
 

@@ -18,19 +18,23 @@ use super::{
     At, Model, Solved,
     altitude::{self, after, flattened},
 };
-use crate::strand::{
-    band::Band,
-    bordered::BorderedConstraint,
-    dispatch::dispatch,
-    frame_context::FrameContext,
-    integrate::run_tile,
-    lanes::{F, Simd, Sym3, V3, load, store},
-    precomputed::Precomputed,
-    profile::Profile,
-    root::Root,
-    scratch::{Memory, Scratch},
-    system::System,
-    tile::{Tile, springs, state, strand},
+use crate::{
+    simd::{
+        dispatch::dispatch,
+        lanes::{F, Simd, Sym3, V3, load, store},
+    },
+    strand::{
+        band::Band,
+        bordered::BorderedConstraint,
+        frame_context::FrameContext,
+        integrate::run_tile,
+        precomputed::Precomputed,
+        profile::Profile,
+        root::Root,
+        scratch::{Memory, Scratch},
+        system::System,
+        tile::{Tile, springs, state, strand},
+    },
 };
 use fearless_simd::Level;
 

@@ -1,18 +1,22 @@
 //! The curvature model for strands that are straight at rest: no rest turn, so no frame, and blocks that are multiples of the identity.
 
 use super::{At, Model, Solved};
-use crate::strand::{
-    band::Band,
-    dispatch::{dispatch, dispatch_double},
-    frame_context::FrameContext,
-    integrate::run_tile,
-    lanes::{Simd, load},
-    precomputed::Precomputed,
-    profile::Profile,
-    root::Root,
-    scratch::{Memory, Scratch},
-    system::System,
-    tile::{Tile, rest},
+use crate::{
+    simd::{
+        dispatch::{dispatch, dispatch_double},
+        lanes::{Simd, load},
+    },
+    strand::{
+        band::Band,
+        frame_context::FrameContext,
+        integrate::run_tile,
+        precomputed::Precomputed,
+        profile::Profile,
+        root::Root,
+        scratch::{Memory, Scratch},
+        system::System,
+        tile::{Tile, rest},
+    },
 };
 use fearless_simd::Level;
 

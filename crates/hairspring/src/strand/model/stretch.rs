@@ -8,9 +8,9 @@
 //! EA/L, which is a hundred times more: one linearised solve is not stable there, and the projection that follows
 //! makes the segment inextensible all the same.
 
-use crate::strand::{
-    lanes::{F, Mask, Simd, Sym3, V3, load},
-    tile::{Tile, rest, strand},
+use crate::{
+    simd::lanes::{F, Mask, Simd, Sym3, V3, load},
+    strand::tile::{Tile, rest, strand},
 };
 
 /// Stiffness of the segments' springs.

@@ -1,0 +1,98 @@
+//! The built-in scene: a bust with a full head of hair that nods, turns and shakes. Made by code, no file needed.
+
+mod borders;
+mod brows;
+mod bust;
+mod field;
+mod groom;
+mod grow;
+mod hand;
+mod motion;
+mod nets;
+mod random;
+mod roots;
+mod sdf;
+mod shape;
+mod style;
+
+pub use bust::head;
+pub use hand::{Hand, hand};
+pub use style::Style;
+
+use super::{Camera, Guides, HairLook, Scene, SceneGroom};
+use glam::vec3;
+use hairspring::material::Material;
+
+/// What to build.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BuiltinOptions {
+    /// Hairs on the scalp. Default 100,000: a human head.
+    pub strands: u32,
+    /// Points of each hair, 3 or more. Default: [`Style::points`].
+    pub points: u32,
+    /// The hairstyle. Default wavy.
+    pub style: Style,
+    /// Which of many heads of hair of this style. Default 1.
+    pub seed: u32,
+    /// Which hairs are simulated. Default 2,000 of them.
+    pub guides: Guides,
+}
+
+impl BuiltinOptions {
+    /// The defaults for a style.
+    pub fn new(style: Style) -> Self {
+        Self { strands: 100_000, points: style.points(), style, seed: 1, guides: Guides::Count(2_000) }
+    }
+}
+
+impl Default for BuiltinOptions {
+    fn default() -> Self {
+        Self::new(Style::default())
+    }
+}
+
+/// Builds the scene: the same bits for the same options, whatever the number of threads.
+pub fn scene(options: &BuiltinOptions) -> Scene {
+    let (body, collision) = rayon::join(bust::drawn, bust::collision);
+    let (strands, points) = (options.strands as usize, options.points.max(3) as usize);
+    let mut scene = settings(options);
+    scene.grooms[0].groom = groom::groom(&body.mesh, &options.style.cut(), strands, points, options.seed);
+    scene.grooms[1].groom = brows::groom(options.seed);
+    scene.clip = Some(motion::clip(&body));
+    (scene.body, scene.collision) = (Some(body), Some(collision));
+    scene
+}
+
+/// The scene without its geometry, at once: its grooms, the head of hair and the brows and lashes, have no strands, and there is no body.
+pub fn settings(options: &BuiltinOptions) -> Scene {
+    let hair = SceneGroom {
+        materials: vec![options.style.material()],
+        guides: options.guides,
+        look: options.style.look(),
+        ..SceneGroom::default()
+    };
+    let face_hair = SceneGroom {
+        materials: vec![Material::default()],
+        guides: Guides::All,
+        look: HairLook {
+            root_color: vec3(0.02, 0.012, 0.008),
+            tip_color: vec3(0.03, 0.018, 0.012),
+            ..HairLook::default()
+        },
+        ..SceneGroom::default()
+    };
+    Scene {
+        name: format!("built-in, {}", options.style.name()),
+        grooms: vec![hair, face_hair],
+        gravity: vec3(0.0, -9.81, 0.0),
+        camera: Some(camera(options.style)),
+        ..Scene::default()
+    }
+}
+
+/// A portrait: three quarters from her left, a little above the eyes, from where a face is not foreshortened.
+fn camera(style: Style) -> Camera {
+    // A halo stands higher than hair that falls.
+    let (height, fov) = if style == Style::Coily { (-0.01, 21.0) } else { (-0.06, 18.0) };
+    Camera { position: vec3(0.60, 0.05, 1.28), target: vec3(0.0, height, -0.005), fov }
+}

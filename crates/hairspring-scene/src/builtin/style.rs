@@ -1,0 +1,171 @@
+//! The hairstyles: what makes one differ from another, in numbers.
+
+use crate::{HairColor, HairLook};
+use hairspring::material::{self, Material};
+
+/// A hairstyle of the built-in scene, one for each of [`material::PRESETS`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Style {
+    /// Sleek and long, to the shoulder blades.
+    Straight,
+    /// Below the shoulders in loose waves. The default.
+    #[default]
+    Wavy,
+    /// Ringlets to the shoulders.
+    Curly,
+    /// A round halo of tight coils.
+    Coily,
+    /// A short coat, combed to the sides.
+    ShortFur,
+}
+
+/// The shape of a style. Lengths in metres.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut {
+    /// Length of hair from the parting to the tip, along its gentle course [m].
+    pub length: f32,
+    /// How much shorter hair is for each metre that its root lies farther from the parting: 1 lets all tips end level.
+    pub level: f32,
+    /// Shortest hair [m].
+    pub shortest: f32,
+    /// Height of the outermost layer over the skull [m].
+    pub volume: f32,
+    /// Length of hair over which it rises to its layer [m].
+    pub rise: f32,
+    /// How steeply hair leaves the skin, 0 (flat) to 1 (straight out).
+    pub lift: f32,
+    /// How much hair keeps growing outward rather than falling, 0 (falls) to 1 (stands).
+    pub stand: f32,
+    /// Radius of the waves [m].
+    pub wave: f32,
+    /// Length of one wave along the hair's course [m].
+    pub wave_length: f32,
+    /// Depth of the waves over their width: 0 flat waves, 1 round coils.
+    pub roundness: f32,
+    /// How strongly hairs gather in locks towards their tips, 0 to 1.
+    pub clump: f32,
+    /// Spread of single hairs about their lock [m].
+    pub frizz: f32,
+    /// Points of a hair that show the style well.
+    pub points: u32,
+}
+
+impl Style {
+    /// All styles, in the order of [`material::PRESETS`].
+    pub const ALL: [Style; 5] = [Style::Straight, Style::Wavy, Style::Curly, Style::Coily, Style::ShortFur];
+
+    /// Its name, one of [`material::PRESETS`].
+    pub fn name(self) -> &'static str {
+        material::PRESETS[self as usize]
+    }
+
+    /// The style of this name; `None` for any other than [`material::PRESETS`].
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|s| s.name() == name)
+    }
+
+    /// Its fibre: the preset of the same name.
+    pub fn material(self) -> Material {
+        material::preset(self.name()).unwrap_or_default()
+    }
+
+    /// Points of a hair that show it well: straight hair needs few, coils several a turn.
+    pub fn points(self) -> u32 {
+        self.cut().points
+    }
+
+    /// Its shape.
+    pub(super) fn cut(self) -> Cut {
+        let wavy = Cut {
+            length: 0.40,
+            level: 0.9,
+            shortest: 0.12,
+            volume: 0.016,
+            rise: 0.09,
+            lift: 0.35,
+            stand: 0.0,
+            wave: 0.012,
+            wave_length: 0.075,
+            roundness: 0.5,
+            clump: 0.82,
+            frizz: 0.0012,
+            points: 32,
+        };
+        match self {
+            Style::Straight => Cut {
+                length: 0.42,
+                volume: 0.014,
+                lift: 0.25,
+                wave: 0.0012,
+                wave_length: 0.16,
+                clump: 0.45,
+                frizz: 0.0008,
+                ..wavy
+            },
+            Style::Wavy => wavy,
+            Style::Curly => Cut {
+                length: 0.33,
+                level: 0.8,
+                volume: 0.024,
+                lift: 0.45,
+                stand: 0.1,
+                wave: 0.0105,
+                wave_length: 0.042,
+                roundness: 0.9,
+                clump: 0.92,
+                frizz: 0.0010,
+                points: 64,
+                ..wavy
+            },
+            Style::Coily => Cut {
+                length: 0.105,
+                level: 0.12,
+                shortest: 0.06,
+                volume: 0.0,
+                rise: 0.09,
+                lift: 0.9,
+                stand: 0.93,
+                wave: 0.0038,
+                wave_length: 0.011,
+                roundness: 1.0,
+                clump: 0.55,
+                frizz: 0.0022,
+                points: 64,
+            },
+            Style::ShortFur => Cut {
+                length: 0.030,
+                level: 0.09,
+                shortest: 0.012,
+                volume: 0.004,
+                rise: 0.02,
+                lift: 0.55,
+                stand: 0.25,
+                wave: 0.0006,
+                wave_length: 0.03,
+                roundness: 0.5,
+                clump: 0.35,
+                frizz: 0.0008,
+                points: 12,
+            },
+        }
+    }
+
+    /// Its colour.
+    pub(super) fn look(self) -> HairLook {
+        HairLook::from(match self {
+            Style::Straight => HairColor::DarkBrown,
+            Style::Wavy => HairColor::Brown,
+            Style::Curly => HairColor::Red,
+            Style::Coily => HairColor::Black,
+            Style::ShortFur => HairColor::Blonde,
+        })
+    }
+}
+
+impl Cut {
+    /// Distance between the points of a hair's course while it grows [m]: short against its length, the skull's radius
+    /// and its waves.
+    pub fn step(&self) -> f32 {
+        (self.length / 48.0).min(self.wave_length / 8.0).min(0.007)
+    }
+}

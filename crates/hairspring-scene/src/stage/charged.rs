@@ -1,0 +1,89 @@
+//! The scene's charged bodies, where they are now.
+
+use glam::Vec3;
+use hairspring::{
+    collide::{ColliderShape, MovingCollider},
+    forces::charge::{Charged, ChargedBall},
+    math::RigidTransform,
+};
+
+/// Charged bodies in motion.
+#[derive(Default)]
+pub(super) struct StagedCharged {
+    /// The joint that carries each; `None`: fixed.
+    joints: Vec<Option<usize>>,
+    balls: Vec<ChargedBall>,
+}
+
+impl StagedCharged {
+    /// At rest, each carried by one of `joints`.
+    pub(super) fn new(settings: &[Charged], joints: Vec<Option<usize>>) -> Self {
+        let balls = settings.iter().map(|c| ChargedBall {
+            radius: c.radius,
+            charge: c.charge,
+            ..ChargedBall::default()
+        });
+        Self { joints, balls: balls.collect() }
+    }
+
+    /// The solid ones, in their order, for hair to collide with.
+    pub(super) fn obstacles(&self, settings: &[Charged]) -> Vec<MovingCollider> {
+        let solid = settings.iter().filter(|c| c.solid);
+        let ball = |c: &Charged| {
+            let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: c.radius };
+            MovingCollider::at_rest(shape, RigidTransform::default())
+        };
+        solid.map(ball).collect()
+    }
+
+    /// A new frame begins where the last one ended.
+    pub(super) fn rest(&mut self) {
+        for ball in &mut self.balls {
+            ball.centers[0] = ball.centers[1];
+        }
+    }
+
+    /// Takes those on joints that are cut, and the `obstacles` of the solid ones, to where `by` says that the cut takes the joint: they start the frame there.
+    pub(super) fn cut(
+        &mut self,
+        settings: &[Charged],
+        by: impl Fn(usize) -> Option<RigidTransform>,
+        obstacles: &mut [MovingCollider],
+    ) {
+        let mut obstacles = obstacles.iter_mut();
+        for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
+            let obstacle = if charged.solid { obstacles.next() } else { None };
+            let Some(by) = joint.and_then(&by) else { continue };
+            ball.centers[0] = by.point(ball.centers[0]);
+            if let Some(obstacle) = obstacle {
+                obstacle.start = by.after(&obstacle.start);
+            }
+        }
+    }
+
+    /// Puts them, and the `obstacles` of the solid ones, where they are at the end of a frame, at `time` [s]; `carried` tells where a joint has taken what
+    /// it carries.
+    pub(super) fn advance(
+        &mut self,
+        settings: &[Charged],
+        time: f64,
+        carried: impl Fn(Option<usize>) -> RigidTransform,
+        obstacles: &mut [MovingCollider],
+    ) {
+        let mut obstacles = obstacles.iter_mut();
+        for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
+            let pose = carried(*joint);
+            ball.centers[1] = pose.point(charged.center(time));
+            if charged.solid
+                && let Some(obstacle) = obstacles.next()
+            {
+                obstacle.end = RigidTransform { translation: ball.centers[1], ..pose };
+            }
+        }
+    }
+
+    /// All of them, from the start to the end of the last frame.
+    pub(super) fn balls(&self) -> &[ChargedBall] {
+        &self.balls
+    }
+}

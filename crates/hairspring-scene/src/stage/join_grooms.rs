@@ -1,0 +1,53 @@
+//! The simulated strands of all grooms, simulated together: hair of one groom meets that of another as it meets its own.
+
+use super::hair::StagedHair;
+use crate::Scene;
+use hairspring::{
+    collide::ColliderPose, groom::Groom, material::Material, math::RigidTransform, settings::Solver,
+    simulation::Simulation,
+};
+use std::sync::Arc;
+
+/// All of `hair` at rest, groom after groom, by the scene's settings but for the solver's; the anchor is at `anchor` and colliders are as `obstacles`.
+pub(super) fn simulation(
+    hair: &[StagedHair],
+    scene: &Scene,
+    solver: Solver,
+    anchor: RigidTransform,
+    obstacles: &[ColliderPose],
+) -> Simulation {
+    let (groom, materials) = join(hair);
+    let strands: Vec<u32> = (0..groom.strand_count() as u32).collect();
+    let mut simulation =
+        Simulation::new(Arc::new(groom), &strands, &materials, solver, scene.gravity, anchor, obstacles);
+    simulation.set_hair_multiplicity(hair.iter().flat_map(StagedHair::hairs).collect());
+    simulation.set_self_occlusion(obstacles);
+    simulation.set_volume(&scene.volume);
+    simulation.set_wind_occlusion(&scene.wind_occlusion);
+    simulation.set_neighbours(&scene.neighbours);
+    simulation
+}
+
+/// The simulated strands as a groom of their own, each groom's materials after those of the one before, and what a simulation asks of them.
+fn join(hair: &[StagedHair]) -> (Groom, Vec<Material>) {
+    let mut all = Groom { offsets: vec![0], ..Groom::default() };
+    let mut materials = Vec::new();
+    for hair in hair {
+        let (groom, own) = (hair.groom(), hair.materials());
+        let first = materials.len();
+        materials.extend_from_slice(own);
+        if own.is_empty() {
+            materials.push(Material::default());
+        }
+        let last = materials.len() - 1;
+        for s in hair.simulated_strands().iter().map(|s| *s as usize) {
+            all.points.extend_from_slice(groom.strand(s));
+            all.radii.extend_from_slice(&groom.radii[groom.range(s)]);
+            all.offsets.push(all.points.len() as u32);
+            // A group past the end has the last material of its groom.
+            all.groups.push((first + groom.group(s) as usize).min(last) as u16);
+            all.scales.push(groom.scale(s));
+        }
+    }
+    (all, materials)
+}

@@ -1,0 +1,110 @@
+//! A closed mesh taken apart into what moves by itself as one rigid piece, and the rest.
+//!
+//! A thing beside the body (a second head, a tray) is part of its mesh and of its skin. As a collider it is better by itself: its distance field is made once
+//! instead of wherever it goes, it goes on its arc between frames with its own velocity in each substep, and asks for shorter ones where it is fast.
+
+use hairspring::body::Body;
+
+/// A piece: its joint, and its mesh in the rest pose.
+pub(super) struct Piece {
+    pub(super) joint: usize,
+    pub(super) body: Body,
+}
+
+/// Takes every piece from `body` that is no longer than `longest` [m] and does not hang together with the joint `anchor`: a joint without parent and children
+/// whose vertices are its own alone.
+pub(super) fn take(body: &mut Body, anchor: usize, longest: f32) -> Vec<Piece> {
+    let Some(skin) = &body.skin else { return Vec::new() };
+    let mut alone: Vec<bool> = body.joints.iter().map(|joint| joint.parent.is_none()).collect();
+    alone[anchor] = false;
+    body.joints.iter().filter_map(|joint| joint.parent).for_each(|parent| alone[parent as usize] = false);
+    // The joint that a vertex has all of its weight from.
+    let own: Vec<Option<u16>> = skin
+        .joints
+        .iter()
+        .zip(&skin.weights)
+        .map(|(joints, weights)| {
+            let mut with = joints.iter().zip(weights).filter(|(_, w)| **w > 0.0).map(|(joint, _)| *joint);
+            let first = with.next()?;
+            let shared = with.any(|joint| joint != first);
+            if shared {
+                joints.iter().for_each(|joint| alone[*joint as usize] = false);
+            }
+            (!shared).then_some(first)
+        })
+        .collect();
+    let of = |triangle: &[u32; 3]| triangle.map(|v| own[v as usize]);
+    for triangle in &body.mesh.triangles {
+        let [a, b, c] = of(triangle);
+        if a != b || b != c {
+            [a, b, c].into_iter().flatten().for_each(|joint| alone[joint as usize] = false);
+        }
+    }
+    let joint_of: Vec<Option<usize>> =
+        body.mesh.triangles.iter().map(|triangle| of(triangle)[0].map(usize::from)).collect();
+    let mut pieces = Vec::new();
+    for (joint, alone) in alone.iter_mut().enumerate().filter(|(_, alone)| **alone) {
+        let piece = body.of_triangles(|t| joint_of[t] == Some(joint));
+        *alone = piece.mesh.bounds().is_some_and(|(lo, hi)| (hi - lo).max_element() <= longest);
+        if *alone {
+            pieces.push(Piece { joint, body: piece });
+        }
+    }
+    if !pieces.is_empty() {
+        *body = body.of_triangles(|t| joint_of[t].is_none_or(|joint| !alone[joint]));
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use hairspring::body::{Joint, Mesh, Skin, Trs};
+
+    /// A tetrahedron of 1 m for each joint, the last two sharing a vertex's weight; parents as given.
+    fn body(parents: &[Option<u32>]) -> Body {
+        let mut mesh = Mesh::default();
+        let mut skin = Skin { joints: Vec::new(), weights: Vec::new(), inverse_bind: Vec::new() };
+        let mut joints = Vec::new();
+        for (k, parent) in parents.iter().enumerate() {
+            let (first, at) = (4 * k as u32, Vec3::X * (2.0 * k as f32));
+            mesh.positions.extend([at, at + Vec3::X, at + Vec3::Y, at + Vec3::Z]);
+            let corners = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+            mesh.triangles.extend(corners.map(|t| t.map(|v| v + first)));
+            skin.joints.extend([[k as u16, 0, 0, 0]; 4]);
+            skin.weights.extend([[1.0, 0.0, 0.0, 0.0]; 4]);
+            skin.inverse_bind.push(Default::default());
+            joints.push(Joint { name: k.to_string(), parent: *parent, rest: Trs::default() });
+        }
+        mesh.normals = vec![Vec3::Y; mesh.positions.len()];
+        Body { mesh, joints, skin: Some(skin) }
+    }
+
+    #[test]
+    fn what_moves_by_itself_is_a_piece_and_the_rest_is_whole() {
+        // The anchor, a child of it, a thing, a parent and its child.
+        let mut apart = body(&[None, Some(0), None, None, Some(3)]);
+        let pieces = take(&mut apart, 0, 1.5);
+        assert_eq!(pieces.iter().map(|piece| piece.joint).collect::<Vec<_>>(), [2]);
+        let piece = &pieces[0].body;
+        assert_eq!((piece.mesh.positions.len(), piece.mesh.triangles.len()), (4, 4));
+        assert_eq!(piece.mesh.bounds().unwrap().0, Vec3::X * 4.0);
+        assert_eq!((apart.mesh.positions.len(), apart.mesh.triangles.len()), (16, 16));
+        assert_eq!(apart.skin.as_ref().unwrap().joints.len(), 16);
+    }
+
+    #[test]
+    fn what_shares_a_vertex_or_a_triangle_or_is_too_long_stays() {
+        let whole = body(&[None, None]);
+        let mut long = whole.clone();
+        assert!(take(&mut long, 0, 0.5).is_empty() && long == whole);
+        let mut shared = whole.clone();
+        let skin = shared.skin.as_mut().unwrap();
+        (skin.joints[7], skin.weights[7]) = ([1, 0, 0, 0], [0.5, 0.5, 0.0, 0.0]);
+        assert!(take(&mut shared.clone(), 0, 1.5).is_empty());
+        let mut bridged = whole;
+        bridged.mesh.triangles.push([0, 1, 5]);
+        assert!(take(&mut bridged, 0, 1.5).is_empty());
+    }
+}

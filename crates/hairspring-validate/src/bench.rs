@@ -1,0 +1,206 @@
+//! The standard bench scene, shared by `hairspring bench`, the tests and the profiler: a shaken ball of hair.
+//!
+//! A sphere scalp of radius 0.1 m, strands of 0.25 m evenly over its upper half, 60 Hz frames, the scalp shaken 5 cm at 2 Hz,
+//! contact with the sphere, every strand simulated; the sphere as the distance field of a mesh and wind where they are asked for.
+
+use glam::{Mat3, Vec3};
+use hairspring::settings::{Solver, Wind};
+use hairspring::{
+    air::Air,
+    collide::{ColliderPose, ColliderShape, MovingCollider, voxelize},
+    groom::Groom,
+    material::Material,
+    math::RigidTransform,
+    simulation::{Measure, Simulation, StepInput, StepReport},
+};
+use std::sync::Arc;
+
+/// Radius of the scalp [m].
+pub const RADIUS: f32 = 0.1;
+/// Length of a strand [m].
+pub const LENGTH: f32 = 0.25;
+/// Length of a frame [s].
+pub const FRAME: f32 = 1.0 / 60.0;
+/// Amplitude of the shake [m].
+pub const AMPLITUDE: f32 = 0.05;
+/// Rate of the shake [Hz].
+pub const RATE: f32 = 2.0;
+
+/// Cells of the distance field along the scalp's diameter: a head in the 5 mm that a scene's body has.
+const FIELD_CELLS: f32 = 40.0;
+
+/// Quads of the scalp's mesh from pole to pole; twice as many go around.
+const MESH_QUADS: u32 = 48;
+
+/// What the hair meets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Head {
+    /// The sphere itself.
+    #[default]
+    Sphere,
+    /// The distance field of the sphere's mesh, as a scene's body is met.
+    Field,
+}
+
+impl Head {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Sphere, Self::Field];
+
+    /// Its name: `sphere`, `sdf`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sphere => "sphere",
+            Self::Field => "sdf",
+        }
+    }
+
+    fn shape(self) -> ColliderShape {
+        match self {
+            Self::Sphere => ColliderShape::Sphere { center: Vec3::ZERO, radius: RADIUS },
+            Self::Field => {
+                let (positions, triangles) = ball();
+                ColliderShape::Field(Arc::new(voxelize(&positions, &triangles, 2.0 * RADIUS / FIELD_CELLS)))
+            }
+        }
+    }
+}
+
+/// The scalp as a mesh: rings of quads cut in two, closed at the poles by quads with two corners in one place.
+fn ball() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let (rows, columns) = (MESH_QUADS, 2 * MESH_QUADS);
+    let step = std::f32::consts::PI / rows as f32;
+    let positions = (0..=rows).flat_map(|r| {
+        (0..columns).map(move |c| {
+            let (across, up) = (r as f32 * step).sin_cos();
+            let (z, x) = (c as f32 * step).sin_cos();
+            Vec3::new(across * x, up, across * z) * RADIUS
+        })
+    });
+    let triangles = (0..rows).flat_map(|r| {
+        (0..columns).flat_map(move |c| {
+            let at = |r: u32, c: u32| r * columns + c % columns;
+            let [a, b, d, e] = [at(r, c), at(r, c + 1), at(r + 1, c), at(r + 1, c + 1)];
+            [[a, b, e], [a, e, d]]
+        })
+    });
+    (positions.collect(), triangles.collect())
+}
+
+/// The bench scene in motion.
+pub struct Bench {
+    /// The strands.
+    pub simulation: Simulation,
+    /// The air. Default: still.
+    pub wind: Wind,
+    roots: Vec<Vec3>,
+    poses: Vec<RigidTransform>,
+    obstacle: MovingCollider,
+    frame: u32,
+}
+
+/// Strands of equal length standing out from the upper half of a sphere, evenly spread (a Fibonacci spiral).
+pub fn groom(strands: u32, points: u32) -> Groom {
+    let golden = std::f32::consts::PI * (3.0 - 5f32.sqrt());
+    Groom::from_strands(
+        (0..strands).map(|s| {
+            let y = 1.0 - (s as f32 + 0.5) / strands as f32;
+            let r = (1.0 - y * y).sqrt();
+            // In f64: the angle of the last strands is large.
+            let angle = (s as f64 * golden as f64) % std::f64::consts::TAU;
+            let out = Vec3::new(r * angle.cos() as f32, y, r * angle.sin() as f32);
+            (0..points).map(|i| out * (RADIUS + LENGTH * i as f32 / (points - 1) as f32)).collect::<Vec<_>>()
+        }),
+        hairspring::groom::DEFAULT_RADIUS,
+    )
+}
+
+impl Bench {
+    /// The scene at rest, hair standing out; `points` 3 or more a strand.
+    pub fn new(strands: u32, points: u32, solver: Solver) -> Self {
+        Self::of(strands, points, Material::default(), solver)
+    }
+
+    /// The scene with hair of this material.
+    pub fn of(strands: u32, points: u32, material: Material, solver: Solver) -> Self {
+        Self::on(Head::Sphere, strands, points, material, solver)
+    }
+
+    /// The scene with hair of this material on this head.
+    pub fn on(head: Head, strands: u32, points: u32, material: Material, solver: Solver) -> Self {
+        let groom = Arc::new(groom(strands, points));
+        let shape = head.shape();
+        let rest = (Mat3::IDENTITY, Vec3::ZERO);
+        let pose = ColliderPose::new(shape.clone(), rest, rest, 1.0);
+        let roots: Vec<Vec3> = (0..strands as usize).map(|s| groom.strand(s)[0]).collect();
+        let all: Vec<u32> = (0..strands).collect();
+        // Hair falls from standing out: a start in balance would be one that no fibre holds.
+        let solver = Solver { sag_free: false, ..solver };
+        let simulation = Simulation::new(
+            groom,
+            &all,
+            &[material],
+            solver,
+            Vec3::new(0.0, -9.81, 0.0),
+            RigidTransform::default(),
+            &[pose],
+        );
+        Self {
+            simulation,
+            wind: Wind::default(),
+            poses: roots
+                .iter()
+                .map(|p| RigidTransform { translation: *p, ..RigidTransform::default() })
+                .collect(),
+            roots,
+            obstacle: MovingCollider {
+                shape,
+                start: RigidTransform::default(),
+                end: RigidTransform::default(),
+            },
+            frame: 0,
+        }
+    }
+
+    /// Advances by one frame of 1/60 s.
+    pub fn step(&mut self) -> StepReport {
+        self.frame += 1;
+        let at = |frame: u32| {
+            let phase = std::f32::consts::TAU * RATE * frame as f32 * FRAME;
+            RigidTransform { translation: Vec3::X * (AMPLITUDE * phase.sin()), ..RigidTransform::default() }
+        };
+        let (start, end) = (at(self.frame - 1), at(self.frame));
+        for (pose, root) in self.poses.iter_mut().zip(&self.roots) {
+            pose.translation = end.point(*root);
+        }
+        self.obstacle = MovingCollider { start, end, ..self.obstacle.clone() };
+        self.simulation.step(&StepInput {
+            dt: FRAME,
+            anchor: end,
+            roots: &self.poses,
+            obstacles: std::slice::from_ref(&self.obstacle),
+            air: Air { wind: self.wind, time: f64::from(self.frame - 1) / 60.0, ..Air::default() },
+        })
+    }
+
+    /// Figures at the end of the last frame.
+    pub fn measure(&self) -> Measure {
+        self.simulation.measure(std::slice::from_ref(&self.obstacle))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::bench::*;
+
+    #[test]
+    fn the_field_is_the_sphere() {
+        let shape = Head::Field.shape();
+        for k in 0..200 {
+            let out = Vec3::new((k as f32).sin(), (k as f32 * 0.7).cos(), (k as f32 * 1.3).sin()).normalize();
+            for at in [0.9, 1.0, 1.02] {
+                let distance = shape.distance(out * (at * RADIUS));
+                assert!((distance - (at - 1.0) * RADIUS).abs() < 5e-4, "{distance} at {at} radii");
+            }
+        }
+    }
+}

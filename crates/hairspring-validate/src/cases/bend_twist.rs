@@ -1,0 +1,62 @@
+//! A naturally curved strand that hangs: heavy enough it lies in its plane, below a certain weight it winds out of it.
+
+use super::{NO_TWIST, THRESHOLD, USUAL};
+use crate::{
+    Case, Failure, GJ_OVER_EI, KAPPA_L, Method, Parameter, Quantity,
+    plot::Sweep,
+    reference::stability::curl_threshold,
+    southwell,
+    specimen::{LENGTH, Setup, Specimen, helix},
+};
+use glam::DVec3;
+use hairspring::material::Model;
+
+pub const CASE: Case = Case {
+    name: "bend-twist",
+    about: "A naturally curved strand, clamped with its tangent down, leaves its plane below a weight Γ*.",
+    parameters: &[
+        Parameter { symbol: &KAPPA_L, range: (5.0, 20.0) },
+        Parameter { symbol: &GJ_OVER_EI, range: (0.3, 1.5) },
+    ],
+    defaults: &[&[8.0, 2.0 / 3.0], &[8.0, 0.458], &[15.0, 2.0 / 3.0], &[15.0, 0.458]],
+    quantities: &[Quantity { name: "threshold Γ*", tolerance: THRESHOLD }],
+    method: USUAL,
+    points_fixed: false,
+    out_of_reach: |method| match method {
+        Method { model: Model::Curvature, .. } => Some(NO_TWIST),
+        Method { model: Model::Springs, .. } => Some(
+            "where a joint turns far, 0.13 to 0.24 rad at 64 points, its springs resist twist more than the fibre does; \
+             at 192 points it passes",
+        ),
+        Method { points: ..48, .. } => {
+            Some("at κL = 15 a turn of the curl has 13 segments at 32 points, too few")
+        }
+        _ => None,
+    },
+    reference: |values| Ok(vec![curl_threshold(values[0], values[1]).ok_or(Failure::NoThreshold)?]),
+    measure: |values, method| {
+        let &[curl, ratio] = values else { unreachable!("two parameters") };
+        // Heavy strands hang nearly straight, whatever the ratio; a light one is its natural arc.
+        let (heavy, light) = (curl.powi(3) / ratio, 0.02 * curl.powi(3));
+        Ok(vec![southwell::threshold(heavy, light, |gamma| stiffness(curl, ratio, gamma, method))?])
+    },
+    sweep: Sweep::Parameter { index: 1, from: 0.35, to: 1.2, log: false },
+};
+
+/// Natural twist that makes the plane shape imperfect, over the whole strand [rad].
+const TWIST: f64 = 0.005;
+
+/// A strand has left its plane where it is out of it by so much of a curl's radius, in the mean.
+const LEFT: f64 = 0.2;
+
+/// The natural twist over the way that it drives the strand out of its plane (root mean square over the length).
+fn stiffness(curl: f64, ratio: f64, gamma: f64, method: Method) -> Result<Option<f64>, Failure> {
+    // In the plane z = 0, but for the twist along the first tangent.
+    let turn = DVec3::Z * curl + DVec3::NEG_Y * TWIST;
+    let points = helix(method.points, LENGTH, DVec3::NEG_Y, turn);
+    let mut specimen = Specimen::new(Setup::heavy(points, gamma, ratio), method);
+    let rest = specimen.settle()?;
+    let squares: f64 = rest.iter().map(|p| p.z * p.z).sum();
+    let aside = (squares / rest.len() as f64).sqrt() / LENGTH;
+    Ok((aside < LEFT / curl).then_some(TWIST / aside))
+}

@@ -1,0 +1,59 @@
+//! A straight strand that stands upright gives way under its own weight.
+
+use super::{HAIR, THRESHOLD, USUAL};
+use crate::{
+    Case, Failure, GAMMA, Method, Quantity,
+    plot::{Axis, Curve, Plot, Sweep, evaluate, places},
+    reference::{elastica::standing_deflection, stability::greenhill},
+    southwell,
+    specimen::{GRAVITY, LENGTH, Setup, Specimen, straight},
+};
+use glam::DVec3;
+
+pub const CASE: Case = Case {
+    name: "greenhill",
+    about: "A straight strand clamped upright gives way under its own weight at Γ = 7.8373.",
+    parameters: &[],
+    defaults: &[&[]],
+    quantities: &[Quantity { name: "threshold Γ", tolerance: THRESHOLD }],
+    method: USUAL,
+    points_fixed: false,
+    out_of_reach: |_| None,
+    reference: |_| Ok(vec![greenhill()]),
+    measure: |_, method| {
+        let stiffness = |gamma| {
+            let aside = deflection(gamma, method)? * TILT;
+            // The pull grows with the weight: it is in units of EI/L².
+            Ok((aside.abs() < southwell::SMALL).then_some(gamma * TILT / aside))
+        };
+        Ok(vec![southwell::threshold(1.0, 40.0, stiffness)?])
+    },
+    sweep: Sweep::Own(plot),
+};
+
+/// Sideways gravity over the vertical one.
+const TILT: f64 = 2e-3;
+
+/// How far the tip goes aside over the length, for a sideways gravity as large as the vertical one if it were linear.
+fn deflection(gamma: f64, method: Method) -> Result<f64, Failure> {
+    let mut setup = Setup::heavy(straight(method.points, LENGTH, DVec3::Y), gamma, HAIR);
+    setup.gravity = DVec3::new(TILT, -1.0, 0.0).normalize() * GRAVITY;
+    let mut specimen = Specimen::new(setup, method);
+    let tip = specimen.settle()?[method.points as usize - 1];
+    Ok(tip.x / LENGTH / TILT)
+}
+
+/// The answer to the sideways pull, which grows without bound toward the threshold.
+fn plot(method: Method) -> Plot {
+    let pair = |points: Vec<(f64, f64)>| points.into_iter().map(|(x, y)| [x, y]).collect();
+    let curve = Curve {
+        name: "tip deflection over tilt".into(),
+        reference: pair(evaluate(&places(0.5, 7.6, false, 60), |g| Ok(standing_deflection(g)))),
+        measured: pair(evaluate(&places(0.5, 7.5, false, 9), |g| deflection(g, method))),
+    };
+    Plot {
+        x: Axis { label: GAMMA.meaning.into(), log: false },
+        y: Axis { label: "tip deflection over L and over sideways gravity".into(), log: true },
+        curves: vec![curve],
+    }
+}

@@ -1,0 +1,89 @@
+//! A flat strand, clamped horizontally on its edge, tips over sideways under its own weight or under a load at its tip.
+
+use super::{HAIR, HELD_BACK, NO_TWIST, THRESHOLD, USUAL};
+use crate::{
+    Case, Failure, GJ_OVER_EI, Method, Parameter, Quantity,
+    plot::Sweep,
+    reference::stability::{flat, lateral},
+    southwell,
+    specimen::{DENSITY, GRAVITY, LENGTH, LINE_DENSITY, RADIUS, Setup, Specimen, straight},
+};
+use glam::DVec3;
+use hairspring::{material::Model, simulation::Hold};
+
+pub const CASE: Case = Case {
+    name: "lateral-buckling",
+    about: "A flat strand clamped horizontally on its edge tips over sideways.",
+    // Of the weak direction, GJ/EI_min.
+    parameters: &[Parameter { symbol: &GJ_OVER_EI, range: (0.2, 2.0) }],
+    defaults: &[&[HAIR]],
+    quantities: &[
+        Quantity { name: "own weight qL³/√(EI_min GJ)", tolerance: THRESHOLD },
+        Quantity { name: "tip load PL²/√(EI_min GJ)", tolerance: THRESHOLD },
+    ],
+    method: USUAL,
+    points_fixed: false,
+    out_of_reach: |method| match method {
+        Method { model: Model::Curvature, .. } => Some(NO_TWIST),
+        Method { model: Model::Springs, points: 80.., .. } => Some(HELD_BACK),
+        Method { points: ..48, .. } => {
+            Some("the error goes as the length of a segment: at 64 points it is 2.4 %")
+        }
+        _ => None,
+    },
+    reference: |values| {
+        // With the strand's own flatness: what it bends in its plane before it tips over adds under a percent.
+        let strand = flat(1.0, FLATNESS.powi(-2), values[0]);
+        let unit = values[0].sqrt();
+        let of =
+            |weight, tip| lateral(&strand, weight, tip).map(|load| load / unit).ok_or(Failure::NoThreshold);
+        Ok(vec![of(1.0, 0.0)?, of(0.0, 1.0)?])
+    },
+    measure: |values, method| {
+        let ratio = values[0];
+        let of = |hung, from: f64| {
+            let (start, end) = (0.4 * from, 4.0 * from);
+            southwell::threshold(start, end, |load| stiffness(hung, load, ratio, method))
+        };
+        let (weight, tip) = rayon::join(|| of(Hung::Along, 10.0), || of(Hung::AtTip, 4.0));
+        Ok(vec![weight?, tip?])
+    },
+    sweep: Sweep::Parameter { index: 0, from: 0.3, to: 1.5, log: false },
+};
+
+/// Short over long axis of the section: the stiff direction is a hundred times as stiff as the weak one.
+const FLATNESS: f64 = 0.1;
+
+/// Sideways pull over the load.
+const TILT: f64 = 1e-3;
+
+/// Where the load is.
+#[derive(Clone, Copy, PartialEq)]
+enum Hung {
+    Along,
+    AtTip,
+}
+
+/// The sideways pull over the tip's way aside, both relative, under `load` in units of √(EI_min GJ).
+fn stiffness(hung: Hung, load: f64, ratio: f64, method: Method) -> Result<Option<f64>, Failure> {
+    // The load on a hair of usual weight sets the stiffness: load √(EI GJ) = load EI √ratio = ρAgL³.
+    let weight = LINE_DENSITY * GRAVITY * LENGTH;
+    let bending = weight * LENGTH * LENGTH / (load * ratio.sqrt());
+    // EI_min = E πr⁴f/4 and GJ/EI_min = 4G / E(1 + f²) of an ellipse of the area πr².
+    let young = bending * 4.0 * DENSITY / (LINE_DENSITY * RADIUS * RADIUS * FLATNESS);
+    // The long axis lies along the frame's normal at the root, which is Y for a strand along X: on edge.
+    let mut setup = Setup::heavy(straight(method.points, LENGTH, DVec3::X), 1.0, ratio);
+    setup.material.young = young as f32;
+    setup.material.shear = (0.25 * ratio * young * (1.0 + FLATNESS * FLATNESS)) as f32;
+    setup.material.flatness = FLATNESS as f32;
+    let down = DVec3::new(0.0, -1.0, TILT).normalize();
+    setup.gravity = if hung == Hung::Along { down * GRAVITY } else { DVec3::ZERO };
+    let mut specimen = Specimen::new(setup, method);
+    if hung == Hung::AtTip {
+        let force = (down * weight).as_vec3();
+        specimen.hold(&[Hold { point: method.points - 1, force, ..Hold::default() }]);
+    }
+    let aside = specimen.settle()?[method.points as usize - 1].z / LENGTH;
+    // The pull grows with the load: it is in units of the stiffness.
+    Ok((aside.abs() < southwell::SMALL).then_some(load * TILT / aside))
+}

@@ -1,0 +1,117 @@
+//! A straight strand bent to a ring and twisted writhes out of its plane: Michell's instability.
+
+use super::{NO_TWIST, THRESHOLD, TWISTED};
+use crate::{
+    Case, Failure, GJ_OVER_EI, Method, Parameter, Quantity,
+    plot::Sweep,
+    reference::ring::writhing_twist,
+    southwell,
+    specimen::{BENDING, LENGTH, Setup, Specimen, straight},
+};
+use glam::{DQuat, DVec3, Vec3};
+use hairspring::{material::Model, simulation::Hold};
+use std::f64::consts::TAU;
+
+pub const CASE: Case = Case {
+    name: "michell",
+    about: "A straight strand bent to a closed ring and twisted writhes out of its plane.",
+    parameters: &[Parameter { symbol: &GJ_OVER_EI, range: (0.3, 1.5) }],
+    defaults: &[&[0.458], &[1.0]],
+    quantities: &[Quantity { name: "total twist Φ [rad]", tolerance: THRESHOLD }],
+    method: TWISTED,
+    points_fixed: false,
+    out_of_reach: |method| {
+        match method.model {
+        Model::Curvature => Some(NO_TWIST),
+        Model::Springs => Some(
+            "a ring of round fibre may turn about its clamped tangent at no cost; a truss has joints with sides, and turns to \
+             where they are best bent",
+        ),
+        Model::Auto => Some(
+            "auto takes the curvature model for a strand that is straight at rest, and that knows no twist",
+        ),
+        Model::Rod => (method.points < 48).then_some(
+            "at 32 points each joint of the ring turns by 0.2 rad and twists by 0.8, too far for the measure of its twist",
+        ),
+    }
+    },
+    reference: |values| Ok(vec![writhing_twist(values[0])]),
+    measure: |values, method| {
+        let ratio = values[0];
+        // In units of EI/GJ the twist does not depend on the ratio.
+        let (start, end) = (3.0 / ratio, 30.0 / ratio);
+        Ok(vec![southwell::threshold(start, end, |twist| stiffness(twist, ratio, method))?])
+    },
+    sweep: Sweep::Parameter { index: 0, from: 0.35, to: 1.4, log: false },
+};
+
+/// Frames in which the strand is bent to a ring.
+const BENDING_FRAMES: u32 = 240;
+
+/// Largest turn of the root in a frame [rad].
+const TURN: f64 = 0.05;
+
+/// Size of the pull out of the plane: what would bend an untwisted ring out of its plane by this share of its length.
+const PULL: f64 = 1e-3;
+
+/// The mode is at rest where it changes by less than this share of the pull.
+const STILL: f64 = 3e-3;
+
+/// The pull out of the plane over what it does, under a total twist [rad].
+fn stiffness(twist: f64, ratio: f64, method: Method) -> Result<Option<f64>, Failure> {
+    let n = method.points;
+    let mut specimen = Specimen::new(Setup::weightless(straight(n, LENGTH, DVec3::X), ratio), method);
+    // The pull has two waves around the ring, as the mode that goes first. It is in balance with itself, and does no work where the whole
+    // ring turns about its clamped tangent, which costs a round strand nothing. Its sign is that of what the first and
+    // last segments, which are clamped whole, do to a ring of few points.
+    let radius = LENGTH / TAU;
+    let unit = PULL * LENGTH * BENDING / radius.powi(4) * LENGTH / (n - 1) as f64;
+    let wave = |i: u32| -(2.0 * TAU * i as f64 / (n - 1) as f64).sin();
+    // To the last digit: a remainder would turn the ring about its tangent for ever.
+    let hinge = |i: u32| 1.0 - (TAU * i as f64 / (n - 1) as f64).cos();
+    let sum = |f: &dyn Fn(u32) -> f64| (2..n - 2).map(f).sum::<f64>();
+    let remainder = sum(&|i| wave(i) * hinge(i)) / sum(&|i| hinge(i) * hinge(i)).max(f64::MIN_POSITIVE);
+    let pull = |i: u32| {
+        let force = Vec3::Z * (unit * (wave(i) - remainder * hinge(i))) as f32;
+        Hold { point: i, force, ..Hold::default() }
+    };
+
+    for frame in 1..=BENDING_FRAMES {
+        specimen.hold(&ends(n, TAU * frame as f64 / BENDING_FRAMES as f64));
+        specimen.frame()?;
+    }
+    let turns = (twist / TURN).ceil();
+    for _ in 0..turns as u32 {
+        specimen.turn_root(DVec3::X * (twist / turns));
+        specimen.frame()?;
+    }
+    let mut holds: Vec<Hold> = (2..n - 2).map(pull).collect();
+    holds.extend(ends(n, TAU));
+    specimen.hold(&holds);
+    let aside = |points: &[DVec3]| {
+        let projection: f64 = points.iter().zip(0..n).map(|(p, i)| p.z * wave(i)).sum();
+        2.0 * projection / (n - 1) as f64 / LENGTH
+    };
+    // A ring of few points turns about its tangent all the same, a few micrometres a second: what is to come to rest is the mode.
+    let rest = specimen.settle_where(|a, b| (aside(a) - aside(b)).abs() < STILL * PULL)?;
+    let aside = aside(&rest);
+    // A ring that writhed passes through itself (nothing here keeps it from that), loses two turns, and lies flat again, twisted
+    // the other way.
+    Ok((aside > 0.0 && aside < southwell::SMALL).then_some(PULL / aside))
+}
+
+/// The last two points of a strand from the origin along X that is bent to an arc of `angle` [rad], clamped.
+fn ends(n: u32, angle: f64) -> [Hold; 2] {
+    let segments = (n - 1) as f64;
+    let direction = |s: f64| DQuat::from_rotation_z(angle * s) * DVec3::X * (LENGTH / segments);
+    // The first and the last segment have the directions of the clamps, the others those of their middles.
+    let inner: DVec3 = (1..n - 2).map(|i| direction((i as f64 + 0.5) / segments)).sum();
+    let before = direction(0.0) + inner;
+    let hold = |point: u32, at: DVec3, clamped: bool| Hold {
+        point,
+        target: Some(at.as_vec3()),
+        clamped,
+        ..Hold::default()
+    };
+    [hold(n - 2, before, true), hold(n - 1, before + direction(1.0), false)]
+}

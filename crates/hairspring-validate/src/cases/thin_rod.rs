@@ -1,0 +1,65 @@
+//! A strand falls on a thin rod.
+
+use super::USUAL;
+use crate::{
+    Case, Failure, Method, Parameter, Quantity, ROD_RADIUS_MM,
+    plot::Sweep,
+    specimen::{LENGTH, RADIUS, Setup, Specimen, straight},
+};
+use glam::{DVec3, Vec3};
+use hairspring::{collide::ColliderShape, material::Material};
+use rayon::prelude::*;
+
+pub const CASE: Case = Case {
+    name: "thin-rod",
+    about: "A strand that falls on a thin rod stays over it, and touches it.",
+    parameters: &[Parameter { symbol: &ROD_RADIUS_MM, range: (0.25, 10.0) }],
+    defaults: &[&[1.0]],
+    quantities: &[Quantity { name: "distance from the axis over the radius", tolerance: 0.1 }],
+    method: USUAL,
+    points_fixed: false,
+    out_of_reach: |_| None,
+    reference: |_| Ok(vec![1.0]),
+    measure: |values, method| {
+        let distances: Result<Vec<f64>, Failure> =
+            FALLS.into_par_iter().map(|fall| distance(values[0] * 1e-3, fall, method)).collect();
+        let farthest = |a: f64, b: &f64| if (b - 1.0).abs() > (a - 1.0f64).abs() { *b } else { a };
+        Ok(vec![distances?.iter().fold(1.0, farthest)])
+    },
+    sweep: Sweep::Parameter { index: 0, from: 0.5, to: 5.0, log: true },
+};
+
+/// How far the strand is above the rod before it falls [m].
+const FALLS: [f64; 3] = [0.002, 0.005, 0.01];
+
+/// How far the root is from the rod, along the strand [m]: most of the strand hangs beyond the rod.
+const REACH: f64 = 0.03;
+
+/// Frames that it is watched: it falls, swings, and hangs.
+const FRAMES: u32 = 300;
+
+/// The least distance of the strand from the rod's axis at the end, over the rod's radius; negative where the strand passes below.
+fn distance(radius: f64, fall: f64, method: Method) -> Result<f64, Failure> {
+    let mut setup = Setup::chain(straight(method.points, LENGTH, DVec3::X));
+    setup.material = Material { radius: Some(RADIUS as f32), ..Material::default() };
+    let axis = DVec3::new(REACH, -fall - radius, 0.0);
+    let [a, b] = [-LENGTH, LENGTH].map(|z| (axis + DVec3::Z * z).as_vec3());
+    setup.obstacle = Some(ColliderShape::Capsule { a, b, radius: radius as f32 });
+    let mut specimen = Specimen::new(setup, method);
+    for _ in 0..FRAMES {
+        specimen.frame()?;
+    }
+    let across = |p: &Vec3| (p.as_dvec3() - axis) * DVec3::new(1.0, 1.0, 0.0);
+    let (mut least, mut over) = (f64::INFINITY, false);
+    for pair in specimen.points().windows(2) {
+        let [a, b] = [across(&pair[0]), across(&pair[1])];
+        let way = b - a;
+        let nearest = a + way * (-a.dot(way) / way.length_squared()).clamp(0.0, 1.0);
+        least = least.min(nearest.length());
+        // Where it crosses the vertical plane through the axis.
+        if a.x < 0.0 && b.x >= 0.0 {
+            over = a.y - way.y * a.x / way.x > 0.0;
+        }
+    }
+    Ok(if over { least } else { -least } / radius)
+}

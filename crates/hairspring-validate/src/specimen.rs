@@ -1,0 +1,301 @@
+//! A strand on the bench: one strand of human hair, its root in the experimenter's hand.
+
+use super::{Failure, Method};
+use glam::{DQuat, DVec3, Mat3, Vec3};
+use hairspring::{
+    air::Air,
+    collide::{ColliderPose, ColliderShape, MovingCollider},
+    groom::Groom,
+    material::Material,
+    math::RigidTransform,
+    settings::{Solver, Wind},
+    simulation::{Hold, Simulation, StepInput},
+};
+use std::{
+    f64::consts::{FRAC_PI_4, PI},
+    sync::Arc,
+};
+
+/// Radius of every specimen [m]: a typical hair.
+pub const RADIUS: f64 = 35e-6;
+
+/// Length of a specimen unless its experiment needs another [m].
+pub const LENGTH: f64 = 0.2;
+
+/// Density of every specimen [kg/m³].
+pub const DENSITY: f64 = 1310.0;
+
+/// Young's modulus of human hair along the fibre [Pa].
+pub const YOUNG: f64 = 3.9e9;
+
+/// Bending stiffness EI of human hair [N m²].
+pub const BENDING: f64 = YOUNG * FRAC_PI_4 * RADIUS * RADIUS * RADIUS * RADIUS;
+
+/// Mass of a specimen over its length, ρA [kg/m].
+pub const LINE_DENSITY: f64 = DENSITY * PI * RADIUS * RADIUS;
+
+/// Gravity [m/s²].
+pub const GRAVITY: f64 = 9.81;
+
+/// A frame [s]: `Method::substeps` are in one.
+const FRAME: f64 = 1.0 / 60.0;
+
+/// Longest that a strand may take to come to rest [s].
+const PATIENCE: f64 = 60.0;
+
+/// A strand at rest moves by less than this share of its length in [`WATCH`].
+const STILL: f64 = 3e-5;
+
+/// How long a strand must keep still [s].
+const WATCH: f64 = 0.5;
+
+/// What a specimen is made of and where it is.
+pub struct Setup {
+    /// The strand in its natural shape [m], the first segment held.
+    pub points: Vec<Vec3>,
+    /// The fibre; radius and density are the specimen's.
+    pub material: Material,
+    /// [m/s²].
+    pub gravity: DVec3,
+    /// What it may touch.
+    pub obstacle: Option<ColliderShape>,
+    /// Velocity of the air [m/s].
+    pub wind: DVec3,
+    /// Whether `points` are in balance under gravity, as a groom's are, instead of natural.
+    pub in_balance: bool,
+}
+
+impl Setup {
+    /// A strand of natural shape `points` whose own weight is `gamma` = ρgAL³/EI under [`GRAVITY`], and `ratio` = GJ/EI.
+    ///
+    /// Air at rest brings it to rest, near critically: more drag than on a lone fiber, and no damping of its own. Neither
+    /// changes where it rests.
+    pub fn heavy(points: Vec<Vec3>, gamma: f64, ratio: f64) -> Self {
+        let length: f64 = points.windows(2).map(|p| p[0].as_dvec3().distance(p[1].as_dvec3())).sum();
+        // Γ = ρ g πr² L³ / (E πr⁴/4), and GJ/EI = 2G/E of a round fibre.
+        let young = 4.0 * DENSITY * GRAVITY * length.powi(3) / (gamma * RADIUS * RADIUS);
+        let material = Material {
+            radius: Some(RADIUS as f32),
+            density: DENSITY as f32,
+            young: young as f32,
+            shear: (0.5 * ratio * young) as f32,
+            damping: 0.0,
+            drag: 2.5,
+            ..Material::default()
+        };
+        Self {
+            points,
+            material,
+            gravity: DVec3::NEG_Y * GRAVITY,
+            obstacle: None,
+            wind: DVec3::ZERO,
+            in_balance: false,
+        }
+    }
+
+    /// A strand of human hair's Young's modulus and `ratio` = GJ/EI, where nothing weighs.
+    pub fn weightless(points: Vec<Vec3>, ratio: f64) -> Self {
+        let mut setup = Self::heavy(points, 1.0, ratio);
+        setup.gravity = DVec3::ZERO;
+        setup.material.young = YOUNG as f32;
+        setup.material.shear = (0.5 * ratio * YOUNG) as f32;
+        setup
+    }
+
+    /// A strand without bending stiffness in air that does not move it: a chain.
+    pub fn chain(points: Vec<Vec3>) -> Self {
+        let material = Material {
+            radius: Some(RADIUS as f32),
+            density: DENSITY as f32,
+            bend: 0.0,
+            damping: 0.0,
+            drag: 0.0,
+            ..Material::default()
+        };
+        Self {
+            points,
+            material,
+            gravity: DVec3::NEG_Y * GRAVITY,
+            obstacle: None,
+            wind: DVec3::ZERO,
+            in_balance: false,
+        }
+    }
+}
+
+/// `n` points along a helix that starts along the unit vector `direction` and turns by `turn` (axis times angle [rad]) from end to
+/// end: an arc where they are at right angles. Each segment has the direction of its middle, and the held first one that of
+/// the clamp.
+pub fn helix(n: u32, length: f64, direction: DVec3, turn: DVec3) -> Vec<Vec3> {
+    let segments = (n - 1) as f64;
+    let mut at = DVec3::ZERO;
+    let mut points = vec![Vec3::ZERO];
+    for i in 0..n - 1 {
+        let s = if i == 0 { 0.0 } else { (i as f64 + 0.5) / segments };
+        at += DQuat::from_scaled_axis(turn * s) * direction * (length / segments);
+        points.push(at.as_vec3());
+    }
+    points
+}
+
+/// `n` points along a straight line.
+pub fn straight(n: u32, length: f64, direction: DVec3) -> Vec<Vec3> {
+    helix(n, length, direction, DVec3::ZERO)
+}
+
+/// `n` points along a straight line of `length` that hangs on a held segment as short as a follicle: of a chain, only its end
+/// is held.
+pub fn pinned(n: u32, length: f64, held: DVec3, direction: DVec3) -> Vec<Vec3> {
+    let follicle = held * (FOLLICLE * length);
+    let free = |i: u32| follicle + direction * (length * i as f64 / (n - 2) as f64);
+    std::iter::once(Vec3::ZERO).chain((0..n - 1).map(|i| free(i).as_vec3())).collect()
+}
+
+/// Length of the held segment of a pinned chain over the chain's.
+pub const FOLLICLE: f64 = 1e-3;
+
+/// A strand in simulation.
+pub struct Specimen {
+    simulation: Simulation,
+    root: RigidTransform,
+    obstacles: Vec<MovingCollider>,
+    wind: Vec3,
+    substep: f64,
+    at: Vec<Vec3>,
+}
+
+impl Specimen {
+    /// Sets it up, in its natural shape and at rest.
+    pub fn new(setup: Setup, method: Method) -> Self {
+        let root = RigidTransform { translation: setup.points[0], ..RigidTransform::default() };
+        let count = setup.points.len();
+        let groom = Arc::new(Groom::from_strands([setup.points], RADIUS as f32));
+        let at = groom.points.clone();
+        let solver = Solver {
+            sag_free: setup.in_balance,
+            substeps: method.substeps,
+            integrator: method.integrator,
+            ..Solver::default()
+        };
+        let material = Material { model: method.model, ..setup.material };
+        let rest = (Mat3::IDENTITY, Vec3::ZERO);
+        let obstacles: Vec<MovingCollider> = setup
+            .obstacle
+            .into_iter()
+            .map(|shape| MovingCollider {
+                shape,
+                start: RigidTransform::default(),
+                end: RigidTransform::default(),
+            })
+            .collect();
+        let poses: Vec<ColliderPose> =
+            obstacles.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();
+        let gravity = setup.gravity.as_vec3();
+        let simulation =
+            Simulation::new(groom, &[0], &[material], solver, gravity, RigidTransform::default(), &poses);
+        debug_assert_eq!(simulation.point_count(), count);
+        let (wind, substep) = (setup.wind.as_vec3(), FRAME / method.substeps as f64);
+        Self { simulation, root, obstacles, wind, substep, at }
+    }
+
+    /// Length of a substep [s].
+    pub fn substep(&self) -> f64 {
+        self.substep
+    }
+
+    /// Where the points are [m].
+    pub fn points(&self) -> &[Vec3] {
+        &self.at
+    }
+
+    /// From the root to the free end [m].
+    pub fn tip(&self) -> DVec3 {
+        self.at[self.at.len() - 1].as_dvec3() - self.at[0].as_dvec3()
+    }
+
+    /// Speed of the fastest point [m/s].
+    pub fn fastest(&self) -> f64 {
+        self.simulation.measure(&self.obstacles).speed_max
+    }
+
+    /// Force with which the collider holds the strand out [N].
+    pub fn contact_force(&self) -> f64 {
+        self.simulation.contacts(&self.obstacles).force
+    }
+
+    /// Holds or pulls these points from now on, and lets go of all others.
+    pub fn hold(&mut self, holds: &[Hold]) {
+        self.simulation.set_holds(holds);
+    }
+
+    /// Turns the root about the axis and by the angle of `turn` [rad], in its next step.
+    pub fn turn_root(&mut self, turn: DVec3) {
+        let turn = DQuat::from_scaled_axis(turn) * self.root.rotation.as_dquat();
+        self.root.rotation = turn.normalize().as_quat();
+    }
+
+    /// One frame.
+    pub fn frame(&mut self) -> Result<(), Failure> {
+        self.advance(FRAME)
+    }
+
+    /// One substep, the root being at `root` [m] at its end.
+    pub fn small_step(&mut self, root: DVec3) -> Result<(), Failure> {
+        self.root.translation = root.as_vec3();
+        self.advance(self.substep)
+    }
+
+    fn advance(&mut self, dt: f64) -> Result<(), Failure> {
+        let report = self.simulation.step(&StepInput {
+            dt: dt as f32,
+            anchor: RigidTransform::default(),
+            roots: &[self.root],
+            obstacles: &self.obstacles,
+            air: Air { wind: Wind { velocity: self.wind, ..Wind::default() }, ..Air::default() },
+        });
+        if report.reset_strands > 0 {
+            return Err(Failure::NotFinite);
+        }
+        self.simulation.write_points(&mut self.at);
+        Ok(())
+    }
+
+    /// Goes on until the strand keeps still; where its points then are, relative to the root [m].
+    ///
+    /// The mean over a while is compared with the mean over the while before: positions in f32 jitter by some 10⁻⁵ of the
+    /// length, which is no motion.
+    pub fn settle(&mut self) -> Result<Vec<DVec3>, Failure> {
+        let length: f64 = self.at.windows(2).map(|p| p[0].distance(p[1]) as f64).sum();
+        self.settle_within(STILL * length)
+    }
+
+    /// The same, where all points keep still within `still` [m].
+    pub fn settle_within(&mut self, still: f64) -> Result<Vec<DVec3>, Failure> {
+        let moved = |a: &[DVec3], b: &[DVec3]| {
+            a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) < still
+        };
+        self.settle_where(moved)
+    }
+
+    /// Goes on until the means of two whiles in turn are alike; the last one, relative to the root [m].
+    pub fn settle_where(
+        &mut self,
+        alike: impl Fn(&[DVec3], &[DVec3]) -> bool,
+    ) -> Result<Vec<DVec3>, Failure> {
+        let frames = (WATCH / FRAME).round() as u32;
+        let mut before: Option<Vec<DVec3>> = None;
+        for _ in 0..(PATIENCE / WATCH) as u32 {
+            let mut mean = vec![DVec3::ZERO; self.at.len()];
+            for _ in 0..frames {
+                self.frame()?;
+                let root = self.at[0].as_dvec3();
+                mean.iter_mut().zip(&self.at).for_each(|(m, p)| *m += (p.as_dvec3() - root) / frames as f64);
+            }
+            if before.is_some_and(|before| alike(&before, &mean)) {
+                return Ok(mean);
+            }
+            before = Some(mean);
+        }
+        Err(Failure::NotAtRest)
+    }
+}

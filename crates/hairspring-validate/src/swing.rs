@@ -1,0 +1,195 @@
+//! A swing: some strands of a scene let go in empty space, for judging integrators by what they do to its energy.
+//!
+//! The strands stand as the groom has them, free of stress, with their roots fixed; gravity comes from aside, so that they fall and
+//! swing. Nothing is touched, nothing drives them, and air and the fibre's own damping can be left out: what an exact integrator
+//! would then keep is the total energy.
+
+use crate::bench::FRAME;
+use glam::{Quat, Vec3};
+use hairspring::settings::{Integrator, Solver};
+use hairspring::{
+    air::Air,
+    groom::Groom,
+    material::Material,
+    math::RigidTransform,
+    simulation::{Energy, Measure, Simulation, StepInput, StepReport},
+};
+use hairspring_scene::Scene;
+use std::sync::Arc;
+
+/// What gravity is turned by about the Z axis [degrees]: hair that hangs then has a wide swing before it.
+pub const TILT: f32 = 45.0;
+
+/// Gravity of a scene that has none [m/s²].
+const EARTH: Vec3 = Vec3::new(0.0, -9.81, 0.0);
+
+/// Strands of a scene, to be swung again and again.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    groom: Arc<Groom>,
+    /// One for each strand.
+    materials: Vec<Material>,
+    gravity: Vec3,
+    solver: Solver,
+}
+
+impl Sample {
+    /// About `count` strands of the scene, 1 or more, evenly spread over each groom in its order, as many of each as its share; among
+    /// them the one with the shortest segment, which decides how long a step an explicit method can take. All of them where there are
+    /// no more.
+    pub fn new(scene: &Scene, count: usize) -> Self {
+        let mut sample = Groom { offsets: vec![0], ..Groom::default() };
+        let mut materials = Vec::new();
+        let all: usize = scene.grooms.iter().map(|g| g.groom.strand_count()).sum();
+        let shortest = |groom: &Groom, s: usize| {
+            groom.strand(s).windows(2).skip(1).map(|w| w[0].distance_squared(w[1])).fold(f32::MAX, f32::min)
+        };
+        let stiffest = scene
+            .grooms
+            .iter()
+            .enumerate()
+            .flat_map(|(g, scene)| (0..scene.groom.strand_count()).map(move |s| (g, s)))
+            .map(|(g, s)| (shortest(&scene.grooms[g].groom, s), g, s))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        for (g, from) in scene.grooms.iter().enumerate() {
+            let strands = from.groom.strand_count();
+            let own = (count * strands).div_ceil(all.max(1)).min(strands);
+            let mut chosen: Vec<usize> = (0..own).map(|k| (2 * k + 1) * strands / (2 * own)).collect();
+            if let Some((_, _, s)) = stiffest.filter(|(_, at, s)| *at == g && !chosen.contains(s)) {
+                chosen.pop();
+                chosen.push(s);
+            }
+            for s in chosen {
+                let range = from.groom.range(s);
+                sample.points.extend_from_slice(&from.groom.points[range.clone()]);
+                sample.radii.extend_from_slice(&from.groom.radii[range]);
+                sample.offsets.push(sample.points.len() as u32);
+                sample.groups.push(materials.len() as u16);
+                sample.scales.push(from.groom.scale(s));
+                let own = from.materials.get(from.groom.group(s) as usize).or(from.materials.last());
+                materials.push(own.cloned().unwrap_or_default());
+            }
+        }
+        let gravity = if scene.gravity == Vec3::ZERO { EARTH } else { scene.gravity };
+        Self {
+            groom: Arc::new(sample),
+            materials,
+            gravity: Quat::from_rotation_z(TILT.to_radians()) * gravity,
+            solver: Solver { sag_free: false, ..scene.solver },
+        }
+    }
+
+    /// Without air and without damping of the fibre: nothing then takes energy but the integrator.
+    pub fn without_losses(mut self) -> Self {
+        self.materials.iter_mut().for_each(|m| (m.damping, m.drag) = (0.0, 0.0));
+        self
+    }
+
+    /// Number of strands.
+    pub fn strand_count(&self) -> usize {
+        self.groom.strand_count()
+    }
+
+    /// Length of the shortest segment that is not driven [m].
+    pub fn shortest_segment(&self) -> f32 {
+        let segments = |s: usize| self.groom.strand(s).windows(2).skip(1).map(|w| w[0].distance(w[1]));
+        (0..self.strand_count()).flat_map(segments).fold(f32::INFINITY, f32::min)
+    }
+
+    /// The shortest time that sound takes along a segment that is not driven, L √(ρ/E) [s]: about the longest step of an explicit method,
+    /// whose h ω must stay under 2 where the fastest ring of a chain is ω = 2 √(E/ρ) / L.
+    pub fn sound_time(&self) -> f64 {
+        let of = |s: usize| {
+            let shortest = self
+                .groom
+                .strand(s)
+                .windows(2)
+                .skip(1)
+                .map(|w| w[0].distance(w[1]))
+                .fold(f32::INFINITY, f32::min);
+            f64::from(shortest) * f64::from(self.materials[s].density / self.materials[s].young).sqrt()
+        };
+        (0..self.strand_count()).map(of).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// A sample in motion, by steps of any length.
+pub struct Swing {
+    simulation: Simulation,
+    roots: Vec<RigidTransform>,
+    /// Length of a step in the time of the simulation [s].
+    step: f32,
+    /// How many times faster than ours the time of the simulation goes.
+    pace: f64,
+}
+
+impl Swing {
+    /// The sample at rest, to be stepped by `h` [s], above 0.
+    pub fn new(sample: &Sample, integrator: Integrator, h: f64) -> Self {
+        // A simulation takes no step longer than a frame. A longer one is a frame of a world that runs faster: velocities grow by the
+        // pace, accelerations and stiffnesses by its square, and every length stays. Drag grows by a little more: its coefficient is that of the
+        // larger Reynolds number.
+        let pace = (h / FRAME as f64).max(1.0);
+        let (p, p2) = (pace as f32, (pace * pace) as f32);
+        let materials: Vec<Material> = sample
+            .materials
+            .iter()
+            .map(|m| Material {
+                young: m.young * p2,
+                shear: m.shear * p2,
+                damping: m.damping / p,
+                drag: m.drag * p,
+                ..m.clone()
+            })
+            .collect();
+        let all: Vec<u32> = (0..sample.strand_count() as u32).collect();
+        let roots = (0..sample.strand_count())
+            .map(|s| RigidTransform { translation: sample.groom.strand(s)[0], ..RigidTransform::default() })
+            .collect();
+        let simulation = Simulation::new(
+            sample.groom.clone(),
+            &all,
+            &materials,
+            Solver { substeps: 1, integrator, ..sample.solver },
+            sample.gravity * p2,
+            RigidTransform::default(),
+            &[],
+        );
+        Self { simulation, roots, step: (h / pace) as f32, pace }
+    }
+
+    /// Takes one step.
+    pub fn step(&mut self) -> StepReport {
+        self.simulation.step(&StepInput {
+            dt: self.step,
+            anchor: RigidTransform::default(),
+            roots: &self.roots,
+            obstacles: &[],
+            air: Air::default(),
+        })
+    }
+
+    /// Figures now.
+    pub fn measure(&self) -> Measure {
+        let measure = self.simulation.measure(&[]);
+        Measure { speed_max: measure.speed_max / self.pace, ..measure }
+    }
+
+    /// The energy now [J].
+    pub fn energy(&self) -> Energy {
+        let Energy { kinetic, gravitational, bending, twisting, stretching } = self.simulation.energy();
+        let p2 = self.pace * self.pace;
+        Energy {
+            kinetic: kinetic / p2,
+            gravitational: gravitational / p2,
+            bending: bending / p2,
+            twisting: twisting / p2,
+            stretching: stretching / p2,
+        }
+    }
+
+    /// The energy that could still turn into motion by falling [J]; see [`Simulation::energy_to_fall`].
+    pub fn energy_to_fall(&self) -> f64 {
+        self.simulation.energy_to_fall() / (self.pace * self.pace)
+    }
+}

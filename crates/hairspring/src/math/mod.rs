@@ -1,0 +1,7 @@
+//! Rigid transforms, and interpolation between keys in time.
+
+mod interpolate;
+mod rigid_transform;
+
+pub use interpolate::between;
+pub use rigid_transform::RigidTransform;

@@ -1,0 +1,88 @@
+//! Where code that is written once for all instruction sets is compiled for each of them, and the one is chosen that runs.
+
+/// Runs an expression with the instructions of a level, in single precision; see [`fearless_simd::dispatch!`].
+#[cfg(not(all(test, target_arch = "x86_64")))]
+macro_rules! dispatch {
+    ($level:expr, $simd:pat => $op:expr) => {
+        fearless_simd::dispatch!($level, native => {
+            let $simd = crate::simd::lanes::Single(native);
+            $op
+        })
+    };
+}
+
+/// The same with the instructions of AVX2, whatever the level, for the library's own unit tests: the kernels are most of what there is to compile, and a
+/// test of what they compute needs them once. Tests outside of the library check that they compute the same on every instruction set.
+#[cfg(all(test, target_arch = "x86_64"))]
+macro_rules! dispatch {
+    ($level:expr, $simd:pat => $op:expr) => {{
+        let level: fearless_simd::Level = $level;
+        let avx2 =
+            level.as_avx2().expect("a processor with AVX2, which the library's unit tests are compiled for");
+        let $simd = crate::simd::lanes::Single(avx2);
+        fearless_simd::Simd::vectorize(
+            avx2,
+            #[inline(always)]
+            || $op,
+        )
+    }};
+}
+
+/// Runs an expression in double precision, once for each half of a tile. Compiled for AVX2 and SSE2 alone: AVX-512 has no more lanes for four numbers.
+#[cfg(all(target_arch = "x86_64", not(one_lane)))]
+macro_rules! dispatch_double {
+    ($level:expr, $simd:pat => $op:expr) => {{
+        let level: fearless_simd::Level = $level;
+        let avx2 = level.as_avx2();
+        if let Some(native) = avx2 {
+            crate::simd::dispatch::both_halves!(native, $simd => $op);
+        }
+        // Not in the library's own unit tests, which are compiled for AVX2.
+        #[cfg(not(test))]
+        if let (None, Some(native)) = (avx2, level.as_sse2()) {
+            crate::simd::dispatch::both_halves!(native, $simd => $op);
+        }
+    }};
+}
+
+/// Runs an expression with these instructions in double precision, once for each half of a tile.
+#[cfg(all(target_arch = "x86_64", not(one_lane)))]
+macro_rules! both_halves {
+    ($native:ident, $simd:pat => $op:expr) => {
+        fearless_simd::Simd::vectorize(
+            $native,
+            #[inline(always)]
+            || {
+                for half in 0..2 {
+                    let $simd = crate::simd::precision::Double { native: $native, half };
+                    $op
+                }
+            },
+        )
+    };
+}
+
+/// Runs an expression in double precision, once for each half of a tile.
+#[cfg(all(not(target_arch = "x86_64"), not(one_lane)))]
+macro_rules! dispatch_double {
+    ($level:expr, $simd:pat => $op:expr) => {
+        fearless_simd::dispatch!($level, native => {
+            for half in 0..2 {
+                let $simd = crate::simd::precision::Double { native, half };
+                $op
+            }
+        })
+    };
+}
+
+/// The build without SIMD has single precision alone.
+#[cfg(one_lane)]
+macro_rules! dispatch_double {
+    ($level:expr, $simd:pat => $op:expr) => {
+        crate::simd::dispatch::dispatch!($level, $simd => $op)
+    };
+}
+
+#[cfg(all(target_arch = "x86_64", not(one_lane)))]
+pub(crate) use both_halves;
+pub(crate) use {dispatch, dispatch_double};
