@@ -34,7 +34,7 @@ fn main() {
         ["monkey", minutes] => monkey(minutes),
         ["meshes"] => {
             let test =
-                ["test", "--release", "-p", "hairspring-io", "--test", "the_example_meshes_are_made_by_code"];
+                ["test", "--release", "-p", "hairspring-io", "--test", "example_meshes_are_made_by_code"];
             run::cargo(&test, &[("HAIRSPRING_MESHES", "write")])
         }
         ["golden"] => {
@@ -64,8 +64,7 @@ fn window(script: &str) -> Result<(), String> {
 fn monkey(minutes: &str) -> Result<(), String> {
     let minutes: f64 = minutes.parse().map_err(|_| format!("'{minutes}' is not a number of minutes"))?;
     let seconds = format!("{}", (minutes * 60.0).round() as u64);
-    let test =
-        ["test", "--release", "-p", "hairspring-app", "--test", "a_monkey_at_the_controls_breaks_nothing"];
+    let test = ["test", "--release", "-p", "hairspring-app", "--test", "random_input_breaks_nothing"];
     run::cargo(&[&test[..], &["--", "--nocapture"]].concat(), &[("HAIRSPRING_MONKEY", &seconds)])
 }
 

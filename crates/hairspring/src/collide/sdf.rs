@@ -276,7 +276,6 @@ pub(super) mod tests {
     };
     use fearless_simd::Level;
     use glam::Quat;
-    use hairspring_scene::builtin::{self, BuiltinOptions};
     use std::sync::Arc;
 
     /// Balls of many triangles, turned and overlapping; `whole`: without holes.
@@ -339,9 +338,6 @@ pub(super) mod tests {
                 assert_marked(&grid, &format!("deforming balls {seed}, whole: {whole}"));
             }
         }
-        let head =
-            builtin::scene(&BuiltinOptions { strands: 3, ..Default::default() }).collision.unwrap().mesh;
-        assert_marked(&voxelize(&head.positions, &head.triangles, 0.004), "the built-in head");
     }
 
     /// Halfway through a wall the distance has no slope: a point there is led out all the same.

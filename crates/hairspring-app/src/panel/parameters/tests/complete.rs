@@ -58,7 +58,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("groom.grow.inside", "where hair grows is said with its parts"),
 ];
 
-/// The book has a page for every field of the scene file: `the_book_is_whole` sees to that.
+/// The book has a page for every field of the scene file: `book_is_complete` sees to that.
 #[test]
 fn every_field_of_the_scene_file_is_in_the_panel_or_is_said_why_not() {
     let known: Vec<String> = parameter::ALL

@@ -1,0 +1,152 @@
+//! Promise: bad input ends with one clear sentence and its own exit code, and leaves nothing half-written.
+//!
+//! Scripts branch on the code; people read the sentence, so it names the file and what is wrong with it. After each
+//! refusal the folder holds what it held before: no output, no temporary file.
+
+use crate::common::{contents, groom, program, run, succeed, write_groom};
+use glam::Vec3;
+use std::path::Path;
+
+/// Runs the program, which must fail with `code` and one line that contains `words`, and leave the folder alone.
+fn refuse(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
+    let before = contents(folder);
+    let output = run(folder, arguments);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {told}");
+    let errors: Vec<&str> = told.lines().filter(|l| !l.starts_with("note: ")).collect();
+    assert!(errors.len() == 1 && errors[0].starts_with("error: "), "{arguments:?}: {told}");
+    for word in words {
+        assert!(errors[0].contains(word), "{arguments:?}: '{word}' is missing in: {told}");
+    }
+    assert!(output.stdout.is_empty(), "{arguments:?} printed {:?}", output.stdout);
+    assert!(contents(folder) == before, "{arguments:?} left something behind");
+}
+
+#[test]
+fn files_that_are_not_there_or_not_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    refuse(f, &["info", "no.hair"], 3, &["no.hair", "not found"]);
+    refuse(f, &["convert", "no.hair", "out.tfx"], 3, &["no.hair"]);
+    refuse(f, &["bake", "no.toml", "-o", "x.#.hair"], 3, &["no.toml"]);
+    refuse(f, &["render", "no.hair", "-o", "x.png"], 3, &["no.hair"]);
+    std::fs::write(f.join("hair.xyz"), "?").unwrap();
+    refuse(f, &["info", "hair.xyz"], 2, &["hair.xyz", ".tfx"]);
+    refuse(f, &["render", "hair.xyz", "-o", "x.png"], 2, &["hair.xyz", ".toml"]);
+    write_groom(f, 5);
+    refuse(f, &["convert", "groom.hair", "groom.abc"], 2, &["groom.abc", ".tfx"]);
+    refuse(f, &["render", "groom.hair", "-o", "x.gif"], 2, &["x.gif", ".png"]);
+    refuse(f, &["bake", "groom.hair", "-o", "x.#.png"], 2, &["x.#.png", ".hair"]);
+}
+
+#[test]
+fn a_machine_without_a_graphics_card() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    let before = contents(f);
+    // Of all graphics cards, those that no machine which runs this test has: Windows' on the others, Apple's on Windows.
+    let none = if cfg!(windows) { "metal" } else { "dx12" };
+    let arguments = ["render", "groom.hair", "-o", "x.png", "--gpu", "--size", "64x36"];
+    let output = program(f, &arguments).env("WGPU_BACKEND", none).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(7), "{told}");
+    let errors: Vec<&str> = told.lines().filter(|l| !l.starts_with("note: ")).collect();
+    assert!(
+        errors.len() == 1 && errors[0].contains("graphics card") && errors[0].contains("install"),
+        "{told}"
+    );
+    assert!(contents(f) == before);
+}
+
+#[test]
+fn files_that_lie() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let path = write_groom(f, 20);
+    let bytes = std::fs::read(&path).unwrap();
+    for cut in [0, 3, 100, bytes.len() / 2, bytes.len() - 1] {
+        std::fs::write(&path, &bytes[..cut]).unwrap();
+        refuse(f, &["info", "groom.hair"], 4, &["groom.hair"]);
+        refuse(f, &["convert", "groom.hair", "out.tfx"], 4, &["groom.hair"]);
+        refuse(f, &["render", "groom.hair", "-o", "x.mp4"], 4, &["groom.hair"]);
+    }
+    // No strands at all.
+    std::fs::write(f.join("none.data"), 0i32.to_le_bytes()).unwrap();
+    refuse(f, &["info", "none.data"], 4, &["none.data", "no strands"]);
+    refuse(f, &["render", "none.data", "-o", "x.png"], 4, &["none.data", "no strands"]);
+}
+
+#[test]
+fn points_that_are_not_numbers_are_mended_and_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut broken = groom(10);
+    broken.points[4] = Vec3::NAN;
+    hairspring_io::write_groom(&folder.path().join("nan.hair"), &broken).unwrap();
+    let output = run(folder.path(), &["convert", "nan.hair", "mended.hair"]);
+    assert!(output.status.success());
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("repaired 1 points that were not finite"), "{told}");
+    let found = crate::common::json(&succeed(folder.path(), &["info", "mended.hair", "--json"]));
+    assert_eq!(found["repaired"], 0);
+}
+
+#[test]
+fn scenes_that_are_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    let scene = |text: &str| std::fs::write(f.join("scene.toml"), text).unwrap();
+    let bake = ["bake", "scene.toml", "-o", "x.#.hair"];
+    scene("[[groom]]\nfile = \"groom.hair\"\ngiudes = 5\n");
+    refuse(f, &bake, 4, &["scene.toml", "line 3", "did you mean `guides`?"]);
+    scene("[[groom]]\nfile = \"groom.hair\"\n[body]\nfile = \"head.obj\"\n");
+    refuse(f, &bake, 3, &["head.obj", "scene.toml", "line 4"]);
+    scene("[[groom]]\nfile = \"groom.doc\"\n");
+    refuse(f, &bake, 4, &["groom.doc"]);
+    scene("gravity = [0.0, -9.81, 0.0]\n");
+    let told = run(f, &bake);
+    assert!(matches!(told.status.code(), Some(4 | 6)), "a scene without hair: {told:?}");
+    scene("[[groom]]\nfile = \"groom.hair\"\n");
+    refuse(f, &["bake", "scene.toml", "-o", "x.#.hair", "--scale", "2"], 2, &["--scale"]);
+}
+
+#[test]
+fn outputs_that_cannot_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    refuse(f, &["render", "groom.hair", "-o", "no/x.png"], 5, &["no", "does not exist"]);
+    refuse(f, &["bake", "groom.hair", "-o", "no/x.#.hair"], 5, &["no", "does not exist"]);
+    refuse(f, &["convert", "groom.hair", "no/x.tfx"], 5, &["no", "does not exist"]);
+    // Strands of different point counts do not fit a .tfx file.
+    refuse(f, &["convert", "groom.hair", "x.tfx"], 5, &["x.tfx"]);
+    refuse(f, &["bake", "groom.hair", "-o", "x.hair"], 2, &["x.hair", "#"]);
+    refuse(f, &["render", "groom.hair", "-o", "x.png", "--frames", "1-5"], 2, &["x.png", "#"]);
+    refuse(f, &["render", "groom.hair", "-o", "x.mp4", "--resume"], 2, &["--resume"]);
+    refuse(f, &["render", "groom.hair", "-o", "x.mp4", "--size", "8x8"], 2, &["8×8"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn folders_that_take_no_files() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    let closed = tempfile::tempdir().unwrap();
+    std::fs::set_permissions(closed.path(), std::fs::Permissions::from_mode(0o555)).unwrap();
+    // Rights do not bind the super-user; the process file system takes no files from anyone.
+    let closed = match tempfile::tempfile_in(closed.path()) {
+        Err(_) => closed.path(),
+        Ok(_) if Path::new("/proc/self").exists() => Path::new("/proc"),
+        Ok(_) => return println!("skipped: every folder takes files here"),
+    };
+    let at = |name: &str| closed.join(name).to_str().unwrap().to_owned();
+    refuse(f, &["render", "groom.hair", "-o", &at("x.png")], 5, &["does not take files"]);
+    refuse(f, &["render", "groom.hair", "-o", &at("x.mp4")], 5, &["does not take files"]);
+    refuse(f, &["bake", "groom.hair", "-o", &at("x.#.hair")], 5, &["does not take files"]);
+    refuse(f, &["convert", "groom.hair", &at("x.tfx")], 5, &["does not take files"]);
+    let demo = ["demo", "--strands", "10", "--seconds", "0.1", "-o", closed.to_str().unwrap()];
+    refuse(f, &demo, 5, &["does not take files"]);
+}

@@ -1,0 +1,94 @@
+//! Promise: a bake gives the same bits however it came about: on one thread or two, in one go, resumed after frames went
+//! missing, or stopped by Ctrl-C and resumed.
+//!
+//! A farm bakes a shot on whatever machine is free and starts again after a crash; a frame that differs by a bit from
+//! the one beside it flickers. Every frame's file is compared byte for byte with that of an uninterrupted run.
+
+use crate::common::{contents, names, succeed, write_scene};
+use std::path::Path;
+
+/// Bakes frames 1 to 12 into `folder`/`name`, with further arguments.
+fn bake(folder: &Path, name: &str, more: &[&str]) -> Vec<(String, Vec<u8>)> {
+    std::fs::create_dir_all(folder.join(name)).unwrap();
+    let pattern = format!("{name}/hair.###.hair");
+    let arguments = [&["bake", "scene.toml", "-o", &pattern, "--frames", "1-12"], more].concat();
+    succeed(folder, &arguments);
+    contents(&folder.join(name))
+}
+
+#[test]
+fn on_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    write_scene(folder.path(), 400);
+    let one = bake(folder.path(), "one", &["--threads", "1"]);
+    let two = bake(folder.path(), "two", &["--threads", "2"]);
+    assert_eq!(one.len(), 12);
+    assert_eq!(one[0].0, "hair.001.hair");
+    assert!(one[0].1 != one[11].1, "nothing moved");
+    assert!(one == two);
+}
+
+#[test]
+fn resumed_over_missing_and_broken_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    write_scene(folder.path(), 200);
+    let whole = bake(folder.path(), "bake", &[]);
+    let at = |n: u32| folder.path().join(format!("bake/hair.{n:03}.hair"));
+    for n in [3, 7, 12] {
+        std::fs::remove_file(at(n)).unwrap();
+    }
+    // What a crash of the file system leaves, as no crash of ours does.
+    std::fs::write(at(9), &whole[8].1[..500]).unwrap();
+    let untouched = std::fs::metadata(at(5)).unwrap().modified().unwrap();
+    let resumed = bake(folder.path(), "bake", &["--resume"]);
+    assert!(resumed == whole);
+    assert_eq!(
+        std::fs::metadata(at(5)).unwrap().modified().unwrap(),
+        untouched,
+        "a whole frame was written again"
+    );
+}
+
+#[test]
+fn part_of_a_range_is_that_part() {
+    let folder = tempfile::tempdir().unwrap();
+    write_scene(folder.path(), 50);
+    let whole = bake(folder.path(), "whole", &[]);
+    std::fs::create_dir(folder.path().join("part")).unwrap();
+    succeed(folder.path(), &["bake", "scene.toml", "-o", "part/hair.###.hair", "--frames", "8-9"]);
+    assert!(contents(&folder.path().join("part"))[..] == whole[7..9]);
+}
+
+#[cfg(unix)]
+#[test]
+fn stopped_by_ctrl_c_and_resumed() {
+    use std::{process::Command, process::Stdio, time::Duration};
+    let folder = tempfile::tempdir().unwrap();
+    write_scene(folder.path(), 200);
+    let whole = bake(folder.path(), "whole", &[]);
+    let stopped = folder.path().join("stopped");
+    std::fs::create_dir(&stopped).unwrap();
+    // More frames than can be baked before the signal comes.
+    let arguments = ["bake", "scene.toml", "-o", "stopped/hair.###.hair", "--frames", "1-900000"];
+    let child = crate::common::program(folder.path(), &arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while !stopped.join("hair.002.hair").exists() {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(130), "{told}");
+    assert!(told.contains("--resume"), "{told}");
+    let written = names(&stopped);
+    assert!(written.iter().all(|n| n.starts_with("hair.")), "{written:?}");
+    // The last frame that it names is there, and it is whole like all others.
+    for name in written.iter().skip(12) {
+        std::fs::remove_file(stopped.join(name)).unwrap();
+    }
+    assert!(contents(&stopped).iter().all(|file| whole.contains(file)));
+    assert!(bake(folder.path(), "stopped", &["--resume"]) == whole);
+}

@@ -1,0 +1,214 @@
+//! Promise: `hairspring bench` measures the standard scene and reports it under stable keys, and the hair in it neither
+//! stretches nor passes through the head.
+//!
+//! The bounds are those of the base issue, after 5 seconds of shaking: mean stretch under 0.05 %, worst under 1.1 %, no
+//! point deeper than 0.1 mm inside the sphere, nothing that is not finite, under 120 bytes a point. Time is reported and
+//! not judged: this machine may be busy. `--table` does so for every model on every instruction set.
+
+use crate::common::{json, run, succeed};
+use serde_json::Value;
+use std::path::Path;
+
+const KEYS: [&str; 21] = [
+    "device",
+    "threads",
+    "strands",
+    "points",
+    "substeps",
+    "frames",
+    "integrator",
+    "hair_hair",
+    "ms_per_frame_median",
+    "ms_per_frame_p95",
+    "ns_per_point_substep",
+    "stretch_mean",
+    "stretch_max",
+    "inside_points",
+    "max_depth_m",
+    "non_finite",
+    "bytes_per_point",
+    "stages",
+    "simd",
+    "model",
+    "stretch_max_ever",
+];
+
+#[test]
+fn five_seconds_of_shaking() {
+    let found = json(&succeed(Path::new("."), &["bench", "--strands", "400", "--threads", "2", "--json"]));
+    let keys: Vec<&str> = found.as_object().unwrap().keys().map(String::as_str).collect();
+    assert_eq!(keys[..KEYS.len()], KEYS);
+    let number = |key: &str| found[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", found[key]));
+    let asked =
+        [("threads", 2.0), ("strands", 400.0), ("points", 32.0), ("substeps", 4.0), ("frames", 300.0)];
+    for (key, want) in asked {
+        assert_eq!(number(key), want, "{key}");
+    }
+    assert_eq!((&found["device"], &found["integrator"]), (&"cpu".into(), &"backward-euler".into()));
+    assert_eq!(found["hair_hair"], false);
+
+    assert!(number("stretch_mean") < 5e-4, "{found}");
+    assert!(number("stretch_max") < 0.011, "{found}");
+    assert!(number("stretch_max_ever") < 0.011, "{found}");
+    assert!(number("max_depth_m") < 1e-4, "{found}");
+    assert!(number("max_depth_m_ever") < 1e-4, "{found}");
+    assert_eq!((number("non_finite"), number("reset_strands")), (0.0, 0.0));
+    assert!((1.0..120.0).contains(&number("bytes_per_point")), "{found}");
+
+    let (median, p95) = (number("ms_per_frame_median"), number("ms_per_frame_p95"));
+    let fastest = number("ms_per_frame_fastest");
+    assert!(0.0 < fastest && fastest <= median && median <= p95);
+    let ns = median * 1e6 * 2.0 / (400.0 * 32.0 * 4.0);
+    assert!((number("ns_per_point_substep") / ns - 1.0).abs() < 1e-9, "per core: wall time x threads");
+    let stages = found["stages"].as_object().unwrap();
+    assert!(!stages.is_empty() && stages.values().all(|ms| ms.as_f64().unwrap() > 0.0));
+}
+
+#[test]
+fn hair_meets_hair_when_asked() {
+    let bench = |more: &[&str]| {
+        let small = ["bench", "--strands", "300", "--points", "16", "--frames", "30", "--json"];
+        json(&succeed(Path::new("."), &[&small[..], more].concat()))
+    };
+    assert!(bench(&[])["volume"].is_null());
+    for (more, method) in
+        [(&["--hair-hair"][..], "density"), (&["--hair-hair", "incompressible"], "incompressible")]
+    {
+        let found = bench(more);
+        assert_eq!((&found["hair_hair"], &found["volume"]["method"]), (&true.into(), &method.into()));
+        assert!(found["volume"]["cell_m"].as_f64().unwrap() > 0.0, "{found}");
+        assert!((0.1..1.1).contains(&found["volume"]["share"].as_f64().unwrap()), "{found}");
+    }
+}
+
+/// Everything on: the head as a field, wind, and hair on hair.
+#[test]
+fn the_whole_world_when_asked() {
+    let small = ["bench", "--strands", "300", "--points", "16", "--frames", "60", "--json"];
+    let calm = json(&succeed(Path::new("."), &small));
+    let world = ["--hair-hair", "--head", "sdf", "--wind", "3"];
+    let found = json(&succeed(Path::new("."), &[&small[..], &world].concat()));
+    let number = |of: &Value, key: &str| of[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", of[key]));
+    assert_eq!((&found["head"], number(&found, "wind_m_s")), (&"sdf".into(), 3.0));
+    assert_eq!((&calm["head"], number(&calm, "wind_m_s")), (&"sphere".into(), 0.0));
+    assert!(number(&found, "stretch_max_ever") < 0.011, "{found}");
+    assert!(number(&found, "max_depth_m_ever") < 1e-4, "{found}");
+    assert_eq!((number(&found, "non_finite"), number(&found, "reset_strands")), (0.0, 0.0));
+    for wrong in [["--head", "cube"], ["--wind", "-1"], ["--wind", "storm"]] {
+        assert_eq!(run(Path::new("."), &["bench", wrong[0], wrong[1]]).status.code(), Some(2), "{wrong:?}");
+    }
+}
+
+#[test]
+fn an_older_instruction_set_is_used_when_asked() {
+    let small = ["bench", "--strands", "16", "--frames", "5", "--json"];
+    let best = json(&succeed(Path::new("."), &small));
+    let best = best["simd"].as_str().unwrap();
+    let again = json(&succeed(Path::new("."), &[&small[..], &["--simd", best]].concat()));
+    assert_eq!(again["simd"], best);
+}
+
+#[test]
+fn a_table_has_every_model_on_every_instruction_set() {
+    let small = ["bench", "--table", "--strands", "16", "--points", "8", "--frames", "7", "--substeps", "2"];
+    let mut sets = hairspring::simulation::Simulation::instruction_sets();
+    if cfg!(feature = "scalar") {
+        sets.push("scalar".into());
+    }
+    let baseline = sets.last().unwrap();
+    let found = json(&succeed(Path::new("."), &[&small[..], &["--threads", "2", "--json"]].concat()));
+    let cells = found.as_array().unwrap();
+    let mut named = Vec::new();
+    for cell in cells {
+        named.push((cell["simd"].as_str().unwrap(), cell["model"].as_str().unwrap()));
+        // The keys are those of a bench of one of them, and four more.
+        let own = ["speedup", "speedup_over", "frames_in_turn", "compiled_for"];
+        let mut keys = cell.as_object().unwrap().keys().map(String::as_str);
+        assert_eq!(keys.find(|key| !KEYS.contains(key) && !own.contains(key)), None);
+        let number = |key: &str| cell[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", cell[key]));
+        for (key, want) in
+            [("threads", 2.0), ("strands", 16.0), ("points", 8.0), ("substeps", 2.0), ("frames", 7.0)]
+        {
+            assert_eq!(number(key), want, "{key}");
+        }
+        let ns = number("ms_per_frame_median") * 1e6 * 2.0 / (16.0 * 8.0 * 2.0);
+        assert!(ns > 0.0 && (number("ns_per_point_substep") / ns - 1.0).abs() < 1e-9, "{cell}");
+        assert_eq!(cell["speedup_over"], baseline.as_str());
+        let last =
+            cells.iter().find(|c| c["simd"] == baseline.as_str() && c["model"] == cell["model"]).unwrap();
+        let times = last["ns_per_point_substep"].as_f64().unwrap() / number("ns_per_point_substep");
+        assert!((number("speedup") / times - 1.0).abs() < 1e-9, "{cell}");
+    }
+    let all: Vec<(&str, &str)> = sets
+        .iter()
+        .flat_map(|set| ["curvature", "rod", "springs"].map(|model| (set.as_str(), model)))
+        .collect();
+    assert_eq!(named, all);
+
+    let told = succeed(Path::new("."), &[&small[..], &["--threads", "2"]].concat());
+    let stated = [
+        "curvature",
+        "rod",
+        "springs",
+        "16 strands x 8 points",
+        "2 threads",
+        "2 substeps",
+        "medians of the 7 frames",
+        "5 in turn",
+        if cfg!(feature = "scalar") { "compiled like the whole program for" } else { "--features scalar" },
+    ];
+    for word in sets.iter().map(String::as_str).chain(stated) {
+        assert!(told.contains(word), "{word} is missing in: {told}");
+    }
+}
+
+#[test]
+fn a_table_chooses_models_and_instruction_sets_itself() {
+    for (flag, name) in [("--simd", "sse2"), ("--model", "rod"), ("--integrator", "bdf2")] {
+        let output = run(Path::new("."), &["bench", "--table", flag, name]);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        let first = told.lines().next().unwrap_or_default();
+        assert!(first.contains("--table") && first.contains(flag), "{told}");
+    }
+    let output = run(Path::new("."), &["bench", "--table", "--strands", "10000000", "--points", "16"]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), told.lines().count()), (Some(2), 1), "{told}");
+    assert!(told.contains("choose fewer"), "{told}");
+}
+
+#[test]
+fn what_there_is_not_is_refused_with_what_there_is() {
+    for (flag, name, there) in [
+        ("--integrator", "leapfrog", "backward-euler"),
+        ("--model", "wire", "curvature"),
+        ("--device", "gpu", "cpu"),
+        ("--simd", "mmx", "'mmx'"),
+    ] {
+        let output = run(Path::new("."), &["bench", "--strands", "8", flag, name]);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains(name) && told.contains(there) && told.lines().count() == 1, "{told}");
+    }
+}
+
+#[test]
+fn a_scene_says_what_its_stages_take_and_what_it_met() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[builtin]\nstrands = 60\nguides = 60\n\n[volume]\nmethod = \"density\"\n";
+    std::fs::write(folder.path().join("head.toml"), text).unwrap();
+    let arguments = ["bench", "--scene", "head.toml", "--frames", "5", "--threads", "2"];
+    let found = json(&succeed(folder.path(), &[&arguments[..], &["--json"]].concat()));
+    let number = |key: &str| found[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", found[key]));
+    let (threads, frames, substeps) = (number("threads"), number("frames"), number("substeps"));
+    assert_eq!((threads, frames, substeps), (2.0, 5.0, 4.0));
+    let stage = |name: &str| found["stages"][name].as_f64().unwrap();
+    let stages = ["body", "volume", "forces", "solve", "follow"];
+    assert!(stages.iter().all(|name| stage(name) > 0.0), "{found}");
+    assert_eq!(stage("neighbours"), 0.0, "they are off");
+    assert!(number("points_in_contact") > 0.0, "hair lies on the head: {found}");
+    assert!(number("points_looked_up") > 0.0, "{found}");
+    assert!(number("ns_per_point_substep") > 0.0);
+    let output = succeed(folder.path(), &arguments);
+    assert!(stages.iter().all(|name| output.contains(name)) && output.contains("held out"), "{output}");
+}

@@ -1,0 +1,94 @@
+//! Promise: `hairspring validate` says what was measured, what was expected and whether that is near enough, under stable keys;
+//! its exit code is 1 where it is not, and its report is one file that stands by itself.
+
+use crate::common::{json, names, run, succeed};
+use std::path::Path;
+
+const KEYS: [&str; 8] =
+    ["case", "parameters", "quantity", "measured", "reference", "relative_error", "tolerance", "pass"];
+
+#[test]
+fn a_case_at_any_parameter() {
+    let arguments =
+        ["validate", "heavy-cantilever", "--gamma", "30", "--points", "40", "--model", "rod", "--json"];
+    let found = json(&succeed(Path::new("."), &arguments));
+    let list = found.as_array().unwrap();
+    assert_eq!(list.len(), 3, "drop, reach and their ratio");
+    for outcome in list {
+        let keys: Vec<&str> = outcome.as_object().unwrap().keys().map(String::as_str).collect();
+        assert_eq!(keys, KEYS);
+        let number = |key: &str| outcome[key].as_f64().unwrap();
+        assert_eq!(outcome["case"], "heavy-cantilever");
+        let parameters = &outcome["parameters"];
+        assert_eq!((parameters["gamma"].as_f64(), parameters["points"].as_u64()), (Some(30.0), Some(40)));
+        assert_eq!(
+            (&parameters["model"], &parameters["integrator"]),
+            (&"rod".into(), &"backward-euler".into())
+        );
+        let error = (number("measured") / number("reference") - 1.0).abs();
+        assert!((error - number("relative_error")).abs() < 1e-12);
+        assert_eq!(outcome["pass"], error <= number("tolerance"));
+    }
+}
+
+#[test]
+fn what_does_not_agree_is_exit_code_1() {
+    // Follow the leader knows no bending.
+    let output =
+        run(Path::new("."), &["validate", "heavy-cantilever", "--gamma", "1", "--integrator", "ftl"]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert_eq!(told.trim(), "error: 3 of 3 measured values are out of tolerance");
+    assert!(String::from_utf8(output.stdout).unwrap().contains("FAIL"));
+}
+
+#[test]
+fn a_table_has_a_value_or_a_reason_in_each_cell() {
+    let found = succeed(Path::new("."), &["validate", "pendulum", "--table"]);
+    let rows: Vec<&str> = found.lines().filter(|line| line.starts_with("| pendulum")).collect();
+    assert_eq!(rows.len(), 3, "one a model: {found}");
+    for row in rows {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        assert_eq!(cells.len(), 3 + 6, "case, model, tolerance, and 32 to 1,024 points: {row}");
+        // A truss is braked by more than the case grants, which its cell says.
+        let wanted = if cells[1] == "springs" { "%** (2)" } else { "%" };
+        assert!(cells[3].ends_with(wanted), "{row}");
+        assert!(cells[4..].iter().all(|cell| *cell == "(1)"), "{row}");
+    }
+    assert!(found.contains("\n2. pendulum: a truss is braked more"), "{found}");
+    assert!(found.contains("\n1. pendulum is about a strand of 3 points alone\n"), "{found}");
+}
+
+#[test]
+fn a_report_is_one_file() {
+    let folder = tempfile::tempdir().unwrap();
+    succeed(folder.path(), &["validate", "end-load", "--alpha", "2", "--report", "report.html"]);
+    assert_eq!(names(folder.path()), ["report.html"]);
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    for part in ["<!doctype html>", "<h2>end-load</h2>", "<polyline", "<circle", "tip angle θ", "</html>"] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(!page.contains("http") && !page.contains("src="), "nothing beside itself");
+}
+
+#[test]
+fn what_a_case_does_not_know_is_refused() {
+    for (arguments, parts) in [
+        (&["validate", "cantilever"][..], ["'cantilever'", "heavy-cantilever"]),
+        (&["validate", "greenhill", "--mu", "0.3"], ["--mu", "incline"]),
+        (&["validate", "--gamma", "3"], ["--gamma", "heavy-cantilever"]),
+        (&["validate", "incline", "--mu", "7"], ["--mu is 7", "0.01 to 1"]),
+        (&["validate", "incline", "--mu", "NaN"], ["--mu is NaN", "0.01 to 1"]),
+        (&["validate", "pendulum", "--points", "64"], ["pendulum", "3 points"]),
+        (&["validate", "incline", "--model", "clay"], ["'clay'", "curvature"]),
+        (&["validate", "incline", "--integrator", "magic"], ["'magic'", "backward-euler"]),
+        (&["validate", "incline", "--report", "no/where.html"], ["no", "does not exist"]),
+    ] {
+        let output = run(Path::new("."), arguments);
+        let told = String::from_utf8(output.stderr).unwrap();
+        println!("{told}");
+        assert!(matches!(output.status.code(), Some(2 | 5)), "{arguments:?}: {told}");
+        assert_eq!(told.lines().count(), 1);
+        assert!(parts.iter().all(|p| told.contains(p)), "{arguments:?}: {told}");
+    }
+}

@@ -1,0 +1,218 @@
+//! Promise: no file, however broken, makes a reader panic, hang or allocate without bound; it gives one sentence.
+//!
+//! A small sound file of every format is cut at every length, and its bytes and words are changed one at a time to the
+//! values that break careless readers (0, the largest, the smallest). A cut file must be refused wherever something is
+//! missing; a changed one may be refused or read, as long as the reader comes back. The fuzz targets in `/fuzz` go on
+//! from here.
+
+use glam::Vec3;
+use hairspring_io::{
+    ErrorKind, Place, ReadOptions, Strands, read_body, read_groom, read_motion, write_strands,
+};
+use proptest::prelude::*;
+use rayon::prelude::*;
+use std::fs;
+
+#[test]
+fn sound_files_are_read() {
+    for (name, file, read) in crate::samples::all() {
+        read(&file).unwrap_or_else(|e| panic!("{name}: {e}"));
+    }
+}
+
+#[test]
+fn binary_files_cut_at_any_length_are_refused() {
+    for (name, file, read) in crate::samples::all() {
+        if !["hair", "hair-even", "tfx-4", "tfx-3", "data", "tfxbone", "glb"].contains(&name) {
+            continue;
+        }
+        for length in 0..file.len() {
+            let problem = read(&file[..length]).expect_err(&format!("{name} cut at {length}"));
+            assert!(
+                !problem.text.is_empty() && !problem.text.contains('\n'),
+                "{name} cut at {length}: {problem}"
+            );
+        }
+    }
+}
+
+#[test]
+fn text_files_cut_at_any_length_come_back() {
+    for (name, file, read) in crate::samples::all() {
+        for length in 0..file.len() {
+            if let Err(problem) = read(&file[..length]) {
+                assert!(!problem.text.contains('\n'), "{name} cut at {length}: {problem}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_byte_and_word_may_lie() {
+    for (name, file, read) in crate::samples::all() {
+        println!("{name}: {} bytes", file.len());
+        (0..file.len()).into_par_iter().for_each_init(
+            || file.clone(),
+            |lying, at| {
+                for value in [0, 1, 0x7f, 0x80, 0xff, b'-', b'9', b' ', b'\n'] {
+                    lying[at] = value;
+                    let _ = read(lying);
+                    lying[at] = file[at];
+                }
+                if at % 4 == 0 && at + 4 <= file.len() {
+                    for value in [
+                        0u32,
+                        1,
+                        0x7fff_ffff,
+                        0x8000_0000,
+                        0xffff_ffff,
+                        f32::NAN.to_bits(),
+                        f32::MAX.to_bits(),
+                    ] {
+                        lying[at..at + 4].copy_from_slice(&value.to_le_bytes());
+                        let _ = read(lying);
+                        lying[at..at + 4].copy_from_slice(&file[at..at + 4]);
+                    }
+                }
+            },
+        );
+    }
+}
+
+#[test]
+fn numbers_in_text_may_lie() {
+    for (name, file, read) in crate::samples::all() {
+        let Ok(text) = std::str::from_utf8(&file) else {
+            continue;
+        };
+        let numbers: Vec<(usize, usize)> = text
+            .split_inclusive(|c: char| !c.is_ascii_digit())
+            .scan(0, |at, piece| {
+                let start = *at;
+                *at += piece.len();
+                Some((start, start + piece.trim_end_matches(|c: char| !c.is_ascii_digit()).len()))
+            })
+            .filter(|(a, b)| a < b)
+            .collect();
+        for (a, b) in numbers {
+            for number in ["99999999999999999999", "4294967295", "1000000", "-1", "nan", "inf", "1e38", ""] {
+                let lying = format!("{}{number}{}", &text[..a], &text[b..]);
+                if let Err(problem) = read(lying.as_bytes()) {
+                    assert!(!problem.text.contains('\n'), "{name}: {problem}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_sentence_has_file_place_and_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let options = ReadOptions::default();
+    fs::write(path("a.hair"), b"HAIRbut then no more").unwrap();
+    let error = read_groom(&path("a.hair"), &options).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Malformed);
+    assert!(
+        error.to_string().contains("a.hair, byte 0") && error.to_string().contains("cut short"),
+        "{error}"
+    );
+
+    fs::write(path("b.obj"), "v 0 0 0\nv 1 0 zero\n").unwrap();
+    let error = read_body(&path("b.obj"), &options).unwrap_err();
+    assert!(
+        error.to_string().contains("b.obj, line 2: expected a vertex of 3 numbers, found `zero`"),
+        "{error}"
+    );
+
+    fs::write(path("c.bvh"), "HIERARCHY\nROOT Hips\n{\n}\nMOTION\nFrames: 5\nFrame Time: 0\n").unwrap();
+    let error = read_motion(&path("c.bvh"), None, &options).unwrap_err();
+    assert!(error.to_string().contains("c.bvh, line 7"), "{error}");
+
+    fs::write(path("d.tfx"), 9f32.to_le_bytes()).unwrap();
+    let error = read_groom(&path("d.tfx"), &options).unwrap_err();
+    assert!(error.to_string().contains("version 9 of .tfx is not known: 3 and 4 are"), "{error}");
+
+    fs::write(path("empty.data"), 0i32.to_le_bytes()).unwrap();
+    let error = read_groom(&path("empty.data"), &options).unwrap_err();
+    assert!(error.to_string().contains("no strands"), "{error}");
+
+    assert_eq!(read_groom(&path("none.hair"), &options).unwrap_err().kind(), ErrorKind::NotFound);
+    assert_eq!(read_groom(&path("b.obj"), &options).unwrap_err().kind(), ErrorKind::Unsupported);
+    let wrong = ReadOptions { scale: Some(0.0), ..options };
+    assert_eq!(read_groom(&path("a.hair"), &wrong).unwrap_err().kind(), ErrorKind::Unsupported);
+    fs::create_dir(path("folder.hair")).unwrap();
+    assert_eq!(read_groom(&path("folder.hair"), &options).unwrap_err().kind(), ErrorKind::Unreadable);
+}
+
+#[test]
+fn a_groom_too_far_for_its_size_is_refused_and_not_repaired() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("far.data");
+    let write = |away: f32| {
+        let points: Vec<Vec3> = (0..16).map(|i| Vec3::new(away, 0.005 * i as f32, 0.0)).collect();
+        let strands = Strands { points: &points, offsets: &[0, 16], radii: &[], colors: &[], root_uvs: &[] };
+        write_strands(&path, strands).unwrap();
+        points
+    };
+    let options = ReadOptions { scale: Some(1.0), up: None };
+    for away in [5e3, 1e7, 1e30] {
+        write(away);
+        let error = read_groom(&path, &options).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Malformed);
+        assert!(error.to_string().contains("from the origin"), "{error}");
+    }
+    let points = write(100.0);
+    assert_eq!(read_groom(&path, &options).unwrap().value.points, points);
+}
+
+#[test]
+fn a_gltf_that_runs_in_circles_or_abroad_is_refused() {
+    let read = |json: &str| hairspring_io::gltf::parse(json.as_bytes(), &|_| None).map(drop).unwrap_err();
+    let circle =
+        r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}"#;
+    assert!(read(circle).text.contains("its own ancestor"));
+    let abroad =
+        r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"https://example.org/a.bin","byteLength":4}]}"#;
+    assert!(read(abroad).text.contains("on a network"));
+    let absent = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"a.bin","byteLength":4}]}"#;
+    assert!(read(absent).text.contains("a.bin"));
+    let draco = r#"{"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"]}"#;
+    let problem = read(draco);
+    assert!(problem.place == Place::Whole && !problem.text.contains('\n'), "{problem}");
+}
+
+#[test]
+fn a_rig_that_runs_in_circles_is_refused() {
+    let mesh = || hairspring_io::obj::parse(crate::samples::mesh().as_bytes()).unwrap();
+    let end = r#""head": {"strategy": "VERTEX", "vertex_index": 0}"#;
+    for (rig, why) in [
+        (format!(r#"{{"": {{{end}, "parent": ""}}}}"#), "no name"),
+        (
+            format!(r#"{{"a": {{{end}, "parent": "b"}}, "b": {{{end}, "parent": "a"}}}}"#),
+            "each other's parents",
+        ),
+        (format!(r#"{{"a": {{{end}, "parent": "c"}}}}"#), "does not have"),
+    ] {
+        let problem =
+            hairspring_io::makehuman::parse(mesh(), rig.as_bytes(), crate::samples::WEIGHTS).unwrap_err();
+        assert!(problem.text.contains(why), "{problem}");
+    }
+}
+
+/// Made once: the noise comes many times.
+static SAMPLES: std::sync::LazyLock<Vec<crate::samples::Sample>> =
+    std::sync::LazyLock::new(crate::samples::all);
+
+proptest! {
+    #[test]
+    fn noise_is_refused(noise in prop::collection::vec(any::<u8>(), 0..400)) {
+        for (_, file, read) in SAMPLES.iter() {
+            let _ = read(&noise);
+            // Noise after a sound beginning.
+            let mut half = file[..file.len() / 2].to_vec();
+            half.extend(&noise);
+            let _ = read(&half);
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! Promises of the readers and writers of grooms, bodies and motions. Each file is one promise.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/samples.rs"]
+mod samples;
+
+mod bad_files_are_refused;
+mod example_meshes_are_made_by_code;
+mod grooms_round_trip;
+mod real_files_are_read;
+mod real_grooms_stay_on_real_heads;

@@ -1,0 +1,157 @@
+//! Promise: hair that others made stays on the heads that others made, whatever they do.
+//!
+//! Real grooms begin inside their colliders, have segments of no length, roots off the skin and fibres thicker or thinner than
+//! hair; real bodies are open, overlap themselves and jump from pose to pose. Each scene file of `examples/scenes` plays here for a
+//! few seconds with few guides and must keep what the simulation promises: the first frame is the file, nothing explodes, segments
+//! keep their length, roots stay on the skin, hair stays out of the head but for the little that was measured (with margin),
+//! and a body at rest has hair at rest. A scene is skipped, with a reason printed, where its data is not there.
+
+use crate::common::data;
+use glam::Vec3;
+use hairspring::{groom::RootBinding, simulation::Measure};
+use hairspring_io::read_scene;
+use hairspring_scene::{Guides, Scene, stage::Stage};
+use std::path::Path;
+
+/// Length of a frame [s].
+const FRAME: f32 = 1.0 / 60.0;
+
+/// What a scene keeps to.
+struct Bounds {
+    /// The longest that it plays [s].
+    seconds: f64,
+    /// Most of the simulated points, in any frame, deeper in a collider than they were authored [share].
+    inside: f64,
+    /// The deepest of them [m].
+    depth: f64,
+}
+
+/// Plays the scene file `name`, whose data `needs` stands for.
+fn plays(name: &str, needs: &str, bounds: Bounds) {
+    if data(needs).is_none() {
+        return;
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes").join(name);
+    let mut scene = read_scene(&path).unwrap_or_else(|e| panic!("{e}")).value;
+    for groom in &mut scene.grooms {
+        let few = (groom.groom.strand_count() / 4).clamp(1, 600) as u32;
+        groom.guides = Guides::Count(few);
+    }
+    rests(scene.clone());
+    moves(scene, &bounds);
+}
+
+/// Without motion, the first frame is the file, and a second later still is.
+fn rests(scene: Scene) {
+    let mut stage = Stage::new(Scene { clip: None, ..scene }).unwrap();
+    let error = |stage: &Stage| {
+        let (mut sum, mut count) = (0.0, 0);
+        for strands in stage.strands() {
+            sum += strands
+                .points
+                .iter()
+                .zip(&strands.groom.points)
+                .map(|(a, b)| a.distance(*b) as f64)
+                .sum::<f64>();
+            count += strands.points.len();
+        }
+        sum / count as f64
+    };
+    let first = error(&stage);
+    assert!(first < 1e-6, "the first frame is {first} m off the file");
+    for _ in 0..60 {
+        stage.step(FRAME);
+    }
+    let moved = error(&stage);
+    println!("at rest: {first:e} m off the file, {moved:e} m after a second");
+    assert!(moved < 1e-4, "the mean point moved {moved} m in a second at rest");
+}
+
+/// In motion, bounds are kept in every frame.
+fn moves(scene: Scene, bounds: &Bounds) {
+    let seconds = scene.clip.as_ref().map_or(1.0, |c| c.duration()).min(bounds.seconds);
+    let mut stage = Stage::new(scene).unwrap();
+    let points = stage.simulated_points().0 as f64;
+    let (mut inside, mut worst) = (0, Measure::default());
+    while stage.time() < seconds {
+        let report = stage.step(FRAME);
+        let measure = stage.measure();
+        assert_eq!(
+            (measure.non_finite, report.step.reset_strands),
+            (0, 0),
+            "hair exploded at {} s",
+            stage.time()
+        );
+        worst.stretch_max = worst.stretch_max.max(measure.stretch_max);
+        worst.max_depth = worst.max_depth.max(measure.max_depth);
+        inside = inside.max(measure.inside_points);
+        let off = root_error(&stage);
+        assert!(off < 1e-4, "at {} s a root is {off} m from where the body carries it", stage.time());
+    }
+    let share = inside as f64 / points;
+    println!(
+        "in motion: stretch {:.3} %, {inside} points ({:.4} %) inside, at most {:.3} mm deep",
+        worst.stretch_max * 100.0,
+        share * 100.0,
+        worst.max_depth * 1e3
+    );
+    assert!(worst.stretch_max < 0.011, "a segment is {} of its length off it", worst.stretch_max);
+    assert!(share <= bounds.inside, "{inside} points, a share of {share}, are inside");
+    assert!(worst.max_depth <= bounds.depth, "a point is {} m deep", worst.max_depth);
+}
+
+/// The farthest that a root is from where its triangle carries it [m].
+fn root_error(stage: &Stage) -> f32 {
+    let body = stage.body().expect("these scenes have a body");
+    let mut worst = 0.0_f32;
+    for strands in stage.strands() {
+        let at = |root: &RootBinding| {
+            root.position(body.mesh.triangles[root.triangle as usize].map(|v| body.positions[v as usize]))
+        };
+        let roots: Vec<Vec3> = strands.groom.roots.iter().map(at).collect();
+        assert_eq!(roots.len(), strands.groom.strand_count());
+        for (s, root) in roots.iter().enumerate() {
+            worst = worst.max(strands.points[strands.groom.offsets[s] as usize].distance(*root));
+        }
+    }
+    worst
+}
+
+#[test]
+fn sintel_walks() {
+    let bounds = Bounds { seconds: 2.8, inside: 1e-3, depth: 0.5e-3 };
+    plays("sintel-walk.toml", "grooms/sintel/sintel.obj", bounds);
+}
+
+#[test]
+fn sintel_dabs_at_600_degrees_a_second() {
+    let bounds = Bounds { seconds: 3.0, inside: 1e-3, depth: 0.5e-3 };
+    plays("sintel-dab.toml", "grooms/sintel/sintel.obj", bounds);
+}
+
+#[test]
+fn the_mohawk_jumps() {
+    let bounds = Bounds { seconds: 2.0, inside: 3e-3, depth: 1e-3 };
+    plays("mohawk.toml", "grooms/tressfx_mohawk/Ratboy_mohawk.tfx", bounds);
+}
+
+/// Her jacket and mouth are open shells, thinner than a tip moves in a substep: a few tips are caught in them for a moment.
+#[test]
+fn the_ponytail_swings() {
+    let bounds = Bounds { seconds: 3.0, inside: 5e-3, depth: 9e-3 };
+    plays("ponytail.toml", "grooms/tressfx_ponytail/tail.tfx", bounds);
+}
+
+/// 4.5 m tall: a millimetre of a human head is 12 of his. His dome and body are open shells that overlap.
+#[test]
+fn the_robot_dances() {
+    let bounds = Bounds { seconds: 2.0, inside: 2e-2, depth: 40e-3 };
+    plays("robot.toml", "characters/robot/robot.glb", bounds);
+}
+
+/// Segments of 3.5 cm round the chin, whose mouth is an open pocket in the mesh: a few tips are caught in the thin flesh between.
+#[test]
+fn long_straight_hair_walks_on_a_skinned_human() {
+    let bounds = Bounds { seconds: 1.5, inside: 5e-3, depth: 15e-3 };
+    plays("straight-walk.toml", "grooms/straight/straight.hair", bounds);
+}

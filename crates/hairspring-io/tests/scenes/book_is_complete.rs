@@ -1,0 +1,419 @@
+//! Promise: the book leaves nothing out and points at nothing that is not there. Every parameter of a scene file has its page in the folder
+//! of its group in `docs/parameters`, with its unit, its range and the default that the code has; it has two pictures of values that the
+//! table of pictures names, or says why not. The group's page and the summary list its parameters in one order, and the group's page says of
+//! each what its page does. Every page is in the summary, once, every link of every page and of the README leads to a file, no page is led
+//! to by the summary alone, every picture is shown, and the scenes of the book can be read. The glossary is in order, and names files that are there.
+
+use hairspring::{
+    air::{Turbulence, WindOcclusion, WindSource},
+    forces::charge::Charged,
+    groom::{Growth, Thicken},
+    material::Material,
+    settings::{Effects, Neighbours, Solver, Volume, Wind},
+};
+use hairspring_io::scene::check_text;
+use hairspring_scene::{Camera, Collider, Ground, HairLook, Hand};
+use serde::{Serialize, de::DeserializeOwned};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+use toml::{Table, Value};
+
+const FILE: &str = include_str!("../../src/scene/file.rs");
+const SOLVER: &str = include_str!("../../../hairspring/src/settings/solver.rs");
+const COLLIDER: &str = include_str!("../../../hairspring-scene/src/settings.rs");
+const SOURCE: &str = include_str!("../../../hairspring/src/air/source.rs");
+const CHARGE: &str = include_str!("../../../hairspring/src/forces/charge.rs");
+
+/// What a parameter's name begins with, and the struct (or variant) whose fields follow.
+const STRUCTS: [(&str, &str, &str); 43] = [
+    ("", FILE, "SceneFile"),
+    ("builtin.", FILE, "BuiltinFile"),
+    ("body.", FILE, "BodyFile"),
+    ("clip.", FILE, "ClipFile"),
+    ("clip.keys.", FILE, "KeyFile"),
+    ("prop.", FILE, "PropFile"),
+    ("groom.", FILE, "GroomFile"),
+    ("groom.grow.", FILE, "GrowFile"),
+    ("groom.transform.", FILE, "Placement"),
+    ("groom.thicken.", include_str!("../../../hairspring/src/groom/thicken.rs"), "Thicken"),
+    ("groom.look.", include_str!("../../../hairspring-scene/src/look.rs"), "HairLook"),
+    ("groom.effects.", include_str!("../../../hairspring/src/settings/effects.rs"), "Effects"),
+    ("material.", include_str!("../../../hairspring/src/material/mod.rs"), "Material"),
+    (
+        "material.global_shape.",
+        include_str!("../../../hairspring/src/material/global_shape.rs"),
+        "GlobalShape",
+    ),
+    ("wind.", include_str!("../../../hairspring/src/settings/wind.rs"), "Wind"),
+    ("wind_source.", SOURCE, "WindSource"),
+    ("wind_source.shape.point.", SOURCE, "Point"),
+    ("wind_source.shape.vortex.", SOURCE, "Vortex"),
+    ("wind_source.shape.fan.", SOURCE, "Fan"),
+    ("turbulence.", include_str!("../../../hairspring/src/air/turbulence.rs"), "Turbulence"),
+    ("wind_occlusion.", include_str!("../../../hairspring/src/air/occlusion.rs"), "WindOcclusion"),
+    ("charged.", CHARGE, "Charged"),
+    ("charged.path.", CHARGE, "Waypoint"),
+    ("collider.", COLLIDER, "Collider"),
+    ("collider.shape.sphere.", COLLIDER, "Sphere"),
+    ("collider.shape.capsule.", COLLIDER, "Capsule"),
+    ("collider.shape.box.", COLLIDER, "Box"),
+    ("collider.shape.plane.", COLLIDER, "Plane"),
+    ("collider.shape.hull.", COLLIDER, "Hull"),
+    ("hand.", include_str!("../../../hairspring-scene/src/hand.rs"), "Hand"),
+    ("hand.tool.grab.", include_str!("../../../hairspring/src/forces/grab.rs"), "Grab"),
+    ("hand.tool.comb.", include_str!("../../../hairspring/src/forces/comb.rs"), "Comb"),
+    ("hand.tool.tie.", include_str!("../../../hairspring/src/forces/tie.rs"), "Tie"),
+    ("solver.", SOLVER, "Solver"),
+    ("volume.", include_str!("../../../hairspring/src/settings/volume.rs"), "Volume"),
+    ("neighbours.", include_str!("../../../hairspring/src/settings/neighbours.rs"), "Neighbours"),
+    ("camera.", include_str!("../../../hairspring-scene/src/camera.rs"), "Camera"),
+    ("ground.", include_str!("../../../hairspring-scene/src/ground.rs"), "Ground"),
+    // Tables that have a page as a whole, besides those of their fields.
+    ("collision.", "", ""),
+    ("sheet.", "", ""),
+    ("charged.path.", "", ""),
+    ("clip.keys.", "", ""),
+    ("prop.mesh.", "", ""),
+];
+
+/// Fields that the body's other meshes have and it has not, by the name that the book gives them.
+const ELSEWHERE: [(&str, &str); 2] =
+    [("body.joint", "collision.joint"), ("body.thickness", "sheet.thickness")];
+
+#[test]
+fn every_parameter_has_its_page() {
+    let known: BTreeSet<String> = STRUCTS
+        .iter()
+        .flat_map(|(prefix, source, name)| {
+            fields(source, name).into_iter().map(move |f| format!("{prefix}{f}"))
+        })
+        .map(|name| ELSEWHERE.iter().find(|(a, _)| *a == name).map_or(name, |(_, b)| (*b).into()))
+        .collect();
+    let begins = |name: &str| STRUCTS.iter().any(|(prefix, ..)| prefix.starts_with(&format!("{name}.")));
+    let said = parameters();
+    for name in &known {
+        assert!(said.contains_key(name) || begins(name), "docs/parameters has no page `{name}`");
+    }
+    for name in said.keys() {
+        let there = known.contains(name) || begins(name) || name == "material.preset";
+        assert!(there, "docs/parameters has a page `{name}`, which a scene file does not know");
+    }
+    // What borrows is not read from a file.
+    let structs = FILE.lines().filter_map(|l| l.strip_prefix("pub(super) struct "));
+    for line in structs.filter(|line| !line.contains('<')) {
+        let name = line.trim_end_matches(" {");
+        assert!(STRUCTS.iter().any(|(.., s)| *s == name), "`{name}` of the scene file is not looked at here");
+    }
+}
+
+#[test]
+fn every_parameter_has_its_unit_its_range_and_the_default_of_the_code() {
+    let defaults = defaults();
+    let said = parameters();
+    for (name, text) in &said {
+        let facts =
+            text.lines().find(|l| l.starts_with("Unit: ")).unwrap_or_else(|| panic!("{name}: no unit"));
+        assert!(facts.contains(" Range: "), "{name}: no range");
+        let default = facts.split(" Default: ").nth(1).unwrap_or_else(|| panic!("{name}: no default"));
+        let Some(right) = defaults.get(name) else { continue };
+        let default = default.trim_end_matches('.').trim_matches('`');
+        assert!(same(&value_of(default), right), "{name}: the default is {right}, not {default}");
+    }
+    assert!(
+        defaults.keys().filter(|name| said.contains_key(*name)).count() > 60,
+        "defaults are not compared"
+    );
+}
+
+#[test]
+fn every_parameter_is_shown_or_says_why_not() {
+    let table: Table = read(&docs().join("pictures.toml")).parse().unwrap();
+    let mut said = parameters();
+    for entry in table["parameter"].as_array().unwrap() {
+        let name = entry["name"].as_str().unwrap();
+        let text =
+            said.remove(name).unwrap_or_else(|| panic!("pictures.toml: there is no parameter `{name}`"));
+        let (low, high) = (&entry["low"], &entry["high"]);
+        // By their values: the order of a table's fields is nobody's promise.
+        let heads = text.lines().find(|l| l.starts_with("| `")).unwrap_or_default();
+        let heads: Vec<Value> =
+            heads.split(" | ").map(|h| value_of(h.trim_matches(['|', ' ', '`']))).collect();
+        let right = heads.len() == 2 && same(&heads[0], low) && same(&heads[1], high);
+        assert!(right, "{name}: not its values, {low} and {high}");
+        for side in ["low", "high"] {
+            assert!(
+                text.contains(&format!("(../../pictures/parameters/{name}-{side}.jpg)")),
+                "{name}: {side}"
+            );
+        }
+        let (scene, frame) = (entry["scene"].as_str().unwrap(), &entry["frame"]);
+        assert!(text.contains(&format!("(../scenes/{scene}.toml)")), "{name}: not its scene");
+        assert!(text.contains(&format!("frame {frame}.")), "{name}: not its frame");
+    }
+    for (name, text) in said {
+        assert!(text.contains("*No picture.*"), "{name} has no picture, and does not say why");
+    }
+    for picture in files(&docs().join("pictures/parameters"), "jpg") {
+        let bytes = fs::metadata(&picture).unwrap().len();
+        assert!(bytes < 30_000, "{}: {bytes} bytes", picture.display());
+    }
+}
+
+#[test]
+fn a_group_lists_its_parameters_and_says_of_each_what_its_page_does() {
+    let said = parameters();
+    let summary = read(&docs().join("SUMMARY.md"));
+    let mut listed = BTreeSet::new();
+    for page in files(&docs().join("parameters"), "md").iter().filter(|p| is_a_group(p)) {
+        let group = page.file_stem().unwrap().to_str().unwrap();
+        let text = read(page);
+        assert!(!text.contains("\n## "), "{}: a parameter has a page of its own", page.display());
+        let rows: Vec<&str> = text.lines().filter(|l| l.starts_with("| [`")).collect();
+        let mut entries = format!("](parameters/{group}.md)\n");
+        for row in rows {
+            let name = row.trim_start_matches("| [`").split('`').next().unwrap();
+            let text = said.get(name).unwrap_or_else(|| panic!("{group}: there is no page `{name}`"));
+            // A page's links begin in its own folder.
+            let [row, text] = [row, text].map(without_links);
+            let mut parts = text.lines().filter(|l| !l.is_empty());
+            let (unit, rest) =
+                parts.next().unwrap().trim_start_matches("Unit: ").split_once(". Range: ").unwrap();
+            let default = rest.split(" Default: ").nth(1).unwrap().trim_end_matches('.');
+            let what = parts.next().unwrap();
+            let first = what.split_inclusive(". ").next().unwrap().trim_end();
+            assert_eq!(row, format!("| `{name}` | {first} | {unit} | {default} |"), "{}", page.display());
+            entries += &format!("    - [{name}](parameters/{group}/{name}.md)\n");
+            listed.insert(name.to_owned());
+        }
+        assert!(summary.contains(&entries), "docs/SUMMARY.md does not list, in this order: {entries}");
+    }
+    assert!(
+        said.keys().eq(&listed),
+        "not on their group's page: {:?}",
+        said.keys().filter(|n| !listed.contains(*n))
+    );
+}
+
+#[test]
+fn every_page_is_in_the_summary_and_led_to() {
+    let summary = read(&docs().join("SUMMARY.md"));
+    let led_to = links(files(&docs(), "md").into_iter().filter(|page| !page.ends_with("SUMMARY.md")));
+    for page in files(&docs(), "md") {
+        let name = page.strip_prefix(docs()).unwrap().to_str().unwrap().replace('\\', "/");
+        if name != "SUMMARY.md" && name != "README.md" {
+            assert_eq!(summary.matches(&format!("]({name})")).count(), 1, "{name} in docs/SUMMARY.md");
+            assert!(led_to.contains(&page.canonicalize().unwrap()), "no page leads to {name}");
+        }
+    }
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    let linked = links(files(&docs(), "md").into_iter().chain([docs().join("../README.md")]));
+    for picture in files(&docs(), "jpg") {
+        assert!(linked.contains(&picture.canonicalize().unwrap()), "no page shows {}", picture.display());
+    }
+}
+
+#[test]
+fn the_glossary_is_in_order_and_names_files_that_exist() {
+    let page = read(&docs().join("glossary.md"));
+    let source = docs().join("../crates/hairspring/src");
+    let rows: Vec<Vec<&str>> = page
+        .lines()
+        .filter(|line| line.starts_with("| "))
+        .skip(1)
+        .map(|line| line.split('|').map(str::trim).collect())
+        .filter(|cells: &Vec<&str>| !cells[1].starts_with('-'))
+        .collect();
+    assert!(rows.len() > 50, "{} terms", rows.len());
+    let terms: Vec<&str> = rows.iter().map(|cells| cells[1]).collect();
+    assert!(terms.is_sorted(), "the terms are not in order: {terms:?}");
+    for cells in &rows {
+        assert!(cells[2].ends_with('.'), "{}: its meaning is no sentence", cells[1]);
+        for file in cells[3].split('`').skip(1).step_by(2) {
+            assert!(source.join(file).exists(), "{} is in {file}, which does not exist", cells[1]);
+        }
+    }
+}
+
+#[test]
+fn every_scene_of_the_book_can_be_read() {
+    for scene in files(&docs().join("parameters/scenes"), "toml") {
+        check_text(&read(&scene)).unwrap_or_else(|why| panic!("{}: {why}", scene.display()));
+    }
+    let pages: String = files(&docs().join("tutorial"), "md").iter().map(|page| read(page)).collect();
+    for scene in files(&docs().join("tutorial"), "toml") {
+        let text = read(&scene);
+        check_text(&text).unwrap_or_else(|why| panic!("{}: {why}", scene.display()));
+        assert!(pages.contains(&text), "no tutorial shows {} as it is", scene.display());
+    }
+}
+
+/// Names of the fields of a struct or of a variant, as its source has them.
+fn fields(source: &str, name: &str) -> Vec<String> {
+    if name.is_empty() {
+        return Vec::new();
+    }
+    let is_its =
+        |line: &&str| line.trim() == format!("{name} {{") || line.ends_with(&format!("struct {name} {{"));
+    let start = source.lines().position(|l| is_its(&l)).unwrap_or_else(|| panic!("no `{name}`"));
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let outer = indent(source.lines().nth(start).unwrap());
+    let inside = source.lines().skip(start + 1).take_while(|l| l.is_empty() || indent(l) > outer);
+    let field = |line: &str| {
+        let name = line.trim().trim_start_matches("pub ").split_once(": ")?.0;
+        name.bytes().all(|b| b.is_ascii_lowercase() || b == b'_').then(|| name.to_owned())
+    };
+    inside.filter(|l| indent(l) == outer + 4).filter_map(field).collect()
+}
+
+/// What is written on each parameter's page, `docs/parameters/GROUP/NAME.md`, under its heading.
+fn parameters() -> BTreeMap<String, String> {
+    let mut all = BTreeMap::new();
+    let folder = docs().join("parameters");
+    for page in files(&folder, "md").iter().filter(|page| page.parent() != Some(&folder)) {
+        let name = page.file_name().unwrap().to_str().unwrap().trim_end_matches(".md");
+        let text = read(page);
+        let text = text.strip_prefix(&format!("# `{name}`\n"));
+        let text = text.unwrap_or_else(|| panic!("{}: not its heading", page.display()));
+        let before = all.insert(name.to_owned(), text.to_owned());
+        assert!(before.is_none(), "{name} has two pages");
+    }
+    all
+}
+
+/// Whether this page of `docs/parameters` is a group's.
+fn is_a_group(page: &Path) -> bool {
+    page.parent() == Some(&docs().join("parameters")) && !page.ends_with("index.md")
+}
+
+/// All files that these pages lead to or show; each is there.
+fn links(pages: impl Iterator<Item = PathBuf>) -> BTreeSet<PathBuf> {
+    let mut linked = BTreeSet::new();
+    for page in pages {
+        let mut code = false;
+        for line in read(&page).lines() {
+            code ^= line.starts_with("```");
+            for link in line.split("](").skip(1).filter(|_| !code).filter_map(|l| l.split(')').next()) {
+                let file = link.split('#').next().unwrap();
+                if !file.is_empty() && !link.contains("://") {
+                    let to = page.parent().unwrap().join(file);
+                    assert!(to.is_file(), "{}: {link} is not there", page.display());
+                    linked.insert(to.canonicalize().unwrap());
+                }
+            }
+        }
+    }
+    linked
+}
+
+/// A text with `` `name` `` for every `` [`name`](where it leads) ``.
+fn without_links(text: &str) -> String {
+    let (start, rest) = text.split_once("](").unwrap_or((text, ""));
+    let leads_to = |part: &str| part.split_once(')').map(|(_, behind)| behind.to_owned());
+    let rest: String = rest.split("](").filter_map(leads_to).collect();
+    format!("{start}{rest}").replace("[`", "`")
+}
+
+/// Defaults that the code has, by the names of the book.
+fn defaults() -> BTreeMap<String, Value> {
+    let mut all = BTreeMap::new();
+    defaults_of::<HairLook>("groom.look", "", &mut all);
+    defaults_of::<Effects>("groom.effects", "", &mut all);
+    defaults_of::<Thicken>("groom.thicken", "", &mut all);
+    defaults_of::<Material>("material", "", &mut all);
+    defaults_of::<Wind>("wind", "", &mut all);
+    defaults_of::<Turbulence>("turbulence", "", &mut all);
+    defaults_of::<WindOcclusion>("wind_occlusion", "", &mut all);
+    defaults_of::<Solver>("solver", "", &mut all);
+    defaults_of::<Volume>("volume", "", &mut all);
+    defaults_of::<Neighbours>("neighbours", "", &mut all);
+    defaults_of::<Camera>("camera", "position = [1, 0, 0]\ntarget = [0, 0, 0]", &mut all);
+    defaults_of::<Ground>("ground", "", &mut all);
+    let place = "center = [0, 0, 0]\nradius = 1\n";
+    let ring = format!("{place}axis = [0, 1, 0]\n");
+    defaults_of::<WindSource>("wind_source", &format!("[shape.fan]\n{ring}speed = 1"), &mut all);
+    defaults_of::<Charged>("charged", &format!("{place}charge = 0"), &mut all);
+    defaults_of::<Collider>("collider", "shape.box = { center = [0, 0, 0], size = [1, 1, 1] }", &mut all);
+    defaults_of::<Hand>("hand", &format!("[tool.grab]\n{place}"), &mut all);
+    defaults_of::<Hand>("hand", "tool.comb = { a = [0, 0, 0], b = [1, 0, 0], radius = 1 }", &mut all);
+    defaults_of::<Hand>("hand", &format!("[tool.tie]\n{ring}reach = 1"), &mut all);
+    let grown = Growth::default();
+    for (name, value) in [
+        ("strands", grown.strands as f32),
+        ("points", grown.points as f32),
+        ("length", grown.length),
+        ("spread", grown.spread),
+        ("fall", grown.fall),
+    ] {
+        all.insert(format!("groom.grow.{name}"), Value::Float(value.into()));
+    }
+    all
+}
+
+/// What comes out of `T` where a file has no more than what is `needed`.
+fn defaults_of<T: Serialize + DeserializeOwned>(
+    prefix: &str,
+    needed: &str,
+    all: &mut BTreeMap<String, Value>,
+) {
+    let (mut given, mut whole) = (BTreeMap::new(), BTreeMap::new());
+    flatten(prefix, &needed.parse().unwrap(), &mut given);
+    flatten(prefix, &Table::try_from(toml::from_str::<T>(needed).unwrap()).unwrap(), &mut whole);
+    all.extend(whole.into_iter().filter(|(name, _)| !given.contains_key(name)));
+}
+
+fn flatten(prefix: &str, table: &Table, flat: &mut BTreeMap<String, Value>) {
+    for (key, value) in table {
+        let name = format!("{prefix}.{key}");
+        match value {
+            Value::Table(inner) => flatten(&name, inner, flat),
+            _ => drop(flat.insert(name, value.clone())),
+        }
+    }
+}
+
+/// The value that is written so in TOML.
+fn value_of(text: &str) -> Value {
+    let table = format!("x = {text}").parse::<Table>();
+    table.unwrap_or_else(|why| panic!("`{text}`: {why}")).remove("x").unwrap()
+}
+
+/// Whether two values are the same, where one has been an f32.
+fn same(a: &Value, b: &Value) -> bool {
+    let number = |v: &Value| v.as_float().or(v.as_integer().map(|i| i as f64));
+    match (a, b) {
+        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
+        _ => match (number(a), number(b)) {
+            (Some(a), Some(b)) => (a - b).abs() <= 1e-6 * b.abs(),
+            _ => a == b,
+        },
+    }
+}
+
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
+}
+
+fn read(file: &Path) -> String {
+    fs::read_to_string(file).unwrap_or_else(|why| panic!("{}: {why}", file.display()))
+}
+
+/// All files with this extension in a folder and those in it, in order.
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap_or_else(|why| panic!("{}: {why}", folder.display())) {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path, extension));
+        } else if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}

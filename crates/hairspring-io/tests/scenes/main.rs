@@ -1,0 +1,13 @@
+//! Promises of scene files and of the book that documents them. Each file is one promise.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/scenes.rs"]
+mod scenes;
+
+mod book_is_complete;
+mod props_move_by_their_own_keys;
+mod scene_file_errors_name_line_and_remedy;
+mod scene_files_give_the_scene_they_describe;
+mod scene_page_is_correct;
+mod settings_are_read_apart_from_geometry;

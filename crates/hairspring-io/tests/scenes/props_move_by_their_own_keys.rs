@@ -1,0 +1,97 @@
+//! Promise: a thing beside the body goes by its own keys, whatever moves the body, and all that names it goes with it: its mesh, hair that grows on it,
+//! colliders and hands. Its keys are those of `[clip]`, and what cannot be is refused in a sentence.
+
+use crate::scenes::{folder, message, read};
+use glam::Vec3;
+use hairspring_scene::stage::Stage;
+
+/// A head with hair, and a lid over it with hair of its own and a ball that goes with it: it is lifted by 2 m in a second.
+const LID: &str = "[body]\nfile = \"head.obj\"\nscale = 1\nparts = [\"scalp\"]\n\
+    [[prop]]\nname = \"lid\"\nmesh = { file = \"head.obj\", parts = [\"neck\"], scale = 1 }\n\
+    keys = [{ time = 0 }, { time = 1, position = [0, 2, 0] }]\n\
+    [[collider]]\njoint = \"LID\"\nshape.sphere = { center = [0, 5, 0], radius = 0.5 }\n\
+    [[groom]]\ngrow = { parts = [\"scalp\"], strands = 20 }\n[[groom]]\ngrow = { parts = [\"neck\"], strands = 10 }\n";
+
+/// Ways of the body that move no other joint than its own: none, keys, and a head's nod.
+const MOTIONS: [&str; 3] = [
+    "",
+    "[clip]\nkeys = [{ time = 0 }, { time = 0.5, position = [1, 0, 0] }]\n",
+    "[clip]\nfile = \"nod.bvh\"\njoint = \"Head\"\npivot = [0, 0, 0]\n",
+];
+
+#[test]
+fn a_prop_goes_by_its_keys_with_all_that_is_fixed_to_it() {
+    let folder = folder();
+    for motion in MOTIONS {
+        let scene = read(folder.path(), &format!("{LID}{motion}")).unwrap().value;
+        let mut stage = Stage::new(scene).unwrap();
+        let rest = stage.body().unwrap().mesh.positions.clone();
+        let roots = |stage: &Stage, groom: usize| -> Vec<Vec3> {
+            let strands = stage.strands().nth(groom).unwrap();
+            strands.groom.offsets.windows(2).map(|w| strands.points[w[0] as usize]).collect()
+        };
+        let before = [0, 1].map(|groom| roots(&stage, groom));
+        for _ in 0..60 {
+            stage.step(1.0 / 60.0);
+        }
+        let up = Vec3::Y * 2.0;
+        let now = stage.body().unwrap().positions;
+        // The head has three corners, and the lid comes after it.
+        for (now, rest) in now[3..].iter().zip(&rest[3..]) {
+            assert!(now.distance(*rest + up) < 1e-5, "{motion}: {now} of {rest}");
+        }
+        assert!(now[..3].iter().zip(&rest).all(|(now, rest)| (now.y - rest.y).abs() < 0.5), "{motion}");
+        for (now, before) in roots(&stage, 1).iter().zip(&before[1]) {
+            assert!(now.distance(*before + up) < 1e-4, "{motion}: hair of the lid, {now} of {before}");
+        }
+        for (now, before) in roots(&stage, 0).iter().zip(&before[0]) {
+            assert!((now.y - before.y).abs() < 0.5, "{motion}: hair of the head, {now} of {before}");
+        }
+        let ball = stage.obstacles().last().unwrap();
+        assert!(
+            ball.end.translation.distance(up) < 1e-5,
+            "{motion}: the ball is at {}",
+            ball.end.translation
+        );
+    }
+}
+
+#[test]
+fn a_prop_goes_beside_the_scene_made_by_code() {
+    let folder = folder();
+    let text = "[builtin]\nstrands = 50\n[[prop]]\nname = \"hand\"\nmesh = { file = \"head.obj\", scale = 1 }\n\
+                keys = [{ time = 8, rotation = [0, 90, 0] }]\n[[hand]]\njoint = \"hand\"\n\
+                tool.grab = { center = [0, 0, 0], radius = 0.1 }\n";
+    let scene = read(folder.path(), text).unwrap().value;
+    let (clip, body) = (scene.clip.as_ref().unwrap(), scene.body.as_ref().unwrap());
+    // It nods for 5 s, and is at rest until the prop has come to its key.
+    assert_eq!((clip.joint_count, body.joints.len()), (4, 4));
+    assert!((clip.duration() - 8.0).abs() < 0.02, "{} s", clip.duration());
+    assert_eq!(clip.sample(6.0)[..3], clip.sample(7.0)[..3]);
+    assert_eq!(body.skin.as_ref().unwrap().inverse_bind.len(), 4);
+    Stage::new(scene).unwrap();
+}
+
+#[test]
+fn what_cannot_be_is_said() {
+    let groom = "[[groom]]\nfile = \"hair.data\"\n";
+    let body = "[body]\nfile = \"head.obj\"\nscale = 1\n";
+    let wrong = |prop: &str| message(&format!("{body}[[prop]]\n{prop}\n{groom}"));
+    for (prop, part) in [
+        ("name = \"\"", "line 5: `name` must be not empty"),
+        ("name = \"root\"", "line 5: the body has a joint \"root\" of its own"),
+        ("name = \"a\"\n[[prop]]\nname = \"A\"", "line 7: `name` must be not empty, and of no other prop"),
+        ("name = \"a\"\nkeys = [{ time = 1 }, { time = 1 }]", "line 6: `keys` must be in order of `time`"),
+        ("name = \"a\"\npivot = [nan, 0, 0]", "line 6: `pivot` must be three finite numbers"),
+        ("name = \"a\"\nmesh = { file = \"head.obj\", joint = \"b\" }", "`joint` must be left out"),
+        ("name = \"a\"\nmesh = { file = \"hed.obj\" }", "it is the prop that"),
+        ("nmae = \"a\"", "did you mean `name`?"),
+    ] {
+        assert!(wrong(prop).contains(part), "{prop}: {}", wrong(prop));
+    }
+    assert!(message(&format!("[[prop]]\nname = \"a\"\n{groom}")).contains("but there is no [body]"));
+    let lost = format!(
+        "{body}{groom}[[collider]]\njoint = \"b\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"
+    );
+    assert!(message(&lost).contains("the joint `b` is not known here"), "{}", message(&lost));
+}

@@ -1,0 +1,201 @@
+//! Promise: where a scene file is wrong, one sentence says so.
+//!
+//! People write scene files by hand, so the reader's answer to a slip is part of the format: the line, what stands
+//! there, what would have been right, and for a misspelt word the word that was meant.
+
+use crate::scenes::{folder, message, read};
+use hairspring_io::{ErrorKind, read_scene};
+use std::fs;
+
+#[test]
+fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
+    const GROOM: &str = "[[groom]]\nfile = \"hair.data\"\n";
+    const GRAB: &str = "[[hand]]\ntool.grab = { center = [0, 0, 0], radius = 1 }\n";
+    for (text, parts) in [
+        (format!("{GROOM}giudes = 3\n"), &["scene.toml, line 3", "`giudes`", "did you mean `guides`?"][..]),
+        (format!("[solver]\nsubstep = 3\n{GROOM}"), &["line 2", "did you mean `substeps`?"]),
+        (format!("[slover]\n{GROOM}"), &["line 1", "did you mean `solver`?"]),
+        (format!("{GROOM}[volume]\nmethod = \"densty\"\n"), &["line 4", "did you mean `density`?"]),
+        (format!("{GROOM}[volume]\ncell = 0\n"), &["line 4", "`cell` must be above 0 [m]"]),
+        (format!("{GROOM}[neighbours]\nradius = 0\n"), &["line 4", "`radius` must be above 0 [m]"]),
+        (format!("{GROOM}[neighbours]\nstiction = -1\n"), &["line 4", "`stiction` must be 0 or more [N]"]),
+        (format!("{GROOM}[volume]\nfriction = -1\n"), &["line 4", "`friction` must be 0 or more [1/s]"]),
+        (
+            format!("{GROOM}[material.a]\npreset = \"wavvy\"\n")
+                .replace("data\"\n", "data\"\nmaterial = \"a\"\n"),
+            &["line 5", "did you mean `wavy`?"],
+        ),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\n\nfrictoin = 1\n"),
+            &["line 6", "did you mean `friction`?"],
+        ),
+        (format!("{GROOM}material = \"coly\"\n"), &["line 3", "did you mean `coily`?"]),
+        (
+            format!("{GROOM}guides = \"many\"\n"),
+            &["line 3", "a number of guides above 0, \"all\" or \"file\""],
+        ),
+        (format!("{GROOM}look = {{ root_colour = [0, 0, 0] }}\n"), &["line 3", "did you mean `root_color`?"]),
+        (
+            format!("{GROOM}look = {{ melanin = 0.5, tip_color = [0, 0, 0] }}\n"),
+            &["line 3", "`melanin` or colours", "not both"],
+        ),
+        (
+            format!("{GROOM}[groom.look]\nroot_color = [0, 0, 0]\nmelanin = 0.5\n"),
+            &["line 5", "`melanin` or colours", "not both"],
+        ),
+        (format!("{GROOM}[groom.look]\nmelanin = 1.5\n"), &["line 4", "`melanin` must be 0 to 1"]),
+        (format!("{GROOM}[groom.look]\ndye = [0, 0, 2]\n"), &["line 4", "`dye` must be three numbers"]),
+        (format!("{GROOM}[solver]\nsubsteps = 0\n"), &["line 4", "1 to 64"]),
+        (format!("{GROOM}[camera]\nfov = 200\n"), &["line 4", "1 to 170"]),
+        (format!("{GROOM}[ground]\nheight = nan\n"), &["line 4", "`height` must be a finite number"]),
+        (format!("{GROOM}[ground]\ncolor = [0, 2, 0]\n"), &["line 4", "`color` must be three numbers"]),
+        (format!("{GROOM}[ground]\ncolour = [0, 1, 0]\n"), &["line 4", "did you mean `color`?"]),
+        (format!("{GROOM}material = \"a\"\n[material.a]\nfriction = 7\n"), &["line 5", "0 to 1"]),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nbend = 2\nmass_profile = [1, 0, 2]\n"),
+            &["line 6", "`mass_profile` must be 1 to 64 numbers above 0"],
+        ),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [1, 101]\n"),
+            &["line 5", "at most 100 times the smallest"],
+        ),
+        (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = []\n"), &["line 5", "1 to 64"]),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [{}]\n", ["1"; 65].join(", ")),
+            &["line 5", "1 to 64"],
+        ),
+        (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [1, nan]\n"), &["line 5", "above 0"]),
+        (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = 3\n"), &["line 4", "sequence"]),
+        (
+            "[[groom]]\nfile = \"hiar.data\"\n".into(),
+            &["hiar.data was not found", "the groom that", "line 2"],
+        ),
+        (
+            format!("[body]\nfile = \"haed.obj\"\n{GROOM}"),
+            &["haed.obj was not found", "the body that", "line 2"],
+        ),
+        (
+            format!("[body]\nfile = \"head.obj\"\nparts = [\"sclap\"]\n{GROOM}"),
+            &["line 3", "did you mean `scalp`?"],
+        ),
+        (format!("[body]\nfile = \"head.obj\"\nrig = \"x.json\"\n{GROOM}"), &["line 3", "`weights`"]),
+        (format!("{GROOM}[clip]\nfile = \"nod.bvh\"\n"), &["line 4", "no [body]"]),
+        (
+            format!(
+                "[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nfile = \"nod.bvh\"\njoint = \"Haed\"\npivot = [0, 0, 0]\n"
+            ),
+            &["line 7", "did you mean `Head`?"],
+        ),
+        (
+            format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nfile = \"nod.bvh\"\njoint = \"Head\"\n"),
+            &["line 7", "`pivot`"],
+        ),
+        (
+            format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nfile = \"nod.bvh\"\n"),
+            &["line 6", "no joint of the motion"],
+        ),
+        (format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nname = \"dance\"\n"), &["line 6", "\"dance\""]),
+        (
+            format!("{GROOM}[[collider]]\nshape.box = {{ center = [0, 0, 0], size = [1, 0, 1] }}\n"),
+            &["line 4", "edges above 0"],
+        ),
+        (
+            format!(
+                "{GROOM}[[collider]]\njoint = \"x\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"
+            ),
+            &["line 4", "`x`"],
+        ),
+        (
+            format!("{GROOM}[[collider]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 0, 0] }}\n"),
+            &["line 4", "normal"],
+        ),
+        (
+            format!("{GROOM}[[hand]]\ntool.grap = {{ center = [0, 0, 0], radius = 1 }}\n"),
+            &["line 4", "did you mean `grab`?"],
+        ),
+        (
+            format!("{GROOM}[[hand]]\ntool.grab = {{ center = [0, 0, 0], radius = 0 }}\n"),
+            &["line 4", "`tool` must be given a `radius` above 0 [m]"],
+        ),
+        (format!("{GROOM}{GRAB}{GRAB}joint = \"x\"\n"), &["line 7", "`x` is not known here"]),
+        (
+            format!("{GROOM}{GRAB}{GRAB}path = [[1, 0, 0, 0], [1, 0, 0, 1]]\n"),
+            &["line 7", "`path` must be finite, at rising times [s]"],
+        ),
+        (format!("{GROOM}{GRAB}from = 2\nuntil = 1\n"), &["line 6", "`until` must be after `from` [s]"]),
+        (
+            format!(
+                "{GROOM}[[hand]]\ntool.tie = {{ center = [0, 0, 0], axis = [0, 0, 0], radius = 1, reach = 1 }}\n"
+            ),
+            &["line 4", "`axis` that is finite and not 0"],
+        ),
+        (
+            format!(
+                "{GROOM}[[hand]]\ntool.comb = {{ a = [0, 0, 0], b = [1, 0, 0], radius = 1, grip = 2, friction = 3 }}\n"
+            ),
+            &["line 4", "`friction` from 0 to its `grip`"],
+        ),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nglobal_shape = {{ pull = 61 }}\n"),
+            &["line 5", "`pull` 0 to 60 [Hz]"],
+        ),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nglobal_shape = {{ pul = 6 }}\n"),
+            &["did you mean `pull`?"],
+        ),
+        (format!("{GROOM}bones = \"x.tfxbone\"\n"), &["x.tfxbone was not found"]),
+        (format!("{GROOM}[turbulence]\nsize = 0\n"), &["line 4", "`size` must be above 0 [m]"]),
+        (format!("{GROOM}[wind_occlusion]\nhair = -1\n"), &["line 4", "`hair` must be 0 or more [1/m]"]),
+        (
+            format!("{GROOM}[[wind_source]]\nshape.fna = {{ center = [0, 0, 0] }}\n"),
+            &["line 4", "did you mean `fan`?"],
+        ),
+        (
+            format!(
+                "{GROOM}[[wind_source]]\nshape.point = {{ center = [0, 0, 0], radius = 1, speed = 1 }}\n[[wind_source]]\n\
+                 shape.vortex = {{ center = [0, 0, 0], axis = [0, 0, 0], radius = 1, speed = 1 }}\n"
+            ),
+            &["line 6", "an axis that is not 0"],
+        ),
+        (
+            format!(
+                "{GROOM}[[wind_source]]\njoint = \"x\"\nshape.point = {{ center = [0, 0, 0], radius = 1, speed = 1 }}\n"
+            ),
+            &["line 4", "`x`"],
+        ),
+        (
+            format!("{GROOM}[[charged]]\ncenter = [0, 0, 0]\nradius = 1\ncharge = 1\n"),
+            &["line 6", "`charge` must be -1e-3 to 1e-3 [C]"],
+        ),
+        (
+            format!(
+                "{GROOM}[[charged]]\ncenter = [0, 0, 0]\nradius = 1\ncharge = 0\npath = [{{ time = 0, center = [0, 0, 0] }}]\n"
+            ),
+            &["line 7", "each later than the one before"],
+        ),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\ncharge = 1\n"),
+            &["line 5", "`charge` must be -1e-6 to 1e-6 [C/m]"],
+        ),
+        ("name = \"empty\"\n".into(), &["scene.toml", "[[groom]]"]),
+        ("gravity = [0, 1\n".into(), &["line 1"]),
+    ] {
+        let message = message(&text);
+        println!("{message}");
+        for part in parts {
+            assert!(message.contains(part), "{text}\n gives\n{message}\nwithout {part:?}");
+        }
+        assert!(!message.contains('\n'), "one sentence: {message}");
+    }
+}
+
+#[test]
+fn missing_and_broken_files_differ_in_kind() {
+    let folder = folder();
+    fs::write(folder.path().join("broken.data"), b"\x05\0\0\0").unwrap();
+    let kind = |file: &str| read(folder.path(), &format!("[[groom]]\nfile = {file:?}\n")).unwrap_err().kind();
+    assert_eq!(kind("none.data"), ErrorKind::NotFound);
+    assert_eq!(kind("broken.data"), ErrorKind::Malformed);
+    assert_eq!(kind("head.obj"), ErrorKind::Unsupported);
+    assert_eq!(read_scene(&folder.path().join("no.toml")).unwrap_err().kind(), ErrorKind::NotFound);
+}

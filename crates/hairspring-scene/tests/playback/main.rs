@@ -1,0 +1,14 @@
+//! Promises of scenes and their playback. Each file is one promise.
+
+mod builtin_head_is_sound;
+mod cuts_in_a_clip_carry_hair_along;
+mod far_and_large_scenes_are_exact_or_refused;
+mod follow_hairs_may_be_placed_by_the_viewer;
+mod grooms_collide_with_each_other;
+mod hands_grab_and_release_hair;
+mod live_body_and_collider_move_hair;
+mod points_and_strands_report_their_values;
+mod preroll_ends_at_rest;
+mod props_and_limbs_collide_with_hair;
+mod settings_change_during_playback;
+mod time_counts_frames;

@@ -1,0 +1,240 @@
+//! The ground takes the shadow of what stands on it, and is nothing else: where there is no shadow it is the backdrop, bit for bit; far away it is the backdrop whatever
+//! its colour; from below it is not there; and what lies under it is hidden. The graphics card draws the same ground (`gpu_draws_what_the_cpu_draws.rs`).
+
+use glam::Vec3;
+use hairspring::{
+    body::{Body, Mesh},
+    groom::Groom,
+};
+use hairspring_scene::{Camera, HairLook, Scene};
+use hairspring_view::{Background, Frame, Ground, Image, Lighting, MeshDraw, Renderer};
+
+const SIZE: [u32; 2] = [160, 120];
+
+fn draw(frame: &Frame) -> Image {
+    Renderer::new(SIZE[0], SIZE[1]).draw(frame).clone()
+}
+
+/// Looks at the origin from above, along the way that the lamps stand by.
+fn above() -> Camera {
+    Camera { position: Vec3::new(0.0, 1.2, 1.6), target: Vec3::ZERO, fov: 40.0 }
+}
+
+fn on(height: f32) -> Option<Ground> {
+    Some(Ground { height, color: None })
+}
+
+/// A plate at a height, `half` as wide to each side, lying level.
+fn plate(half: f32, height: f32) -> Mesh {
+    let corner = |x: f32, z: f32| Vec3::new(half * x, height, half * z);
+    Mesh {
+        positions: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+/// A mat of hair: threads along X, side by side, so close that light does not pass.
+fn mat(half: f32, height: f32) -> Groom {
+    let n = 1500;
+    let across = |s: usize| half * (2.0 * (s as f32 + 0.5) / n as f32 - 1.0);
+    let thread = |s| (0..12).map(move |k| Vec3::new(half * (k as f32 / 5.5 - 1.0), height, across(s)));
+    Groom::from_strands((0..n).map(|s| thread(s).collect::<Vec<_>>()), 2e-4)
+}
+
+/// Where the camera sees a place [pixels].
+fn seen(camera: &Camera, p: Vec3) -> [u32; 2] {
+    let forward = (camera.target - camera.position).normalize();
+    let right = forward.cross(Vec3::Y).normalize();
+    let (way, focal) = (p - camera.position, 0.5 * SIZE[1] as f32 / (0.5 * camera.fov.to_radians()).tan());
+    let scale = focal / way.dot(forward);
+    let x = 0.5 * SIZE[0] as f32 + scale * way.dot(right);
+    let y = 0.5 * SIZE[1] as f32 - scale * way.dot(right.cross(forward));
+    [x as u32, y as u32]
+}
+
+/// Brightness of a place of the ground [codes], and that of the picture without it.
+fn codes(with: &Image, without: &Image, p: Vec3) -> (i32, i32) {
+    let [x, y] = seen(&above(), p);
+    let sum = |image: &Image| image.pixel(x, y).iter().map(|c| i32::from(*c)).sum();
+    (sum(with), sum(without))
+}
+
+/// Where the key lamp's shadow of a place falls on the ground at height 0.
+fn cast(p: Vec3) -> Vec3 {
+    let key = Lighting::default().key.direction;
+    p - key * (p.y / key.y)
+}
+
+#[test]
+fn it_is_dark_under_hair_and_under_bodies_and_else_the_backdrop() {
+    let look = HairLook::default();
+    let groom = mat(0.15, 0.25);
+    let body = plate(0.15, 0.25);
+    for (name, hair, bodies) in [
+        ("hair", vec![crate::support::hair(&groom, &look)], vec![]),
+        ("body", vec![], vec![crate::support::body(&body)]),
+    ] {
+        let frame = Frame { camera: above(), ..crate::support::frame(&hair, &bodies) };
+        let (without, with) = (draw(&frame), draw(&Frame { ground: on(0.0), ..frame }));
+        let (dark, wall) = codes(&with, &without, cast(Vec3::Y * 0.25));
+        assert!(dark < wall * 2 / 3, "{name}: {dark} in its shadow, {wall} without ground");
+        for beside in [Vec3::new(0.6, 0.0, 0.5), Vec3::new(-0.8, 0.0, -0.3), Vec3::new(0.0, 0.0, 0.75)] {
+            let (lit, wall) = codes(&with, &without, beside);
+            assert_eq!(lit, wall, "{name}: beside its shadow, at {beside}");
+        }
+        // All that changed is darker, but for rounding.
+        let brighter = with.rgb.iter().zip(&without.rgb).map(|(with, without)| with.saturating_sub(*without));
+        assert!(brighter.max().unwrap() <= 1, "{name}");
+    }
+}
+
+/// The map that shadow is softened in ends with the body: none of its shadow may end with a line there.
+#[test]
+fn a_shadow_has_a_soft_edge_on_all_sides() {
+    // Its edges lie along those of the map.
+    let key = Lighting::default().key.direction.normalize();
+    let (right, up) = (key.any_orthonormal_vector(), key.cross(key.any_orthonormal_vector()));
+    let corner = |x: f32, y: f32| Vec3::Y * 0.4 + 0.1 * (right * x + up * y);
+    let mesh = Mesh {
+        positions: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    };
+    let bodies = [crate::support::body(&mesh)];
+    let quality = hairspring_view::Quality { shadow_texels: 64, ..Default::default() };
+    let middle = cast(Vec3::Y * 0.4);
+    let background = Background { center: Vec3::splat(0.3), edge: Vec3::splat(0.3) };
+    let camera = Camera { position: middle + Vec3::new(0.0, 1.0, 0.01), target: middle, fov: 30.0 };
+    let ground = on(0.0);
+    let image = draw(&Frame { camera, ground, quality, background, ..crate::support::frame(&[], &bodies) });
+    let code = |x: u32, y: u32| i32::from(image.pixel(x, y)[1]);
+    let steps = (0..SIZE[1]).flat_map(|y| (1..SIZE[0]).map(move |x| (code(x, y) - code(x - 1, y)).abs()));
+    let down = (1..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (code(x, y) - code(x, y - 1)).abs()));
+    let whole = i32::from(*image.rgb.iter().max().unwrap()) - i32::from(*image.rgb.iter().min().unwrap());
+    let steepest = steps.chain(down).max().unwrap();
+    // A texel is about as wide as a pixel, and shadow is softened over eight of them.
+    assert!(whole > 40 && 10 * steepest < 4 * whole, "a step of {steepest} in a shadow of {whole} codes");
+}
+
+#[test]
+fn far_away_it_is_the_backdrop_whatever_its_colour() {
+    let roof = plate(0.4, 3.0);
+    let bodies = [crate::support::body(&roof)];
+    // Low above the ground, the horizon in the middle of the picture.
+    let camera = Camera { position: Vec3::new(0.0, 0.3, 1.2), target: Vec3::new(0.0, 0.3, 0.0), fov: 40.0 };
+    let frame = Frame { camera, ..crate::support::frame(&[], &bodies) };
+    let ground = Some(Ground { height: -0.2, color: Some(Vec3::splat(0.6)) });
+    let (without, with) = (draw(&frame), draw(&Frame { ground, ..frame }));
+    let row =
+        |image: &Image, y: u32| image.rgb[(y * SIZE[0] * 3) as usize..][..SIZE[0] as usize * 3].to_vec();
+    let horizon = SIZE[1] / 2;
+    for y in 0..horizon + 8 {
+        assert_eq!(row(&with, y), row(&without, y), "row {y}; the horizon is row {horizon}");
+    }
+    // No row differs from the next by more than a soft edge does.
+    let mean = |y: u32| row(&with, y).iter().take(60).map(|c| f32::from(*c)).sum::<f32>() / 60.0;
+    let steepest = (1..SIZE[1]).map(|y| (mean(y) - mean(y - 1)).abs()).fold(0.0, f32::max);
+    assert!(mean(SIZE[1] - 1) > mean(0) + 60.0, "near, it has its colour");
+    assert!(steepest < 25.0, "a step of {steepest} codes from row to row");
+}
+
+#[test]
+fn from_below_it_is_not_there() {
+    let (ball, look) = (crate::support::ball(), HairLook::default());
+    let groom = crate::support::groom(crate::support::Style {
+        strands: 2000,
+        points: 16,
+        ..crate::support::STRAIGHT
+    });
+    let (hair, bodies) = ([crate::support::hair(&groom, &look)], [crate::support::body(&ball)]);
+    let frame = Frame {
+        camera: Camera { fov: 40.0, ..crate::support::camera() },
+        ..crate::support::frame(&hair, &bodies)
+    };
+    let without = draw(&frame);
+    for ground in [0.5, f32::NAN, f32::INFINITY].map(on) {
+        assert!(draw(&Frame { ground, ..frame }) == without, "{ground:?}");
+    }
+}
+
+#[test]
+fn what_lies_under_it_is_hidden() {
+    let ball = crate::support::ball();
+    let look = HairLook::default();
+    let groom = mat(0.1, -0.05);
+    let (hair, bodies) = ([crate::support::hair(&groom, &look)], [crate::support::body(&ball)]);
+    // Under a ground that is higher than all of it, there is nothing but the ground.
+    let empty = draw(&Frame { camera: above(), ..crate::support::frame(&[], &[]) });
+    let frame = Frame { camera: above(), ground: on(0.2), ..crate::support::frame(&hair, &bodies) };
+    let under = draw(&frame);
+    assert!(under.rgb.iter().zip(&empty.rgb).all(|(a, b)| a <= b));
+    // Half in it, the ball is cut in a clean line: its upper half is there.
+    let half = draw(&Frame { hair: &[], ground: on(0.0), ..frame });
+    let whole = draw(&Frame { hair: &[], ground: None, ..frame });
+    let [x, y] = seen(&above(), Vec3::new(0.0, 0.08, 0.0));
+    assert_eq!(half.pixel(x, y), whole.pixel(x, y));
+    let red = |image: &Image| image.rgb.chunks(3).filter(|p| p[0] > p[2] + 20).count();
+    assert!(red(&half) < red(&whole) * 9 / 10, "{} of {}", red(&half), red(&whole));
+}
+
+/// Beside what stands on it the ground sees less of the sky; what is higher than a seventh of its own size takes none.
+#[test]
+fn it_is_dark_where_bodies_touch_it() {
+    let dark = hairspring_view::Light { color: Vec3::ZERO, ..Lighting::default().key };
+    let lighting = Lighting { key: dark, fill: dark, rim: dark, sky: Vec3::ONE, ..Lighting::default() };
+    let background = Background { center: Vec3::splat(0.3), edge: Vec3::splat(0.3) };
+    let beside = |height: f32| {
+        let mesh = plate(0.2, height);
+        let bodies = [crate::support::body(&mesh)];
+        let frame = Frame {
+            camera: above(),
+            lighting,
+            background,
+            ground: on(0.0),
+            ..crate::support::frame(&[], &bodies)
+        };
+        let image = draw(&frame);
+        [0.22, 0.3, 0.6].map(|z| {
+            let [x, y] = seen(&above(), Vec3::new(0.0, 0.0, z));
+            i32::from(image.pixel(x, y)[1])
+        })
+    };
+    let ([near, off, far], hovering) = (beside(0.001), beside(0.07));
+    assert!(near < far - 5, "beside a plate on it: {near}, far from it {far}");
+    assert!((off - far).abs() <= 1, "{off}, {far}");
+    assert!(
+        hovering.iter().all(|code| (code - far).abs() <= 1),
+        "under a plate that hovers: {hovering:?}, {far}"
+    );
+}
+
+#[test]
+fn the_ground_of_a_scene_is_under_its_body() {
+    let body = |height| Some(Body { mesh: plate(1.0, height), ..Body::default() });
+    let scene = |ground, body| Scene { ground, body, ..Scene::default() };
+    let on = hairspring_scene::Ground { on: true, ..hairspring_scene::Ground::default() };
+    assert_eq!(Ground::of(&scene(hairspring_scene::Ground::default(), body(1.0))), None);
+    let height = |scene: Scene| Ground::of(&scene).unwrap().height;
+    assert_eq!(height(scene(on, body(-0.3))), -0.3);
+    assert_eq!(height(scene(on, None)), 0.0);
+    assert_eq!(height(scene(hairspring_scene::Ground { height: Some(0.5), ..on }, body(-0.3))), 0.5);
+}
+
+#[test]
+fn nothing_is_no_trouble() {
+    let broken = Mesh {
+        positions: vec![Vec3::NAN, Vec3::ONE, Vec3::INFINITY, Vec3::splat(1e30), Vec3::ZERO],
+        triangles: vec![[0, 1, 2], [1, 3, 4], [7, 8, 9]],
+        ..Mesh::default()
+    };
+    let none = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
+    for bodies in [vec![], vec![none], vec![crate::support::body(&broken)]] {
+        for color in [None, Some(Vec3::NAN), Some(Vec3::splat(-1.0))] {
+            for height in [0.0, -1e30, 1e-3] {
+                let ground = Some(Ground { height, color });
+                draw(&Frame { camera: above(), ground, ..crate::support::frame(&[], &bodies) });
+            }
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! What is nearer hides what is farther, and what stands towards the lamp shades what stands behind.
+
+use glam::Vec3;
+use hairspring::groom::Groom;
+use hairspring_scene::{Camera, HairLook};
+use hairspring_view::{Frame, HairDraw, Image, Light, Lighting, MeshDraw, Renderer};
+
+const SIDE: u32 = 128;
+
+fn camera() -> Camera {
+    Camera { position: Vec3::Z, target: Vec3::ZERO, fov: 12.0 }
+}
+
+/// A curtain of upright strands at depth `z`, shifted sideways by `x`, of `n` strands over 10 cm.
+fn curtain(n: usize, x: f32, z: f32) -> Groom {
+    let at = |s: usize| x + 0.1 * ((s as f32 + 0.5) / n as f32 - 0.5);
+    Groom::from_strands(
+        (0..n).map(|s| (0..12).map(|k| Vec3::new(at(s), 0.05 - 0.009 * k as f32, z)).collect::<Vec<_>>()),
+        60e-6,
+    )
+}
+
+fn draw(hair: &[HairDraw], bodies: &[MeshDraw]) -> Image {
+    let mut renderer = Renderer::new(SIDE, SIDE);
+    renderer.draw(&Frame { camera: camera(), ..crate::support::frame(hair, bodies) }).clone()
+}
+
+fn flat(color: [f32; 3]) -> HairLook {
+    HairLook {
+        root_color: Vec3::from(color),
+        tip_color: Vec3::from(color),
+        variation: 0.0,
+        ..HairLook::default()
+    }
+}
+
+fn middle(image: &Image) -> [f32; 3] {
+    let mut sum = [0.0; 3];
+    for y in SIDE / 2 - 8..SIDE / 2 + 8 {
+        for x in SIDE / 2 - 8..SIDE / 2 + 8 {
+            let p = image.pixel(x, y);
+            (0..3).for_each(|i| sum[i] += p[i] as f32 / 256.0);
+        }
+    }
+    sum
+}
+
+#[test]
+fn nearer_hair_hides_farther_hair_in_any_order_of_the_input() {
+    let (front, back) = (curtain(4000, 0.0, 0.02), curtain(4000, 0.0, -0.02));
+    let (red, blue) = (flat([0.7, 0.05, 0.05]), flat([0.05, 0.05, 0.7]));
+    let (front, back) = (crate::support::hair(&front, &red), crate::support::hair(&back, &blue));
+    let alone = middle(&draw(&[front], &[]));
+    for hair in [[front, back], [back, front]] {
+        let both = middle(&draw(&hair, &[]));
+        assert!(both[0] > 3.0 * both[2], "the red curtain is in front: {both:?}");
+        assert!((both[0] - alone[0]).abs() < 0.25 * alone[0], "{both:?} {alone:?}");
+    }
+}
+
+#[test]
+fn a_body_hides_hair_behind_it_and_not_hair_before_it() {
+    let ball = crate::support::ball();
+    let body = [crate::support::body(&ball)];
+    let bare = draw(&[], &body);
+    let look = flat([0.05, 0.6, 0.05]);
+    let behind = curtain(3000, 0.0, -0.2);
+    assert_eq!(middle(&draw(&[crate::support::hair(&behind, &look)], &body)), middle(&bare));
+    let before = curtain(3000, 0.0, 0.15);
+    let seen = middle(&draw(&[crate::support::hair(&before, &look)], &body));
+    assert!(seen[1] > 1.5 * seen[0], "green hair before the ball: {seen:?}");
+}
+
+#[test]
+fn roots_on_the_skin_are_seen() {
+    // Strands that lie exactly on the front of the ball must not flicker with its triangles: as many pixels change as strands cover.
+    let ball = crate::support::ball();
+    let on = |a: f32, b: f32| {
+        Vec3::new(b.sin() * a.cos() * 0.93, a.sin(), a.cos() * b.cos() * 0.98) * crate::support::RADIUS
+    };
+    let groom = Groom::from_strands(
+        (0..40)
+            .map(|s| (0..24).map(|k| on(0.04 * k as f32 - 0.5, 0.02 * s as f32 - 0.4)).collect::<Vec<_>>()),
+        1e-3,
+    );
+    let look = flat([0.05, 0.6, 0.05]);
+    let bare = draw(&[], &[crate::support::body(&ball)]);
+    let hair = draw(&[crate::support::hair(&groom, &look)], &[crate::support::body(&ball)]);
+    let changed = (SIDE / 2 - 20..SIDE / 2 + 20)
+        .filter(|x| bare.pixel(*x, SIDE / 2) != hair.pixel(*x, SIDE / 2))
+        .count();
+    assert_eq!(changed, 40);
+}
+
+#[test]
+fn the_more_hair_towards_the_lamp_the_darker() {
+    let look = flat([0.4, 0.3, 0.2]);
+    let lit = curtain(4000, 0.0, 0.0);
+    let mut last = f32::MAX;
+    let mut first = 0.0;
+    for n in [0, 300, 1000, 3000, 9000, 30_000] {
+        // Towards the key lamp, and outside the picture.
+        let key = hairspring_view::Lighting::default().key.direction.normalize();
+        let mut shade = curtain(n, 0.0, 0.0);
+        shade.points.iter_mut().for_each(|p| *p = *p * 1.2 + key * 0.17);
+        let hair = [crate::support::hair(&lit, &look), crate::support::hair(&shade, &look)];
+        let light: f32 = middle(&draw(&hair[..if n > 0 { 2 } else { 1 }], &[])).iter().sum();
+        assert!(light < last + 1.0, "{n} strands between: {light}, before {last}");
+        if n == 0 {
+            first = light;
+        }
+        last = light;
+    }
+    assert!(last < 0.8 * first, "a thick curtain leaves {last} of {first}");
+}
+
+#[test]
+fn a_body_shades_hair_and_hair_shades_a_body() {
+    let look = flat([0.4, 0.3, 0.2]);
+    let key = hairspring_view::Lighting::default().key.direction.normalize();
+    let mut ball = crate::support::ball();
+    ball.positions.iter_mut().for_each(|p| *p = *p * 0.7 + key * 0.4);
+    let hair = curtain(4000, 0.0, 0.0);
+    let sum = |image: &Image| middle(image).iter().sum::<f32>();
+    let open = sum(&draw(&[crate::support::hair(&hair, &look)], &[]));
+    let shaded = sum(&draw(&[crate::support::hair(&hair, &look)], &[crate::support::body(&ball)]));
+    assert!(shaded < 0.8 * open, "{shaded} of {open}");
+
+    let skin = crate::support::ball();
+    let mut shade = curtain(20_000, 0.0, 0.0);
+    shade.points.iter_mut().for_each(|p| *p = *p * 1.4 + Vec3::Z * crate::support::RADIUS + key * 0.2);
+    let open = sum(&draw(&[], &[crate::support::body(&skin)]));
+    let shaded = sum(&draw(&[crate::support::hair(&shade, &look)], &[crate::support::body(&skin)]));
+    assert!(shaded < 0.8 * open, "{shaded} of {open}");
+}
+
+#[test]
+fn the_shadow_of_the_sky_on_skin_ends_softly() {
+    // A wall of skin hangs through thick hair and down below it, out of the volume in which the hair's shadow is known. Lit by the sky alone, it
+    // brightens from row to row; where it leaves the volume there must be no line across it.
+    let look = flat([0.1, 0.08, 0.06]);
+    let curtains: Vec<Groom> = (0..9).map(|k| curtain(1500, 0.0, 0.02 - 0.01 * k as f32)).collect();
+    let hair: Vec<HairDraw> = curtains.iter().map(|c| crate::support::hair(c, &look)).collect();
+    let (half, z) = (0.3, -0.02);
+    let positions =
+        [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Vec3::new(x, y, z));
+    let triangles = [[0, 1, 2], [0, 2, 3]];
+    let wall = [MeshDraw { positions: &positions, normals: &[], triangles: &triangles, parts: &[] }];
+    let dark = |light: Light| Light { color: Vec3::ZERO, ..light };
+    let lamps = Lighting::default();
+    let lighting = Lighting { key: dark(lamps.key), fill: dark(lamps.fill), rim: dark(lamps.rim), ..lamps };
+    let mut renderer = Renderer::new(SIDE, SIDE);
+    let image =
+        renderer.draw(&Frame { camera: camera(), lighting, ..crate::support::frame(&hair, &wall) }).clone();
+    let row = |y: u32| {
+        let columns = SIDE / 2 - 16..SIDE / 2 + 16;
+        columns.map(|x| f32::from(image.pixel(x, y)[0])).sum::<f32>() / 32.0
+    };
+    // The hair ends three quarters down, and two rows below it the volume.
+    let rows: Vec<f32> = (SIDE * 3 / 4..SIDE).map(row).collect();
+    let change = rows[rows.len() - 1] - rows[0];
+    assert!(change > 20.0, "the shadow ends with the volume: {rows:?}");
+    for pair in rows.windows(2) {
+        assert!(pair[1] - pair[0] < 0.2 * change, "a line across the skin: {rows:?}");
+    }
+}

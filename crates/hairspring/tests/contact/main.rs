@@ -1,0 +1,12 @@
+//! Promises of contact with colliders, and of hair with hair. Each file is one promise.
+
+mod collider_shapes_keep_hair_out;
+mod contact_friction_holds_on_a_slope;
+mod contact_methods_keep_hair_out;
+mod contact_works_at_any_scale;
+mod distance_field_is_exact_near_the_surface;
+mod fast_colliders_take_hair_along;
+mod segment_penetration_is_measured;
+mod segments_stay_out_of_colliders;
+mod thin_colliders_keep_their_hair;
+mod tresses_stop_each_other;
