@@ -5,8 +5,8 @@
 //! tangent t = cos a θ̂ + sin a ẑ,
 //!
 //! ```text
-//! M·t = −F R cos a (1 − cos φ)         twists,  GJ
-//! |M|² = 2 F² R² (1 − cos φ)           of which the rest bends,  EI
+//! M·t = −F R cos a (1 − cos φ)         twist,  GJ
+//! |M|² = 2 F² R² (1 − cos φ)           the remainder bends,  EI
 //! ```
 //!
 //! and Castigliano's theorem gives the displacement along the force, δ = ∂/∂F ∫ (M·t)²/2GJ + (|M|² − (M·t)²)/2EI ds:
@@ -24,8 +24,8 @@ use super::integrate;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Axial compliance δ/F in units of R²L/EI of a helix of `turns`, the pitch angle `pitch` [rad] and `ratio` = GJ/EI, in closed form: what the quadrature
-/// below is held against.
+/// Axial compliance δ/F in units of R²L/EI of a helix of `turns`, with the pitch angle `pitch` [rad] and
+/// `ratio` = GJ/EI, in closed form. Tests compare the quadrature below with it.
 #[cfg(test)]
 pub fn end_compliance(turns: f64, pitch: f64, ratio: f64) -> f64 {
     let total = TAU * turns;
@@ -34,12 +34,12 @@ pub fn end_compliance(turns: f64, pitch: f64, ratio: f64) -> f64 {
     pitch.cos().powi(2) * i2 * (1.0 / ratio - 1.0) + 2.0 * i1
 }
 
-/// The same of a force along the unit vector `direction` at the end of the wire: radial out, along the turn, along the axis. What bends the coil
-/// open is in the second alone, ∫ as it stands above.
+/// The same for a force along the unit vector `direction` at the end of the wire: radial out, along the turn,
+/// along the axis. It evaluates the integral numerically, and includes moments that open the coil.
 pub fn compliance_along(direction: DVec3, turns: f64, pitch: f64, ratio: f64) -> f64 {
     let total = TAU * turns;
     let density = |s: f64, _: &[f64; 1]| {
-        // The loaded end is at the angle 0, the clamp before it.
+        // The loaded end is at the angle 0, and the clamp before it.
         let (sin, cos) = (-total * s).sin_cos();
         let arm = DVec3::new(1.0 - cos, -sin, total * s * pitch.tan());
         let moment = arm.cross(direction);
