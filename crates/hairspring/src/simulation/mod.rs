@@ -138,7 +138,7 @@ pub(crate) struct TilePlace {
     pub points: u32,
     /// The elastic model of all its strands.
     pub model: Elastic,
-    /// Whether any fibre is flat.
+    /// Whether any fiber is flat.
     pub flat: bool,
     /// Whether its strands are solved in double precision.
     pub double: bool,

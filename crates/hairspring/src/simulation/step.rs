@@ -28,7 +28,8 @@ pub struct StepInput<'a> {
     /// Pose of the frame that roots move with (the head). Within the frame, roots follow the arc of its
     /// motion.
     pub anchor: RigidTransform,
-    /// World pose of each simulated root, in the order given to [`Simulation::new`]: position [m] and rotation since rest.
+    /// World pose of each simulated root, in the order given to [`Simulation::new`]: position [m] and
+    /// rotation since rest.
     pub roots: &'a [RigidTransform],
     /// Colliders.
     pub obstacles: &'a [MovingCollider],

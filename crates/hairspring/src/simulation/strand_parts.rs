@@ -2,8 +2,8 @@
 //! contact after every substep.
 //!
 //! ```text
-//! frame at 60 Hz   ├───────────────┤        substeps   ├───┼───┼───┼───┤       the volume's intervals   ├───┼───┼───┼───┤
-//! at 240 Hz        ├───┤                               ├───┤                                            ├───┤
+//! frame at 60 Hz   ├───────────────┤     substeps   ├───┼───┼───┼───┤     volume intervals   ├───┼───┼───┼───┤
+//! at 240 Hz        ├───┤                            ├───┤                                    ├───┤
 //! ```
 
 use super::{

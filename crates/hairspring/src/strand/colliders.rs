@@ -45,7 +45,7 @@ pub fn surface_displacement<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> 
     V3::from_single(simd, collide::surface_displacement(simd.single(), pose, p.single()))
 }
 
-/// See [`collide::deepest`].
+/// See [`collide::find_deepest_point`].
 #[inline(always)]
 pub fn find_deepest_point<S: Simd>(
     simd: S,

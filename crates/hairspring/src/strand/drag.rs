@@ -4,17 +4,19 @@
 //! d/ν. The force per length is
 //!
 //! ```text
-//! F_n = μ k_n(Re) U_n,   k_n = Re Cd(Re)/2          Cd = 8π / (Re (2.002 − ln Re))   Re ≤ 0.5   Lamb 1932, Hydrodynamics, §343
-//!                                                   Cd = 1 + 10 Re^(−2/3)            Re ≥ 2     White 2006, Viscous Fluid Flow, §3-8
+//! F_n = μ k_n(Re) U_n,   k_n = Re Cd(Re)/2     Cd = 8π / (Re (2.002 − ln Re))   Re ≤ 0.5   Lamb 1932, Hydrodynamics, §343
+//!                                              Cd = 1 + 10 Re^(−2/3)   Re ≥ 2   White 2006, Viscous Fluid Flow, §3-8
 //! F_t = μ k_t(Re) U_t,   k_t = min( k_n/2, 0.7 + 2.7 √Re )
 //! ```
 //!
-//! The normal force depends on the normal velocity alone (cross-flow principle). Along the fiber, slender-body theory gives half of the drag
-//! across it (Cox 1970, *The motion of long slender bodies in a viscous fluid*, J. Fluid Mech. 44); from Re ≈ 25 on, the laminar boundary layer
-//! gives 2.7 √Re (Taylor 1952, *Analysis of the swimming of long and narrow animals*, Proc. R. Soc. A 214: 5.4 R^(−1/2) cos i sin^(1/2) i ½ρU²d).
+//! The normal force depends only on the normal velocity (cross-flow principle). Along the fiber, slender-body
+//! theory gives half of the drag across it (Cox 1970, *The motion of long slender bodies in a viscous fluid*,
+//! J. Fluid Mech. 44); from Re ≈ 25 on, the laminar boundary layer gives 2.7 √Re (Taylor 1952, *Analysis of
+//! the swimming of long and narrow animals*, Proc. R. Soc. A 214: 5.4 R^(−1/2) cos i sin^(1/2) i ½ρU²d).
 //!
-//! The kernel evaluates a rational function of √Re. It agrees with Lamb and White, blended over ln Re between Re 0.5 and 2, within 2.2 % from
-//! Re 10⁻³ to 10³, and has the finite limit 1.23 at Re = 0: that of a slender body of some 20 cm, where Lamb's logarithm has none.
+//! The kernel evaluates a rational function of √Re. It agrees with Lamb and White, blended over ln Re between
+//! Re 0.5 and 2, within 2.2 % from Re 10⁻³ to 10³, and has the finite limit 1.23 at Re = 0: that of a slender
+//! body of some 20 cm, where Lamb's logarithm has none.
 //!
 //! No segment begins at the tip, so drag on the tip's half segment is isotropic, with the coefficient across
 //! the fiber. If the drag of a limp strand's tip turned with its last segment, the tip would flutter in a

@@ -1,4 +1,5 @@
-//! The rest shape of one strand, in f64: rest lengths, masses, bending stiffness and rest turns, and the sag-free start.
+//! The rest shape of one strand, in f64: rest lengths, masses, bending stiffness and rest turns, and the
+//! sag-free start.
 //!
 //! A groom is authored as it hangs: under gravity, in balance. If its shape were taken as the stress-free
 //! one, it would sag in the first second. The sag-free start solves for the rest turns d that make every net

@@ -8,7 +8,8 @@
 //! ```text
 //! before a substep   v ← v + h M⁻¹ Jᵀ F           F the loads that contacts carry, J the contact Jacobian
 //! the substep        every strand separately
-//! after it           v ← v + A⁻¹ Jᵀ p             p by projected Gauss–Seidel, so that nothing overlaps after the next;
+//! after it           v ← v + A⁻¹ Jᵀ p             p by projected Gauss–Seidel, so that no segments
+//!                                                 overlap at the end of the next substep;
 //!                                                 A the response of strands: masses and bending (`response`),
 //!                                                 and constant lengths (`along`)
 //! carried            F ← what acted both in this substep and in the one before, F + p/h

@@ -15,9 +15,10 @@
 //!
 //! ```text
 //! δr = δe_j / L_j − P δe_{j−1} / L_{j−1}
+//! ```
 //!
-//! (with ℓ = L in the rotation δû: exact for inextensible segments, to which the projection restores them)
-//! and the Gauss–Newton matrix B JᵀJ is positive semi-definite at any strain (cf. Choi & Ko 2002).
+//! This sets ℓ = L in the rotation δû, which is exact for inextensible segments; projection makes them so.
+//! The Gauss–Newton matrix B JᵀJ is positive semi-definite at any strain (cf. Choi & Ko 2002).
 
 use super::joint::Joint;
 use crate::strand::lanes::{F, M3, Simd, Sym3, V3};

@@ -4,7 +4,8 @@
 //! ```text
 //!        m_{j-1}       m_j
 //!          ▲             ▲  φ_j     E = Σ ½ B |r|² + ½ ΔB (m·r)²  +  ½ GJ/L̄ s² (τ − τ⁰)²
-//!   x_{j-1} ───► x_j ───► x_{j+1}   r = κ − d,  κ the change of tangent,  d the rest turn, fixed in the frame of segment j−1
+//!   x_{j-1} ───► x_j ───► x_{j+1}   r = κ − d,  κ the change of tangent,
+//!                                   d the rest turn, fixed in the frame of segment j−1
 //! ```
 //!
 //! Bergou et al. 2008, *Discrete Elastic Rods*: points represent the centerline, and an angle against a

@@ -2,8 +2,8 @@
 //! which is free to rotate and to move sideways (Euler 1744; Timoshenko & Gere 1961, *Theory of Elastic
 //! Stability*, §2.7).
 //!
-//! With the inclination of the free end θₜ and k = sin(θₜ/2), the load P, the length L and the clamp's distance H from the free end along
-//! the axis are related by
+//! With the inclination of the free end θₜ and k = sin(θₜ/2), the load P, the length L and the clamp's
+//! distance H from the free end along the axis are related by
 //!
 //! ```text
 //! P L²/EI = K(k)²,      H/L = 2 E(k)/K(k) − 1,      x/L = 2 k/K(k)

@@ -21,8 +21,9 @@ pub fn drag_coefficient(re: f64) -> f64 {
     lamb + weight * (white - lamb)
 }
 
-/// Angle from the vertical [rad] at which a limp fiber of this diameter [m] and density [kg/m³] hangs in a horizontal wind of `speed` [m/s] under
-/// gravity `g` [m/s²]: ½ρ(U cos θ)² d Cd = ρ_h π d²/4 g sin θ. Drag along the fiber only adds to its tension.
+/// Angle from the vertical [rad] at which a limp fiber of this diameter [m] and density [kg/m³] hangs in a
+/// horizontal wind of `speed` [m/s] under gravity `g` [m/s²]: ½ρ(U cos θ)² d Cd = ρ_h π d²/4 g sin θ. Drag
+/// along the fiber only adds to its tension.
 pub fn wind_angle(speed: f64, diameter: f64, density: f64, g: f64) -> f64 {
     let weight = density * std::f64::consts::FRAC_PI_4 * diameter * diameter * g;
     bisect(0.0, std::f64::consts::FRAC_PI_2, |angle| {

@@ -1,24 +1,26 @@
 //! Axial compliance of a helical spring whose wire is clamped at one end and loaded at the other.
 //!
-//! The centerline has the radius R, the pitch angle a, and the angle φ about the axis, counted back from the loaded end to the clamp at
-//! Φ. A force F along the axis at the end of the wire (not on the axis) makes the moment M = F R (r̂(0) − r̂(φ)) × ẑ at φ. With the
-//! tangent t = cos a θ̂ + sin a ẑ,
+//! The centerline has the radius R, the pitch angle a, and the angle φ about the axis, counted back from the
+//! loaded end to the clamp at Φ. A force F along the axis at the end of the wire (not on the axis) makes the
+//! moment M = F R (r̂(0) − r̂(φ)) × ẑ at φ. With the tangent t = cos a θ̂ + sin a ẑ,
 //!
 //! ```text
 //! M·t = −F R cos a (1 − cos φ)         twist,  GJ
 //! |M|² = 2 F² R² (1 − cos φ)           the remainder bends,  EI
 //! ```
 //!
-//! and Castigliano's theorem gives the displacement along the force, δ = ∂/∂F ∫ (M·t)²/2GJ + (|M|² − (M·t)²)/2EI ds:
+//! and Castigliano's theorem gives the displacement along the force, δ = ∂/∂F ∫ (M·t)²/2GJ + (|M|² −
+//! (M·t)²)/2EI ds:
 //!
 //! ```text
 //! δ/F = R² L [ cos²a I₂ (1/GJ − 1/EI) + 2 I₁/EI ]
 //! I₁ = mean of 1 − cos φ = 1 − sin Φ/Φ,      I₂ = mean of (1 − cos φ)² = 3/2 − 2 sin Φ/Φ + sin 2Φ/4Φ
 //! ```
 //!
-//! A load on the axis, which needs a stiff arm from the wire's end to the axis, has the moment F R throughout and the textbook value
-//! R² L (cos²a/GJ + sin²a/EI) (Love 1927, *A Treatise on the Mathematical Theory of Elasticity*, ch. XIX; Timoshenko 1930, *Strength of
-//! Materials* II). Both hold for small displacements of an inextensible wire.
+//! A load on the axis, which needs a stiff arm from the wire's end to the axis, has the moment F R throughout
+//! and the textbook value R² L (cos²a/GJ + sin²a/EI) (Love 1927, *A Treatise on the Mathematical Theory of
+//! Elasticity*, ch. XIX; Timoshenko 1930, *Strength of Materials* II). Both hold for small displacements of
+//! an inextensible wire.
 
 use super::integrate;
 use glam::DVec3;
