@@ -40,7 +40,7 @@ impl Simulation {
             let points = self.groom.range(self.lanes[place] as usize).len();
             assert!(
                 (2..points).contains(&(held.point as usize)),
-                "a held point is of the strand and is not driven"
+                "a held point must exist and must not be driven"
             );
             let point = held.point * self.tiles[place / LANES].model.stride() as u32;
             let (tile, lane) = (&mut self.holds[place / LANES], place % LANES);

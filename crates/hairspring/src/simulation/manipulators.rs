@@ -75,7 +75,7 @@ impl Simulation {
         used.flat_map(|used| used.bonds.0.iter().map(|bond| (bond.strand, bond.point)))
     }
 
-    /// Moves the manipulators' hair-bound poses with a rigid motion of the hair.
+    /// Updates where manipulators would be if they had moved rigidly with the hair.
     pub(super) fn carry_tools(&mut self, by: &RigidTransform) {
         for used in &mut self.tools.used {
             used.along = by.after(&used.along);

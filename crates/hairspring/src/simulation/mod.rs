@@ -55,7 +55,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::{ops::Range, sync::Arc};
 
-/// Simulated strands, integrated implicitly with a direct banded solver.
+/// Simulated strands, integrated by default with backward Euler and a direct banded solver.
 ///
 /// Settings are given to [`Simulation::new`] and never change; the state is positions, velocities and
 /// tensions. A step gives bitwise the same result for any number of threads. Strands interact with bodies,
@@ -206,7 +206,7 @@ impl Simulation {
     /// # Panics
     /// If there is not one number for each strand of the groom.
     pub fn set_hair_multiplicity(&mut self, hairs: Vec<f32>) {
-        assert_eq!(hairs.len(), self.groom.strand_count(), "a number for each strand of the groom");
+        assert_eq!(hairs.len(), self.groom.strand_count(), "one number for each strand of the groom");
         self.multiplicity = hairs;
     }
 

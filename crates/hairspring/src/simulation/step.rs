@@ -137,7 +137,7 @@ impl Simulation {
     /// If `drive.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
     pub fn step(&mut self, drive: &StepInput) -> StepReport {
         assert_eq!(drive.roots.len(), self.places.len(), "one root pose for each simulated strand");
-        assert!(drive.dt > 0.0, "a step takes time");
+        assert!(drive.dt > 0.0, "`dt` must be positive");
         let solver = self.settings.solver;
         let carried = self.carry_along(drive);
         // For bodies with several time slices, each slice has the same number of substeps.

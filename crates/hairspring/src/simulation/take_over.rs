@@ -32,7 +32,7 @@ impl Simulation {
     /// # Panics
     /// If the two do not simulate the same strands in the same order.
     pub fn take_over(&mut self, old: &Simulation) {
-        assert!(self.strands().eq(old.strands()), "the same strands in the same order");
+        assert!(self.strands().eq(old.strands()), "both must have the same strands in the same order");
         self.level = old.level;
         self.settings.anchor = old.settings.anchor;
         self.motion = old.motion;

@@ -87,7 +87,7 @@ fn forces_of(
         Elastic::Straight => walk::<_, Straight, 3, 9>(simd, s, &mut tile),
         Elastic::Curvature => walk::<_, Curvature<_>, 3, 9>(simd, s, &mut tile),
         Elastic::Rod => walk::<_, Rod<_>, 4, 11>(simd, s, &mut tile),
-        Elastic::Springs => unreachable!("the springs model has single precision alone"),
+        Elastic::Springs => unreachable!("the springs model has single precision only"),
     });
     forces
 }
@@ -269,9 +269,9 @@ proptest! {
         for model in [Elastic::Straight, Elastic::Curvature, Elastic::Rod, Elastic::Springs] {
             let (forces, moments) = internal(&strand, model);
             let size: f64 = forces.iter().map(|f| f.length()).sum();
-            prop_assert!(size > 1e-8, "{model:?}: no force to speak of");
+            prop_assert!(size > 1e-8, "{model:?}: forces are too small to test");
             let sum: DVec3 = forces.iter().sum();
-            prop_assert!(sum.length() < 1e-5 * size, "{model:?}: pushes itself by {sum} of {size}");
+            prop_assert!(sum.length() < 1e-5 * size, "{model:?}: net force {sum} of {size}");
             if matches!(model, Elastic::Straight | Elastic::Curvature) {
                 continue;
             }
@@ -281,7 +281,7 @@ proptest! {
                 torque += (w[1] - w[0]).normalize() * *moment;
             }
             let reach = x.iter().map(|x| x.length()).fold(0.0, f64::max);
-            prop_assert!(torque.length() < 1e-4 * size * reach, "{model:?}: turns itself by {torque} of {}", size * reach);
+            prop_assert!(torque.length() < 1e-4 * size * reach, "{model:?}: net torque {torque} of {}", size * reach);
         }
     }
 }

@@ -16,7 +16,7 @@ const FLATTENED: f32 = 0.5;
 /// Positions of the three particles after particle `i`, relative to it [m].
 #[inline(always)]
 pub fn after<S: Simd>(simd: S, i: usize, scratch: &Scratch) -> [V3<S>; 3] {
-    let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges go on past the tip");
+    let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges are padded past the tip");
     let [e1, e2, e3] = edges.each_ref().map(|e| V3::load(simd, e));
     [e1, e1 + e2, e1 + e2 + e3]
 }
