@@ -1,21 +1,21 @@
-//! Why an experiment gives no number.
+//! Reasons why an experiment gives no number.
 
 /// Why there is no measured value or no reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Failure {
-    /// The strand turned non-finite and was put back to its rest shape.
+    /// The strand became non-finite and was reset to its rest shape.
     #[error("the strand turned non-finite")]
     NotFinite,
-    /// The strand still moved after the time that an experiment is given.
+    /// The strand still moved at the end of the experiment's time.
     #[error("the strand did not come to rest")]
     NotAtRest,
-    /// No load up to the greatest that is tried makes the strand give way.
+    /// The strand stayed stable up to the largest load.
     #[error("the strand never gave way")]
     NoThreshold,
-    /// A swing that turned back far too soon.
+    /// The swing turned back far too soon.
     #[error("the strand did not swing")]
     NoSwing,
-    /// The motion died out before enough of it could be timed.
+    /// The motion died out before it could be timed.
     #[error("the motion died out before it could be timed")]
     DiedOut,
 }

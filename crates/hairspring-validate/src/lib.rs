@@ -1,11 +1,12 @@
-//! Whether the simulation is physics: what it does, held against what closed forms say.
+//! Comparison of the simulation with closed-form solutions.
 //!
-//! A [`Case`] is one experiment with a strand whose outcome is known: a cantilever's droop, the weight at which a standing strand
-//! gives way, the period of a swing. Its reference is computed for any parameter in f64, without a line of the simulation
-//! (`reference/`); its measurement is taken on the real [`hairspring::simulation::Simulation`], as a user would set it up (`cases/`).
+//! A [`Case`] is one experiment with a strand whose outcome is known: a cantilever's droop, the weight at
+//! which an upright strand buckles, the period of a swing. Its reference is computed in f64 for any
+//! parameter, without code of the simulation (`reference/`). Its measurement uses the actual
+//! [`hairspring::simulation::Simulation`], as a user would set it up (`cases/`).
 //!
-//! Data goes one way: `reference` and `specimen` (a strand on the bench) know nothing of cases, `southwell` and `ring_down` are
-//! what several experiments measure with, and [`Case::run`] puts the two numbers side by side.
+//! `reference` and `specimen` (a test strand) do not depend on cases. `southwell` and `ring_down` are
+//! measurement methods that several experiments share. [`Case::run`] compares the two numbers.
 
 pub mod bench;
 mod cases;
@@ -24,7 +25,7 @@ pub use reference::cylinder::drag_coefficient;
 use hairspring::{material::Model, settings::Integrator};
 use std::fmt;
 
-/// All cases, in the order of the closed forms' page.
+/// All cases, in the order of the documentation's page on closed forms.
 pub const CASES: [&Case; 17] = [
     &cases::heavy_cantilever::CASE,
     &cases::end_load::CASE,
@@ -45,7 +46,7 @@ pub const CASES: [&Case; 17] = [
     &cases::rest::CASE,
 ];
 
-/// The case of this name, as in [`Case::name`].
+/// Returns the case with this name, as in [`Case::name`].
 pub fn case(name: &str) -> Option<&'static Case> {
     CASES.into_iter().find(|c| c.name == name)
 }
@@ -53,9 +54,9 @@ pub fn case(name: &str) -> Option<&'static Case> {
 /// A parameter of a closed form.
 #[derive(Debug)]
 pub struct Symbol {
-    /// Its name on a command line, as `gamma`.
+    /// Name on a command line, such as `gamma`.
     pub name: &'static str,
-    /// What it stands for, as `Γ = ρgAL³/EI`.
+    /// Meaning, such as `Γ = ρgAL³/EI`.
     pub meaning: &'static str,
 }
 
@@ -100,25 +101,25 @@ pub const SYMBOLS: [&Symbol; 11] = [
     &WIND_SPEED,
 ];
 
-/// How a case's parameter may be chosen.
+/// A parameter of a case and its range.
 #[derive(Debug)]
 pub struct Parameter {
-    /// What it is.
+    /// The parameter.
     pub symbol: &'static Symbol,
-    /// Least and greatest value that the experiment is meant for.
+    /// Smallest and largest value that the experiment is meant for.
     pub range: (f64, f64),
 }
 
 /// A number that a case measures.
 #[derive(Debug)]
 pub struct Quantity {
-    /// Its name, as `drop H/L`.
+    /// Name, such as `drop H/L`.
     pub name: &'static str,
-    /// Largest relative error that passes; where the reference is 0, the largest value.
+    /// Largest relative error that passes; if the reference is 0, the largest absolute value.
     pub tolerance: f64,
 }
 
-/// How the strand of an experiment is simulated.
+/// Simulation method of an experiment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Method {
     /// Points of the strand, 3 to 1,024.
@@ -133,48 +134,49 @@ pub struct Method {
 
 /// An experiment with a known outcome.
 pub struct Case {
-    /// Its name, as `heavy-cantilever`.
+    /// Name, such as `heavy-cantilever`.
     pub name: &'static str,
     /// The experiment in a sentence.
     pub about: &'static str,
     /// Its parameters, in the order of the values in `defaults`.
     pub parameters: &'static [Parameter],
-    /// The values that it runs with unless told others, one set of parameters after the other; `&[&[]]` without parameters.
+    /// Default values: one set of parameters after the other; `&[&[]]` without parameters.
     pub defaults: &'static [&'static [f64]],
-    /// What it measures.
+    /// The measured quantities.
     pub quantities: &'static [Quantity],
-    /// How it is simulated unless told otherwise.
+    /// Default simulation method.
     pub method: Method,
-    /// Whether it is about so many points and no others.
+    /// Whether the number of points is fixed.
     pub points_fixed: bool,
-    /// Why it does not pass at its defaults with an elastic model, or with so few points, where it does not.
+    /// Returns why the case does not pass at its defaults with an elastic model or with few points, if that
+    /// is known.
     pub out_of_reach: fn(Method) -> Option<&'static str>,
     reference: fn(&[f64]) -> Result<Vec<f64>, Failure>,
     measure: fn(&[f64], Method) -> Result<Vec<f64>, Failure>,
     sweep: plot::Sweep,
 }
 
-/// One number held against its reference.
+/// One measured number and its reference.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// Name of the case.
     pub case: &'static str,
     /// Values of the case's parameters, by symbol.
     pub parameters: Vec<(&'static str, f64)>,
-    /// How it was simulated.
+    /// Simulation method.
     pub method: Method,
     /// Name of the quantity.
     pub quantity: &'static str,
-    /// What the simulation did; or why it gave no number.
+    /// The measured value, or why there is none.
     pub measured: Result<f64, Failure>,
-    /// What the closed form says; or why it says nothing.
+    /// The reference value, or why there is none.
     pub reference: Result<f64, Failure>,
-    /// Largest relative error that passes; where the reference is 0, the largest value.
+    /// Largest relative error that passes; if the reference is 0, the largest absolute value.
     pub tolerance: f64,
 }
 
 impl Outcome {
-    /// |measured − reference| / |reference|, where there are both and the reference is not 0.
+    /// Returns |measured − reference| / |reference|, if both exist and the reference is not 0.
     pub fn relative_error(&self) -> Option<f64> {
         match (&self.measured, &self.reference) {
             (_, Ok(0.0)) => None,
@@ -183,16 +185,17 @@ impl Outcome {
         }
     }
 
-    /// Why it fails, where that is known of the elastic model or of so few points.
+    /// Returns why the case fails, if that is a known limitation of the elastic model or of the number of
+    /// points.
     pub fn reason(&self) -> Option<&'static str> {
         let of = |case: &Case| (case.out_of_reach)(self.method);
-        // Of all cases alike, at more points than each has by default.
+        // Applies to all cases, at more points than each has by default.
         let held_back = self.method.model == Model::Springs && self.method.points >= 128;
         let any = held_back.then_some(cases::HELD_BACK);
         if self.pass() { None } else { case(self.case).and_then(of).or(any) }
     }
 
-    /// Whether the error is within the tolerance; what could not be measured does not pass.
+    /// Returns whether the error is within the tolerance. A failed measurement does not pass.
     pub fn pass(&self) -> bool {
         match (&self.measured, &self.reference) {
             (Ok(measured), Ok(0.0)) => measured.abs() <= self.tolerance,
@@ -202,7 +205,8 @@ impl Outcome {
 }
 
 impl Case {
-    /// Runs the experiment at `values` of its parameters, in their order; one outcome for each quantity.
+    /// Runs the experiment with the parameter values `values`, in the order of the parameters. Returns one
+    /// outcome for each quantity.
     ///
     /// # Panics
     /// If `values` is not as long as the case's parameters.

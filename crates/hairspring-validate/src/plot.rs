@@ -1,4 +1,4 @@
-//! What a case looks like: its reference as a curve, and measured points over it.
+//! Plots of cases: the reference as a curve, with measured points.
 
 use super::{Case, Failure, Method};
 use rayon::prelude::*;
@@ -6,52 +6,52 @@ use rayon::prelude::*;
 /// One axis of a plot.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// What it shows, with its unit.
+    /// Label with unit.
     pub label: String,
-    /// Whether it is logarithmic.
+    /// Whether the axis is logarithmic.
     pub log: bool,
 }
 
 /// One quantity of a plot.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// Its name.
+    /// Name of the quantity.
     pub name: String,
-    /// The reference, from left to right.
+    /// Reference points, from left to right.
     pub reference: Vec<[f64; 2]>,
-    /// What was measured; fewer points where a measurement gave no number.
+    /// Measured points, without those whose measurement failed.
     pub measured: Vec<[f64; 2]>,
 }
 
 /// A plot.
 #[derive(Clone, Debug)]
 pub struct Plot {
-    /// Across.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Up.
+    /// Vertical axis.
     pub y: Axis,
-    /// Its quantities.
+    /// Quantities of the plot.
     pub curves: Vec<Curve>,
 }
 
-/// What a case's plot goes over.
+/// The horizontal axis of a case's plot.
 pub(super) enum Sweep {
-    /// The parameter `index`, from `from` to `to`; others at their first default.
+    /// The parameter `index`, from `from` to `to`; the others have their first default.
     Parameter { index: usize, from: f64, to: f64, log: bool },
-    /// The quantities by their number, for modes.
+    /// The index of the quantity, for modes.
     Modes { label: &'static str },
-    /// A plot of the case's own.
+    /// A plot specific to the case.
     Own(fn(Method) -> Plot),
 }
 
-/// Places at which the reference is computed.
+/// Number of points at which the reference is computed.
 const CURVE: usize = 48;
 
-/// Places at which the simulation is run.
+/// Number of points at which the simulation runs.
 const POINTS: usize = 9;
 
 impl Case {
-    /// The case's plot; simulates at several places, in parallel.
+    /// Returns the case's plot. Runs several simulations in parallel.
     pub fn plot(&self, method: Method) -> Plot {
         match &self.sweep {
             Sweep::Own(plot) => plot(method),
@@ -97,7 +97,8 @@ impl Case {
     }
 }
 
-/// The axis of the values: named by its only quantity, logarithmic where they span more than two decades.
+/// Returns the vertical axis: its label is the name of the only quantity, and it is logarithmic if the values
+/// span more than two decades.
 fn value_axis(case: &Case, curves: &[Curve]) -> Axis {
     let values = curves.iter().flat_map(|c| c.reference.iter().map(|p| p[1]));
     let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(v), h.max(v)));
@@ -105,7 +106,7 @@ fn value_axis(case: &Case, curves: &[Curve]) -> Axis {
     Axis { label, log: low > 0.0 && high > 100.0 * low }
 }
 
-/// `count` places from `from` to `to`.
+/// Returns `count` values from `from` to `to`.
 pub(super) fn places(from: f64, to: f64, log: bool, count: usize) -> Vec<f64> {
     let between = |k: usize| {
         let t = k as f64 / (count - 1) as f64;
@@ -114,7 +115,7 @@ pub(super) fn places(from: f64, to: f64, log: bool, count: usize) -> Vec<f64> {
     (0..count).map(between).collect()
 }
 
-/// `f` at each place where it gives numbers.
+/// Evaluates `f` at each place, and omits failures.
 pub(super) fn evaluate<T: Send>(
     places: &[f64],
     f: impl Fn(f64) -> Result<T, Failure> + Sync,

@@ -1,4 +1,5 @@
-//! The frequency of one mode of a strand: its root is nudged aside once, and the mode's share of what follows is timed.
+//! Measures the frequency of one mode of a strand: its root is displaced sideways once, and the mode's
+//! amplitude in the following motion is timed.
 
 use super::{
     Failure, Method,
@@ -7,18 +8,19 @@ use super::{
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// How far the root goes and comes back, over the strand's length: swings stay small.
+/// Displacement of the root, over the strand's length. Small, so that the swings are linear.
 const NUDGE: f64 = 2e-3;
 
-/// Zeros of the motion that are timed.
+/// Number of zeros of the motion to time.
 const ZEROS: usize = 9;
 
-/// A peak below this share of the first is noise.
+/// Ratio to the first peak below which a peak counts as noise.
 const DIED_OUT: f64 = 1e-3;
 
-/// Angular frequency [rad/s] of the mode with the sideways displacement `shape` at each point, after the root of `setup` has
-/// moved along `aside` and back. `omega` is the frequency to expect [rad/s]: it says how long the nudge lasts and nothing of
-/// what is measured, which is the mean time between zeros of the mode's amplitude.
+/// Returns the angular frequency [rad/s] of the mode with the lateral displacement `shape` at each point,
+/// after the root of `setup` has moved along `aside` and back. `omega` is the expected frequency [rad/s],
+/// which only determines the duration of the displacement. The result follows from the mean time between
+/// zeros of the mode's amplitude.
 pub fn frequency(
     setup: Setup,
     method: Method,
@@ -38,7 +40,7 @@ pub fn frequency(
         let moving = time < nudge;
         let out = if moving { 0.5 * NUDGE * length * (1.0 - (TAU * time / nudge).cos()) } else { 0.0 };
         specimen.small_step(root + aside * out)?;
-        // The inner points have the same mass, so that modes are orthogonal under this sum.
+        // The inner points have equal masses, so modes are orthogonal under this sum.
         let points = specimen.points().iter().zip(shape);
         let amplitude: f64 = points.map(|(p, w)| w * (p.as_dvec3() - root).dot(aside)).sum();
         if moving {
@@ -48,7 +50,7 @@ pub fn frequency(
         peak = peak.max(amplitude.abs());
         if before != 0.0 && (amplitude > 0.0) != (before > 0.0) {
             zeros.push(time - h * amplitude / (amplitude - before));
-            // The first swing begins with the nudge still in it.
+            // The first swing still contains the displacement of the root.
             if zeros.len() == 2 {
                 first_peak = peak;
             }
@@ -62,7 +64,7 @@ pub fn frequency(
         }
         before = amplitude;
     }
-    // Half periods of a mode that is damped away by the scheme are still half periods; three are asked for.
+    // Half periods are valid even if the integrator damps the mode. At least three are required.
     if zeros.len() < 4 {
         return Err(Failure::DiedOut);
     }

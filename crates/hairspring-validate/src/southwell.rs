@@ -1,35 +1,38 @@
-//! Where a strand gives way, without ever letting it: Southwell's method.
+//! Southwell's method: finds the buckling load of a strand without reaching it.
 //!
-//! Near a buckling load λ* the answer to a small sideways pull grows as 1/(1 − λ/λ*), so its inverse, the stiffness against that pull,
-//! falls to 0 on a straight line (Southwell 1932, *On the analysis of experimental observations in problems of elastic
-//! stability*). Measured on the stable side, where a strand comes to rest soon and the answer is that of small angles, the line
-//! gives the threshold. Farther off other modes bend the line; so each measurement is taken nearer than the last.
+//! Near a buckling load λ*, the response to a small sideways load grows as 1/(1 − λ/λ*). Its inverse, the
+//! stiffness against that load, decreases linearly to 0 (Southwell 1932, *On the analysis of experimental
+//! observations in problems of elastic stability*). Measurements on the stable side, where a strand comes to
+//! rest soon and its deflection is small, define the line, which gives the threshold. Farther away, other
+//! modes bend the line, so each measurement is taken nearer than the last.
 
 use super::Failure;
 
-/// Largest sideways deflection over the length that counts as small; beyond, a strand has given way.
+/// Largest sideways deflection, over the length, that counts as small. Beyond it, the strand has buckled.
 pub const SMALL: f64 = 0.1;
 
-/// How far toward the foreseen threshold each measurement goes.
+/// Fraction of the distance to the predicted threshold that each measurement advances.
 const STRIDE: f64 = 0.6;
 
-/// Steps that cross the whole range, each by the same factor: no measurement goes farther than one of them.
+/// Number of steps, each by the same factor, that cross the whole range. A measurement advances by at most
+/// one of them.
 const STEPS: f64 = 12.0;
 
-/// Agreement of two foreseen thresholds that ends the search [1].
+/// Relative difference of two predicted thresholds that ends the search [1].
 const AGREEMENT: f64 = 4e-3;
 
-/// The last measurement is at least so near the threshold, as a share of it.
+/// Largest relative distance of the last measurement from the threshold.
 const NEAR: f64 = 0.15;
 
-/// Distance of a load that is held and one that is not, at which the search ends [1].
+/// Relative distance between a stable and an unstable load at which the search ends [1].
 const ENCLOSED: f64 = 0.015;
 
-/// Most measurements.
+/// Largest number of measurements.
 const MOST: usize = 30;
 
-/// Load at which `stiffness` of a strand against a small sideways pull falls to 0, searched from the load `start`, where the strand is
-/// stable, to `end` and no farther, both above 0. `stiffness` is `None` where the strand has already given way.
+/// Returns the load at which the `stiffness` of a strand against a small sideways load decreases to 0. The
+/// search goes from the load `start`, where the strand is stable, to `end` at most; both are above 0.
+/// `stiffness` returns `None` if the strand has already buckled.
 pub fn threshold(
     start: f64,
     end: f64,
@@ -37,16 +40,16 @@ pub fn threshold(
 ) -> Result<f64, Failure> {
     let toward = (end - start).signum();
     let beyond = |a: f64, b: f64| (a - b) * toward > 0.0;
-    // Its own crookedness takes a strand out a little early, and its stiffness does not fall to 0: enclosed as narrowly as this, the threshold
-    // is known.
+    // The strand's own imperfection makes it buckle a little early, with a stiffness above 0. An interval
+    // this narrow determines the threshold.
     let enclosed = |held: f64, given: f64| (given - held).abs() < ENCLOSED * given;
     let factor = (end / start).powf(1.0 / STEPS);
     let mut found: Vec<(f64, f64)> = Vec::with_capacity(MOST);
     let (mut foreseen, mut at) = (f64::NAN, start);
-    // The nearest load at which it is known to have given way.
+    // The nearest load at which the strand is known to have buckled.
     let mut wall = None;
     for _ in 0..MOST {
-        // A strand that came to rest farther off, and no longer does, is on its way out.
+        // A strand that came to rest at the previous loads, but no longer does, is buckling.
         let now = match stiffness(at) {
             Err(Failure::NotAtRest) if !found.is_empty() => None,
             other => other?,
@@ -69,7 +72,7 @@ pub fn threshold(
             _ => f64::NAN,
         };
         let mut next = at * factor;
-        // A line that does not fall says nothing yet.
+        // A line that does not decrease gives no prediction yet.
         if zero.is_finite() && beyond(zero, at) {
             let agree = (zero - foreseen).abs() < AGREEMENT * zero.abs();
             foreseen = zero;
@@ -95,7 +98,7 @@ pub fn threshold(
     Err(Failure::NoThreshold)
 }
 
-/// Load at stiffness 0 of the polynomial in the stiffness through `(load, stiffness)` (Neville).
+/// Load at stiffness 0 of the polynomial in the stiffness through `(load, stiffness)` (Neville's algorithm).
 fn extrapolate(points: &[(f64, f64)]) -> f64 {
     let mut load: Vec<f64> = points.iter().map(|p| p.0).collect();
     for order in 1..points.len() {
@@ -113,7 +116,7 @@ mod tests {
 
     #[test]
     fn finds_the_pole_of_a_response_with_several_modes() {
-        // Modes at 7 and 50, of opposite sign; the far one bends the line.
+        // Modes at 7 and 50 with opposite signs; the far one bends the line.
         for end in [60.0, 20.0] {
             let stiffness = |x: f64| {
                 let response = 1.0 / (7.0 - x) - 0.4 / (50.0 - x);
@@ -122,13 +125,14 @@ mod tests {
             let found = threshold(1.0, end, stiffness).unwrap();
             assert!((found - 7.0).abs() < 0.01, "{found}");
         }
-        // Falling loads.
+        // Decreasing loads.
         let found = threshold(100.0, 1.0, |x| Ok((x > 20.0).then_some(x - 20.0))).unwrap();
         assert!((found - 20.0).abs() < 0.01, "{found}");
     }
 
-    /// The stiffness of a crooked strand levels off before it gives way; a line through the last of it leads far beyond where it did. As
-    /// measured of a truss that twists as easily as one can.
+    /// The stiffness of an imperfect strand levels off before it buckles. A line through the last
+    /// measurements leads far beyond the actual threshold. The numbers were measured on a truss with the
+    /// smallest possible twisting stiffness.
     #[test]
     fn a_load_that_was_not_held_is_not_foreseen() {
         let measured = [

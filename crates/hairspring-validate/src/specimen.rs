@@ -1,4 +1,4 @@
-//! A strand on the bench: one strand of human hair, its root in the experimenter's hand.
+//! Test specimens: one strand of human hair with a controlled root.
 
 use super::{Failure, Method};
 use glam::{DQuat, DVec3, Mat3, Vec3};
@@ -19,60 +19,61 @@ use std::{
 /// Radius of every specimen [m]: a typical hair.
 pub const RADIUS: f64 = 35e-6;
 
-/// Length of a specimen unless its experiment needs another [m].
+/// Default length of a specimen [m].
 pub const LENGTH: f64 = 0.2;
 
 /// Density of every specimen [kg/m³].
 pub const DENSITY: f64 = 1310.0;
 
-/// Young's modulus of human hair along the fibre [Pa].
+/// Young's modulus of human hair along the fiber [Pa].
 pub const YOUNG: f64 = 3.9e9;
 
 /// Bending stiffness EI of human hair [N m²].
 pub const BENDING: f64 = YOUNG * FRAC_PI_4 * RADIUS * RADIUS * RADIUS * RADIUS;
 
-/// Mass of a specimen over its length, ρA [kg/m].
+/// Mass of a specimen per length, ρA [kg/m].
 pub const LINE_DENSITY: f64 = DENSITY * PI * RADIUS * RADIUS;
 
 /// Gravity [m/s²].
 pub const GRAVITY: f64 = 9.81;
 
-/// A frame [s]: `Method::substeps` are in one.
+/// Length of a frame [s], with `Method::substeps` substeps.
 const FRAME: f64 = 1.0 / 60.0;
 
-/// Longest that a strand may take to come to rest [s].
+/// Longest time in which a strand must come to rest [s].
 const PATIENCE: f64 = 60.0;
 
-/// A strand at rest moves by less than this share of its length in [`WATCH`].
+/// Motion in [`WATCH`], over the strand's length, below which the strand is at rest.
 const STILL: f64 = 3e-5;
 
-/// How long a strand must keep still [s].
+/// Time for which a strand must stay at rest [s].
 const WATCH: f64 = 0.5;
 
-/// What a specimen is made of and where it is.
+/// Properties and pose of a specimen.
 pub struct Setup {
-    /// The strand in its natural shape [m], the first segment held.
+    /// The natural shape of the strand [m]. The first segment is held.
     pub points: Vec<Vec3>,
-    /// The fibre; radius and density are the specimen's.
+    /// The material; radius and density are the specimen's.
     pub material: Material,
-    /// [m/s²].
+    /// Gravity [m/s²].
     pub gravity: DVec3,
-    /// What it may touch.
+    /// Optional collider.
     pub obstacle: Option<ColliderShape>,
     /// Velocity of the air [m/s].
     pub wind: DVec3,
-    /// Whether `points` are in balance under gravity, as a groom's are, instead of natural.
+    /// Whether `points` are in balance under gravity, as those of a groom, instead of a natural shape.
     pub in_balance: bool,
 }
 
 impl Setup {
-    /// A strand of natural shape `points` whose own weight is `gamma` = ρgAL³/EI under [`GRAVITY`], and `ratio` = GJ/EI.
+    /// A strand of natural shape `points` with the weight `gamma` = ρgAL³/EI under [`GRAVITY`], and `ratio` =
+    /// GJ/EI.
     ///
-    /// Air at rest brings it to rest, near critically: more drag than on a lone fiber, and no damping of its own. Neither
-    /// changes where it rests.
+    /// Still air brings it to rest with nearly critical damping: its drag is higher than that of a lone
+    /// fiber, and it has no internal damping. Neither changes its rest position.
     pub fn heavy(points: Vec<Vec3>, gamma: f64, ratio: f64) -> Self {
         let length: f64 = points.windows(2).map(|p| p[0].as_dvec3().distance(p[1].as_dvec3())).sum();
-        // Γ = ρ g πr² L³ / (E πr⁴/4), and GJ/EI = 2G/E of a round fibre.
+        // Γ = ρ g πr² L³ / (E πr⁴/4), and GJ/EI = 2G/E of a round fiber.
         let young = 4.0 * DENSITY * GRAVITY * length.powi(3) / (gamma * RADIUS * RADIUS);
         let material = Material {
             radius: Some(RADIUS as f32),
@@ -93,7 +94,7 @@ impl Setup {
         }
     }
 
-    /// A strand of human hair's Young's modulus and `ratio` = GJ/EI, where nothing weighs.
+    /// A strand with human hair's Young's modulus and `ratio` = GJ/EI, without gravity.
     pub fn weightless(points: Vec<Vec3>, ratio: f64) -> Self {
         let mut setup = Self::heavy(points, 1.0, ratio);
         setup.gravity = DVec3::ZERO;
@@ -102,7 +103,7 @@ impl Setup {
         setup
     }
 
-    /// A strand without bending stiffness in air that does not move it: a chain.
+    /// A chain: a strand without bending stiffness and without air drag.
     pub fn chain(points: Vec<Vec3>) -> Self {
         let material = Material {
             radius: Some(RADIUS as f32),
@@ -123,9 +124,9 @@ impl Setup {
     }
 }
 
-/// `n` points along a helix that starts along the unit vector `direction` and turns by `turn` (axis times angle [rad]) from end to
-/// end: an arc where they are at right angles. Each segment has the direction of its middle, and the held first one that of
-/// the clamp.
+/// Returns `n` points along a helix that starts along the unit vector `direction` and rotates by `turn` (axis
+/// times angle [rad]) from end to end. It is an arc where the two are at right angles. Each segment has the
+/// direction at its center; the held first one has that of the clamp.
 pub fn helix(n: u32, length: f64, direction: DVec3, turn: DVec3) -> Vec<Vec3> {
     let segments = (n - 1) as f64;
     let mut at = DVec3::ZERO;
@@ -138,23 +139,23 @@ pub fn helix(n: u32, length: f64, direction: DVec3, turn: DVec3) -> Vec<Vec3> {
     points
 }
 
-/// `n` points along a straight line.
+/// Returns `n` points along a straight line.
 pub fn straight(n: u32, length: f64, direction: DVec3) -> Vec<Vec3> {
     helix(n, length, direction, DVec3::ZERO)
 }
 
-/// `n` points along a straight line of `length` that hangs on a held segment as short as a follicle: of a chain, only its end
-/// is held.
+/// Returns `n` points along a straight line of `length`, after a held segment as short as a follicle. For a
+/// chain, only the end is thereby held.
 pub fn pinned(n: u32, length: f64, held: DVec3, direction: DVec3) -> Vec<Vec3> {
     let follicle = held * (FOLLICLE * length);
     let free = |i: u32| follicle + direction * (length * i as f64 / (n - 2) as f64);
     std::iter::once(Vec3::ZERO).chain((0..n - 1).map(|i| free(i).as_vec3())).collect()
 }
 
-/// Length of the held segment of a pinned chain over the chain's.
+/// Length of the held segment of a pinned chain, over the chain's length.
 pub const FOLLICLE: f64 = 1e-3;
 
-/// A strand in simulation.
+/// A simulated strand.
 pub struct Specimen {
     simulation: Simulation,
     root: RigidTransform,
@@ -165,7 +166,7 @@ pub struct Specimen {
 }
 
 impl Specimen {
-    /// Sets it up, in its natural shape and at rest.
+    /// Sets up the strand in its natural shape and at rest.
     pub fn new(setup: Setup, method: Method) -> Self {
         let root = RigidTransform { translation: setup.points[0], ..RigidTransform::default() };
         let count = setup.points.len();
@@ -203,12 +204,12 @@ impl Specimen {
         self.substep
     }
 
-    /// Where the points are [m].
+    /// Positions of the points [m].
     pub fn points(&self) -> &[Vec3] {
         &self.at
     }
 
-    /// From the root to the free end [m].
+    /// Vector from the root to the free end [m].
     pub fn tip(&self) -> DVec3 {
         self.at[self.at.len() - 1].as_dvec3() - self.at[0].as_dvec3()
     }
@@ -218,28 +219,28 @@ impl Specimen {
         self.simulation.measure(&self.obstacles).speed_max
     }
 
-    /// Force with which the collider holds the strand out [N].
+    /// Contact force of the collider on the strand [N].
     pub fn contact_force(&self) -> f64 {
         self.simulation.contacts(&self.obstacles).force
     }
 
-    /// Holds or pulls these points from now on, and lets go of all others.
+    /// Holds or loads these points from now on, and releases all others.
     pub fn hold(&mut self, holds: &[Hold]) {
         self.simulation.set_holds(holds);
     }
 
-    /// Turns the root about the axis and by the angle of `turn` [rad], in its next step.
+    /// Rotates the root by `turn` (axis times angle [rad]) in its next step.
     pub fn turn_root(&mut self, turn: DVec3) {
         let turn = DQuat::from_scaled_axis(turn) * self.root.rotation.as_dquat();
         self.root.rotation = turn.normalize().as_quat();
     }
 
-    /// One frame.
+    /// Advances by one frame.
     pub fn frame(&mut self) -> Result<(), Failure> {
         self.advance(FRAME)
     }
 
-    /// One substep, the root being at `root` [m] at its end.
+    /// Advances by one substep, with the root at `root` [m] at its end.
     pub fn small_step(&mut self, root: DVec3) -> Result<(), Failure> {
         self.root.translation = root.as_vec3();
         self.advance(self.substep)
@@ -260,16 +261,16 @@ impl Specimen {
         Ok(())
     }
 
-    /// Goes on until the strand keeps still; where its points then are, relative to the root [m].
+    /// Advances until the strand is at rest. Returns the positions of its points relative to the root [m].
     ///
-    /// The mean over a while is compared with the mean over the while before: positions in f32 jitter by some 10⁻⁵ of the
-    /// length, which is no motion.
+    /// The mean over an interval is compared with the mean over the interval before, because positions in f32
+    /// fluctuate by some 10⁻⁵ of the length without motion.
     pub fn settle(&mut self) -> Result<Vec<DVec3>, Failure> {
         let length: f64 = self.at.windows(2).map(|p| p[0].distance(p[1]) as f64).sum();
         self.settle_within(STILL * length)
     }
 
-    /// The same, where all points keep still within `still` [m].
+    /// The same, where all points stay within `still` [m].
     pub fn settle_within(&mut self, still: f64) -> Result<Vec<DVec3>, Failure> {
         let moved = |a: &[DVec3], b: &[DVec3]| {
             a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) < still
@@ -277,7 +278,8 @@ impl Specimen {
         self.settle_where(moved)
     }
 
-    /// Goes on until the means of two whiles in turn are alike; the last one, relative to the root [m].
+    /// Advances until the means of two consecutive intervals are alike. Returns the last one, relative to the
+    /// root [m].
     pub fn settle_where(
         &mut self,
         alike: impl Fn(&[DVec3], &[DVec3]) -> bool,

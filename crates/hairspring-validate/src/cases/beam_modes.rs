@@ -29,7 +29,7 @@ pub const CASE: Case = Case {
     sweep: Sweep::Modes { label: "ω/√(EI/ρAL⁴)" },
 };
 
-/// Long hair: the third mode of a shorter one would be too quick for any frame rate.
+/// Long hair: the third mode of a shorter strand would be too fast for any frame rate.
 const LENGTH: f64 = 0.3;
 
 fn measure(beta: f64, method: Method) -> Result<f64, crate::Failure> {

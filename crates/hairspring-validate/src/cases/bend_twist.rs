@@ -1,4 +1,5 @@
-//! A naturally curved strand that hangs: heavy enough it lies in its plane, below a certain weight it winds out of it.
+//! A hanging strand with natural curvature: above a threshold weight it stays in its plane, below it winds
+//! out of the plane.
 
 use super::{NO_TWIST, THRESHOLD, USUAL};
 use crate::{
@@ -36,22 +37,23 @@ pub const CASE: Case = Case {
     reference: |values| Ok(vec![curl_threshold(values[0], values[1]).ok_or(Failure::NoThreshold)?]),
     measure: |values, method| {
         let &[curl, ratio] = values else { unreachable!("two parameters") };
-        // Heavy strands hang nearly straight, whatever the ratio; a light one is its natural arc.
+        // Heavy strands hang nearly straight, whatever the ratio; a light strand has its natural curvature.
         let (heavy, light) = (curl.powi(3) / ratio, 0.02 * curl.powi(3));
         Ok(vec![southwell::threshold(heavy, light, |gamma| stiffness(curl, ratio, gamma, method))?])
     },
     sweep: Sweep::Parameter { index: 1, from: 0.35, to: 1.2, log: false },
 };
 
-/// Natural twist that makes the plane shape imperfect, over the whole strand [rad].
+/// Natural twist that serves as the imperfection of the planar shape, over the whole strand [rad].
 const TWIST: f64 = 0.005;
 
-/// A strand has left its plane where it is out of it by so much of a curl's radius, in the mean.
+/// Mean distance from the plane, over the curl's radius, above which a strand has left its plane [1].
 const LEFT: f64 = 0.2;
 
-/// The natural twist over the way that it drives the strand out of its plane (root mean square over the length).
+/// Natural twist over the distance by which it moves the strand out of its plane (root mean square over the
+/// length).
 fn stiffness(curl: f64, ratio: f64, gamma: f64, method: Method) -> Result<Option<f64>, Failure> {
-    // In the plane z = 0, but for the twist along the first tangent.
+    // In the plane z = 0, except for the twist along the first tangent.
     let turn = DVec3::Z * curl + DVec3::NEG_Y * TWIST;
     let points = helix(method.points, LENGTH, DVec3::NEG_Y, turn);
     let mut specimen = Specimen::new(Setup::heavy(points, gamma, ratio), method);

@@ -1,4 +1,4 @@
-//! A strand over a cylinder holds a greater load with a smaller one.
+//! The capstan: a strand over a cylinder holds a larger load with a smaller one.
 
 use super::{FRICTION, USUAL};
 use crate::{
@@ -26,7 +26,7 @@ pub const CASE: Case = Case {
     reference: |values| Ok(vec![(values[0] * PI).exp()]),
     measure: |values, method| {
         let mu = values[0];
-        // Halved by experiments: it slips or it does not.
+        // Bisection by experiments: the strand slips or holds.
         let (mut holds, mut slips) = (1.0, (2.0 * mu * PI).exp());
         if !slides(mu, slips, method)? {
             return Err(Failure::NoThreshold);
@@ -40,23 +40,24 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 0, from: 0.05, to: 0.6, log: false },
 };
 
-/// The greater load, in weights of the strand: what is left of two loads moves the strand at once.
+/// The larger load, in weights of the strand. The difference of two loads moves the strand at once.
 const LOAD: f64 = 3.0;
 
-/// Frames in which equal loads and contacts settle, in which one load is then eased, and in which the strand has both. Unequal from the
-/// start, they would throw it into a slide that is over before anyone watches.
+/// Frames in which equal loads and contacts settle, in which one load is then reduced, and in which the
+/// strand carries both. With unequal loads from the start, the strand would slide before the measurement
+/// begins.
 const SETTLING: u32 = 30;
 const EASING: u32 = 60;
 const WATCHED: u32 = 120;
 
-/// A load that sank by so many segments has slipped. What is held creeps, by less.
+/// A load that sank by more than this number of segments has slipped. A strand that holds creeps by less.
 const SLIPPED: f64 = 2.0;
 
-/// Whether the strand slips. It hangs over a level cylinder, and nothing weighs but the loads: the smaller one at its tip, the greater one
-/// at a point before the cylinder. From there to the root it is slack.
+/// Returns whether the strand slips. It hangs over a horizontal cylinder, and only the loads have weight: the
+/// smaller one at its tip, the larger one at a point before the cylinder. From there to the root it is slack.
 fn slides(mu: f64, ratio: f64, method: Method) -> Result<bool, Failure> {
     let n = method.points as usize;
-    // About half of the segments are on the cylinder, an eighth hangs on either side, a quarter is slack.
+    // About half of the segments lie on the cylinder, an eighth hangs on either side, and a quarter is slack.
     let segments = n - 1;
     let wrapped = (segments / 2).max(2);
     let hanging = (segments / 8).max(1);
@@ -67,7 +68,7 @@ fn slides(mu: f64, ratio: f64, method: Method) -> Result<bool, Failure> {
     let at = |angle: f64| DVec3::new(-angle.cos(), angle.sin(), 0.0) * radius;
     let mut path: Vec<DVec3> = Vec::with_capacity(n);
     let load = DVec3::new(-radius, -(hanging as f64) * l, 0.0);
-    // The slack part comes in a bow of which the load can sink as far as it is wide.
+    // The slack part forms a bow, whose width is how far the load can sink.
     for k in (1..=slack).rev() {
         let bow = PI * k as f64 / slack as f64;
         let wide = l * slack as f64 / PI;

@@ -32,7 +32,7 @@ pub const CASE: Case = Case {
 
 fn measure(length_over_span: f64, method: Method) -> Result<Vec<f64>, Failure> {
     let span = LENGTH / length_over_span;
-    // Of the right length between the supports, and nowhere near a catenary: down straight, across, and up again.
+    // The right length between the supports, but far from a catenary: straight down, across, and up again.
     let segments = method.points - 2;
     let (l, flat) = (LENGTH / segments as f64, segments % 2);
     let slope = (segments - flat) as f64 / 2.0;
@@ -58,8 +58,8 @@ fn measure(length_over_span: f64, method: Method) -> Result<Vec<f64>, Failure> {
     specimen.hold(&[Hold { point: method.points - 1, target: Some(support), ..Hold::default() }]);
     let rest: Vec<DVec3> = specimen.settle()?.iter().map(|p| *p + first.as_dvec3()).collect();
     let sag = -rest.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-    // A support bears half of the weight. Of it a segment next to one bears all but its nearer half point, and its slope says what
-    // it pulls sideways.
+    // A support carries half of the weight. A segment next to it carries all of that except its nearer half
+    // point, and its slope gives the horizontal force.
     let bears = 0.5 - 0.5 / segments as f64;
     let pulls = |a: DVec3, b: DVec3| bears * ((b.x - a.x) / (b.y - a.y)).abs();
     let n = rest.len();

@@ -30,7 +30,7 @@ pub const CASE: Case = Case {
     measure: |values, method| {
         let points = straight(method.points, LENGTH, DVec3::X);
         let mut setup = Setup::weightless(points, HAIR);
-        // Slower than a heavy strand, so that less air stops it.
+        // Less drag than for a heavy strand, because it moves more slowly.
         setup.material.drag = 0.8;
         let load = values[0] * BENDING / (LENGTH * LENGTH);
         let mut specimen = Specimen::new(setup, method);

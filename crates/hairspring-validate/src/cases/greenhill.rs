@@ -1,4 +1,4 @@
-//! A straight strand that stands upright gives way under its own weight.
+//! A straight upright strand buckles under its own weight.
 
 use super::{HAIR, THRESHOLD, USUAL};
 use crate::{
@@ -23,7 +23,7 @@ pub const CASE: Case = Case {
     measure: |_, method| {
         let stiffness = |gamma| {
             let aside = deflection(gamma, method)? * TILT;
-            // The pull grows with the weight: it is in units of EI/L².
+            // The load grows with the weight, so it is scaled to units of EI/L².
             Ok((aside.abs() < southwell::SMALL).then_some(gamma * TILT / aside))
         };
         Ok(vec![southwell::threshold(1.0, 40.0, stiffness)?])
@@ -31,10 +31,10 @@ pub const CASE: Case = Case {
     sweep: Sweep::Own(plot),
 };
 
-/// Sideways gravity over the vertical one.
+/// Sideways gravity over vertical gravity.
 const TILT: f64 = 2e-3;
 
-/// How far the tip goes aside over the length, for a sideways gravity as large as the vertical one if it were linear.
+/// Tip deflection over length, extrapolated linearly to sideways gravity as large as the vertical one.
 fn deflection(gamma: f64, method: Method) -> Result<f64, Failure> {
     let mut setup = Setup::heavy(straight(method.points, LENGTH, DVec3::Y), gamma, HAIR);
     setup.gravity = DVec3::new(TILT, -1.0, 0.0).normalize() * GRAVITY;
@@ -43,7 +43,7 @@ fn deflection(gamma: f64, method: Method) -> Result<f64, Failure> {
     Ok(tip.x / LENGTH / TILT)
 }
 
-/// The answer to the sideways pull, which grows without bound toward the threshold.
+/// The response to sideways gravity, which grows without bound toward the threshold.
 fn plot(method: Method) -> Plot {
     let pair = |points: Vec<(f64, f64)>| points.into_iter().map(|(x, y)| [x, y]).collect();
     let curve = Curve {

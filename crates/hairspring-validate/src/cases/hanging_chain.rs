@@ -1,4 +1,4 @@
-//! A chain that hangs swings in Bernoulli's modes.
+//! A hanging chain swings in Bernoulli's modes.
 
 use super::{FREQUENCY, SPRINGS_ARE_BRAKED, USUAL};
 use crate::{

@@ -39,6 +39,6 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 0, from: 0.3, to: 300.0, log: true },
 };
 
-/// Why springs do not pass at few points.
+/// Why the springs model does not pass with few points.
 const BENT_FAR: &str =
     "at Γ = 100 the joint at the clamp of 32 points turns by 0.6 rad, where its springs are too soft";

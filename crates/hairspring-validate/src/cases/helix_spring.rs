@@ -1,4 +1,5 @@
-//! A helical spring is pulled a little at its tip: along its axis, which twists the wire, and across it, which bends it.
+//! A helical spring under small forces at its tip: along its axis, which twists the wire, and across it,
+//! which bends it.
 
 use super::{HAIR, NO_TWIST, USUAL};
 use crate::{
@@ -46,22 +47,23 @@ pub const CASE: Case = Case {
 /// Pitch angle [rad].
 const PITCH: f64 = 0.25;
 
-/// The load moves the tip by at most this share of the spring's height.
+/// Largest displacement of the tip by the load, over the spring's height.
 const STRAIN: f64 = 0.005;
 
-/// The load over EI sin(pitch)/H², the order of the load at which the spring buckles as a column of height H.
+/// Bound of the load, in EI sin(pitch)/H², the order of the load at which the spring buckles as a column of
+/// height H.
 const SLENDER: f64 = 0.02;
 
-/// The strand is still where it moves by less than this share of the displacement to measure.
+/// Displacement below which the strand counts as at rest, over the displacement to measure.
 const SHARE: f64 = 2e-3;
 
-/// δEI/FR²L along `direction` (radial out, along the turn, along the axis) at the tip, from two loads of opposite sign: what is of second order in
-/// the load cancels. `expected` sets the load's size.
+/// Returns δEI/FR²L along `direction` (radial out, along the turn, along the axis) at the tip. Two loads of
+/// opposite sign are used, so that second-order effects cancel. `expected` determines the size of the load.
 fn compliance(turns: f64, direction: DVec3, expected: f64, method: Method) -> Result<f64, Failure> {
     let segments = (method.points - 1) as f64;
     let radius = LENGTH * PITCH.cos() / (TAU * turns);
     let height = LENGTH * PITCH.sin();
-    // On the curve, as a groom's points are, with the tip at the angle 0.
+    // On the curve, as the points of a groom are, with the tip at the angle 0.
     let point = |i: u32| {
         let s = i as f64 / segments;
         let (sin, cos) = (TAU * turns * (s - 1.0)).sin_cos();

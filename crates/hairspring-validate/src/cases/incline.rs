@@ -1,4 +1,4 @@
-//! A strand that lies across a slope slips where the slope is steeper than friction.
+//! A strand that lies across a slope slips where the slope is steeper than friction allows.
 
 use super::{FRICTION, USUAL};
 use crate::{
@@ -21,7 +21,7 @@ pub const CASE: Case = Case {
     reference: |values| Ok(vec![values[0]]),
     measure: |values, method| {
         let mu = values[0];
-        // Halved by experiments: it slips or it does not.
+        // Bisection by experiments: the strand slips or holds.
         let (mut holds, mut slips) = (0.0, 4.0 * mu);
         if !slides(mu, slips, method)? {
             return Err(Failure::NoThreshold);
@@ -35,18 +35,20 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 0, from: 0.05, to: 1.0, log: false },
 };
 
-/// Frames that it is watched: 1 s, in which a slope too steep by a thousandth of μ = 0.1 moves it by half a millimetre.
+/// Number of frames: 1 s, in which a slope that is too steep by a thousandth of μ = 0.1 moves the strand by
+/// half a millimeter.
 const FRAMES: u32 = 60;
 
-/// A tip that moved so far over the length has slipped.
+/// Displacement of the tip above which it has slipped, over the length.
 const SLIPPED: f64 = 1e-3;
 
-/// Whether a strand across a slope of tangent `slope` slips. The root is held, and pulls at what lies next to it; the tip is free.
+/// Returns whether a strand across a slope of tangent `slope` slips. The root is held and pulls on the points
+/// next to it; the tip is free.
 fn slides(mu: f64, slope: f64, method: Method) -> Result<bool, Failure> {
     let mut setup = Setup::chain(pinned(method.points, LENGTH, DVec3::X, DVec3::X));
     setup.material.friction = mu as f32;
     setup.obstacle = Some(ColliderShape::Plane { point: Vec3::ZERO, normal: Vec3::Y });
-    // The slope stays level and gravity tilts.
+    // The slope stays horizontal, and gravity is tilted instead.
     setup.gravity = DVec3::new(0.0, -1.0, slope).normalize() * GRAVITY;
     let mut specimen = Specimen::new(setup, method);
     let start = specimen.tip();

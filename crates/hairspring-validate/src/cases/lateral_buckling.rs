@@ -1,4 +1,5 @@
-//! A flat strand, clamped horizontally on its edge, tips over sideways under its own weight or under a load at its tip.
+//! A flat strand, clamped horizontally on its edge, buckles laterally under its own weight or under a load at
+//! its tip.
 
 use super::{HAIR, HELD_BACK, NO_TWIST, THRESHOLD, USUAL};
 use crate::{
@@ -14,7 +15,7 @@ use hairspring::{material::Model, simulation::Hold};
 pub const CASE: Case = Case {
     name: "lateral-buckling",
     about: "A flat strand clamped horizontally on its edge tips over sideways.",
-    // Of the weak direction, GJ/EI_min.
+    // Relative to the weak direction, GJ/EI_min.
     parameters: &[Parameter { symbol: &GJ_OVER_EI, range: (0.2, 2.0) }],
     defaults: &[&[HAIR]],
     quantities: &[
@@ -32,7 +33,7 @@ pub const CASE: Case = Case {
         _ => None,
     },
     reference: |values| {
-        // With the strand's own flatness: what it bends in its plane before it tips over adds under a percent.
+        // With the strand's own flatness. Its in-plane deflection before buckling adds less than a percent.
         let strand = flat(1.0, FLATNESS.powi(-2), values[0]);
         let unit = values[0].sqrt();
         let of =
@@ -51,27 +52,29 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 0, from: 0.3, to: 1.5, log: false },
 };
 
-/// Short over long axis of the section: the stiff direction is a hundred times as stiff as the weak one.
+/// Short over long axis of the cross section. The stiff direction is a hundred times as stiff as the weak
+/// one.
 const FLATNESS: f64 = 0.1;
 
-/// Sideways pull over the load.
+/// Sideways load over the load.
 const TILT: f64 = 1e-3;
 
-/// Where the load is.
+/// Where the load acts.
 #[derive(Clone, Copy, PartialEq)]
 enum Hung {
     Along,
     AtTip,
 }
 
-/// The sideways pull over the tip's way aside, both relative, under `load` in units of √(EI_min GJ).
+/// Sideways load over sideways deflection of the tip, both relative, under `load` in units of √(EI_min GJ).
 fn stiffness(hung: Hung, load: f64, ratio: f64, method: Method) -> Result<Option<f64>, Failure> {
-    // The load on a hair of usual weight sets the stiffness: load √(EI GJ) = load EI √ratio = ρAgL³.
+    // A hair of the usual weight; the load determines the stiffness: load √(EI GJ) = load EI √ratio = ρAgL³.
     let weight = LINE_DENSITY * GRAVITY * LENGTH;
     let bending = weight * LENGTH * LENGTH / (load * ratio.sqrt());
-    // EI_min = E πr⁴f/4 and GJ/EI_min = 4G / E(1 + f²) of an ellipse of the area πr².
+    // For an ellipse of area πr²: EI_min = E πr⁴f/4 and GJ/EI_min = 4G / E(1 + f²).
     let young = bending * 4.0 * DENSITY / (LINE_DENSITY * RADIUS * RADIUS * FLATNESS);
-    // The long axis lies along the frame's normal at the root, which is Y for a strand along X: on edge.
+    // The long axis is parallel to the frame's normal at the root, which is Y for a strand along X: the
+    // strand is on its edge.
     let mut setup = Setup::heavy(straight(method.points, LENGTH, DVec3::X), 1.0, ratio);
     setup.material.young = young as f32;
     setup.material.shear = (0.25 * ratio * young * (1.0 + FLATNESS * FLATNESS)) as f32;
@@ -84,6 +87,6 @@ fn stiffness(hung: Hung, load: f64, ratio: f64, method: Method) -> Result<Option
         specimen.hold(&[Hold { point: method.points - 1, force, ..Hold::default() }]);
     }
     let aside = specimen.settle()?[method.points as usize - 1].z / LENGTH;
-    // The pull grows with the load: it is in units of the stiffness.
+    // The sideways load grows with the load, so it is scaled to units of the stiffness.
     Ok((aside.abs() < southwell::SMALL).then_some(load * TILT / aside))
 }

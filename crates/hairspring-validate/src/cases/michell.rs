@@ -1,4 +1,4 @@
-//! A straight strand bent to a ring and twisted writhes out of its plane: Michell's instability.
+//! A straight strand, bent to a ring and twisted, writhes out of its plane: Michell's instability.
 
 use super::{NO_TWIST, THRESHOLD, TWISTED};
 use crate::{
@@ -38,7 +38,7 @@ pub const CASE: Case = Case {
     reference: |values| Ok(vec![writhing_twist(values[0])]),
     measure: |values, method| {
         let ratio = values[0];
-        // In units of EI/GJ the twist does not depend on the ratio.
+        // In units of EI/GJ, the twist does not depend on the ratio.
         let (start, end) = (3.0 / ratio, 30.0 / ratio);
         Ok(vec![southwell::threshold(start, end, |twist| stiffness(twist, ratio, method))?])
     },
@@ -48,26 +48,27 @@ pub const CASE: Case = Case {
 /// Frames in which the strand is bent to a ring.
 const BENDING_FRAMES: u32 = 240;
 
-/// Largest turn of the root in a frame [rad].
+/// Largest rotation of the root in a frame [rad].
 const TURN: f64 = 0.05;
 
-/// Size of the pull out of the plane: what would bend an untwisted ring out of its plane by this share of its length.
+/// Size of the out-of-plane load: it would bend an untwisted ring out of its plane by this share of its
+/// length.
 const PULL: f64 = 1e-3;
 
-/// The mode is at rest where it changes by less than this share of the pull.
+/// Change of the mode below which it is at rest, over the load.
 const STILL: f64 = 3e-3;
 
-/// The pull out of the plane over what it does, under a total twist [rad].
+/// Out-of-plane load over deflection, under a total twist [rad].
 fn stiffness(twist: f64, ratio: f64, method: Method) -> Result<Option<f64>, Failure> {
     let n = method.points;
     let mut specimen = Specimen::new(Setup::weightless(straight(n, LENGTH, DVec3::X), ratio), method);
-    // The pull has two waves around the ring, as the mode that goes first. It is in balance with itself, and does no work where the whole
-    // ring turns about its clamped tangent, which costs a round strand nothing. Its sign is that of what the first and
-    // last segments, which are clamped whole, do to a ring of few points.
+    // The load has two waves around the ring, as the first unstable mode. It is in balance, and does no work
+    // when the whole ring rotates about its clamped tangent, which costs a round strand no energy. Its sign
+    // is that of the effect of the first and last segments, which are fully clamped, on a ring of few points.
     let radius = LENGTH / TAU;
     let unit = PULL * LENGTH * BENDING / radius.powi(4) * LENGTH / (n - 1) as f64;
     let wave = |i: u32| -(2.0 * TAU * i as f64 / (n - 1) as f64).sin();
-    // To the last digit: a remainder would turn the ring about its tangent for ever.
+    // Exact to the last digit: a remainder would rotate the ring about its tangent forever.
     let hinge = |i: u32| 1.0 - (TAU * i as f64 / (n - 1) as f64).cos();
     let sum = |f: &dyn Fn(u32) -> f64| (2..n - 2).map(f).sum::<f64>();
     let remainder = sum(&|i| wave(i) * hinge(i)) / sum(&|i| hinge(i) * hinge(i)).max(f64::MIN_POSITIVE);
@@ -92,19 +93,22 @@ fn stiffness(twist: f64, ratio: f64, method: Method) -> Result<Option<f64>, Fail
         let projection: f64 = points.iter().zip(0..n).map(|(p, i)| p.z * wave(i)).sum();
         2.0 * projection / (n - 1) as f64 / LENGTH
     };
-    // A ring of few points turns about its tangent all the same, a few micrometres a second: what is to come to rest is the mode.
+    // A ring of few points still rotates about its tangent, by a few micrometers a second. Only the mode has
+    // to come to rest.
     let rest = specimen.settle_where(|a, b| (aside(a) - aside(b)).abs() < STILL * PULL)?;
     let aside = aside(&rest);
-    // A ring that writhed passes through itself (nothing here keeps it from that), loses two turns, and lies flat again, twisted
-    // the other way.
+    // A ring that has writhed passes through itself (there is no self-collision), loses two turns, and lies
+    // flat again with the opposite twist.
     Ok((aside > 0.0 && aside < southwell::SMALL).then_some(PULL / aside))
 }
 
-/// The last two points of a strand from the origin along X that is bent to an arc of `angle` [rad], clamped.
+/// Holds for the last two points of a strand that starts at the origin along X, is bent to an arc of `angle`
+/// [rad], and is clamped.
 fn ends(n: u32, angle: f64) -> [Hold; 2] {
     let segments = (n - 1) as f64;
     let direction = |s: f64| DQuat::from_rotation_z(angle * s) * DVec3::X * (LENGTH / segments);
-    // The first and the last segment have the directions of the clamps, the others those of their middles.
+    // The first and the last segment have the directions of the clamps; the others have those of their
+    // centers.
     let inner: DVec3 = (1..n - 2).map(|i| direction((i as f64 + 0.5) / segments)).sum();
     let before = direction(0.0) + inner;
     let hold = |point: u32, at: DVec3, clamped: bool| Hold {

@@ -1,4 +1,4 @@
-//! The experiments, one file each: what is set up, what is read off, and how near it must come.
+//! The experiments, one in each file: setup, measurement and tolerance.
 
 pub(super) mod beam_modes;
 pub(super) mod bend_twist;
@@ -21,35 +21,35 @@ pub(super) mod wind_angle;
 use super::Method;
 use hairspring::{material::Model, settings::Integrator};
 
-/// How an experiment is simulated: as a user's scene is by default.
+/// Simulation method of an experiment: the defaults of a user's scene.
 const USUAL: Method =
     Method { points: 64, substeps: 4, model: Model::Auto, integrator: Integrator::BackwardEuler };
 
-/// How one at rest is in which a straight, round strand is twisted: `auto` would leave twist out.
+/// Method of an experiment that twists a straight, round strand: `auto` would omit twist.
 const TWISTED: Method = Method { model: Model::Rod, ..USUAL };
 
-/// Human hair's GJ/EI, where an experiment does not depend on it.
+/// GJ/EI of human hair, for experiments that do not depend on it.
 const HAIR: f64 = 0.458;
 
-/// Relative error of a static shape that passes.
+/// Tolerance of static shapes: relative error.
 const STATIC: f64 = 0.02;
 
-/// Relative error of a frequency that passes.
+/// Tolerance of frequencies: relative error.
 const FREQUENCY: f64 = 0.02;
 
-/// Relative error of a threshold of stability that passes.
+/// Tolerance of stability thresholds: relative error.
 const THRESHOLD: f64 = 0.05;
 
-/// Relative error of friction that passes.
+/// Tolerance of friction: relative error.
 const FRICTION: f64 = 0.03;
 
-/// Relative error of an angle in the wind that passes.
+/// Tolerance of angles in the wind: relative error.
 const AIR: f64 = 0.03;
 
-/// Why springs do not pass where joints are stiff and short.
+/// Why the springs model does not pass where joints are stiff and short.
 pub(super) const HELD_BACK: &str = "springs are solved in single precision, which cannot hold joints as stiff as the fiber's in a strand of so many points";
 
-/// Why springs swing less and slower than they ought to.
+/// Why the springs model swings with a smaller amplitude and a lower frequency.
 const SPRINGS_ARE_BRAKED: &str =
     "a truss is braked more than the other models, or its swing would leave its plane";
 

@@ -1,4 +1,4 @@
-//! A pendulum of one segment swings, the slower the wider.
+//! A pendulum of one segment, whose period grows with its amplitude.
 
 use super::{FREQUENCY, SPRINGS_ARE_BRAKED, USUAL};
 use crate::{
@@ -20,7 +20,8 @@ pub const CASE: Case = Case {
         Quantity { name: "period over small-swing period", tolerance: FREQUENCY },
         Quantity { name: "amplitude kept in a period", tolerance: 0.05 },
     ],
-    // More points would be a whip and not a pendulum. At four substeps a swing of 90° keeps 91 % of its width in a period, one of 30° 98 %.
+    // With more points it would not be a pendulum. At four substeps, a swing of 90° keeps 91 % of its width
+    // in a period, one of 30° keeps 98 %.
     method: Method { points: 3, substeps: 8, ..USUAL },
     points_fixed: true,
     out_of_reach: |method| (method.model == Model::Springs).then_some(SPRINGS_ARE_BRAKED),
@@ -29,7 +30,7 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 0, from: 10.0, to: 150.0, log: false },
 };
 
-/// Turning points that are watched: two periods' worth.
+/// Turning points to observe: two periods.
 const SWINGS: usize = 5;
 
 fn measure(amplitude: f64, method: Method) -> Result<Vec<f64>, Failure> {
@@ -64,13 +65,13 @@ fn measure(amplitude: f64, method: Method) -> Result<Vec<f64>, Failure> {
     if zeros.windows(2).any(|z| z[1] - z[0] < 0.25 * small) {
         return Err(Failure::NoSwing);
     }
-    // The scheme may take some of the swing: half periods are read at the amplitude that they had, on the line T(θ²) of
-    // the first two, at the one asked for.
+    // The integrator may damp the swing. The period is extrapolated to the given amplitude along the line
+    // T(θ²) through the first two half periods, each at its actual amplitude.
     let half = |k: usize| (peaks[k].powi(2), zeros[k] - zeros[k - 1]);
     let ((x1, t1), (x2, t2)) = (half(1), half(2));
     let slope = if (x1 - x2).abs() > 1e-4 * x1 { (t1 - t2) / (x1 - x2) } else { 0.0 };
     let period = 2.0 * (t1 + slope * (amplitude * amplitude - x1));
-    // Over two periods, from the first turning point that was swung to.
+    // Over two periods, from the first turning point that the swing reached.
     let kept = (peaks[SWINGS] / peaks[1]).powf(2.0 / (SWINGS - 1) as f64);
     Ok(vec![period / small, kept])
 }

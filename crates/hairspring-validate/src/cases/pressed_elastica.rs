@@ -1,4 +1,4 @@
-//! A straight strand is lowered with its tip onto a smooth plane, and bows out.
+//! A straight strand is lowered with its tip onto a frictionless plane, and bows out.
 
 use super::{HAIR, STATIC, USUAL};
 use crate::{
@@ -13,7 +13,7 @@ use hairspring::{collide::ColliderShape, material::Model, simulation::Hold};
 pub const CASE: Case = Case {
     name: "pressed-elastica",
     about: "A weightless strand clamped upside down bows out as it is pressed with its tip onto a smooth plane.",
-    // Farther down, its side would lie on the plane.
+    // Any lower, its side would lie on the plane.
     parameters: &[Parameter { symbol: &HEIGHT, range: (0.5, 0.98) }],
     defaults: &[&[0.9], &[0.6]],
     quantities: &[
@@ -34,13 +34,14 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 0, from: 0.55, to: 0.97, log: false },
 };
 
-/// How long the root takes to go down [s].
+/// Time in which the root is lowered [s].
 const LOWERING: f64 = 2.0;
 
-/// Frames over which the load is averaged.
+/// Number of frames over which the load is averaged.
 const WEIGHED: u32 = 60;
 
-/// A pull sideways at the tip while the strand is lowered, in EI/L²: it says to which side it bows out.
+/// Sideways load on the tip while the strand is lowered, in EI/L². It selects the side to which the strand
+/// bows out.
 const ASIDE: f64 = 0.05;
 
 fn measure(height: f64, method: Method) -> Result<Vec<f64>, Failure> {
@@ -59,7 +60,7 @@ fn measure(height: f64, method: Method) -> Result<Vec<f64>, Failure> {
     }
     specimen.hold(&[]);
     let tip = specimen.settle()?[method.points as usize - 1];
-    // The force of one substep trembles about its mean.
+    // The force of a single substep fluctuates about its mean.
     let mut load = 0.0;
     for _ in 0..WEIGHED {
         specimen.frame()?;

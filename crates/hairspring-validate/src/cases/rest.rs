@@ -1,4 +1,4 @@
-//! Hair of each preset rests: nothing moves it, so it does not move.
+//! Hair of each preset stays at rest when no force disturbs it.
 
 use super::USUAL;
 use crate::{
@@ -31,21 +31,21 @@ pub const CASE: Case = Case {
     sweep: Sweep::Modes { label: "fastest point [mm/s]" },
 };
 
-/// Greatest speed that passes [mm/s].
+/// Largest speed that passes [mm/s].
 const FASTEST: f64 = 1.0;
 
-/// Frames before the hair is watched, and in which it is.
+/// Frames before the measurement, and frames in which the speed is measured.
 const RESTING: u32 = 300;
 const WATCHED: u32 = 60;
 
-/// The shape of a preset's style, as the built-in scene has it: [m].
+/// The shape of a preset's style, as in the built-in scene: [m].
 struct Style {
     preset: &'static str,
     length: f64,
     wave: f64,
     wave_length: f64,
     roundness: f64,
-    /// Length over which the hair bends down from the clamp, by how much [rad].
+    /// Length over which the hair bends down from the clamp [m], and the angle of the bend [rad].
     falls: (f64, f64),
 }
 
@@ -67,9 +67,9 @@ const fn style(
 }
 
 impl Style {
-    /// `n` points evenly along the course, with waves about it that grow from the clamp.
+    /// Returns `n` evenly spaced points along the path, with waves around it that grow from the clamp.
     fn points(&self, n: u32) -> Vec<Vec3> {
-        /// Steps of the course between two points.
+        /// Integration steps of the path between two points.
         const FINE: u32 = 16;
         let (over, by) = self.falls;
         let step = self.length / f64::from((n - 1) * FINE);
@@ -91,7 +91,7 @@ impl Style {
     }
 }
 
-/// The fastest point of a strand of this style in the last second [mm/s].
+/// Speed of the fastest point of a strand of this style in the last second [mm/s].
 fn fastest(style: &Style, method: Method) -> Result<f64, Failure> {
     let mut setup = Setup::chain(style.points(method.points));
     setup.material = preset(style.preset).expect("a preset");

@@ -29,16 +29,17 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 0, from: 0.5, to: 5.0, log: true },
 };
 
-/// How far the strand is above the rod before it falls [m].
+/// Initial height of the strand above the rod [m].
 const FALLS: [f64; 3] = [0.002, 0.005, 0.01];
 
-/// How far the root is from the rod, along the strand [m]: most of the strand hangs beyond the rod.
+/// Distance of the root from the rod, along the strand [m]. Most of the strand hangs beyond the rod.
 const REACH: f64 = 0.03;
 
-/// Frames that it is watched: it falls, swings, and hangs.
+/// Number of frames, in which the strand falls, swings, and comes to hang.
 const FRAMES: u32 = 300;
 
-/// The least distance of the strand from the rod's axis at the end, over the rod's radius; negative where the strand passes below.
+/// Smallest distance of the strand from the rod's axis at the end, over the rod's radius; negative if the
+/// strand passes below.
 fn distance(radius: f64, fall: f64, method: Method) -> Result<f64, Failure> {
     let mut setup = Setup::chain(straight(method.points, LENGTH, DVec3::X));
     setup.material = Material { radius: Some(RADIUS as f32), ..Material::default() };
@@ -56,7 +57,7 @@ fn distance(radius: f64, fall: f64, method: Method) -> Result<f64, Failure> {
         let way = b - a;
         let nearest = a + way * (-a.dot(way) / way.length_squared()).clamp(0.0, 1.0);
         least = least.min(nearest.length());
-        // Where it crosses the vertical plane through the axis.
+        // Where the strand crosses the vertical plane through the axis.
         if a.x < 0.0 && b.x >= 0.0 {
             over = a.y - way.y * a.x / way.x > 0.0;
         }

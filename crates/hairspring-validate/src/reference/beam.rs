@@ -4,11 +4,11 @@ use super::first_roots;
 
 /// βL of the first `count` modes.
 pub fn modes(count: usize) -> Vec<f64> {
-    // Divided by cosh, so that no digit is lost for high modes.
+    // Divided by cosh, to preserve precision for high modes.
     first_roots(1.0, 0.5, count, |b| b.cos() + 1.0 / b.cosh())
 }
 
-/// Sideways shape of the mode `beta` (βL) at `s` from the clamp over the length, 2 at the tip but for its sign.
+/// Lateral shape of the mode `beta` (βL) at `s` from the clamp over the length; ±2 at the tip.
 pub fn shape(beta: f64, s: f64) -> f64 {
     let b = beta * s;
     let sigma = (beta.cosh() + beta.cos()) / (beta.sinh() + beta.sin());

@@ -1,11 +1,12 @@
 //! Small swings of a hanging chain (Daniel Bernoulli 1732).
 //!
-//! With u the height above the free tip over the length and λ = ω²L/g, (u y')' + λ y = 0: y is Bessel's J₀(2√(λu)), and λ is such
-//! that y is 0 at the support.
+//! With u the height above the free tip over the length and λ = ω²L/g, (u y')' + λ y = 0. The solution y is
+//! Bessel's J₀(2√(λu)), and y = 0 at the support determines λ.
 
 use super::first_roots;
 
-/// Sideways shape of a swing at height `u` above the tip, for λ = ω²L/g: the solution that is 1 at the tip, by its power series.
+/// Lateral shape of a swing at height `u` above the tip, for λ = ω²L/g: the solution that is 1 at the tip, by
+/// its power series.
 pub fn shape(lambda: f64, u: f64) -> f64 {
     let (mut term, mut sum) = (1.0, 1.0);
     for k in 1..200 {

@@ -1,18 +1,19 @@
-//! The plane elastica of a column clamped at one end and pressed along its axis at the other, which is free to turn and to move aside
-//! (Euler 1744; Timoshenko & Gere 1961, *Theory of Elastic Stability*, §2.7).
+//! The planar elastica of a column that is clamped at one end and compressed along its axis at the other,
+//! which is free to rotate and to move sideways (Euler 1744; Timoshenko & Gere 1961, *Theory of Elastic
+//! Stability*, §2.7).
 //!
-//! With the inclination of the free end θₜ and k = sin(θₜ/2), the load P, the length L and the clamp's distance H from the free end along
-//! the axis are related by
+//! With the inclination of the free end θₜ and k = sin(θₜ/2), the load P, the length L and the clamp's
+//! distance H from the free end along the axis are related by
 //!
 //! ```text
 //! P L²/EI = K(k)²,      H/L = 2 E(k)/K(k) − 1,      x/L = 2 k/K(k)
 //! ```
 //!
-//! where x is how far the free end moves aside.
+//! where x is the sideways displacement of the free end.
 
 use super::{bisect, elliptic::complete};
 
-/// A column that is shortened.
+/// A compressed column.
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
     /// PL²/EI.
@@ -21,7 +22,7 @@ pub struct Column {
     pub aside: f64,
 }
 
-/// The column at the height `height` = H/L, above 0 and below 1.
+/// Returns the column at the height `height` = H/L, above 0 and below 1.
 pub fn column(height: f64) -> Column {
     let at = |k: f64| {
         let (first, second) = complete(k);

@@ -1,4 +1,5 @@
-//! The plane elastica of a strand clamped horizontally, under its own weight and a dead load at its tip.
+//! The planar elastica of a strand that is clamped horizontally, under its own weight and a dead load at its
+//! tip.
 //!
 //! With θ the angle below the horizontal, s from the clamp and L = 1,
 //!
@@ -6,9 +7,11 @@
 //! θ'' = −(Γ(1 − s) + α) cos θ,      θ(0) = 0,  θ'(1) = 0          Γ = ρgAL³/EI,  α = PL²/EI
 //! ```
 //!
-//! (α alone: Bisshopp & Drucker 1945, *Large deflection of cantilever beams*.) It is shot from the tip, u = 1 − s, in the angle
-//! φ = π/2 − θ from the vertical: φ'' = (Γu + α) sin φ grows from φ(0) = φₜ, φ'(0) = 0, the more the larger φₜ, and φ(1) = π/2 is to be
-//! met. A heavy strand's φₜ is as small as exp(−⅔√Γ), so it is searched for by its logarithm.
+//! (α only: Bisshopp & Drucker 1945, *Large deflection of cantilever beams*.)
+//!
+//! The solution uses shooting from the tip, u = 1 − s, in the angle φ = π/2 − θ from the vertical. φ'' = (Γu
+//! + α) sin φ grows from φ(0) = φₜ, φ'(0) = 0, faster for larger φₜ, and the target is φ(1) = π/2. φₜ of a
+//! heavy strand is as small as exp(−⅔√Γ), so the search uses its logarithm.
 
 use super::{bisect, integrate};
 use std::f64::consts::FRAC_PI_2;
@@ -24,9 +27,10 @@ pub struct Cantilever {
     pub tip_angle: f64,
 }
 
-/// The cantilever under its own weight `gamma` and a dead tip load `alpha`, both 0 or more and not both 0; up to 10⁵.
+/// Returns the cantilever under its own weight `gamma` and a dead tip load `alpha`; both from 0 to 10⁵, not
+/// both 0.
 pub fn cantilever(gamma: f64, alpha: f64) -> Cantilever {
-    // A step is a small part of the shortest length over which the angle can grow e-fold.
+    // A step is a small part of the shortest length over which the angle can grow by a factor of e.
     let steps = 500 + (50.0 * (gamma + alpha).sqrt()) as usize;
     let shoot = |ln_tip: f64| {
         let start = [ln_tip.exp(), 0.0, 0.0, 0.0];
@@ -41,10 +45,12 @@ pub fn cantilever(gamma: f64, alpha: f64) -> Cantilever {
     Cantilever { drop, reach, tip_angle: FRAC_PI_2 - ln_tip.exp() }
 }
 
-/// Sideways deflection of the tip of an upright strand over its length, for a small sideways gravity of one unit of the
-/// vertical one: θ'' + Γ(1 − s)(θ + 1) = 0, which grows without bound as Γ nears Greenhill's value.
+/// Sideways deflection of the tip of an upright strand over its length, linearized, per unit of sideways
+/// gravity over vertical gravity: θ'' + Γ(1 − s)(θ + 1) = 0. It grows without bound as Γ approaches
+/// Greenhill's value.
 pub fn standing_deflection(gamma: f64) -> f64 {
-    // From the tip, once with the load and once without; the part that meets θ = 0 at the clamp.
+    // Shooting from the tip, once with the load and once without; the combination that satisfies θ = 0 at the
+    // clamp.
     let shoot = |load: f64, tip: f64| {
         integrate([tip, 0.0, 0.0], 2000, |u, y| [y[1], -gamma * u * (y[0] + load), y[0]], |_| false)
     };

@@ -1,7 +1,8 @@
-//! What is true: the closed forms, computed in f64 for any parameter and without a line of the simulation.
+//! Reference solutions: closed forms, computed in f64 for any parameter and without code of the simulation.
 //!
-//! Differential equations are shot at or discretised by hand (a fourth-order Runge–Kutta and a bisection are all they
-//! need); no table is stored. The tables of the literature stand in the tests, and these functions answer to them.
+//! Differential equations are solved by shooting or by manual discretization; a fourth-order Runge–Kutta
+//! method and a bisection are enough. No table is stored. The tests compare the functions with the tables of
+//! the literature.
 
 pub mod beam;
 pub mod catenary;
@@ -18,12 +19,14 @@ pub mod stability;
 #[cfg(test)]
 mod tests;
 
-/// The place where `f` changes its sign between `a` and `b`, to the last digits of f64.
+/// Returns where `f` changes its sign between `a` and `b`, to the precision of f64.
 ///
-/// `f` may return infinities; a NaN counts as positive. Where the sign is the same at both ends, one of them comes back.
+/// `f` may return infinities; a NaN counts as positive. If the sign is the same at both ends, the result is
+/// one of them.
 pub fn bisect(mut a: f64, mut b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     let negative = f(a) < 0.0;
-    // The interval halves each time, so that 80 times exhaust the digits of any start that is not absurdly wide.
+    // The interval is halved each time, so 80 iterations reach the precision of f64 unless the start is
+    // extremely wide.
     for _ in 0..80 {
         let middle = 0.5 * (a + b);
         if middle == a || middle == b {
@@ -38,8 +41,9 @@ pub fn bisect(mut a: f64, mut b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     0.5 * (a + b)
 }
 
-/// The first `count` places above `start` where `f` changes its sign, looked for in steps of `step`, which must be shorter
-/// than the distance of two neighbours; fewer where there are no more below `start + step × 100,000`.
+/// Returns the first `count` places above `start` where `f` changes its sign. The search uses steps of
+/// `step`, which must be shorter than the distance between neighboring roots. Returns fewer if there are no
+/// more below `start + step × 100,000`.
 pub fn first_roots(start: f64, step: f64, count: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut roots = Vec::with_capacity(count);
     let (mut a, mut fa) = (start, f(start));
@@ -57,8 +61,8 @@ pub fn first_roots(start: f64, step: f64, count: usize, f: impl Fn(f64) -> f64) 
     roots
 }
 
-/// Integrates y' = `f`(s, y) from s = 0 to 1 in `steps` equal steps of the classical fourth-order Runge–Kutta method; ends early
-/// once `stop` holds.
+/// Integrates y' = `f`(s, y) from s = 0 to 1 in `steps` equal steps of the classical fourth-order Runge–Kutta
+/// method. Stops early once `stop` holds.
 pub fn integrate<const N: usize>(
     mut y: [f64; N],
     steps: usize,

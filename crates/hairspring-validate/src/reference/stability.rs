@@ -1,35 +1,39 @@
-//! When a strand that bends in a plane leaves it: the sign of the energy's second variation.
+//! Out-of-plane stability of a strand that bends in a plane, from the sign of the energy's second variation.
 //!
-//! **In the plane.** With θ the angle from straight down, L = 1, B the bending stiffness in the plane, κ the natural curvature and
-//! F(s) = Γ(1 − s) + α what hangs below s, the shape is a minimum of ∫ ½B(θ' − κ)² − F cos θ:
+//! **In the plane.** θ is the angle from straight down, L = 1, B the bending stiffness in the plane, κ the
+//! natural curvature, and F(s) = Γ(1 − s) + α the load that hangs below s. The shape is a minimum of ∫ ½B(θ'
+//! − κ)² − F cos θ:
 //!
 //! ```text
 //! B θ'' = F sin θ,      θ(0) = θ₀,  θ'(1) = κ
 //! ```
 //!
-//! found by Newton steps on equal segments, the natural curvature raised from 0 so that it is the shape that a straight strand curls to.
+//! It is computed by Newton steps on equal segments. The natural curvature is increased from 0, to find the
+//! shape that a straight strand curls into.
 //!
-//! **Out of it.** A small turn (w₁, 0, w₃) of the frame (in-plane normal, binormal, tangent), with b the bending stiffness out of
-//! the plane, C that of twist and m = B(θ' − κ), changes the energy by half of (Ω → Ω + δ + ½ δ×w, δ = w' + Ω×w)
+//! **Out of the plane.** A small rotation (w₁, 0, w₃) of the frame (in-plane normal, binormal, tangent)
+//! changes the energy. b is the bending stiffness out of the plane, C that of twist, and m = B(θ' − κ). The
+//! change is half of (Ω → Ω + δ + ½ δ×w, δ = w' + Ω×w)
 //!
 //! ```text
 //! ∫ b δ₁² + C δ₃² + m (δ₃ w₁ − δ₁ w₃) + F (cos θ w₁² + sin θ w₁ w₃) ds,     δ₁ = w₁' + θ' w₃,  δ₃ = w₃' − θ' w₁
 //! ```
 //!
-//! with w(0) = 0 and the tip free. On the same segments it is a block-tridiagonal matrix, and the plane shape is stable while that is
-//! positive definite (all pivots of its elimination are positive; Jacobi's condition). Both are of second order in the segment, so that two
-//! resolutions give the limit (Richardson 1911).
+//! with w(0) = 0 and the tip free. On the same segments it is a block-tridiagonal matrix. The planar shape is
+//! stable while that matrix is positive definite, which holds if all pivots of its elimination are positive
+//! (Jacobi's condition). Both discretizations are of second order in the segment length, so two resolutions
+//! give the limit (Richardson 1911).
 
 use super::bisect;
 
-/// A strand in its plane, of length 1 and, but for the three stiffnesses, in units of any one of them.
+/// A planar strand of length 1. The three stiffnesses share an arbitrary unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Strand {
-    /// Direction of the clamp from straight down [rad]: 0 hangs, π/2 lies, π stands.
+    /// Direction of the clamp from straight down [rad]: 0 hangs, π/2 is horizontal, π is upright.
     pub clamp: f64,
     /// Bending stiffness in the plane.
     pub in_plane: f64,
-    /// Bending stiffness out of it.
+    /// Bending stiffness out of the plane.
     pub out_of_plane: f64,
     /// Twisting stiffness.
     pub twist: f64,
@@ -37,7 +41,7 @@ pub struct Strand {
     pub curvature: f64,
 }
 
-/// Weight and tip load of a strand in the same units.
+/// Weight and tip load of a strand, in the same unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Load {
     /// Own weight times the square of the length.
@@ -52,7 +56,7 @@ impl Load {
     }
 }
 
-/// The angle at both ends of each of `n` segments in balance, shape `[n + 1]`.
+/// Returns the equilibrium angles at the ends of each of `n` segments, shape `[n + 1]`.
 pub fn plane_shape(strand: &Strand, load: Load, n: usize) -> Vec<f64> {
     let mut theta = vec![strand.clamp; n + 1];
     let stages = 1 + strand.curvature.abs().ceil() as usize * 2;
@@ -62,7 +66,7 @@ pub fn plane_shape(strand: &Strand, load: Load, n: usize) -> Vec<f64> {
     theta
 }
 
-/// Brings the angles into balance, from a shape nearby, under the natural curvature `natural`.
+/// Brings the angles into equilibrium, from a nearby shape, under the natural curvature `natural`.
 fn relax(theta: &mut [f64], strand: &Strand, natural: f64, load: Load) {
     let n = theta.len() - 1;
     let h = 1.0 / n as f64;
@@ -86,7 +90,8 @@ fn relax(theta: &mut [f64], strand: &Strand, natural: f64, load: Load) {
         let (mut delta, mut largest) = (0.0, 0.0f64);
         for i in (1..=n).rev() {
             delta = d[i] + if i == n { 0.0 } else { c[i] * delta };
-            // No step turns a segment by more than a fraction of a radian: Newton is only to be believed nearby.
+            // The rotation of a segment per step is limited to a fraction of a radian, because Newton's
+            // method only converges nearby.
             theta[i] += delta.clamp(-0.3, 0.3);
             largest = largest.max(delta.abs());
         }
@@ -96,11 +101,11 @@ fn relax(theta: &mut [f64], strand: &Strand, natural: f64, load: Load) {
     }
 }
 
-/// Whether the plane shape `theta` under `load` is stable against leaving the plane.
+/// Returns whether the planar shape `theta` under `load` is stable against leaving the plane.
 fn is_stable(theta: &[f64], strand: &Strand, load: Load) -> bool {
     let n = theta.len() - 1;
     let h = 1.0 / n as f64;
-    // Pivot block of the node before, [11, 13, 33]; the clamp is no unknown.
+    // Pivot block of the previous node, [11, 13, 33]. The clamp is not an unknown.
     let mut before: Option<[f64; 3]> = None;
     for i in 0..n {
         let k = (theta[i + 1] - theta[i]) / h;
@@ -125,7 +130,7 @@ fn is_stable(theta: &[f64], strand: &Strand, load: Load) -> bool {
         }
         let mut next = [a[2][2], a[2][3], a[3][3]];
         if let Some([p, q, r]) = before {
-            // The node before is complete: its pivot must be positive, and is eliminated.
+            // The previous node is complete: its pivot must be positive, and it is eliminated.
             let (p, q, r) = (p + a[0][0], q + a[0][1], r + a[1][1]);
             let determinant = p * r - q * q;
             if !(p > 0.0 && determinant > 0.0) {
@@ -148,14 +153,15 @@ fn is_stable(theta: &[f64], strand: &Strand, load: Load) -> bool {
     before.is_some_and(|[p, q, r]| p > 0.0 && p * r - q * q > 0.0)
 }
 
-/// The load `at(λ)` at which the plane shape loses its stability, looked for from `λ` = `stable` on by steps of the factor `step`
-/// (above 1 for growing loads, below for falling ones); `None` where it stays stable over the whole search.
+/// Returns the load parameter λ at which the planar shape loses its stability under the load `at(λ)`. The
+/// search starts from `stable` and multiplies by `step` (above 1 for increasing loads, below 1 for decreasing
+/// ones). Returns `None` if the shape stays stable over the whole search.
 pub fn threshold(strand: &Strand, stable: f64, step: f64, at: impl Fn(f64) -> Load) -> Option<f64> {
-    // A curl's tip is a boundary layer as short as its radius.
+    // The tip of a curl is a boundary layer as short as the curl's radius.
     let coarse = 200 + 20 * strand.curvature.abs() as usize;
     let find = |n: usize, from: f64| {
         let mut theta = plane_shape(strand, at(from), n);
-        // Each shape is found from the one before.
+        // Each shape starts from the previous one.
         let mut is_stable = |lambda: f64| {
             relax(&mut theta, strand, strand.curvature, at(lambda));
             is_stable(&theta, strand, at(lambda))
@@ -175,32 +181,33 @@ pub fn threshold(strand: &Strand, stable: f64, step: f64, at: impl Fn(f64) -> Lo
     Some(second + (second - first) / 3.0)
 }
 
-/// Γ below which the plane shape of a hanging curl of natural curvature `curl` = κL and `ratio` = GJ/EI leaves its plane
-/// (bend-twist); `None` where it never does.
+/// Γ below which a hanging curl with natural curvature `curl` = κL and `ratio` = GJ/EI leaves its plane
+/// (bend-twist); `None` if it never does.
 pub fn curl_threshold(curl: f64, ratio: f64) -> Option<f64> {
     let strand = Strand { clamp: 0.0, in_plane: 1.0, out_of_plane: 1.0, twist: ratio, curvature: curl };
-    // Curls that never leave the plane by 10⁻³ of the weight that scales with them do so by none.
+    // A curl that is still stable at 10⁻³ is stable at any weight.
     let (heavy, light) = (4.0 * curl.powi(3) / ratio, 1e-3f64);
     let at = |weight: f64| Load { weight, tip: 0.0 };
     let step = light.powf(1.0 / 300.0).max(0.97);
     threshold(&strand, heavy, step, at)
 }
 
-/// Γ at which an upright strand gives way under its own weight (Greenhill 1881: the first zero of J₋⅓(⅔√Γ)).
+/// Γ at which an upright strand buckles under its own weight (Greenhill 1881: the first zero of J₋⅓(⅔√Γ)).
 pub fn greenhill() -> f64 {
     let strand =
         Strand { clamp: std::f64::consts::PI, in_plane: 1.0, out_of_plane: 1.0, twist: 1.0, curvature: 0.0 };
-    // Standing straight is always a balance, and always stable for a light strand.
+    // Standing straight is always an equilibrium, and stable for a light strand.
     threshold(&strand, 1.0, 1.1, |weight| Load { weight, tip: 0.0 }).unwrap_or(f64::INFINITY)
 }
 
-/// A horizontal strand with the bending stiffnesses `weak` sideways and `strong` in its vertical plane, and `twist`.
+/// A horizontal strand with the bending stiffness `weak` sideways and `strong` in its vertical plane, and the
+/// twisting stiffness `twist`.
 pub fn flat(weak: f64, strong: f64, twist: f64) -> Strand {
     Strand { clamp: std::f64::consts::FRAC_PI_2, in_plane: strong, out_of_plane: weak, twist, curvature: 0.0 }
 }
 
-/// Load at which a [`flat`] strand tips over sideways (Prandtl 1899, Michell 1899), where the load consists of `weight` parts of own weight
-/// (times L²) and `tip` parts of dead load at the tip (times L²).
+/// Load at which a [`flat`] strand buckles laterally (Prandtl 1899, Michell 1899). The load consists of
+/// `weight` parts of own weight (times L²) and `tip` parts of dead load at the tip (times L²).
 pub fn lateral(strand: &Strand, weight: f64, tip: f64) -> Option<f64> {
     let unit = (strand.out_of_plane * strand.twist).sqrt();
     threshold(strand, 0.5 * unit, 1.1, |load| Load { weight: weight * load, tip: tip * load })

@@ -1,4 +1,4 @@
-//! The references against the tables of the literature, to their printed digits.
+//! Tests of the references against the tables of the literature, to their printed digits.
 
 use super::{
     beam, bisect,
@@ -13,12 +13,12 @@ use super::{
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Whether `value` rounds to `printed`, a number in decimal notation.
+/// Asserts that `value` rounds to `printed`, a number in decimal notation.
 #[track_caller]
 fn prints(value: f64, printed: &str) {
     let digits = printed.split_once('.').map_or(0, |(_, d)| d.len()) as i32;
     let printed: f64 = printed.parse().unwrap();
-    // Half a unit of the last digit, and a little, as a table may have rounded twice.
+    // Half a unit of the last digit with a small margin, because a table may have been rounded twice.
     assert!((value - printed).abs() <= 0.51 * 10f64.powi(-digits), "{value} instead of {printed}");
 }
 
@@ -57,7 +57,7 @@ fn dead_load_at_the_tip() {
     }
 }
 
-/// Two solvers that share no line: shooting from the tip, and Newton steps on segments.
+/// Compares two independent solvers: shooting from the tip, and Newton steps on segments.
 #[test]
 fn the_plane_shape_is_the_elastica() {
     let strand =
@@ -74,12 +74,12 @@ fn the_plane_shape_is_the_elastica() {
 
 #[test]
 fn a_curl_under_its_own_weight() {
-    // The table prints .667 for an isotropic fibre's 2/3 (ν = ½): .667 itself gives 119.8.
+    // The table prints .667 for an isotropic fiber's 2/3 (ν = ½); .667 itself gives 119.8.
     let isotropic = 2.0 / 3.0;
     let gamma = |ratio, curl| stability::curl_threshold(curl, ratio).unwrap();
     prints(gamma(isotropic, 8.0), "119.9");
     prints(gamma(0.458, 8.0), "208.8");
-    // The table's .2392 and .4088 are 0.04 % above what both solutions here agree on, for every tight curl.
+    // The table's .2392 and .4088 are 0.04 % above the values of both solutions here, for every tight curl.
     for (ratio, table, found) in [(isotropic, 0.2392, 0.239123), (0.458, 0.4088, 0.408619)] {
         for curl in [15.0, 24.0] {
             let scaled = gamma(ratio, curl) / f64::powi(curl, 3);
@@ -90,8 +90,9 @@ fn a_curl_under_its_own_weight() {
     }
 }
 
-/// Jacobi's condition by shooting, which shares no line with the reference: the two solutions that leave the free tip
-/// without moment, (w₁, w₃) = (1, 0) and (0, 1), are parallel at the clamp where the plane shape's stability ends.
+/// Jacobi's condition by shooting, independent of the reference. Two solutions leave the free tip without
+/// moment, (w₁, w₃) = (1, 0) and (0, 1). They are parallel at the clamp where the planar shape loses its
+/// stability.
 fn leaves_plane(gamma: f64, curl: f64, ratio: f64) -> bool {
     let field = |u: f64, y: &[f64; 10]| {
         let (sin, cos) = y[0].sin_cos();
@@ -112,7 +113,8 @@ fn leaves_plane(gamma: f64, curl: f64, ratio: f64) -> bool {
     let shoot = |tip: f64| {
         integrate([tip, -curl, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0], 20_000, field, |y| y[0].abs() > 7.0)
     };
-    // Too small an angle of the tip falls past the vertical, too large a one does not reach it.
+    // With too small a tip angle, the solution falls past the vertical; with too large a one, it does not
+    // reach it.
     let tip = bisect(0.5, 3.0, |tip| shoot(tip)[0]);
     let y = shoot(tip);
     y[2] * y[7] - y[3] * y[6] < 0.0
@@ -121,7 +123,7 @@ fn leaves_plane(gamma: f64, curl: f64, ratio: f64) -> bool {
 #[test]
 fn standing_and_lying_strands() {
     prints(stability::greenhill(), "7.8373");
-    // A thin blade, for which the plane bends as good as not.
+    // A thin blade, whose in-plane bending is negligible.
     let blade = |weight, tip| {
         let strand = stability::Strand { in_plane: 1e6, ..stability::flat(1.0, 1e6, 0.5) };
         stability::lateral(&strand, weight, tip).unwrap() / 0.5f64.sqrt()
@@ -130,7 +132,7 @@ fn standing_and_lying_strands() {
     prints(blade(0.0, 1.0), "4.0126");
 }
 
-/// The standing strand's answer to a sideways pull has its pole where the second variation has its zero.
+/// The response of an upright strand to a sideways load has its pole where the second variation has its zero.
 #[test]
 fn the_standing_strand_gives_way_at_greenhills_value() {
     let critical = stability::greenhill();
@@ -177,7 +179,7 @@ fn air_across_a_hair() {
     // F/L = ½ρU²d Cd of a hair of 70 µm.
     for (speed, coefficient, force) in [(0.1, "19.6", "8.3"), (1.0, "4.6", "194"), (5.0, "2.2", "2350")] {
         let cd = cylinder::drag_coefficient(speed * 70e-6 / 1.516e-5);
-        // The table's drag is that of Cd in three digits: one unit of the last printed one.
+        // The table's drag uses Cd with three digits: one unit of the last printed digit.
         let got = 0.5 * 1.204 * speed * speed * 70e-6 * cd * 1e6;
         let (want_cd, want): (f64, f64) = (coefficient.parse().unwrap(), force.parse().unwrap());
         assert!((cd - want_cd).abs() < 0.1, "Cd {cd} instead of {want_cd}");
@@ -185,7 +187,7 @@ fn air_across_a_hair() {
     }
     let angle = |speed: f64| cylinder::wind_angle(speed, 70e-6, 1310.0, 9.81).to_degrees();
     assert!((angle(1.0) - 68.0).abs() < 0.5, "{}", angle(1.0));
-    // Continuous and falling through the blend.
+    // Continuous and decreasing through the blend.
     let cd = |k: i32| cylinder::drag_coefficient(10f64.powf(f64::from(k) / 100.0));
     assert!((-300..300).all(|k| cd(k + 1) < cd(k) && cd(k + 1) > 0.97 * cd(k)));
 }
@@ -205,8 +207,8 @@ fn complete_elliptic_integrals() {
     }
 }
 
-/// Timoshenko & Gere 1961, table 2-4, which is right to one unit of its last digit: by the inclination of the free end, P over Euler's load,
-/// H/L and x/L.
+/// Timoshenko & Gere 1961, table 2-4, which is accurate to one unit of its last digit: P over Euler's load,
+/// H/L and x/L, for the inclination of the free end.
 #[test]
 fn pressed_column() {
     for (degrees, load, height, aside) in [
@@ -225,7 +227,7 @@ fn pressed_column() {
     }
 }
 
-/// In the limits of many turns and of none, and by quadrature.
+/// Limits of many turns and of no turns, and quadrature.
 #[test]
 fn helical_spring() {
     let ratio = 0.458;
@@ -234,7 +236,8 @@ fn helical_spring() {
         assert!((along / end_compliance(turns, pitch, ratio) - 1.0).abs() < 1e-8);
     }
     assert!((end_compliance(1000.0, 0.0, ratio) - (1.5 / ratio + 0.5)).abs() < 1e-3);
-    // A short arc is a cantilever, L³/3EI; a flat half ring opens by 3π/2 R³/EI where its end is pulled along the diameter.
+    // A short arc is a cantilever, L³/3EI. A flat half ring opens by 3π/2 R³/EI where its end is pulled along
+    // the diameter.
     let arc = 1e-2;
     assert!((end_compliance(arc / TAU, 0.0, ratio) / (arc * arc / 3.0) - 1.0).abs() < 1e-3);
     let opens = compliance_along(glam::DVec3::X, 0.5, 0.0, ratio) * PI;

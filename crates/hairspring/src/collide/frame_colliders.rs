@@ -1,10 +1,10 @@
-//! What stands in the way of wind, and of where hair is pulled to, in a frame.
+//! The bodies of a frame, as obstacles for the wind and for the targets of manipulators.
 
 use crate::collide::MovingCollider;
 use crate::math::RigidTransform;
 use glam::Vec3;
 
-/// All obstacles of a frame.
+/// All colliders of a frame.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameColliders<'a> {
     obstacles: &'a [MovingCollider],
@@ -12,17 +12,18 @@ pub(crate) struct FrameColliders<'a> {
 }
 
 impl<'a> FrameColliders<'a> {
-    /// These obstacles, for hair that was `carried` along before the frame.
+    /// Creates the set for hair that was moved rigidly by `carried` before the frame.
     pub fn new((obstacles, carried): (&'a [MovingCollider], Option<&'a RigidTransform>)) -> Self {
         Self { obstacles, carried }
     }
 
-    /// `place` at the start of the frame, or the nearest that is no deeper in a body than `-clearance`, which is 0 or less [m].
+    /// Projects `place` out of the bodies at the start of the frame: to the nearest place that is at most
+    /// `-clearance` deep. `clearance` is 0 or less [m].
     pub fn out(&self, place: Vec3, clearance: f32) -> Vec3 {
         self.obstacles.iter().fold(place, |place, o| out_of(o, &o.start(self.carried), place, clearance))
     }
 
-    /// The same at its end.
+    /// The same at the end of the frame.
     pub fn out_at_end(&self, place: Vec3, clearance: f32) -> Vec3 {
         self.obstacles.iter().fold(place, |place, o| out_of(o, &o.end, place, clearance))
     }

@@ -3,7 +3,7 @@
 use super::{ColliderPose, ColliderShape};
 use crate::math::RigidTransform;
 
-/// A collider and its pose at the start and the end of a frame.
+/// A collider with its pose at the start and at the end of a frame.
 #[derive(Clone)]
 pub struct MovingCollider {
     /// The shape in its own space.
@@ -20,12 +20,13 @@ impl MovingCollider {
         Self { shape, start: pose, end: pose }
     }
 
-    /// As it is at the end of the frame, having moved in all of it.
+    /// Returns the collider at the end of a frame throughout which it has moved.
     pub fn now(&self) -> ColliderPose {
         ColliderPose::new(self.shape.clone(), self.start.matrix(), self.end.matrix(), 1.0)
     }
 
-    /// Its start for hair that was carried along by `by` before the frame: the obstacle was too, or it was not, whichever leaves it less far to go.
+    /// Returns the start pose for hair that was moved rigidly by `by` before the frame. The collider may or
+    /// may not have moved with the hair; the start pose that is closer to the end pose is used.
     pub(crate) fn start(&self, by: Option<&RigidTransform>) -> RigidTransform {
         let Some(by) = by else { return self.start };
         let carried = by.after(&self.start);

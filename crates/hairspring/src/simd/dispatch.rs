@@ -1,6 +1,8 @@
-//! Where code that is written once for all instruction sets is compiled for each of them, and the one is chosen that runs.
+//! Dispatch on instruction sets: kernels that are written once are compiled for each instruction set, and the
+//! right one is chosen at run time.
 
-/// Runs an expression with the instructions of a level, in single precision; see [`fearless_simd::dispatch!`].
+/// Runs an expression with the instructions of `level`, in single precision; see
+/// [`fearless_simd::dispatch!`].
 #[cfg(not(all(test, target_arch = "x86_64")))]
 macro_rules! dispatch {
     ($level:expr, $simd:pat => $op:expr) => {
@@ -11,8 +13,9 @@ macro_rules! dispatch {
     };
 }
 
-/// The same with the instructions of AVX2, whatever the level, for the library's own unit tests: the kernels are most of what there is to compile, and a
-/// test of what they compute needs them once. Tests outside of the library check that they compute the same on every instruction set.
+/// The same for the library's own unit tests, with the instructions of AVX2 whatever the level. Compiling the
+/// kernels takes most of the build time, and a test of their results needs them only once. Tests outside the
+/// library check that the results agree on every instruction set.
 #[cfg(all(test, target_arch = "x86_64"))]
 macro_rules! dispatch {
     ($level:expr, $simd:pat => $op:expr) => {{
@@ -28,7 +31,8 @@ macro_rules! dispatch {
     }};
 }
 
-/// Runs an expression in double precision, once for each half of a tile. Compiled for AVX2 and SSE2 alone: AVX-512 has no more lanes for four numbers.
+/// Runs an expression in double precision, once for each half of a tile. Compiled for AVX2 and SSE2 only,
+/// because AVX-512 offers no advantage for four numbers.
 #[cfg(all(target_arch = "x86_64", not(one_lane)))]
 macro_rules! dispatch_double {
     ($level:expr, $simd:pat => $op:expr) => {{
@@ -37,7 +41,7 @@ macro_rules! dispatch_double {
         if let Some(native) = avx2 {
             crate::simd::dispatch::both_halves!(native, $simd => $op);
         }
-        // Not in the library's own unit tests, which are compiled for AVX2.
+        // The library's own unit tests are compiled for AVX2 only.
         #[cfg(not(test))]
         if let (None, Some(native)) = (avx2, level.as_sse2()) {
             crate::simd::dispatch::both_halves!(native, $simd => $op);
@@ -75,7 +79,7 @@ macro_rules! dispatch_double {
     };
 }
 
-/// The build without SIMD has single precision alone.
+/// The build without SIMD has single precision only.
 #[cfg(one_lane)]
 macro_rules! dispatch_double {
     ($level:expr, $simd:pat => $op:expr) => {

@@ -1,7 +1,9 @@
-//! The strands of a tile at once: vectors and small matrices whose every number is a SIMD register with a lane for each strand.
+//! SIMD arithmetic on the strands of a tile: vectors and small matrices whose numbers are SIMD registers with
+//! one lane for each strand.
 //!
-//! A *row* is one number of eight strands, as it lies in memory. The instruction set is chosen at run time by
-//! `fearless_simd`, the precision by the tile (see `precision`); everything here is inlined into the kernel that was dispatched.
+//! A *row* is one number for each of eight strands, as stored in memory. `fearless_simd` selects the
+//! instruction set at run time; the tile determines the precision (see `precision`). All functions are
+//! inlined into the dispatched kernel.
 
 pub use super::precision::{Simd, Single};
 use fearless_simd::f32x8;
@@ -18,16 +20,17 @@ pub const LANES: usize = 8;
 #[repr(C, align(32))]
 pub struct Row(pub [f32; LANES]);
 
-/// One number of each strand that is being solved, in the precision of the solve: eight `f32` or four `f64`. Zero is the same in both.
+/// One number for each strand that is being solved, in the precision of the solve: eight `f32` or four `f64`.
+/// Zero has the same bits in both.
 #[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub struct Work([u64; 4]);
 
-/// What [`load`] and [`store`] take.
+/// Rows that [`load`] and [`store`] accept.
 pub trait Stored {
-    /// Into a register.
+    /// Loads the row into a register.
     fn load<S: Simd>(&self, simd: S) -> F<S>;
-    /// From a register.
+    /// Stores a register in the row.
     fn store<S: Simd>(&mut self, value: F<S>);
 }
 
@@ -65,21 +68,21 @@ pub fn store<S: Simd>(value: F<S>, row: &mut impl Stored) {
     row.store(value);
 }
 
-/// A number of each strand in a register.
+/// A number for each strand, in a register.
 #[derive(Clone, Copy)]
 pub struct F<S: Simd> {
     value: S::Real,
-    /// The token.
+    /// The SIMD token.
     pub simd: S,
 }
 
-/// A truth value of each strand.
+/// A boolean for each strand.
 #[derive(Clone, Copy)]
 pub struct Mask<S: Simd>(S::Mask);
 
-/// A number of each strand, or one that is the same in all.
+/// A number for each strand, or one number for all.
 pub trait Number<S: Simd> {
-    /// In a register.
+    /// Returns the number in a register.
     fn number(self, simd: S) -> S::Real;
 }
 
@@ -103,37 +106,37 @@ impl<S: Simd> F<S> {
         Self { value: simd.splat(value), simd }
     }
 
-    /// Of eight numbers those of this token's strands.
+    /// Loads the lanes of this token's strands from eight numbers.
     #[inline(always)]
     pub fn from_slice(simd: S, row: &[f32]) -> Self {
         Self { value: simd.load(row), simd }
     }
 
-    /// Writes this token's strands of eight numbers.
+    /// Stores the lanes of this token's strands in eight numbers.
     #[inline(always)]
     pub fn store_slice(self, row: &mut [f32]) {
         self.simd.store(self.value, row);
     }
 
-    /// From a register of eight numbers.
+    /// Converts from a register of eight `f32`.
     #[inline(always)]
     pub fn from_native(simd: S, value: f32x8<S::Native>) -> Self {
         Self { value: simd.from_single(value), simd }
     }
 
-    /// In single precision.
+    /// Converts to single precision.
     #[inline(always)]
     pub fn single(self) -> F<Single<S::Native>> {
         F { value: self.simd.to_single(self.value), simd: self.simd.single() }
     }
 
-    /// From single precision.
+    /// Converts from single precision.
     #[inline(always)]
     pub fn from_single(simd: S, o: F<Single<S::Native>>) -> Self {
         Self::from_native(simd, o.value)
     }
 
-    /// The number of one lane.
+    /// Returns the number of one lane.
     #[inline(always)]
     pub fn lane(self, lane: usize) -> f32 {
         S::lane(self.value, lane)
@@ -263,7 +266,7 @@ impl<S: Simd> Mask<S> {
         Self(simd.mask_splat(value))
     }
 
-    /// From truth values of the whole tile.
+    /// Converts from a mask of the whole tile.
     #[inline(always)]
     pub fn from_single(simd: S, mask: Mask<Single<S::Native>>) -> Self {
         Self(simd.mask_from_single(mask.0))
@@ -321,7 +324,7 @@ impl<S: Simd> Not for Mask<S> {
     }
 }
 
-/// A 3-vector of each strand.
+/// A 3-vector for each strand.
 #[derive(Clone, Copy)]
 pub struct V3<S: Simd> {
     pub x: F<S>,
@@ -340,7 +343,7 @@ impl<S: Simd> V3<S> {
         Self::splat(simd, glam::Vec3::ZERO)
     }
 
-    /// Three rows that follow each other.
+    /// Loads three consecutive rows.
     #[inline(always)]
     pub fn load(simd: S, rows: &[impl Stored]) -> Self {
         Self { x: load(simd, &rows[0]), y: load(simd, &rows[1]), z: load(simd, &rows[2]) }
@@ -367,13 +370,13 @@ impl<S: Simd> V3<S> {
         }
     }
 
-    /// In single precision.
+    /// Converts to single precision.
     #[inline(always)]
     pub fn single(self) -> V3<Single<S::Native>> {
         V3 { x: self.x.single(), y: self.y.single(), z: self.z.single() }
     }
 
-    /// From single precision.
+    /// Converts from single precision.
     #[inline(always)]
     pub fn from_single(simd: S, v: V3<Single<S::Native>>) -> Self {
         let [x, y, z] = [v.x, v.y, v.z].map(|v| F::from_single(simd, v));
@@ -386,7 +389,7 @@ impl<S: Simd> V3<S> {
         Self { x: self.x.mul_add(s, o.x), y: self.y.mul_add(s, o.y), z: self.z.mul_add(s, o.z) }
     }
 
-    /// Length, and the unit vector; (tiny, zero) for a zero vector.
+    /// Returns the length and the unit vector; (tiny, zero) for a zero vector.
     #[inline(always)]
     pub fn length_and_unit(self) -> (F<S>, Self) {
         let length = self.dot(self).max(1e-30).sqrt();
@@ -445,7 +448,7 @@ impl<S: Simd> Mul<F<S>> for V3<S> {
     }
 }
 
-/// A rotation of each strand, a unit quaternion (x, y, z, w).
+/// A rotation for each strand: a unit quaternion (x, y, z, w).
 #[derive(Clone, Copy)]
 pub struct Q4<S: Simd> {
     v: V3<S>,
@@ -453,13 +456,14 @@ pub struct Q4<S: Simd> {
 }
 
 impl<S: Simd> Q4<S> {
-    /// Four rows that follow each other: x, y, z, w.
+    /// Loads four consecutive rows: x, y, z, w.
     #[inline(always)]
     pub fn load(simd: S, rows: &[impl Stored]) -> Self {
         Self { v: V3::load(simd, rows), w: load(simd, &rows[3]) }
     }
 
-    /// Between `self` (`t` = 0) and `o` (`t` = 1) on the chord, normalised. `o` must lie on the near side.
+    /// Interpolates linearly from `self` (`t` = 0) to `o` (`t` = 1) and normalizes. The two must lie in the
+    /// same hemisphere.
     #[inline(always)]
     pub fn nlerp(self, o: Self, t: F<S>) -> Self {
         let v = (o.v - self.v).mul_add(t, self.v);
@@ -477,7 +481,7 @@ impl<S: Simd> Q4<S> {
     }
 }
 
-/// A symmetric 3×3 matrix of each strand.
+/// A symmetric 3×3 matrix for each strand.
 #[derive(Clone, Copy)]
 pub struct Sym3<S: Simd> {
     pub xx: F<S>,
@@ -588,7 +592,7 @@ impl<S: Simd> Sub for Sym3<S> {
     }
 }
 
-/// A 3×3 matrix of each strand, by rows.
+/// A 3×3 matrix for each strand, stored by rows.
 #[derive(Clone, Copy)]
 pub struct M3<S: Simd> {
     pub rows: [V3<S>; 3],
@@ -627,7 +631,7 @@ impl<S: Simd> Neg for M3<S> {
     }
 }
 
-/// One matrix, the same for all lanes, times a vector of each.
+/// Multiplies one matrix, the same for all lanes, by a vector in each lane.
 #[inline(always)]
 pub fn transform<S: Simd>(simd: S, m: &Mat3, v: V3<S>) -> V3<S> {
     V3::splat(simd, m.x_axis) * v.x + V3::splat(simd, m.y_axis) * v.y + V3::splat(simd, m.z_axis) * v.z

@@ -1,45 +1,46 @@
-//! The precision of a solve: eight strands at a time in single precision, or four at a time in double.
+//! Precision of the solve: eight strands at a time in single precision, or four at a time in double.
 //!
-//! The kernel is written once, over a [`Simd`] token. [`Single`] holds the eight strands of a tile in one `f32x8`. [`Double`] holds one half of the
-//! tile in one `f64x4`, and the tile is run once for each half. State and rest shape stay in single precision in memory; the scratch memory of the
-//! solve has the precision of the token. Stiff strands need `Double`: see [`Fibre::stiffest`](super::rest_shape::Fibre::stiffest).
+//! The kernels are generic over a [`Simd`] token. [`Single`] holds the eight strands of a tile in one
+//! `f32x8`. [`Double`] holds one half of the tile in one `f64x4`, and the tile is run once for each half.
+//! State and rest shape stay in single precision in memory; the scratch memory of the solve has the precision
+//! of the token. Stiff strands need `Double`: see [`Fibre::stiffest`](super::rest_shape::Fibre::stiffest).
 
 use crate::simd::lanes::{Row, Work};
 use fearless_simd::{f32x8, mask32x8};
 #[cfg(not(one_lane))]
 use fearless_simd::{f64x4, mask64x4, prelude::*};
 
-/// The numbers of some strands of a tile in registers, and what is computed with them. All functions work lane by lane.
+/// SIMD arithmetic on some strands of a tile. All functions work lane by lane.
 pub trait Simd: Copy {
     /// The instruction set.
     type Native: fearless_simd::Simd;
-    /// One number of each strand.
+    /// One number for each strand.
     type Real: Copy;
-    /// One truth value of each strand.
+    /// One boolean for each strand.
     type Mask: Copy;
-    /// Relative error of one rounding: half of the last digit [1].
+    /// Relative error of one rounding: half a unit in the last place [1].
     const ROUNDING: f32;
 
     /// The instruction set's token.
     fn native(self) -> Self::Native;
     /// The same number for all strands.
     fn splat(self, value: f32) -> Self::Real;
-    /// Reads eight numbers, of which this token's strands are kept.
+    /// Loads the lanes of this token's strands from eight numbers.
     fn load(self, row: &[f32]) -> Self::Real;
-    /// Writes this token's strands of eight numbers.
+    /// Stores the lanes of this token's strands in eight numbers.
     fn store(self, value: Self::Real, row: &mut [f32]);
     /// Reads a row of scratch memory.
     fn load_work(self, row: &Work) -> Self::Real;
     /// Writes a row of scratch memory.
     fn store_work(self, value: Self::Real, row: &mut Work);
-    /// In single precision; strands that are not this token's repeat those that are.
+    /// Converts to single precision. The lanes of the other strands repeat those of this token's.
     fn to_single(self, value: Self::Real) -> f32x8<Self::Native>;
-    /// From single precision.
+    /// Converts from single precision.
     #[expect(clippy::wrong_self_convention, reason = "the token is the receiver of all conversions")]
     fn from_single(self, value: f32x8<Self::Native>) -> Self::Real;
-    /// From truth values of eight strands.
+    /// Converts from a mask of eight strands.
     fn mask_from_single(self, mask: mask32x8<Self::Native>) -> Self::Mask;
-    /// The number of one lane.
+    /// Returns the number of one lane.
     fn lane(value: Self::Real, lane: usize) -> f32;
 
     /// a + b.
@@ -60,13 +61,13 @@ pub trait Simd: Copy {
     fn sqrt(a: Self::Real) -> Self::Real;
     /// Absolute value.
     fn abs(a: Self::Real) -> Self::Real;
-    /// Largest whole number that is not above a.
+    /// Largest integer that is at most a.
     fn floor(a: Self::Real) -> Self::Real;
-    /// The larger one.
+    /// Maximum.
     fn max(a: Self::Real, b: Self::Real) -> Self::Real;
-    /// The smaller one.
+    /// Minimum.
     fn min(a: Self::Real, b: Self::Real) -> Self::Real;
-    /// The larger one; the other one where one is NaN.
+    /// Maximum; if one operand is NaN, the other one.
     fn max_precise(a: Self::Real, b: Self::Real) -> Self::Real;
 
     /// a > b.
@@ -79,20 +80,20 @@ pub trait Simd: Copy {
     fn le(a: Self::Real, b: Self::Real) -> Self::Mask;
     /// a = b.
     fn eq(a: Self::Real, b: Self::Real) -> Self::Mask;
-    /// The same truth value for all strands.
+    /// The same boolean for all strands.
     fn mask_splat(self, value: bool) -> Self::Mask;
     /// a where the mask is true, else b.
     fn select(mask: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real;
-    /// Both.
+    /// Logical AND.
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Either.
+    /// Logical OR.
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// The opposite.
+    /// Logical NOT.
     fn not(a: Self::Mask) -> Self::Mask;
-    /// Whether any strand's is true.
+    /// Whether the mask is true for any strand.
     fn any_true(mask: Self::Mask) -> bool;
 
-    /// Runs `f` with the instructions of the set.
+    /// Runs `f` compiled for the instruction set.
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         fearless_simd::Simd::vectorize(self.native(), f)
@@ -119,7 +120,7 @@ pub struct Double<L> {
     pub half: usize,
 }
 
-/// What both precisions write alike.
+/// Definitions shared by both precisions.
 macro_rules! lane_by_lane {
     ($real:ident, $mask:ident) => {
         type Native = L;

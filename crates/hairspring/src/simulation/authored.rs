@@ -1,4 +1,5 @@
-//! What is measured once of a groom as it was authored: how far its points are from their roots, and how deep its segments are in bodies.
+//! Measurements of the authored groom: distances of points from their roots, and depths of segments inside
+//! bodies.
 
 use super::{Simulation, build::simulated_points};
 use crate::{
@@ -9,7 +10,7 @@ use crate::{
 use rayon::prelude::*;
 
 impl Simulation {
-    /// How far each point may be from its root, see `tethers`.
+    /// Returns the largest distance of each point from its root, see `Tile::tether_lengths`.
     pub(super) fn tethers(&self, materials: &[Material]) -> Vec<Row> {
         if materials.iter().all(|m| m.tether == 0.0) {
             return Vec::new();
@@ -23,7 +24,8 @@ impl Simulation {
             let points = self.groom.strand(s);
             let mut before = 0.0f32;
             for (k, p) in points.iter().enumerate() {
-                // Where a coil turns back toward its root, as near as hair of its length can be.
+                // Where a coil turns back toward its root, at least the distance that the length of hair
+                // permits.
                 let segment = p.distance(points[k.saturating_sub(1)]);
                 before = (tether * p.distance(points[0])).max(before - segment);
                 reach[tile.first as usize + k * tile.model.stride()].0[place % LANES] = before;
@@ -32,7 +34,7 @@ impl Simulation {
         reach
     }
 
-    /// How deep the segment to each point is at rest, see `sunk`.
+    /// Returns the depth of the segment that ends at each point at rest, see `Tile::rest_penetration`.
     pub(super) fn authored_depths(&self, obstacles: &[ColliderPose]) -> Vec<Row> {
         let tiles: Vec<Vec<Row>> = self
             .tiles

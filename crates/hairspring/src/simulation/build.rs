@@ -1,4 +1,4 @@
-//! From a groom to tiles: rest shapes and the sag-free start.
+//! Builds tiles from a groom: rest shapes and the sag-free start.
 
 use super::{Simulation, layout::Order};
 use crate::strand::tile::TilePlace;
@@ -28,21 +28,23 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::{borrow::Cow, sync::Arc};
 
-/// What a simulation is told once; only the anchor's pose changes.
+/// Settings that do not change after creation, except for the anchor's pose.
 pub(super) struct Settings {
     pub(super) solver: Solver,
     pub(super) gravity: Vec3,
-    /// Where the anchor was at the end of the last step.
+    /// Anchor pose at the end of the last step.
     pub(super) anchor: RigidTransform,
 }
 
 impl Simulation {
-    /// Takes up `strands` (indices of `groom`, each with three points or more) at rest.
+    /// Creates a simulation of `strands` at rest. These are indices of `groom`, each of a strand with three
+    /// or more points.
     ///
-    /// - `materials`: fibre of each group of the groom; a group past the end uses the last; empty: the default.
-    /// - `gravity`: [m/s²]; with `solver.sag_free` the groom is put in balance under it.
-    /// - `anchor`: the frame that roots will be given to move with, at rest.
-    /// - `obstacles`: what the hair meets, at rest: points that start inside may stay as deep as they are.
+    /// - `materials`: the material of each group of the groom. A group past the end uses the last one; if
+    ///   empty, the default.
+    /// - `gravity`: [m/s²]. With `solver.sag_free`, the groom is in balance under it.
+    /// - `anchor`: the rest pose of the frame that roots are given in.
+    /// - `obstacles`: colliders at rest. Points that start inside may stay at their depth.
     pub fn new(
         groom: Arc<Groom>,
         strands: &[u32],
@@ -201,12 +203,14 @@ impl Simulation {
     }
 }
 
-/// Shortest segment that is simulated, over the length of its strand [1]. Single precision knows a point far from the root to 6e-8 of its
-/// distance: a segment this short to a thousandth, and the direction of a shorter one is noise.
+/// Shortest simulated segment, over the length of its strand [1]. Single precision resolves a point far from
+/// the root to 6e-8 of its distance. That is a thousandth of a segment of this length; the direction of a
+/// shorter one is noise.
 const SHORTEST: f32 = 5e-5;
 
-/// The points that a model simulates for a strand: its own, moved apart along the strand where a segment is shorter than [`SHORTEST`] allows, and extra
-/// particles between them where the model has any.
+/// Returns the particles that a model simulates for a strand: the strand's points, and extra particles
+/// between them if the model has any. Points are moved apart along the strand where a segment is shorter than
+/// [`SHORTEST`] allows.
 pub(super) fn simulated_points(model: Elastic, points: &[Vec3]) -> Cow<'_, [Vec3]> {
     let mut points = Cow::Borrowed(points);
     let shortest = SHORTEST * points.windows(2).map(|w| w[0].distance(w[1])).sum::<f32>();
@@ -230,13 +234,13 @@ pub(super) fn simulated_points(model: Elastic, points: &[Vec3]) -> Cow<'_, [Vec3
     }
 }
 
-/// The elastic model that simulates a strand.
+/// Selects the elastic model of a strand.
 fn elastic(material: &Material, points: &[Vec3], solver: &Solver) -> Elastic {
     let coiled = turning(points) > COILED;
-    // Only a strand that starts out straight and free of load needs no rest turn.
+    // Only a strand that starts straight and free of load needs no rest turn.
     let straight = !solver.sag_free && is_straight(points);
     match material.model {
-        // Constant matrix and curvature are all that it knows.
+        // The local–global solver only supports a constant matrix and the curvature model.
         _ if solver.integrator == Integrator::LocalGlobal => Elastic::Curvature,
         Model::Springs => Elastic::Springs,
         Model::Curvature if straight => Elastic::Straight,
@@ -248,11 +252,12 @@ fn elastic(material: &Material, points: &[Vec3], solver: &Solver) -> Elastic {
     }
 }
 
-/// Total turn of a strand above which the curvature model gives way to the rod [rad]: one and a half turns. The curvature model's force does not know of its share in
-/// the frames beyond, so a coil gains energy: it moves by 2 m/s for ever with 2 turns, and rests with 1.5.
+/// Total turn of a strand above which the rod replaces the curvature model [rad]: one and a half turns. The
+/// curvature model's force neglects its effect on the frames farther along the strand, so a coil gains
+/// energy. It moves at 2 m/s forever with 2 turns, and comes to rest with 1.5.
 const COILED: f32 = 3.0 * std::f32::consts::PI;
 
-/// The sum of a strand's turns from joint to joint [rad].
+/// Sum of the turns at a strand's joints [rad].
 fn turning(points: &[Vec3]) -> f32 {
     let turn = |w: &[Vec3]| {
         let (a, b) = (w[1] - w[0], w[2] - w[1]);
@@ -261,7 +266,8 @@ fn turning(points: &[Vec3]) -> f32 {
     points.windows(3).map(turn).sum()
 }
 
-/// Largest change of tangent at a joint of a strand that counts as straight [rad]: nothing that twist could turn would be seen.
+/// Largest change of tangent at a joint of a strand that counts as straight [rad]. Below it, the effect of
+/// twist is invisible.
 const STRAIGHT: f32 = 1e-4;
 
 fn is_straight(points: &[Vec3]) -> bool {
@@ -274,7 +280,7 @@ fn radii(material: &Material, groom: &Groom, s: usize) -> Vec<f32> {
     groom.radii[groom.range(s)].iter().map(|own| material.radius.unwrap_or(*own)).collect()
 }
 
-/// The fibre of a strand that is solved in single precision.
+/// The fiber of a strand that is solved in single precision.
 fn fibre<'a>(
     material: &'a Material,
     scale: StrandScale,
@@ -291,7 +297,8 @@ fn fibre<'a>(
         tip: material.bend_tip as f64,
         flat: section.flat as f64,
         substep: super::step::substep_length(solver),
-        // The matrix of springs knows it, but what they would lose by it is more than rounding does to them.
+        // The matrix of the springs model includes damping, but accounting for it here would cost more
+        // stiffness than rounding costs accuracy.
         damping: if model == Elastic::Springs { 0.0 } else { (material.damping * scale.damping) as f64 },
         double: false,
         twist_ratio: (!matches!(model, Elastic::Straight | Elastic::Curvature))
@@ -299,7 +306,7 @@ fn fibre<'a>(
     }
 }
 
-/// The rest shape that a model gives a strand.
+/// Computes the rest shape of a strand for a model.
 fn shape(model: Elastic, points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     match model {
         Elastic::Springs => truss(points, fibre, gravity),
@@ -307,25 +314,27 @@ fn shape(model: Elastic, points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> Rest
     }
 }
 
-/// Whether single precision cannot hold the stiffness of a strand's elements, by [`Fibre::stiffest`]: then it is solved in double precision, at
-/// about twice the cost.
+/// Returns whether single precision cannot represent the stiffness of a strand's elements, by
+/// [`Fibre::stiffest`]. Such a strand is solved in double precision, at about twice the cost.
 fn needs_double(model: Elastic, points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> bool {
-    // A flat fiber's matrix has the stiffness of its stiff direction, I_max/I_min times that of the other one.
+    // The matrix of a flat fiber contains the stiffness of its stiff direction, I_max/I_min times that of the
+    // other.
     let stiff = Fibre { young: fibre.young * (1.0 + fibre.flat), ..*fibre };
-    // The build without SIMD has single precision alone, and so has the springs model, which is there to be compared with.
+    // The build without SIMD has single precision only. So has the springs model, which is for comparison
+    // only.
     cfg!(not(one_lane))
         && model != Elastic::Springs
         && shape(model, points, &stiff, gravity).start.held_back > 0
 }
 
-/// What the shape of a fibre's section does to its stiffness. An ellipse with semi-axes a ≥ b and b/a = f has, for the same area as the circle of
-/// radius r: I_min = πr⁴f/4, I_max = πr⁴/4f, J = πr⁴ / (f + 1/f).
+/// Effect of a fiber's cross section on its stiffness. An ellipse with semi-axes a ≥ b and b/a = f has, for
+/// the same area as the circle of radius r: I_min = πr⁴f/4, I_max = πr⁴/4f, J = πr⁴ / (f + 1/f).
 struct Section {
-    /// I_min over the circle's.
+    /// I_min over that of the circle.
     bend: f32,
     /// I_max/I_min − 1.
     flat: f32,
-    /// GJ/EI_min. The style's multiplier is over both.
+    /// GJ/EI_min. The style's multiplier scales both.
     twist_ratio: f32,
 }
 
@@ -340,7 +349,7 @@ impl Section {
     }
 }
 
-/// One lane of a tile, to write.
+/// One lane of a tile, for writing.
 struct Lane<'a> {
     lane: usize,
     strand: &'a mut StrandRows,
@@ -353,7 +362,7 @@ impl Lane<'_> {
         (rows[0].0[lane], rows[1].0[lane], rows[2].0[lane]) = (v.x, v.y, v.z);
     }
 
-    /// A lane without a strand: three points of mass 1 that nothing moves, and no rotation.
+    /// Fills a lane without a strand: points of mass 1 without forces, and no rotation.
     fn write_idle(&mut self) {
         let lane = self.lane;
         for rows in self.rest.iter_mut() {

@@ -1,4 +1,5 @@
-//! What colliders hold out now: how many points and segments, with what force, and how many points had a collider looked up.
+//! Statistics of collider contact: number of points and segments, total force, and number of distance
+//! queries.
 
 use super::Simulation;
 use crate::collide::MovingCollider;
@@ -14,22 +15,22 @@ use rayon::prelude::*;
 /// Contacts with colliders at the end of the last substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contacts {
-    /// Points that a collider holds out.
+    /// Points in contact with a collider.
     pub points: usize,
-    /// Segments that a collider holds out between their ends.
+    /// Segments in contact with a collider between their ends.
     pub segments: usize,
     /// Sum of the normal forces of both [N].
     pub force: f64,
-    /// Pairs of a point and a collider in whose bounds it is, in a distance field also in a cell that is not all outside: there a substep asks for the
-    /// distance.
+    /// Pairs of a point and a collider for which a substep queries the distance: the point is in the
+    /// collider's bounds and, for a distance field, in a cell that is not entirely outside.
     pub looked_up: usize,
 }
 
 impl Simulation {
-    /// Counts the contacts of all strands with `obstacles`, those of the last step.
+    /// Counts the contacts of all strands with `obstacles`, the colliders of the last step.
     pub fn contacts(&self, obstacles: &[MovingCollider]) -> Contacts {
         let poses: Vec<_> = obstacles.iter().map(|o| (&o.shape, o.end)).collect();
-        // Summed up in order, so that the force has the same bits for any number of threads.
+        // Summed in a fixed order, so that the force is bitwise independent of the number of threads.
         let of_strands: Vec<Contacts> =
             self.places.par_iter().map(|&place| self.strand_contacts(place as usize, &poses)).collect();
         of_strands.into_iter().fold(Contacts::default(), |a, b| Contacts {
@@ -45,7 +46,7 @@ impl Simulation {
         let (first, stride) = (self.tiles[tile].first as usize, self.tiles[tile].model.stride());
         let root = self.root_position(place);
         let mut out = Contacts::default();
-        // The first two points are the root's.
+        // The first two points are driven by the root.
         for (i, x) in self.particles(place).enumerate().step_by(stride).skip(2) {
             let at = first + i;
             let point = f64::from(self.state[at][state::NORMAL_FORCE].0[lane]);
@@ -62,7 +63,7 @@ impl Simulation {
     }
 }
 
-/// Whether a substep asks for the distance of `p` in the world from a shape.
+/// Returns whether a substep queries the distance of the world position `p` from a shape.
 fn may_touch(shape: &ColliderShape, pose: &RigidTransform, p: Vec3) -> bool {
     let (center, radius) = shape.bounds();
     let local = pose.inverse_point(p);

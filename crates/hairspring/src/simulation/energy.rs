@@ -1,4 +1,4 @@
-//! How much energy the strands hold, and in what form: what a swing without losses would keep.
+//! The energy of the strands, by form. A swing without losses would conserve the total.
 
 use super::Simulation;
 use crate::{
@@ -18,23 +18,24 @@ use glam::{DVec3, Quat};
 use rayon::prelude::*;
 use std::ops::Add;
 
-/// Energy of all simulated strands [J]. The first two points of a strand, which its root drives, are left out.
+/// Energy of all simulated strands [J], without the first two points of each strand, which its root drives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// ½ m v² of the points.
     pub kinetic: f64,
-    /// −m g·x of the points, against the origin of the world.
+    /// −m g·x of the points, relative to the origin of the world.
     pub gravitational: f64,
-    /// Of the springs model's springs; ½ B |r|² of the joints, and ½ ΔB (m·r)² of flat fibres (see `strand/model/bend.rs`, `rod.rs`).
+    /// Springs model: energy of its springs. Other models: ½ B |r|² of the joints, and ½ ΔB (m·r)² of flat
+    /// fibers (see `strand/model/bend.rs`, `rod.rs`).
     pub bending: f64,
-    /// ½ GJ/L̄ (τ − τ⁰)² of the joints; of the rod model.
+    /// ½ GJ/L̄ (τ − τ⁰)² of the joints; rod model only.
     pub twisting: f64,
     /// T (ℓ − L) + ½ k (ℓ − L)² of the segments.
     pub stretching: f64,
 }
 
 impl Energy {
-    /// All of it [J].
+    /// Total energy [J].
     pub fn total(&self) -> f64 {
         self.kinetic + self.gravitational + self.bending + self.twisting + self.stretching
     }
@@ -57,20 +58,21 @@ impl Add for Energy {
 /// The spring that an integrator puts along a segment.
 #[derive(Clone, Copy)]
 enum Spring {
-    /// None: the segment keeps its length by construction.
+    /// No spring: the segment keeps its length by construction.
     None,
-    /// The fibre's own, EA/L.
+    /// The fiber's own stiffness, EA/L.
     Fibre,
-    /// So many times the mass of the point before it [1/s²].
+    /// Stiffness as a multiple of the mass of the point before the segment [1/s²].
     PerMass(f64),
 }
 
 impl Simulation {
-    /// The energy now, in the springs that the chosen integrator knows: the explicit ones stretch the fibre itself, the implicit ones a softer
-    /// spring that stands for it (`strand/model/stretch.rs`), follow the leader has neither stretch nor bending. With that, the total
-    /// is what the integrator would keep if it were exact. NaN where a strand is.
+    /// Returns the current energy, with the springs of the selected integrator: the explicit ones stretch the
+    /// fiber itself, the implicit ones use a softer spring instead (`strand/model/stretch.rs`), and follow
+    /// the leader has neither stretch nor bending. An exact integrator would conserve the total. NaN if a
+    /// strand's state is NaN.
     pub fn energy(&self) -> Energy {
-        // Summed in one order: the same bits for any number of threads.
+        // Summed in a fixed order: bitwise independent of the number of threads.
         let strands: Vec<Energy> = self
             .places
             .par_iter()
@@ -80,8 +82,8 @@ impl Simulation {
         strands.into_iter().fold(Energy::default(), Add::add)
     }
 
-    /// The energy that the free points would gain in falling until every strand hangs straight down from its driven segment [J]: the most
-    /// that a swing under gravity alone can turn into motion.
+    /// The energy that the free points would gain by falling until every strand hangs straight down from its
+    /// driven segment [J]: the most that a swing under gravity alone can convert to motion.
     pub fn energy_to_fall(&self) -> f64 {
         let gravity = self.settings.gravity.as_dvec3();
         let down = gravity.normalize_or_zero();
@@ -91,7 +93,7 @@ impl Simulation {
             let mut at = particles.next().unwrap_or_default().1.as_dvec3();
             let mut energy = 0.0;
             for (i, x) in particles {
-                // An extra particle falls to its segment's middle.
+                // An extra particle falls to the center of its segment.
                 let from = (i - 1) / stride * stride;
                 let step = down * (self.rest(place, from, rest::LENGTH) as f64 / stride as f64);
                 at += step;
@@ -103,12 +105,12 @@ impl Simulation {
         self.places.iter().map(|place| fall(*place as usize)).sum()
     }
 
-    /// Points of the strand in a lane.
+    /// Number of points of the strand in lane `place`.
     pub(super) fn points(&self, place: usize) -> usize {
         self.groom.range(self.lanes[place] as usize).len()
     }
 
-    /// What holds a segment at its length [N].
+    /// Tension of the segment that begins at point `i` [N].
     pub(super) fn tension(&self, place: usize, i: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
         self.state[self.tiles[tile].first as usize + i][state::TENSION].0[lane]
@@ -139,7 +141,8 @@ impl Simulation {
         if matches!(spring, Spring::None) {
             return energy;
         }
-        // Tension is a force there; the direct solver's is a multiplier, which does no work on a segment that keeps its length.
+        // In these integrators, tension is a force. In the direct solver it is a multiplier, which does no
+        // work on a segment of constant length.
         let pulls = !matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2);
         let axial = self.strand[tile][strand::AXIAL].0[place % LANES] as f64;
         let way = |i: usize, j: usize| -> DVec3 {
@@ -163,7 +166,8 @@ impl Simulation {
         energy
     }
 
-    /// Adds the bend and torsion springs between particles `way` apart. The triangles are rigid, the altitude springs slack.
+    /// Adds the bend and torsion springs between particles that are `way` apart. The triangles count as
+    /// rigid, and the altitude springs as inactive.
     fn add_springs(&self, place: usize, way: &dyn Fn(usize, usize) -> DVec3, energy: &mut Energy) {
         let n = self.simulated_points(place);
         let mut spring = |i: usize, far: usize, (stiffness, length): (usize, usize), law: Progressive| {
@@ -179,7 +183,7 @@ impl Simulation {
         }
     }
 
-    /// Adds bending and twisting of the joints between segments `e`, whose frames are carried as the kernel carries them.
+    /// Adds bending and twisting of the joints between segments `e`. Frames are transported as in the kernel.
     fn add_joints(&self, place: usize, model: Elastic, e: &dyn Fn(usize) -> DVec3, energy: &mut Energy) {
         let (tile, lane) = (place / LANES, place % LANES);
         let rows = &self.strand[tile];

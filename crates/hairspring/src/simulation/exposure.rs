@@ -1,19 +1,22 @@
-//! How much of the air outside the hair reaches each point of it: dense hair carries the air inside it along.
+//! Self-occlusion: the share of the air outside the hair that reaches each point. Dense hair carries the air
+//! inside it along.
 //!
-//! A flow that moves at U relative to hair of n fibers per area across them, each of diameter d, gives its momentum to their drag:
+//! Air flows at U relative to hair with n fibers of diameter d per area across them. The flow loses its
+//! momentum to their drag:
 //!
 //! ```text
 //! ρ U dU/ds = −n d ½ρU² Cd   ⟹   U = U₀ e^(−τ),   τ = ½ Cd ∫ n d ds
 //! ```
 //!
-//! n is the length of hair per volume at rest, with each strand counted for as many hairs as it stands for. τ follows the path from outside that
-//! meets the least hair and passes no collider. In the cell of the point, e^(−τ) is averaged over the cell, without the hair itself: a lone hair
-//! meets all of the air, and all hair together takes no more momentum than the air has. The hair behind e^(−τ) feels wind and its own motion
-//! through the air alike.
+//! n is the length of hair per volume at rest, weighted by the multiplicity of each strand. τ is taken along
+//! the path from outside that crosses the least hair and no collider. In the point's own cell, e^(−τ) is
+//! averaged over the cell, without the hair itself. A lone hair therefore feels all of the air, and all hair
+//! together absorbs no more momentum than the air has. The factor e^(−τ) applies to wind and to the hair's
+//! own motion through the air.
 //!
-//! # Missing
-//! n is that of the groom at rest. Wind from every side reaches a point along the same path; the lee behind hair and bodies is
-//! [`crate::air::WindOcclusion`].
+//! # Limitations
+//! n is that of the groom at rest. Wind from every side reaches a point along the same path. Occlusion behind
+//! hair and bodies, which depends on the wind direction, is in [`crate::air::WindOcclusion`].
 
 use super::Simulation;
 use crate::{
@@ -27,27 +30,28 @@ use crate::{
 use glam::Vec3;
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-/// Edge of a cell [m], unless the hair needs more than [`MOST_CELLS`] of them or guides are so far apart that they leave gaps between cells.
+/// Edge length of a cell [m]. Cells are larger if the hair needs more than [`MOST_CELLS`], or if guides are
+/// so far apart that they leave gaps between cells.
 const CELL: f32 = 0.005;
 
-/// Strands in a cell that holds any, on average, below which cells are made larger [1].
+/// Mean number of strands in an occupied cell below which cells are made larger [1].
 const FEW: f32 = 3.0;
 
-/// Edge from which on cells are not made larger for that [m].
+/// Edge length from which on cells are no longer enlarged for that [m].
 const MOST_EDGE: f32 = 0.02;
 
-/// Most cells of the grid, about.
+/// Approximate largest number of cells.
 const MOST_CELLS: f32 = 262_144.0;
 
-/// Cd of a hair in a wind of about 1 m/s.
+/// Drag coefficient Cd of a hair in a wind of about 1 m/s.
 const COEFFICIENT: f32 = 4.0;
 
-/// Least share of the air: some is everywhere.
+/// Smallest share of the air: some air reaches every point.
 const LEAST: f32 = 0.02;
 
 impl Simulation {
-    /// Lets hair shelter itself from the air from now on, by how dense the groom is at rest among `obstacles` at rest. Without it every strand is
-    /// a lone hair.
+    /// Enables self-occlusion, from the density of the groom at rest and `obstacles` at rest. Without it,
+    /// every strand has the drag of a lone hair.
     pub fn set_self_occlusion(&mut self, obstacles: &[ColliderPose]) {
         let points = || self.strands().flat_map(|s| self.groom.strand(s as usize).iter().copied());
         let low = points().fold(Vec3::INFINITY, Vec3::min);
@@ -63,7 +67,7 @@ impl Simulation {
             let own = 0.5 * COEFFICIENT * reynolds * AIR_KINEMATIC_VISCOSITY / grid.edge;
             for (i, point) in self.groom.strand(*s as usize).iter().enumerate() {
                 let cell = grid.cell(*point);
-                // A hair does not shelter itself.
+                // A hair does not occlude itself.
                 let others = (grid.cost[cell] - own).max(1e-6);
                 let mean = (1.0 - (-others).exp()) / others;
                 let exposure = (mean * (-depth[cell]).exp()).max(LEAST);
@@ -73,7 +77,7 @@ impl Simulation {
         }
     }
 
-    /// The hair between `low` and `high` in cells that are not shorter than `edge` [m].
+    /// Builds the density grid between `low` and `high`, with cells whose edge is at least `edge` [m].
     fn dense_grid(&self, low: Vec3, high: Vec3, edge: f32) -> Grid {
         let mut grid = Grid::new(low, high, edge);
         for (place, s) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
@@ -87,14 +91,14 @@ impl Simulation {
     }
 }
 
-/// Cells around the hair, with a ring that holds none.
+/// Density grid of the hair, with a border of empty cells.
 struct Grid {
     low: Vec3,
     edge: f32,
     dims: [usize; 3],
-    /// τ across a cell along an axis [1].
+    /// τ across each cell along an axis [1].
     cost: Vec<f32>,
-    /// Length of all strands [m].
+    /// Total length of all strands [m].
     length: f32,
 }
 
@@ -111,12 +115,12 @@ impl Grid {
         (z * self.dims[1] + y) * self.dims[0] + x
     }
 
-    /// Adds hair that is `width` [m] wide from `a` to `b`.
+    /// Adds hair of width `width` [m] from `a` to `b`.
     fn add(&mut self, a: Vec3, b: Vec3, width: f32) {
         let length = a.distance(b);
         self.length += length;
         let parts = (length / self.edge).ceil().max(1.0);
-        // Its area over that of a cell's face.
+        // The projected area of the part, over that of a cell's face.
         let cost = 0.5 * COEFFICIENT * width * length / (parts * self.edge * self.edge);
         for k in 0..parts as usize {
             let cell = self.cell(a.lerp(b, (k as f32 + 0.5) / parts));
@@ -129,7 +133,8 @@ impl Grid {
         self.length / (self.edge * held.max(1) as f32)
     }
 
-    /// The least τ from outside to each cell, its own not counted (Dijkstra 1959); infinite where colliders enclose it.
+    /// Smallest τ from outside to each cell, not counting the cell itself (Dijkstra 1959); infinite where
+    /// colliders enclose it.
     fn depths(&self, obstacles: &[ColliderPose]) -> Vec<f32> {
         let steps = [1, self.dims[0], self.dims[0] * self.dims[1]];
         let along = |cell: usize, axis: usize| cell / steps[axis] % self.dims[axis];
@@ -147,7 +152,7 @@ impl Grid {
                 queue.push(Reverse((0, cell)));
             }
         }
-        // The bits of numbers from 0 on are in the order of the numbers.
+        // The bits of non-negative floats have the same order as the floats.
         while let Some(Reverse((bits, cell))) = queue.pop() {
             if f32::from_bits(bits) > depths[cell] {
                 continue;

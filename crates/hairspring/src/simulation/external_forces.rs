@@ -1,4 +1,4 @@
-//! What acts on points from outside in a frame: the hair volume first, then each effect.
+//! External forces of a frame: first the hair volume, then each effect.
 
 use super::{Simulation, StepInput};
 use crate::{
@@ -11,8 +11,9 @@ use crate::{
 use std::time::{Duration, Instant};
 
 impl Simulation {
-    /// Finds what acts on all points in the frame, of the hair volume for an interval of it alone, and moves the roots; hair was `carried` along before it. What the
-    /// hair volume took.
+    /// Computes the external forces on all points for the frame, and moves the roots. The hair volume acts
+    /// for the substeps in `interval` that are due now. `carried` is the rigid motion that the hair made
+    /// before. Returns the time that the hair volume took.
     pub(super) fn exchange(
         &mut self,
         drive: &StepInput,
@@ -71,7 +72,7 @@ impl Simulation {
         };
         if charged {
             self.charged.iter_mut().for_each(|ball| ball.carry(carried));
-            // Those that follow are charged as their guides.
+            // Follow hairs have the charge of their guides.
             let of_all = |strand: usize| charge_of(strand) * self.multiplicity[strand];
             self.hair_field.find(&mut strands, &frame, of_all);
         }
@@ -108,7 +109,8 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// Lets strands meet as a volume again, with the anchor at `anchor`, for those of the interval's substeps that are to be run now.
+    /// Applies the hair volume again, with the anchor at `anchor`, for those of the frame's substeps that are
+    /// due now.
     pub(super) fn exchange_again(&mut self, anchor: RigidTransform, interval: &FrameContext) {
         let Some(volume) = &mut self.volume else { return };
         let now = Now { anchor, gone: interval.begun().0 };
@@ -124,13 +126,13 @@ impl Simulation {
         );
     }
 
-    /// Whether strands meet as a volume.
+    /// Returns whether the hair volume exerts forces.
     pub(super) fn is_pressed(&self) -> bool {
         self.volume.as_ref().is_some_and(|volume| volume.acts())
     }
 }
 
-/// What is said of a group; one past the end has the last's.
+/// Returns the value for a group. A group past the end uses the last value.
 fn of_group<T>(all: &[T], group: usize) -> Option<&T> {
     all.get(group).or(all.last())
 }

@@ -1,4 +1,4 @@
-//! What holds or pulls points from outside: pins, loads, clamped ends.
+//! Holds: points that are pinned, pulled or loaded, and clamped ends.
 
 use super::Simulation;
 use crate::{
@@ -7,31 +7,32 @@ use crate::{
 };
 use glam::Vec3;
 
-/// One point held or pulled.
+/// A hold on one point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hold {
-    /// The strand, as an index of those given to [`Simulation::new`].
+    /// The strand, as an index into those given to [`Simulation::new`].
     pub strand: u32,
-    /// The point of it; 2 or more, because the first two are driven by the root.
+    /// The point of the strand; 2 or more, because the root drives the first two.
     pub point: u32,
-    /// Where the point is held at the end of the next frame, in the world [m]; `None`: it is free.
+    /// World position of the target at the end of the next frame [m]; `None` if the point is free.
     pub target: Option<Vec3>,
-    /// How far the target moves in the next frame [m]; after it, the target rests.
+    /// Displacement of the target in the next frame [m]. After that, the target is at rest.
     pub way: Vec3,
-    /// Stiffness of the spring that pulls the point to the target [N/m], above 0; `None`: it is held fast.
+    /// Stiffness of the spring that pulls the point to the target [N/m], above 0; `None` if the point is
+    /// pinned.
     pub stiffness: Option<f32>,
-    /// Force on it [N].
+    /// Force on the point [N].
     pub force: Vec3,
-    /// Whether the frame of the segment from this point keeps its twist (models that twist). With the segment's two points held, the strand
-    /// is clamped there.
+    /// Whether the frame of the segment that begins at this point keeps its twist (in models with twist). If
+    /// the segment's two points are held as well, the strand is clamped there.
     pub clamped: bool,
 }
 
 impl Simulation {
-    /// Holds these points from now on, and lets go of all others.
+    /// Holds these points from now on, and releases all others.
     ///
     /// # Panics
-    /// If a strand or a point is none of the simulation's.
+    /// If a strand or a point does not exist, or the root drives the point.
     pub fn set_holds(&mut self, holds: &[Hold]) {
         self.holds = if holds.is_empty() { Vec::new() } else { vec![Vec::new(); self.tiles.len()] };
         for held in holds {
@@ -39,7 +40,7 @@ impl Simulation {
             let points = self.groom.range(self.lanes[place] as usize).len();
             assert!(
                 (2..points).contains(&(held.point as usize)),
-                "a held point is of the strand and is not driven"
+                "a held point must exist and must not be driven"
             );
             let point = held.point * self.tiles[place / LANES].model.stride() as u32;
             let (tile, lane) = (&mut self.holds[place / LANES], place % LANES);
@@ -69,14 +70,15 @@ impl Simulation {
         self.holds.iter_mut().for_each(|tile| tile.sort_by_key(|h| h.point));
     }
 
-    /// Targets are where they were to go.
+    /// Puts the targets at rest after they have reached their positions.
     pub(super) fn rest_holds(&mut self) {
         for held in self.holds.iter_mut().flatten() {
             held.rows[hold::WAY..hold::WAY + 3].fill(Row::default());
         }
     }
 
-    /// Holds the extra particle after particle `point` of the springs model, over its segment between `ends`, where it is around it.
+    /// Pins the extra particle after particle `point` of the springs model to its triangle over the segment
+    /// between `ends`, on the side where it currently is.
     fn hold_extra(&mut self, place: usize, point: u32, ends: [Vec3; 2]) {
         let edge = |i: u32| self.vector(place, (point + i) as usize, state::EDGE);
         let (tile, lane) = (place / LANES, place % LANES);

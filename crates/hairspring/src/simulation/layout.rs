@@ -1,8 +1,9 @@
-//! Which eight strands make a tile.
+//! Assignment of strands to tiles of eight.
 //!
-//! Strands of one elastic model and precision and of like counts of points, and of those neighbours: they meet the same things at the same time, so that what the kernel
-//! does for all eight as soon as one of them touches is done for few in vain, and they read and write the same part of a field and of the volume. It
-//! changes no result: no lane of a tile knows of another.
+//! The strands of a tile share an elastic model and a precision, have similar numbers of points, and are
+//! neighbors in space. Neighbors have contacts at the same time, so little work is wasted where the kernel
+//! runs a step for all eight because one needs it. They also access the same part of a distance field and of
+//! the volume grid. The assignment does not change results, because the lanes of a tile are independent.
 
 use crate::{
     groom::{Curve, Groom},
@@ -11,22 +12,24 @@ use crate::{
 };
 use std::cmp::Reverse;
 
-/// Who lies where.
+/// Assignment of strands to lanes.
 pub(super) struct Order {
-    /// Number of the groom's strand in every lane, `u32::MAX` where there is none; shape `[tiles * LANES]`.
+    /// Index of the groom's strand in every lane, `u32::MAX` where there is none; shape `[tiles * LANES]`.
     pub lanes: Vec<u32>,
-    /// Which of the strands that were asked for each lane has, `u32::MAX` where it has none; shape `[tiles * LANES]`.
+    /// Index into the requested strands for each lane, `u32::MAX` where there is none; shape `[tiles *
+    /// LANES]`.
     pub asked: Vec<u32>,
-    /// The lane of each strand that was asked for; shape `[strands]`.
+    /// The lane of each requested strand; shape `[strands]`.
     pub places: Vec<u32>,
-    /// The elastic model of each tile, and whether it is solved in double precision.
+    /// The elastic model of each tile, and whether the tile is solved in double precision.
     pub models: Vec<(Elastic, bool)>,
 }
 
 impl Order {
-    /// Of `strands` (indices of `groom`), the `elastic` model of each and whether it is solved in double precision.
+    /// Assigns `strands` (indices of `groom`). `elastic` holds the model of each, and whether it is solved in
+    /// double precision.
     pub fn new(groom: &Groom, strands: &[u32], elastic: &[(Elastic, bool)]) -> Self {
-        // Strands are told apart by their middles: roots alone lie close together.
+        // Strands are compared by their middle points, because roots are close together.
         let middle = |s: u32| {
             let points = groom.strand(s as usize);
             points[points.len() / 2]
@@ -63,7 +66,7 @@ mod tests {
     use super::*;
     use glam::Vec3;
 
-    /// Strands of these counts of points, each at its place along x.
+    /// Strands with these numbers of points, each at its position along x.
     fn groom(strands: &[(usize, f32)]) -> Groom {
         let strand = |(points, x): &(usize, f32)| {
             let x = *x;
@@ -74,7 +77,7 @@ mod tests {
 
     #[test]
     fn neighbours_of_like_counts_share_a_tile() {
-        // Back and forth between two places, as a file may have them, and one strand in nine has more points.
+        // Alternating between two places, as a file may have them. One strand in nine has more points.
         let strands: Vec<(usize, f32)> =
             (0..36).map(|k| (if k % 9 == 0 { 12 } else { 8 }, if k % 2 == 0 { -0.1 } else { 0.1 })).collect();
         let groom = groom(&strands);

@@ -1,4 +1,4 @@
-//! Hands on the hair: tools that an app takes, moves and lets go of between steps.
+//! Manipulators: tools that an application adds, moves and removes between steps.
 
 use super::Simulation;
 use crate::collide::FrameColliders;
@@ -9,23 +9,24 @@ use crate::{
 };
 use glam::Vec3;
 
-/// A tool in use.
+/// Identifies an active manipulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ManipulatorId(u32);
 
-/// Tools in use.
+/// The active manipulators.
 #[derive(Default)]
 pub(super) struct Tools {
-    /// How many were ever taken.
+    /// Number of manipulators that were ever added.
     taken: u32,
     pub(super) used: Vec<ActiveManipulator>,
-    /// Points of one strand, kept for their memory.
+    /// Points of one strand, kept to reuse the memory.
     points: Vec<Vec3>,
 }
 
 impl Simulation {
-    /// Takes a tool to the hair as it is now, its space being at `pose` in the world. It acts in every step until it is let go of; a grab and a tie
-    /// act on what they take hold of here. This allocates; steps do not.
+    /// Adds a manipulator at the current state of the hair, with its space at `pose` in the world. It acts in
+    /// every step until it is removed. A grab and a tie act on the points that they attach to here. This
+    /// allocates memory; steps do not.
     pub fn add_manipulator(&mut self, tool: Manipulator, pose: RigidTransform) -> ManipulatorId {
         let mut bonds = Vec::new();
         let mut points = std::mem::take(&mut self.tools.points);
@@ -51,37 +52,39 @@ impl Simulation {
         ManipulatorId(number)
     }
 
-    /// Moves a tool: its space goes to `pose` in the next step. Nothing where it was let go of.
+    /// Moves a manipulator: its space moves to `pose` in the next step. Does nothing if it was removed.
     pub fn set_manipulator_pose(&mut self, id: ManipulatorId, pose: RigidTransform) {
         if let Some(used) = self.tools.used.iter_mut().find(|used| used.number == id.0) {
             used.poses[1] = pose;
         }
     }
 
-    /// Lets go of a tool, and of what it holds. Nothing where that was done.
+    /// Removes a manipulator and releases its points. Does nothing if it was already removed.
     pub fn remove_manipulator(&mut self, id: ManipulatorId) {
         self.tools.used.retain(|used| used.number != id.0);
     }
 
-    /// Lets go of every tool.
+    /// Removes all manipulators.
     pub fn remove_all_manipulators(&mut self) {
         self.tools.used.clear();
     }
 
-    /// The strand (index of the groom) and the point of everything that a tool holds, strand by strand, root first.
+    /// The strand (index of the groom) and the point of everything that a manipulator is attached to, strand
+    /// by strand from the root.
     pub fn attached_points(&self, id: ManipulatorId) -> impl Iterator<Item = (u32, u32)> + '_ {
         let used = self.tools.used.iter().filter(move |used| used.number == id.0);
         used.flat_map(|used| used.bonds.0.iter().map(|bond| (bond.strand, bond.point)))
     }
 
-    /// Hair was carried along by a motion.
+    /// Updates where manipulators would be if they had moved rigidly with the hair.
     pub(super) fn carry_tools(&mut self, by: &RigidTransform) {
         for used in &mut self.tools.used {
             used.along = by.after(&used.along);
         }
     }
 
-    /// Tools that went along with carried hair start with it; hair slips through ties that gather.
+    /// Starts the frame: manipulators that move with the hair start from its new pose, and hair slips through
+    /// gathering ties.
     pub(super) fn begin_tools(&mut self, bodies: &FrameColliders) {
         let mut tools = std::mem::take(&mut self.tools);
         for used in &mut tools.used {
@@ -91,7 +94,7 @@ impl Simulation {
         self.tools = tools;
     }
 
-    /// Goes on with the tools of `old`, whose strand in lane `p` is here in lane `lanes[p]`.
+    /// Takes over the manipulators of `old`, whose strand in lane `p` is in lane `lanes[p]` here.
     pub(super) fn take_over_tools(&mut self, old: &Self, lanes: &[u32]) {
         self.tools.taken = old.tools.taken;
         self.tools.used.clone_from(&old.tools.used);
@@ -100,7 +103,7 @@ impl Simulation {
         }
     }
 
-    /// Tools are where they were to go.
+    /// Ends the frame: the manipulators have reached their poses.
     pub(super) fn rest_tools(&mut self, dt: f32) {
         for used in &mut self.tools.used {
             (used.poses[0], used.along) = (used.poses[1], used.poses[1]);
@@ -108,7 +111,7 @@ impl Simulation {
         }
     }
 
-    /// Writes the points of the strand in a lane, in the world [m].
+    /// Writes the world positions of the points of the strand in a lane [m].
     fn strand_points(&self, place: usize, points: &mut Vec<Vec3>) {
         let root = self.root_position(place);
         let stride = self.tiles[place / LANES].model.stride();

@@ -1,4 +1,4 @@
-//! What a simulation is judged by: stretch, depth inside colliders, non-finite values.
+//! Quality measures of a simulation: stretch, depth inside colliders, non-finite values.
 
 use super::Simulation;
 use crate::collide::MovingCollider;
@@ -10,32 +10,33 @@ use crate::{
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Figures over all simulated points at the end of a step.
+/// Measures over all simulated points at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measure {
     /// Mean of |ℓ/L − 1| over segments [1].
     pub stretch_mean: f64,
     /// Largest |ℓ/L − 1| [1].
     pub stretch_max: f64,
-    /// Points more than a micrometre deeper inside a collider than they were authored.
+    /// Points that are more than a micrometer deeper inside a collider than authored.
     pub inside_points: usize,
-    /// Depth of the deepest of them [m].
+    /// Depth of the deepest of these points [m].
     pub max_depth: f64,
-    /// Segments of which some place is more than a micrometre deeper inside a collider than any place of them was authored; looked at at
-    /// each eighth of their length.
+    /// Segments with a place more than a micrometer deeper inside a collider than any place of them was
+    /// authored. Each eighth of their length is tested.
     pub inside_segments: usize,
-    /// Those of them that are more than a millimetre deeper.
+    /// Segments of these that are more than a millimeter deeper.
     pub deep_segments: usize,
-    /// Depth of the deepest of them [m].
+    /// Depth of the deepest of these segments [m].
     pub segment_depth: f64,
-    /// Segments that begin at what the root holds, inside of a collider, and are more than a millimetre deeper than they were authored, but no deeper
-    /// than they begin: nothing of the strand can move that. They count as inside by what is deeper than their beginning alone.
+    /// Segments that begin at a driven point inside a collider and are more than a millimeter deeper than
+    /// authored, but no deeper than their start. No motion of the strand can change that. They count as
+    /// inside only by what is deeper than their start.
     pub held_segments: usize,
-    /// Depth of the deepest of them [m].
+    /// Depth of the deepest of these segments [m].
     pub held_depth: f64,
-    /// Numbers of state that are NaN or infinite.
+    /// Number of state values that are NaN or infinite.
     pub non_finite: usize,
-    /// Fastest point [m/s].
+    /// Speed of the fastest point [m/s].
     pub speed_max: f64,
 }
 
@@ -81,7 +82,7 @@ impl Simulation {
             let v = self.vector(place, i, state::V);
             out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
             out.speed_max = out.speed_max.max(v.length() as f64);
-            // The segments that are drawn, whatever else a model puts between their points.
+            // Only segments that are drawn, without a model's extra particles.
             if i % stride == 0 && i + stride < n {
                 let edges = (i + 1..=i + stride).map(|k| self.vector(place, k, state::EDGE).as_dvec3());
                 let length = self.rest(place, i, rest::LENGTH) as f64;
@@ -124,7 +125,7 @@ impl Simulation {
     }
 }
 
-/// The obstacles that may be nearer to `p` than `reach` [m], by the balls around them.
+/// Returns the obstacles that may be nearer to `p` than `reach` [m], by their bounding spheres.
 fn near<'a>(
     poses: &'a [(&MovingCollider, RigidTransform)],
     p: Vec3,
@@ -132,7 +133,7 @@ fn near<'a>(
 ) -> impl Iterator<Item = &'a (&'a MovingCollider, RigidTransform)> {
     poses.iter().filter(move |(o, pose)| {
         let (center, radius) = o.shape.bounds();
-        // The ball is known to rounding.
+        // A margin for the rounding of the sphere.
         pose.point(center).distance(p) <= 1.0001 * (radius + reach.max(0.0))
     })
 }

@@ -1,4 +1,4 @@
-//! Strands in motion: the state of all simulated strands, and one step of it.
+//! The simulation: the state of all simulated strands, and its time step.
 
 mod authored;
 mod build;
@@ -53,70 +53,73 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::{ops::Range, sync::Arc};
 
-/// Simulated strands: mass-spring chains stepped by backward Euler with a direct banded solver.
+/// Simulated strands, integrated by default with backward Euler and a direct banded solver.
 ///
-/// Settings come in by [`Simulation::new`] and never change; state is positions, velocities and tensions. A step gives the
-/// same bits for any number of threads. Strands meet the body, the air, and each other, as a volume (see [`Simulation::set_volume`]) or one by one (see
-/// [`Simulation::set_neighbours`]).
+/// Settings are given to [`Simulation::new`] and never change; the state is positions, velocities and
+/// tensions. A step gives bitwise the same result for any number of threads. Strands interact with bodies,
+/// with the air, and with each other: either as a volume (see [`Simulation::set_volume`]) or strand by strand
+/// (see [`Simulation::set_neighbours`]).
 ///
-/// # Missing
-/// Cutting and wetting: each is an issue of its own.
+/// # Limitations
+/// Cutting and wetting are not supported.
 pub struct Simulation {
     groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
     lanes: Vec<u32>,
-    /// Which of the strands that the caller named is in each lane; `u32::MAX` in lanes without one.
+    /// Index into the caller's strands for each lane; `u32::MAX` in lanes without one.
     asked: Vec<u32>,
     tiles: Vec<TilePlace>,
     strand: Vec<StrandRows>,
     rest: Vec<RestRows>,
     state: Vec<StateRows>,
-    /// How deep some place of the segment to each point was authored inside a collider, 0 or less [m]; as long as `state`, or empty where
-    /// none was.
+    /// Authored depth of the segment that ends at each point, 0 or less [m]; as long as `state`, or empty if
+    /// no segment was authored inside a collider.
     rest_penetration: Vec<Row>,
-    /// For how much longer each strand counts as one that touches something [s]; one for each tile.
+    /// Remaining time for which each strand still counts as touching [s]; one row for each tile.
     contact_age: Vec<Row>,
-    /// What presses the segment to each point between its ends; empty where segments are no contacts.
+    /// Contacts of the segment that ends at each point; empty if segments are not tested.
     segment_contacts: Vec<SegmentContactRows>,
-    /// How far each point may be from its root [m]; empty where no material has a tether.
+    /// Largest distance of each point from its root [m]; empty if no material has a tether.
     tethers: Vec<Row>,
     /// Length of the longest strand [m].
     longest: f32,
     /// Length of the longest segment [m].
     longest_segment: f32,
-    /// How many hairs each strand of the groom stands for; shape `[strands of the groom]`.
+    /// Number of hairs that each strand of the groom represents; shape `[strands of the groom]`.
     multiplicity: Vec<f32>,
-    /// As long as `state` for the integrator of second order, else empty.
+    /// As long as `state` for the second-order integrator, else empty.
     history: Vec<HistoryRows>,
-    /// What holds points from outside, for each tile; empty where nothing does.
+    /// Holds on points, for each tile; empty if there are none.
     holds: Vec<Vec<HoldRows>>,
-    /// What acts on points from outside in the last frame.
+    /// External forces on points in the last frame.
     forces: ForceBuffers,
-    /// Pull of each material to the rest shape; a group past the end uses the last.
+    /// Global shape of each material; a group past the end uses the last one.
     global_shapes: Vec<GlobalShape>,
-    /// What hands hold to the hair.
+    /// Active manipulators.
     tools: manipulators::Tools,
-    /// Charge of each material's hair [C/m]; a group past the end uses the last.
+    /// Charge of each material's hair [C/m]; a group past the end uses the last one.
     charges: Vec<f32>,
     charged: Vec<ChargedBall>,
     hair_field: HairField,
-    /// Where hair is, and hair on hair; `None`: strands pass through each other, and nothing asks where they are.
+    /// The hair volume: density, and forces between hair; `None` if strands pass through each other and
+    /// nothing needs the density.
     volume: Option<Box<Volume>>,
-    /// Strands that meet each other one by one; `None`: they do not.
+    /// Strand contact; `None` if disabled.
     neighbours: Option<Box<Neighbours>>,
-    /// Tensions of the rest shape, of segments and, in the springs model, of triangles' sides; shapes as `state`, the second empty without springs.
+    /// Tensions of the rest shape: of segments and, in the springs model, of the triangles' sides. Shapes as
+    /// `state`; the second is empty without springs.
     tensions: [Vec<Row>; 2],
     /// How the anchor moved in the last frame.
     motion: teleport::Motion,
-    /// The air's eddies in the last frame.
+    /// Turbulence of the air in the last frame.
     noise: Noise,
-    /// How bodies and hair shelter from the wind, and what they left of it in the last frame.
+    /// Wind occlusion by bodies and hair, and its result in the last frame.
     wind_occlusion: WindOcclusion,
     shade: OcclusionSampler,
     /// Length of the last substep [s].
     last_h: f32,
     settings: build::Settings,
-    /// The last step's interval, kept for its memory.
+    /// Context of the last frame, kept to reuse its memory.
     interval: FrameContext,
     level: Level,
     /// Lane of each simulated strand, in the order that the caller named them.
@@ -130,17 +133,18 @@ impl Simulation {
         self.places.len()
     }
 
-    /// Number of simulated points, padding left out.
+    /// Number of simulated points, without padding.
     pub fn point_count(&self) -> usize {
         self.strands().map(|s| self.groom.range(s as usize).len()).sum()
     }
 
-    /// Joints that the sag-free start had to make stiffer than the fibre, and those that are softer than they should be.
+    /// Returns the number of joints that the sag-free start had to stiffen, and of those that are softer than
+    /// they should be.
     pub fn start(&self) -> Start {
         self.start
     }
 
-    /// Bytes of state, rest shape and strand data that the simulation holds, padding included.
+    /// Size of state, rest shape and strand data in memory, with padding [bytes].
     pub fn bytes(&self) -> usize {
         size_of_val(&self.strand[..])
             + size_of_val(&self.rest[..])
@@ -164,31 +168,32 @@ impl Simulation {
         name(self.level)
     }
 
-    /// Names of the instruction sets that this processor has, the best first.
+    /// Names of the instruction sets that this processor supports, the best first.
     pub fn instruction_sets() -> Vec<String> {
         levels().map(name).collect()
     }
 
-    /// Uses another instruction set of this processor than the best one, by one of the names of
-    /// [`Simulation::instruction_sets`]: for comparisons and for tests. False, and nothing changes, where the processor has none
-    /// of that name.
+    /// Selects another instruction set of this processor, by one of the names of
+    /// [`Simulation::instruction_sets`]; for comparisons and for tests. Returns false and changes nothing if
+    /// the processor has none with that name.
     pub fn use_instruction_set(&mut self, set: &str) -> bool {
         let found = levels().find(|level| name(*level) == set);
         self.level = found.unwrap_or(self.level);
         found.is_some()
     }
 
-    /// Says how many hairs each strand of the groom stands for, itself among them (more than 0): those that follow it. It counts where hair meets hair as a volume,
-    /// from the next [`Simulation::set_volume`] on, and for charge. Where nothing is said, those that are simulated stand for all of the groom, each for as many.
+    /// Sets how many hairs each strand of the groom represents, including itself: those that follow it. Each
+    /// number is more than 0. It applies to the hair volume, from the next [`Simulation::set_volume`] on, and
+    /// to charge. By default, the simulated strands represent the whole groom in equal shares.
     ///
     /// # Panics
     /// If there is not one number for each strand of the groom.
     pub fn set_hair_multiplicity(&mut self, hairs: Vec<f32>) {
-        assert_eq!(hairs.len(), self.groom.strand_count(), "a number for each strand of the groom");
+        assert_eq!(hairs.len(), self.groom.strand_count(), "one number for each strand of the groom");
         self.multiplicity = hairs;
     }
 
-    /// What charged bodies act on charged hair in the next frame.
+    /// Sets the charged bodies that act on charged hair in the next frame.
     pub fn set_charged(&mut self, balls: impl IntoIterator<Item = ChargedBall>) {
         self.charged.clear();
         self.charged.extend(balls);
@@ -199,16 +204,16 @@ impl Simulation {
         self.places.iter().map(|p| self.lanes[*p as usize])
     }
 
-    /// Writes the points of every simulated strand, in the order given to [`Simulation::new`], one after the other [m];
-    /// `out` has the shape `[point_count]`.
+    /// Writes the points of every simulated strand [m], one after the other, in the order given to
+    /// [`Simulation::new`]. `out` has the shape `[point_count]`.
     pub fn write_points(&self, out: &mut [Vec3]) {
         self.write_points_of(0..self.places.len(), out);
     }
 
-    /// The same of some of the strands, by their places in that order.
+    /// The same for some of the strands, by their indices in that order.
     ///
     /// # Panics
-    /// If there are no such strands, or `out` is too short for their points.
+    /// If the strands do not exist, or `out` is too short for their points.
     pub fn write_points_of(&self, strands: Range<usize>, out: &mut [Vec3]) {
         let mut rest = out;
         let mut pieces = Vec::with_capacity(strands.len());
@@ -227,13 +232,13 @@ impl Simulation {
         });
     }
 
-    /// Points that are simulated for the strand in lane `place`.
+    /// Number of particles of the strand in lane `place`.
     fn simulated_points(&self, place: usize) -> usize {
         (self.groom.range(self.lanes[place] as usize).len() - 1) * self.tiles[place / LANES].model.stride()
             + 1
     }
 
-    /// The simulated points of the strand in lane `place`, from its root [m].
+    /// Positions of the particles of the strand in lane `place`, relative to its root [m].
     fn particles(&self, place: usize) -> impl Iterator<Item = Vec3> + '_ {
         (0..self.simulated_points(place)).scan(Vec3::ZERO, move |x, i| {
             *x += self.vector(place, i, state::EDGE);
@@ -241,37 +246,38 @@ impl Simulation {
         })
     }
 
-    /// A vector of state of point `i` of the strand in lane `place`.
+    /// A vector of the state at point `i` of the strand in lane `place`.
     fn vector(&self, place: usize, i: usize, component: usize) -> Vec3 {
         let (tile, lane) = (place / LANES, place % LANES);
         let rows = &self.state[self.tiles[tile].first as usize + i][component..];
         Vec3::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane])
     }
 
-    /// A number of the rest shape.
+    /// A value of the rest shape.
     fn rest(&self, place: usize, i: usize, component: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
         self.rest[self.tiles[tile].first as usize + i][component].0[lane]
     }
 
-    /// How deep the segment to point `i` was authored, 0 or less [m].
+    /// Authored depth of the segment that ends at point `i`, 0 or less [m].
     fn sunk(&self, place: usize, i: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
         self.rest_penetration.get(self.tiles[tile].first as usize + i).map_or(0.0, |row| row.0[lane])
     }
 
-    /// World position of a root at the end of the last step.
+    /// World position of a root at the end of the last step [m].
     fn root_position(&self, place: usize) -> Vec3 {
         let (tile, lane) = (place / LANES, place % LANES);
         let rows = &self.strand[tile][strand::ROOT_END..];
         let local = Vec3::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane]);
         let (m, t) = self.settings.anchor.matrix();
-        // The same arithmetic as the kernel's, so that a body at rest has the same bits.
+        // The same arithmetic as in the kernel, so that a body at rest gives bitwise the same position.
         m.x_axis * local.x + m.y_axis * local.y + m.z_axis * local.z + t
     }
 }
 
-/// Instruction sets of this processor, the best first. Not SSE4.2: its kernels had the bits of SSE2's and were slower.
+/// Instruction sets of this processor, the best first. SSE4.2 is omitted: its kernels gave bitwise the same
+/// results as those of SSE2 and were slower.
 fn levels() -> impl Iterator<Item = Level> {
     let best = Level::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -1,11 +1,11 @@
-//! Taking a pose without motion: every strand in its rest shape, carried by its root.
+//! Sets a pose without motion: every strand in its rest shape, placed at its root.
 
 use super::Simulation;
 use crate::{math::RigidTransform, simd::lanes::LANES, strand::tile::strand};
 
 impl Simulation {
-    /// Puts every strand at rest in its authored shape at the given roots (world pose, rotation since rest), in the order
-    /// given to [`Simulation::new`]; `anchor` as in a step.
+    /// Puts every strand at rest in its authored shape at the given roots (world pose, rotation since rest),
+    /// in the order given to [`Simulation::new`]. `anchor` is as in a step.
     ///
     /// # Panics
     /// If `roots` is not as long as [`Simulation::strand_count`].

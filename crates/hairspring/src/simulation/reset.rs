@@ -1,4 +1,5 @@
-//! No NaN leaves a step: a strand that turned non-finite goes back to its rest shape, carried by its root.
+//! Recovery from non-finite values: a strand with NaN or infinite state is reset to its rest shape at its
+//! root, so that no NaN leaves a step.
 
 use super::{Simulation, build::simulated_points};
 use crate::{
@@ -11,14 +12,15 @@ use crate::{
 use fearless_simd::Level;
 use glam::{Quat, Vec3};
 
-/// Whether every number of these rows is finite.
+/// Returns whether every number of these rows is finite.
 pub(super) fn all_finite(level: Level, points: &[StateRows]) -> bool {
     let mut sum = Row::default();
     dispatch!(level, simd => store(sum_of_noughts(simd, points), &mut sum));
     sum.0 == [0.0; LANES]
 }
 
-/// The sum of x·0, which is 0 for finite x and NaN otherwise: it has no branch. Each row of a point has its own, so that none waits for another.
+/// Returns the sum of x·0, which is 0 for finite x and NaN otherwise, without branches. Each row of a point
+/// has its own sum, so that there is no dependency chain.
 #[inline(always)]
 fn sum_of_noughts<S: Simd>(simd: S, points: &[StateRows]) -> F<S> {
     let zero = F::splat(simd, 0.0);
@@ -32,7 +34,8 @@ fn sum_of_noughts<S: Simd>(simd: S, points: &[StateRows]) -> F<S> {
 }
 
 impl Simulation {
-    /// Puts every strand with a non-finite number back to rest at its root, at rest; returns how many.
+    /// Resets every strand with a non-finite number to its rest shape at its root, without motion. Returns
+    /// how many were reset.
     pub(super) fn reset_non_finite(&mut self) -> usize {
         let mut count = 0;
         for place in 0..self.lanes.len() {
@@ -54,7 +57,7 @@ impl Simulation {
         count
     }
 
-    /// Puts every strand back to rest at its root as that is now, at rest.
+    /// Resets every strand to its rest shape at the current pose of its root, without motion.
     pub fn reset(&mut self) {
         for k in 0..self.places.len() {
             self.reset_strand(self.places[k] as usize);
@@ -88,7 +91,7 @@ impl Simulation {
             }
             let rows = &mut self.state[at];
             rows.iter_mut().for_each(|row| row.0[lane] = 0.0);
-            // What holds the rest shape.
+            // The tension that balances the rest shape.
             rows[state::TENSION].0[lane] = self.tensions[0][at].0[lane];
             if springs {
                 rows[springs::SIDE].0[lane] = self.tensions[1][at].0[lane];

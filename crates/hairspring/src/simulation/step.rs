@@ -1,4 +1,4 @@
-//! One step: a frame of root motion, cut into substeps, every tile through all of them.
+//! One step: a frame of root motion, divided into substeps. Each tile runs all of them.
 
 use super::{Simulation, reset};
 use crate::{
@@ -22,13 +22,15 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 use std::{cell::RefCell, time::Duration};
 
-/// A frame's input, all at the end of it; the start is where the last step ended.
+/// Input of a step. All poses are at the end of the frame; the start is the end of the last step.
 pub struct StepInput<'a> {
     /// Length of the frame [s], above 0.
     pub dt: f32,
-    /// Pose of the frame that roots move with (the head): between frames roots travel on its arc.
+    /// Pose of the frame that roots move with (the head). Within the frame, roots follow the arc of its
+    /// motion.
     pub anchor: RigidTransform,
-    /// World pose of each simulated root, in the order given to [`Simulation::new`]: position [m] and rotation since rest.
+    /// World pose of each simulated root, in the order given to [`Simulation::new`]: position [m] and
+    /// rotation since rest.
     pub roots: &'a [RigidTransform],
     /// Colliders.
     pub obstacles: &'a [MovingCollider],
@@ -36,72 +38,75 @@ pub struct StepInput<'a> {
     pub air: Air<'a>,
 }
 
-/// What a step did.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepReport {
-    /// Substeps taken.
+    /// Number of substeps.
     pub substeps: u32,
-    /// Strands that had turned non-finite and were put back to their rest shape at the root.
+    /// Number of strands with non-finite state that were reset to their rest shape at the root.
     pub reset_strands: usize,
-    /// What the stages took.
+    /// Times of the stages.
     pub times: StepTimes,
 }
 
-/// What the stages of a step took. What little lies between them (substeps' poses, tools) is in none.
+/// Durations of the stages of a step. The little work between them (substep poses, tools) is not included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepTimes {
-    /// Hair's density and what it does to hair, in each of the volume's intervals.
+    /// The hair volume: density and forces, in each of the volume's intervals.
     pub volume: Duration,
-    /// Roots, wind, global shapes, charge and hands, once a frame.
+    /// Roots, wind, global shapes, charge and manipulators, once a frame.
     pub forces: Duration,
     /// All substeps of all strands: assembly, solve, projection, contact with colliders, strain limit.
     pub solve: Duration,
-    /// Contacts of strands with each other, after each substep.
+    /// Strand contact, after each substep.
     pub neighbours: Duration,
 }
 
-/// Reference frame of `Solver::substeps` [s].
+/// Reference frame length of `Solver::substeps` [s].
 const FRAME: f32 = 1.0 / 60.0;
 
-/// How much longer than the setting a substep may be [1]: a frame at 23.976 Hz has as many substeps as one at 24 Hz.
+/// Factor by which a substep may exceed its nominal length [1], so that a frame at 23.976 Hz has as many
+/// substeps as one at 24 Hz.
 pub(super) const LONGER: f64 = 1.0015;
 
-/// Most substeps of one step, so that a stalled caller's long `dt` cannot stall it for good.
+/// Largest number of substeps in a step, so that a very large `dt` after a stall does not stall the caller
+/// for good.
 const MAX_SUBSTEPS: u32 = 4096;
 
-/// Iterations of local–global in a substep at normal quality (Liu 2013, §6: ten).
+/// Local–global iterations in a substep at normal quality (Liu 2013, §6: ten).
 const LOCAL_GLOBAL: u32 = 10;
 
-/// Most Newton iterations in a substep at high quality.
+/// Largest number of Newton iterations in a substep at high quality.
 const NEWTON: u32 = 12;
 
-/// Tiles that one task runs.
+/// Number of tiles in a task.
 const TILES_PER_TASK: usize = 8;
 
 thread_local! {
     static MEMORY: RefCell<Memory> = RefCell::default();
 }
 
-/// The longest substep [s].
+/// Largest length of a substep [s].
 pub(super) fn substep_length(solver: &Solver) -> f64 {
     f64::from(FRAME) / f64::from(solver.substeps.max(1))
 }
 
 impl Simulation {
-    /// Steps all strands to the end of a frame.
+    /// Advances all strands to the end of a frame.
     ///
-    /// The frame is cut into equal substeps none of which is longer than 1/60 s over `solver.substeps` but for 0.15 % (so the step does not
-    /// depend on the frame rate where that divides it, and roots are on the skin at every frame, which an accumulator that
-    /// carries a remainder would not give); into more where a body passes through the hair that is faster than it is thick.
+    /// The frame is divided into equal substeps. Each is at most 1/60 s over `solver.substeps` long, with a
+    /// tolerance of 0.15 %. The substep length therefore does not depend on frame rates that it divides, and
+    /// roots match the skin at every frame, which an accumulator with a remainder would not ensure. More
+    /// substeps are used where a body that is fast relative to its thickness passes through the hair.
     ///
     /// # Panics
     /// If `drive.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
     pub fn step(&mut self, drive: &StepInput) -> StepReport {
         assert_eq!(drive.roots.len(), self.places.len(), "one root pose for each simulated strand");
-        assert!(drive.dt > 0.0, "a step takes time");
+        assert!(drive.dt > 0.0, "`dt` must be positive");
         let solver = self.settings.solver;
         let carried = self.carry_along(drive);
-        // Of bodies with fast limbs each part has as many.
+        // For bodies with several time slices, each slice has the same number of substeps.
         let parts = drive.obstacles.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
         let substeps = ((f64::from(drive.dt) / (substep_length(&solver) * LONGER)).ceil() as u32)
             .max(self.substeps_past(drive, carried.as_ref()))
@@ -111,7 +116,7 @@ impl Simulation {
         let looked_at = interval.segments;
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
         if looked_at && !interval.segments {
-            // What pressed segments is forgotten: nothing corrects it until they are looked at again.
+            // Discard the segment contacts: nothing would update them until segments are tested again.
             self.segment_contacts.fill([Row::default(); segment_contact::ROWS]);
         }
         self.begin_tools(&FrameColliders::new((drive.obstacles, carried.as_ref())));
@@ -119,13 +124,14 @@ impl Simulation {
         self.rest_holds();
         self.rest_tools(drive.dt);
         self.last_h = interval.h;
-        // The colliders' shapes are the caller's again.
+        // Release the colliders' shapes to the caller.
         interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
         self.interval = interval;
         StepReport { substeps, reset_strands, times }
     }
 
-    /// Runs the interval's substeps; returns how many strands turned non-finite and were reset.
+    /// Runs the substeps of `interval` that are due now. Returns the number of strands that were reset
+    /// because of non-finite state.
     pub(super) fn run(&mut self, interval: &FrameContext) -> usize {
         let reset = run(
             self.level,
@@ -150,7 +156,7 @@ impl Simulation {
         if reset { self.reset_non_finite() } else { 0 }
     }
 
-    /// Fills `interval` for a frame; its memory is used again.
+    /// Fills `interval` for a frame, reusing its memory.
     fn fill_interval(
         &self,
         drive: &StepInput,
@@ -170,7 +176,7 @@ impl Simulation {
         };
         interval.continues = (interval.h / self.last_h - 1.0).abs() < 1e-3;
         interval.response = solver.contact;
-        // As long as a segment may become: without a limit any is looked at.
+        // For the largest length that a segment can have. Without a strain limit, segments are always tested.
         let may_cut = |o: &MovingCollider| {
             !(solver.integrator.limits_strain()
                 && segment_contact_unneeded(self.longest_segment, o.shape.roundness()))
@@ -198,7 +204,8 @@ impl Simulation {
         }
     }
 
-    /// Last frame's root poses become the start, the drive's the end, both relative to the anchor.
+    /// Makes the root poses of the last frame the start and those of `drive` the end, both relative to the
+    /// anchor.
     pub(super) fn move_roots(&mut self, drive: &StepInput) {
         let turn = drive.anchor.rotation.inverse();
         let tiles = self.strand.par_iter_mut().zip(self.asked.par_chunks(LANES));
@@ -212,7 +219,8 @@ impl Simulation {
                 let before = glam::Quat::from_array([0, 1, 2, 3].map(|k| rows[start + k].0[lane]));
                 let p = drive.anchor.inverse_point(root.translation);
                 let q = turn * root.rotation;
-                // The near one of the two quaternions of a rotation, for `nlerp`.
+                // Of the two quaternions of the rotation, the one in the same hemisphere, as `nlerp`
+                // requires.
                 let q = if q.dot(before) < 0.0 { -q } else { q };
                 for (k, v) in p.to_array().into_iter().chain(q.to_array()).enumerate() {
                     rows[strand::ROOT_END + k].0[lane] = v;
@@ -222,7 +230,7 @@ impl Simulation {
     }
 }
 
-/// The arrays of some tiles.
+/// The arrays of a range of tiles.
 struct TileRange<'a> {
     tiles: &'a [TilePlace],
     strand: &'a [StrandRows],
@@ -241,7 +249,7 @@ struct TileRange<'a> {
 }
 
 impl<'a> TileRange<'a> {
-    /// The first `count` tiles, and the others.
+    /// Splits off the first `count` tiles.
     fn split(self, count: usize) -> (Self, Self) {
         let points = (self.tiles[count].first - self.tiles[0].first) as usize;
         let (tiles, more_tiles) = self.tiles.split_at(count);
@@ -345,7 +353,8 @@ impl<'a> TileRange<'a> {
     }
 }
 
-/// Runs tiles on all threads, halving the arrays until a task is small; true if any point turned non-finite.
+/// Runs the tiles on all threads, by recursive halving down to small tasks. Returns true if any point became
+/// non-finite.
 fn run(level: Level, interval: &FrameContext, mut piece: TileRange) -> bool {
     let count = piece.tiles.len();
     if count > TILES_PER_TASK {

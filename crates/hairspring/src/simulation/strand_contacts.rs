@@ -1,4 +1,4 @@
-//! Strands that meet their neighbours one by one, between substeps.
+//! Strand contact in the simulation: contacts between strands are solved between substeps.
 
 use super::Simulation;
 use crate::settings;
@@ -14,7 +14,8 @@ use glam::{Mat3, Vec3};
 use std::collections::HashMap;
 
 impl Simulation {
-    /// Lets strands meet each other one by one from now on, or no more. As they are now counts as their rest: nowhere are they thicker than there is room.
+    /// Enables or disables strand contact. The current pose counts as the rest pose, in which the contact
+    /// radius of segments is limited by the available space.
     pub fn set_neighbours(&mut self, settings: &settings::Neighbours) {
         let mut hair = Hair::default();
         if settings.on {
@@ -34,12 +35,12 @@ impl Simulation {
         self.neighbours = Neighbours::new(settings, hair).map(Box::new);
     }
 
-    /// What is known of strands that meet each other one by one; `None` where none do.
+    /// Statistics of the strand contacts; `None` if they are disabled.
     pub fn neighbours(&self) -> Option<NeighboursReport> {
         self.neighbours.as_ref().map(|neighbours| neighbours.report())
     }
 
-    /// Gives all points what their neighbours' loads do to them in a substep.
+    /// Adds the carried contact loads to the velocities of all points before a substep.
     pub(super) fn bear_neighbours(&mut self, neighbours: &mut Neighbours, h: f32) {
         neighbours.apply_warm_start(h);
         let kicks = &neighbours.hair.v;
@@ -48,7 +49,7 @@ impl Simulation {
         });
     }
 
-    /// Lets strands meet at the end of the interval's substep `number`.
+    /// Solves the strand contacts at the end of the frame's substep `number`.
     pub(super) fn meet_neighbours(
         &mut self,
         neighbours: &mut Neighbours,
@@ -69,8 +70,8 @@ impl Simulation {
         });
     }
 
-    /// Writes where all points are, with roots at a fraction of the frame and the anchor's pose there, how they move, what they weigh and how they bend in
-    /// a substep of `h` [s].
+    /// Copies positions, velocities, masses and bending stiffness of all points to `hair`, for a substep of
+    /// `h` [s]. The pair holds the fraction of the frame and the anchor's pose at that time.
     fn show_neighbours(&self, (fraction, (m, t)): (f32, (Mat3, Vec3)), h: f32, hair: &mut Hair) {
         let mut i = 0;
         for (k, place) in self.places.iter().map(|p| *p as usize).enumerate() {
@@ -91,7 +92,8 @@ impl Simulation {
                     let rest = |row: usize| self.rest[first + j][row].0[lane];
                     hair.inverse_length[i] =
                         if rest(rest::LENGTH) > 0.0 { rest(rest::LENGTH).recip() } else { 0.0 };
-                    // What bends springs lies between its points, and counts for little here.
+                    // The bending springs of the springs model do not act at its points, and their effect
+                    // here is small.
                     hair.bend[i] = if stride == 1 { alike * rest(rest::BEND) * damped } else { 0.0 };
                     i += 1;
                 }
@@ -105,8 +107,9 @@ impl Simulation {
         }
     }
 
-    /// Shows the velocity of every point, strand after strand in the order given to [`Simulation::new`]: which point of `hair` it is, and whether it is of the first
-    /// of all strands that are the same.
+    /// Calls `see` with the velocity of every point, strand by strand in the order given to
+    /// [`Simulation::new`]: the index of the point in `hair`, and whether its strand is the first of its
+    /// merged strands.
     fn each_velocity(&mut self, hair: &Hair, mut see: impl FnMut(usize, bool, [&mut f32; 3])) {
         for (k, place) in self.places.iter().map(|p| *p as usize).enumerate() {
             let (tile, lane) = (self.tiles[place / LANES], place % LANES);

@@ -1,8 +1,9 @@
-//! A frame in parts: strands meet as a volume in intervals that are as long at any frame rate, and one by one after every substep.
+//! Intervals of a frame: the hair volume acts in intervals of constant length at any frame rate, and strand
+//! contact after every substep.
 //!
 //! ```text
-//! frame at 60 Hz   ├───────────────┤        substeps   ├───┼───┼───┼───┤       the volume's intervals   ├───┼───┼───┼───┤
-//! at 240 Hz        ├───┤                               ├───┤                                            ├───┤
+//! frame at 60 Hz   ├───────────────┤     substeps   ├───┼───┼───┼───┤     volume intervals   ├───┼───┼───┼───┤
+//! at 240 Hz        ├───┤                            ├───┤                                    ├───┤
 //! ```
 
 use super::{
@@ -12,11 +13,13 @@ use super::{
 use crate::{math::RigidTransform, strand::frame_context::FrameContext};
 use std::time::Instant;
 
-/// The longest interval for which the volume's accelerations are frozen [s]. Tresses that swing into each other close in by a centimeter in it, about a cell.
+/// Longest interval for which the volume's accelerations are constant [s]. Tresses that swing into each other
+/// approach by a centimeter within it, about a cell.
 const LONGEST: f64 = 1.0 / 240.0;
 
 impl Simulation {
-    /// Finds what acts on all points, runs all substeps, and lets strands meet between them; returns how many were reset, and what it took.
+    /// Computes the external forces, runs all substeps, and solves strand contacts between them. Returns how
+    /// many strands were reset, and the durations of the stages.
     pub(super) fn run_in_parts(
         &mut self,
         drive: &StepInput,

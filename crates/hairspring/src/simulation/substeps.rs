@@ -1,17 +1,20 @@
-//! Shorter substeps while a body passes through hair that is faster than it is thick: in steps of its own size it would be on the other side of a strand before it met it.
+//! Substep refinement: shorter substeps while a body that is fast relative to its thickness passes through
+//! hair. Otherwise it could tunnel through a strand.
 //!
 //! ```text
-//!      ◯ · · · · · ·│· · · · ·◯       one substep: the strand is outside at both ends, and was never met
-//!      ◯◯◯◯◯◯◯◯◯◯◯◯◯│                 so many that each is a part of the radius: it is pushed along
+//!      ◯ · · · · · ·│· · · · ·◯       one substep: the strand is outside at both ends, and no contact is found
+//!      ◯◯◯◯◯◯◯◯◯◯◯◯◯│                 substeps shorter than the radius: the strand is pushed along
 //! ```
 //!
-//! Hair that is fast by itself asks for them too where it is near a thin body: a rod that stops leaves hair that goes on around it as fast as the rod was.
+//! Fast hair near a thin body also requires short substeps: when a rod stops, the hair on it goes on at the
+//! rod's speed.
 //!
-//! All strands take them, so that none depends on which of them share a tile; a rod of 1 cm at 20 m/s asks for 133 in a frame, a hand at 5 m/s for
-//! some 20, and what moves with the head for none.
+//! All strands use the same substeps, so that results do not depend on which strands share a tile. A rod of 1
+//! cm at 20 m/s requires 133 in a frame, a hand at 5 m/s some 20, and a body that moves with the head none.
 //!
-//! The limbs of a skinned body are one shape with it, and so is a skinned sheet: where they are fast, they come as a shape for each part of the frame
-//! (`stage/fast_surface.rs`), and each part has as many substeps as the others.
+//! The limbs of a skinned body are part of one shape, and so is a skinned sheet. Where they are fast, they
+//! have a shape for each time slice of the frame (`stage/fast_surface.rs`), and all time slices have the same
+//! number of substeps.
 
 use super::{
     Simulation,
@@ -20,34 +23,37 @@ use super::{
 use crate::{collide::MovingCollider, math::RigidTransform, strand::tile::state};
 use rayon::prelude::*;
 
-/// Part of a body's half thickness that it may move by in a substep [1]: a strand that it presses is still on the side where it was met.
+/// Largest motion of a body in a substep, over its half thickness [1]. A strand in contact then stays on the
+/// side where the contact began.
 pub const MAX_TRAVEL: f32 = 0.5;
 
-/// The same of a body thinner than [`VERY_THIN`] [1].
+/// The same for a body thinner than [`VERY_THIN`] [1].
 const PART_OF_THIN: f32 = 0.25;
 
-/// Half thickness below which a body's steps are as short as that [m]: a segment is several times as long.
+/// Half thickness below which [`PART_OF_THIN`] applies [m]. A segment is several times as long.
 const VERY_THIN: f32 = 0.0025;
 
-/// Way in a frame, over the radius of the ball around a body, below which nothing is looked at [1]: what is so slow is not thinner.
+/// Motion in a frame, over the radius of the body's bounding sphere, below which no refinement is needed [1]:
+/// bodies are not thinner than that.
 const SLOW: f32 = 0.005;
 
-/// Most substeps that a body may ask for: a sheet has no thickness to speak of.
+/// Largest number of substeps for one body. A sheet has almost no thickness.
 const MOST: f32 = 256.0;
 
-/// The same of a solid: a rod of 0.5 mm radius at 3 m/s asks for 400 in a frame.
+/// The same for a solid body: a rod of 0.5 mm radius at 3 m/s requires 400 in a frame.
 const MOST_OF_SOLID: f32 = 1024.0;
 
-/// Half thickness below which a body may be crossed by hair that is fast by itself [m].
+/// Half thickness below which fast hair may cross a body [m].
 const THIN: f32 = 0.02;
 
 impl Simulation {
-    /// Substeps that this frame needs so that no body is on the other side of a strand before it meets it; 1 where all are slow or far.
+    /// Returns the number of substeps in which no body tunnels through a strand; 1 if all bodies are slow or
+    /// far away.
     pub(super) fn substeps_past(&self, drive: &StepInput, carried: Option<&RigidTransform>) -> u32 {
         let mut asked = 1;
         for obstacle in drive.obstacles {
             asked = asked.max(self.substeps_of_hair(drive, carried, obstacle));
-            // Against the anchor: hair moves with that.
+            // Relative to the anchor, because hair moves with it.
             let start = self.settings.anchor.inverse().after(&obstacle.start(carried));
             let end = drive.anchor.inverse().after(&obstacle.end);
             let (center, radius) = obstacle.shape.bounds();
@@ -76,7 +82,8 @@ impl Simulation {
         asked
     }
 
-    /// Substeps that the velocity of the hair near a thin body asks for. A body that stops leaves hair that goes on around it as fast as it was.
+    /// Returns the number of substeps that the velocity of the hair near a thin body requires. When a body
+    /// stops, the hair on it goes on at the body's speed.
     fn substeps_of_hair(
         &self,
         drive: &StepInput,
@@ -103,7 +110,7 @@ impl Simulation {
                 let edge = self.vector(place, i, state::EDGE);
                 x += edge;
                 let own = start.inverse_point(x);
-                // Hair that stands still while the head and the body move off together goes along with them.
+                // Hair at rest follows the head and the body when they move away together.
                 let slip = self.vector(place, i, state::V) * drive.dt + x - end.point(own);
                 let with_head = drive.anchor.point(self.settings.anchor.inverse_point(x)) - x;
                 let way = slip.length().min((slip + with_head).length());

@@ -1,12 +1,15 @@
-//! Going on from another simulation of the same strands: other settings, the same places and motion.
+//! Takes over the state of another simulation of the same strands: the settings may differ, positions and
+//! motion are kept.
 //!
-//! Where a strand's elastic model is another one than before, what both know of is carried over:
+//! Where a strand's elastic model differs, the state that both models share is converted:
 //!
 //! ```text
-//! edges, velocities, contact, depths     as they are, of the strand's own points
-//! frames                                 the rod's are stored; the truss's are where its extra particles are; those of the others are carried from the root
-//! extra particles                        beside their segments, on the frame's side, turning with them
-//! tensions                               as they are between models with the same segments; between those and the truss, those of the rest shape
+//! edges, velocities, contact, depths     unchanged, at the strand's own points
+//! frames                                 the rod stores them; the truss has them in its extra particles;
+//!                                        the other models transport them from the root
+//! extra particles                        beside their segments, on the frame's side, rotating with them
+//! tensions                               unchanged between models with the same segments;
+//!                                        between those and the truss, the tensions of the rest shape
 //! ```
 
 use super::Simulation;
@@ -22,13 +25,14 @@ use crate::{
 use glam::{DVec3, Quat, Vec3};
 
 impl Simulation {
-    /// Goes on from where `old` is, with the settings of `self`, which has just been made: every strand is where it was and moves as it did, and may be as
-    /// deep in colliders as it was authored there. Tools go on as well; what [`Simulation::set_holds`] holds is let go of.
+    /// Continues from the state of `old` with the settings of `self`, which must be new. Every strand keeps
+    /// its position and motion, and may be as deep in colliders as it was authored there. Manipulators stay
+    /// active; holds of [`Simulation::set_holds`] are released.
     ///
     /// # Panics
     /// If the two do not simulate the same strands in the same order.
     pub fn take_over(&mut self, old: &Simulation) {
-        assert!(self.strands().eq(old.strands()), "the same strands in the same order");
+        assert!(self.strands().eq(old.strands()), "both must have the same strands in the same order");
         self.level = old.level;
         self.settings.anchor = old.settings.anchor;
         self.motion = old.motion;
@@ -58,12 +62,13 @@ impl Simulation {
         self.take_over_tools(old, &lanes);
     }
 
-    /// Whether tensions and contact are found anew in every substep and carried to the next; other integrators leave them as they are.
+    /// Returns whether the integrator updates tensions and contact forces in every substep and carries them
+    /// to the next. Other integrators do not change them.
     fn carries_forces(&self) -> bool {
         matches!(self.settings.solver.integrator, Integrator::BackwardEuler | Integrator::Bdf2)
     }
 
-    /// Takes a strand of the same model, row by row.
+    /// Copies a strand with the same model, row by row.
     fn take_rows(&mut self, place: usize, old: &Simulation, from: usize) {
         let model = self.tiles[place / LANES].model;
         let forces = self.carries_forces() && old.carries_forces();
@@ -96,7 +101,7 @@ impl Simulation {
         }
     }
 
-    /// Takes a strand of another model, point by point.
+    /// Converts a strand with another model, point by point.
     fn take_points(&mut self, place: usize, old: &Simulation, from: usize) {
         let [stride, was] =
             [self.tiles[place / LANES].model, old.tiles[from / LANES].model].map(Elastic::stride);
@@ -135,7 +140,7 @@ impl Simulation {
                 self.set_vector(place, i, state::NORMAL, normal.as_vec3());
                 continue;
             }
-            // The triangle over the segment, turning with it.
+            // The triangle over the segment, rotating with it.
             let (e, [a, b]) = (edge(j).as_dvec3(), [velocity(j), velocity(j + 1)].map(Vec3::as_dvec3));
             let length = f64::from(self.rest(place, i, rest::LENGTH));
             let aside = side(j, e.normalize_or(DVec3::Y), normal) * (ASIDE * length);
@@ -147,7 +152,8 @@ impl Simulation {
         self.begin_history(place);
     }
 
-    /// Lets the integrator of second order remember that a strand has moved as it does now.
+    /// Initializes the history of the second-order integrator as if the strand had moved at its current
+    /// velocity.
     fn begin_history(&mut self, place: usize) {
         let (tile, lane) = (self.tiles[place / LANES], place % LANES);
         let points = tile.first as usize..(tile.first + tile.points) as usize;
@@ -160,7 +166,7 @@ impl Simulation {
         }
     }
 
-    /// The frame's normal on each segment of the strand in a lane; shape `[points − 1]`.
+    /// Returns the frame's normal on each segment of the strand in lane `place`; shape `[points − 1]`.
     fn frames(&self, place: usize) -> Vec<DVec3> {
         let (tile, lane) = (place / LANES, place % LANES);
         let (model, rows) = (self.tiles[tile].model, &self.strand[tile]);

@@ -1,13 +1,14 @@
-//! Carrying hair along with the head as if it were stiff: a teleport, a jump that is none of the motion, and inertia that is scaled down.
+//! Rigid motion of the hair with the head: teleports, discontinuities that are not part of the motion, and
+//! scaled inertia.
 //!
 //! ```text
 //! motion of a frame   M = anchor(end) · anchor(start)⁻¹
-//! carried by          M                    where M is a jump, or `teleport` is called
-//!                     M^(1 − inertia)      else: the solver sees the rest of the motion only
+//! hair is moved by    M                    if M is a teleport, or `teleport` is called
+//!                     M^(1 − inertia)      otherwise: the solver sees only the rest of the motion
 //! ```
 //!
-//! What is carried keeps its shape, its tensions and its velocities, all turned as the head is. With inertia 0, hair on a moving head hangs as on one that
-//! stands still.
+//! Hair that is moved rigidly keeps its shape, its tensions and its velocities, all rotated with the head.
+//! With inertia 0, hair on a moving head hangs as on one at rest.
 
 use super::{Simulation, StepInput};
 use crate::{
@@ -19,18 +20,19 @@ use crate::{
 use glam::{Mat3, Quat, Vec3};
 use rayon::prelude::*;
 
-/// How the anchor moved in the last frame, which a jump is told by.
+/// Motion of the anchor in the last frame, used to detect teleports.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Motion {
-    /// Velocity of its origin [m/s].
+    /// Velocity of the anchor's origin [m/s].
     velocity: Vec3,
     /// Rotation vector over time [rad/s].
     spin: Vec3,
 }
 
 impl Simulation {
-    /// Moves all hair at once, with its shape and its motion, by a rotation about the world's origin and then a translation [m]. The next step starts
-    /// there: its anchor, roots and obstacles are expected where the same move takes them.
+    /// Moves all hair rigidly, including its motion, by a rotation about the world's origin and then a
+    /// translation [m]. The next step starts there: its anchor, roots and obstacles must be moved in the same
+    /// way.
     pub fn teleport(&mut self, by: RigidTransform) {
         let turn = Mat3::from_quat(by.rotation);
         for tile in &self.tiles {
@@ -60,7 +62,8 @@ impl Simulation {
         self.motion.spin = turn * self.motion.spin;
     }
 
-    /// Carries the hair along before a frame as far as its setting says, or all the way where the anchor jumps; returns what it was carried by.
+    /// Moves the hair rigidly before a frame: by the part that `inertia` leaves, or completely if the anchor
+    /// teleports. Returns the applied motion.
     pub(super) fn carry_along(&mut self, drive: &StepInput) -> Option<RigidTransform> {
         let solver = self.settings.solver;
         let way = drive.anchor.after(&self.settings.anchor.inverse());
@@ -70,8 +73,9 @@ impl Simulation {
         let off = (moved - self.motion.velocity * drive.dt).length();
         let turned_off = way.rotation.angle_between(expected);
         let jumped = is_teleport(off, turned_off, solver.teleport_distance, f64::from(drive.dt));
-        // A jump too is what the next frame is judged by: where it was one, hair is carried once more, by as little as the head then moves; where it
-        // was the start of a ride, the ride is felt.
+        // The next frame is compared with the motion of a teleport, too. After a single jump, hair is thus
+        // moved rigidly once more, by as little as the head then moves. If it was the start of a fast motion,
+        // the solver sees the motion from the next frame on.
         let now = Motion { velocity: moved / drive.dt, spin: turned / drive.dt };
         let by = if jumped {
             way
@@ -90,7 +94,7 @@ impl Simulation {
     }
 }
 
-/// Turns a vector of eight lanes.
+/// Rotates a vector in eight lanes.
 fn rotate(turn: &Mat3, rows: &mut [Row]) {
     let [x, y, z] = [0, 1, 2].map(|k| rows[k].0);
     for (k, row) in rows.iter_mut().enumerate() {

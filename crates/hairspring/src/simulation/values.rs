@@ -1,4 +1,5 @@
-//! What is known of a single point, by its strand (an index of those given to [`Simulation::new`]) and its number in it.
+//! State of single points, by strand (an index into those given to [`Simulation::new`]) and index in the
+//! strand.
 
 use super::Simulation;
 use crate::{
@@ -8,13 +9,14 @@ use crate::{
 use glam::{DVec3, Vec3};
 
 impl Simulation {
-    /// Tension of the segment from point `i` to the next, at the tip of the last one, as the last substep found it [N].
+    /// Tension of the segment from point `i` to the next, from the last substep [N]. At the tip, that of the
+    /// last segment.
     pub fn tension_at(&self, strand: usize, i: usize) -> f32 {
         let (place, segment) = self.segment(strand, i);
         self.tension(place, segment * self.stride(place))
     }
 
-    /// How much longer that segment is than at rest, over its length [1].
+    /// Strain of that segment: extension over rest length [1].
     pub fn stretch_at(&self, strand: usize, i: usize) -> f32 {
         let (place, segment) = self.segment(strand, i);
         let (stride, first) = (self.stride(place), segment * self.stride(place));
@@ -29,19 +31,20 @@ impl Simulation {
         self.vector(place, i * self.stride(place), state::V).length()
     }
 
-    /// Force with which a collider holds point `i` out, as the last substep found it; 0 where none does [N].
+    /// Contact force of a collider on point `i`, from the last substep; 0 without contact [N].
     pub fn contact_at(&self, strand: usize, i: usize) -> f32 {
         let place = self.places[strand] as usize;
         let at = self.tiles[place / LANES].first as usize + i * self.stride(place);
         self.state[at][state::NORMAL_FORCE].0[place % LANES]
     }
 
-    /// How full of hair `place` in the world was when the volume was last measured, over what it is at rest [1]; 0 where nothing asks for the hair's volume.
+    /// Fill ratio at the world position `place`: hair when the volume was last measured, relative to rest
+    /// [1]; 0 if there is no hair volume.
     pub fn density_at(&self, place: Vec3) -> f32 {
         self.volume.as_ref().map_or(0.0, |volume| volume.density(self.settings.anchor).fill(place))
     }
 
-    /// Lane of a strand, and the segment from point `i`, or the last one.
+    /// Lane of a strand, and the segment that begins at point `i`, or the last one.
     fn segment(&self, strand: usize, i: usize) -> (usize, usize) {
         let place = self.places[strand] as usize;
         (place, i.min(self.points(place) - 2))

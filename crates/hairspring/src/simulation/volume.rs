@@ -1,4 +1,4 @@
-//! The volume of the simulated strands: hair on hair, and hair that shelters from the wind.
+//! The hair volume in the simulation: forces between hair, and wind occlusion by hair.
 
 use super::Simulation;
 use crate::settings;
@@ -10,16 +10,17 @@ use crate::{
     volume::{AtRest, Volume, VolumeReport},
 };
 
-/// Edge of a cell that is there for occlusion alone, over its reach [1]: 16 mm for half a metre, about a lock of hair.
+/// Cell size of a volume that only serves wind occlusion, over the occlusion's reach [1]: 16 mm for half a
+/// meter, about a lock of hair.
 const SHELTER_CELL: f32 = 1.0 / 32.0;
 
 impl Simulation {
-    /// Lets strands meet each other as a volume from now on, or no more. As they are now counts as their rest: how full each place is, and
-    /// which part of the volume is whose.
+    /// Enables or disables the hair volume. The current pose counts as the rest pose: it defines the rest
+    /// density and each point's share of the volume.
     pub fn set_volume(&mut self, settings: &settings::Volume) {
         let mut mass = vec![Row::default(); self.rest.len()];
         let (mut segments, mut sum, mut longest) = (0_usize, 0.0_f64, 0.0_f32);
-        // A strand weighs what the hairs weigh that it stands for; only what it is to the others' counts.
+        // A strand has the mass of the hairs that it represents. Only ratios between strands matter.
         let most = self.strands().map(|s| self.multiplicity[s as usize]).fold(0.0, f32::max);
         for (place, strand) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let (tile, lane) = (self.tiles[place / LANES], place % LANES);
@@ -45,14 +46,14 @@ impl Simulation {
         };
         let mut settings = *settings;
         if settings.method == VolumeMethod::Off {
-            // Only measured, for occlusion: as fine as a lee is seen.
+            // Only measured, for wind occlusion, so the resolution of occlusion is enough.
             settings.cell = settings.cell.or(Some(self.wind_occlusion.reach * SHELTER_CELL));
         }
         self.volume = Volume::new(&settings, self.wind_occlusion.is_on(), at_rest).map(Box::new);
     }
 
-    /// Lets bodies and hair occlusion from the wind from now on. Where strands do not meet each other as a volume, as they are now counts as
-    /// their rest: how dense they are where.
+    /// Enables or disables wind occlusion by bodies and hair. If there is no hair volume, one is created for
+    /// it, with the current pose as the rest pose that defines the density.
     pub fn set_wind_occlusion(&mut self, occlusion: &WindOcclusion) {
         self.wind_occlusion = *occlusion;
         if occlusion.is_on() && self.volume.is_none() {
@@ -60,7 +61,7 @@ impl Simulation {
         }
     }
 
-    /// What is known of the hair's volume; `None` where strands pass through each other.
+    /// Statistics of the hair volume; `None` if it exerts no forces.
     pub fn volume(&self) -> Option<VolumeReport> {
         self.volume.as_ref().filter(|volume| volume.acts()).map(|volume| volume.report())
     }

@@ -1,5 +1,8 @@
-//! A strand's system, assembled and eliminated in one sweep down: elasticity from the model, then stretch, mass, air, gravity,
-//! what holds a point from outside and what it is pressed against. With positions relative to the root, δ their change, Δr the root's own:
+//! Assembly and elimination of a strand's linear system in one downward sweep, from root to tip.
+//!
+//! The system contains elasticity from the model, stretch, mass, air drag, gravity, external forces and
+//! contact. Positions are relative to the root. δ is the change of a position, and Δr is the displacement of
+//! the root:
 //!
 //! ```text
 //! (a M/h² + D/h + K) δ = M p + D (w − Δr/h) + M g + f(x)
@@ -8,12 +11,17 @@
 //! BDF2             a = 9/4   p = (4v − v⁻)/2h + 3Δ⁻/4h² − 9Δr/4h²              v⁺ = (3Δ − Δ⁻) / 2h
 //! ```
 //!
-//! so a teleporting root puts no strain into the linearisation, and far from the world's origin no digit is lost. What is solved for is
-//! not δ but by how much it differs from the drift δ₀ = h (v − v_root): element by element, what a force makes of δ₀ goes to the right.
-//! So the rounding of a stiff entry multiplies the change of a velocity and not the velocity. (It weighs as much as the mass in
-//! strands of a thousand points, where it pushed or braked them: 10 to 70 m/s at rest.)
+//! With relative positions, a teleporting root adds no strain to the linearization, and no digits are lost
+//! far from the origin of the world.
 //!
-//! Baraff & Witkin 1998, *Large Steps in Cloth Simulation*; BDF2 after Choi & Ko 2002, *Stable but Responsive Cloth*, eq. 17.
+//! The unknown is not δ but its difference from the predicted displacement δ₀ = h (v − v_root). The force
+//! that each element produces at δ₀ goes to the right-hand side. The rounding error of a stiff entry then
+//! scales with the change of a velocity, not with the velocity itself. In strands of a thousand points, that
+//! error is as large as the mass term. With δ as the unknown, it accelerated such strands to 10 to 70 m/s at
+//! rest.
+//!
+//! Baraff & Witkin 1998, *Large Steps in Cloth Simulation*; BDF2 after Choi & Ko 2002, *Stable but Responsive
+//! Cloth*, eq. 17.
 
 use super::{
     band::Band,
@@ -31,12 +39,12 @@ use crate::collide::ColliderPose;
 use crate::simd::lanes::{F, Mask, Simd, Sym3, V3};
 use glam::Vec3;
 
-/// One substep of one tile, as the assembly needs it.
+/// The state of one substep that the assembly of one tile needs.
 #[derive(Clone, Copy)]
 pub struct SubstepContext<'a, S: Simd> {
-    /// Which it is of the interval's.
+    /// Index of the substep in the frame.
     pub number: usize,
-    /// Fraction of the interval that is left at its end.
+    /// Fraction of the frame that remains at the end of the substep.
     pub left: f32,
     /// Length [s].
     pub h: f32,
@@ -44,27 +52,28 @@ pub struct SubstepContext<'a, S: Simd> {
     pub gravity: Vec3,
     /// Velocity of the air [m/s].
     pub wind: Vec3,
-    /// The root at the end.
+    /// The root at the end of the substep.
     pub root: Root<S>,
-    /// How far the root moves in it [m].
+    /// Displacement of the root in the substep [m].
     pub moved: V3<S>,
-    /// Whether the tile's history stands for a substep of the same length: then by BDF2, else by backward Euler.
+    /// Whether the tile's history comes from a substep of the same length. If so, the substep uses BDF2,
+    /// otherwise backward Euler.
     pub second_order: bool,
-    /// Which strands touch something.
+    /// Strands that are in contact.
     pub touches: Mask<S>,
-    /// Colliders, each at the start and the end of it.
+    /// Colliders, each with its pose at the start and at the end of the substep.
     pub obstacles: &'a [ColliderPose],
 }
 
 impl<S: Simd> SubstepContext<'_, S> {
-    /// a of the system above.
+    /// The inertia coefficient a of the system in the module documentation.
     #[inline(always)]
     pub fn inertia(&self) -> f32 {
         if self.second_order { 2.25 } else { 1.0 }
     }
 }
 
-/// Elastic forces of all points at `scratch.edges`, into `scratch.kick` [N].
+/// Computes the elastic forces on all points at `scratch.edges` and stores them in `scratch.kick` [N].
 #[inline(always)]
 pub fn forces<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -89,30 +98,31 @@ pub fn forces<S, M, const B: usize, const N: usize>(
     }
 }
 
-/// What a sweep down makes.
+/// What a downward sweep computes, and where it linearizes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Linearization {
-    /// Forces, and no factors.
+    /// Forces only, without factors.
     Forces,
-    /// The factors of the system at the start of the substep.
+    /// Factors of the system at the start of the substep.
     Initial,
-    /// The factors of the system at positions that have moved since (Newton).
+    /// Factors of the system at the positions of the last Newton iterate.
     Newton,
 }
 
 impl Linearization {
-    /// How much of a segment's present error of length is news to its tension: all, or nothing once a solve has taken it.
+    /// The share of a segment's current length error that the solve adds to its tension [1]: 1 in the first
+    /// solve, 0 in the following ones, because the first has already added it.
     pub fn news(self) -> f32 {
         if self == Self::Newton { 0.0 } else { 1.0 }
     }
 
-    /// How long velocities act until where the solve begins, of a substep of `h` [s].
+    /// The time that velocities act before the starting point of the solve [s], in a substep of `h` [s].
     pub fn predicted_displacement(self, h: f32) -> f32 {
         if self == Self::Initial { h } else { 0.0 }
     }
 }
 
-/// Assembles and eliminates down the strand, at `scratch.edges`.
+/// Assembles and eliminates the system from root to tip, linearized at `scratch.edges`.
 #[inline(always)]
 pub fn assemble<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -128,12 +138,12 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
     let mut elements = Elements::<S, M, B, N>::begin(simd, sweep, step, tile, scratch);
     let acted = external::any(tile);
     let first = M::DRIVEN.next_multiple_of(M::STRIDE);
-    // The driven points and the last by themselves: the loop between knows nothing of them.
+    // The driven points and the tip are handled outside the loop, so that the loop has no special cases.
     for i in 0..first {
         pass_point(simd, (sweep, i, i % M::STRIDE, true), step, tile, scratch, &mut elements, acted);
     }
     let mut i = first;
-    // Not `i + STRIDE < n`, from which the compiler does not learn that i + 1 is below n.
+    // Not `i + STRIDE < n`: from that, the compiler cannot infer that i + 1 is below n.
     while i < n.saturating_sub(M::STRIDE) {
         pass_point(simd, (sweep, i, 0, false), step, tile, scratch, &mut elements, acted);
         if M::STRIDE == 2 {
@@ -145,8 +155,8 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
     elements.band.eliminate(simd, M::PROFILE, n - 1, scratch.factors);
 }
 
-/// Adds everything that begins at the walk's next point i, and what acts on point i+1, and eliminates point i; `phase` is i modulo the model's stride, and
-/// `driven` tells the points by the root.
+/// Adds all elements that begin at the current point i and all forces on point i+1, then eliminates point i.
+/// `phase` is i modulo the model's stride. `driven` is set for the points next to the root.
 #[inline(always)]
 fn pass_point<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -171,7 +181,7 @@ fn pass_point<S, M, const B: usize, const N: usize>(
             &mut scratch.reborrow(),
         );
     }
-    // Asked here, so that what it looks at is at hand for what follows.
+    // Evaluated before `add_point`, so that the data it loads is in the cache for what follows.
     let acts_across = M::acts_across(simd, i, tile, scratch);
     add_point(simd, (sweep, i, phase), step, tile, scratch, elements);
     eliminate(simd, (i, driven), scratch, elements);
@@ -180,7 +190,7 @@ fn pass_point<S, M, const B: usize, const N: usize>(
     }
 }
 
-/// Eliminates the force of the spring across the four points from `i` on, by itself.
+/// Eliminates the force of the spring that spans the four points from `i` on.
 #[inline(never)]
 fn eliminate_across<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -201,7 +211,7 @@ fn eliminate_across<S, M, const B: usize, const N: usize>(
     );
 }
 
-/// Eliminates point i, if the root does not drive it.
+/// Eliminates point i unless the root drives it.
 #[inline(always)]
 fn eliminate<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -213,7 +223,7 @@ fn eliminate<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let band = &mut elements.band;
-    // An angle of the driven first segment is driven too, of the second it is not.
+    // The angle of the first segment is driven as well; that of the second is free.
     let angle = driven && i == 1 && B > 3;
     if angle {
         band.load_pending(simd, M::PROFILE, i, scratch.factors);
@@ -228,7 +238,8 @@ fn eliminate<S, M, const B: usize, const N: usize>(
     }
 }
 
-/// Adds everything that begins at point i, and what acts on point i+1 but for what acts on few; `phase` is i modulo the model's stride.
+/// Adds all elements that begin at point i, and all forces on point i+1 except those that act on few points.
+/// `phase` is i modulo the model's stride.
 #[inline(always)]
 fn add_point<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -261,7 +272,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
     let m_h2 = mass * (a * inv_h2);
     let outset =
         PredictedState { sweep, faster: v - root_velocity, share: sweep.predicted_displacement(step.h), way };
-    // p less a/h² of that, and gravity.
+    // p minus a/h² times the displacement so far, plus gravity.
     let mut p = if step.second_order {
         let before = &tile.history[i + 1];
         let v_before = V3::load(simd, &before[history::V..]);

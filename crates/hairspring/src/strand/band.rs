@@ -1,16 +1,21 @@
-//! The banded direct solver: LDLᵀ without pivoting, blocks of `B` unknowns a point, one sweep down, one up.
+//! Banded direct solver: LDLᵀ without pivoting, in blocks of `B` unknowns a point, with one downward and one
+//! upward sweep.
 //!
 //! ```text
 //!          point i   i+1  i+2           a window of N = B (half-bandwidth + 1) unknowns, upper triangle
 //!   i    [ D  U  U ]                    eliminating point i, for each of its B unknowns r:
-//!   i+1  [    D  U ]                      u_r = A_r − Σ (u_kr / d_k) u_k,   y_r = b_r − Σ (u_kr / d_k) y_k    over the k before r
-//!   i+2  [       D ]                      d_r = u_rr;                    up again:   x_r = (y_r − Σ u_rc x_c) / d_r
+//!   i+1  [    D  U ]           u_r = A_r − Σ (u_kr / d_k) u_k,   y_r = b_r − Σ (u_kr / d_k) y_k    over k < r
+//!   i+2  [       D ]           d_r = u_rr;                    upward:    x_r = (y_r − Σ u_rc x_c) / d_r
 //! ```
 //!
-//! Left-looking: a row is assembled, meets all that were eliminated before it in registers, and is written once, as `u` and `y`. What elements say of the
-//! points ahead waits in memory until then, where those points' factors will be: no window of the matrix is carried through the walk. By single unknowns
-//! rather than by inverted blocks: it is a third fewer operations, because all of the symmetry is used. Golub & Van Loan, *Matrix
-//! Computations*, 4th ed., §4.1.2, §4.3.5. Which unknowns meet is said by a [`Profile`].
+//! The factorization is left-looking. A row is assembled, combined in registers with all rows that were
+//! eliminated before it, and written once, as `u` and `y`. Contributions of elements to later points are
+//! stored in memory, in the place of those points' factors, until the sweep reaches them. No window of the
+//! matrix is carried from point to point.
+//!
+//! The elimination works on single unknowns instead of inverted blocks. It uses all of the symmetry, which
+//! saves a third of the operations. Golub & Van Loan, *Matrix Computations*, 4th ed., §4.1.2, §4.3.5. A
+//! [`Profile`] defines which unknowns are coupled.
 
 use super::{profile::Profile, system::System};
 use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, Work, load, store};
@@ -19,30 +24,35 @@ use std::{
     sync::atomic::{Ordering, compiler_fence},
 };
 
-/// The zero that a sum begins with: adding to −0 is exact for every number, 0 and −0 included, and so costs nothing.
+/// The initial value of sums: −0 is the exact additive identity of floating-point numbers, including 0 and
+/// −0, so the compiler can remove the addition.
 const NOTHING: f32 = -0.0;
 
-/// The part of the matrix that is being worked on, of eight strands: the unknowns of a point and of the half-bandwidth
-/// after it, `N` in all, `B` a point of which the first three are its displacement.
+/// The part of the matrix that is currently worked on, for eight strands: the unknowns of one point and those
+/// within the half-bandwidth after it, `N` in all. Each point has `B` unknowns, of which the first three are
+/// its displacement.
 pub struct Band<S: Simd, const B: usize, const N: usize> {
     /// Entry (r, c) for c ≥ r.
     a: [[F<S>; N]; N],
     /// Right-hand side.
     b: [F<S>; N],
-    /// Between the first point and the last.
+    /// The spring between the window's first point and its last.
     far: LongRangeSpring<S>,
 }
 
-/// A spring between the window's first point and its last, which nothing else couples: all that was eliminated before reaches less far. So their block of the
-/// matrix is −k u uᵀ, of rank one, and stays that: eliminating the first point makes −w uᵀ of it, with w = L⁻¹ k u. Three numbers stand for nine in all
-/// that meets the block, and on the last point, where nothing else of the first comes, the spring leaves (k − wᵀ D⁻¹ w) u uᵀ.
+/// A spring between the window's first point and its last. Nothing else couples these two points, because
+/// every element that was eliminated before has a shorter reach.
+///
+/// Their block of the matrix is therefore −k u uᵀ, of rank one. Eliminating the first point turns it into −w
+/// uᵀ, with w = L⁻¹ k u, which again has rank one. Three numbers thus replace the nine of the block. The last
+/// point receives no other contribution of the first; the spring leaves (k − wᵀ D⁻¹ w) u uᵀ on it.
 #[derive(Clone, Copy)]
 struct LongRangeSpring<S: Simd> {
-    /// Its direction, a unit vector from the first point to the last; or zero.
+    /// Unit vector from the first point to the last, or zero.
     u: V3<S>,
-    /// Its stiffness [N/m].
+    /// Stiffness [N/m].
     k: F<S>,
-    /// With how much it pulls [N].
+    /// Tension [N].
     pull: F<S>,
 }
 
@@ -59,7 +69,7 @@ impl<S: Simd, const B: usize, const N: usize> System<S, B> for Band<S, B, N> {
 }
 
 impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
-    /// A window of whose points nothing has been said.
+    /// An empty window.
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let nothing = F::<S>::splat(simd, NOTHING);
@@ -67,7 +77,8 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         Self { a: [[nothing; N]; N], b: [nothing; N], far }
     }
 
-    /// Sets the spring between the window's first point and its last, of a [far](Profile::far) profile: it has direction `u` and stiffness `k`, and `pull`s.
+    /// Sets the spring between the window's first point and its last, with direction `u`, stiffness `k` and
+    /// tension `pull`. Requires a [far](Profile::far) profile.
     #[inline(always)]
     pub fn add_long_range_spring(&mut self, u: V3<S>, k: F<S>, pull: F<S>) {
         self.add_diagonal(0, Sym3::outer(u, k));
@@ -75,7 +86,8 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         self.far = LongRangeSpring { u, k, pull };
     }
 
-    /// Takes up what was [left](Band::leave) of the window's first point, the strand's `i`th, which [`Band::eliminate`] does by itself.
+    /// Adds the [pending rows](Band::store_pending) of the strand's `i`th point to the window's first point.
+    /// [`Band::eliminate`] does this itself.
     #[inline(always)]
     pub fn load_pending(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let rows = profile.rows();
@@ -93,8 +105,9 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         ahead.fill(Work::default());
     }
 
-    /// Leaves what was said of these `points` after the window's first where their factors will be, with what was left of them before: in the rows `ahead`,
-    /// which begin with the next point's.
+    /// Stores the window's entries for `points`, counted from the window's first, where the factors of those
+    /// points will be, and adds the entries that were stored there before. The rows `ahead` begin with those
+    /// of the next point.
     #[inline(always)]
     fn store_pending(&self, simd: S, profile: Profile<B, N>, points: Range<usize>, ahead: &mut [Work]) {
         let add = |value: F<S>, row: &mut Work, before: bool| {
@@ -112,7 +125,8 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         });
     }
 
-    /// Adds `v` to the column of unknown `k` of point `q` in the rows of the displacement of point `p`, wherever the two are.
+    /// Adds `v` to the column of unknown `k` of point `q`, in the rows of the displacement of point `p`. The
+    /// two points may be in any order.
     #[inline(always)]
     pub fn add_column(&mut self, p: usize, (q, k): (usize, usize), v: V3<S>) {
         let c = q * B + k;
@@ -134,7 +148,8 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         self.b[k]
     }
 
-    /// Holds unknown `k` of the window's first point where it is: its rows are cut off from the rest.
+    /// Fixes unknown `k` of the window's first point: removes its coupling to all other unknowns and sets its
+    /// right-hand side to zero.
     #[inline(always)]
     pub fn hold(&mut self, simd: S, k: usize) {
         let zero = F::<S>::splat(simd, 0.0);
@@ -148,7 +163,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         self.b[k] = zero;
     }
 
-    /// Cuts the first point off from the rest in the strands where it is not `free`.
+    /// Decouples the first point from all others in the strands where it is not `free`.
     #[inline(always)]
     pub fn with_checked_lengths(&mut self, simd: S, free: Mask<S>) {
         let zero = F::<S>::splat(simd, 0.0);
@@ -160,16 +175,20 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         }
     }
 
-    /// Eliminates the window's first point, the strand's `i`th, and [leaves](Band::leave) what was said of the others. Its factors
-    /// follow in `factors` on those of the points before it, which begin with zeros for twice [`Profile::REACH`] points: as many that there are not, and as many
-    /// of which nothing has been said.
+    /// Eliminates the window's first point, the strand's `i`th, and [stores](Band::store_pending) the pending
+    /// entries of the other points.
+    ///
+    /// The factors of the point follow in `factors` on those of the points before it. `factors` begins with
+    /// zeros for twice [`Profile::REACH`] points. The first half stands for the missing points before the
+    /// root, the second for points without pending entries.
     #[inline(always)]
     #[allow(clippy::needless_range_loop, reason = "columns count in the row and in the factors")]
     pub fn eliminate(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let minus_one = F::<S>::splat(simd, -1.0);
         let mut pivots = [minus_one; B];
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
-        // A far spring's factors and all that is said of points ahead are too many for the registers: the sooner it is left, the better.
+        // The factors of a long-range spring and all pending entries together exceed the registers, so
+        // entries of later points are stored as early as possible.
         let late = if profile.is_far() { reach } else { 1 };
         let (own, after) = factors[i * rows..][..(2 * reach + 1) * rows].split_at_mut((reach + 1) * rows);
         self.store_pending(simd, profile, 1..late, after);
@@ -181,8 +200,9 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         each!(r of 0 1 2 3, {
             if r < B {
                 let (mut row, mut right) = (self.a[r], self.b[r]);
-                // What the points before have said of it is read here, where it is added to, and not carried through the walk's loop: the compiler would
-                // move all of the window from one place of the stack to another at every point, an eighth of the instructions.
+                // The pending entries of the row are loaded here, where they are added, and not at the top of
+                // the loop over points. Otherwise the compiler copies the whole window from one stack slot to
+                // another at every point, which is an eighth of all instructions.
                 let ahead = &own[reach * rows..][..rows];
                 for c in r..N - B {
                     row[c] += load(simd, &ahead[profile.said(r, c)]);
@@ -190,11 +210,11 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                 right += load(simd, &ahead[profile.said_right(r)]);
                 each!(back of 3 2 1 0, {
                     if back <= reach {
-                        // Costs nothing by itself. Without it the compiler loads all factors long before they are used, and then has to
-                        // put them back into memory: a sixth more instructions.
+                        // The fence itself is free. Without it the compiler loads all factors long before
+                        // they are used and has to spill them: a sixth more instructions.
                         compiler_fence(Ordering::SeqCst);
                         let point = &own[(reach - back) * rows..][..rows];
-                        // What the far spring of the point before has of this row.
+                        // The contribution of the previous point's long-range spring to this row.
                         let mut of_far = F::<S>::splat(simd, NOTHING);
                         each!(k of 0 1 2 3, {
                             let last = profile.last(k);
@@ -248,14 +268,16 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         self.store_pending(simd, profile, late..reach + 1, after);
     }
 
-    /// Says of the window's last point what is left of the far spring once the first has been eliminated or passed.
+    /// Adds the remaining part of the long-range spring to the window's last point, once the first has been
+    /// eliminated or skipped.
     #[inline(always)]
     fn store_pending_long_range(&mut self, u: V3<S>, left: F<S>, pull: F<S>) {
         self.add_diagonal(Profile::<B, N>::REACH, Sym3::outer(u, left));
         self.add_force(Profile::<B, N>::REACH, -(u * pull));
     }
 
-    /// Moves on past the strand's `i`th point without eliminating it: those after it meet nothing of it.
+    /// Advances past the strand's `i`th point without eliminating it. The points after it are not coupled to
+    /// it.
     #[inline(always)]
     pub fn skip_row(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);
@@ -269,7 +291,8 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     }
 }
 
-/// The sweep up: the unknowns of a point, put before those of the points after it in `x`.
+/// One step of the upward sweep: solves for the unknowns of a point and puts them in `x`, before those of the
+/// points after it.
 #[inline(always)]
 pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
     simd: S,
@@ -298,7 +321,8 @@ pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
             if profile.is_far() {
                 sum = load(simd, &factors[profile.far_row(r)]).mul_add(far, sum);
             }
-            // Those found last come last: the sums of three unknowns are one chain from tip to root.
+            // The most recent results are used last: the sums of three unknowns form one dependency chain
+            // from tip to root.
             for c in (r + 1..end + 1).rev() {
                 sum = load(simd, &factors[at + c - r - 1]).mul_add(x[c], sum);
             }

@@ -1,17 +1,22 @@
-//! A spring across all four points of a window: its force is an unknown of its own, eliminated right after the window's first point.
+//! A spring across all four points of a window. Its force is an unknown of its own, eliminated right after
+//! the window's first point.
 //!
 //! ```text
-//! [ A     g  ] [ x ]   [  b ]     g    gradient of its length at each point      s    by how much it is longer than at rest
-//! [ gᵀ  −1/k ] [ λ ] = [ −s ]     λ    its force, k (s + g·x)
+//! [ A     g  ] [ x ]   [  b ]   g  gradient of its length at each point    s  its extension beyond the rest length
+//! [ gᵀ  −1/k ] [ λ ] = [ −s ]   λ  its force, k (s + g·x)
 //!
-//! down, of u, y and d of the first point, and w uᵀ of its far spring:       q = L⁻¹ g₀    h_p = g_p − u_pᵀ D⁻¹ q    h₃ = g₃ + u wᵀ D⁻¹ q
-//!       which leaves κ h hᵀ and −κ ρ h on the three points after it:        1/κ = 1/k + qᵀ D⁻¹ q                    ρ = s + qᵀ D⁻¹ y
-//! up:                                                                       λ = κ (ρ + h·x)    and then y − λ q in the place of y
+//! downward, with u, y, d and w uᵀ of the first point:    q = L⁻¹ g₀    h_p = g_p − u_pᵀ D⁻¹ q    h₃ = g₃ + u wᵀ D⁻¹ q
+//!   which leaves κ h hᵀ and −κ ρ h on the three after it:    1/κ = 1/k + qᵀ D⁻¹ q             ρ = s + qᵀ D⁻¹ y
+//! upward:    λ = κ (ρ + h·x)    and then y − λ q replaces y
+//! (w uᵀ is the long-range spring's block, see `LongRangeSpring` in `band`)
 //! ```
 //!
-//! Put into the matrix it would be k g gᵀ, and between the first point and the last a [far](Profile::far) profile has room for one spring only, which is another's.
-//! As an unknown it meets the three points after by what it leaves there, and the first by its own few numbers, which only those points have that need it. The
-//! solution is the same. Such a matrix has pivots of known sign in any order: Vanderbei 1995, *Symmetric Quasidefinite Matrices*.
+//! Added to the matrix directly, the spring would be the dense block k g gᵀ. Between the first point and the
+//! last, however, a [far](Profile::far) profile has room for a single spring, and that place is taken.
+//!
+//! As an unknown of its own, the force adds entries to the three points after it and stores a few numbers for
+//! the first point. Only points that have such a spring store them. The solution is the same. The pivots of
+//! such a matrix have known signs in any order: Vanderbei 1995, *Symmetric Quasidefinite Matrices*.
 
 use super::{
     profile::Profile,
@@ -19,23 +24,23 @@ use super::{
 };
 use crate::simd::lanes::{F, M3, Simd, Sym3, V3, Work, load, store};
 
-/// A spring across all points of a window, where there are four.
+/// A spring across all points of a window of four points.
 #[derive(Clone, Copy)]
 pub struct BorderedConstraint<S: Simd> {
-    /// The gradient of its length at each point [1].
+    /// Gradient of the spring's length at each point [1].
     pub gradient: [V3<S>; 4],
-    /// By how much it is longer than at rest where the solve begins [m].
+    /// Extension beyond the rest length at the starting point of the solve [m].
     pub longer: F<S>,
-    /// Its stiffness [N/m].
+    /// Stiffness [N/m].
     pub stiffness: F<S>,
 }
 
-/// What the sweep up needs of one whose force has been eliminated.
+/// The numbers of a spring with eliminated force that the upward sweep needs.
 #[derive(Clone, Copy)]
 pub struct Eliminated {
-    /// The point that it was eliminated after.
+    /// The point after which it was eliminated.
     pub point: usize,
-    /// κ, ρ, q and h of the three points after, see above.
+    /// κ, ρ, q, and h of the three points after it; see the module documentation.
     pivot: Work,
     right: Work,
     q: [Work; 3],
@@ -43,7 +48,7 @@ pub struct Eliminated {
 }
 
 impl<S: Simd> BorderedConstraint<S> {
-    /// None.
+    /// A spring without stiffness.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         let zero = F::splat(simd, 0.0);
@@ -58,7 +63,8 @@ impl<S: Simd> BorderedConstraint<S> {
         [a * pull, b * pull, c * pull, d * pull]
     }
 
-    /// Eliminates its force; point `i`, the first of the four, has been [eliminated](super::band::Band::eliminate) or [passed](super::band::Band::pass).
+    /// Eliminates the spring's force. Point `i`, the first of the four, must have been
+    /// [eliminated](super::band::Band::eliminate) or [skipped](super::band::Band::skip_row).
     #[inline(always)]
     pub fn eliminate<const B: usize, const N: usize>(
         &self,
@@ -73,9 +79,9 @@ impl<S: Simd> BorderedConstraint<S> {
         let zero = F::<S>::splat(simd, 0.0);
         let (mut squares, mut right, mut of_far) = (zero, longer, zero);
         for k in 0..3 {
-            // From unknown k+1 of the window on.
+            // The factors from unknown k+1 of the window on.
             let u = &point[profile.row(k)..];
-            // What is kept of a pivot d is −1/d.
+            // For a pivot d, −1/d is stored.
             let l = q[k] * load(simd, &point[profile.pivot(k)]);
             for r in k + 1..3 {
                 q[r] = l.mul_add(load(simd, &u[r - k - 1]), q[r]);
@@ -111,7 +117,8 @@ impl<S: Simd> BorderedConstraint<S> {
 }
 
 impl Eliminated {
-    /// Puts its force, which follows from the unknowns of the three points after it, on the right of its own point.
+    /// Computes the spring's force from the unknowns of the three points after it, and subtracts its effect
+    /// from the right-hand side of its own point.
     #[inline(always)]
     pub fn put_back<S: Simd, const B: usize, const N: usize>(
         &self,

@@ -1,9 +1,10 @@
-//! Queries of colliders from the solve: in single precision, whatever the precision of the solve. A shape is known no better.
+//! Collider queries of the solver. They run in single precision whatever the precision of the solve, because
+//! the shapes are not known more precisely.
 
 use crate::collide::{self, ColliderPose, DeepestPoint};
 use crate::simd::lanes::{F, Mask, Simd, V3};
 
-/// Which points, at `p` [m] in the world, may be inside the collider at the end of the substep.
+/// Returns which points, at world position `p` [m], may be inside the collider at the end of the substep.
 #[inline(always)]
 pub fn broadphase_test<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> Mask<S> {
     Mask::from_single(simd, pose.broadphase_test(simd.single(), p.single()))
@@ -44,7 +45,7 @@ pub fn surface_displacement<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> 
     V3::from_single(simd, collide::surface_displacement(simd.single(), pose, p.single()))
 }
 
-/// See [`collide::deepest`].
+/// See [`collide::find_deepest_point`].
 #[inline(always)]
 pub fn find_deepest_point<S: Simd>(
     simd: S,

@@ -1,21 +1,27 @@
-//! Contact inside the solve: a point that a collider holds out is pressed there, and rubs, while the strand moves as a whole.
+//! Contact inside the solve: a collider exerts a normal force and friction on a point while the whole strand
+//! is solved.
 //!
 //! ```text
-//!   N ← max(0, N − k (g + n·δ))       g the gap [m], n the normal, δ what the solve moves the point by, k = STRETCH m/h²
+//!   N ← max(0, N − k (g + n·δ))       g the gap [m], n the normal, k = STRETCH m/h²,
+//!                                     δ the displacement of the point in the solve
 //! ```
 //!
-//! The normal force N is carried from substep to substep like a segment's tension (an augmented Lagrangian, Alart & Curnier 1991, *A
-//! Mixed Formulation for Frictional Contact Problems*), so that tension, weight and N are in balance in one solve. Were contact
-//! only what [`super::post_solve`] makes of it, a taut strand over a cylinder would sink in and be pushed out again in every
-//! substep, from root to tip: half a millimetre along the surface each time, which ran it off toward its root.
+//! The normal force N is carried from substep to substep, as the tension of a segment is (an augmented
+//! Lagrangian, Alart & Curnier 1991, *A Mixed Formulation for Frictional Contact Problems*). Tension, weight
+//! and N are thus in balance in one solve. With contact in [`super::post_solve`] alone, a taut strand over a
+//! cylinder sank in and was pushed out again in every substep, from root to tip. Each time it moved half a
+//! millimeter along the surface, and so ran off toward its root.
 //!
-//! Friction is −μN s/|s| of the slide s along the surface, with |s| of the substep before (the lagged secant of Li et al. 2020,
-//! *Incremental Potential Contact*, §5, for one step): what slides slower from substep to substep comes to a stop, what is
-//! pulled harder than μN gathers speed. The secant is no stiffer than [`STICK`] k: a strand at rest creeps by up to μN over that a substep (μ times
-//! 13 µm/s under its own weight, at four substeps). What is stiffer creeps less and is slower to start where it is pulled a little harder than
-//! friction holds, since its slide grows from substep to substep by that ratio.
+//! Friction is −μN s/|s|, where s is the slide along the surface. |s| is taken from the substep before (the
+//! lagged secant of Li et al. 2020, *Incremental Potential Contact*, §5, for one step). A point that slides
+//! slower in every substep comes to rest; one that is pulled with more than μN accelerates.
 //!
-//! Only points with N > 0 take part. It begins in `post_solve`, with the push that a point needed.
+//! The secant stiffness is at most [`STICK`] k. A strand at rest therefore creeps by up to μN over that
+//! stiffness in a substep: μ times 13 µm/s under its own weight, at four substeps. A higher limit reduces the
+//! creep, but slows the onset of sliding when the pull is only a little larger than the friction limit,
+//! because the slide grows from substep to substep by their ratio.
+//!
+//! Only points with N > 0 take part. N starts in `post_solve`, from the correction that pushed the point out.
 
 use super::{
     assemble::SubstepContext,
@@ -28,24 +34,25 @@ use super::{
 use crate::collide::ColliderPose;
 use crate::simd::lanes::{F, Simd, Sym3, V3, Work, load, store};
 
-/// Rows of scratch a point, written where any of the eight is in contact.
+/// Rows of scratch a point. They are written where at least one of the eight points is in contact.
 pub mod scratch {
     /// Outward normal, 3 rows.
     pub const NORMAL: usize = 0;
     /// Gap before the solve, negative inside [m].
     pub const GAP: usize = 3;
-    /// From here on the same of the segment to the point, at its place that is pressed.
+    /// From here on, the same rows for the segment that ends at the point, at its contact position.
     pub const SEGMENT: usize = 4;
     /// Rows a point.
     pub const ROWS: usize = 8;
 }
 
-/// How many times stiffer than contact friction is that holds [1]: by trial, between creep on a slope (0.36 mm in 10 s at 1, 0.02 at 16) and the load
-/// at which a strand over a cylinder slips (at μ = 1 high by 6 % at 1, by 10 % at 16).
+/// Ratio of the stiffness of sticking friction to that of contact [1]. The value is a compromise, found by
+/// trial, between creep on a slope (0.36 mm in 10 s at 1, 0.02 mm at 16) and the load at which a strand over
+/// a cylinder slips (at μ = 1 too high by 6 % at 1, by 10 % at 16).
 pub const STICK: f32 = 8.0;
 
-/// Adds contact to point `i`, the second of the window, which is at `x` from the root, drifts by
-/// `drift` and is by then `way` from where the substep began.
+/// Adds the contact of point `i`, the second of the window. `x` is its position relative to the root, `drift`
+/// its predicted displacement, and `way` its displacement since the start of the substep, including `drift`.
 #[inline(always)]
 pub fn assemble_contact<S: Simd, const B: usize>(
     simd: S,
@@ -64,7 +71,7 @@ pub fn assemble_contact<S: Simd, const B: usize>(
         nearest(simd, step.obstacles, x + step.root.position);
     gap -= load(simd, &tile.rest[i][rest::CLEARANCE]);
 
-    // Shut while N could close the gap in a substep; what has gone farther is let go.
+    // The contact is closed while N could close the gap within a substep. Points farther away are released.
     let m_h2 = load(simd, &tile.rest[i][rest::MASS]) * (1.0 / (step.h * step.h));
     let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
     let force = shut.select(force, zero);
@@ -86,17 +93,17 @@ pub fn assemble_contact<S: Simd, const B: usize>(
     );
 }
 
-/// What eight places see of the surface that is nearest to each.
+/// The nearest surface, as seen from eight places.
 pub struct Surface<S: Simd> {
     /// Distance, negative inside [m].
     pub distance: F<S>,
     /// Unit normal, outward.
     pub normal: V3<S>,
-    /// How far the surface moves there in the substep [m].
+    /// Displacement of the surface there in the substep [m].
     pub carried: V3<S>,
 }
 
-/// The surface that is nearest to `world`. A function by itself, for all models and sweeps, like `post_solve`'s `place`.
+/// Finds the surface nearest to `world`. Not inlined: all models and sweeps share one copy.
 #[inline(never)]
 pub fn nearest<S: Simd>(simd: S, obstacles: &[ColliderPose], world: V3<S>) -> Surface<S> {
     simd.vectorize(
@@ -117,7 +124,7 @@ pub fn nearest<S: Simd>(simd: S, obstacles: &[ColliderPose], world: V3<S>) -> Su
     )
 }
 
-/// The force that presses point `i` once the solve has moved it by `delta`.
+/// Updates the normal force on point `i` after the solve has moved the point by `delta`.
 #[inline(always)]
 pub fn update_contact_multiplier<S: Simd>(
     simd: S,

@@ -1,24 +1,29 @@
-//! Drag of the air on a fiber, from measurements on cylinders.
+//! Aerodynamic drag on a fiber, from measurements on cylinders.
 //!
-//! With U the velocity of the air relative to the fiber, split into U_n across and U_t along it, and Re = |U_n| d/ν, the force per length is
+//! U is the velocity of the air relative to the fiber, split into U_n across and U_t along it, and Re = |U_n|
+//! d/ν. The force per length is
 //!
 //! ```text
-//! F_n = μ k_n(Re) U_n,   k_n = Re Cd(Re)/2          Cd = 8π / (Re (2.002 − ln Re))   Re ≤ 0.5   Lamb 1932, Hydrodynamics, §343
-//!                                                   Cd = 1 + 10 Re^(−2/3)            Re ≥ 2     White 2006, Viscous Fluid Flow, §3-8
+//! F_n = μ k_n(Re) U_n,   k_n = Re Cd(Re)/2     Cd = 8π / (Re (2.002 − ln Re))   Re ≤ 0.5   Lamb 1932, Hydrodynamics, §343
+//!                                              Cd = 1 + 10 Re^(−2/3)   Re ≥ 2   White 2006, Viscous Fluid Flow, §3-8
 //! F_t = μ k_t(Re) U_t,   k_t = min( k_n/2, 0.7 + 2.7 √Re )
 //! ```
 //!
-//! The normal force depends on the normal velocity alone (cross-flow principle). Along the fiber, slender-body theory gives half of the drag
-//! across it (Cox 1970, *The motion of long slender bodies in a viscous fluid*, J. Fluid Mech. 44); from Re ≈ 25 on, the laminar boundary layer
-//! gives 2.7 √Re (Taylor 1952, *Analysis of the swimming of long and narrow animals*, Proc. R. Soc. A 214: 5.4 R^(−1/2) cos i sin^(1/2) i ½ρU²d).
+//! The normal force depends only on the normal velocity (cross-flow principle). Along the fiber, slender-body
+//! theory gives half of the drag across it (Cox 1970, *The motion of long slender bodies in a viscous fluid*,
+//! J. Fluid Mech. 44); from Re ≈ 25 on, the laminar boundary layer gives 2.7 √Re (Taylor 1952, *Analysis of
+//! the swimming of long and narrow animals*, Proc. R. Soc. A 214: 5.4 R^(−1/2) cos i sin^(1/2) i ½ρU²d).
 //!
-//! The kernel evaluates a rational function of √Re. It agrees with Lamb and White, blended over ln Re between Re 0.5 and 2, within 2.2 % from
-//! Re 10⁻³ to 10³, and has the finite limit 1.23 at Re = 0: that of a slender body of some 20 cm, where Lamb's logarithm has none.
+//! The kernel evaluates a rational function of √Re. It agrees with Lamb and White, blended over ln Re between
+//! Re 0.5 and 2, within 2.2 % from Re 10⁻³ to 10³, and has the finite limit 1.23 at Re = 0: that of a slender
+//! body of some 20 cm, where Lamb's logarithm has none.
 //!
-//! A tip has no segment from it. The half segment before it meets the air across itself in every direction: a limp strand whose tip turns with
-//! its last segment flutters in a wind of 5 m/s and never comes to rest.
+//! No segment begins at the tip, so drag on the tip's half segment is isotropic, with the coefficient across
+//! the fiber. If the drag of a limp strand's tip turned with its last segment, the tip would flutter in a
+//! wind of 5 m/s and never come to rest.
 //!
-//! Each substep freezes k_n and k_t at the velocity at its start, so that drag stays linear in the velocity that is solved for.
+//! Each substep keeps k_n and k_t fixed at the velocity at its start, so that drag is linear in the unknown
+//! velocity.
 
 use super::tile::{RestRows, StrandRows, rest, strand};
 use crate::simd::lanes::{F, Simd, V3, load};
@@ -30,7 +35,7 @@ pub const AIR_KINEMATIC_VISCOSITY: f32 = 1.516e-5;
 /// Viscosity μ of air at 20 °C [Pa s]: ν times the density, 1.204 kg/m³.
 pub const AIR_VISCOSITY: f32 = 1.204 * AIR_KINEMATIC_VISCOSITY;
 
-/// Coefficients of drag, force over length, viscosity and the velocity of the air outside the hair [1].
+/// Drag coefficients: force over length, viscosity and the velocity of the air outside the hair [1].
 pub struct Drag<S: Simd> {
     /// k_n.
     pub across: F<S>,
@@ -39,7 +44,8 @@ pub struct Drag<S: Simd> {
 }
 
 impl<S: Simd> Drag<S> {
-    /// For a point with this rest shape and the unit tangent `u`, where the air outside the hair moves at `slip` [m/s] relative to it.
+    /// Computes the coefficients for a point with this rest shape and the unit tangent `u`. `slip` is the
+    /// velocity of the air outside the hair relative to the point [m/s].
     #[inline(always)]
     pub fn new(simd: S, strand_rows: &StrandRows, rest_rows: &RestRows, slip: V3<S>, u: V3<S>) -> Self {
         let normal = slip - u * u.dot(slip);
@@ -52,7 +58,7 @@ impl<S: Simd> Drag<S> {
     }
 }
 
-/// k_n at the square root of a Reynolds number.
+/// k_n as a function of the square root of the Reynolds number.
 #[inline(always)]
 pub fn normal_coefficient<T>(root: T) -> T
 where

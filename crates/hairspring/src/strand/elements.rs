@@ -1,4 +1,5 @@
-//! The walk down a strand that fills the band: what the elastic model and stretch say of each point, and where the solve of a point begins.
+//! The downward sweep that fills the band: the entries of the elastic model and of stretch at each point, and
+//! the starting point of the solve.
 
 use super::{
     assemble::{Linearization, SubstepContext},
@@ -15,26 +16,26 @@ use super::{
 };
 use crate::simd::lanes::{F, Simd, V3, Work, load};
 
-/// The walk down a strand that fills the band: elasticity only.
+/// The downward sweep that fills the band with elastic elements.
 pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
-    /// The window, which begins at the point that the walk is at.
+    /// The window, which begins at the current point.
     pub band: Band<S, B, N>,
     model: M,
-    /// Where the walk is.
+    /// The state of the sweep.
     pub walk: AssemblyCursor<S>,
 }
 
-/// Where a walk down a strand is, and what it knows of all of it.
+/// The position of a downward sweep, and values that hold for all of it.
 #[derive(Clone, Copy)]
 pub struct AssemblyCursor<S: Simd> {
     at: At<S>,
-    /// The next particle, from the root [m].
+    /// Position of the next particle, relative to the root [m].
     pub x: V3<S>,
-    /// How far it has gone since the start of the substep, of a sweep again [m].
+    /// Displacement of that particle since the start of the substep [m]; only used by Newton iterations.
     pub way: V3<S>,
     /// Velocity of the root in the last substep [m/s].
     pub root_velocity: V3<S>,
-    /// What acts alike on all points.
+    /// Forces that are the same at all points.
     pub ambient: UniformForces<S>,
     /// Half of `strand::DRAG` [Pa s].
     half_drag: F<S>,
@@ -43,7 +44,7 @@ pub struct AssemblyCursor<S: Simd> {
 }
 
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
-    /// At the root.
+    /// Starts at the root.
     #[inline(always)]
     pub fn begin(
         simd: S,
@@ -86,8 +87,9 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         Self { band, model, walk }
     }
 
-    /// Adds what begins at the next point `i`: the model's elements, and the stretch of the strand's segment from point i+1. `phase` is i
-    /// modulo the model's stride. Both are known to the walk; it is for the compiler that they are told.
+    /// Adds the elements that begin at the next point `i`: those of the model, and the stretch of the
+    /// strand's segment from point i+1. `phase` is i modulo the model's stride. The cursor knows both; they
+    /// are parameters so that the compiler sees them as constants.
     #[inline(always)]
     pub fn add(&mut self, simd: S, i: usize, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
         let Scratch { edges, fixed, .. } = scratch;
@@ -100,10 +102,11 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let mass = load(simd, &row[rest::MASS]);
         if phase + 1 < M::STRIDE {
             model.add(simd, &walk.at, scratch, tile, band);
-            // Air does not meet what is no part of the fibre.
+            // Extra particles are not part of the fiber and have no drag.
             return Segment { u: walk.at.u[1], mass, air: F::splat(simd, 0.0) };
         }
-        // What the step before had in hand is read again: it would wait in memory all the same.
+        // Loaded again instead of kept from the previous point, because those values would be spilled to
+        // memory anyway.
         let (before, far) = (next - M::STRIDE, next + M::STRIDE);
         let [v1, v2] =
             [next, far.min(tile.rest.len() - 1)].map(|i| V3::load(simd, &tile.state[i][state::V..]));
@@ -134,7 +137,8 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         Segment { u, mass, air }
     }
 
-    /// Adds the same, and the force of what acts across, which in a solve is eliminated apart.
+    /// Adds the same elements, and the force of the spring across four points, which a solve eliminates
+    /// separately.
     #[inline(always)]
     pub fn add_forces(&mut self, simd: S, i: usize, tile: &mut Tile, scratch: &Scratch) {
         self.add(simd, i, i % M::STRIDE, tile, scratch);
@@ -147,45 +151,49 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     }
 }
 
-/// What the assembly says of the point after the walk's.
+/// Properties of the point after the current one.
 pub struct Segment<S: Simd> {
-    /// Unit vector of the strand's segment from it, zero at the tip.
+    /// Unit vector of the strand's segment that begins at the point; zero at the tip.
     pub u: V3<S>,
-    /// Its mass [kg].
+    /// Mass of the point [kg].
     pub mass: F<S>,
-    /// Drag on the half segments around it, over velocity and the coefficients of `Drag` [N s/m].
+    /// Drag on the two half segments adjacent to the point, over velocity and the coefficients of `Drag` [N
+    /// s/m].
     pub air: F<S>,
 }
 
-/// What acts alike on all points of strands whose points all move as their roots did.
+/// Forces that are the same at all points of a strand, under the assumption that the points move as the root
+/// did.
 #[derive(Clone, Copy)]
 pub struct UniformForces<S: Simd> {
-    /// Gravity, and how the root's own motion changes [m/s²].
+    /// Gravity minus the change of the root's velocity over the substep length [m/s²].
     pub pull: V3<S>,
-    /// The wind that a point feels, where it moves as the root did, and its own velocity [m/s].
+    /// Wind minus the change of the root's velocity in the substep [m/s]. Minus the velocity of a point, it
+    /// is the relative wind at the starting point of the solve.
     pub wind: V3<S>,
 }
 
-/// Where the solve of a point begins, worked out where it is asked for. (Not closures: the compiler may leave those outside of what it builds for the instruction
-/// set, and then each operation in them is a call.)
+/// The starting point of the solve at one point of the strand, evaluated lazily. It is a struct with methods,
+/// not closures: the compiler may leave closures outside of the code that it generates for the instruction
+/// set, and each operation in them then becomes a call.
 pub struct PredictedState<S: Simd> {
     pub sweep: Linearization,
-    /// Its velocity less the root's [m/s].
+    /// Velocity of the point relative to the root [m/s].
     pub faster: V3<S>,
     /// See [`Linearization::predicted_displacement`] [s].
     pub share: f32,
-    /// How far it has gone since the start of the substep, of a sweep again [m].
+    /// Displacement since the start of the substep [m]; only used by Newton iterations.
     pub way: V3<S>,
 }
 
 impl<S: Simd> PredictedState<S> {
-    /// From where the root takes it [m].
+    /// Predicted displacement relative to the root's motion [m].
     #[inline(always)]
     pub fn drift(&self, simd: S) -> V3<S> {
         self.faster * F::splat(simd, self.share)
     }
 
-    /// From where the substep begins [m].
+    /// Displacement since the start of the substep [m].
     #[inline(always)]
     pub fn way(&self, simd: S) -> V3<S> {
         if self.sweep == Linearization::Initial { self.drift(simd) } else { self.way }

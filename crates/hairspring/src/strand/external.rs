@@ -1,7 +1,9 @@
-//! What acts on few points from outside in the solve: a hand's grip and comb, holds, tethers, and what presses from a
-//! collider. Each is a term on the point's own diagonal (a segment's contact: of its two ends) and one on the right.
+//! External forces that act on few points: position springs, anisotropic drag, holds, tethers and collider
+//! contact.
 //!
-//! It is added in memory, before the walk comes to the point (see [`PendingRows`]), by a function by itself: most points meet none of it.
+//! Each is a term on the point's own diagonal block (for a segment contact, on the blocks of its two ends)
+//! and one on the right-hand side. They are added in memory, before the sweep reaches the point (see
+//! [`PendingRows`]), by a function that is not inlined, because most points have none of them.
 
 use super::{
     assemble::{Linearization, SubstepContext},
@@ -16,31 +18,33 @@ use super::{
 };
 use crate::simd::lanes::{F, Simd, Sym3, V3, load};
 
-/// Stiffness of a hold in the matrix, over the mass in it [1]: a held point gives way by a millionth of what it would move.
+/// Stiffness of a hold in the matrix relative to the mass term [1]. A held point moves by a millionth of its
+/// free displacement.
 const HOLD: f32 = 1e6;
 
-/// Stiffness of a held frame [N m]: far above any hair's, about 1e-6.
+/// Torsional stiffness of a held frame [N m]: far above that of any hair, which is about 1e-6.
 const HOLD_FRAME: f32 = 1.0;
 
-/// Where the walk is before it adds what begins at a point.
+/// The point whose elements the sweep adds next.
 pub struct Place<S: Simd> {
-    /// The point.
+    /// Index of the point.
     pub i: usize,
-    /// Where it is, from the root [m].
+    /// Position relative to the root [m].
     pub x: V3<S>,
-    /// How far it has gone since the start of the substep, of a sweep again [m].
+    /// Displacement since the start of the substep [m]; only used by Newton iterations.
     pub way: V3<S>,
     /// Velocity of the root in the last substep [m/s].
     pub root_velocity: V3<S>,
 }
 
-/// Whether any point of the tile may be acted on by what is given for whole tiles.
+/// Returns whether the tile has any external forces that are stored for whole tiles.
 pub fn any(tile: &Tile) -> bool {
     let Tile { position_spring, anisotropic_drag, holds, tether_lengths: tethers, .. } = tile;
     !(position_spring.is_empty() && anisotropic_drag.is_empty() && holds.is_empty() && tethers.is_empty())
 }
 
-/// Whether anything is pressed of the point after the `i`th and of the segment from that, in a model of this `stride`.
+/// Returns whether the point after the `i`th, or the segment from that point, is in contact, in a model with
+/// this `stride`.
 #[inline(always)]
 pub fn pressed<S: Simd>(simd: S, stride: usize, i: usize, tile: &Tile) -> bool {
     let mut force = load(simd, &tile.state[i + 1][state::NORMAL_FORCE]);
@@ -50,7 +54,7 @@ pub fn pressed<S: Simd>(simd: S, stride: usize, i: usize, tile: &Tile) -> bool {
     force.simd_gt(0.0).any_true()
 }
 
-/// Adds what acts on the point after `place`, and on the segment from `place`.
+/// Adds the external forces on the point after `place` and the contact of the segment from `place`.
 #[inline(never)]
 pub fn add<S, M, const B: usize, const N: usize>(
     simd: S,

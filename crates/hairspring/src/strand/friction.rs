@@ -1,15 +1,17 @@
-//! Coulomb friction on bodies: a static coefficient for what holds, a kinetic one for what slides.
+//! Coulomb friction on bodies, with a static coefficient for points that stick and a kinetic one for points
+//! that slide.
 //!
 //! ```text
 //!  |f| ▲
-//!  μ N │╱‾╲                      f = μ N [κ + (1 − κ) / (1 + v²/v_s²)]        holds at up to μ N, and to start takes more than to go on
+//!  μ N │╱‾╲                      f = μ N [κ + (1 − κ) / (1 + v²/v_s²)]    sticks up to μ N; starting takes more force
 //! κμ N │    ‾‾‾───────
 //!      └──────────────► v        v the speed along the surface, κ the kinetic over the static coefficient
 //! ```
 //!
-//! The way from one to the other is Stribeck's (1902, *Die wesentlichen Eigenschaften der Gleit- und Rollenlager*), with a fraction in place of the exponential
-//! of Canudas de Wit et al. 1995, *A New Model for Control of Systems with Friction*, and their v_s. A step at the speed that [`super::contact`] tells from
-//! rest, 5 µm/s, would let go whatever trembles.
+//! The transition is that of Stribeck (1902, *Die wesentlichen Eigenschaften der Gleit- und Rollenlager*). It
+//! replaces the exponential of Canudas de Wit et al. 1995, *A New Model for Control of Systems with
+//! Friction*, by a fraction and keeps their v_s. A discontinuous change at 5 µm/s, the smallest speed that
+//! [`super::contact`] distinguishes from rest, would release every point that vibrates.
 
 use super::tile::{StrandRows, strand};
 use crate::simd::lanes::{F, Simd, load};
@@ -17,18 +19,18 @@ use crate::simd::lanes::{F, Simd, load};
 /// v_s of the formula: the speed at which friction is halfway from static to kinetic [m/s].
 const SLIDES: f32 = 1e-3;
 
-/// Of eight strands.
+/// Friction coefficients of eight strands.
 pub struct Friction<S: Simd> {
-    /// μ, of what holds [1].
+    /// Static coefficient μ [1].
     holds: F<S>,
     /// κ [1].
     kinetic: F<S>,
-    /// Slide in a substep that is halfway from static to kinetic, inverse [1/m].
+    /// Inverse of the slide in a substep at which friction is halfway from static to kinetic [1/m].
     halfway: f32,
 }
 
 impl<S: Simd> Friction<S> {
-    /// Of the strands of a tile, in substeps of `h` [s].
+    /// Coefficients of the strands of a tile, in substeps of `h` [s].
     #[inline(always)]
     pub fn of(simd: S, h: f32, rows: &StrandRows) -> Self {
         Self {
@@ -38,20 +40,22 @@ impl<S: Simd> Friction<S> {
         }
     }
 
-    /// Friction of what slides by `slide` in a substep [m], over that of what holds [1].
+    /// Friction at `slide` in a substep [m], relative to static friction [1].
     #[inline(always)]
     fn over_static(&self, slide: F<S>) -> F<S> {
         let (x, one) = (slide * self.halfway, F::splat(slide.simd, 1.0));
         self.kinetic + (one - self.kinetic) / x.mul_add(x, one)
     }
 
-    /// The force over the slide, where `normal` presses [N] and the point `slid` by so much in the substep before [m], more than 0; at most `stiffest` [N/m].
+    /// Secant stiffness of friction: force over slide, for the normal force `normal` [N] and the slide `slid`
+    /// > 0 of the substep before [m]; at most `stiffest` [N/m].
     #[inline(always)]
     pub fn secant(&self, normal: F<S>, slid: F<S>, stiffest: F<S>) -> F<S> {
         (self.holds * normal / slid * self.over_static(slid)).min(stiffest)
     }
 
-    /// The share of a slide of square `slide2` [m²] that does not happen to a point which was pushed out by `depth` [m].
+    /// Share of a slide of square `slide2` [m²] that friction prevents at a point that was pushed out by
+    /// `depth` [m].
     #[inline(always)]
     pub fn share(&self, depth: F<S>, slide2: F<S>) -> F<S> {
         let slide = slide2.max(1e-30).sqrt();

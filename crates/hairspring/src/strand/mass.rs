@@ -1,28 +1,30 @@
-//! How a strand's mass is shared among its points, in f64.
+//! Distributes the mass of a strand over its points, in f64.
 //!
-//! A point has the mass of the half segments on both sides of it. Where the material has a profile w(s), that is
+//! The mass of a point is that of the two half segments adjacent to it. For a material with a mass profile
+//! w(s), it is
 //!
 //! ```text
-//! m_i = c ρA_i ∫ w ds  over the half segments of point i,      c so that Σ m_i is the mass of the strand without a profile
+//! m_i = c ρA_i ∫ w ds  over the half segments of point i,
+//! c such that Σ m_i is the mass of the strand without a profile
 //! ```
 //!
-//! integrated and not sampled, so that a narrow bead keeps its weight however few points a strand has.
+//! The profile is integrated, not sampled, so that a narrow bead keeps its weight for any number of points.
 
 use super::rest_shape::Fibre;
 use std::f64::consts::PI;
 
-/// Mass of one point, and of the segment from it [kg].
+/// Masses of one point and of the segment that begins at it [kg].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mass {
-    /// Of the point: half of each of its segments.
+    /// Mass of the point: half of each adjacent segment.
     pub point: f64,
-    /// The same without a profile.
+    /// Mass of the point without a profile.
     pub even: f64,
-    /// Of the segment from it; 0 at the tip.
+    /// Mass of the segment that begins at the point; 0 at the tip.
     pub segment: f64,
 }
 
-/// The masses of a strand with segments of these `lengths` [m], shape `[points]`.
+/// Returns the masses of a strand whose segments have these `lengths` [m], shape `[points]`.
 pub fn masses(lengths: &[f64], fibre: &Fibre) -> Vec<Mass> {
     let profile = Profile::new(fibre.mass_profile, lengths.iter().sum());
     let mut out = Vec::with_capacity(lengths.len() + 1);
@@ -46,11 +48,11 @@ pub fn masses(lengths: &[f64], fibre: &Fibre) -> Vec<Mass> {
     out
 }
 
-/// Values at equal spacing along a strand, linear in between.
+/// Values at equal spacing along a strand, interpolated linearly.
 enum Profile<'a> {
-    /// The same everywhere.
+    /// Constant along the strand.
     Even,
-    /// From root to tip, two or more, and the length of the strand [m].
+    /// Two or more values from root to tip, and the length of the strand [m].
     Line(&'a [f32], f64),
 }
 
@@ -59,10 +61,10 @@ impl<'a> Profile<'a> {
         if values.iter().all(|v| *v == values[0]) { Self::Even } else { Self::Line(values, length) }
     }
 
-    /// Mean from `from` to `to` [m]; of an even one exactly 1.
+    /// Mean from `from` to `to` [m]; exactly 1 for a constant profile.
     fn mean(&self, from: f64, to: f64) -> f64 {
         let Self::Line(values, length) = *self else { return 1.0 };
-        // Integral from the root, over the spacing.
+        // Integral from the root, divided by the spacing.
         let intervals = (values.len() - 1) as f64;
         let integral = |s: f64| {
             let at = (s / length * intervals).clamp(0.0, intervals);
@@ -111,7 +113,7 @@ mod tests {
         let radii = [4e-5; 5];
         let even = masses(&lengths, &fibre(&radii, &[1.0]));
         let shared = masses(&lengths, &fibre(&radii, &[0.5, 1.5]));
-        // w = ½ + s/L, whose mean over a length is its value in the middle of it.
+        // w = ½ + s/L; its mean over an interval is its value at the center.
         let middles = [0.0025, 0.015, 0.0375, 0.065, 0.09];
         for ((even, shared), middle) in even.iter().zip(&shared).zip(middles) {
             assert!(near(shared.point, even.point * (0.5 + middle / 0.1)), "{shared:?}, {even:?}");
@@ -119,12 +121,12 @@ mod tests {
         let total: f64 = shared.iter().map(|m| m.point).sum();
         let segments: f64 = shared.iter().map(|m| m.segment).sum();
         assert!(near(total, LINE * 0.1) && near(segments, total), "{total} kg, {segments} kg");
-        // Only ratios count, to the last bit where they are one.
+        // Only ratios matter: a constant profile gives bitwise the same masses.
         for same in [&[7.0, 7.0, 7.0][..], &[]] {
             let same = masses(&lengths, &fibre(&radii, same));
             assert!(same.iter().zip(&even).all(|(a, b)| a.point == b.point && a.segment == b.segment));
         }
-        // A taper and a profile: still the mass that the taper has.
+        // A taper with a profile keeps the mass of the taper.
         let tapered = [6e-5, 5e-5, 4e-5, 3e-5, 2e-5];
         let sum = |profile: &[f32]| {
             masses(&lengths, &fibre(&tapered, profile)).iter().map(|m| m.point).sum::<f64>()
@@ -134,7 +136,8 @@ mod tests {
 
     #[test]
     fn a_bead_between_two_points_keeps_its_weight() {
-        // A triangle of 100 over 1 at the middle of the third of four segments, and as wide as half of it.
+        // A triangle of height 100 over 1, at the center of the third of four segments and half as wide as
+        // it.
         let mut profile = [1.0; 33];
         profile[20] = 100.0;
         let lengths = [0.05; 4];
@@ -157,11 +160,12 @@ mod tests {
             ("springs", truss(&particles(&points), &fibre, gravity), 2),
         ] {
             for i in 1..32 {
-                // All beyond the middle of the segment: ∫ (½ + s) ds to the tip, of a whole of 1.
+                // Everything beyond the center of the segment: ∫ (½ + s) ds to the tip, where the whole is 1.
                 let s = (i as f64 + 0.5) / 32.0;
                 let weight = 9.81 * LINE * 0.2 * (0.5 * (1.0 - s) + 0.5 * (1.0 - s * s));
                 let tension = rest.points[stride * i].tension;
-                // A thousandth of the mass is in the extra particles, which hang beside.
+                // The extra particles of the springs model carry a thousandth of the mass and hang next to
+                // the strand.
                 assert!((tension / weight - 1.0).abs() < 3e-3, "{model}: {tension} N for {weight} N at {s}");
             }
         }

@@ -1,4 +1,4 @@
-//! One strand, one band: forces, the banded solver and the substep, for eight strands at a time.
+//! The strand solver: forces, the banded direct solver and the substep, for eight strands at a time.
 
 #[macro_use]
 mod each;

@@ -1,5 +1,6 @@
-//! Internal forces of every model add up to nothing, and so do their moments: a strand cannot push or turn itself. And the stretch
-//! spring, which all models share, is the gradient of its energy.
+//! Tests that the internal forces of every model conserve momentum and angular momentum: their sum and the
+//! sum of their moments vanish, so a strand cannot push or rotate itself. Also tests that the stretch spring,
+//! which all models share, is the gradient of its energy.
 
 use super::{
     assemble::{Linearization, SubstepContext},
@@ -28,10 +29,10 @@ use fearless_simd::Level;
 use glam::{DVec3, Mat3, Vec3};
 use proptest::prelude::*;
 
-/// Forces on the points [N], and moments on the segments' angles [N m], of which only the rod has any.
+/// Forces on the points [N], and moments on the segments' angles [N m]. Only the rod has moments.
 type Forces = (Vec<DVec3>, Vec<f64>);
 
-/// The internal forces of a strand whose rest shape is another one, flat and twisted.
+/// Returns the internal forces of a strand that is deformed, flat and twisted.
 fn internal(s: &reference::Strand, model: Elastic) -> Forces {
     let (mut strand_rows, mut rest_rows, state_rows, _) = rows(s);
     strand_rows[strand::FLAT] = Row([2.0; LANES]);
@@ -55,7 +56,7 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
     forces_of(s, model, (strand_rows, rest_rows, state_rows))
 }
 
-/// The internal forces of the strand in these rows, in double precision where the model has it.
+/// Returns the internal forces of the strand in these rows, in double precision where the model has it.
 fn forces_of(
     s: &reference::Strand,
     model: Elastic,
@@ -88,7 +89,7 @@ fn forces_of(
         Elastic::Straight => walk::<_, Straight, 3, 9>(simd, s, &mut tile),
         Elastic::Curvature => walk::<_, Curvature<_>, 3, 9>(simd, s, &mut tile),
         Elastic::Rod => walk::<_, Rod<_>, 4, 11>(simd, s, &mut tile),
-        Elastic::Springs => unreachable!("the springs model has single precision alone"),
+        Elastic::Springs => unreachable!("the springs model has single precision only"),
     });
     forces
 }
@@ -132,7 +133,8 @@ where
     forces
 }
 
-/// Bending and twisting up to a complete fold: the force is the gradient of the energy, within a thousandth of the largest.
+/// Bending and twisting up to a complete fold: the force is the negative gradient of the energy, within 0.2 %
+/// of its largest value.
 #[test]
 fn the_force_is_the_gradient_of_the_energy_up_to_a_fold() {
     const LENGTH: f64 = 0.008;
@@ -168,7 +170,7 @@ fn the_force_is_the_gradient_of_the_energy_up_to_a_fold() {
                 x: x.clone(),
             };
             let (strand_rows, rest_rows, mut state_rows, mut normals) = rows(&strand);
-            // Frames that are turned against each other.
+            // Frames that are rotated relative to each other.
             for i in 1..n - 1 {
                 let u = (x[i + 1] - x[i]).normalize();
                 normals[i] = glam::DQuat::from_axis_angle(u, aside * i as f64) * normals[i];
@@ -206,7 +208,8 @@ fn the_force_is_the_gradient_of_the_energy_up_to_a_fold() {
 }
 
 proptest! {
-    /// Stretch: the gradient of T (ℓ − L) + ½ k (ℓ − L)², and a matrix that is never negative.
+    /// Stretch: the force is the gradient of T (ℓ − L) + ½ k (ℓ − L)², and the matrix is positive
+    /// semi-definite.
     #[test]
     fn the_stretch_force_is_the_gradient_of_its_energy(
         e in vector(1.0), rest in 0.5..1.5, k in 1.0..100.0, tension in -1.0..10.0,
@@ -220,7 +223,8 @@ proptest! {
             let m = [block.xx, block.xy, block.xz, block.yy, block.yz, block.zz].map(|v| v.lane(3) as f64);
             ((lane(force), m), lane(u))
         });
-        // Of the nearer point, whose move shortens the segment.
+        // The force on the nearer point is the positive gradient, because a move along e shortens the
+        // segment.
         let energy = |e: DVec3| tension * (e.length() - rest) + 0.5 * k * (e.length() - rest).powi(2);
         let gradient = DVec3::from([DVec3::X, DVec3::Y, DVec3::Z].map(|a| (energy(e + a * 1e-5) - energy(e - a * 1e-5)) / 2e-5));
         prop_assert!((ours - gradient).length() < 1e-4 * (k + tension.abs()), "{ours} and {gradient}");
@@ -235,8 +239,9 @@ proptest! {
         prop_assert!((-1e-3 * k..=1.001 * k).contains(&side), "stiffness across {side}");
     }
 
-    /// A strand of the right length, else far from its rest shape: forces add up to nothing, and so do moments where frames are unknowns or there are none. (The
-    /// curvature model's frame takes up what is about its segments: its moments are not checked.)
+    /// For a strand with segments at rest length in an otherwise random shape, the forces sum to zero. So do
+    /// the moments in models whose frames are unknowns or that have no frames. The curvature models are not
+    /// checked for moments: their frame absorbs the moment about a segment.
     #[test]
     fn a_strand_cannot_push_or_turn_itself(
         steps in proptest::collection::vec(vector(0.3), 4..12),
@@ -249,7 +254,7 @@ proptest! {
             let (aside, along) = (2.1 * i as f64).sin_cos();
             x.push(x[i] + (DVec3::new(aside, -1.0, along) + *s).normalize() * 0.008);
         }
-        // Four points in a line have no height; the truss keeps its particles out of line.
+        // Four collinear points have no height. The truss never has four collinear particles.
         let volume = |w: &[DVec3]| (w[1] - w[0]).dot((w[2] - w[0]).cross(w[3] - w[0])).abs();
         prop_assume!(x.windows(4).all(|w| volume(w) > 0.02 * 0.008f64.powi(3)));
         let strand = reference::Strand {
@@ -266,19 +271,19 @@ proptest! {
         for model in [Elastic::Straight, Elastic::Curvature, Elastic::Rod, Elastic::Springs] {
             let (forces, moments) = internal(&strand, model);
             let size: f64 = forces.iter().map(|f| f.length()).sum();
-            prop_assert!(size > 1e-8, "{model:?}: no force to speak of");
+            prop_assert!(size > 1e-8, "{model:?}: forces are too small to test");
             let sum: DVec3 = forces.iter().sum();
-            prop_assert!(sum.length() < 1e-5 * size, "{model:?}: pushes itself by {sum} of {size}");
+            prop_assert!(sum.length() < 1e-5 * size, "{model:?}: net force {sum} of {size}");
             if matches!(model, Elastic::Straight | Elastic::Curvature) {
                 continue;
             }
-            // A rigid turn by ω swings each segment, and turns it about itself by ω·u.
+            // A rigid rotation by ω swings each segment and rotates it about itself by ω·u.
             let mut torque: DVec3 = x.iter().zip(&forces).map(|(x, f)| x.cross(*f)).sum();
             for (w, moment) in x.windows(2).zip(&moments) {
                 torque += (w[1] - w[0]).normalize() * *moment;
             }
             let reach = x.iter().map(|x| x.length()).fold(0.0, f64::max);
-            prop_assert!(torque.length() < 1e-4 * size * reach, "{model:?}: turns itself by {torque} of {}", size * reach);
+            prop_assert!(torque.length() < 1e-4 * size * reach, "{model:?}: net torque {torque} of {}", size * reach);
         }
     }
 }

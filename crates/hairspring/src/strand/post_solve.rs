@@ -1,10 +1,16 @@
-//! The last word on a substep: no segment longer or shorter than ±1 %, no point inside a collider and no segment (`segment`), and then the
-//! velocities.
+//! The last stage of a substep: strain limit, collider contact of points and segments (`segment`), friction,
+//! and velocities.
 //!
-//! One sweep from root to tip. Each segment is clamped to its rest length ± [`LIMIT`] by moving the outer point (follow the
-//! leader, Müller 2012, but only past the limit); a point inside a collider moves to the nearest free position with
-//! the inward motion removed (Liu 2013) and is held back along the surface by Coulomb friction, up to μ times the push. In the
-//! implicit integrators that is for what the solve could not know: points that land, and what projection pushed in (see `contact`).
+//! One sweep from root to tip:
+//!
+//! - Strain limit: each segment is clamped to its rest length ± [`LIMIT`] by moving the outer point (follow
+//!   the leader, Müller 2012, but only beyond the limit).
+//! - Contact: a point inside a collider moves to the nearest free position, and its inward motion is removed
+//!   (Liu 2013).
+//! - Friction: Coulomb friction resists motion along the surface, by up to μ times the correction.
+//!
+//! With the implicit integrators, this stage handles only what the solve could not include: new contacts, and
+//! points that projection pushed into a collider (see `contact`).
 
 use super::{
     assemble::SubstepContext,
@@ -19,21 +25,26 @@ use super::{
 use crate::collide::STEEP;
 use crate::simd::lanes::{F, Mask, Simd, V3, load, store};
 
-/// What a substep leaves behind besides positions.
+/// Parameters of the post-solve stage.
 pub struct PostSolveParams {
-    /// Largest relative change of a segment's length: [`LIMIT`], or infinite for integrators that are shown as they are.
+    /// Largest relative change of a segment's length: [`LIMIT`], or infinite for integrators that are shown
+    /// without correction.
     pub limit: f32,
-    /// Force over mass that a push into the next solve is worth, over its length [1/s²]; 0 where contact is not in the solve.
+    /// Converts a correction into a contact force for the next solve: force over mass and depth [1/s²]; 0
+    /// where contact is not part of the solve.
     pub press: f32,
-    /// Whether what is inside of a collider moves out.
+    /// Whether points inside a collider are moved out.
     pub project: bool,
     /// Whether `scratch.kick` is added to the velocities.
     pub kicks: bool,
 }
 
 impl PostSolveParams {
-    /// The force [N] with which the next solve begins to press what is `depth` inside, where `force` pressed before: by what of the depth did not
-    /// stop an approach by so much in the substep [m]; by all of it, once, where nothing else answers it.
+    /// Returns the initial contact force of the next solve for a point that is `depth` [m] inside, where the
+    /// force was `force` [N].
+    ///
+    /// The force increases by the part of the depth that exceeds the `approach` in the substep [m]. Without
+    /// projection, all of the depth counts, but is not accumulated.
     #[inline(always)]
     pub fn pressed<S: Simd>(&self, force: F<S>, mass: F<S>, depth: F<S>, approach: F<S>) -> F<S> {
         if self.project {
@@ -47,15 +58,20 @@ impl PostSolveParams {
 /// Largest relative change of a segment's length that leaves a substep [1].
 pub const LIMIT: f32 = 0.01;
 
-/// Most times that a point in contact swings out of the collider. On what is round for its segment's length two are enough; in a crease it goes from
-/// wall to wall. By trial, before it went along them: where a man rolls over his hair, 367 points of 48,000 stayed inside with two, 110 with six, 63 with sixteen;
-/// of what is caught between fingers a segment was 1.1 mm deep with twelve.
+/// Largest number of corrections of a point in contact. Two are enough on a surface that is smooth at the
+/// scale of the segment; in a crease the point alternates between the walls.
+///
+/// The value was found by trial, before corrections went along the walls. In a scene with a man rolling over
+/// his hair, 367 of 48,000 points stayed inside with two corrections, 110 with six, and 63 with sixteen. Of
+/// the hair caught between fingers, one segment was 1.1 mm deep with twelve.
 pub const CORRECTIONS: usize = 24;
 
-/// How deep a point may be that is not corrected again, over its segment's length [1]: 0.1 µm for a centimetre, as fine as places in a room are told.
+/// Depth of a point that is not corrected again, over its segment's length [1]: 0.1 µm for a centimeter,
+/// about the precision of world coordinates in a room.
 const SLACK: f32 = 1e-5;
 
-/// Applies strain limit and contact to the new `scratch.edges`, of every `stride`th particle, and writes state.
+/// Applies strain limit and contact to every `stride`th particle of the new `scratch.edges`, and writes the
+/// state.
 #[inline(always)]
 pub fn post_solve<S: Simd>(
     simd: S,
@@ -66,7 +82,7 @@ pub fn post_solve<S: Simd>(
     scratch: &mut Scratch,
 ) {
     let inv_h = F::<S>::splat(simd, 1.0 / step.h);
-    // The root itself, and what it drives.
+    // The root and its driven particles.
     let mut at = Particle { x: V3::zero(simd), way: step.moved };
     for (rows, driven) in tile.state.iter_mut().zip(&*scratch.edges).take(stride + 1) {
         let edge = V3::load(simd, driven);
@@ -74,23 +90,24 @@ pub fn post_solve<S: Simd>(
         edge.store(&mut rows[state::EDGE..]);
         (step.moved * inv_h).store(&mut rows[state::V..]);
     }
-    // By how much the point before is elsewhere than the integrator had it.
+    // Correction of the previous point relative to the integrator's result.
     let mut shift = V3::zero(simd);
     let mut i = 2 * stride;
     while i < tile.rest.len() {
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
         let link = SegmentLimit { length, limit: finish.limit };
-        // From the strand's point before, wherever that is now.
+        // From the corrected position of the previous point.
         let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
         let solved = if stride == 2 { extra + V3::load(simd, &scratch.edges[i]) } else { extra };
         let mut e = solved;
         shift = V3::zero(simd);
-        // A branch, so that a segment waits for the one before it only where something is to be done.
+        // A branch: a segment depends on the previous one only where a correction is needed.
         let world = step.root.position + (at.x + e);
         let wrong = link.wrong(e) | exceeds_lra(simd, tile, i, at.x + e);
         if needs_contact_test(simd, step, tile, (i, world, e)) || wrong.any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
-            // Copies are lent, as of the tile: what is lent itself would wait in memory at every point.
+            // Copies are passed, as for the tile. Passing the originals by reference would force the compiler
+            // to keep them in memory at every point.
             let (at, link) = (at, SegmentLimit { ..link });
             e = V3::select(
                 free,
@@ -107,7 +124,7 @@ pub fn post_solve<S: Simd>(
         }
         let mut last = e;
         if stride == 2 {
-            // An extra particle meets nothing and weighs next to nothing: it goes where its triangle puts it.
+            // An extra particle has no contact and almost no mass: its triangle determines its position.
             if finish.limit.is_finite() {
                 let free = load(simd, &scratch.fixed[i - 1].inverse_mass).simd_gt(0.0);
                 let inverse = load(simd, &scratch.fixed[i - 2].inverse_length);
@@ -121,7 +138,8 @@ pub fn post_solve<S: Simd>(
     }
 }
 
-/// Whether point `i`, which is at `world`, or the segment `e` to it may be inside of a collider.
+/// Returns whether point `i` at world position `world`, or the segment `e` that ends there, may be inside a
+/// collider.
 #[inline(always)]
 fn needs_contact_test<S: Simd>(
     simd: S,
@@ -134,7 +152,8 @@ fn needs_contact_test<S: Simd>(
             return true;
         }
     }
-    // A loop by itself: the compiler would take what the segment alone asks for out of one, and work it out where it is not asked for.
+    // A separate loop: in a common loop, the compiler would hoist the segment's computations to where they
+    // are not needed.
     if !tile.segment_contacts.is_empty() {
         let tolerance = segment_tolerance(simd, tile, i);
         for pose in step.obstacles {
@@ -146,10 +165,11 @@ fn needs_contact_test<S: Simd>(
     false
 }
 
-/// Where point `i` may be that is at `e` from the strand's point before, which is `at`: within the limits of its segment, outside of every
-/// collider.
+/// Returns the corrected offset `e` of point `i` from the strand's previous point `at`: within the limits of
+/// its segment and outside of every collider.
 ///
-/// A function by itself, for all models, integrators and sweeps: most segments need none, and all shapes that there are would else be in each of them.
+/// Not inlined: most segments do not need it, and otherwise each combination of model, integrator and sweep
+/// would contain the code of all collider shapes.
 #[inline(never)]
 fn resolve_contacts<S: Simd>(
     simd: S,
@@ -182,7 +202,8 @@ fn project_particle<S: Simd>(
     }
     let mut press = load(simd, &tile.state[i][state::NORMAL_FORCE]);
     let mut e = link.clamp(apply_lra(simd, tile, i, (at, link), e));
-    // Summed from the root, like in `contact`: far from the world's origin a sum there would lose digits at every point.
+    // Summed relative to the root, as in `contact`. In world coordinates far from the origin, every sum would
+    // lose precision.
     let in_world = |e: V3<S>| step.root.position + (at.x + e);
     for pose in step.obstacles {
         let world = in_world(e);
@@ -191,19 +212,21 @@ fn project_particle<S: Simd>(
         let inside = depth.simd_gt(0.0);
         let mut caught = Mask::splat(simd, false);
         if inside.any_true() {
-            // Out along the normal; then back along the surface, at most μ times as far.
+            // Out along the normal, then back along the surface, by at most μ times the depth.
             let pushed = e + normal * depth;
             let carried = surface_displacement(simd, pose, world);
             let slide = at.way + (pushed - old) - carried;
             let tangent = slide - normal * normal.dot(slide);
             let held = pushed - tangent * friction.share(depth, tangent.dot(tangent));
-            // What of the push did not stop an approach presses on in the next solve (see `contact`).
+            // The part of the correction that did not stop an approach becomes a contact force in the next
+            // solve (see `contact`).
             let v = V3::load(simd, &tile.state[i][state::V..]);
             let approach = normal.dot(carried - v * F::splat(simd, step.h)).max(0.0);
             let mass = load(simd, &tile.rest[i][rest::MASS]);
             press = finish.pressed(press, mass, depth, approach);
-            // The limit again, then out: both hold where they can, and where a strand is caught (behind an
-            // ear) its length goes before its depth, so that it slips free in time.
+            // The strain limit again, then out of the collider. Both hold where possible. Where a strand is
+            // caught (behind an ear), its length has priority over its depth, so that it eventually slips
+            // free.
             let mut q = link.clamp(held);
             let mut wall = V3::zero(simd);
             for correction in 0..=CORRECTIONS {
@@ -219,7 +242,8 @@ fn project_particle<S: Simd>(
                 }
                 let (way, far) = out_of(simd, normal, wall);
                 wall = normal;
-                // What is out keeps its bits, whatever its neighbours in the tile do.
+                // Points that are out are not changed, so that their result does not depend on their
+                // neighbors in the tile.
                 q = V3::select(still, link.clamp(link.swing_out(q, way, left * far)), q);
             }
             if finish.project {
@@ -241,16 +265,21 @@ fn project_particle<S: Simd>(
     e
 }
 
-/// Least sine between a wall and the way out along it: what is caught between walls that are more nearly parallel is not thrown out of them.
+/// Smallest sine between a wall and the way out along it. It bounds the correction of points that are caught
+/// between nearly parallel walls.
 const WEDGE: f32 = 0.25;
 
-/// The way out of a surface with that `normal`, a unit vector, and how far that is for each metre of depth; for what was moved out of another just before,
-/// whose normal `wall` is, 0 if there was none. Walls that face each other squarely have no way along both: straight out of the one it is.
+/// Returns the direction out of a surface with the normal `normal`, as a unit vector, and the distance along
+/// it for each meter of depth.
+///
+/// `wall` is the normal of the surface that the previous correction left, or 0. Two walls that face each
+/// other squarely have no common way out; the result is then the normal itself.
 ///
 /// ```text
-///    wall ╲   ↗╱ surface    straight out of one wall of a crease leads into the other, and back:
-///          ╲ ● ╱            out along that other, both hold
+///    wall ╲   ↗╱ surface    straight out of one wall of a crease leads into the other and back;
+///          ╲ ● ╱            moving out along the other wall satisfies both
 ///           ╲ ╱
+/// ```
 /// ```
 #[inline(always)]
 pub fn out_of<S: Simd>(simd: S, normal: V3<S>, wall: V3<S>) -> (V3<S>, F<S>) {
@@ -260,24 +289,24 @@ pub fn out_of<S: Simd>(simd: S, normal: V3<S>, wall: V3<S>) -> (V3<S>, F<S>) {
     (V3::select(squarely, normal, way), one / squarely.select(one, size.max(WEDGE)))
 }
 
-/// A particle on the walk from root to tip.
+/// A particle in the sweep from root to tip.
 #[derive(Clone, Copy)]
 pub struct Particle<S: Simd> {
-    /// Where it is, from the root [m].
+    /// Position relative to the root [m].
     pub x: V3<S>,
-    /// How far it went in the substep [m].
+    /// Displacement in the substep [m].
     pub way: V3<S>,
 }
 
 impl<S: Simd> Particle<S> {
-    /// The particle after this one, by the edge to it and what that was before the substep.
+    /// The next particle, from the edge to it after (`edge`) and before (`old`) the substep.
     #[inline(always)]
     fn on(&self, edge: V3<S>, old: V3<S>) -> Self {
         Self { x: self.x + edge, way: self.way + (edge - old) }
     }
 }
 
-/// Writes the new edge to particle `i` from the one before, which is `before`, and its velocity; returns where it is.
+/// Stores the new edge from `before` to particle `i` and the particle's velocity. Returns the particle.
 #[inline(always)]
 fn write<S: Simd>(
     simd: S,
@@ -308,16 +337,16 @@ fn write<S: Simd>(
     at
 }
 
-/// What holds a point to the one before it, from which it is at `e`.
+/// The length limit between a point and the previous one.
 pub struct SegmentLimit<S: Simd> {
     /// Rest length of the segment [m].
     pub length: F<S>,
-    /// Largest relative change of it.
+    /// Largest relative change of the length [1].
     limit: f32,
 }
 
 impl<S: Simd> SegmentLimit<S> {
-    /// Where the segment is too long or too short.
+    /// Returns where the segment is too long or too short.
     #[inline(always)]
     fn wrong(&self, e: V3<S>) -> Mask<S> {
         let (size, length) = (e.dot(e), self.length * self.length);
@@ -325,28 +354,29 @@ impl<S: Simd> SegmentLimit<S> {
         size.simd_gt(length * (longest * longest)) | size.simd_lt(length * (shortest * shortest))
     }
 
-    /// The point moved along the segment until its length is within the limit.
+    /// Moves the point along the segment until the length is within the limit.
     #[inline(always)]
     pub fn clamp(&self, e: V3<S>) -> V3<S> {
         let (l, u) = e.length_and_unit();
         V3::select(self.wrong(e), u * self.within(l), e)
     }
 
-    /// How deep a point may be that is not corrected again [m].
+    /// Depth of a point that is not corrected again [m].
     #[inline(always)]
     pub fn slack(&self) -> F<S> {
         self.length * SLACK
     }
 
-    /// The nearest length that is within the limit.
+    /// Clamps a length to the limit.
     #[inline(always)]
     pub fn within(&self, l: F<S>) -> F<S> {
         l.min(self.length * (1.0 + self.limit)).max(self.length * (1.0 - self.limit))
     }
 
-    /// The point swung about the point before until it is `depth` farther out along `normal`: for a flat surface both its length and the surface
-    /// hold at once. (Out and back in turn hardly moves a tip that meets the surface head on.) Where the point before is deeper than the
-    /// segment is long, it points straight out.
+    /// Rotates the segment about the previous point until the point is `depth` farther out along `normal`. On
+    /// a flat surface, this satisfies both the length and the contact at once. (Alternating between the two
+    /// hardly moves a tip that meets the surface head on.) Where the previous point is deeper than the
+    /// segment is long, the segment points straight out.
     #[inline(always)]
     pub fn swing_out(&self, e: V3<S>, normal: V3<S>, depth: F<S>) -> V3<S> {
         let (l, _) = e.length_and_unit();

@@ -1,4 +1,5 @@
-//! What stays as it is for a whole exchange interval, worked out once: inverse masses and lengths, and the springs along the segments.
+//! Values that stay constant for a frame: inverse masses and lengths, and the stiffness of the springs along
+//! the segments.
 
 use super::{
     model::{Stretching, springs},
@@ -7,7 +8,7 @@ use super::{
 };
 use crate::simd::lanes::{F, Simd, Work, load, store};
 
-/// What is known of one point of a tile for a whole interval.
+/// Constants of one point of a tile for a frame.
 #[derive(Clone, Copy, Default)]
 pub struct Precomputed {
     /// Inverse mass [1/kg]; 0 for driven points, held points and the padding.
@@ -16,7 +17,8 @@ pub struct Precomputed {
     pub inverse_length: Work,
     /// Stiffness of the spring along that segment [N/m]; 0 for padding.
     pub along: Work,
-    /// Inverse rest lengths of the springs to the second and third particle after this one, of the springs model [1/m].
+    /// Inverse rest lengths of the springs to the second and third particle after this one; springs model
+    /// only [1/m].
     pub inverse_spans: [Work; 2],
 }
 

@@ -1,12 +1,14 @@
-//! Fast projection: the shortest move, in the metric of mass, onto equal rest lengths.
+//! Fast projection: the smallest displacement, in the mass metric, that restores all segments to their rest
+//! lengths.
 //!
 //! ```text
 //!   C = (ℓ²/L − L) / 2,   ∇C = e/L at the outer point, −e/L at the inner;      (∇C M⁻¹ ∇Cᵀ) λ = C,   Δx = −M⁻¹ ∇Cᵀ λ
 //! ```
 //!
-//! Goldenthal et al. 2007, *Efficient Simulation of Inextensible Cloth*, §3 and §4: a scalar tridiagonal system for a strand, solved
-//! exactly by one sweep up and one down (Thomas), of which the first goes along with that of the solve. Their C needs no root and no unit vector.
-//! The root and the second point are driven.
+//! Goldenthal et al. 2007, *Efficient Simulation of Inextensible Cloth*, §3 and §4. The constraints of a
+//! strand form a scalar tridiagonal system, which one upward and one downward sweep solve exactly (Thomas
+//! algorithm). The upward sweep runs together with that of the solve. This form of C needs no square root and
+//! no unit vector. The root and the second point are driven.
 
 use super::{
     precomputed::Precomputed,
@@ -16,45 +18,47 @@ use super::{
 use crate::simd::lanes::{F, Mask, Simd, V3, Work, load, store};
 use scratch::{C, D};
 
-/// Rows of scratch a segment: the coefficient of the λ before it, and λ without that.
+/// Rows of scratch a segment: the coefficient of the previous λ, and the part of λ that is independent of it.
 pub mod scratch {
-    /// The first of them.
+    /// Coefficient of the previous λ.
     pub const C: usize = 0;
-    /// The second.
+    /// Independent part of λ.
     pub const D: usize = 1;
     /// Rows a segment.
     pub const ROWS: usize = 2;
 }
 
-/// Square of the relative length from which on down the gradient counts as if it were no shorter [1]: C's vanishes with the segment, and the
-/// step that it would ask for grows without end.
+/// Lower bound of the squared relative length in the gradient [1]. The gradient of C vanishes with the
+/// segment's length, and without a bound the step would become arbitrarily large.
 const SHORT: f32 = 0.25;
 
-/// Relative length error below which no further iteration is made [1], of a strand of [`SHORT_STRAND`] points; less in longer ones, which
-/// otherwise tremble with what all of their segments are let off at once.
+/// Relative length error below which projection stops [1], for a strand of [`SHORT_STRAND`] points. The
+/// tolerance is smaller for longer strands, which otherwise vibrate when all of their segments are corrected
+/// at once.
 const ENOUGH: f32 = 1e-4;
 
-/// Points of a strand, see [`ENOUGH`].
+/// Number of points up to which [`ENOUGH`] applies.
 const SHORT_STRAND: f32 = 32.0;
 
-/// An iteration on its way: what is known of the segments from one on to the tip.
+/// The state of an iteration in its upward sweep, from the tip to the current segment.
 pub struct Projection<S: Simd> {
     /// The segment's vector over its rest length [1].
     u: V3<S>,
-    /// Inverse mass of its inner point [1/kg].
+    /// Inverse mass of the segment's inner point [1/kg].
     inner: F<S>,
-    /// Inverse of its row's pivot.
+    /// Inverse pivot of its row.
     inverse: F<S>,
-    /// Its λ without what the λ before it adds.
+    /// The part of its λ that is independent of the previous λ.
     d: F<S>,
-    /// By how much the most wrong of the lengths is more than is enough [m]; not positive where all are right.
+    /// Largest excess of a length error over the tolerance [m]; not positive if all lengths are within
+    /// tolerance.
     worst: F<S>,
-    /// What is enough.
+    /// The tolerance.
     enough: Enough<S>,
 }
 
 impl<S: Simd> Projection<S> {
-    /// Past the tip.
+    /// Starts beyond the tip.
     #[inline(always)]
     pub fn begin(simd: S, tile: &Tile, fixed: &[Precomputed]) -> Self {
         let zero = F::<S>::splat(simd, 0.0);
@@ -63,7 +67,8 @@ impl<S: Simd> Projection<S> {
         Self { u, inner: tip, inverse: zero, d: zero, worst: zero, enough }
     }
 
-    /// Meets the segment from point `i` to the strand's next, as it is in `scratch.edges`. The first, which the root drives, is not met.
+    /// Eliminates the segment from point `i` to the strand's next, as in `scratch.edges`. The first segment
+    /// is driven by the root and must not be passed.
     #[inline(always)]
     pub fn meet(&mut self, simd: S, (stride, i): (usize, usize), tile: &Tile, scratch: &mut Scratch) {
         let Scratch { pulls, edges, fixed, .. } = scratch;
@@ -72,7 +77,7 @@ impl<S: Simd> Projection<S> {
             [&fixed[i].inverse_mass, &fixed[i].inverse_length].map(|r| load(simd, r));
         let (outer, u) = (self.inner, segment(simd, stride, edges, i) * inverse_length);
         let size = u.dot(u);
-        // Nothing to do between two points that are held.
+        // No constraint between two fixed points.
         let (error, excess) = self.enough.error(length, size, (inner + outer).simd_gt(0.0));
         self.worst = self.worst.max(excess);
         // Row i: −w0 (u·u₋) λ₋ + (w0 + w1) u·u λ − w1 (u·u₊) λ₊ = C
@@ -86,7 +91,7 @@ impl<S: Simd> Projection<S> {
         (self.u, self.inner, self.inverse, self.d) = (u, inner, inverse, d);
     }
 
-    /// Meets all segments of `scratch.edges`.
+    /// Eliminates all segments of `scratch.edges`.
     #[inline(always)]
     pub fn meet_all(simd: S, stride: usize, tile: &Tile, scratch: &mut Scratch) -> Self {
         let mut projection = Self::begin(simd, tile, scratch.fixed);
@@ -96,8 +101,9 @@ impl<S: Simd> Projection<S> {
         projection
     }
 
-    /// Moves the points, in the strands that are `asked`, once all segments are met; false where all their lengths are right, before it or after.
-    /// λ times `force` (a/h² of the integrator) goes into the tension.
+    /// Moves the points of the strands in `asked` after all segments have been eliminated, and adds λ times
+    /// `force` (a/h² of the integrator) to the tensions. Returns false if all lengths were within tolerance
+    /// before, or are now.
     #[inline(always)]
     pub fn settle(
         self,
@@ -107,20 +113,22 @@ impl<S: Simd> Projection<S> {
         tile: &mut Tile,
         scratch: &mut Scratch,
     ) -> bool {
-        // Strands whose lengths are right keep their bits, whatever their neighbours in the tile do.
+        // Strands within tolerance are not changed, so that their result does not depend on their neighbors
+        // in the tile.
         let active = asked & self.worst.simd_gt(0.0);
         if !active.any_true() {
             return false;
         }
         let n = tile.rest.len();
-        // Cut to one length that is known here: the loop needs no checks.
+        // Slices of a common length, so that the loop needs no bounds checks.
         let (rest, state) = (&tile.rest[..n], &mut tile.state[..n]);
         let (pulls, fixed, edges) = (&mut scratch.pulls[..n], &scratch.fixed[..n], &mut *scratch.edges);
         let zero = F::<S>::splat(simd, 0.0);
         store(zero, &mut pulls[stride][C]);
         // No segment begins at the tip.
         pulls[n - 1] = Default::default();
-        // Down: λ_i = d_i + c_i λ_{i−1};  Δx_i = w (u_i λ_i − u_{i−1} λ_{i−1}). A segment has its length once both of its ends have moved.
+        // Downward sweep: λ_i = d_i + c_i λ_{i−1};  Δx_i = w (u_i λ_i − u_{i−1} λ_{i−1}). The final length of
+        // a segment is known after both of its ends have moved.
         let (mut lambda, mut pull, mut worst) = (zero, V3::zero(simd), zero);
         let (mut before, mut waiting) = (0, segment(simd, stride, edges, 0));
         let mut i = stride;
@@ -131,15 +139,15 @@ impl<S: Simd> Projection<S> {
             let own = s * load(simd, &fixed[i].inverse_length) * lambda;
             let w = load(simd, &fixed[i].inverse_mass);
             let moved = (own - pull) * w;
-            // The edge into the point that moves, and the one out of it.
+            // The edge that ends at the moved point, and the one that begins there.
             let arriving = if stride == 1 { waiting } else { V3::load(simd, &edges[i]) } + moved;
             arriving.store(&mut edges[i]);
             if stride == 2 && i + 1 < n {
                 (V3::load(simd, &edges[i + 1]) - moved).store(&mut edges[i + 1]);
             }
             waiting = s - moved;
-            // Summed as the next sweep up would, to the bit: where the two differed, it would depend on a strand's neighbours in the tile whether it
-            // is asked again.
+            // Computed bitwise as in the next upward sweep. Otherwise, whether a strand is iterated again
+            // could depend on its neighbors in the tile.
             let now = if stride == 1 { arriving } else { segment(simd, stride, edges, before) };
             let size = now * load(simd, &fixed[before].inverse_length);
             let loose = (load(simd, &fixed[before].inverse_mass) + w).simd_gt(0.0);
@@ -155,19 +163,20 @@ impl<S: Simd> Projection<S> {
     }
 }
 
-/// What error of a length is enough, over the length [1].
+/// Relative tolerance of a length [1].
 struct Enough<S: Simd>(F<S>);
 
 impl<S: Simd> Enough<S> {
-    /// Of the strands of a tile.
+    /// For the strands of a tile.
     #[inline(always)]
     fn of(simd: S, tile: &Tile) -> Self {
         let shorter = F::splat(simd, SHORT_STRAND) / load(simd, &tile.strand[strand::POINTS]);
         Self(shorter.min(1.0) * ENOUGH)
     }
 
-    /// Error of a segment's length, from the square of its relative length, and by how much it is more than enough; none where it is not `loose`. Padding
-    /// has neither length nor inverse length: all of its row is nought.
+    /// Returns the length error of a segment, from the square of its relative length, and the excess of the
+    /// error over the tolerance. The error is 0 where the segment is not `loose`. For padding, which has
+    /// neither length nor inverse length, both are 0.
     #[inline(always)]
     fn error(&self, length: F<S>, size: F<S>, loose: Mask<S>) -> (F<S>, F<S>) {
         let half = F::splat(length.simd, -0.5);

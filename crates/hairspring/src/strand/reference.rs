@@ -1,7 +1,8 @@
-//! The substep's solve again, for one strand, in scalar f64 and with a dense matrix: what the SIMD kernel is held against.
+//! Reference implementation of a substep's solve for one strand, in scalar f64 with a dense matrix. Tests
+//! compare the SIMD kernel with it.
 //!
-//! Written from the energies, not from the kernel: every block comes from finite differences or outer products of plain
-//! gradients, the system is solved by a dense Cholesky.
+//! It is derived from the energies, not from the kernel: every block comes from finite differences or outer
+//! products of plain gradients, and a dense Cholesky factorization solves the system.
 
 use super::{
     drag::normal_coefficient,
@@ -29,19 +30,21 @@ pub struct Strand {
     pub damping: f64,
     pub gravity: DVec3,
     pub wind: DVec3,
-    /// The root's own displacement in the substep.
+    /// Displacement of the root in the substep [m].
     pub moved: DVec3,
     pub h: f64,
 }
 
-/// `v` turned by the least rotation from `a` to `b`, both of length 1: Rodrigues' formula with a × b and a · b. Smooth where they are one, as
-/// differences across a joint need it; `DQuat::from_rotation_arc` rounds small angles away there.
+/// `v` rotated by the smallest rotation from `a` to `b`, both unit vectors: Rodrigues' formula with a × b and
+/// a · b. It is smooth where the two coincide, as differences across a joint require;
+/// `DQuat::from_rotation_arc` rounds small angles to zero there.
 fn swung(a: DVec3, b: DVec3, v: DVec3) -> DVec3 {
     let (c, s) = (a.dot(b), a.cross(b));
     v * c + s.cross(v) + s * (s.dot(v) / (1.0 + c))
 }
 
-/// r of a joint: the rest turn swings with the first segment by the least rotation from where it was.
+/// r of a joint. The rest turn follows the first segment by the smallest rotation from its old direction
+/// `was`.
 pub fn residual(x: [DVec3; 3], lengths: [f64; 2], was: DVec3, turn: DVec3) -> DVec3 {
     let (e0, e1) = (x[1] - x[0], x[2] - x[1]);
     e1 / lengths[1] - e0 / lengths[0] - swung(was, e0.normalize(), turn)
@@ -55,8 +58,11 @@ pub fn bend_energy(x: [DVec3; 3], lengths: [f64; 2], was: DVec3, turn: DVec3, st
 /// GJ/EI of the strands in the tests.
 pub const TWIST_RATIO: f64 = 0.46;
 
-/// The strains of a joint between two segments whose frames have the normals `m0`, `m1` at positions `x0`: the three of bending in the first
-/// frame, and twist as 4 tan(φ/4), faded out near a fold. Frames swing with their segments by the least rotation and turn about them by `angles`.
+/// The strains of a joint: three of bending in the frame of the first segment, and twist as 4 tan(φ/4), faded
+/// out near a fold.
+///
+/// The two segments have frames with the normals `m0` and `m1` at the positions `x0`. A frame follows its
+/// segment by the smallest rotation, and rotates about it by `angles`.
 fn strains(
     x0: [DVec3; 3],
     normals: [DVec3; 2],
@@ -79,7 +85,8 @@ fn strains(
     [r.x, r.y, r.z, z * (2.0 - z) * tau]
 }
 
-/// Energy of bending and twisting [J] of a strand at `x` whose segments' frames had these `normals` at `x0`.
+/// Energy of bending and twisting [J] of a strand at `x`. The frames of its segments had these `normals` at
+/// `x0`.
 pub fn elastic_energy(s: &Strand, normals: &[DVec3], x0: &[DVec3], x: &[DVec3]) -> f64 {
     let joint = |j: usize| {
         let at = |x: &[DVec3]| [x[j - 1], x[j], x[j + 1]];
@@ -92,7 +99,7 @@ pub fn elastic_energy(s: &Strand, normals: &[DVec3], x0: &[DVec3], x: &[DVec3]) 
     (1..s.x.len() - 1).map(joint).sum()
 }
 
-/// The gradients of these strains: three displacements and two angles.
+/// Gradients of these strains with respect to three displacements and two angles.
 fn gradients(x: [DVec3; 3], normals: [DVec3; 2], lengths: [f64; 2], turn: DVec3) -> [[f64; 4]; 11] {
     let mut out = [[0.0; 4]; 11];
     for (k, out) in out.iter_mut().enumerate() {
@@ -117,8 +124,8 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
 }
 
 impl Strand {
-    /// Positions relative to the root after the linearised backward Euler solve, with these normals on the segments at its start; with angles
-    /// among the unknowns where the strand `twists`.
+    /// Positions relative to the root after the linearized backward Euler solve. `normals` are those of the
+    /// segments at its start. With `twists`, angles are among the unknowns.
     pub fn solve(&self, normals: &[DVec3], twists: bool) -> Vec<DVec3> {
         let n = self.x.len();
         let mut a = vec![vec![DMat3::ZERO; n]; n];
@@ -145,8 +152,9 @@ impl Strand {
             let side = (pull.max(self.tension[i]) / l).clamp(0.0, k);
             let tense = (self.tension[i] / l).clamp(0.0, k);
             let turned = sideways(SIDEWAYS.into(), false, tense, (self.mass[i + 1], self.h));
-            // The matrix acts on the whole displacement; the pull turns with a share of the drift, and with all that is solved for beyond it.
-            // What the root drives drifts with it.
+            // The matrix acts on the whole displacement. The tension is linearized at a share of the
+            // predicted displacement, and at everything that the solve adds to it. Driven points move with
+            // the root.
             let inner = if i < 2 { self.v[0] } else { self.v[i] };
             let drift = (self.v[i + 1] - inner) * self.h;
             let force = u * pull + (drift - u * u.dot(drift)) * (turned - side);
@@ -183,7 +191,8 @@ impl Strand {
                 let ratio = if c < 3 { 1.0 } else { TWIST_RATIO * curved_joint(self.turn[j].z) };
                 let stiffness = ratio * self.bend[j];
                 let implicit = stiffness * (1.0 + self.damping / self.h);
-                // The linearised measure of twist: its force has the gradient, its matrix the square.
+                // The linearized twist: its force has the gradient, its matrix the outer product of the
+                // gradient.
                 for p in 0..11 {
                     right[at(p)] -= gradient[p][c] * strain[c] * stiffness;
                     for q in 0..11 {
@@ -192,7 +201,7 @@ impl Strand {
                 }
             }
         }
-        // Driven: the first two points and the first angle; the tip has no segment.
+        // Driven: the first two points and the first angle. No segment begins at the tip.
         let free: Vec<usize> = (6..3 * n).chain(if twists { 3 * n + 1..size - 1 } else { 0..0 }).collect();
         let matrix: Vec<Vec<f64>> =
             free.iter().map(|i| free.iter().map(|j| full[*i][*j]).collect()).collect();

@@ -1,23 +1,27 @@
-//! The rest shape of one strand, in f64: rest lengths, masses, bending stiffness and rest turns, and the sag-free start.
+//! The rest shape of one strand, in f64: rest lengths, masses, bending stiffness and rest turns, and the
+//! sag-free start.
 //!
-//! A groom is authored as it hangs: under gravity, in balance. Taking its shape as the stress-free one would let it
-//! sag in the first second. The sag-free start solves for the rest turns d that make every net force zero, tip to root, exactly:
-//! with B the stiffness of a joint, m = B r its moment vector, W the weight that hangs from a segment,
+//! A groom is authored as it hangs: under gravity, in balance. If its shape were taken as the stress-free
+//! one, it would sag in the first second. The sag-free start solves for the rest turns d that make every net
+//! force exactly zero, from tip to root. With B the stiffness of a joint, m = B r its moment vector, and W
+//! the weight that hangs from a segment,
 //!
 //! ```text
 //! dE/de_i = (m_i − P_{i+1}ᵀ m_{i+1}) / L_i  ,   W_i = T_i û_i + dE/de_i      (segment i in balance; see `bend`)
 //! m_i = (I − ûûᵀ)(L_i W_i + P_{i+1}ᵀ m_{i+1}),   d_i = t_i − t_{i−1} − m_i / B_i
 //! ```
 //!
-//! The moment of a bend also turns the frame of the segment before it; rest twists take that torque (see `rod`), tip to root:
+//! The moment of a bend also rotates the frame of the segment before it. Rest twists balance that torque (see
+//! `rod`), from tip to root:
 //!
 //! ```text
 //! T_{i−1} = T_i + m_i · (û_{i−1} × κ_i),      τ⁰_i = −T_i / (GJ/L̄)_i
 //! ```
 //!
-//! Rest lengths keep; the tension T along the segment is the part that stretch takes. Where a single fibre could not hold
-//! the shape, bending stiffness is raised by the least that does (Hsu et al. 2023, *Sag-Free Initialization for Strand-Based
-//! Hybrid Hair Simulation*, raise it too; what holds a style in life is wax and neighbours).
+//! Rest lengths do not change; the tension T along the segment balances the component that stretch carries.
+//! Where a single fiber cannot hold the shape, the bending stiffness is raised by the smallest sufficient
+//! amount. Hsu et al. 2023, *Sag-Free Initialization for Strand-Based Hybrid Hair Simulation*, raise it too.
+//! In reality, wax and neighboring hair hold such a style.
 
 use super::{
     mass::masses,
@@ -28,38 +32,43 @@ use super::{
 };
 use glam::{DVec3, Vec3};
 
-/// Largest |m|/B of a joint at the sag-free start [rad]: beyond it the linear moment is not a fibre's any more.
+/// Largest |m|/B of a joint at the sag-free start [rad]. Beyond it, the linear moment no longer represents a
+/// fiber.
 const LARGEST_SAG: f64 = 0.5;
 
-// The next three keep the start not only in balance but in a stable one, with room: at the thresholds themselves soft strands left it at a
-// pace of e in 60 ms, and lay 20 cm off after two seconds. With these, none of 64 strands of every preset moved by 0.01 mm in three.
+// The next three constants make the initial equilibrium stable, with a margin. At the exact thresholds, soft
+// strands left it, growing by a factor of e every 60 ms, and were 20 cm away after two seconds. With these
+// values, none of 64 strands of every preset moved by 0.01 mm in three seconds.
 
-/// Largest rest twist of a joint at the sag-free start [rad]: a strand that holds its shape by more twist than this gives way sideways
-/// (the bend-twist instability of a heavy curl), long straight hair with bends in it first.
+/// Largest rest twist of a joint at the sag-free start [rad]. A strand that holds its shape by more twist
+/// buckles sideways (the bend-twist instability of a heavy curl). Long straight hair with bends in it is
+/// affected first.
 const LARGEST_TWIST: f64 = 0.03;
 
-/// Largest natural curvature that the sag-free start bends into a joint, times the fibre's bending length (EI/ρgA)^⅓ [1]. A heavy strand
-/// that is held out by more curvature turns over sideways: the bend-twist threshold Γ* = 0.41 (κL)³ at GJ/EI = 0.46, from which the
-/// length drops out, is at 1.35.
+/// Largest natural curvature that the sag-free start gives a joint, times the fiber's bending length
+/// (EI/ρgA)^⅓ [1]. A heavy strand that is held out by more curvature turns over sideways. The bend-twist
+/// threshold Γ* = 0.41 (κL)³ at GJ/EI = 0.46, which does not depend on the length, is at 1.35.
 const LARGEST_CURVATURE: f64 = 0.9;
 
-/// Bending stiffness kept above the load of what stands above a joint: B·L̄ ≥ 2 (weight moment of the upright part) × (its length). Greenhill
-/// 1881, ρgAL³/EI < 7.84, is at a quarter of that for a straight column; a fibre that leans over or curls gives way sooner.
+/// Safety factor of bending stiffness over the load of what stands above a joint: B·L̄ ≥ 2 (weight moment of
+/// the upright part) × (its length). For a straight column, the threshold of Greenhill 1881, ρgAL³/EI < 7.84,
+/// is a quarter of that. A fiber that leans over or curls buckles sooner.
 const STANDING_SAFETY: f64 = 2.0;
 
-/// What a fibre is made of along one strand.
+/// Properties of a fiber along one strand.
 pub struct Fibre<'a> {
     /// Radius at each point [m].
     pub radii: &'a [f32],
     /// Density [kg/m³].
     pub density: f64,
-    /// How its mass lies along the strand: weights at equal spacing from root to tip; empty: evenly.
+    /// Distribution of the mass along the strand: weights at equal spacing from root to tip. Empty for a
+    /// uniform distribution.
     pub mass_profile: &'a [f32],
     /// Young's modulus times the style's multiplier, at the root [Pa].
     pub young: f64,
-    /// The same at the tip, as a fraction of the root's.
+    /// Young's modulus at the tip, as a fraction of that at the root.
     pub tip: f64,
-    /// How much stiffer the fibre bends in the plane of its frame's normal, ΔB/B.
+    /// Relative additional bending stiffness in the plane of the frame's normal, ΔB/B.
     pub flat: f64,
     /// Twisting over bending stiffness, GJ/EI; `None` for a model without twist.
     pub twist_ratio: Option<f64>,
@@ -71,26 +80,30 @@ pub struct Fibre<'a> {
     pub double: bool,
 }
 
-/// Largest stiffness of an element of the matrix over the inertia m/h² of its points, in single precision [1].
+/// Largest stiffness of an element of the matrix relative to the inertia m/h² of its points, in single
+/// precision [1].
 ///
-/// The matrix entry of a point is its inertia plus the stiffness k of its elements. Rounding the sum to 24 bits changes it by 2⁻²⁴ k. As long as that is well
-/// below m/h², the strand moves as its mass says; above, rounding pushes and brakes the points. 2⁻²⁴ · 4·10⁶ is a quarter. A hair of 40 µm in
-/// segments of 8 mm is at 4, in segments of 1 mm at 10⁴, in segments of 0.1 mm at 10⁸; its damping τ multiplies that by 1 + τ/h.
+/// The matrix entry of a point is its inertia plus the stiffness k of its elements. Rounding the sum to 24
+/// bits changes it by 2⁻²⁴ k. While that is well below m/h², the strand moves according to its mass; above,
+/// rounding accelerates and brakes the points. 2⁻²⁴ · 4·10⁶ is a quarter. A hair of 40 µm is at 4 in segments
+/// of 8 mm, at 10⁴ in segments of 1 mm, and at 10⁸ in segments of 0.1 mm; its damping τ multiplies that by 1
+/// + τ/h.
 const STIFFEST_SINGLE: f64 = 4e6;
 
-/// The same in double precision, whose significand has 29 bits more [1].
+/// The same in double precision, whose significand is 29 bits longer [1].
 const STIFFEST_DOUBLE: f64 = STIFFEST_SINGLE * (1u64 << 29) as f64;
 
 impl Fibre<'_> {
-    /// The largest stiffness that a spring on a point of this mass [kg] may have [N/m], so that the matrix can hold it with its damping.
+    /// Returns the largest stiffness [N/m] of a spring on a point of this mass [kg] that the matrix can
+    /// represent together with its damping.
     pub fn stiffest(&self, mass: f64) -> f64 {
         let most = if self.double { STIFFEST_DOUBLE } else { STIFFEST_SINGLE };
         most * mass / (self.substep * self.substep * (1.0 + self.damping / self.substep))
     }
 }
 
-/// How stiff joints and triangles of a strand of `points` may be over those of a shorter one [1]: what rounding does to one turns all that is
-/// beyond it.
+/// Reduction of the largest stiffness of joints and triangles in a strand of `points`, relative to a shorter
+/// one [1]. A rounding error at one of them rotates everything beyond it.
 pub fn fine(points: usize) -> f64 {
     (512.0 / points as f64).min(1.0)
 }
@@ -102,17 +115,17 @@ pub struct RestPoint {
     pub length: f64,
     /// Mass [kg].
     pub mass: f64,
-    /// Mass of the segment from here [kg].
+    /// Mass of the segment that begins here [kg].
     pub segment_mass: f64,
-    /// Bending stiffness of the joint here [N m].
+    /// Bending stiffness of the joint at this point [N m].
     pub bend: f64,
-    /// Rest turn here, in the frame (normal, binormal, tangent) of the segment before.
+    /// Rest turn of the joint, in the frame (normal, binormal, tangent) of the segment before.
     pub turn: DVec3,
-    /// Rest twist of the joint here.
+    /// Rest twist of the joint.
     pub twist: f64,
-    /// Tension of the segment from here at the start [N].
+    /// Tension of the segment that begins here, at the start [N].
     pub tension: f64,
-    /// The frame's normal on the segment from here.
+    /// The frame's normal on the segment that begins here.
     pub normal: DVec3,
 }
 
@@ -120,19 +133,22 @@ pub struct RestPoint {
 pub struct RestShape {
     /// Shape `[points]`.
     pub points: Vec<RestPoint>,
-    /// What the fibre could not do as it is.
+    /// Changes to the fiber that the shape required.
     pub start: Start,
 }
 
-/// What was changed of fibres so that strands start as they were authored, and what could not be.
+/// Changes to fibers that were needed so that strands start as authored, and changes that were not possible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Start {
-    /// Joints whose bending stiffness the sag-free start raised, by the least that holds the shape: no fibre of the material could.
+    /// Joints whose bending stiffness the sag-free start raised, by the smallest amount that holds the shape:
+    /// no fiber of the material could hold it.
     pub stiffened: usize,
-    /// Joints that are softer than the material, or than the shape asks for, because double precision holds no stiffer ones in a substep of this
-    /// length; more substeps help. (Springs that hold a truss's extra particles are not counted.)
+    /// Joints that are softer than the material, or than the shape requires, because double precision cannot
+    /// represent stiffer ones in a substep of this length. More substeps help. (Springs that hold the extra
+    /// particles of a truss are not counted.)
     pub held_back: usize,
-    /// Strands with the curvature model that are simulated as rods, because they coil by more than one and a half turns: that model has no twist.
+    /// Strands with the curvature model that are simulated as rods, because they coil by more than one and a
+    /// half turns and that model has no twist.
     pub coils: usize,
 }
 
@@ -154,8 +170,8 @@ impl std::iter::Sum for Start {
     }
 }
 
-/// The rest shape of the strand through `points` (three or more, no two neighbours alike) [m], in balance under `gravity` [m/s²],
-/// or stress-free where that is zero.
+/// Returns the rest shape of the strand through `points` [m], in balance under `gravity` [m/s²], or
+/// stress-free if that is zero. Requires three or more points, with no two consecutive ones equal.
 pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     let n = points.len();
     let x: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
@@ -175,24 +191,24 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let r = fibre.radii[j] as f64;
         let young = fibre.young * (1.0 + (fibre.tip - 1.0) * along / total);
         let ei = young * std::f64::consts::FRAC_PI_4 * r.powi(4);
-        // The driven first segment is rigid: its compliance is given to the first joint, so that the strand bends
-        // like one clamped at its root.
+        // The driven first segment is rigid. Its compliance is added to the first joint, so that the strand
+        // bends like one clamped at its root.
         let mean = if j == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[j - 1] + lengths[j]) };
         rest[j].bend = ei / mean;
     }
     let mut start = Start::default();
-    // Holds a joint back; whether it had to.
+    // Limits the stiffness of a joint. Returns 1 if it had to be reduced, else 0.
     let hold_back = |j: usize, at: &mut RestPoint| {
         let shorter = lengths[j - 1].min(lengths[j]);
-        // A joint takes hold of its middle point with both segments, 4 B/L² in all, where a spring does with one: a quarter leaves it the
-        // digits.
+        // A joint acts on its middle point with both segments, 4 B/L² in all, a spring with one only. A
+        // quarter of the stiffness preserves the precision.
         let stiffest = 0.25 * fine(n) * fibre.stiffest(at.mass) * shorter * shorter;
         let asked = at.bend;
         at.bend = asked.min(stiffest);
         usize::from(asked > stiffest)
     };
 
-    // The frame carried along the strand.
+    // The parallel-transported frame of the strand.
     rest[0].normal = t[0].any_orthonormal_vector();
     for i in 1..n - 1 {
         rest[i].normal = transport_normal(rest[i - 1].normal, t[i - 1], t[i]);
@@ -201,7 +217,8 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     if gravity != DVec3::ZERO {
         let up = -gravity.normalize();
         let g = gravity.length();
-        // Weight that hangs beyond, its moment about the joint of what stands above, and the arc length beyond.
+        // The weight that hangs beyond a joint, its moment about the joint where it stands above, and the arc
+        // length beyond.
         let (mut weight, mut below) = (DVec3::ZERO, DVec3::ZERO);
         let (mut mass, mut height, mut arc) = (0.0, 0.0, 0.0);
         let (mut torque, mut torque_after) = (0.0f64, DVec3::ZERO);
@@ -210,10 +227,11 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             mass += rest[i + 1].mass;
             height += mass * e[i].dot(up);
             arc += lengths[i];
-            // The twist torques of the joints at both ends of this segment push it too (see `rod`).
+            // The twist torques of the joints at both ends also act on this segment (see `rod`).
             let unfolded = |j: usize| 0.5 * (t[j - 1] + t[j]).length_squared();
             let binormal = |j: usize| t[j - 1].cross(t[j]) / unfolded(j).max(FOLDED as f64);
-            // How much of its twist a joint that is nearly folded has (see `rod`). It takes at least a tenth here, or would have to be endlessly stiff.
+            // The remaining share of twist in a joint that is nearly folded (see `rod`). At least a tenth is
+            // assumed here; otherwise the joint would need unbounded stiffness.
             let fade = |j: usize| {
                 let z = (unfolded(j) / FOLDING as f64).min(1.0);
                 (z * (2.0 - z)).max(0.1)
@@ -224,7 +242,8 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             rest[i].tension = axial / lengths[i];
             let mean =
                 if i == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[i - 1] + lengths[i]) };
-            // The fibre's own here: with the mean of what hangs beyond, strands with heavy tips gave way.
+            // The local weight per length. With the mean over everything beyond, strands with heavy tips were
+            // unstable.
             let weight_per_length = g * rest[i].mass / mean;
             let held = (moment.length() / LARGEST_CURVATURE).powf(1.5) / weight_per_length.sqrt() / mean;
             let twisting = fibre.twist_ratio.map_or(0.0, |ratio| {
@@ -241,7 +260,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             let frame = rest[i - 1].normal;
             let stiff = frame * (frame.dot(moment) * fibre.flat / (1.0 + fibre.flat));
             let kappa = t[i] - t[i - 1];
-            // Without stiffness, which only what hangs straight down may be, nothing turns it.
+            // A joint without stiffness has no moment: only a strand that hangs straight down may have one.
             let bend = rest[i].bend.max(f64::MIN_POSITIVE);
             rest[i].turn = kappa - (moment - stiff) / bend;
             below = moment * (1.0 + t[i - 1].dot(kappa)) - kappa * t[i - 1].dot(moment);
@@ -259,7 +278,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         }
     }
 
-    // Into the frames.
+    // Converts the rest turns to the frames.
     for i in 1..n - 1 {
         let (d, frame) = (rest[i].turn, rest[i - 1].normal);
         rest[i].turn = DVec3::new(d.dot(frame), d.dot(t[i - 1].cross(frame)), d.dot(t[i - 1]));

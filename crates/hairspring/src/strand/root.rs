@@ -1,4 +1,4 @@
-//! The driven end of a strand: position, direction and frame of its root at any fraction of the interval.
+//! The driven end of a strand: position, direction and frame of its root at any fraction of the frame's time.
 
 use super::{
     frame_context::Substep,
@@ -7,12 +7,12 @@ use super::{
 use crate::simd::lanes::{F, Q4, Simd, V3, load, transform};
 use glam::{Mat3, Vec3};
 
-/// Root of eight strands at one time.
+/// Roots of eight strands at one time.
 #[derive(Clone, Copy)]
 pub struct Root<S: Simd> {
     /// World position [m].
     pub position: V3<S>,
-    /// From the root to the second point [m].
+    /// Vector from the root to the second point [m].
     pub first: V3<S>,
     /// The frame's normal on the first segment, a unit vector across it.
     pub normal: V3<S>,
@@ -25,7 +25,7 @@ impl<S: Simd> Root<S> {
         Self::between(simd, rows, substep.fraction, &substep.anchor)
     }
 
-    /// The root at `fraction` of the interval, where the anchor is at `anchor`.
+    /// The root at `fraction` of the frame's time, where `anchor` is the pose of the anchor.
     #[inline(always)]
     pub fn between(simd: S, rows: &StrandRows, fraction: f32, anchor: &(Mat3, Vec3)) -> Self {
         let t = F::<S>::splat(simd, fraction);
@@ -41,7 +41,7 @@ impl<S: Simd> Root<S> {
         }
     }
 
-    /// From the root to the third point [m], at the end of `substep`.
+    /// Vector from the root to the third point [m], at the end of `substep`.
     #[inline(always)]
     pub fn third(simd: S, rows: &StrandRows, substep: &Substep) -> V3<S> {
         let t = F::<S>::splat(simd, substep.fraction);
@@ -50,7 +50,7 @@ impl<S: Simd> Root<S> {
         transform(simd, &substep.anchor.0, turn.rotate(V3::load(simd, &rows[strand::THIRD..])))
     }
 
-    /// Drag and damping of the strands.
+    /// Drag and damping coefficients of the strands.
     #[inline(always)]
     pub fn fibre(simd: S, rows: &StrandRows) -> (F<S>, F<S>) {
         (load(simd, &rows[strand::DRAG]), load(simd, &rows[strand::DAMPING]))

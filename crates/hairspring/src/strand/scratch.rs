@@ -1,4 +1,4 @@
-//! Working memory of one thread, reused by every tile that it runs.
+//! Working memory of one thread, reused for every tile that it solves.
 
 use super::{
     bordered, contact,
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::simd::lanes::{Simd, V3, Work};
 
-/// Working memory of one thread, as large as the longest tile that it ran.
+/// Working memory of one thread, as large as the longest tile it has solved.
 #[derive(Default)]
 pub struct Memory {
     factors: Vec<Work>,
@@ -22,38 +22,42 @@ pub struct Memory {
     fixed: Vec<Precomputed>,
 }
 
-/// What one tile needs of it, cut to the tile's length, so that walks along the strand need no checks.
+/// The part of the working memory that one tile uses. Arrays have the tile's length, so that loops along the
+/// strand need no bounds checks.
 pub struct Scratch<'a> {
-    /// Factors of the band, point after point, between those that the first and the last would meet; `local_global`'s rows lie over them.
+    /// Factors of the band, point by point, with padding before the first point and after the last.
+    /// `local_global` stores its rows in the same memory.
     pub factors: &'a mut [Work],
-    /// Springs whose force has been eliminated, the last on top; with room for one a point.
+    /// Springs with eliminated force, as a stack with capacity for one a point.
     pub across: &'a mut Vec<bordered::Eliminated>,
-    /// From each particle's predecessor to it, anew, shape `[points + BEYOND]` [m]; see `state::EDGE`.
+    /// New edges: vectors from each particle's predecessor to it, shape `[points + BEYOND]` [m]; see
+    /// `state::EDGE`.
     pub edges: &'a mut [[Work; 3]],
-    /// What is added to the velocities of `(new − old) / h`, shape `[points]` [m/s]; forces before that. Of integrators other than the
-    /// implicit ones.
+    /// Velocity changes in addition to `(new − old) / h`, shape `[points]` [m/s]; used for forces before
+    /// that. Only for integrators other than the implicit ones.
     pub kick: &'a mut [[Work; 3]],
-    /// Changes of the positions in one iteration, shape `[points]` [m].
+    /// Position changes in one iteration, shape `[points]` [m].
     pub change: &'a mut [[Work; 3]],
-    /// What the solve knows of contact, shape `[points]`; see `contact::scratch`.
+    /// Contact data of the solve, shape `[points]`; see `contact::scratch`.
     pub contacts: &'a mut [[Work; contact::scratch::ROWS]],
-    /// What projection has worked out of each segment, shape `[points]`; see `project::scratch`.
+    /// Elimination results of projection for each segment, shape `[points]`; see `project::scratch`.
     pub pulls: &'a mut [[Work; project::scratch::ROWS]],
-    /// What stays as it is for an interval, shape `[points]`.
+    /// Values that stay constant for a frame, shape `[points]`.
     pub fixed: &'a mut [Precomputed],
 }
 
-/// Most rows of factors a point, those of the rod.
+/// Largest number of rows of factors a point: that of the rod.
 const MOST_FACTORS: usize = Profile::<4, 11>::within(10).rows();
 
-/// Most points that meet a point from before it, those of the springs.
+/// Largest number of preceding points that a point is coupled to: that of the springs model.
 const MOST_REACH: usize = Profile::<3, 12>::REACH;
 
-/// Edges after the last, so that three that follow each other can be read at any: they are finite and nothing depends on them.
+/// Edges after the last, so that three consecutive edges can be read at any point. They are finite, and no
+/// result depends on them.
 const BEYOND: usize = 3;
 
 impl Memory {
-    /// What a tile of `points` needs.
+    /// Returns the scratch memory for a tile of `points`.
     #[inline(always)]
     pub fn scratch(&mut self, points: usize) -> Scratch<'_> {
         self.reserve(points);
@@ -69,7 +73,7 @@ impl Memory {
         }
     }
 
-    /// Room for a tile of `points`.
+    /// Grows the memory for a tile of `points`.
     fn reserve(&mut self, points: usize) {
         if self.fixed.len() < points {
             self.factors.resize((points + 2 * MOST_REACH) * MOST_FACTORS, Work::default());
@@ -85,9 +89,9 @@ impl Memory {
 }
 
 impl Scratch<'_> {
-    /// The same, for a function that is no part of the walk: see [`Tile::reborrow`].
+    /// Borrows the same scratch again, for a function outside of the sweep: see [`Tile::reborrow`].
     ///
-    /// [`Tile::reborrow`]: super::tile::Tile::lent
+    /// [`Tile::reborrow`]: super::tile::Tile::reborrow
     #[inline(always)]
     pub fn reborrow(&mut self) -> Scratch<'_> {
         let Self { factors, across, edges, kick, change, contacts, pulls, fixed } = self;

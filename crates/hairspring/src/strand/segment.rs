@@ -1,19 +1,23 @@
-//! Segments stay outside of colliders as points do: where one cuts a corner that its ends stay out of, its outer end swings out until it is
-//! clear (in `post_solve`), and from then on the place that cut is pressed in the solve, like a point (`contact`).
+//! Contact of segments between their ends. Where a segment cuts a corner that its end points stay out of,
+//! `post_solve` rotates its outer end until the segment is out. From then on, the solve applies a contact
+//! force at the place of the cut, as for a point (`contact`).
 //!
 //! ```text
-//!        a ●━━━╲━━━━┓           gap −d at the place s of the segment: the outer end swings about a by d/s,
-//!      ────────┐╲   ┃ b         and a force N n at s is one of (1−s) N n on a and s N n on b
+//!        a ●━━━╲━━━━┓           gap −d at the place s of the segment: the outer end rotates about a by d/s,
+//!      ────────┐╲   ┃ b         and a force N n at s is (1−s) N n on a and s N n on b
 //!      collider│ ╲━━●
 //! ```
 //!
-//! The place is state, like the force: it moves where another is found that cuts, and so a force does not hop about between solves.
+//! The place is part of the state, like the force. It only moves when another place is found inside, so that
+//! the force does not jump between solves.
 //!
-//! Between walls that face each other, swings lead to and fro though there may be room beside. What they have not freed begins anew from one direction
-//! after another, ever farther aside, until it is out or much less deep than it was.
+//! Between walls that face each other, corrections alternate although there may be room to the side. A
+//! segment that they do not free restarts from a sequence of directions, each farther aside, until it is out
+//! or much less deep than before.
 //!
-//! # Missing
-//! A place near the inner end is for the next solve: a strand that is caught, or that lands at 30 m/s, cuts in for a moment.
+//! # Limitations
+//! A cut near the inner end is left to the next solve. A strand that is caught, or that lands at 30 m/s, is
+//! inside for a moment.
 
 use super::{
     assemble::{Linearization, SubstepContext},
@@ -32,49 +36,55 @@ use crate::collide::{ColliderPose, DeepestPoint, Edges, STEEP, Side};
 use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, Work, load, store};
 use glam::Vec3;
 
-/// How deep a segment may be between its ends, over its length [1]. On a smooth body it is always a little inside: by L/8R of its length over a
-/// radius of R. That is no contact: points alone hold it, and a head with segments of a centimetre is a smooth body.
+/// Permitted depth of a segment between its ends, over its length [1]. On a smooth body with radius R, a
+/// segment of length L is always inside by L/8R of its length. That is not treated as a contact, because the
+/// points hold the segment, and a head with segments of a centimeter is a smooth body.
 const SAG: f32 = 0.015;
 
-/// Nearest place to the inner end whose depth the outer end answers wholly, as a part of the segment [1]. What is nearer is for the inner
-/// end, in the next solve: a lever that short would throw the outer one.
+/// Place closest to the inner end whose depth the outer end corrects in full, as a fraction of the segment
+/// [1]. Closer places are left to the inner end, in the next solve: such a short lever would throw the outer
+/// end.
 const NEAREST: f32 = 0.125;
 
-/// The same of a thin box [1], whose edge is met by all places of a segment in turn. By trial: with [`NEAREST`], boxes of 1 mm lost 1 to 3 % of the hair that they
-/// were dragged through.
+/// The same for a thin box, whose edge passes over all places of a segment [1]. Found by trial: with
+/// [`NEAREST`], boxes of 1 mm lost 1 to 3 % of the hair that they were dragged through.
 const NEAREST_OF_BOX: f32 = 0.25;
 
-/// Shortest lever by which an outer end answers a thin box, or a rod thinner than [`THIN_FOR_LEVER`], as a part of the segment [1]: the rest is for the next substep.
+/// Shortest lever for corrections of the outer end at a thin box, or at a rod thinner than
+/// [`THIN_FOR_LEVER`], as a fraction of the segment [1]. The rest is left to the next substep.
 const SHORTEST: f32 = 0.25;
 
 /// Radius of such a rod, over the segment's length [1].
 const THIN_FOR_LEVER: f32 = 1.0 / 6.0;
 
-/// Radius of a rod from which on it may be left near the inner end of a segment, over how deep the segment may be [1].
+/// Radius from which on a rod may be left near the inner end of a segment, over the permitted depth of the
+/// segment [1].
 const THIN_ROD: f32 = 5.0;
 
-/// How deep a segment may be that is not corrected again, over how deep it may be at all [1].
+/// Depth up to which a segment is not corrected again, over the permitted depth [1].
 const ENOUGH: f32 = 1.02;
 
-/// How much deeper than it may be a segment that swings to and fro is left, over its length [1]: what is no deeper is not worth being turned aside.
+/// Excess depth up to which a segment with alternating corrections is left, over its length [1]. A smaller
+/// depth does not justify a restart.
 const LEFT: f32 = 0.5 * SAG;
 
-/// Directions from which such a segment begins anew.
+/// Number of directions from which such a segment restarts.
 const STARTS: usize = 48;
 
-/// Corrections from each of them: what has room there is out by then.
+/// Corrections from each direction. Where there is room, they suffice.
 const OF_EACH: usize = 3;
 
-/// How far aside the last of them is, over the segment's length, in each direction of space [1].
+/// Largest offset of a restart along each axis, over the segment's length [1].
 const FARTHEST: f32 = 1.0;
 
-/// Whether no segment of up to `length` [m] need be looked at beside what is round with this `radius` [m]: it lies within what it may, as long as the limit lets
-/// it become.
+/// Returns whether segments of up to `length` [m] need no test against a round shape with this `radius` [m]:
+/// their depth is within the tolerance at any length that the strain limit permits.
 pub fn segment_contact_unneeded(length: f32, radius: f32) -> bool {
     length * (1.0 + LIMIT).powi(2) <= 8.0 * SAG * radius
 }
 
-/// How much deeper than the surface the segment to point `i` may be between its ends [m]: as deep as it was authored, and what a smooth body takes.
+/// Permitted depth of the segment that ends at point `i`, between its ends [m]: the authored depth plus the
+/// tolerance for smooth bodies.
 #[inline(always)]
 pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
     let inner = i - tile.model.stride();
@@ -82,8 +92,12 @@ pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
     tile.rest_penetration.get(i).map_or(tolerance, |sunk| tolerance - load(simd, sunk))
 }
 
-/// Where point `i` may be, which is at `e` from the strand's point before and was at `old`, so that the segment between them is outside of `pose`. What
-/// held it out presses on in the next solve. The point came in at that `distance` from the surface [m]; those that are `caught` are inside still.
+/// Returns the corrected offset `e` of point `i` from the strand's previous point, so that the segment
+/// between them is outside of `pose`. `old` is the offset before the substep. The contact force of the next
+/// solve is updated.
+///
+/// `distance` is the point's distance from the surface before its own correction [m]. Points that are
+/// `caught` are still inside.
 #[inline(always)]
 pub fn resolve_segment_contact<S: Simd>(
     simd: S,
@@ -96,8 +110,9 @@ pub fn resolve_segment_contact<S: Simd>(
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let a = step.root.position + inner.x;
     let clear = -segment_tolerance(simd, tile, i);
-    // What ends farther from the surface than it is long has no place inside: a distance changes by no more than the way, but for a field between two
-    // nodes on the two sides of a thin wall, where a place near the inner end may be passed over.
+    // A segment whose end is farther from the surface than the segment is long has no place inside, because
+    // distance is 1-Lipschitz. The exception is a field sampled on the two sides of a thin wall, where a
+    // place near the inner end may be missed.
     let far = distance.max(0.0);
     let mut may = caught | (far * far).simd_lt(e.dot(e));
     if may.any_true() {
@@ -106,7 +121,7 @@ pub fn resolve_segment_contact<S: Simd>(
     if !may.any_true() {
         return e;
     }
-    // What is thinner than the segment is long may be pulled through in a substep.
+    // A collider thinner than the segment is long may pass through it within a substep.
     let thin = |edges: &&Edges| link.length.simd_gt(2.0 * edges.half_thickness()).any_true();
     let edges = pose.edges.as_ref().filter(thin);
     let side = edges.map(|edges| {
@@ -131,7 +146,7 @@ pub fn resolve_segment_contact<S: Simd>(
     let last = CORRECTIONS + STARTS * OF_EACH;
     for correction in 0..=last {
         let asked = if correction == 0 { clear } else { clear * ENOUGH };
-        // What is near the inner end is pressed there in the next solve and does not swing the outer one.
+        // A contact near the inner end gets a force in the next solve and does not rotate the outer end.
         let mut place = cut(simd, (pose, &side), (a, q), (if correction == 0 { zero } else { from }, asked));
         let pressed = place;
         let near = place.found & place.at.simd_lt(from);
@@ -140,7 +155,7 @@ pub fn resolve_segment_contact<S: Simd>(
         }
         let (distance, normal) = contact(simd, pose, a + q);
         let between = place.found.select(clear - place.distance, zero);
-        // A swing may have led the end itself inside, around an edge.
+        // The correction may have moved the end itself inside, around an edge.
         let end = allowed - distance;
         let end = end.simd_gt(link.slack()).select(end, zero);
         let end = if correction == 0 { caught.select(end, zero) } else { end };
@@ -150,12 +165,13 @@ pub fn resolve_segment_contact<S: Simd>(
         if !(cuts.any_true() || correction == 0 && pressing.any_true()) {
             break;
         }
-        // What is turned aside has to be worth it, or it would be thrown through thin walls for nothing.
+        // A restart must improve the depth considerably; otherwise it could pass through a thin wall without
+        // benefit.
         let bar = if correction <= CORRECTIONS { 1.0 } else { 0.5 };
         let better = depth.simd_lt(least * bar);
         (best, least) = (V3::select(better, q, best), better.select(depth, least));
         if correction == CORRECTIONS || correction == last {
-            // Caught: the least deep that it was, unless that is too deep to be left.
+            // Caught: keep the smallest depth so far, unless that is too deep to be left.
             q = V3::select(cuts, best, q);
             cuts &= least.simd_gt(link.length * LEFT);
             if correction == last || !cuts.any_true() {
@@ -172,12 +188,15 @@ pub fn resolve_segment_contact<S: Simd>(
         let normal = V3::select(first, place.normal, normal);
         let (way_out, far) = out_of(simd, normal, wall);
         wall = normal;
-        // The whole way only where one correction was not enough: springs on an edge would tremble with it, and the rest of a first is pressed in the next solve.
+        // The full correction is applied only after the first one did not suffice. Applied at once, it makes
+        // springs on an edge vibrate, and the remainder of the first becomes a contact force in the next
+        // solve.
         let gained = if correction == 0 { place.at } else { place.at * place.gain };
         let lever = first.select(gained.max(shortest), one);
         let mut out = link.clamp(link.swing_out(q, way_out, depth * far / lever));
         if correction == 0 {
-            // What of the depth did not stop an approach presses on in the next solve, as of points.
+            // The part of the depth that did not stop an approach becomes a contact force in the next solve,
+            // as for points.
             let v = |i: usize| V3::load(simd, &tile.state[i][state::V..]);
             let (v_a, v_b) = (v(i - tile.model.stride()), v(i));
             let way = (v_b - v_a).mul_add(pressed.at, v_a) * F::splat(simd, step.h);
@@ -197,7 +216,7 @@ pub fn resolve_segment_contact<S: Simd>(
             if !finish.project {
                 break;
             }
-            // Back along the surface, at most μ times as far.
+            // Back along the surface, by at most μ times the depth.
             let carried = surface_displacement(simd, pose, e.mul_add(place.at, a));
             let slide = (out - old).mul_add(place.at, inner.way) - carried;
             let tangent = slide - place.normal * place.normal.dot(slide);
@@ -209,7 +228,8 @@ pub fn resolve_segment_contact<S: Simd>(
     q
 }
 
-/// Where the segment from `a` to `a + q` cuts the shape or is past the side of it that it was on, no nearer to its beginning than the part `from` of it.
+/// Returns where the segment from `a` to `a + q` is inside the shape, or past the side that it was on. Places
+/// before the fraction `from` of the segment are ignored.
 #[inline(always)]
 fn cut<S: Simd>(
     simd: S,
@@ -228,11 +248,12 @@ fn cut<S: Simd>(
     }
 }
 
-/// `e` turned aside for the `start`th time, from 1 on: each time in another direction, at first a little and at last by [`FARTHEST`].
+/// `e` displaced for the `start`th restart, counted from 1. Each restart has another direction, and the
+/// offset grows up to [`FARTHEST`].
 #[inline(always)]
 fn perturb<S: Simd>(simd: S, e: V3<S>, start: usize) -> V3<S> {
-    // The additive recurrence R₃, which fills a cube evenly (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"): powers of the root
-    // of x⁴ = x + 1.
+    // The additive recurrence R₃, which fills a cube evenly (Roberts 2018, "The Unreasonable Effectiveness of
+    // Quasirandom Sequences"): powers of the inverse root of x⁴ = x + 1.
     const STEPS: Vec3 = Vec3::new(0.819_172_5, 0.671_043_6, 0.549_700_5);
     let turn = (STEPS * start as f32 + 0.5).fract() * 2.0 - 1.0;
     let far = FARTHEST * (start as f32 / STARTS as f32).powi(2);
@@ -240,9 +261,13 @@ fn perturb<S: Simd>(simd: S, e: V3<S>, start: usize) -> V3<S> {
     V3::splat(simd, turn * far) * l + e
 }
 
-/// Adds contact to the segment from point `i`, the first of the window, to the strand's next, which is in it too. Point `i` is at `x` from the
-/// root, drifts by `drift` and is by then `way` from where the substep began. `stride` is the model's, told and not looked up: the compiler has to know
-/// which entries these are, or all of the band stays in memory.
+/// Adds the contact of the segment from point `i`, the first of the window, to the strand's next, which is in
+/// the window as well.
+///
+/// `x` is the position of point `i` relative to the root, `drift` its predicted displacement, and `way` its
+/// displacement since the start of the substep, including `drift`. `stride` is the model's. It is a parameter
+/// so that the compiler knows which entries of the band are written; otherwise all of the band stays in
+/// memory.
 #[inline(always)]
 pub fn assemble_segment_contact<S: Simd, const B: usize>(
     simd: S,
@@ -260,7 +285,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     }
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let at = load(simd, &rows[segment_contact::AT]);
-    // From this point to the next, now and where the substep began.
+    // The segment from this point to the next, now and at the start of the substep.
     let mut e = V3::load(simd, &edges[outer]);
     let mut old = V3::load(simd, &tile.state[outer][state::EDGE..]);
     if stride == 2 {
@@ -272,7 +297,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     store(at, &mut tile.segment_contacts[outer][segment_contact::AT]);
     let gap = distance + segment_tolerance(simd, tile, outer);
 
-    // Shut while N could close the gap in a substep; what has gone farther is let go.
+    // The contact is closed while N could close the gap within a substep. Segments farther away are released.
     let m_h2 = load(simd, &tile.rest[outer][rest::MASS]) * (1.0 / (step.h * step.h));
     let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
     let force = shut.select(force, zero);
@@ -281,7 +306,8 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     if !shut.any_true() {
         return;
     }
-    // Across the segment: on an edge the surface's own normal jumps between two faces, this one does not.
+    // The normal is made perpendicular to the segment: on an edge, the surface normal jumps between two
+    // faces, and this one does not.
     let (_, u) = e.length_and_unit();
     let (size, across) = (normal - u * normal.dot(u)).length_and_unit();
     let normal = V3::select(size.simd_lt(STEEP), normal, across);
@@ -290,7 +316,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     normal.store(&mut work[scratch::NORMAL..]);
     store(gap, &mut work[scratch::GAP]);
 
-    // What the outer end does besides what the inner one does.
+    // Motion of the outer end relative to the inner one.
     let v = V3::load(simd, &tile.state[i][state::V..]);
     let faster = V3::load(simd, &tile.state[outer][state::V..]) - v;
     let h = F::splat(simd, step.h);
@@ -313,8 +339,9 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     system.add_force(stride, push * at);
 }
 
-/// The surface that is nearest to the place `at` of the segments from `a` to `a + e` (world), and that place; on an edge of a box, where the
-/// segment crosses it. The distance along the edge's normal has no jump between two faces.
+/// Returns the surface nearest to the place `at` of the segments from `a` to `a + e` (world), and that place.
+/// On an edge of a box, it is the place where the segment crosses the edge; the distance along the edge's
+/// normal is continuous across the two faces.
 #[inline(never)]
 fn nearest_edge<S: Simd>(
     simd: S,
@@ -344,7 +371,7 @@ fn nearest_edge<S: Simd>(
     )
 }
 
-/// The force that presses the segment from point `i` once the solve has moved its ends by `moved`.
+/// Updates the contact force on the segment from point `i` after the solve has moved its ends by `moved`.
 #[inline(always)]
 pub fn update_segment_contact_multiplier<S: Simd>(
     simd: S,

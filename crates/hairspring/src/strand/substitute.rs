@@ -1,4 +1,4 @@
-//! The sweep up a strand: the solution point after point, added to its edges.
+//! The upward sweep: back-substitutes the solution point by point and adds it to the edges.
 
 use super::{
     assemble::{Linearization, SubstepContext},
@@ -13,7 +13,8 @@ use super::{
 };
 use crate::simd::lanes::{F, Simd, V3, load, store};
 
-/// The sweep up: adds the solution to `scratch.edges`, and to the tensions what the springs took. Projection meets the new segments on it.
+/// The upward sweep. Adds the solution to `scratch.edges`, adds the forces of the stretch springs to the
+/// tensions, and eliminates the new segments for projection.
 #[inline(always)]
 pub fn substitute<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -41,7 +42,8 @@ where
         },
         projection: Projection::begin(simd, tile, scratch.fixed),
     };
-    // The tip and the points by the root by themselves: the loop between knows nothing of them.
+    // The tip and the points next to the root are handled outside the loop, so that the loop has no special
+    // cases.
     let first = M::DRIVEN.next_multiple_of(M::STRIDE);
     up.pass_point::<M, B>(simd, (sweep, n - 1, 0, true), step, tile, scratch);
     let mut i = n - 1;
@@ -58,17 +60,17 @@ where
     up.projection
 }
 
-/// The walk up a strand.
+/// The state of the upward sweep.
 struct BackSubstitution<S: Simd, const N: usize> {
     /// Velocity of the root in the last substep [m/s].
     root_velocity: V3<S>,
-    /// What is known of the point that it was at last.
+    /// The solution at the previous point.
     solved: Solved<S, N>,
     projection: Projection<S>,
 }
 
 impl<S: Simd, const N: usize> BackSubstitution<S, N> {
-    /// Passes point i; `phase` is i modulo the model's stride, and `tip` tells the last.
+    /// Solves for point i. `phase` is i modulo the model's stride, and `tip` is set for the last point.
     #[inline(always)]
     fn pass_point<M: Model<S, B, N>, const B: usize>(
         &mut self,
@@ -99,7 +101,8 @@ impl<S: Simd, const N: usize> BackSubstitution<S, N> {
             }
         }
         if phase == 0 && !tip {
-            // Before this point's is added: those of the points after it.
+            // Called before this point's displacement is added: `solved.moved` holds those of the points
+            // after it.
             update_segment_contact_multiplier(
                 simd,
                 step,
@@ -120,7 +123,7 @@ impl<S: Simd, const N: usize> BackSubstitution<S, N> {
         (edge + (solved.moved[1] - delta)).store(&mut scratch.edges[i + 1]);
         M::take(simd, solved, tile, scratch.fixed);
         if phase == 0 {
-            // Padding has no stiffness, and so takes nothing.
+            // Padding has no stiffness, so its tension stays 0.
             let length = [load(simd, &tile.rest[i][rest::LENGTH]), load(simd, &fixed.inverse_length)];
             let row = &mut tile.state[i][state::TENSION];
             store(load(simd, row) + solved.taken(M::STRIDE, length, solved.along), row);

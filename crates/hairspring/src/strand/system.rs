@@ -1,10 +1,12 @@
-//! What elements add to: a part of the matrix and of the right-hand side, in the window that the walk is at or in memory ahead of it.
+//! The interface through which elements add entries to the matrix and the right-hand side: either to the
+//! current window, or to rows in memory ahead of it.
 
 use super::profile::Profile;
 use crate::simd::lanes::{F, M3, Simd, Sym3, V3, Work, load, store};
 
-/// A part of the matrix and the right-hand side that elements add to, of eight strands: some points that follow each other, `B` unknowns each, of which the
-/// first three are its displacement. Upper triangle only: the first of two unknowns is never after the second.
+/// A part of the matrix and the right-hand side of eight strands: some consecutive points with `B` unknowns
+/// each, of which the first three are the displacement. Only the upper triangle is stored: the first of two
+/// unknowns is never after the second.
 pub trait System<S: Simd, const B: usize> {
     /// Adds to one entry: unknown `j` of point `p` with unknown `k` of point `q`.
     fn add(&mut self, pj: (usize, usize), qk: (usize, usize), value: F<S>);
@@ -56,15 +58,16 @@ pub trait System<S: Simd, const B: usize> {
     }
 }
 
-/// What was said of the window's points before the walk comes to the first, and of the last nothing: in memory, for what acts on few points. Were it added to
-/// the window, all of that would have to be where both sides of a rare branch find it.
+/// Entries of a window's points, except the last, that are added before the sweep reaches its first point.
+/// They are stored in memory, for forces that act on few points. If those were added to the window itself,
+/// the compiler would have to keep the whole window in memory across a rare branch.
 pub struct PendingRows<'a, const B: usize, const N: usize> {
     rows: &'a mut [Work],
     profile: Profile<B, N>,
 }
 
 impl<'a, const B: usize, const N: usize> PendingRows<'a, B, N> {
-    /// Of the points from the strand's `i`th on.
+    /// Rows of the points from the strand's `i`th on.
     #[inline(always)]
     pub fn new(profile: Profile<B, N>, i: usize, factors: &'a mut [Work]) -> Self {
         let (rows, reach) = (profile.rows(), Profile::<B, N>::REACH);

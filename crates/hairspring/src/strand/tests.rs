@@ -1,4 +1,4 @@
-//! The kernel's pieces, each held against scalar f64.
+//! Tests of the kernel's parts against scalar f64 implementations.
 
 use super::{
     assemble::{Linearization, SubstepContext, assemble},
@@ -35,7 +35,7 @@ pub fn vector(size: f64) -> impl Strategy<Value = DVec3> {
     (-size..size, -size..size, -size..size).prop_map(|(x, y, z)| DVec3::new(x, y, z))
 }
 
-/// All lanes the same vector.
+/// A vector that is the same in all lanes.
 pub fn splat<S: Simd>(simd: S, v: DVec3) -> V3<S> {
     V3::splat(simd, v.as_vec3())
 }
@@ -44,15 +44,17 @@ pub fn lane<S: Simd>(v: V3<S>) -> DVec3 {
     DVec3::new(v.x.lane(3) as f64, v.y.lane(3) as f64, v.z.lane(3) as f64)
 }
 
-/// What begins at a point of a band with far springs: the direction, the stiffness and the pull of one; and of one across all four points the direction, the
-/// gradient over that, the stiffness and by how much it is longer.
+/// Springs that begin at a point of a band with long-range springs: for `far`, the direction, the stiffness
+/// and the tension; for `across`, which spans four points, the direction, the coefficients of the gradient,
+/// the stiffness and the extension.
 #[derive(Clone, Copy, Debug)]
 struct Held {
     far: (DVec3, f64, f64),
     across: Option<(DVec3, [f64; 4], f64, f64)>,
 }
 
-/// Solves a banded system of `B` unknowns a point with the kernel's band, in which the first `driven` points do not move.
+/// Solves a banded system of `B` unknowns a point with the kernel's band. The first `driven` points do not
+/// move.
 fn band_solve<S: Simd, const B: usize, const N: usize>(
     simd: S,
     profile: Profile<B, N>,
@@ -65,7 +67,7 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
     let mut eliminated = Vec::new();
     for i in 0..n {
         let mut band = Band::<S, B, N>::new(simd);
-        // Everything whose first point is i.
+        // All elements whose first point is i.
         for r in i * B..(i + 1) * B {
             for (c, value) in a[r].iter().enumerate().take(n * B).skip(r) {
                 if *value != 0.0 {
@@ -100,7 +102,8 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
     out
 }
 
-/// A random band LLᵀ + I is positive definite: `half` unknowns wide, and no point's unknowns meet those beyond the window of its first.
+/// A random positive definite band matrix LLᵀ + I with half-bandwidth `half`. The unknowns of a point are not
+/// coupled to any beyond its window.
 fn banded(points: usize, [block, window, half]: [usize; 3], noise: &[f64]) -> Vec<Vec<f64>> {
     let n = points * block;
     let l = |i: usize, j: usize| {
@@ -143,8 +146,9 @@ proptest! {
         agree::<3, 12>(11, points, &noise)?;
     }
 
-    /// It is one, too, where all that holds a point and the third after it is a spring in one direction, however stiff, and here and there one across all four
-    /// points, whose force is an unknown of its own; with points at the root that are driven.
+    /// The band solver also agrees where a point and the third after it are coupled by a spring in one
+    /// direction, of any stiffness. Some points also have a spring across all four points, whose force is an
+    /// unknown of its own, and some points at the root are driven.
     #[test]
     fn springs_to_the_third_point_are_their_blocks_of_the_matrix(
         points in 4usize..20,
@@ -155,7 +159,7 @@ proptest! {
     ) {
         let mut a = banded(points, [3, 9, 8], &noise);
         let mut right: Vec<f64> = (0..points * 3).map(|i| noise[(i * 7) % noise.len()]).collect();
-        // The kernel is told the numbers in f32.
+        // The kernel receives the numbers in f32.
         let rounded = |v: f64| v as f32 as f64;
         let unit = |u: DVec3| u.normalize_or_zero().as_vec3().as_dvec3();
         let held: Vec<Held> = far.into_iter().zip(across).take(points - 3).map(|((u, k, pull), across)| Held {
@@ -189,14 +193,14 @@ proptest! {
         }
     }
 
-    /// The bending force is minus the gradient of its energy, keeps momentum, and keeps angular momentum but for the twist
-    /// about the segment that carries the frame.
+    /// The bending force is the negative gradient of its energy. It conserves momentum, and angular momentum
+    /// except for the twist about the segment that carries the frame.
     #[test]
     fn the_bending_force_is_the_gradient_of_its_energy(
         e0 in vector(1.0), e1 in vector(1.0), turn in vector(0.8), stiffness in 0.1..10.0,
     ) {
         prop_assume!(e0.length() > 0.2 && e1.length() > 0.2);
-        // The swing is that of an inextensible segment (see `bend`); the outer one may be stretched.
+        // The rotation assumes an inextensible segment (see `bend`); the outer one may be stretched.
         let lengths = [e0.length(), e1.length() * 0.97];
         let x = [DVec3::ZERO, e0, e0 + e1];
         let was = e0.normalize();
@@ -233,7 +237,7 @@ proptest! {
         prop_assert!(torque.reject_from_normalized(was).length() < 1e-4 * size, "torque {torque}");
     }
 
-    /// The altitude spring's gradient is that of the height by which the tetrahedron is larger than at rest, and it keeps momentum and angular
+    /// The altitude spring's gradient is that of the height, and the spring conserves momentum and angular
     /// momentum.
     #[test]
     fn the_altitude_spring_is_the_gradient_of_a_height(x in [vector(1.0), vector(1.0), vector(1.0), vector(1.0)]) {
@@ -249,14 +253,16 @@ proptest! {
         prop_assert!(c.iter().sum::<f64>().abs() < 1e-4 && (n.length() - 1.0).abs() < 1e-4);
         let torque: DVec3 = x.iter().zip(c).map(|(x, c)| x.cross(n * c)).sum();
         prop_assert!(torque.length() < 1e-3, "torque {torque}");
-        // The volume's gradient over the area |n| that the height belongs to: Σ over points along any direction.
+        // The gradient of the volume over the area |n| that belongs to the height: Σ over points along any
+        // direction.
         for k in 0..4 {
             let gradient = DVec3::from([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
                 let mut y = x;
                 y[k] += axis * 1e-3;
                 (volume(y) - rest) / 1e-3
             }));
-            // Along n, the height grows by c_k a metre while the area keeps (n is across it), so the volume grows by c_k |area|.
+            // Along n, the height grows by c_k a meter while the area stays constant (n is perpendicular to
+            // it), so the volume grows by c_k |area|.
             let area = (rest / c.iter().zip(x).map(|(c, x)| x.dot(n) * c).sum::<f64>()).abs();
             let grows = gradient.dot(n) * rest.signum();
             let height_sign = c.iter().zip(x).map(|(c, x)| x.dot(n) * c).sum::<f64>().signum();
@@ -264,7 +270,8 @@ proptest! {
         }
     }
 
-    /// A whole substep of eight lanes is the dense f64 solve: gravity, wind, drag, damping, tension and a moving root included.
+    /// A whole substep of eight lanes agrees with the dense f64 solve, including gravity, wind, drag,
+    /// damping, tension and a moving root.
     #[test]
     fn the_kernel_solves_what_the_reference_solves(
         steps in proptest::collection::vec(vector(0.5), 5..20),
@@ -282,12 +289,13 @@ proptest! {
         let mut length = Vec::new();
         for (i, s) in steps.iter().enumerate() {
             let e = (DVec3::new(0.3, -1.0, 0.2) + *s).normalize() * 0.008;
-            // f32 rows hold the rest length: round alike.
+            // The rows hold the rest length in f32, so the reference uses the same rounded value.
             let rest = (e.length() * if i == 0 { 1.0 } else { 1.0 + 0.0005 * s.x }) as f32 as f64;
             length.push(rest);
             x.push(x[i] + e);
         }
-        // Rest turns near the turns that there are: far from them, frames have far to twist, which takes many steps.
+        // Rest turns close to the current turns. Otherwise the frames have to twist far, which takes several
+        // steps.
         let tangent: Vec<DVec3> = x.windows(2).map(|w| (w[1] - w[0]).normalize()).collect();
         let mut normal = tangent[0].any_orthonormal_vector();
         let mut turn = vec![DVec3::ZERO; n];
@@ -325,7 +333,8 @@ proptest! {
     }
 }
 
-/// A tile's rows whose lanes all hold this strand, and the normals of its segments, carried from the root.
+/// Returns the rows of a tile whose lanes all hold this strand, and the normals of its segments, transported
+/// from the root.
 pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>, Vec<DVec3>) {
     let n = s.x.len();
     let mut strand_rows = [Row::default(); strand::ROWS];
@@ -362,7 +371,7 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
             normal -= (t0 + t1) * (normal.dot(t1) / (1.0 + t0.dot(t1)));
         }
         set(&mut state_rows[i], state::EDGE, &(s.x[i] - s.x[i.saturating_sub(1)]).as_vec3().to_array());
-        // What the root drives drifts with it.
+        // Driven points have the velocity of the root.
         let v = s.v[if i < 2 { 0 } else { i }];
         set(&mut state_rows[i], state::V, &v.as_vec3().to_array());
         normals.push(normal);
@@ -372,8 +381,8 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
     (strand_rows, rest_rows, state_rows, normals)
 }
 
-/// The solve of one substep, on a tile whose lanes all hold this strand: the solved positions, and the normals that the segments had
-/// before it, carried from the root.
+/// Solves one substep on a tile whose lanes all hold this strand. Returns the solved positions and the
+/// normals of the segments before the solve, transported from the root.
 fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, Vec<DVec3>) {
     let n = s.x.len();
     let (strand_rows, rest_rows, mut state_rows, normals) = rows(s);
@@ -410,7 +419,7 @@ fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, V
     (solved.collect(), normals)
 }
 
-/// Leaves the solved edges of the last lane in `edges`.
+/// Stores the solved edges of one lane in `edges`.
 #[inline(always)]
 fn solve_substep<S: Simd>(
     simd: S,
@@ -462,10 +471,12 @@ fn solve_once<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &mut Tile, scrat
     }
 }
 
-/// The springs' laws make up for their levers: a joint that bends or twists by φ resists by B φ or C φ.
+/// The nonlinear spring laws compensate for their levers: a joint that bends or twists by φ resists with B φ
+/// or C φ.
 #[test]
 fn a_joint_of_springs_is_linear() {
-    // Bending: arms to p₂ and to e₀ with the angle θ₀ + φ between them. Twisting: e₀ and e₁ a quarter turn + φ apart, a segment's length along.
+    // Bending: arms to p₂ and to e₀ with the angle θ₀ + φ between them. Twisting: e₀ and e₁ a quarter turn +
+    // φ apart, separated by a segment's length along the axis.
     let arm = (0.25 + ASIDE * ASIDE).sqrt();
     let start = std::f64::consts::PI - (2.0 * ASIDE).atan();
     let bend = |phi: f64| (1.0 + arm * arm - 2.0 * arm * (start + phi).cos()).sqrt();

@@ -1,13 +1,17 @@
-//! Long range attachments: no point gets much farther from its root than it was at rest (Kim, Chentanez & Müller 2012, *Long Range Attachments*).
+//! Long-range attachments (tethers): limit the distance of each point from its root, relative to that at rest
+//! (Kim, Chentanez & Müller 2012, *Long Range Attachments*).
 //!
 //! ```text
-//!   root ●╮ ╭╮ ╭╮            at rest the tip of a coil is at r, and its hair is much longer than that:
-//!         ╰─╯╰─╯╰─● tip      with a tether of 1.2 it comes no farther than 1.2 r, however heavy it is
+//!   root ●╮ ╭╮ ╭╮            at rest the tip of a coil is at the distance r, and the hair is much longer than that:
+//!         ╰─╯╰─╯╰─● tip      with a tether of 1.2 it stays within 1.2 r, however heavy it is
 //!        └────r────┘
 //! ```
 //!
-//! Not physics: what keeps a coil together is its stiffness. For an artist who wants the fall of hair and no more of it than this. What is beyond its tether
-//! is pulled back in the solve, by a spring that all of the strand knows of; what that could not know (a fall, twenty times its weight) ends in `limit`.
+//! Tethers are an artistic control, not physics: in reality, stiffness keeps a coil together. They limit how
+//! far hair may drop.
+//!
+//! A point beyond its tether is pulled back in the solve, by a spring that is part of the strand's system.
+//! Cases that the solve cannot handle (a fall, with twenty times the weight) are corrected in `post_solve`.
 
 use super::{
     assemble::SubstepContext,
@@ -18,10 +22,11 @@ use super::{
 };
 use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, load};
 
-/// How far a spring may let a point be beyond its tether, over the tether's length [1].
+/// How far a point may be beyond its tether without correction, over the tether's length [1].
 const SLACK: f32 = 1e-3;
 
-/// Adds the pull on point `i`, the second of the window, which is at `x` from the root and drifts by `drift`.
+/// Adds the tether's force on point `i`, the second of the window. `x` is its position relative to the root
+/// and `drift` its predicted displacement.
 #[inline(always)]
 pub fn pull<S: Simd, const B: usize>(
     simd: S,
@@ -37,7 +42,7 @@ pub fn pull<S: Simd, const B: usize>(
     if !far.any_true() {
         return;
     }
-    // Like a segment's: there is nothing that it should give way to.
+    // As stiff as a segment: the tether need not yield to anything.
     let k = load(simd, &tile.rest[i][rest::MASS]) * (STRETCH / (step.h * step.h));
     let zero = F::splat(simd, 0.0);
     let (k, excess) = (far.select(k, zero), far.select(excess, zero));
@@ -45,7 +50,7 @@ pub fn pull<S: Simd, const B: usize>(
     system.add_force(1, out * (k * -(excess + out.dot(drift))));
 }
 
-/// Whether point `i`, at `x` from the root, is beyond its tether.
+/// Returns whether point `i`, at `x` relative to the root, is beyond its tether.
 #[inline(always)]
 pub fn exceeds_lra<S: Simd>(simd: S, tile: &Tile, i: usize, x: V3<S>) -> Mask<S> {
     let Some(reach) = tile.tether_lengths.get(i) else { return Mask::splat(simd, false) };
@@ -53,11 +58,12 @@ pub fn exceeds_lra<S: Simd>(simd: S, tile: &Tile, i: usize, x: V3<S>) -> Mask<S>
     x.dot(x).simd_gt(reach * reach)
 }
 
-/// Where point `i` may be that is at `e` from the point before, which is `at`: no farther from the root than its tether is long, within the limits of its
-/// segment. Where not both can be, it points to the root.
+/// Returns the corrected offset `e` of point `i` from the previous point `at`: within its tether's length of
+/// the root, and within the limits of its segment. Where both are impossible, the segment points to the root.
 ///
-/// Straight toward the root as far as the segment may shorten, and only then aside: a segment that points away from the root would have to swing by √(2 l δ)
-/// to come back by δ at its length, which is motion out of nothing.
+/// The point first moves straight toward the root as far as the segment may shorten, and only then sideways.
+/// A segment that points away from the root would have to swing by √(2 l δ) to come back by δ at constant
+/// length, which would create motion.
 #[inline(always)]
 pub fn apply_lra<S: Simd>(
     simd: S,

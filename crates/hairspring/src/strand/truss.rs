@@ -1,19 +1,25 @@
-//! The rest shape of a strand of the springs model, in f64: where its extra particles are, lengths, stiffness, and the sag-free start.
+//! The rest shape of a strand of the springs model, in f64: positions of the extra particles, lengths,
+//! stiffnesses, and the sag-free start.
 //!
-//! Between two points of the strand, an extra particle beside the middle makes a rigid triangle; each is a quarter turn from the last.
-//! Three springs span a joint between two triangles, and what they resist is a joint's bending stiffness B = EI/L̄ and
-//! twisting stiffness C = GJ/L̄. With x̂ along a straight strand, n₀ and n₁ the directions of the extra particles e₀ and e₁ before
-//! and after the joint at p₁, ε L their way aside and w = ε L₀ L₁, a turn φ of the joint lengthens a spring of length ℓ by J·φ/ℓ:
+//! Between two points of the strand, an extra particle next to the center makes a rigid triangle. Consecutive
+//! triangles are a quarter turn apart. Three springs span a joint between two triangles. Together they
+//! provide the joint's bending stiffness B = EI/L̄ and twisting stiffness C = GJ/L̄.
 //!
+//! Let x̂ be the direction of a straight strand, n₀ and n₁ the directions of the extra particles e₀ and e₁
+//! before and after the joint at p₁, ε L their offsets, and w = ε L₀ L₁. A rotation φ of the joint lengthens
+//! a spring of length ℓ by J·φ/ℓ:
 //! ```text
 //! p₀ e₁   J = −w x̂×n₁                     alone resists bending toward n₁:       k = B ℓ²/w²
 //! e₀ p₂   J = −w x̂×n₀                     alone resists bending toward n₀:       k = B ℓ²/w²
 //! e₀ e₁   J = −½w x̂×(n₀ + n₁) + εw x̂      with the others resists twist:         k = ℓ²/w² / (ε²/C − ¼(1/B₀ + 1/B₁))
 //! ```
 //!
-//! The truss is statically determinate, so compliances add: 1/C = [ℓ²/k + ¼(ℓ²/k + ℓ²/k)] / (εw)², from which the third line. The same
-//! holds for the start under gravity: springs (k−1, k), (k−2, k), (k−3, k) hold particle k from three directions; from the tip to the
-//! root, three tensions balance what pulls on each particle, and the rest lengths that give them follow.
+//! The truss is statically determinate, so compliances add: 1/C = [ℓ²/k + ¼(ℓ²/k + ℓ²/k)] / (εw)², which
+//! gives the third line.
+//!
+//! The same holds for the start under gravity. The springs (k−1, k), (k−2, k) and (k−3, k) hold particle k
+//! from three directions. From the tip to the root, three tensions balance the forces on each particle, and
+//! the rest lengths follow from the tensions.
 
 use super::{
     model::{
@@ -25,35 +31,43 @@ use super::{
 use crate::simd::lanes::{F, Simd, V3};
 use glam::{DMat3, DVec3, Vec3};
 
-/// How far an extra particle is set aside over the length of its segment, ε [1]. The farther, the more digits single precision has for
-/// bending, and the less the springs' levers change as a joint bends (see `springs`, whose law is for this one).
+/// Offset of an extra particle over the length of its segment, ε [1]. A larger offset gives bending more
+/// digits in single precision, and the levers of the springs change less as a joint bends (see `springs`,
+/// whose law is derived for this value).
 pub const ASIDE: f64 = 1.5;
 
-/// On which side of the frame's normal and binormal, by turns, the extra particles are [1]: each side as often as the other, and as many left
-/// turns as right. Always to the right, a loaded curl would wind itself up.
+/// Signs of the extra particles' offsets along the frame's normal and binormal, alternately [1]. Each side
+/// occurs as often as the other, and there are as many left turns as right turns. With right turns only, a
+/// loaded curl would wind itself up.
 const SIDES: [f64; 8] = [1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0, -1.0];
 
-/// Share of a segment's mass in its extra particle [1]: it is no mass of the fibre's, and out of line with it.
+/// Share of a segment's mass in its extra particle [1]. The extra particle is not part of the fiber and does
+/// not lie on it.
 const EXTRA: f64 = 1.0 / 1024.0;
 
-/// Bounds of ε²/C − ¼(1/B₀ + 1/B₁) over 1/B [1]: a round fibre with GJ/EI above 4 or below 0.3 gets what the truss can. A joint that twists too
-/// easily turns its springs' levers away from the bend, and folds.
+/// Bounds of ε²/C − ¼(1/B₀ + 1/B₁) over 1/B [1]. A round fiber with GJ/EI above 4 or below 0.3 gets the
+/// closest value that the truss can provide. A joint that twists too easily rotates the levers of its springs
+/// away from the bend, and folds.
 const TWISTING: (f64, f64) = (0.05, 7.0);
 
-/// How much stiffer than the joints the triangles are in the matrix, over B/L² [1]: softer ones bend in the joints' stead, and a
-/// cantilever falls apart. The least, and what is enough for all that single precision has digits for.
+/// Stiffness of the triangles relative to the joints in the matrix, over B/L² [1]. Softer triangles bend
+/// instead of the joints, and a cantilever collapses. The two values are the minimum, and the one that
+/// suffices where single precision can represent it.
 const BRACED: [f64; 2] = [8.0, 30.0];
 
-/// Least lever of a spring on its joint over that in a straight strand [1].
+/// Smallest lever of a spring on its joint, relative to that in a straight strand [1].
 const LEAST_LEVER: f64 = 0.5;
 
-/// Largest turn of a joint out of its natural one at the sag-free start [rad]: less than a rod may have, because a truss folds sooner.
+/// Largest rotation of a joint from its natural one at the sag-free start [rad]. It is smaller than the
+/// rod's, because a truss folds sooner.
 const LARGEST_SAG: f64 = 0.15;
 
-/// Largest relative change of a spring's rest length at the sag-free start [1]; beyond it the spring is stiffened.
+/// Largest relative change of a spring's rest length at the sag-free start [1]. The spring is stiffened if it
+/// would be exceeded.
 const LARGEST_STRAIN: f64 = 0.2;
 
-/// The particles of a strand: its points, and one beside the middle of each segment, a quarter turn from the last. Shape `[2 points − 1]`.
+/// Returns the particles of a strand: its points, and one next to the center of each segment, a quarter turn
+/// from the previous one. Shape `[2 points − 1]`.
 pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
     let mut out = Vec::with_capacity(2 * points.len() - 1);
     let mut normal = DVec3::ZERO;
@@ -72,21 +86,22 @@ pub fn particles(points: &[Vec3]) -> Vec<Vec3> {
     out
 }
 
-/// Which way from segment `k`, that runs along the unit vector `t`, its extra particle is, where the frame has this `normal`.
+/// Direction from segment `k` to its extra particle. `t` is the unit vector along the segment and `normal`
+/// the frame's normal.
 pub fn side(k: usize, t: DVec3, normal: DVec3) -> DVec3 {
     SIDES[k % 8] * if k.is_multiple_of(2) { normal } else { t.cross(normal) }
 }
 
-/// The frame's normal on segment `k` along `t`, whose extra particle is on this `side`.
+/// The frame's normal on segment `k` along `t`, from the direction `side` of its extra particle.
 pub fn normal_of(k: usize, t: DVec3, side: DVec3) -> DVec3 {
     SIDES[k % 8] * if k.is_multiple_of(2) { side } else { side.cross(t) }
 }
 
-/// The rest shape of the truss through `particles` [m] with the fibre's radii at the strand's points, in balance under `gravity` [m/s²]
-/// or stress-free.
+/// Returns the rest shape of the truss through `particles` [m], with the fiber's radii at the strand's
+/// points, in balance under `gravity` [m/s²] or stress-free.
 ///
-/// What the rest points hold is said in `tile::springs`; `tension` is that of the strand's segment, `normal.x` that of the side to the
-/// next particle [N].
+/// `tile::springs` documents the rows of the rest points. `tension` is that of the strand's segment, and
+/// `normal.x` that of the side to the next particle [N].
 pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     let points: Vec<Vec3> = particles.iter().step_by(2).copied().collect();
     let strand = rest_shape(&points, fibre, gravity);
@@ -117,16 +132,16 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let sag = (t[1] - t[0] - natural).length();
         let bend = at.bend * (sag / LARGEST_SAG).max(1.0);
         let most = stiffest * shorter * shorter / (BRACED[0] * hardest);
-        // Never more than the rod may have, whose joint may have been held back to just that.
+        // At most the stiffness that the rod may have. The rod's joint may have been reduced to exactly that.
         start.held_back += usize::from(bend >= most);
         let bend = bend.min(most);
-        // A flat fibre bends harder toward its frame's normal, where every other extra particle is.
+        // A flat fiber is stiffer toward its frame's normal, the side of every other extra particle.
         let harder = [j - 1, j].map(|segment| if segment % 2 == 0 { hardest } else { 1.0 });
         let easier = 0.25 * (1.0 / harder[0] + 1.0 / harder[1]);
         let twisting = fibre.twist_ratio.map_or(0.0, |ratio| ASIDE * ASIDE / ratio - easier);
         let (p0, e0, p1, e1, p2) = (2 * j - 2, 2 * j - 1, 2 * j, 2 * j + 1, 2 * j + 2);
         let straight = |from: usize, to: usize| ASIDE * lengths[0] * lengths[1] / x[from].distance(x[to]);
-        // In the strand's own shape.
+        // In the strand's actual shape.
         let lever = |from: usize, to: usize| {
             let along = (x[to] - x[from]).normalize_or_zero();
             (x[to] - x[p1]).cross(along).length().max(LEAST_LEVER * straight(from, to))
@@ -135,7 +150,7 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         rest[e0].twist = bend * harder[0] / lever(e0, p2).powi(2);
         rest[e0].bend = bend / twisting.clamp(TWISTING.0, TWISTING.1) / straight(e0, e1).powi(2);
         rest[e0].turn.x = x[e0].distance(x[e1]);
-        // Of both triangles alike: levers at the joint are as short as the shorter of them.
+        // The same for both triangles: the shorter of them determines the levers at the joint.
         let brace = (BRACED[1] * hardest * bend / (shorter * shorter)).min(fine(points.len()) * stiffest);
         for point in [p0, p1] {
             rest[point].bend = rest[point].bend.max(brace);
@@ -172,18 +187,21 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     RestShape { points: rest, start }
 }
 
-/// An extra particle at `p`, put where its triangle over the segment `e` has it, whose rest length and the inverse of that are given; from the segment's start.
+/// Returns the position of an extra particle, currently at `p`, at the apex of its triangle over the segment
+/// `e`, relative to the segment's start. The pair holds the segment's rest length and its inverse.
 #[inline(always)]
 pub fn beside<S: Simd>(simd: S, p: V3<S>, e: V3<S>, [length, inverse]: [F<S>; 2]) -> V3<S> {
     let middle = e * F::splat(simd, 0.5);
     let way = p - middle;
-    // Which way aside, that is enough: w (u·u) − u (u·w), which needs no division, and by the rest length, so that squares of short segments are no zeros.
+    // Only the direction of the offset matters: w (u·u) − u (u·w) needs no division. Scaling by the rest
+    // length keeps squares of short segments above zero.
     let u = e * inverse;
     let (_, aside) = (way * u.dot(u) - u * u.dot(way)).length_and_unit();
     aside.mul_add(length * ASIDE as f32, middle)
 }
 
-/// The tensions along three directions that add up to `force`; the least ones where the directions do not span space.
+/// Returns the tensions along three directions that add up to `force`; the least-norm solution where the
+/// directions do not span space.
 fn tensions(towards: [DVec3; 3], force: DVec3) -> DVec3 {
     let d = DMat3::from_cols(towards[0], towards[1], towards[2]);
     if d.determinant().abs() > 1e-6 {

@@ -1,28 +1,30 @@
-//! What a strand makes of impulses at once: segments keep their lengths, and what strikes one point moves others too.
+//! Propagation of contact impulses along a strand: segments keep their lengths, so an impulse on one point
+//! also moves others.
 //!
 //! ```text
 //! v_i ← v_i + (T_i u_i − T_{i−1} u_{i−1}) / m_i        u_i · (v_{i+1} − v_i) = 0
 //! ```
 //!
-//! A tridiagonal system for the impulses T along the segments (Goldenthal et al. 2007, *Efficient Simulation of Inextensible Cloth*, for velocities): the
-//! change that impulses from outside ask for becomes the nearest one, by masses, that stretches nothing.
+//! A tridiagonal system for the impulses T along the segments (Goldenthal et al. 2007, *Efficient Simulation
+//! of Inextensible Cloth*, applied to velocities). It replaces the velocity change of external impulses by
+//! the nearest one, in the mass metric, that stretches no segment.
 
 use super::hair::Hair;
 use glam::Vec3;
 
-/// Memory for one strand, and what all did before any impulse.
+/// Working memory for one strand, and the velocities of all points before any impulse.
 #[derive(Default)]
 pub struct Along {
     /// Velocities before any impulse, shape `[points]` [m/s].
     before: Vec<Vec3>,
     /// Unit vectors of a strand's segments.
     units: Vec<Vec3>,
-    /// Eliminated rows of its system: what is above the diagonal, and the right-hand side.
+    /// Eliminated rows of the strand's system: the entry above the diagonal, and the right-hand side.
     rows: Vec<[f32; 2]>,
 }
 
 impl Along {
-    /// Memory for the strands of `hair`.
+    /// Allocates memory for the strands of `hair`.
     pub fn new(hair: &Hair) -> Self {
         let longest = hair.strands().map(|s| s.len()).max().unwrap_or(0);
         Self {
@@ -32,17 +34,17 @@ impl Along {
         }
     }
 
-    /// Velocities are now as they were before any impulse.
+    /// Stores the current velocities as those before any impulse.
     pub fn begin(&mut self, hair: &Hair) {
         self.before.copy_from_slice(&hair.v);
     }
 
-    /// What the velocity of point `i` has changed by since [`Along::begin`] [m/s].
+    /// Change of the velocity of point `i` since [`Along::begin`] [m/s].
     pub fn change(&self, i: usize, hair: &Hair) -> Vec3 {
         hair.v[i] - self.before[i]
     }
 
-    /// Takes out of all changes of velocity what would stretch a segment.
+    /// Projects all velocity changes so that no segment is stretched.
     pub fn keep_lengths(&mut self, hair: &mut Hair) {
         for s in 0..hair.strand_count() {
             let range = hair.strand(s);
@@ -65,7 +67,7 @@ impl Along {
             let below = if i > 0 { -w[i] * u.dot(units[i - 1]) } else { 0.0 };
             let above = units.get(i + 1).map_or(0.0, |next| -w[i + 1] * u.dot(*next));
             let diagonal = w[i] + w[i + 1] - below * last[0];
-            // Segments whose ends are both driven, and folded ones that are one to rounding, take nothing.
+            // Segments with two driven ends, and folded segments that coincide to rounding, get no impulse.
             let inverse = if diagonal > 1e-6 * (w[i] + w[i + 1]) { diagonal.recip() } else { 0.0 };
             last = [above * inverse, (stretching - below * last[1]) * inverse];
             rows.push(last);

@@ -1,16 +1,18 @@
-//! The places where two segments are nearest to each other.
+//! Closest points of two segments.
 
 use glam::Vec3;
 
-/// Where on segments `a` and `b` (each from its first end to its second) they are nearest, as shares of their lengths from 0 to 1.
+/// Returns the closest points of segments `a` and `b`, as fractions of their lengths from 0 to 1, from the
+/// first end to the second.
 ///
-/// Ericson 2005, *Real-Time Collision Detection*, §5.1.9. Where segments are parallel, every place over which both lie is as near as any
-/// other: the middle of those is taken, so that what acts there turns neither.
+/// Ericson 2005, *Real-Time Collision Detection*, §5.1.9. Where segments are parallel, all points of their
+/// overlap are equally close. The function then returns the center of the overlap, so that a force there does
+/// not rotate either segment.
 pub fn closest([a0, a1]: [Vec3; 2], [b0, b1]: [Vec3; 2]) -> (f32, f32) {
     let (d1, d2, r) = (a1 - a0, b1 - b0, a0 - b0);
     let (a, e, f) = (d1.length_squared(), d2.length_squared(), d2.dot(r));
     let c = d1.dot(r);
-    // Segments of no length.
+    // Degenerate segments.
     if a <= f32::MIN_POSITIVE {
         return (0.0, if e <= f32::MIN_POSITIVE { 0.0 } else { (f / e).clamp(0.0, 1.0) });
     }
@@ -22,7 +24,7 @@ pub fn closest([a0, a1]: [Vec3; 2], [b0, b1]: [Vec3; 2]) -> (f32, f32) {
     let s = if denominator > PARALLEL * a * e {
         ((b * f - c * e) / denominator).clamp(0.0, 1.0)
     } else {
-        // From where to where b lies over a.
+        // The range of a that b overlaps.
         let (first, last) = (-c / a, (b - c) / a);
         let (low, high) = (first.min(last).clamp(0.0, 1.0), first.max(last).clamp(0.0, 1.0));
         0.5 * (low + high)
@@ -35,7 +37,8 @@ pub fn closest([a0, a1]: [Vec3; 2], [b0, b1]: [Vec3; 2]) -> (f32, f32) {
     }
 }
 
-/// Squared sine of the angle below which segments count as parallel [1]: a hundredth of a radian, where f32 still tells the nearest place.
+/// Squared sine of the angle below which segments count as parallel [1]: a hundredth of a radian, at which
+/// f32 still resolves the closest points.
 const PARALLEL: f32 = 1e-4;
 
 #[cfg(test)]
@@ -54,7 +57,7 @@ mod tests {
         };
         for k in 0..500 {
             let a = [at(4 * k), at(4 * k + 1)];
-            // Every fifth pair is parallel, every seventh b a point.
+            // Every fifth pair is parallel; in every seventh, b is a point.
             let b0 = at(4 * k + 2);
             let b = match k {
                 k if k % 5 == 0 => [b0, b0 + (a[1] - a[0]) * 0.7],

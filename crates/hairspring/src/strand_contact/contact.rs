@@ -1,76 +1,80 @@
-//! Two segments that are near each other: what impulse parts them, rubs and holds.
+//! A contact of two segments: the impulse that separates them, with friction and stiction.
 //!
-//! With n from the second to the first, g the gap [m], u their relative velocity where they are nearest, w the shares of the four points there,
-//! W what that velocity changes by for a unit of impulse (`response`), and d the way that they have slid since they last held [m]:
+//! n is the normal from the second segment to the first, g the gap [m], and u their relative velocity at the
+//! closest points. W is the change of that velocity for a unit of impulse (`response`), and d is how far they
+//! have slid since they last stuck [m]:
 //!
 //! ```text
 //! along n     P ← max(least, P − (u·n + G) / W)        G = g/h ahead of contact, RECOVERY g/h inside
-//! across it   Q ← Q − (u_across + RECOVERY d/h) / W,   cut to |Q| ≤ μ max(P, 0) + h S
+//! across it   Q ← Q − (u_across + RECOVERY d/h) / W,   clamped to |Q| ≤ μ max(P, 0) + h S
 //! ```
 //!
-//! P and Q are the impulses of the whole substep, its load included. A bond pulls too: least is −h S where segments hold together, S the stiction [N], and
-//! 0 where they do not. What has been at such a bound in two substeps in turn lets go.
+//! P and Q are the impulses of the whole substep, including its load. A bond can also pull: least is −h S for
+//! segments that stick together, with the stiction S [N], and 0 for others. A bond that is at such a bound in
+//! two consecutive substeps breaks.
 
 use super::{closest::closest, hair::Hair, response::Response};
 use glam::{Mat3, Vec3};
 
-/// Share of an overlap, or of a slip, that is taken back in a substep [1]. With x the overlap and η the share of what moves that an impulse stops, loads settle as
-/// x''' + η x'' + η (RECOVERY + LASTING) x' + η RECOVERY LASTING x = 0, which rings where η < RECOVERY LASTING / (RECOVERY + LASTING): a seventh.
+/// Share of an overlap, or of a slip, that is corrected in a substep [1]. With x the overlap and η the share
+/// of the motion that an impulse stops, loads settle as x''' + η x'' + η (RECOVERY + LASTING) x' + η RECOVERY
+/// LASTING x = 0. That oscillates for η < RECOVERY LASTING / (RECOVERY + LASTING), which is a seventh.
 const RECOVERY: f32 = 0.2;
 
-/// Share of an impulse that counts as load, where it adds to one [1]; what takes of a load counts whole, so that what is let go of is not thrown.
+/// Share of an impulse that is added to the load when it increases the load [1]. An impulse that decreases
+/// the load counts in full, so that a segment that is released is not thrown.
 const LASTING: f32 = 0.5;
 
-/// Gap over the sum of the radii up to which segments are near each other, and bonds hold [1].
+/// Gap, over the sum of the radii, up to which segments are near each other and bonds hold [1].
 pub const NEAR: f32 = 0.15;
 
-/// Cosine between one substep's normal and the next where an end of a segment has passed the other [1]; between segments that cross, any turn of more than a
-/// right angle is a passage.
+/// Cosine between the normals of consecutive substeps below which an end of a segment has passed through the
+/// other segment [1]. For segments that cross, any rotation by more than a right angle is a passage.
 const PASSED: f32 = -0.7;
 
-/// What all contacts go by.
+/// Parameters that all contacts share.
 pub struct SolverParams {
     /// Length of a substep [s].
     pub h: f32,
     /// Coulomb friction [1].
     pub friction: f32,
-    /// Force that two segments hold together with [N].
+    /// Force that holds two segments together [N].
     pub stiction: f32,
 }
 
-/// Two segments that are near each other.
+/// A contact of two segments that are near each other.
 #[derive(Clone, Copy)]
 pub struct Contact {
-    /// The segments, the lesser first.
+    /// The segments, the lower index first.
     pub pair: [u32; 2],
-    /// Where on each, as a share of its length.
+    /// Closest point on each, as a fraction of its length.
     at: [f32; 2],
-    /// From the second to the first.
+    /// Unit normal from the second segment to the first.
     normal: Vec3,
-    /// Between their surfaces; negative inside [m].
+    /// Gap between their surfaces; negative inside [m].
     gap: f32,
-    /// How far the first has slid along the second since they last held [m].
+    /// How far the first has slid along the second since they last stuck [m].
     slip: Vec3,
-    /// Force on the first that is carried, along the normal and across it [N].
+    /// The carried force on the first segment, along the normal and across it [N].
     load: Force,
-    /// What acted in the last substep [N].
+    /// The force of the last substep [N].
     last: Force,
-    /// Impulse found in this substep [N s].
+    /// The impulse of this substep, in addition to the load [N s].
     impulse: Force,
     bond: Bond,
-    /// Whether they slide, or a bond is torn at, in this substep.
+    /// Whether the contact slides, or its bond is at its limit, in this substep.
     at_bound: bool,
 }
 
-/// How the two sides of a contact give way, within one substep.
+/// Responses of the two sides of a contact to an impulse, within one substep.
 pub struct ContactResponse {
     each: [Response; 2],
-    /// W [1/kg]; 0 where neither can move.
+    /// W [1/kg]; 0 if neither can move.
     give: f32,
 }
 
 impl ContactResponse {
-    /// Of a contact in a substep of `h` [s].
+    /// Computes the responses of a contact in a substep of `h` [s].
     pub fn of(contact: &Contact, hair: &Hair, h: f32) -> Self {
         let sides = [0, 1].map(|k| (contact.pair[k], contact.at[k]));
         let each = sides.map(|(i, s)| Response::of(i, s, hair, h));
@@ -80,14 +84,14 @@ impl ContactResponse {
         }
     }
 
-    /// Changes velocities by an impulse on the first [N s], and the opposite on the second.
+    /// Changes velocities by an impulse on the first segment [N s] and the opposite one on the second.
     fn apply_impulse(&self, impulse: Vec3, hair: &mut Hair) {
         self.each[0].apply_impulse(impulse, hair);
         self.each[1].apply_impulse(-impulse, hair);
     }
 }
 
-/// What acts on the first segment of a pair.
+/// A force or impulse on the first segment of a pair.
 #[derive(Clone, Copy, Default)]
 struct Force {
     along: f32,
@@ -98,12 +102,13 @@ struct Force {
 enum Bond {
     None,
     Holds,
-    /// Has been at its bound for one substep.
+    /// Has been at its limit for one substep.
     Torn,
 }
 
 impl Contact {
-    /// The contact of two segments now, which were as in `old` before the substep of `h` [s]; `None` where they are not near.
+    /// Returns the current contact of two segments. `old` is their contact before the substep of `h` [s].
+    /// Returns `None` if they are not near each other.
     pub fn find(pair: [u32; 2], old: Option<&Contact>, hair: &Hair, h: f32) -> Option<Self> {
         let [a, b] = pair.map(|s| hair.ends(s));
         let (s, t) = closest(a, b);
@@ -119,7 +124,7 @@ impl Contact {
         if let Some(old) = old {
             let inner = |s: f32| s > 0.0 && s < 1.0;
             let turned = normal.dot(old.normal);
-            // What is through by more than its thickness is through.
+            // Segments that have passed by more than their thickness stay on the new side.
             if distance < within && turned < if inner(s) && inner(t) { 0.0 } else { PASSED } {
                 (distance, normal) = (-distance, -normal);
             }
@@ -150,13 +155,13 @@ impl Contact {
         near.then_some(contact)
     }
 
-    /// Velocity of the first segment relative to the second, where they are nearest [m/s].
+    /// Velocity of the first segment relative to the second, at the closest points [m/s].
     fn velocity(&self, hair: &Hair) -> Vec3 {
         let v = |segment: u32, s: f32| hair.v[segment as usize].lerp(hair.v[segment as usize + 1], s);
         v(self.pair[0], self.at[0]) - v(self.pair[1], self.at[1])
     }
 
-    /// Changes velocities by an impulse on the first segment [N s], and the opposite on the second.
+    /// Changes velocities by an impulse on the first segment [N s] and the opposite one on the second.
     fn strike(&self, impulse: Vec3, hair: &mut Hair) {
         for (side, (segment, s)) in [1.0, -1.0].into_iter().zip(self.pair.into_iter().zip(self.at)) {
             for (i, share) in [(segment as usize, 1.0 - s), (segment as usize + 1, s)] {
@@ -165,7 +170,7 @@ impl Contact {
         }
     }
 
-    /// Adds to velocities what the load does in a substep of `h` [s].
+    /// Adds the effect of the load in a substep of `h` [s] to the velocities.
     pub fn apply_warm_start(&self, h: f32, hair: &mut Hair) {
         let force = self.normal * self.load.along + self.load.across;
         if force != Vec3::ZERO {
@@ -173,7 +178,7 @@ impl Contact {
         }
     }
 
-    /// One sweep's change of velocities. How the `sides` give way is found where it is first asked for.
+    /// Runs one iteration of the contact. `sides` is computed when it is first needed.
     pub fn solve(&mut self, sides: &mut Option<ContactResponse>, rules: &SolverParams, hair: &mut Hair) {
         let SolverParams { h, friction, stiction } = *rules;
         let velocity = self.velocity(hair);
@@ -197,7 +202,7 @@ impl Contact {
         let asked_across = rubbed - across / sides.give;
         let cone = friction * now.max(0.0) + bound;
         let held = asked_across.clamp_length_max(cone);
-        // Where nothing presses there is nothing to slide on.
+        // Without normal force there is no friction, and the contact does not count as sliding.
         self.at_bound =
             (bound > 0.0 && asked < -bound) || (cone > 0.0 && asked_across.length_squared() > cone * cone);
 
@@ -209,7 +214,7 @@ impl Contact {
         }
     }
 
-    /// Ends the substep: what acted in it and in the one before is the load of the next.
+    /// Ends the substep. The load of the next is what acted both in this substep and in the one before.
     pub fn carry(&mut self, rules: &SolverParams) {
         let share = if self.impulse.along < 0.0 { 1.0 } else { LASTING };
         let total = Force {
@@ -238,29 +243,29 @@ impl Contact {
         }
     }
 
-    /// The pair was turned as a whole.
+    /// Rotates the contact with the pair.
     pub fn turn(&mut self, by: &Mat3) {
         for v in [&mut self.normal, &mut self.slip, &mut self.load.across, &mut self.last.across] {
             *v = *by * *v;
         }
     }
 
-    /// Whether the two press each other.
+    /// Whether the two push each other apart.
     pub fn presses(&self) -> bool {
         self.last.along > 0.0
     }
 
-    /// Whether they hold together.
+    /// Whether they stick together.
     pub fn holds(&self) -> bool {
         self.bond != Bond::None
     }
 
-    /// Force along the normal in the last substep, negative where it pulls [N].
+    /// Force along the normal in the last substep; negative if it pulls [N].
     pub fn force(&self) -> f32 {
         self.last.along
     }
 
-    /// How deep they are in each other [m].
+    /// Depth of the overlap [m].
     pub fn depth(&self) -> f32 {
         (-self.gap).max(0.0)
     }

@@ -1,36 +1,37 @@
-//! Which segments may be near each other: a hashed grid of cells, in each the segments whose boxes reach into it.
+//! Broad phase: a hash grid of cells, each with the segments whose bounding boxes overlap it.
 //!
-//! Teschner et al. 2003, *Optimized Spatial Hashing for Collision Detection of Deformable Objects*, with the cells of a bucket kept apart.
+//! Teschner et al. 2003, *Optimized Spatial Hashing for Collision Detection of Deformable Objects*, except
+//! that entries keep the cell, so that the cells of a bucket are told apart.
 
 use super::{contact::NEAR, hair::Hair};
 use glam::{IVec3, Vec3};
 
-/// Cells that a segment's box reaches into, in the mean, at most; cells grow until it is so.
+/// Largest mean number of cells that a segment's box overlaps. Cells grow until it is met.
 const CELLS_A_SEGMENT: usize = 8;
 
-/// Buckets a segment, before the next power of two.
+/// Buckets for each segment, before rounding up to a power of two.
 const BUCKETS_A_SEGMENT: usize = 4;
 
-/// How much cells grow at once, while segments reach into too many [1].
+/// Factor by which cells grow at a time while boxes overlap too many [1].
 const GROWTH: f32 = 1.25;
 
-/// Most others that a segment is shown. Hair that falls in on itself has some tens that come near; hundreds are in one place, where each is pressed by many as
-/// it is.
+/// Largest number of pairs for one segment. Collapsed hair has some tens of segments nearby. Hundreds
+/// coincide in one place, where each segment is in contact with many anyway.
 const MOST_FOUND: usize = 256;
 
-/// Farthest cell that is told from others: 2³⁰ in each direction.
+/// Largest cell coordinate, 2³⁰ in each direction. Farther cells are merged.
 const FARTHEST: f32 = (1 << 30) as f32;
 
-/// A segment with what is around it that counts as near.
+/// A segment with its bounding boxes, enlarged by the distance that counts as near.
 #[derive(Clone, Copy)]
 struct Boxed {
     segment: u32,
-    /// Its box now: lowest and highest corner [m].
+    /// Current bounding box: lowest and highest corner [m].
     now: [Vec3; 2],
-    /// Where its middle goes until the next time [m], and how much more each end does.
+    /// Displacement of its center until the next call [m], and how much farther each end moves.
     way: Vec3,
     more: f32,
-    /// The box that it keeps in until then [m].
+    /// Bounding box of its motion until then [m].
     swept: [Vec3; 2],
 }
 
@@ -42,7 +43,7 @@ impl Boxed {
         Self { segment, now, way, more, swept }
     }
 
-    /// Whether its box may meet another's until the next time. What goes along with the other comes no nearer to it.
+    /// Returns whether its box may overlap another's before the next call. Common motion of the two cancels.
     fn may_meet(&self, other: &Self) -> bool {
         let (way, more) = (self.way - other.way, self.more + other.more);
         let low = self.now[0] + way.min(Vec3::ZERO) - more;
@@ -51,26 +52,26 @@ impl Boxed {
     }
 }
 
-/// The segments, sorted by cells. Memory is as large as it will ever be.
+/// The segments, sorted by cells. All memory is allocated at the start.
 #[derive(Default)]
 pub struct Grid {
-    /// Edge of a cell [m].
+    /// Edge length of a cell [m].
     cell: f32,
     segments: Vec<Boxed>,
-    /// First entry of each bucket, and of the first after the last.
+    /// First entry of each bucket, and the end of the last.
     first: Vec<u32>,
-    /// Cells and who is in them: places in `segments`.
+    /// Cells and the segments in them, as indices in `segments`.
     entries: Vec<(IVec3, u32)>,
-    /// Neighbours of one segment.
+    /// Neighbors of one segment.
     found: Vec<u32>,
-    /// Pairs that the last [`Grid::pairs`] looked at.
+    /// Number of pairs that the last [`Grid::pairs`] tested.
     pub looked_at: usize,
-    /// Segments that had more others near them than are shown.
+    /// Number of segments with more than [`MOST_FOUND`] neighbors.
     pub crowded: usize,
 }
 
 impl Grid {
-    /// Memory for so many segments.
+    /// Allocates memory for this number of segments.
     pub fn new(segments: usize) -> Self {
         let buckets = (BUCKETS_A_SEGMENT * segments).next_power_of_two();
         Self {
@@ -84,7 +85,7 @@ impl Grid {
         }
     }
 
-    /// Bytes that it holds.
+    /// Size in memory [bytes].
     pub fn bytes(&self) -> usize {
         size_of_val(&self.first[..])
             + size_of_val(&self.entries[..])
@@ -92,29 +93,29 @@ impl Grid {
             + self.found.capacity() * size_of::<u32>()
     }
 
-    /// Sorts segments in, each with its radius and what it may come nearer by in a substep of `h` [s].
+    /// Sorts the segments into the grid, each enlarged by its radius and its motion in a substep of `h` [s].
     pub fn sort(&mut self, hair: &Hair, h: f32) {
-        // What all do alike brings none nearer.
+        // Common motion of all points does not change distances.
         let count = hair.v.len().max(1) as f64;
         let common = (hair.v.iter().map(|v| v.as_dvec3()).sum::<glam::DVec3>() / count).as_vec3();
         self.sort_by(hair, |segment, ends| {
             let i = segment as usize;
-            // Of what it may come nearer by, no more counts than its length: what is faster is not seen to come.
+            // The motion is clamped to the segment's length. Faster segments may be missed.
             let length = ends[0].distance(ends[1]);
             let ways = [i, i + 1].map(|i| ((hair.v[i] - common) * h).clamp_length_max(length));
             Boxed::new(segment, ends, (1.0 + NEAR) * hair.radius[i], ways)
         });
     }
 
-    /// Sorts segments in that stay where they are, each with what is nearer than `reach` [m].
+    /// Sorts segments at rest into the grid, each enlarged by `reach` [m].
     pub fn sort_still(&mut self, hair: &Hair, reach: f32) {
         self.sort_by(hair, |segment, ends| Boxed::new(segment, ends, reach, [Vec3::ZERO; 2]));
     }
 
-    /// Sorts segments in, each with its box.
+    /// Sorts the segments into the grid by their boxes.
     fn sort_by(&mut self, hair: &Hair, boxed: impl Fn(u32, [Vec3; 2]) -> Boxed) {
         self.segments.clear();
-        // Means of the shortest and the longest edges of boxes.
+        // Sums of the shortest and the longest edges of the boxes, then their means.
         let mut size = [0.0; 2];
         for segment in hair.segments() {
             let boxed = boxed(segment, hair.ends(segment));
@@ -125,7 +126,8 @@ impl Grid {
                 self.segments.push(boxed);
             }
         }
-        // As small as boxes are thick, so that what is in one cell is near; but no box is in more than some cells.
+        // Cells are as small as boxes are thick, so that segments in the same cell are near each other. They
+        // are larger where boxes would overlap too many.
         let [shortest, longest] = size.map(|sum| sum / self.segments.len().max(1) as f64);
         self.cell = shortest.max(longest / CELLS_A_SEGMENT as f64).max(1e-9) as f32;
         let most = self.entries.len() as f64;
@@ -135,7 +137,7 @@ impl Grid {
         self.fill();
     }
 
-    /// Counts who is in each bucket, and puts them there.
+    /// Counts the entries of each bucket, and stores them.
     fn fill(&mut self) {
         let Self { cell, segments, first, entries, .. } = self;
         let buckets = first.len() - 1;
@@ -146,7 +148,8 @@ impl Grid {
         for b in 0..buckets {
             first[b + 1] += first[b];
         }
-        // From the last to the first, so that each bucket is in order; `first` ends where it began.
+        // Shifts the offsets by one, so that the next loop fills each bucket in order and leaves `first` as
+        // it should be.
         for b in (1..=buckets).rev() {
             first[b] = first[b - 1];
         }
@@ -159,8 +162,11 @@ impl Grid {
         }
     }
 
-    /// Shows `see` all pairs of segments of different strands whose boxes meet until the next time, the lesser first, in order; of a segment with more than [`MOST_FOUND`] others after
-    /// it in order, only so many: they are next to it in the order of strands, or in the same cell.
+    /// Calls `see` with each pair of segments of different strands whose boxes may overlap before the next
+    /// call. Pairs are sorted, with the lower index first.
+    ///
+    /// For a segment with more than [`MOST_FOUND`] neighbors after it, only that number is passed: neighbors
+    /// from the first cells that the segment overlaps.
     pub fn pairs(&mut self, hair: &Hair, mut see: impl FnMut([u32; 2])) {
         let Self { cell, segments, first, entries, found, looked_at, crowded } = self;
         (*looked_at, *crowded) = (0, 0);
@@ -170,12 +176,13 @@ impl Grid {
             'cells: for c in cells(*cell, &of.swept) {
                 let b = bucket(c, buckets);
                 let inside = &entries[first[b] as usize..first[b + 1] as usize];
-                // Those after it in order come after it in each bucket.
+                // Entries are sorted in each bucket, so segments with a higher index follow.
                 let after = inside.partition_point(|(_, other)| *other <= k as u32);
                 for (_, other) in inside[after..].iter().filter(|e| e.0 == c) {
                     *looked_at += 1;
                     let other = &segments[*other as usize];
-                    // In the one cell in which the boxes' common part begins.
+                    // Only in the cell that contains the lowest corner of the boxes' intersection, so that
+                    // each pair is found once.
                     let low = of.swept[0].max(other.swept[0]);
                     if low.cmple(of.swept[1].min(other.swept[1])).all()
                         && of.may_meet(other)
@@ -196,7 +203,7 @@ impl Grid {
     }
 }
 
-/// Cells that a box reaches into.
+/// Cells that a box overlaps.
 fn cells(cell: f32, bounds: &[Vec3; 2]) -> impl Iterator<Item = IVec3> + use<> {
     let [low, high] = bounds.map(|b| cell_of(cell, b));
     (low.x..=high.x).flat_map(move |x| {
@@ -204,7 +211,7 @@ fn cells(cell: f32, bounds: &[Vec3; 2]) -> impl Iterator<Item = IVec3> + use<> {
     })
 }
 
-/// How many they are.
+/// Number of cells that a box overlaps.
 fn count(cell: f32, bounds: &[Vec3; 2]) -> f64 {
     let [low, high] = bounds.map(|b| cell_of(cell, b));
     (high.as_dvec3() - low.as_dvec3() + 1.0).element_product()
@@ -217,6 +224,6 @@ fn cell_of(cell: f32, x: Vec3) -> IVec3 {
 fn bucket(c: IVec3, buckets: usize) -> usize {
     let hash =
         (c.x.wrapping_mul(73_856_093)) ^ (c.y.wrapping_mul(19_349_663)) ^ (c.z.wrapping_mul(83_492_791));
-    // The low bits of the products are those of the cells; the high ones are mixed.
+    // The low bits of the products depend on the low bits of the cells only; the high bits are mixed.
     ((hash as u32).wrapping_mul(0x9e37_79b1) >> 7) as usize & (buckets - 1)
 }

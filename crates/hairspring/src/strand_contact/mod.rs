@@ -1,34 +1,46 @@
-//! Hair on hair, strand by strand: segments that touch press each other apart, rub, and may hold together until they are pulled apart.
+//! Strand contact: segments of different strands that touch push each other apart, rub, and may stick
+//! together until they are pulled apart.
 //!
-//! The reference that the volume (`volume/`) is measured against, for guides and for small scenes. Strands meet between substeps, not once a frame: inside
-//! a substep each is solved by itself, and what its neighbours do to it is part of the velocities that it begins with.
+//! This is the reference for the volume methods (`volume/`), for guides and small scenes. Contacts are solved
+//! between substeps, not once a frame. Within a substep each strand is solved separately, starting from
+//! velocities that include the contact impulses.
 //!
 //! ```text
-//! before a substep   v ← v + h M⁻¹ Jᵀ F           F the loads that contacts carry, J from velocities to those of contacts
-//! the substep        every strand by itself
-//! after it           v ← v + A⁻¹ Jᵀ p             p by projected Gauss–Seidel, so that no segments will be in each other at the end of the next;
-//!                                                 A what strands make of it: masses, bending (`response`), and lengths that stay (`along`)
-//! carried            F ← what acted in this substep and in the one before it, F + p/h
+//! before a substep   v ← v + h M⁻¹ Jᵀ F           F the loads that contacts carry, J the contact Jacobian
+//! the substep        every strand separately
+//! after it           v ← v + A⁻¹ Jᵀ p             p by projected Gauss–Seidel, so that no segments
+//!                                                 overlap at the end of the next substep;
+//!                                                 A the response of strands: masses and bending (`response`),
+//!                                                 and constant lengths (`along`)
+//! carried            F ← what acted both in this substep and in the one before, F + p/h
 //! ```
 //!
-//! Sequential impulses (Moreau 1988, *Unilateral Contact and Dry Friction in Finite Freedom Dynamics*; Catto 2005, *Iterative Dynamics with Temporal
-//! Coherence*), with a difference: the load is not where iterations begin but is given to the strands' solve, which is then in balance with it, tension
-//! and weight together. What acts in two substeps in turn is a load; what acts in one is a blow, and is not carried.
+//! The method is sequential impulses (Moreau 1988, *Unilateral Contact and Dry Friction in Finite Freedom
+//! Dynamics*; Catto 2005, *Iterative Dynamics with Temporal Coherence*) with one difference. The load is not
+//! the initial guess of the iterations but an input of the strands' solve, which balances it together with
+//! tension and weight. A force that acts in two consecutive substeps is a load. A force that acts in one is
+//! an impact and is not carried.
 //!
-//! Every impulse acts on both segments, equal and opposite: momentum is kept to rounding. No place is ever moved: lengths and contact with bodies are as
-//! the substep left them.
+//! Every impulse acts on both segments with opposite signs, so momentum is conserved to rounding. Positions
+//! are never changed: lengths and contacts with bodies stay as the substep left them.
 //!
-//! Strands that are the same at rest are one here (`hair`), and a segment is shown so many others at most (`grid`): the cost of a crowd grows with its number.
+//! Strands that are identical at rest are merged (`hair`), and the number of neighbors of a segment is
+//! limited (`grid`), so the cost of a dense crowd is linear in its size.
 //!
-//! A start at rest stays one: a segment is no thicker than half of the way to the nearest other strand at rest, so that nothing touches there.
+//! Hair that starts at rest stays at rest: the radius of a segment is at most half the distance to the
+//! nearest other strand at rest, so nothing touches there.
 //!
 //! # Cost
-//! Strands meet in every substep, in one order on one thread, so that results depend on no number of threads: and cost more the more of them
-//! touch: of 500 shaken strands of 32 points at 4 substeps a frame takes 1.1 ms on one core without, 140 ms with a radius of 1 mm and 290 ms with that of their density.
+//! Contacts are solved in every substep, in a fixed order on one thread, so that results do not depend on the
+//! number of threads. The cost grows with the number of contacts. A frame of 500 shaken strands of 32 points
+//! at 4 substeps takes 1.1 ms on one core without strand contact, 140 ms with a radius of 1 mm, and 290 ms
+//! with the radius of their density.
 //!
-//! # Missing
-//! A strand does not meet itself. Followers are moved by their guides alone. Where more
-//! strands are pressed together than there is room for, they overlap, and tremble; a narrow tie does not gather them, because they hold each other up.
+//! # Limitations
+//! - A strand does not collide with itself.
+//! - Follow hairs are moved by their guides only.
+//! - Where strands are compressed beyond the available space, they overlap and vibrate.
+//! - A narrow tie does not gather them, because they support each other.
 
 mod along;
 mod closest;
@@ -48,13 +60,15 @@ use contact::{Contact, ContactResponse, SolverParams};
 use glam::{Mat3, Quat, Vec3};
 use grid::Grid;
 
-/// Sweeps over all contacts after a substep. More are for piles: what is left of an approach is carried into the next substep.
+/// Iterations over all contacts after a substep. More would help in piles; the rest of an approach is carried
+/// into the next substep.
 const SWEEPS: usize = 8;
 
-/// Most contacts that are kept, over the number of segments: a strand in a bundle, each segment beside three of each of six neighbours, counted once for both.
+/// Largest number of contacts for each segment. In a bundle, each segment is next to three segments of each
+/// of six neighbors, and each contact counts once for both.
 const MOST_CONTACTS: usize = 16;
 
-/// Strands that meet each other one by one: what is known of their contacts, and memory.
+/// State of the strand contacts, and working memory.
 pub(crate) struct Neighbours {
     settings: settings::Neighbours,
     /// The largest radius of a segment [m].
@@ -64,38 +78,39 @@ pub(crate) struct Neighbours {
     pub hair: Hair,
     grid: Grid,
     along: Along,
-    /// Sorted by their segments.
+    /// Sorted by pair of segments.
     contacts: Vec<Contact>,
     before: Vec<Contact>,
-    /// Of each contact, where it was asked for.
+    /// Responses of each contact, computed when first needed.
     sides: Vec<Option<ContactResponse>>,
 }
 
-/// What is known of strands that meet each other one by one.
+/// Statistics of the strand contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NeighboursReport {
-    /// The largest radius of contact [m]: the one that was asked for, or found.
+    /// The largest contact radius [m]: the given one, or the computed one.
     pub radius: f32,
-    /// Pairs of segments that are near each other.
+    /// Pairs of segments near each other.
     pub near: usize,
-    /// Of those, pairs that press each other.
+    /// Pairs of these that push each other apart.
     pub pressing: usize,
-    /// Of those, pairs that hold together.
+    /// Pairs of these that stick together.
     pub bonds: usize,
-    /// Sum of the forces along the normals of all pairs, pulling ones negative [N].
+    /// Sum of the normal forces of all pairs; pulling forces are negative [N].
     pub force: f32,
-    /// The deepest that two segments are in each other [m].
+    /// Largest depth of an overlap of two segments [m].
     pub depth: f32,
-    /// Strands that are the same at rest as others before them, and meet the rest as one with those.
+    /// Strands that are identical at rest to earlier ones, and are merged with those.
     pub same: usize,
-    /// Pairs of segments that were looked at after the last substep.
+    /// Pairs of segments that the broad phase tested after the last substep.
     pub looked_at: usize,
-    /// The most segments that were ever left with some of their neighbours out, because they had more than are looked at.
+    /// Largest number of segments so far that had some neighbors ignored, because they exceeded the limit.
     pub crowded: usize,
 }
 
 impl Neighbours {
-    /// Strands as they are at rest in `hair`; `None` where they are not to meet, or there are not two.
+    /// Creates strand contact for the strands of `hair` at rest. Returns `None` if it is disabled or there
+    /// are fewer than two strands.
     pub fn new(settings: &settings::Neighbours, mut hair: Hair) -> Option<Self> {
         if !settings.on || hair.shown_count() < 2 {
             return None;
@@ -135,7 +150,7 @@ impl Neighbours {
         report
     }
 
-    /// Bytes that it holds.
+    /// Size in memory [bytes].
     pub fn bytes(&self) -> usize {
         self.hair.bytes()
             + self.grid.bytes()
@@ -144,28 +159,28 @@ impl Neighbours {
                 * (2 * size_of::<Contact>() + size_of::<Option<ContactResponse>>())
     }
 
-    /// Nothing touches any more: strands were put elsewhere.
+    /// Removes all contacts, after strands have been moved elsewhere.
     pub fn forget(&mut self) {
         self.contacts.clear();
     }
 
-    /// Hair was turned as a whole.
+    /// Rotates all contacts with the hair.
     pub fn turn(&mut self, by: Quat) {
         let turn = Mat3::from_quat(by);
         self.contacts.iter_mut().for_each(|contact| contact.turn(&turn));
     }
 
-    /// Goes on with what `old` knew of the same strands.
+    /// Takes over the contacts of `old`, which has the same strands.
     pub fn take_over(&mut self, old: &Neighbours) {
         self.contacts.extend_from_slice(&old.contacts[..old.contacts.len().min(self.contacts.capacity())]);
     }
 
-    /// Whether any strand touches another.
+    /// Returns whether any strand touches another.
     pub fn touch(&self) -> bool {
         self.contacts.iter().any(|contact| contact.presses() || contact.holds())
     }
 
-    /// Leaves as the velocities of `hair` what they change by by what contacts carry, in a substep of `h` [s].
+    /// Sets the velocities of `hair` to the change that the carried loads cause in a substep of `h` [s].
     pub fn apply_warm_start(&mut self, h: f32) {
         self.hair.v.fill(Vec3::ZERO);
         for contact in &self.contacts {
@@ -173,12 +188,13 @@ impl Neighbours {
         }
     }
 
-    /// What the velocity of point `i` was changed by by the last [`Neighbours::meet`] [m/s].
+    /// Change of the velocity of point `i` by the last [`Neighbours::solve_contacts`] [m/s].
     pub fn change(&self, i: usize) -> Vec3 {
         self.along.change(i, &self.hair)
     }
 
-    /// Finds who touches whom in `hair`, after a substep of `h` [s], and changes velocities so that none will be in the other after the next.
+    /// Finds the contacts of `hair` after a substep of `h` [s], and changes velocities so that no segments
+    /// overlap after the next.
     pub fn solve_contacts(&mut self, h: f32) {
         let Self { hair, grid, along, contacts, before, sides, .. } = self;
         std::mem::swap(contacts, before);

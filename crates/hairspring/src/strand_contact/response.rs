@@ -1,28 +1,31 @@
-//! How a strand gives way to a force on one of its segments within a substep: masses, and what bending makes of their motion.
+//! The response of a strand to an impulse on one of its segments within a substep, from masses and bending.
 //!
 //! ```text
 //! (M + h² K) δ = f,    K = Σ B c cᵀ at the joints,    c = (1/L₀, −1/L₀ − 1/L₁, 1/L₁)
 //! ```
 //!
-//! A point of fine hair alone is light, and stiff bending makes the hair around it move along: were it struck by its own mass, it would hardly be felt.
-//! Solved in a window around the segment, by the bending of the strand's solve (Bergou et al. 2008, eq. 2) alike in all directions.
+//! A single point of fine hair is light, but stiff bending moves the hair around it too. With the point's own
+//! mass alone, the impulse would be far too small. The system is solved in a window around the segment, with
+//! the bending of the strand's solve (Bergou et al. 2008, eq. 2) treated as isotropic.
 
 use super::hair::Hair;
 
-/// Points of the window: bending takes along about a centimetre of hair in a substep of 1/240 s, and segments are seldom shorter than 2 mm.
+/// Points in the window. Bending moves about a centimeter of hair in a substep of 1/240 s, and segments are
+/// rarely shorter than 2 mm.
 pub const WINDOW: usize = 8;
 
-/// Changes of velocity of the points from `first` on, by a unit of impulse on a segment.
+/// Velocity changes of the points from `first` on, for a unit of impulse on a segment.
 #[derive(Clone, Copy)]
 pub struct Response {
     first: u32,
     count: u32,
-    /// Over the impulse [1/kg].
+    /// Velocity change over impulse [1/kg].
     change: [f32; WINDOW],
 }
 
 impl Response {
-    /// Of the segment from point `i`, struck at the share `s` of its length, in a substep of `h` [s].
+    /// Computes the response of the segment from point `i` to an impulse at the fraction `s` of its length,
+    /// in a substep of `h` [s].
     pub fn of(i: u32, s: f32, hair: &Hair, h: f32) -> Self {
         let i = i as usize;
         let strand = hair.strand(hair.of[i] as usize);
@@ -46,7 +49,7 @@ impl Response {
                 }
             }
         }
-        // LDLᵀ; what is driven is left out.
+        // LDLᵀ without the driven points.
         let mut inverse = [0.0_f32; WINDOW];
         for k in 0..count {
             if hair.inverse_mass[first + k] > 0.0 {
@@ -70,13 +73,13 @@ impl Response {
         Self { first: first as u32, count: count as u32, change }
     }
 
-    /// Change of velocity where the impulse is, of the segment from point `i` at the share `s` [1/kg].
+    /// Velocity change over impulse, at the fraction `s` of the segment from point `i` [1/kg].
     pub fn inverse_effective_mass(&self, i: u32, s: f32) -> f32 {
         let k = (i - self.first) as usize;
         (1.0 - s) * self.change[k] + s * self.change[k + 1]
     }
 
-    /// Changes velocities by an impulse [N s].
+    /// Applies the velocity changes of an impulse [N s].
     pub fn apply_impulse(&self, impulse: glam::Vec3, hair: &mut Hair) {
         let first = self.first as usize;
         let count = self.count as usize;

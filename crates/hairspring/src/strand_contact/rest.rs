@@ -1,18 +1,20 @@
-//! How thick segments are where they meet others: as much as there was room for at rest.
+//! Contact radii of segments: as large as the space at rest allows.
 
 use super::{closest::closest, grid::Grid, hair::Hair};
 
-/// Share of the room at rest that two segments take up [1]: rounding must not make them touch there.
+/// Share of the space at rest that two segments occupy [1]. It is below 1 so that rounding does not make them
+/// touch there.
 const TAKEN: f32 = 0.999;
 
-/// Sets the radii of all segments, from strands at rest: `asked` [m], or half of the mean distance to the nearest other strand, and nowhere more than half of
-/// that distance. Returns the largest.
+/// Sets the radii of all segments, from strands at rest, and returns the largest. The radius is `asked` [m],
+/// or half the mean distance to the nearest other strand if that is `None`, but at most half the segment's
+/// own distance.
 pub fn find_radii(asked: Option<f32>, hair: &mut Hair, grid: &mut Grid) -> f32 {
     let segments: Vec<u32> = hair.segments().collect();
     let length = |hair: &Hair, s: u32| hair.ends(s)[0].distance(hair.ends(s)[1]);
     let mean =
         segments.iter().map(|s| f64::from(length(hair, *s))).sum::<f64>() / segments.len().max(1) as f64;
-    // Where no radius is asked for, strands farther off than a segment is long count as that far.
+    // Without a given radius, distances beyond the mean segment length are clamped to it.
     let within = asked.map_or(mean as f32, |radius| 2.0 * radius);
     let mut nearest = vec![within; hair.x.len()];
     grid.sort_still(hair, 0.5 * within);

@@ -1,10 +1,11 @@
-//! Two promises of impulses, on hair in the air: they keep momentum, and pairs are all that are near.
+//! Tests of strand contact on free hair: impulses conserve momentum, and the broad phase finds every pair
+//! once.
 
 use super::{Neighbours, along::Along, closest::closest, grid::Grid, hair::Hair};
 use crate::settings;
 use glam::{DVec3, Vec3};
 
-/// Strands in a heap, of points of 60 µg and more, all free.
+/// A heap of strands with free points of 60 µg or more.
 fn heap(strands: usize, points: usize) -> Hair {
     let mut hair = Hair::default();
     (0..strands).for_each(|_| hair.add_strand(points));
@@ -55,14 +56,14 @@ fn momentum_is_kept() {
         let error = momentum(&neighbours.hair).distance(before.0) / all;
         println!("{substep}: {error} of all, {report:?}");
         assert!(report.pressing > 50, "{report:?}");
-        assert!(error < 1e-6, "{error} of all momentum came from nowhere");
+        assert!(error < 1e-6, "momentum changed by {error} of the total");
     }
     let changed = neighbours.hair.v.iter().zip(&before.1).filter(|(a, b)| a.distance(**b) > 0.01).count();
-    assert!(changed > 100, "{changed} points were struck");
-    // What contacts carry acts on both sides alike, too.
+    assert!(changed > 100, "{changed} points got an impulse");
+    // Carried loads act on both sides with opposite signs as well.
     neighbours.apply_warm_start(1.0 / 240.0);
     let error = momentum(&neighbours.hair).length() / all;
-    assert!(error < 1e-6, "{error} of all momentum came of loads");
+    assert!(error < 1e-6, "loads changed momentum by {error} of the total");
 }
 
 #[test]

@@ -1,10 +1,12 @@
-//! Explicit Euler and position Verlet, with the fibre's own stretching stiffness: the baseline that blows up, there to be compared.
+//! Explicit Euler and position Verlet, with the true stretching stiffness of the fiber. A baseline for
+//! comparisons, unstable at practical time steps.
 //!
 //! ```text
 //! explicit Euler   x⁺ = x + h v,   v⁺ = v + h a        Verlet   x⁺ = x + (x − x⁻) + h² a,   v⁺ = (x⁺ − x) / h
 //! ```
 //!
-//! Müller et al. 2008, *Real Time Physics*, §3.3. A segment of hair rings at some 10⁵ rad/s, so both need steps of microseconds.
+//! Müller et al. 2008, *Real Time Physics*, §3.3. A segment of hair oscillates at some 10⁵ rad/s, so both
+//! need time steps of microseconds.
 
 use super::outside;
 use crate::{
@@ -18,7 +20,7 @@ use crate::{
     },
 };
 
-/// Leaves the new edges in `scratch.edges` and what the velocities get besides in `scratch.kick`.
+/// Stores the new edges in `scratch.edges` and additional velocity changes in `scratch.kick`.
 #[inline(always)]
 pub fn advance<S, M, const B: usize, const N: usize>(
     simd: S,

@@ -1,5 +1,5 @@
-//! Backward Euler and BDF2: one banded solve, linearised at the start of the substep (Baraff & Witkin 1998), then fast projection;
-//! or, for high quality, Newton iterations with a line search.
+//! Backward Euler and BDF2: one banded solve, linearized at the start of the substep (Baraff & Witkin 1998),
+//! then fast projection. For high quality, Newton iterations with a line search.
 
 use crate::{
     simd::lanes::{F, Simd, V3, load},
@@ -14,7 +14,7 @@ use crate::{
     },
 };
 
-/// Leaves the new edges in `scratch.edges`.
+/// Stores the new edges in `scratch.edges`.
 #[inline(always)]
 pub fn advance<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -27,7 +27,8 @@ pub fn advance<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let mut projection = solve::<S, M, B, N>(simd, interval, step, tile, scratch);
-    // Where springs are stiffer they have taken more of a load in the solve, and projection's part is noise.
+    // Stiffer springs take more of a load in the solve; what projection adds to their tension is then mostly
+    // noise, so it is scaled down.
     let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
     let force = F::splat(simd, step.inertia() / (step.h * step.h)) / stiffening;
     let granted = granted(simd, interval.projection_iterations, tile);
@@ -40,19 +41,20 @@ pub fn advance<S, M, const B: usize, const N: usize>(
     }
 }
 
-/// Points of a strand for which one more iteration of projection is granted.
+/// Points of a strand per permitted iteration of projection.
 const POINTS_AN_ITERATION: f32 = 32.0;
 
-/// Iterations of projection that each strand may take where `setting` of them are asked for: the springs of the solve carry a change of
-/// load along some 60 points in a substep (see `stiffening`), and the longer the strand, the more is left to projection. It ends as soon
-/// as lengths are right.
+/// Returns how many iterations of projection each strand may take, at least `setting` unless that is 0. The
+/// springs of the solve carry a change of load along some 60 points in a substep (see `stiffening`); a longer
+/// strand leaves more to projection. Iteration ends as soon as all lengths are within tolerance.
 #[inline(always)]
 fn granted<S: Simd>(simd: S, setting: u32, tile: &Tile) -> F<S> {
     let points = load(simd, &tile.strand[strand::POINTS]) * (1.0 / POINTS_AN_ITERATION);
     if setting == 0 { F::splat(simd, 0.0) } else { points.max(setting as f32) }
 }
 
-/// Largest correction over the longest segment below which Newton is done [1]: what f32 can tell apart.
+/// Newton convergence tolerance: largest correction over the longest segment [1], about the resolution of
+/// f32.
 const CONVERGED: f32 = 1e-5;
 
 #[inline(always)]
@@ -72,8 +74,9 @@ where
     if interval.iterations == 1 {
         return projection;
     }
-    // Newton: the linearisation again where the last one led. A correction that is larger than the one before tells of a step that went
-    // too far, and the next goes half as far (the natural monotonicity test of Deuflhard 2004, *Newton Methods*, §3.3).
+    // Newton: linearize again at the last iterate. A correction larger than the previous one shows that the
+    // step was too long, so the next one is halved (the natural monotonicity test of Deuflhard 2004, *Newton
+    // Methods*, §3.3).
     let mut share = F::<S>::splat(simd, 1.0);
     let mut last = F::<S>::splat(simd, f32::INFINITY);
     let points = tile.rest.len();
@@ -90,7 +93,8 @@ where
         }
         let grew = size.simd_gt(last);
         share = grew.select(share * 0.5, (share + share).min(1.0));
-        // Strands that are done keep their bits, whatever their neighbours in the tile do.
+        // Converged strands are not changed, so that their result does not depend on their neighbors in the
+        // tile.
         let enough = length * CONVERGED;
         let going = size.simd_gt(enough * enough);
         let share_now = going.select(share, F::splat(simd, 0.0));
@@ -104,6 +108,6 @@ where
         }
         last = size;
     }
-    // Where a share of the step leads is not where the sweep up met the segments.
+    // After a damped step, the segments are not where the upward sweep evaluated them.
     Projection::meet_all(simd, M::STRIDE, tile, scratch)
 }

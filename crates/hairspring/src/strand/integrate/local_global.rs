@@ -1,12 +1,14 @@
-//! Local–global: every spring alone finds where it would be at rest, then one constant linear system reconciles them.
+//! Local–global solver: each spring is projected onto its rest state separately, then one constant linear
+//! system combines the results.
 //!
 //! ```text
 //! local    d = L û for a segment,  d = the rest turn in the carried frame for a joint
 //! global   (M/h² + Σ k AᵀA) x = M/h² x̂ + Σ k Aᵀ d,     x̂ = x + h v + h² a
 //! ```
 //!
-//! Liu et al. 2013, *Fast Simulation of Mass-Spring Systems*. A takes differences of points, so that the matrix is scalar, of
-//! half-bandwidth 2, and the same for a whole interval: it is factored once. Solved for the change of x, which keeps its digits in f32.
+//! Liu et al. 2013, *Fast Simulation of Mass-Spring Systems*. A takes differences of points, so the matrix is
+//! scalar, has half-bandwidth 2 and is constant for a whole frame: it is factored once. The unknown is the
+//! change of x, which preserves precision in f32.
 
 use super::outside;
 use crate::{
@@ -22,15 +24,16 @@ use crate::{
     },
 };
 
-/// All of a window meets.
+/// All unknowns of a window are coupled.
 const PROFILE: Profile<1, 3> = Profile::within(2);
 
-/// Rows of factors a point: u of the next two points, a right-hand side of its own that is not used, and −1/d.
+/// Rows of factors a point: u of the next two points, the point's own right-hand side, which is unused, and
+/// −1/d.
 const ROWS: usize = PROFILE.rows();
-/// The last of them.
+/// The row with −1/d, the last of them.
 const MINUS_INVERSE: usize = ROWS - 1;
 
-/// Points of factors before the first.
+/// Points of padding before the first point's factors.
 const BEFORE: usize = Profile::<1, 3>::REACH;
 
 /// Factors the constant matrix into `scratch.factors`.
@@ -54,14 +57,15 @@ pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
             band.add((1, 0), (2, 0), -stretch);
             band.add((2, 0), (2, 0), stretch);
         }
-        // Points that do not move are cut off.
+        // Points that do not move are decoupled.
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
         band.with_checked_lengths(simd, free);
         band.eliminate(simd, PROFILE, i, scratch.factors);
     }
 }
 
-/// 1/L of segments i and i+1, stretch stiffness of segment i+1 and bending stiffness of the joint between them.
+/// Returns 1/L of segments i and i+1, the stretch stiffness of segment i+1, and the bending stiffness of the
+/// joint between them.
 #[inline(always)]
 fn weights<S: Simd>(simd: S, h: f32, tile: &Tile, i: usize) -> [F<S>; 4] {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
@@ -76,7 +80,7 @@ fn weights<S: Simd>(simd: S, h: f32, tile: &Tile, i: usize) -> [F<S>; 4] {
     ]
 }
 
-/// Leaves the new edges in `scratch.edges` after so many iterations.
+/// Runs `iterations` iterations and stores the new edges in `scratch.edges`.
 #[inline(always)]
 pub fn advance<S: Simd>(
     simd: S,
@@ -99,10 +103,10 @@ pub fn advance<S: Simd>(
         ((v + outside(simd, step, tile, i, [u, x]) * h) * h - step.moved).store(&mut scratch.kick[i]);
     }
     for _ in 0..iterations {
-        // Right-hand sides and the sweep down in one: z_i = b_i − l z of the two points before.
+        // Right-hand sides and downward sweep in one pass: z_i = b_i − l z of the two points before.
         let mut e0 = V3::load(simd, &scratch.edges[1]);
         let mut u0 = e0.length_and_unit().1;
-        // How far a point has gone.
+        // Displacement of the point since the start of the substep.
         let mut way = zero;
         let mut normal = step.root.normal;
         let mut b = [zero; 3];

@@ -1,6 +1,8 @@
-//! One tile through one exchange interval, every substep while its points are in the first-level caches; one file an integrator.
+//! Advances one tile through a frame. All substeps of a tile run in sequence while its points are in the L1
+//! caches. Each integrator has a file.
 //!
-//! A substep is: root driven → the integrator's new positions → strain limit and contact, root to tip → velocities.
+//! A substep drives the root, computes new positions with the integrator, applies strain limit and contact
+//! from root to tip, and updates the velocities.
 
 mod explicit;
 mod ftl;
@@ -24,7 +26,7 @@ use crate::{
     settings::{Integrator, Response},
 };
 
-/// The substeps of `interval` that are to be run now, for one tile.
+/// Runs the substeps of `interval` that are due now, for one tile.
 #[inline(always)]
 pub fn run_tile<S, M, const B: usize, const N: usize>(
     simd: S,
@@ -49,7 +51,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     let largest_strain = if interval.integrator.limits_strain() { LIMIT } else { f32::INFINITY };
     let (fraction, anchor) = interval.begun();
     let mut root = Root::between(simd, tile.strand, fraction, anchor);
-    // What the root drives drifts with it.
+    // Driven points get the velocity of the root.
     let velocity: [_; 3] = std::array::from_fn(|k| tile.state[0][state::V + k]);
     for driven in &mut tile.state[1..M::DRIVEN] {
         driven[state::V..state::V + 3].copy_from_slice(&velocity);
@@ -59,8 +61,8 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
         let next = Root::at(simd, tile.strand, substep);
         let moved = next.position - root.position;
         root = next;
-        // Where the solve starts: every point where the last substep left it, the driven segment already where it goes, the rest
-        // staying behind.
+        // The solve starts with every point where the last substep left it, except for the driven segment,
+        // which is already at its new position.
         let third = Root::third(simd, tile.strand, substep);
         let driven = [V3::zero(simd), root.first, third - root.first];
         let mut behind = V3::zero(simd);
@@ -110,16 +112,18 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     }
 }
 
-/// Acceleration of point `i` by gravity, by what pushes and grips it and by the air it moves through [m/s²]; `u` is the segment from it, `x` where it
-/// is, from the root.
+/// Acceleration of point `i` by gravity, external acceleration, position spring, anisotropic drag and air
+/// drag [m/s²]. `u` is the unit vector of the segment that begins at the point, and `x` is its position
+/// relative to the root.
 #[inline(always)]
 fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u, x]: [V3<S>; 2]) -> V3<S> {
     let (stride, zero) = (tile.model.stride(), F::<S>::splat(simd, 0.0));
     let length = |i: usize| load(simd, &tile.rest[i][rest::LENGTH]);
-    // Air takes hold of the half segments around a point, not of what is no part of the fibre.
+    // Drag acts on the half segments adjacent to the point. Extra particles are not part of the fiber and
+    // have none.
     let around = if i.is_multiple_of(stride) { (length(i - stride) + length(i)) * 0.5 } else { zero };
     let drag = Root::<S>::fibre(simd, tile.strand).0 * around / load(simd, &tile.rest[i][rest::MASS]);
-    // Explicit: a larger coefficient would overshoot the velocity of the air.
+    // Explicit integration: a larger coefficient would overshoot the velocity of the air.
     let stable = |coefficient: F<S>| (drag * coefficient).min(1.0 / step.h);
     let v = V3::load(simd, &tile.state[i][state::V..]);
     let nothing = V3::zero(simd);
@@ -148,15 +152,20 @@ fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u
         pulled += slip - u * u.dot(slip);
         yielding += brake * h;
     }
-    // Implicit by itself: methods that take steps as long as the implicit ones' would else not bear a firm grip.
+    // The spring and the drag are implicit for each point by itself. Otherwise, methods with time steps as
+    // long as the implicit integrators' would be unstable with stiff position springs.
     pulled * (one / yielding)
 }
 
-/// For how long a strand counts as one that touches something when it does so no more [s]: of 0.05 to 0.25, all keep the hair that thin rods meet.
+/// How long a strand still counts as touching after its last contact [s]. Found by trial: every value from
+/// 0.05 to 0.25 keeps hair on thin rods.
 const TOUCHED: f32 = 0.1;
 
-/// Which strands touch a collider or are gripped, or did so a moment ago; all of them, where any touch each other. What a contact throws comes back to it, and is
-/// braked on its way as in contact: what counts as free in between gathers speed from each throw.
+/// Returns the strands that touch a collider or are gripped, or did so within the last [`TOUCHED`] seconds;
+/// all strands if any strands touch each other.
+///
+/// A contact may push a point away, and the point soon returns. In between, its motion is damped as in
+/// contact. Otherwise it would gain speed from each bounce.
 #[inline(always)]
 fn touching<S: Simd>(
     simd: S,

@@ -1,5 +1,6 @@
-//! The altitude springs of the springs model, along the shortest height of the tetrahedron of four neighbours, where it is flattened: Selle, Lentine, Fedkiw 2008,
-//! *A Mass Spring Model for Hair Simulation*, §3; where we deviate is said in [`springs`](super::springs).
+//! The altitude springs of the springs model, which act along the shortest height of the tetrahedron of four
+//! consecutive particles where it is flattened. Selle, Lentine, Fedkiw 2008, *A Mass Spring Model for Hair
+//! Simulation*, §3; [`springs`](super::springs) lists the deviations.
 
 use crate::{
     simd::lanes::{F, Mask, Row, Simd, V3, load},
@@ -11,18 +12,18 @@ use crate::{
     },
 };
 
-/// Volume over the rest volume below which an altitude spring acts [1].
+/// Ratio of volume to rest volume below which an altitude spring acts [1].
 const FLATTENED: f32 = 0.5;
 
-/// From particle `i` to the three after it [m].
+/// Positions of the three particles after particle `i`, relative to it [m].
 #[inline(always)]
 pub fn after<S: Simd>(simd: S, i: usize, scratch: &Scratch) -> [V3<S>; 3] {
-    let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges go on past the tip");
+    let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges are padded past the tip");
     let [e1, e2, e3] = edges.each_ref().map(|e| V3::load(simd, e));
     [e1, e1 + e2, e1 + e2 + e3]
 }
 
-/// Where the tetrahedron of a particle and the three after it, which are at `p` from it, is flattened.
+/// Returns where the tetrahedron of a particle and the three after it, at `p` relative to it, is flattened.
 #[inline(always)]
 pub fn flattened<S: Simd>(p: [V3<S>; 3], rest: &[Row]) -> Mask<S> {
     let volume = p[0].dot(p[1].cross(p[2]));
@@ -30,8 +31,9 @@ pub fn flattened<S: Simd>(p: [V3<S>; 3], rest: &[Row]) -> Mask<S> {
     (volume * kept).simd_lt(kept * kept)
 }
 
-/// The altitude spring of particle `i` and the three after it, none where their tetrahedron is not [`flattened`], in a substep of `h` [s] whose velocities act
-/// for `drifting` [s] until the solve begins.
+/// Returns the altitude spring of particle `i` and the three after it, with stiffness 0 where their
+/// tetrahedron is not [`flattened`]. `h` is the length of the substep [s], and `drifting` is the time that
+/// velocities act before the starting point of the solve [s].
 #[inline(always)]
 pub fn across<S: Simd>(
     simd: S,
@@ -46,7 +48,7 @@ pub fn across<S: Simd>(
     let k = flattened(p, rest).select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
     let (direction, c, longer) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
     let damped = Root::<S>::fibre(simd, tile.strand).1 * (1.0 / h) + 1.0;
-    // Beyond the tip nothing is stiff.
+    // Elements beyond the tip have no stiffness, so the clamped index does no harm.
     let tip = tile.rest.len() - 1;
     let v0 = V3::load(simd, &tile.state[i][state::V..]);
     let mut drift = V3::zero(simd);
@@ -58,7 +60,8 @@ pub fn across<S: Simd>(
     BorderedConstraint { gradient: c.map(|c| direction * c), longer, stiffness: k * damped }
 }
 
-/// The heights of a tetrahedron: the points p, q, r, v, and whether from the face pqr to v, or from the edge pq to the edge rv.
+/// The heights of a tetrahedron: the points p, q, r, v, and whether the height goes from the face pqr to v
+/// (true) or from the edge pq to the edge rv (false).
 const HEIGHTS: [([usize; 4], bool); 7] = [
     ([0, 1, 2, 3], true),
     ([1, 2, 3, 0], true),
@@ -69,13 +72,14 @@ const HEIGHTS: [([usize; 4], bool); 7] = [
     ([0, 3, 1, 2], false),
 ];
 
-/// The shortest height of a tetrahedron: its unit direction, the gradient of the height over that direction at the four points, and what it is
-/// longer than with six times the rest volume `volume` [m].
+/// Returns the shortest height of a tetrahedron: its unit direction, the coefficient of that direction in the
+/// gradient of the height at each of the four points, and the extension of the height beyond its value at
+/// `volume`, which is six times a volume [m³]. The extension is in [m].
 #[inline(always)]
 pub fn altitude<S: Simd>(simd: S, x: [V3<S>; 4], volume: F<S>) -> (V3<S>, [F<S>; 4], F<S>) {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let nought = V3::zero(simd);
-    // All heights are six volumes over |a × b|; the shortest has the largest.
+    // Each height is six volumes over |a × b|, so the shortest has the largest |a × b|.
     let (mut a, mut b, mut d, mut n) = (nought, nought, nought, nought);
     let mut largest = F::<S>::splat(simd, -1.0);
     let mut sign = one;
@@ -110,5 +114,5 @@ pub fn altitude<S: Simd>(simd: S, x: [V3<S>; 4], volume: F<S>) -> (V3<S>, [F<S>;
     (n * scale, c, strain)
 }
 
-/// Sign of n·d of each of [`HEIGHTS`] in a tetrahedron with (x₁−x₀)·((x₂−x₀)×(x₃−x₀)) > 0.
+/// Sign of n·d for each of [`HEIGHTS`] in a tetrahedron with (x₁−x₀)·((x₂−x₀)×(x₃−x₀)) > 0.
 const ORIENTATION: [f32; 7] = [1.0, -1.0, 1.0, -1.0, -1.0, 1.0, -1.0];

@@ -1,4 +1,4 @@
-//! Bending: the change of tangent at a joint against its rest value carried in the strand's frame.
+//! Bending: the change of tangent at a joint, compared with its rest value in the strand's frame.
 //!
 //! ```text
 //!          t_{j-1}        t_j
@@ -6,30 +6,37 @@
 //!                   ╲  d (rest turn, rotates with t_{j-1})
 //! ```
 //!
-//! B = EI / L̄ with L̄ the mean of the two rest lengths, so that the sum over joints is ½∫EI|κ − κ₀|² of an inextensible
-//! elastica (the curvature vector is dt/ds). The rest turn d turns with the segment before it by the least rotation,
-//! δd = (û × δû) × d, so the force keeps angular momentum but for the part about û, which is the frame's (see `rod`). With a = û·d the gradient of r is P = (1 + a) I − û dᵀ on segment j−1:
+//! B = EI / L̄ with L̄ the mean of the two rest lengths. The sum over joints is then ½∫EI|κ − κ₀|² of an
+//! inextensible elastica, where the curvature vector is dt/ds.
+//!
+//! The rest turn follows the segment before it by the smallest rotation, δd = (û × δû) × d. The force
+//! therefore conserves angular momentum except for the component about û, which belongs to the frame (see
+//! `rod`). With a = û·d the gradient of r is P = (1 + a) I − û dᵀ on segment j−1:
 //!
 //! ```text
 //! δr = δe_j / L_j − P δe_{j−1} / L_{j−1}
+//! ```
 //!
-//! (with ℓ = L in the swing δû: exact for inextensible segments, which the projection makes of them)
-//! and the Gauss–Newton matrix B JᵀJ is positive semi-definite whatever the strain (cf. Choi & Ko 2002).
+//! This sets ℓ = L in the rotation δû, which is exact for inextensible segments; projection makes them so.
+//! The Gauss–Newton matrix B JᵀJ is positive semi-definite at any strain (cf. Choi & Ko 2002).
 
 use super::joint::Joint;
 use crate::simd::lanes::{F, M3, Simd, Sym3, V3};
 use glam::DVec3;
 
-/// A joint that bends.
+/// The bending element of a joint.
 pub struct Bend<S: Simd> {
     pub joint: Joint<S>,
-    /// B r, the moment vector, where the solve begins [N m].
+    /// B r, the moment vector at the starting point of the solve [N m].
     pub moment: V3<S>,
 }
 
-/// Bending at a joint: `e0`, `e1` the segments before and after it and `d0`, `d1` their drifts [m], `u0` the unit vector of `e0`, `alpha`, `beta` the
-/// inverse rest lengths, `d` the rest turn in world axes, `stiffness` B [N m], and `implicit` the stiffness with damping
-/// for the matrix, B (1 + τ/h).
+/// Computes the bending element of a joint.
+///
+/// `e0` and `e1` are the segments before and after the joint, and `d0` and `d1` their predicted changes [m].
+/// `u0` is the unit vector of `e0`, `alpha` and `beta` are the inverse rest lengths, and `d` is the rest turn
+/// in world axes. `stiffness` is B [N m], and `implicit` is the stiffness with damping for the matrix, B (1 +
+/// τ/h).
 #[inline(always)]
 pub fn bend<S: Simd>(
     [[e0, e1], [d0, d1]]: [[V3<S>; 2]; 2],
@@ -69,22 +76,23 @@ pub fn bend<S: Simd>(
     Bend { joint: Joint { pull, h00, h01, h11: Sym3::scaled_identity(b * beta) }, moment }
 }
 
-/// 1 + cos θ of a joint that counts as completely folded, θ within 0.03° of 180° [1].
+/// 1 + cos θ below which a joint counts as completely folded: θ within 0.03° of 180° [1].
 pub const FOLDED: f32 = 1e-7;
 
-/// The frame's normal carried from segment `u0` to segment `u1` by the least rotation (parallel transport;
-/// Bishop 1975), kept at unit length by one Newton step.
+/// Parallel transport: carries the frame's normal from segment `u0` to segment `u1` by the smallest rotation
+/// (Bishop 1975). One Newton step keeps it at unit length.
 #[inline(always)]
 pub fn transport<S: Simd>(normal: V3<S>, u0: V3<S>, u1: V3<S>) -> V3<S> {
-    // n' = n − (n·u1)/(1 + u0·u1) (u0 + u1), with 1 + u0·u1 = ½|u0 + u1|², which keeps its digits near a fold. A strand that is folded back on itself
-    // keeps its normal.
+    // n' = n − (n·u1)/(1 + u0·u1) (u0 + u1). The denominator is computed as 1 + u0·u1 = ½|u0 + u1|², which
+    // stays precise near a fold. A strand that is folded back on itself keeps its normal.
     let sum = u0 + u1;
     let scale = normal.dot(u1) / (sum.dot(sum) * 0.5).max(FOLDED);
     let n = normal - sum * scale;
     n * (n.dot(n).mul_add(-0.5, F::splat(scale.simd, 1.5)).max(0.5))
 }
 
-/// The same of one strand in double precision, at unit length; the normal itself where the strand is folded back on itself.
+/// The same for one strand in double precision, with unit length. Returns the normal itself where the strand
+/// is folded back on itself.
 pub fn transport_normal(normal: DVec3, t0: DVec3, t1: DVec3) -> DVec3 {
     let sum = t0 + t1;
     let scale = normal.dot(t1) / (0.5 * sum.length_squared()).max(f64::from(FOLDED));

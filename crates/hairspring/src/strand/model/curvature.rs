@@ -21,9 +21,10 @@ use crate::{
 };
 use fearless_simd::Level;
 
-/// Bending in a frame that is carried along the strand by the least rotation and so knows no twist: right and cheapest for
-/// strands that are straight at rest, where no frame matters (see `straight`). A coil slowly forgets its shape in it, and swung curls gain energy, because
-/// the force does not know of its share in the frames beyond.
+/// Bending in a frame that is parallel-transported along the strand and has no twist. It is exact and
+/// cheapest for strands that are straight at rest, where the frame does not matter (see `straight`). A coil
+/// slowly loses its shape in it, and swinging curls gain energy, because the force neglects its effect on the
+/// frames farther along the strand.
 #[derive(Clone, Copy)]
 pub struct Curvature<S: Simd> {
     /// The frame's normal on segment i.
@@ -53,7 +54,7 @@ impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
     fn take(_: S, _: &Solved<S, 9>, _: &mut Tile, _: &[Precomputed]) {}
 }
 
-/// One tile through an interval, on the widest lanes that there are.
+/// Advances one tile through a frame, with the widest available SIMD instructions.
 pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     if tile.double {
         dispatch_double!(level, simd => run_tile::<_, Curvature<_>, 3, 9>(simd, interval, tile, memory));
@@ -62,7 +63,7 @@ pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut 
     }
 }
 
-/// A rest turn in world axes: the frame is (normal, binormal, tangent).
+/// Converts a rest turn to world axes. The frame is (normal, binormal, tangent).
 #[inline(always)]
 pub fn turn_in_frame<S: Simd>(turn: V3<S>, normal: V3<S>, tangent: V3<S>) -> V3<S> {
     normal.mul_add(turn.x, tangent.cross(normal).mul_add(turn.y, tangent * turn.z))

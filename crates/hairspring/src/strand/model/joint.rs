@@ -1,5 +1,5 @@
-//! What the elements of a joint say of its two segments, put into the band at once: every element of bending and twist is a function of
-//! the segments e₀ = x₁ − x₀ and e₁ = x₂ − x₁ alone.
+//! The elements of a joint, collected by segment and added to the band at once. Every element of bending and
+//! twist is a function of the segments e₀ = x₁ − x₀ and e₁ = x₂ − x₁ only.
 //!
 //! ```text
 //!       x₀        x₁        x₂
@@ -13,7 +13,7 @@ use crate::{
     strand::{band::Band, system::System},
 };
 
-/// Forces and stiffness of a joint, by its segments.
+/// Forces and stiffness of a joint with respect to its two segments.
 pub struct Joint<S: Simd> {
     /// −∂E/∂e of each segment [N].
     pub pull: [V3<S>; 2],
@@ -26,8 +26,8 @@ pub struct Joint<S: Simd> {
 }
 
 impl<S: Simd> Joint<S> {
-    /// Adds an element with one strain, whose gradient is `along[k]` times `direction` in segment k; its `force` is stiffness times
-    /// strain.
+    /// Adds an element with one strain. Its gradient in segment k is `along[k]` times `direction`, and
+    /// `force` is stiffness times strain.
     #[inline(always)]
     pub fn add_rank_one(&mut self, direction: V3<S>, along: [F<S>; 2], force: F<S>, stiffness: F<S>) {
         let d = Sym3::outer(direction, stiffness);
@@ -39,7 +39,8 @@ impl<S: Simd> Joint<S> {
         self.pull[1] -= direction * (force * b);
     }
 
-    /// Adds an element with one strain, whose gradient in each segment is given [1/m]; its `force` is stiffness times strain [N m].
+    /// Adds an element with one strain, given its gradient in each segment [1/m]. `force` is stiffness times
+    /// strain [N m].
     #[inline(always)]
     pub fn add_strain(&mut self, [a, b]: [V3<S>; 2], force: F<S>, stiffness: F<S>) {
         let stiff = a * stiffness;

@@ -1,4 +1,4 @@
-//! What holds a strand together: elastic models, each a sweep's worth of elements for the band.
+//! Elastic models. Each adds its elements to the band in one downward sweep.
 //!
 //! | model | unknowns a point | half-bandwidth | |
 //! | --- | --: | --: | --- |
@@ -7,7 +7,7 @@
 //! | [`curvature`] | 3 | 2 | stretch and the curvature vector, in a frame carried from the root |
 //! | [`rod`] | 4 | 2 | curvature in a frame that twists (discrete elastic rod) |
 //!
-//! Stretch of the segments is the same in all (see `stretch`).
+//! All models share the stretch of segments (see `stretch`).
 
 pub mod altitude;
 pub mod bend;
@@ -26,95 +26,101 @@ use super::{
 };
 use crate::simd::lanes::{F, Simd, V3};
 
-/// What is known where the elements that begin at point `i` are added: segments i and i+1 around joint i+1.
+/// Input for the elements that begin at point `i`: segments i and i+1, adjacent to joint i+1.
 #[derive(Clone, Copy)]
 pub struct At<S: Simd> {
     /// The window's first point.
     pub i: usize,
-    /// Which it is of the points that a point of the strand stands for: `i` modulo the model's stride.
+    /// Index of the particle within its point of the strand: `i` modulo the model's stride.
     pub phase: usize,
     /// Segments i and i+1 [m].
     pub e: [V3<S>; 2],
-    /// Their unit vectors; zero for padding.
+    /// Unit vectors of the segments; zero for padding.
     pub u: [V3<S>; 2],
-    /// Their inverse rest lengths [1/m]; zero for padding.
+    /// Inverse rest lengths of the segments [1/m]; zero for padding.
     pub inverse_length: [F<S>; 2],
-    /// 1 + τ/h: how much stiffer bending is in the matrix, for its damping τ.
+    /// 1 + τ/h: the factor by which damping with relaxation time τ stiffens bending in the matrix.
     pub damped: F<S>,
-    /// How much of the present errors of length is news to the tensions, see `Linearization::news`.
+    /// The share of the current length errors that is added to the tensions; see `Linearization::news`.
     pub news: f32,
-    /// By how much they change until where the solve begins, as their points' velocities say [m].
+    /// Predicted changes of the segments from their points' velocities, up to the starting point of the solve
+    /// [m].
     pub drift: [V3<S>; 2],
-    /// How long velocities act until there [s].
+    /// The time that velocities act before that starting point [s].
     pub drifting: F<S>,
     /// Length of the substep [s].
     pub h: f32,
 }
 
-/// What is known of a point once its solve is done, root-ward from the tip.
+/// The solution at a point, on the way from tip to root.
 pub struct Solved<S: Simd, const N: usize> {
-    /// The point.
+    /// Index of the particle.
     pub i: usize,
-    /// Which it is of the points that a point of the strand stands for.
+    /// Index of the particle within its point of the strand.
     pub phase: usize,
-    /// From it to the next and from there to the one after, before the solve [m].
+    /// Edge from this particle to the next, and from the next to the one after, before the solve [m].
     pub edges: [V3<S>; 2],
-    /// Displacements of the three [m].
+    /// Displacements of the three particles [m].
     pub moved: [V3<S>; 3],
-    /// The unknowns from this point on.
+    /// The unknowns of this particle and those after it.
     pub unknowns: [F<S>; N],
-    /// Stiffness of the spring along the strand's segment at it [N/m].
+    /// Stiffness of the spring along the strand's segment at this particle [N/m].
     pub along: F<S>,
-    /// How much of the errors of length before the solve is news to the tensions, see `Linearization::news`.
+    /// The share of the length errors before the solve that is added to the tensions; see
+    /// `Linearization::news`.
     pub news: f32,
 }
 
 impl<S: Simd, const N: usize> Solved<S, N> {
-    /// The tension that the spring to the point `far` after this one, of rest length L and stiffness `k`, took in the solve:
-    /// k (C + e·(δ_far − δ) / L) [N], with C the measure of length that projection has, which needs no root.
+    /// Returns the tension that the solve added to the spring to the particle `far` after this one, with rest
+    /// length L and stiffness `k`: k (C + e·(δ_far − δ) / L) [N]. C is the constraint function of fast
+    /// projection, which needs no square root.
     #[inline(always)]
     pub fn taken(&self, far: usize, [length, inverse]: [F<S>; 2], k: F<S>) -> F<S> {
         let [edge, next] = self.edges;
         let u = (if far == 1 { edge } else { edge + next }) * inverse;
-        // Bounded, because C grows with the square where a root has jumped.
+        // Clamped, because C grows quadratically where a root has jumped.
         let longer = length * u.dot(u).min(4.0).mul_add(0.5, F::splat(k.simd, -0.5));
         k * longer.mul_add(self.news, u.dot(self.moved[far] - self.moved[0]))
     }
 }
 
-/// An elastic model: what it adds to the band of `B` unknowns a point in a window of `N`, point after point.
+/// An elastic model: adds elements to the band, point by point, with `B` unknowns a point and a window of
+/// `N`.
 pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
-    /// Simulated points from one point of the strand to the next.
+    /// Particles for each point of the strand.
     const STRIDE: usize = 1;
 
-    /// Least share of the drift that turns a tense segment's pull, with backward Euler, see [`stretch::SIDEWAYS`] [1].
+    /// Minimum share of the predicted displacement that rotates the tension of a segment, with backward
+    /// Euler; see [`stretch::SIDEWAYS`] [1].
     const SIDEWAYS: f32 = stretch::SIDEWAYS;
 
-    /// Which unknowns meet in the matrix.
+    /// The coupling pattern of the matrix.
     const PROFILE: Profile<B, N> = Profile::within(N - 1);
 
-    /// Points at the root that are driven: its first segment.
+    /// Driven particles at the root: those of its first segment.
     const DRIVEN: usize = Self::STRIDE + 1;
 
     /// Starts at the root of a strand.
     fn begin(simd: S, tile: &Tile, root: &Root<S>) -> Self;
 
-    /// Adds all elements whose first point is `at.i`, which is the band's first.
+    /// Adds all elements whose first particle is `at.i`, which is the band's first.
     fn add(&mut self, simd: S, at: &At<S>, scratch: &Scratch, tile: &mut Tile, band: &mut Band<S, B, N>);
 
-    /// Whether a spring acts across the four points from `i` on. That is asked everywhere, and what it does is left to a function by itself: few points have one.
+    /// Returns whether a spring spans the four particles from `i` on. This test runs at every particle; the
+    /// spring itself is handled by a separate function, because few particles have one.
     #[inline(always)]
     fn acts_across(_: S, _: usize, _: &Tile, _: &Scratch) -> bool {
         false
     }
 
-    /// That spring, in a substep of length h whose velocities act for so long until the solve begins, both in the pair [s]; of no stiffness in a model that knows
-    /// none.
+    /// Returns that spring; its stiffness is 0 in models that have none. The pair holds the length of the
+    /// substep and the time that velocities act before the starting point of the solve [s].
     #[inline(always)]
     fn across(simd: S, _: (f32, f32), _: usize, _: &Tile, _: &Scratch) -> BorderedConstraint<S> {
         BorderedConstraint::none(simd)
     }
 
-    /// Takes what the solve found besides displacements.
+    /// Stores the model's own results of the solve, such as angles and tensions of its springs.
     fn take(simd: S, solved: &Solved<S, N>, tile: &mut Tile, fixed: &[Precomputed]);
 }

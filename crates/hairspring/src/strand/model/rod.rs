@@ -1,25 +1,36 @@
-//! The discrete elastic rod: the curvature model in frames that twist, one angle a segment, solved together with the points.
+//! The discrete elastic rod: the curvature model in frames that can twist. Each segment has one angle, solved
+//! together with the points.
 //!
 //! ```text
 //!        m_{j-1}       m_j
 //!          ▲             ▲  φ_j     E = Σ ½ B |r|² + ½ ΔB (m·r)²  +  ½ GJ/L̄ s² (τ − τ⁰)²
-//!   x_{j-1} ───► x_j ───► x_{j+1}   r = κ − d,  κ the change of tangent,  d the rest turn, fixed in the frame of segment j−1
+//!   x_{j-1} ───► x_j ───► x_{j+1}   r = κ − d,  κ the change of tangent,
+//!                                   d the rest turn, fixed in the frame of segment j−1
 //! ```
 //!
-//! Bergou et al. 2008, *Discrete Elastic Rods*: the centre line by its points, the material frame by an angle against a
-//! frame carried in time. Where we deviate: the frame of the segment before a joint carries its whole rest turn (half-bandwidth 2, no
-//! averaged vertex frame), the measure of a twist φ is τ = 4 tan(φ/4), which grows up to the half turn, and the angles are unknowns of the same
-//! linear system instead of being minimised before it, so that motion and twist see each other within a substep.
-//! An angle has no inertia worth its name (a hair's own is a millionth of its stiffness at any frame rate).
+//! Bergou et al. 2008, *Discrete Elastic Rods*: points represent the centerline, and an angle against a
+//! time-parallel frame represents the material frame. This implementation deviates in three ways:
 //!
-//! Bending is bounded and smooth at any angle: |r| is the distance between two unit vectors. Twist is not defined in a joint that is folded back on itself, so
-//! its strain fades out from 139° to 180° by the factor s = z (2 − z), z = (1 + cos θ) / ¼. All forces are the gradient of E, that factor included, and
-//! all matrices are Gauss–Newton's.
+//! - The frame of the segment before a joint carries its whole rest turn. There is no averaged vertex frame,
+//!   and the half-bandwidth is 2.
+//! - The measure of a twist φ is τ = 4 tan(φ/4), which increases up to the half turn.
+//! - The angles are unknowns of the same linear system instead of being minimized before it, so motion and
+//!   twist are coupled within a substep.
 //!
-//! Where a strand is curved at rest its segments are chords, and a polygon of rods is stiffer than the curve: twisting stiffness is less by (1 − cos θ⁰)/8 where a
-//! joint turns by θ⁰ at rest. That is calibrated: a helical spring of eight segments a turn gives way along its axis, about it and across it as the wire does, within 5 %.
+//! The inertia of an angle is negligible: that of a hair is a millionth of its stiffness at any frame rate.
 //!
-//! A flat fibre bends more easily across its short axis: ΔB is the stiffness that it has more in the direction of its frame's normal.
+//! Bending is bounded and smooth at any angle, because |r| is the distance between two unit vectors. Twist is
+//! undefined in a joint that is folded back on itself. Its strain therefore fades out from 139° to 180° by
+//! the factor s = z (2 − z), z = (1 + cos θ) / ¼. All forces are the gradient of E, including that factor.
+//! All matrices are Gauss–Newton approximations.
+//!
+//! The segments of a strand that is curved at rest are chords, and a polygon of rods is stiffer than the
+//! curve. The twisting stiffness of a joint is therefore reduced by the share (1 − cos θ⁰)/8, where θ⁰ is its
+//! rest turn. The share is calibrated: a helical spring of eight segments a turn has the compliance of the
+//! wire along its axis, about it and across it, within 5 %.
+//!
+//! A flat fiber bends more easily across its short axis. ΔB is its additional stiffness in the direction of
+//! the frame's normal.
 
 use super::{
     At, Model, Solved,
@@ -44,20 +55,22 @@ use crate::{
 };
 use fearless_simd::Level;
 
-/// Largest turn of a frame about its segment in a substep [rad]: a Newton step is not to be believed beyond.
+/// Largest rotation of a frame about its segment in a substep [rad]. A Newton step is not reliable beyond it.
 const LARGEST_TURN: f32 = 0.5;
 
-/// 1 + cos θ of a joint's angle θ below which its twist fades out, see above [1]; 139°.
+/// 1 + cos θ below which the twist of a joint with angle θ fades out; see the module documentation [1].
+/// Corresponds to 139°.
 pub const FOLDING: f32 = 0.25;
 
-/// By how much natural curvature softens a joint's twisting stiffness, over 1 − cos θ⁰ of its rest turn θ⁰ [1].
+/// Relative reduction of a joint's twisting stiffness by natural curvature, divided by 1 − cos θ⁰ of its rest
+/// turn θ⁰ [1].
 const CURVED: f32 = 0.125;
 
-/// Least factor of a joint's twisting stiffness for its natural curvature [1].
+/// Lower bound of the factor of a joint's twisting stiffness for natural curvature [1].
 const MOST_CURVED: f32 = 0.5;
 
-/// Factor of a joint's twisting stiffness for its natural curvature: 1 − (1 − cos θ⁰)/8 with the rest turn θ⁰, of which `along` is the part along the segment before,
-/// cos θ⁰ − 1 [1].
+/// Factor of a joint's twisting stiffness for natural curvature: 1 − (1 − cos θ⁰)/8 with the rest turn θ⁰
+/// [1]. `along` is the component of the rest turn along the segment before, cos θ⁰ − 1.
 #[inline(always)]
 pub fn curved<S: Simd>(along: F<S>) -> F<S> {
     let one = F::<S>::splat(along.simd, 1.0);
@@ -69,14 +82,16 @@ pub fn curved_joint(along: f64) -> f64 {
     (1.0 + f64::from(CURVED) * along).max(f64::from(MOST_CURVED))
 }
 
-/// Polar inertia of a frame over mass [m²], as a floor under the diagonal of the angles; that of a hair of 40 µm, r²/2.
+/// Polar inertia of a frame over mass [m²], which bounds the diagonal of the angles from below: r²/2 of a
+/// hair with r = 40 µm.
 const INERTIA: f32 = 8e-10;
 
-/// How many roundings of a joint's twisting stiffness hold its angle to that of the last substep [1]. Beyond a joint that is folded back on itself nothing else does but
-/// inertia, which rounding outweighs; a twist that changes takes a substep more at most.
+/// Regularization of an angle toward its last value, in roundings of its joint's twisting stiffness [1].
+/// Beyond a joint that is folded back on itself, only inertia constrains the angle otherwise, and rounding
+/// exceeds inertia. A twist that changes takes at most one substep longer.
 const HELD: f32 = 16.0;
 
-/// Curvature and twist; see above.
+/// Curvature and twist; see the module documentation.
 #[derive(Clone, Copy)]
 pub struct Rod<S: Simd> {
     /// The frame's normal on segment i.
@@ -105,7 +120,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
         let [alpha, beta] = at.inverse_length;
         let m0 = self.normal;
 
-        // The frame of segment i+1 as the last substep left it, swung onto the segment.
+        // The frame of segment i+1 after the last substep, made perpendicular to the segment.
         let carried = transport(m0, u0, u1);
         let row = &mut tile.state[at.i + 1][state::NORMAL..];
         let was = V3::load(simd, row);
@@ -119,7 +134,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
         let d = turn_in_frame(turn, m0, u0);
         let Bend { mut joint, moment } =
             bend([at.e, at.drift], u0, at.inverse_length, d, stiffness, stiffness * at.damped);
-        // The rest turn turns with the frame: ∂r/∂θ = −s.
+        // The rest turn rotates with the frame: ∂r/∂θ = −s.
         let s = u0.cross(d);
         let implicit = s * (stiffness * at.damped);
         let mut angle = Angle {
@@ -128,9 +143,9 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
             moment: moment.dot(s),
         };
 
-        // Twist: how a change of the two segments turns their frames against each other is ∂φ/∂e = κb / 2ℓ on either side,
-        // κb = 2 û₀×û₁ / (1 + û₀·û₁) (Bergou et al. 2010, *Discrete Viscous Threads*, §4.2.2). ∂φ/∂θ is −1 and 1. The strain is
-        // s (τ − τ⁰), s = 1 but near a fold.
+        // Twist. ∂φ/∂e = κb / 2ℓ on both sides is the relative rotation of the two frames when the segments
+        // change, with κb = 2 û₀×û₁ / (1 + û₀·û₁) (Bergou et al. 2010, *Discrete Viscous Threads*, §4.2.2).
+        // ∂φ/∂θ is −1 and 1. The strain is s (τ − τ⁰), where s = 1 except near a fold.
         let half = carried.cross(m1).dot(u1) / (carried.dot(m1) + 1.0).max(FOLDED);
         let tau = half * 4.0 / (half.mul_add(half, one).sqrt() + 1.0);
         let slope = (tau * tau).mul_add(0.0625, one);
@@ -141,7 +156,8 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
         let twist = tau - load(simd, &own[rest::TWIST]);
         let (strain, turning) = (fade * twist, fade * slope);
         let direction = u0.cross(u1) * (turning / unfolded.max(FOLDED));
-        // ∂s/∂e, where the joint is nearly folded: 1 + û₀·û₁ grows by (û₁ − û₀ cos θ)/ℓ₀ and (û₀ − û₁ cos θ)/ℓ₁.
+        // ∂s/∂e of a joint that is nearly folded: the gradients of 1 + û₀·û₁ are (û₁ − û₀ cos θ)/ℓ₀ and (û₀ −
+        // û₁ cos θ)/ℓ₁.
         let opening = twist * ((1.0 - z) * (2.0 / FOLDING));
         let cosine = unfolded - 1.0;
         let gradient = [
@@ -168,7 +184,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
         band.add_right((1, 3), -moment);
 
         if tile.flat {
-            // m·κ against its rest value; κ = e₁/L₁ − û₀.
+            // m·κ minus its rest value; κ = e₁/L₁ − û₀.
             let kappa = at.e[1] * beta - u0;
             let a1 = u0.dot(kappa) + 1.0;
             let stiffer = stiffness * self.flat;
@@ -204,7 +220,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
     }
 }
 
-/// One tile through an interval, on the widest lanes that there are.
+/// Advances one tile through a frame, with the widest available SIMD instructions.
 pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     if tile.double {
         dispatch_double!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, memory));
@@ -213,13 +229,13 @@ pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut 
     }
 }
 
-/// What the elements of a joint say of the angle of its first segment.
+/// Entries of a joint's elements for the angle of its first segment.
 struct Angle<S: Simd> {
-    /// Its column of the matrix, by the joint's two segments.
+    /// Column of the matrix, with respect to the joint's two segments.
     segments: [V3<S>; 2],
-    /// Its own entry.
+    /// Diagonal entry.
     own: F<S>,
-    /// The moment on it [N m].
+    /// Moment on the angle [N m].
     moment: F<S>,
 }
 

@@ -1,18 +1,27 @@
-//! Springs only: stretch, bend, torsion, and an altitude spring in every tetrahedron of four neighbours.
+//! A mass-spring model: stretch, bend and torsion springs, and an altitude spring in every tetrahedron of
+//! four consecutive particles.
 //!
 //! ```text
 //!        e₀          e₁              o  the strand's points        stretch   (k, k+1), and (k, k+2) from a point
 //!       ╱ ╲         ╱ ╲              e  extra particles, beside    bend      (k, k+2) from an extra particle
-//!  o₀ ─╱───╲─ o₁ ──╱───╲─ o₂            the middle of each         torsion   (k, k+3)
-//!                                       segment, turn by turn      altitude  k … k+3
+//!  o₀ ─╱───╲─ o₁ ──╱───╲─ o₂            the center of each         torsion   (k, k+3)
+//!                                       segment, in rotation       altitude  k … k+3
 //! ```
 //!
-//! Selle, Lentine, Fedkiw 2008, *A Mass Spring Model for Hair Simulation*, §3: a distance spring has no stiffness sideways, so a straight
-//! strand gets extra particles beside it, and the four neighbours' tetrahedra make a truss that bends and twists as a whole; how stiff the
-//! springs are for that is in `truss`. An altitude spring acts along the shortest height of its tetrahedron (between a point and a face,
-//! or two edges), which keeps it from collapsing or turning inside out. Where we deviate: it acts below half the rest volume only, since
-//! the others already resist as much as the fibre does; its height is kept by the volume over the present area, so one number a
-//! tetrahedron is enough; and the strand's segments are projected to their lengths as in the other models, their triangles with them.
+//! Selle, Lentine, Fedkiw 2008, *A Mass Spring Model for Hair Simulation*, §3. A distance spring has no
+//! lateral stiffness, so a straight strand gets extra particles next to it. The tetrahedra of four
+//! consecutive particles form a truss that bends and twists as a whole. `truss` computes the spring
+//! stiffnesses for it. An altitude spring acts along the shortest height of its tetrahedron (between a point
+//! and a face, or two edges) and keeps it from collapsing or inverting.
+//!
+//! This implementation deviates in three ways:
+//!
+//! - An altitude spring acts below half the rest volume only, because the other springs already resist as
+//!   much as the fiber does.
+//! - The rest height of a tetrahedron follows from its volume over the current area, so one number a
+//!   tetrahedron is enough.
+//! - The strand's segments are projected to their lengths as in the other models, and their triangles with
+//!   them.
 
 use super::{
     At, Model, Solved,
@@ -38,13 +47,14 @@ use crate::{
 };
 use fearless_simd::Level;
 
-/// A truss of distance springs, see above.
+/// A truss of distance springs; see the module documentation.
 pub struct Springs;
 
 impl<S: Simd> Model<S, 3, 12> for Springs {
     const STRIDE: usize = 2;
 
-    // By trial: with 0.5 a swing leaves its plane, since the sides of a truss are not alike; with 1 it trembles on an edge.
+    // Found by trial: at 0.5 a swing leaves its plane, because the sides of a truss differ; at 1 it vibrates
+    // on an edge.
     const SIDEWAYS: f32 = 0.8;
 
     const PROFILE: Profile<3, 12> = Profile::far();
@@ -69,13 +79,15 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
         let i = at.i;
         let (rest, fixed) = (&tile.rest[i], &scratch.fixed[i]);
         let p = after(simd, i, scratch);
-        // Beyond the tip nothing is stiff.
+        // Elements beyond the tip have no stiffness, so the clamped index does no harm.
         let tip = tile.rest.len() - 1;
         let v = |k: usize| V3::load(simd, &tile.state[(i + k).min(tip)][state::V..]);
         let drift = |far: usize| v(far) - v(0);
 
-        // Gauss–Newton here and below. What holds a bent truss in itself is far above what hangs from it, and pulls or pushes across itself as
-        // much as along: kept where it pulls alone (Choi & Ko 2002), it would resist every turn of a segment; left out, it cancels.
+        // The matrices here and below are Gauss–Newton without geometric stiffness. The internal tension of a
+        // bent truss far exceeds the load that hangs from it. Springs under tension and springs under
+        // compression contribute opposite geometric stiffness. If only the positive part were kept (Choi & Ko
+        // 2002), it would resist every rotation of a segment; without it, the contributions cancel.
         let k = load(simd, &scratch.fixed[i - at.phase].along);
         let (l, u) = p[0].length_and_unit();
         let tension = load(simd, &tile.state[i][springs::SIDE]);
@@ -83,7 +95,8 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
             k.mul_add((l - load(simd, &tile.rest[i - at.phase + 1][springs::SIDES])) * at.news, tension);
         add_spring(band, 1, u, k, k.mul_add(u.dot(drift(1)) * at.drifting, pull));
 
-        // From a point, the particle after the next is the strand's next point: that spring is the segment's.
+        // The second particle after a point is the strand's next point. That spring is the segment's and is
+        // added elsewhere.
         if at.phase == 1 {
             let (u, k, pull) = BEND.spring(
                 [p[1], drift(2)],
@@ -114,38 +127,40 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
     }
 }
 
-/// One tile through an interval, on the widest lanes that there are.
+/// Advances one tile through a frame, with the widest available SIMD instructions.
 pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     dispatch!(level, simd => run_tile::<_, Springs, 3, 12>(simd, interval, tile, memory));
 }
 
-/// What a triangle's sides have besides the stiffness of all segments, for the triangle that begins at `point` (see `truss`) [N/m].
+/// Stiffness of the sides of the triangle that begins at `point`, in addition to that of all segments (see
+/// `truss`) [N/m].
 #[inline(always)]
 pub fn brace<S: Simd>(simd: S, h: f32, tile: &Tile, point: usize) -> F<S> {
     let damped = load(simd, &tile.strand[strand::DAMPING]) * (1.0 / h) + 1.0;
     load(simd, &tile.rest[point][springs::BRACE]) * damped
 }
 
-/// How a spring grows stiffer with its strain x: F = k (ℓ − L)(1 + ax + bx²).
+/// A spring that stiffens with its strain x: F = k (ℓ − L)(1 + ax + bx²).
 ///
-/// A spring's two arms on its joint are rigid; turned by φ, its lever shortens on one side and grows on the other. With these numbers, which
-/// are the series for ε = 3/2 (see `truss`), its moment is linear in φ to third order. Linear springs let a joint go at a bend of 0.5 rad.
+/// The two arms of a spring on its joint are rigid. When the joint rotates by φ, the lever arm shortens on
+/// one side and grows on the other. With these coefficients, which are the series for ε = 3/2 (see `truss`),
+/// the moment is linear in φ to third order. With linear springs, a joint gives way at a bend of 0.5 rad.
 pub struct Progressive {
     a: f32,
     b: f32,
 }
 
-/// Of the springs between extra particles, for a joint that twists.
+/// Springs between extra particles, for a joint that twists.
 pub const BEND: Progressive = Progressive { a: 1.5, b: 4.5 };
 
-/// Of the springs from points to extra particles, for a joint that bends.
+/// Springs from points to extra particles, for a joint that bends.
 pub const TORSION: Progressive = Progressive { a: 3.0, b: 12.0 };
 
 impl Progressive {
-    /// Largest strain at which the stiffness still changes [1].
+    /// Largest strain up to which the stiffness changes [1].
     const LARGEST: f32 = 0.35;
 
-    /// Secant and tangent stiffness under `strain`, over that at rest [1].
+    /// Secant and tangent stiffness at `strain`, relative to that at rest [1].
     #[inline(always)]
     fn stiffness<S: Simd>(&self, simd: S, strain: F<S>) -> [F<S>; 2] {
         let one = F::<S>::splat(simd, 1.0);
@@ -154,8 +169,10 @@ impl Progressive {
         [poly(self.a, self.b), poly(2.0 * self.a, 3.0 * self.b)]
     }
 
-    /// Direction of a spring to its farther end, which is at `e` from the nearer and drifts with `v`, its stiffness in the matrix [N/m] and with how much it
-    /// pulls [N]; with its rest length and the inverse.
+    /// Returns the direction of a spring, its stiffness in the matrix [N/m] and its tension [N].
+    ///
+    /// The far end is at `e` from the near end and moves with the relative velocity `v`. `rest` is the rest
+    /// length and `inverse` its inverse.
     #[inline(always)]
     fn spring<S: Simd>(
         &self,
@@ -170,14 +187,16 @@ impl Progressive {
         (u, implicit, implicit.mul_add(u.dot(v) * drifting, k * secant * (l - rest)))
     }
 
-    /// Force and energy of a spring of linear stiffness 1 and rest length `rest` that is longer by `longer` [m], [m²].
+    /// Force and energy of a spring with linear stiffness 1 and rest length `rest`, extended by `longer` [m],
+    /// [m²].
     pub fn pull(&self, longer: f64, rest: f64) -> (f64, f64) {
         let (a, b) = (self.a as f64, self.b as f64);
         let x = longer / rest;
         (longer * (1.0 + x * (a + x * b)), longer * longer * (0.5 + x * (a / 3.0 + x * b / 4.0)))
     }
 
-    /// How much longer than at rest a spring is that is `length` long under a tension that would lengthen a linear one by `linear` [m].
+    /// Returns the extension of a spring whose current length is `length`, under a tension that would extend
+    /// a linear spring by `linear` [m].
     pub fn lengthened(&self, linear: f64, length: f64) -> f64 {
         let mut longer = linear;
         for _ in 0..40 {
@@ -188,7 +207,8 @@ impl Progressive {
     }
 }
 
-/// Adds a spring between the window's first particle and the one `far` after it, in direction `u`, which has stiffness `k` [N/m] and pulls [N].
+/// Adds a spring between the window's first particle and the one `far` after it, with direction `u`,
+/// stiffness `k` [N/m] and tension `pull` [N].
 #[inline(always)]
 fn add_spring<S: Simd>(band: &mut Band<S, 3, 12>, far: usize, u: V3<S>, k: F<S>, pull: F<S>) {
     let (force, block) = (u * pull, Sym3::outer(u, k));

@@ -1,4 +1,5 @@
-//! The curvature model for strands that are straight at rest: no rest turn, so no frame, and blocks that are multiples of the identity.
+//! The curvature model for strands that are straight at rest. It has no rest turn and needs no frame, and its
+//! blocks are multiples of the identity.
 
 use super::{At, Model, Solved};
 use crate::{
@@ -20,12 +21,12 @@ use crate::{
 };
 use fearless_simd::Level;
 
-/// Bending by the curvature vector with d = 0: `bend` where P is the identity.
+/// Bending by the curvature vector with d = 0, which is `bend` with P the identity.
 #[derive(Clone, Copy)]
 pub struct Straight;
 
 impl<S: Simd> Model<S, 3, 9> for Straight {
-    // Points i and i+2 meet in bending alone, an axis by itself.
+    // Points i and i+2 are coupled by bending only, each axis separately.
     const PROFILE: Profile<3, 9> = Profile::within(6);
 
     #[inline(always)]
@@ -59,7 +60,7 @@ impl<S: Simd> Model<S, 3, 9> for Straight {
     fn take(_: S, _: &Solved<S, 9>, _: &mut Tile, _: &[Precomputed]) {}
 }
 
-/// One tile through an interval, on the widest lanes that there are.
+/// Advances one tile through a frame, with the widest available SIMD instructions.
 pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     if tile.double {
         dispatch_double!(level, simd => run_tile::<_, Straight, 3, 9>(simd, interval, tile, memory));
