@@ -1,6 +1,7 @@
 //! Every developer command, the same ones that CI runs: `cargo xtask NAME`.
 
 mod fuzz;
+mod layers;
 mod pictures;
 mod run;
 mod test;
@@ -8,7 +9,8 @@ mod test;
 const HELP: &str = "cargo xtask NAME
 
   test           all tests, in release; closes on one line with the sum
-  lint           formatting, clippy with warnings refused, the docs, and where all dependencies come from and under which licence
+  lint           layers, formatting, clippy with warnings refused, the docs, and where all dependencies come from and under which licence
+  layers         modules of the library import each other in one direction only
   fuzz [SECONDS] every fuzz target, so long each (default 60), two at a time
   window         draws the pictures of docs/window.md anew, on a desktop; Sintel's from ../shared/data
   monkey [MINUTES] random presses in the window, so long (default 10)
@@ -24,6 +26,7 @@ fn main() {
     let done = match words[..] {
         ["test"] => test::all(),
         ["lint"] => lint(),
+        ["layers"] => layers::check(),
         ["fuzz"] => fuzz::all(60, None),
         ["fuzz", seconds] => match seconds.parse() {
             Ok(seconds) => fuzz::all(seconds, None),
@@ -33,8 +36,15 @@ fn main() {
         ["monkey"] => monkey("10"),
         ["monkey", minutes] => monkey(minutes),
         ["meshes"] => {
-            let test =
-                ["test", "--release", "-p", "hairspring-io", "--test", "example_meshes_are_made_by_code"];
+            let test = [
+                "test",
+                "--release",
+                "-p",
+                "hairspring-io",
+                "--test",
+                "files",
+                "example_meshes_are_made_by_code",
+            ];
             run::cargo(&test, &[("HAIRSPRING_MESHES", "write")])
         }
         ["golden"] => {
@@ -69,6 +79,7 @@ fn monkey(minutes: &str) -> Result<(), String> {
 }
 
 fn lint() -> Result<(), String> {
+    layers::check()?;
     run::cargo(&["fmt", "--all", "--check"], &[])?;
     run::cargo(
         &["clippy", "--release", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"],
