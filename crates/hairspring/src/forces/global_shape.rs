@@ -1,25 +1,27 @@
-//! The global shape: a weak pull of every point to where its strand's rest shape would have it, carried rigidly by the root.
+//! Global shape: a weak spring from every point to its position in the rest shape, which moves rigidly with
+//! the root.
 //!
 //! ```text
 //! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf c(s),   c from 1 at the root to `tip` at the tip, linear in the index
 //! ```
 //!
-//! The global shape of *Augmented Mass-Spring* (AMS 2025) and of the engines' tools. It is not physics: it holds a style that the fibre would not.
+//! This is the global shape of *Augmented Mass-Spring* (AMS 2025), also found in game engines. It is not
+//! physical: it holds a style that the fiber alone would not.
 
 use super::StrandView;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A pull to the rest shape.
+/// Parameters of the global shape.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GlobalShape {
-    /// How fast a lone point would swing about its place, f [Hz], 0 to 60. Default 0: there is no global shape. Hair keeps its style in a walk from
-    /// about 1, and looks set from about 4.
+    /// Natural frequency of a free point, f [Hz], 0 to 60. Default 0: no global shape. From about 1 on, hair
+    /// keeps its style during a walk; from about 4 on, it looks set.
     pub pull: f32,
-    /// The same at the tip, over that at the root, 0 or more. Default 1.
+    /// Frequency at the tip relative to that at the root, 0 or more. Default 1.
     pub tip: f32,
-    /// Damping over the critical, ζ, 0 to 10. Default 0.5.
+    /// Damping ratio, relative to critical, ζ, 0 to 10. Default 0.5.
     pub damping: f32,
 }
 
@@ -30,12 +32,13 @@ impl Default for GlobalShape {
 }
 
 impl GlobalShape {
-    /// Whether it pulls at all.
+    /// Returns whether the global shape is enabled.
     pub fn is_on(&self) -> bool {
         self.pull > 0.0
     }
 
-    /// Pulls a strand, whose authored points are `authored` [m], `scale` times as fast.
+    /// Applies the springs to a strand with the authored points `authored` [m]. The frequency is multiplied
+    /// by `scale`.
     pub(crate) fn add(&self, scale: f32, authored: &[Vec3], strand: &mut StrandView) {
         let [start, end] = strand.roots();
         let way = end.translation - start.translation;
