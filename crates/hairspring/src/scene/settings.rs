@@ -1,31 +1,31 @@
-//! Settings of a scene that both code and scene files set; each field's default is the value that a file may leave out.
+//! Scene settings that can be set in code and in scene files. A field's default applies if a file omits it.
 
 use crate::collide::{ColliderShape, Hull};
 use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, sync::Arc};
 
-/// Which strands of a groom are simulated; the others follow them.
+/// Selects the simulated strands of a groom; the others follow them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guides {
-    /// The strands that the groom file names as guides; 2,000 chosen ones where it names none. The default.
+    /// The strands that the groom file marks as guides, or 2,000 chosen ones if it marks none. The default.
     #[default]
     FromGroom,
-    /// So many strands, spread over the scalp per group.
+    /// This many strands, spread over the scalp per group.
     Count(u32),
     /// Every strand.
     All,
 }
 
-/// What is laid over follow hairs after the guides have placed them. All off by default.
+/// Styling of follow hairs, applied after interpolation from the guides. All off by default.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Effects {
-    /// How far tips are drawn to their first guide, 0 (not) to 1 (wholly); grows from root to tip.
+    /// How far tips are drawn to their first guide, 0 (not at all) to 1 (fully); grows from root to tip.
     pub clump: f32,
-    /// Radius of curls added to follow hairs [m], 0 to 1,000,000.
+    /// Radius of the curls [m], 0 to 1,000,000.
     pub curl_radius: f32,
-    /// Length of hair in one turn of those curls [m], above 0. Default 0.03.
+    /// Length of hair in one turn of a curl [m], above 0. Default 0.03.
     pub curl_length: f32,
     /// Amplitude of the flyaway noise at the tip [m], 0 to 1,000,000.
     pub noise: f32,
@@ -37,96 +37,104 @@ impl Default for Effects {
     }
 }
 
-/// Moving air, the same everywhere but for gusts.
+/// Directional wind, the same everywhere, with gusts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Wind {
     /// Mean velocity of the air [m/s]. Default 0.
     pub velocity: Vec3,
-    /// How much gusts add and take, as a fraction of the mean, 0 to 1. Default 0.
+    /// Gust amplitude as a fraction of the mean, 0 to 1. Default 0.
     pub gust: f32,
-    /// Gusts a second [Hz]. 0: none.
+    /// Gust frequency [Hz]. 0: no gusts.
     pub gust_rate: f32,
 }
 
-/// Time steps and contact.
+/// Settings of time steps and contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Solver {
-    /// Substeps in a frame of 1/60 s, 1 to 64. Default 4: the substep is 1/240 s whatever the frame rate.
+    /// Number of substeps in a frame of 1/60 s, 1 to 64. Default 4: substeps of 1/240 s at any frame rate.
     pub substeps: u32,
-    /// Whether rest shapes are solved so that the groom starts in balance under gravity. Default true.
+    /// Whether rest shapes are computed so that the groom starts in static balance under gravity. Default
+    /// true.
     pub sag_free: bool,
-    /// How long hair falls from where its groom has it before the scene begins [s], 0 to 60. Where it lies then is its groom from there on: what
-    /// [`Solver::sag_free`] puts in balance, and what a reset goes back to. Default 0: grooms are as they are made. For hair that is grown by a rule, 3: it stands
-    /// off the skin, and long hair lies still by then.
+    /// Pre-roll: time that hair falls from its authored pose before the scene begins [s], 0 to 60. The
+    /// resulting pose becomes the groom: [`Solver::sag_free`] puts it in balance, and a reset returns to it.
+    /// Default 0: grooms as authored. For procedurally grown hair that stands off the skin, use 3; long hair
+    /// is at rest by then.
     pub preroll: f32,
     /// Whether hair collides with the body's mesh. Default true.
     pub collide_body: bool,
-    /// What keeps hair out of colliders. Default `both`.
+    /// Contact method. Default `both`.
     pub contact: Response,
-    /// Whether segments are held out of colliders between their points as well. Default true; where none of them is longer than what it collides with is
-    /// round, points alone do.
+    /// Whether segments are also kept out of colliders between their points. Default true. Points alone are
+    /// enough if no segment is longer than the radius of curvature of the colliders.
     pub segment_contacts: bool,
-    /// Iterations of fast projection a substep (Goldenthal 2007), 0 to 20; strands of more than 32 points for each may take one for every
-    /// 32. Default 3. For the implicit integrators.
+    /// Iterations of fast projection in a substep (Goldenthal 2007), 0 to 20. Strands of more than 32 points
+    /// may take one for every 32 points in place of each. Default 3. Only for the implicit integrators.
     pub projection_iterations: u32,
-    /// How a substep is made. Default `backward-euler`.
+    /// Time integrator. Default `backward-euler`.
     pub integrator: Integrator,
-    /// How exactly its equations are solved. Default `normal`.
+    /// Accuracy of the solve in each substep. Default `normal`.
     pub quality: Quality,
-    /// How much of the head's motion hair feels, 0 (none: it moves as if the head stood still) to 1 (all of it, the default): for art direction.
+    /// Fraction of the head's motion that acts on the hair, for art direction: 0 (none, as if the head stood
+    /// still) to 1 (all, the default).
     pub inertia: f32,
-    /// A head that moves farther than this in a frame, over how it moved before, has jumped, and hair is carried along as it is [m], above 0. Default 1:
-    /// what moves so in 1/24 s is accelerated by 60 g.
+    /// Teleport threshold [m], above 0. If the head moves farther than this in one frame, in excess of its
+    /// previous motion, the hair is moved rigidly with it. Default 1: such a motion within 1/24 s would be an
+    /// acceleration of 60 g.
     pub teleport_distance: f32,
-    /// Whether materials' global shapes pull. Default true; no material has one by default.
+    /// Whether the materials' global shapes are enabled. Default true; by default, no material has one.
     pub global_shape: bool,
 }
 
-/// What answers a point, or a segment, that is inside of a collider (Sams 2014, §3.3).
+/// Contact method for points and segments inside a collider (Sams 2014, §3.3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Response {
-    /// A force that is part of the solve, and what is inside after it moves to the nearest free position: the force carries weight and tension without a
-    /// jerk, the projection stops what lands.
+    /// An implicit force in the solve, followed by projection of what is still inside to the nearest free
+    /// position. The force carries weight and tension without jerks; the projection stops impacts.
     #[default]
     Both,
-    /// The force alone, implicit: soft, what lands goes in and comes out again. Integrators without a solve that knows of contact (all but
-    /// backward Euler and BDF2) project.
+    /// Only the implicit force. It is soft: hair that hits a surface sinks in and comes out again. Only
+    /// backward Euler and BDF2 have contact in their solve; the other integrators project.
     Penalty,
-    /// The projection alone: the inward motion ends, the point moves to the nearest free position (Liu 2013).
+    /// Only the projection: inward motion is removed, and the point moves to the nearest free position (Liu
+    /// 2013).
     Projection,
 }
 
 impl Response {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Response; 3] = [Self::Both, Self::Penalty, Self::Projection];
 }
 
-/// How positions and velocities come out of a substep; all on the same strands, to be compared.
+/// Time integration method. All methods act on the same strands, for comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integrator {
-    /// x⁺ = x + h v, v⁺ = v + h a with the fibre's own stiffness: the baseline that blows up.
+    /// x⁺ = x + h v, v⁺ = v + h a with the fiber's own stiffness: a baseline that is unstable.
     ExplicitEuler,
-    /// Position Verlet with the fibre's own stiffness (Müller 2008).
+    /// Position Verlet with the fiber's own stiffness (Müller 2008).
     Verlet,
-    /// The banded direct solver, linearised once, then fast projection and a strain limit (Baraff & Witkin 1998; Goldenthal 2007).
+    /// The direct banded solver, linearized once, followed by fast projection and a strain limit (Baraff &
+    /// Witkin 1998; Goldenthal 2007).
     #[default]
     BackwardEuler,
-    /// The same with the backward differentiation formula of second order: swings keep their amplitude (Choi & Ko 2002).
+    /// Like backward Euler, with the second-order backward differentiation formula: swings keep their
+    /// amplitude (Choi & Ko 2002).
     Bdf2,
-    /// A constant matrix and a projection of every spring by itself (Liu 2013); always by the curvature model.
+    /// Local-global solver: a constant matrix, and a separate projection of every spring (Liu 2013). Always
+    /// uses the curvature model.
     LocalGlobal,
-    /// Follow the leader: inextensible, no bending.
+    /// Follow the leader: inextensible, without bending.
     Ftl,
-    /// Follow the leader with corrected velocities (Müller 2012).
+    /// Dynamic follow the leader, with corrected velocities (Müller 2012).
     Dftl,
 }
 
 impl Integrator {
-    /// All of them, in the order of the page that compares them.
+    /// All integrators, in the order of the page that compares them.
     pub const ALL: [Integrator; 7] = [
         Self::ExplicitEuler,
         Self::Verlet,
@@ -137,7 +145,7 @@ impl Integrator {
         Self::Dftl,
     ];
 
-    /// Its name in scene files and on the command line.
+    /// Returns the name used in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::ExplicitEuler => "explicit-euler",
@@ -150,20 +158,21 @@ impl Integrator {
         }
     }
 
-    /// Whether no segment leaves a substep more than 1 % longer or shorter than at rest; the others are shown as they are.
+    /// Returns whether the strain limit applies: no segment leaves a substep more than 1 % longer or shorter
+    /// than at rest. The other integrators have no such limit.
     pub fn limits_strain(self) -> bool {
         matches!(self, Self::BackwardEuler | Self::Bdf2)
     }
 }
 
-/// How exactly a substep's equations are solved.
+/// Accuracy of the solve in each substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quality {
-    /// One linear solve (10 iterations of local–global).
+    /// One linear solve (10 iterations of local-global).
     #[default]
     Normal,
-    /// Newton iterations with a line search, to the end (40 iterations of local–global).
+    /// Newton iterations with a line search until convergence (40 iterations of local-global).
     High,
 }
 
@@ -186,24 +195,28 @@ impl Default for Solver {
     }
 }
 
-/// How hair meets hair: the simulated strands of all grooms, each weighing what the hairs weigh that follow it.
+/// Settings of the hair volume, which acts between the simulated strands of all grooms. Each strand has the
+/// mass of the hairs that follow it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Volume {
-    /// What keeps hair from crowding. Default `off`: strands pass through each other.
+    /// Volume method. Default `off`: strands pass through each other.
     pub method: VolumeMethod,
-    /// Edge of a cell [m], above 0; it grows where there would be more than two million. `None`, the default: the smallest in which a cell
-    /// with hair holds eight points at rest, so that its density is more than chance.
+    /// Edge of a cell [m], above 0; it is enlarged if there would be more than two million cells. `None`, the
+    /// default: the smallest cell in which cells with hair contain eight points at rest, so that the density
+    /// is statistically meaningful.
     pub cell: Option<f32>,
-    /// How fast hair takes on the velocity of the hair around it [1/s], 0 or more. Default 3: strands lose a twentieth of what
-    /// is between their velocities in 1/60 s; as a PIC/FLIP blend, 0.95 FLIP. What goes across other hair is stopped besides, see `volume/crossing.rs`.
+    /// Rate at which hair takes on the velocity of the surrounding hair [1/s], 0 or more. Default 3: strands
+    /// lose a twentieth of their relative velocity in 1/60 s, which corresponds to a PIC/FLIP blend of 0.95
+    /// FLIP. Motion across other hair is stopped separately, see `volume/crossing.rs`.
     pub friction: f32,
-    /// Speed with which a crowd spreads, for `density` [m/s], 0 or more; it counts as at most half a cell in 1/240 s, beyond which a step
-    /// would overshoot. Default 0.5.
+    /// Speed at which compressed hair spreads, for `density` [m/s], 0 or more. It is limited to half a cell
+    /// in 1/240 s, to prevent overshoot. Default 0.5.
     pub pressure: f32,
-    /// How fast lost volume is regained, for `incompressible`: the share a second [1/s], 0 or more, and at most all of it in 1/240 s.
-    /// Default 30: hair that falls from standing out and is shaken keeps nine tenths of its volume so, three quarters with 10, and a
-    /// quarter without a method (`hairspring bench --hair-hair`).
+    /// Rate at which lost volume is recovered, for `incompressible`, as a fraction per second [1/s], 0 or
+    /// more; at most all of it in 1/240 s. Default 30. For hair that falls from standing out and is shaken,
+    /// this keeps nine tenths of the volume; 10 keeps three quarters, and no method a quarter (`hairspring
+    /// bench --hair-hair`).
     pub recovery_rate: f32,
 }
 
@@ -213,20 +226,22 @@ impl Default for Volume {
     }
 }
 
-/// How strands meet their neighbours, one by one: the reference for the volume, for guides and small scenes. Between the simulated strands of all grooms.
+/// Settings of contact between individual strands, for guides and small scenes. It is the reference for the
+/// volume methods, and acts between the simulated strands of all grooms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Neighbours {
-    /// Whether they do. Default false: strands pass through each other.
+    /// Whether strands collide. Default false: they pass through each other.
     pub on: bool,
-    /// Radius of a strand where it meets others [m], above 0: a strand stands for the hairs around it. It is nowhere more than half of the way to the nearest
-    /// other strand at rest, so that nothing touches there. `None`, the default: half of that way in the mean, at most half a segment.
+    /// Contact radius of a strand [m], above 0: a strand represents the hairs around it. It is limited
+    /// everywhere to half the distance to the nearest other strand at rest, so that nothing touches at rest.
+    /// `None`, the default: half the mean of that distance, and at most half a segment.
     pub radius: Option<f32>,
-    /// Coulomb friction of strands on each other [1], 0 or more. Default 0.3: scales let hair slide more easily toward the tip than toward the root, and it is
-    /// between the two.
+    /// Coulomb friction coefficient between strands [1], 0 or more. Default 0.3, a mean value: because of the
+    /// scales, hair slides more easily toward the tip than toward the root.
     pub friction: f32,
-    /// Force that two segments which have been pressed together hold with, along and across, besides friction; it breaks when more pulls [N], 0 or more.
-    /// Default 0. A hair of 25 cm weighs 1.6e-5 N.
+    /// Stiction: normal and tangential force that two segments in contact resist, in addition to friction,
+    /// before they separate [N], 0 or more. Default 0. A hair of 25 cm weighs 1.6e-5 N.
     pub stiction: f32,
 }
 
@@ -236,24 +251,26 @@ impl Default for Neighbours {
     }
 }
 
-/// What keeps hair from crowding.
+/// Method that keeps hair from being compressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VolumeMethod {
-    /// Nothing.
+    /// None.
     #[default]
     Off,
-    /// Pressure down the gradient of density, where hair is denser than at rest (Petrovic 2005): cheap, and gives way.
+    /// A force along the negative density gradient where hair is denser than at rest (Petrovic 2005). Cheap,
+    /// but soft.
     Density,
-    /// Velocities that close in on full cells are taken out, and lost volume is regained (McAdams 2009): firm, for a linear solve each 1/240 s.
+    /// Velocities that converge on full cells are projected out, and lost volume is recovered (McAdams 2009).
+    /// Firm, at the cost of a linear solve every 1/240 s.
     Incompressible,
 }
 
 impl VolumeMethod {
-    /// All of them.
+    /// All methods.
     pub const ALL: [VolumeMethod; 3] = [Self::Off, Self::Density, Self::Incompressible];
 
-    /// Its name in scene files and on the command line.
+    /// Returns the name used in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Off => "off",
@@ -267,7 +284,7 @@ impl VolumeMethod {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Collider {
-    /// Name of the body's joint that moves it; `None`: joint 0, or fixed without a body.
+    /// Name of the body joint that moves it; `None`: joint 0, or fixed without a body.
     #[serde(default)]
     pub joint: Option<String>,
     /// The shape, in the space of the body's rest pose [m].
@@ -278,14 +295,14 @@ pub struct Collider {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Shape {
-    /// A ball.
+    /// A sphere.
     Sphere {
-        /// Middle [m].
+        /// Center [m].
         center: Vec3,
         /// Radius [m], above 0.
         radius: f32,
     },
-    /// All places nearer than `radius` to the line from `a` to `b`.
+    /// All points nearer than `radius` to the segment from `a` to `b`.
     Capsule {
         /// One end of the axis [m].
         a: Vec3,
@@ -296,37 +313,37 @@ pub enum Shape {
     },
     /// A box.
     Box {
-        /// Middle [m].
+        /// Center [m].
         center: Vec3,
         /// Lengths of its edges [m], above 0.
         size: Vec3,
-        /// How it is turned: about X, then Y, then Z [degrees]. Default 0.
+        /// Rotation about X, then Y, then Z [degrees]. Default 0.
         #[serde(default)]
         rotation: Vec3,
     },
-    /// All of space on the side of a plane that `normal` points away from: a floor, a wall, a slope.
+    /// A half-space, on the side of a plane that `normal` points away from: a floor, a wall, a slope.
     Plane {
-        /// A point of the plane [m].
+        /// A point on the plane [m].
         point: Vec3,
         /// Direction out of the solid, of any length above 0.
         normal: Vec3,
     },
     /// The convex hull of points: a shoulder, a stone, a brush.
     Hull {
-        /// Points that span it [m], four or more. Default: the vertices of `file`.
+        /// Points of the hull [m], four or more. Default: the vertices of `file`.
         #[serde(default)]
         points: Vec<Vec3>,
-        /// A mesh file whose vertices a reader of scene files puts in place of `points`; nothing here opens it.
+        /// A mesh file. The scene reader replaces `points` with its vertices; this crate does not open it.
         #[serde(default)]
         file: Option<PathBuf>,
-        /// Metres in one unit of `file` [m], above 0. Default: by the format, or guessed and said.
+        /// Meters per unit of `file` [m], above 0. Default: given by the format, or guessed and reported.
         #[serde(default)]
         scale: Option<f32>,
     },
 }
 
 impl Shape {
-    /// The collider of this shape; `None` for the hull of points that span no volume.
+    /// Returns the collider shape; `None` for a hull whose points span no volume.
     pub fn obstacle(&self) -> Option<ColliderShape> {
         Some(match *self {
             Self::Sphere { center, radius } => ColliderShape::Sphere { center, radius },
