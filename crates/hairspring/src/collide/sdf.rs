@@ -26,8 +26,8 @@ pub struct SignedDistanceField {
     /// Empty: the surface is rigid.
     triangles: Vec<[Vec3; 3]>,
     moved: Vec<[Vec3; 3]>,
-    /// The field at the end of each equal time slice of the last interval, except the last slice. Empty if
-    /// the surface did not move far in that interval.
+    /// The field at the end of each equal time slice of the last frame, except the last slice. Empty if
+    /// the surface did not move far in that frame.
     pub(super) previous_slices: Vec<Arc<SignedDistanceField>>,
     /// One bit for each cell that has a point inside, at the index of its lower node. Empty: any cell may.
     inside: Vec<u32>,

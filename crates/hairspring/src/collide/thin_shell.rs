@@ -50,8 +50,8 @@ pub struct ThinShell {
     first: Vec<u32>,
     /// Triangles within reach, cell after cell.
     triangles: Vec<u32>,
-    /// The shell at the end of each equal time slice of the last interval, except the last slice. Empty if it
-    /// did not move far in that interval.
+    /// The shell at the end of each equal time slice of the last frame, except the last slice. Empty if it
+    /// did not move far in that frame.
     pub(super) previous_slices: Vec<Arc<ThinShell>>,
 }
 
