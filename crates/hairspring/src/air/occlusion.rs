@@ -1,7 +1,8 @@
 //! Wind occlusion: how much of the wind reaches a point behind bodies and hair.
 //!
 //! ```text
-//!  wind ⇉    ⇉ → ( body ) ·   · → ⇉     T = e^(−τ),   τ = ∫₀^reach (1 − s/reach) ( β inside a body + η fill ) ds,   s upwind from the point
+//!  wind ⇉    ⇉ → ( body ) ·   · → ⇉     T = e^(−τ),   τ = ∫₀^reach (1 − s/reach) ( β inside a body + η fill ) ds,
+//!                                       s: distance upwind from the point
 //! ```
 //!
 //! The ray is marched upstream. Each step follows the local wind, so the ray bends around a vortex, and it

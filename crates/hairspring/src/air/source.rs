@@ -1,14 +1,15 @@
 //! Wind sources, and the velocity field of each kind.
 //!
 //! ```text
-//! point     ↖ ↑ ↗      u = U (R/r)² away from the middle; U r/R inside of R. The flow of a source in a fluid that keeps its volume
-//!           ← • →          (Lamb 1932, Hydrodynamics, §56); below 0 it sucks in
+//! point     ↖ ↑ ↗      u = U (R/r)² away from the center; U r/R inside R. The flow of a point source in an incompressible
+//!           ← • →          fluid (Lamb 1932, Hydrodynamics, §56); negative speeds give a sink
 //!
 //! vortex     ⟲         u = 2U (r/R) / (1 + (r/R)²) about the axis, U at R (Kaufmann 1962; Vatistas 1991, n = 1)
 //!
-//! fan      ║⇉⇉⇉ → →    u = min(U, 2U (R/b) e^(−2 (r/b)²)) along the axis, b = R + z tan(spread); nothing behind. The round turbulent jet
-//!                          (Pope 2000, Turbulent Flows, §5.1): a core at full speed, which the mixing around it has used up where b = 2R;
-//!                          from there on each cross-section has the momentum of the mouth, ∫ u² = U² π R²
+//! fan      ║⇉⇉⇉ → →    u = min(U, 2U (R/b) e^(−2 (r/b)²)) along the axis, b = R + z tan(spread); 0 behind the opening. The
+//!                          round turbulent jet (Pope 2000, Turbulent Flows, §5.1): a core at full speed, which mixing has
+//!                          consumed where b = 2R; beyond, each cross-section has the momentum flux of the opening,
+//!                          ∫ u² = U² π R²
 //! ```
 
 use super::gust::Gust;

@@ -1,9 +1,9 @@
 //! Cuts of a clip: intervals in which the body is placed elsewhere instead of moving there.
 //!
 //! ```text
-//!   position │            ●──●──●      The step D of the run of frame intervals differs from what the intervals before and
-//!            │                         after it predict, v·T, by more than the threshold: no motion does that. The pose is
-//!            │  ●──●──●                held until the run's last frame, and changes there at once.
+//!   position │            ●──●──●      The displacement D over a run of frame intervals differs by more than the threshold
+//!            │                         from that predicted by the intervals before and after it, v·T: no real motion does
+//!            │  ●──●──●                that. The pose is held until the run's last frame, and changes there at once.
 //!            └──────────────────► time
 //! ```
 //!

@@ -373,7 +373,8 @@ pub(super) mod tests {
         });
         assert_eq!((distance, normal), (-0.02, Vec3::Y));
         assert_eq!((lanes, up), (-0.02, 1.0));
-        // As steep as a distance is, and no more: a segment that lies there would seem to reach far in.
+        // The slope is that of a distance, and no steeper: otherwise a segment there would seem to penetrate
+        // deeply.
         assert!((steep - 1.0).abs() < 1e-6, "{steep}");
     }
 

@@ -53,7 +53,8 @@ pub struct FollowLayout {
 
 /// The follow hairs of one groom: styling settings, and the transforms of the guides in the current frame.
 ///
-/// # Missing Levels of detail.
+/// # Missing
+/// Levels of detail.
 pub struct Follow {
     layout: Arc<FollowLayout>,
     effects: Effects,

@@ -1,7 +1,7 @@
 //! Springs that attach points to a moving manipulator: a grab or a tie.
 //!
 //! ```text
-//! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf,   |T − x| ω² no more than FIRMEST at the start of a frame
+//! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf,   |T − x| ω² ≤ FIRMEST at the start of a frame
 //! ```
 //!
 //! T moves linearly from its position at the start of the frame to that at the end. If the manipulator is

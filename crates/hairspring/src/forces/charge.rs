@@ -44,7 +44,8 @@ pub struct Charged {
     /// Its charge, Q [C], −1e-3 to 1e-3. A rubbed balloon has about −1e-7. The field at the surface is
     /// clamped to 3 MV/m: 5.6e-6 for a radius of 13 cm.
     pub charge: f32,
-    /// Whether hair collides with it. Default true; false for a ball that stands for the charge of a body, such as the head's.
+    /// Whether hair collides with it. Default true. Set it to false for a ball that represents the charge of
+    /// a body, such as the head's.
     #[serde(default = "yes")]
     pub solid: bool,
     /// Waypoints of its center in order of time. The center moves linearly between them and rests after the

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 /// absorption inside the fiber, which tints highlights, transmitted light and shadow. Alternatively `melanin`
 /// gives the pigment; the colors are then ignored.
 ///
-/// # Missing A separate melanin value for the tip; a fraction of gray hairs among others.
+/// # Missing
+/// A separate melanin value for the tip; a fraction of gray hairs among others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HairLook {

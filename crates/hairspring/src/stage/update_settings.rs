@@ -19,7 +19,8 @@ impl Stage {
     /// - Manipulators of [`Stage::add_manipulator`] stay. A hand of the scene with unchanged settings also
     ///   stays; other hands stop, and new ones begin.
     ///
-    /// # Errors [`StageError::GroomCount`] if the number of grooms differs, [`StageError::NoSuchJoint`],
+    /// # Errors
+    /// [`StageError::GroomCount`] if the number of grooms differs, [`StageError::NoSuchJoint`],
     /// [`StageError::OutOfRange`] for effects that are too large. In case of an error, nothing changes.
     pub fn update_settings(&mut self, settings: Scene) -> Result<(), StageError> {
         if settings.grooms.len() != self.hair.len() {

@@ -156,7 +156,8 @@ impl Stage {
 
     /// Returns the first guide of a strand (index of the groom), or the strand itself if it is simulated.
     ///
-    /// # Panics Panics if the scene has no such groom or the groom has no such strand.
+    /// # Panics
+    /// Panics if the scene has no such groom or the groom has no such strand.
     pub fn guide_of(&self, groom: usize, strand: usize) -> u32 {
         let hair = &self.hair[groom];
         hair.simulated_strands()[hair.first_guide(strand)]
@@ -164,7 +165,8 @@ impl Stage {
 
     /// Returns the figures of a strand (index of the groom).
     ///
-    /// # Panics Panics under the same conditions as [`Stage::guide_of`].
+    /// # Panics
+    /// Panics under the same conditions as [`Stage::guide_of`].
     pub fn strand_figures(&self, groom: usize, strand: usize) -> StrandFigures {
         let hair = &self.hair[groom];
         let (k, guide) = (hair.first_guide(strand), self.guide_of(groom, strand));

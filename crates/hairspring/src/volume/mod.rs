@@ -30,13 +30,14 @@
 //!   do not pass through each other, is `neighbours`, which can be enabled in addition.
 //! - Contact with the body and step 5, the new positions, end every substep as they do without the volume.
 //!
-//! # Cost For the bounds, 12 bytes of a point's position are read. For the sums, 24 bytes of position and
-//! velocity and 8 bytes of constant data are read. For the acceleration, 24 bytes are read again, 12 are
-//! written here, 24 are changed in the sum of all external accelerations, and 12 are read by the substeps.
-//! Each point adds 64 integers at eight nodes and reads 96 values. Measured on one core with SSE2, for the
-//! bench scene with 96,000 points in 21,000 nodes: 56 ns per point and exchange for `density`, 117 for
-//! `incompressible` (solve of 34,000 nodes). This includes the cold caches that the strands find afterward,
-//! and tiles that run one substep at a time. A frame of 1/60 s has four exchanges.
+//! # Cost
+//! For the bounds, 12 bytes of a point's position are read. For the sums, 24 bytes of position and velocity
+//! and 8 bytes of constant data are read. For the acceleration, 24 bytes are read again, 12 are written here,
+//! 24 are changed in the sum of all external accelerations, and 12 are read by the substeps. Each point adds
+//! 64 integers at eight nodes and reads 96 values. Measured on one core with SSE2, for the bench scene with
+//! 96,000 points in 21,000 nodes: 56 ns per point and exchange for `density`, 117 for `incompressible` (solve
+//! of 34,000 nodes). This includes the cold caches that the strands find afterward, and tiles that run one
+//! substep at a time. A frame of 1/60 s has four exchanges.
 //!
 //! # Missing
 //! Follow hairs are moved only by their guides.
