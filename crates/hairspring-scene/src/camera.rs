@@ -1,4 +1,4 @@
-//! Where a scene is seen from.
+//! The camera of a scene.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Camera {
-    /// Where it stands [m].
+    /// Camera position [m].
     pub position: Vec3,
-    /// What it looks at [m].
+    /// Point that the camera looks at [m].
     pub target: Vec3,
-    /// Vertical field of view [degrees], 1 to 170. Default 30: a portrait lens.
+    /// Vertical field of view [degrees], 1 to 170. Default 30: that of a portrait lens.
     pub fov: f32,
 }
 

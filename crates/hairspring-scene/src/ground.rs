@@ -1,18 +1,19 @@
-//! What a scene stands on in its picture: settings only, the drawing itself lives in `hairspring-view`.
+//! Settings of the ground plane. Drawing is implemented in `hairspring-view`.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A level plane that takes the shadow of body and hair. It is a matter of the picture alone: what hair meets is a
+/// A level plane that receives the shadow of body and hair. It only affects the image; hair collides with a
 /// [`Collider`](super::Collider).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Ground {
-    /// Whether there is one. Default false: a portrait of a head sits on nothing.
+    /// Whether the ground is drawn. Default false, for a portrait of a head.
     pub on: bool,
-    /// Where it lies on the axis that points up [m]. `None`, the default: at the lowest point of the body at rest; 0 without a body.
+    /// Height along the up axis [m]. `None`, the default: the lowest point of the body at rest, or 0 without
+    /// a body.
     pub height: Option<f32>,
-    /// Linear RGB, 0 to 1, of a floor under the key lamp and the sky. `None`, the default: the backdrop's own light, which shadow alone tells from
-    /// the rest of it.
+    /// Linear RGB color, 0 to 1, of a floor lit by the key light and the sky. `None`, the default: the floor
+    /// matches the backdrop and is only visible by its shadow.
     pub color: Option<Vec3>,
 }

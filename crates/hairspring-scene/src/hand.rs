@@ -1,37 +1,37 @@
-//! Hands of a scene: what is held to the hair, from when to when, and how it moves.
+//! Hands of a scene: a manipulator with its motion and the time during which it acts.
 
 use glam::Vec3;
 use hairspring::{forces::Manipulator, math::between};
 use serde::{Deserialize, Serialize};
 
-/// A hand with a tool.
+/// A hand with a manipulator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hand {
-    /// What it holds to the hair, in the space of the body's rest pose [m].
+    /// The manipulator, in the space of the body's rest pose [m].
     pub tool: Manipulator,
-    /// Name of the body's joint that moves it; `None`: it stays in the world.
+    /// Name of the body joint that moves it; `None`: it is fixed in the world.
     #[serde(default)]
     pub joint: Option<String>,
-    /// How far it has moved at a time: time [s], then x, y, z [m], in the joint's space; straight in between, at rest before the first and after the
-    /// last. Times rise. Empty, the default: not at all.
+    /// Displacement keys: time [s], then x, y, z [m], in the joint's space. Motion is linear between keys and
+    /// constant before the first and after the last. Times must increase. Empty, the default: no motion.
     #[serde(default)]
     pub path: Vec<[f32; 4]>,
-    /// When it takes hold [s], 0 or more. Default 0.
+    /// Time at which it starts to act [s], 0 or more. Default 0.
     #[serde(default)]
     pub from: f32,
-    /// When it lets go [s], after `from`; `None`, the default: never.
+    /// Time at which it stops [s], after `from`; `None`, the default: never.
     #[serde(default)]
     pub until: Option<f32>,
 }
 
 impl Hand {
-    /// A hand that stays where it is and never lets go.
+    /// Creates a hand that does not move and never stops acting.
     pub fn new(tool: Manipulator) -> Self {
         Self { tool, joint: None, path: Vec::new(), from: 0.0, until: None }
     }
 
-    /// How far it has moved at `time` [s].
+    /// Returns the displacement at `time` [s].
     pub fn moved(&self, time: f64) -> Vec3 {
         let place = |k: usize| Vec3::from_slice(&self.path[k][1..]);
         let way = between(self.path.len(), |k| self.path[k][0], time);

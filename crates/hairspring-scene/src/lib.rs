@@ -1,4 +1,5 @@
-//! A scene: everything that a shot needs, in memory, however it was made (by code, or read from a file by `hairspring-io`).
+//! A scene: everything that a shot needs, in memory. It is built in code or read from a file by
+//! `hairspring-io`.
 
 pub mod builtin;
 mod camera;
@@ -24,18 +25,18 @@ use hairspring::{
     settings::{Effects, Neighbours, Solver, Volume, Wind},
 };
 
-/// One hairstyle of a scene and how it is simulated and drawn.
+/// One hairstyle of a scene, with its settings for simulation and rendering.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneGroom {
     /// The strands, in the rest pose of the body [m].
     pub groom: Groom,
-    /// Fibre of each group; a group past the end uses the last. Empty: [`Material::default`].
+    /// Material of each group; groups beyond the end use the last one. Empty: [`Material::default`].
     pub materials: Vec<Material>,
     /// Which strands are simulated.
     pub guides: Guides,
-    /// What is laid over the follow hairs.
+    /// Styling of the follow hairs.
     pub effects: Effects,
-    /// How it is drawn.
+    /// Hair color and shading.
     pub look: HairLook,
 }
 
@@ -44,56 +45,58 @@ pub struct SceneGroom {
 pub struct SceneSheet {
     /// The mesh, in the same rest pose and with the same joints as the scene's body.
     pub body: Body,
-    /// How far hair stays from it, on both sides [m], above 0. Default of a scene file: [`SceneSheet::THICKNESS`].
+    /// Distance that hair keeps from it, on both sides [m], above 0. Scene files default to
+    /// [`SceneSheet::THICKNESS`].
     pub thickness: f32,
 }
 
 impl SceneSheet {
-    /// 2 mm: what falls at half a metre a second moves as far in a substep at the default of four.
+    /// Default thickness [m]: 2 mm, the distance covered in one substep at half a meter per second, with the
+    /// default of four substeps.
     pub const THICKNESS: f32 = 0.002;
 }
 
-/// Grooms, body, motion and settings: the input of a simulation.
+/// A scene, the input of a simulation: grooms, body, motion and settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// Shown in reports.
+    /// Name shown in reports.
     pub name: String,
     /// The hairstyles.
     pub grooms: Vec<SceneGroom>,
-    /// What is drawn and what roots are bound to; `None`: hair in the air, roots fixed.
+    /// The body that is drawn and that roots are bound to. `None`: hair in the air with fixed roots.
     pub body: Option<Body>,
-    /// Closed mesh that hair collides with, in the same rest pose and with the same joints as `body`;
-    /// `None`: the body's own mesh where `solver.collide_body` is on.
+    /// Closed mesh that hair collides with, in the same rest pose and with the same joints as `body`. `None`:
+    /// the body's own mesh if `solver.collide_body` is on.
     pub collision: Option<Body>,
     /// Open meshes that hair collides with on both sides.
     pub sheets: Vec<SceneSheet>,
-    /// Further simple shapes that hair collides with.
+    /// Additional simple shapes that hair collides with.
     pub colliders: Vec<Collider>,
     /// Motion of the body's joints; `None`: at rest.
     pub clip: Option<Clip>,
-    /// The wind of all points.
+    /// The directional wind.
     pub wind: Wind,
-    /// What blows besides.
+    /// Wind sources.
     pub wind_sources: Vec<WindSource>,
-    /// Eddies in the air.
+    /// Turbulence of the air.
     pub turbulence: Turbulence,
-    /// Who stands in the lee.
+    /// Wind occlusion by bodies and hair.
     pub wind_occlusion: WindOcclusion,
     /// Charged bodies.
     pub charged: Vec<Charged>,
     /// Gravity [m/s²]; the default of a scene file is (0, −9.81, 0).
     pub gravity: Vec3,
-    /// Time steps and contact.
+    /// Settings of time steps and contact.
     pub solver: Solver,
-    /// How hair meets hair.
+    /// Settings of the hair volume.
     pub volume: Volume,
-    /// How strands meet their neighbours, one by one.
+    /// Settings of contact between individual strands.
     pub neighbours: Neighbours,
-    /// Where it is seen from; `None`: framed automatically.
+    /// Camera; `None`: the scene is framed automatically.
     pub camera: Option<Camera>,
-    /// What it stands on in the picture.
+    /// The ground plane that is drawn.
     pub ground: Ground,
-    /// What hands hold to the hair.
+    /// Hands that act on the hair with a manipulator.
     pub hands: Vec<Hand>,
 }
 

@@ -1,46 +1,47 @@
-//! How hair is coloured and lit: settings only, the drawing itself lives in `hairspring-view`.
+//! Hair color and shading settings. Rendering is implemented in `hairspring-view`.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Colour and gloss of one groom.
+/// Color and gloss of one groom.
 ///
-/// Colours are what a thick, evenly lit lock of the hair looks like (linear Rec. 709). The renderer turns them
-/// into absorption inside the fibre, so highlights, transmitted light and shadow take their tints from them. In their place the
-/// pigment may be given, `melanin`: then they do not count.
+/// Colors are those of a thick, evenly lit lock of the hair (linear Rec. 709). The renderer converts them to
+/// absorption inside the fiber, which tints highlights, transmitted light and shadow. Alternatively `melanin`
+/// gives the pigment; the colors are then ignored.
 ///
 /// # Missing
-/// Melanin of the tip by itself; grey hairs among others by their share.
+/// A separate melanin value for the tip; a fraction of gray hairs among others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HairLook {
     /// Linear RGB at the root, 0 to 1. Default: dark brown.
     pub root_color: Vec3,
-    /// Linear RGB at the tip, 0 to 1. Default: a lighter brown, as sun and washing leave it.
+    /// Linear RGB at the tip, 0 to 1. Default: a lighter brown, as from sun and washing.
     pub tip_color: Vec3,
-    /// Pigment in the fibre, 0 (none: white) to 1 (black), even to the eye: −ln(1 − melanin) is its amount, as in Blender's and Unreal's
-    /// hair shaders. `None`, the default: the colours count.
+    /// Pigment in the fiber, 0 (none: white) to 1 (black), perceptually even: the amount is −ln(1 − melanin),
+    /// as in the hair shaders of Blender and Unreal. `None`, the default: the colors are used.
     pub melanin: Option<f32>,
-    /// Share of the pigment that is the reddish one, pheomelanin, 0 (all eumelanin: brown) to 1 (red). Default 0.3: light brown hair is a little
-    /// warm. Counts with `melanin`.
+    /// Fraction of the pigment that is reddish pheomelanin, 0 (only eumelanin: brown) to 1 (red). Default
+    /// 0.3: light brown hair is slightly warm. Only used with `melanin`.
     pub melanin_redness: f32,
-    /// What the hair is dyed: linear RGB that white hair would take on, 0 to 1, over melanin or the colours. Default white: not dyed.
+    /// Dye: linear RGB that white hair would take on, 0 to 1, applied to the melanin or the colors. Default
+    /// white: no dye.
     pub dye: Vec3,
-    /// How much pigment differs from strand to strand, 0 (not at all) to 1. Default 0.25: visible only as depth.
+    /// Variation of pigment from strand to strand, 0 (none) to 1. Default 0.25: visible only as depth.
     pub variation: f32,
-    /// Spread of the highlights along the strand, 0.1 (oiled) to 1 (matt). Default 0.32: healthy hair
+    /// Width of the highlights along the strand, 0.1 (oiled) to 1 (matte). Default 0.32: healthy hair
     /// (Marschner et al. 2003 measured 5° to 10°).
     pub roughness: f32,
-    /// Tilt of the cuticle scales [degrees], 0 to 10. It parts the white highlight from the coloured one.
+    /// Tilt of the cuticle scales [degrees], 0 to 10. It separates the white highlight from the colored one.
     /// Default 3 (Marschner et al. 2003, table 1: 2° to 4°).
     pub cuticle: f32,
     /// Strength of the two highlights, 0 to 4. Default 1: dielectric keratin.
     pub specular: f32,
-    /// Strength of light shining through strands from behind, 0 to 4. Default 1.
+    /// Strength of light transmitted through strands from behind, 0 to 4. Default 1.
     pub backlight: f32,
     /// Strength of light scattered from strand to strand, 0 to 4. Default 1.
     pub scatter: f32,
-    /// How strongly strands shade what is behind them, 0 to 4. Default 1: as opaque as they are wide.
+    /// Strength of shadows from strands, 0 to 4. Default 1: as opaque as they are wide.
     pub shadow: f32,
 }
 
@@ -63,7 +64,7 @@ impl Default for HairLook {
     }
 }
 
-/// Natural hair colours.
+/// Natural hair colors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum HairColor {
@@ -82,7 +83,7 @@ pub enum HairColor {
 }
 
 impl HairColor {
-    /// Every colour, dark to light.
+    /// All colors, from dark to light.
     pub const ALL: [Self; 6] =
         [Self::Black, Self::DarkBrown, Self::Brown, Self::Red, Self::Blonde, Self::Grey];
 }

@@ -1,17 +1,17 @@
-//! Settings of a scene that both code and scene files set; each field's default is the value that a file may leave out.
+//! Colliders of a scene, and the choice of its guides. A field's default applies if a file omits it.
 
 use glam::{Mat3, Vec3};
 use hairspring::collide::{ColliderShape, Hull};
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, sync::Arc};
 
-/// Which strands of a groom are simulated; the others follow them.
+/// Selects the simulated strands of a groom; the others follow them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guides {
-    /// The strands that the groom file names as guides; 2,000 chosen ones where it names none. The default.
+    /// The strands that the groom file marks as guides, or 2,000 chosen ones if it marks none. The default.
     #[default]
     FromGroom,
-    /// So many strands, spread over the scalp per group.
+    /// This many strands, spread over the scalp per group.
     Count(u32),
     /// Every strand.
     All,
@@ -21,7 +21,7 @@ pub enum Guides {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Collider {
-    /// Name of the body's joint that moves it; `None`: joint 0, or fixed without a body.
+    /// Name of the body joint that moves it; `None`: joint 0, or fixed without a body.
     #[serde(default)]
     pub joint: Option<String>,
     /// The shape, in the space of the body's rest pose [m].
@@ -32,14 +32,14 @@ pub struct Collider {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Shape {
-    /// A ball.
+    /// A sphere.
     Sphere {
-        /// Middle [m].
+        /// Center [m].
         center: Vec3,
         /// Radius [m], above 0.
         radius: f32,
     },
-    /// All places nearer than `radius` to the line from `a` to `b`.
+    /// All points nearer than `radius` to the segment from `a` to `b`.
     Capsule {
         /// One end of the axis [m].
         a: Vec3,
@@ -50,37 +50,37 @@ pub enum Shape {
     },
     /// A box.
     Box {
-        /// Middle [m].
+        /// Center [m].
         center: Vec3,
         /// Lengths of its edges [m], above 0.
         size: Vec3,
-        /// How it is turned: about X, then Y, then Z [degrees]. Default 0.
+        /// Rotation about X, then Y, then Z [degrees]. Default 0.
         #[serde(default)]
         rotation: Vec3,
     },
-    /// All of space on the side of a plane that `normal` points away from: a floor, a wall, a slope.
+    /// A half-space, on the side of a plane that `normal` points away from: a floor, a wall, a slope.
     Plane {
-        /// A point of the plane [m].
+        /// A point on the plane [m].
         point: Vec3,
         /// Direction out of the solid, of any length above 0.
         normal: Vec3,
     },
     /// The convex hull of points: a shoulder, a stone, a brush.
     Hull {
-        /// Points that span it [m], four or more. Default: the vertices of `file`.
+        /// Points of the hull [m], four or more. Default: the vertices of `file`.
         #[serde(default)]
         points: Vec<Vec3>,
-        /// A mesh file whose vertices a reader of scene files puts in place of `points`; nothing here opens it.
+        /// A mesh file. The scene reader replaces `points` with its vertices; this crate does not open it.
         #[serde(default)]
         file: Option<PathBuf>,
-        /// Metres in one unit of `file` [m], above 0. Default: by the format, or guessed and said.
+        /// Meters per unit of `file` [m], above 0. Default: given by the format, or guessed and reported.
         #[serde(default)]
         scale: Option<f32>,
     },
 }
 
 impl Shape {
-    /// The collider of this shape; `None` for the hull of points that span no volume.
+    /// Returns the collider shape; `None` for a hull whose points span no volume.
     pub fn obstacle(&self) -> Option<ColliderShape> {
         Some(match *self {
             Self::Sphere { center, radius } => ColliderShape::Sphere { center, radius },

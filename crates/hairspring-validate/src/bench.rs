@@ -1,7 +1,8 @@
 //! The standard bench scene, shared by `hairspring bench`, the tests and the profiler: a shaken ball of hair.
 //!
-//! A sphere scalp of radius 0.1 m, strands of 0.25 m evenly over its upper half, 60 Hz frames, the scalp shaken 5 cm at 2 Hz,
-//! contact with the sphere, every strand simulated; the sphere as the distance field of a mesh and wind where they are asked for.
+//! A spherical scalp of radius 0.1 m has strands of 0.25 m, evenly spread over its upper half. All strands
+//! are simulated at 60 Hz and collide with the sphere, which is shaken by 5 cm at 2 Hz. Optionally the sphere
+//! is the distance field of a mesh, and wind blows.
 
 use glam::{Mat3, Vec3};
 use hairspring::settings::{Solver, Wind};
@@ -19,34 +20,34 @@ use std::sync::Arc;
 pub const RADIUS: f32 = 0.1;
 /// Length of a strand [m].
 pub const LENGTH: f32 = 0.25;
-/// Length of a frame [s].
+/// Duration of a frame [s].
 pub const FRAME: f32 = 1.0 / 60.0;
 /// Amplitude of the shake [m].
 pub const AMPLITUDE: f32 = 0.05;
-/// Rate of the shake [Hz].
+/// Frequency of the shake [Hz].
 pub const RATE: f32 = 2.0;
 
-/// Cells of the distance field along the scalp's diameter: a head in the 5 mm that a scene's body has.
+/// Cells of the distance field along the scalp's diameter. This gives 5 mm, the cell of a scene's body.
 const FIELD_CELLS: f32 = 40.0;
 
-/// Quads of the scalp's mesh from pole to pole; twice as many go around.
+/// Quads of the scalp's mesh from pole to pole; there are twice as many around it.
 const MESH_QUADS: u32 = 48;
 
-/// What the hair meets.
+/// The collider of the scalp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Head {
     /// The sphere itself.
     #[default]
     Sphere,
-    /// The distance field of the sphere's mesh, as a scene's body is met.
+    /// The distance field of the sphere's mesh, which is how a scene's body is represented.
     Field,
 }
 
 impl Head {
-    /// All of them.
+    /// All variants.
     pub const ALL: [Self; 2] = [Self::Sphere, Self::Field];
 
-    /// Its name: `sphere`, `sdf`.
+    /// Returns the name: `sphere` or `sdf`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sphere => "sphere",
@@ -65,7 +66,8 @@ impl Head {
     }
 }
 
-/// The scalp as a mesh: rings of quads cut in two, closed at the poles by quads with two corners in one place.
+/// Returns the scalp as a mesh: rings of quads split into triangles. At the poles, two corners of each quad
+/// coincide.
 fn ball() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (rows, columns) = (MESH_QUADS, 2 * MESH_QUADS);
     let step = std::f32::consts::PI / rows as f32;
@@ -86,11 +88,11 @@ fn ball() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (positions.collect(), triangles.collect())
 }
 
-/// The bench scene in motion.
+/// The running bench scene.
 pub struct Bench {
     /// The strands.
     pub simulation: Simulation,
-    /// The air. Default: still.
+    /// The wind. Default: still air.
     pub wind: Wind,
     roots: Vec<Vec3>,
     poses: Vec<RigidTransform>,
@@ -98,14 +100,15 @@ pub struct Bench {
     frame: u32,
 }
 
-/// Strands of equal length standing out from the upper half of a sphere, evenly spread (a Fibonacci spiral).
+/// Creates strands of equal length that stand out from the upper half of a sphere, evenly spread (a Fibonacci
+/// spiral).
 pub fn groom(strands: u32, points: u32) -> Groom {
     let golden = std::f32::consts::PI * (3.0 - 5f32.sqrt());
     Groom::from_strands(
         (0..strands).map(|s| {
             let y = 1.0 - (s as f32 + 0.5) / strands as f32;
             let r = (1.0 - y * y).sqrt();
-            // In f64: the angle of the last strands is large.
+            // Uses f64, because the angles of the last strands are large.
             let angle = (s as f64 * golden as f64) % std::f64::consts::TAU;
             let out = Vec3::new(r * angle.cos() as f32, y, r * angle.sin() as f32);
             (0..points).map(|i| out * (RADIUS + LENGTH * i as f32 / (points - 1) as f32)).collect::<Vec<_>>()
@@ -115,17 +118,17 @@ pub fn groom(strands: u32, points: u32) -> Groom {
 }
 
 impl Bench {
-    /// The scene at rest, hair standing out; `points` 3 or more a strand.
+    /// Creates the scene at rest with the hair standing out; `points` per strand, 3 or more.
     pub fn new(strands: u32, points: u32, solver: Solver) -> Self {
         Self::of(strands, points, Material::default(), solver)
     }
 
-    /// The scene with hair of this material.
+    /// Creates the scene with this hair material.
     pub fn of(strands: u32, points: u32, material: Material, solver: Solver) -> Self {
         Self::on(Head::Sphere, strands, points, material, solver)
     }
 
-    /// The scene with hair of this material on this head.
+    /// Creates the scene with this hair material and head.
     pub fn on(head: Head, strands: u32, points: u32, material: Material, solver: Solver) -> Self {
         let groom = Arc::new(groom(strands, points));
         let shape = head.shape();
@@ -133,7 +136,8 @@ impl Bench {
         let pose = ColliderPose::new(shape.clone(), rest, rest, 1.0);
         let roots: Vec<Vec3> = (0..strands as usize).map(|s| groom.strand(s)[0]).collect();
         let all: Vec<u32> = (0..strands).collect();
-        // Hair falls from standing out: a start in balance would be one that no fibre holds.
+        // The hair falls from standing out. No fiber could hold that shape in balance, so the sag-free start
+        // is off.
         let solver = Solver { sag_free: false, ..solver };
         let simulation = Simulation::new(
             groom,
@@ -182,7 +186,7 @@ impl Bench {
         })
     }
 
-    /// Figures at the end of the last frame.
+    /// Returns the measurements at the end of the last frame.
     pub fn measure(&self) -> Measure {
         self.simulation.measure(std::slice::from_ref(&self.obstacle))
     }

@@ -1,8 +1,9 @@
-//! A swing: some strands of a scene let go in empty space, for judging integrators by what they do to its energy.
+//! The swing test: some strands of a scene swing freely in empty space. It compares integrators by what they
+//! do to the energy.
 //!
-//! The strands stand as the groom has them, free of stress, with their roots fixed; gravity comes from aside, so that they fall and
-//! swing. Nothing is touched, nothing drives them, and air and the fibre's own damping can be left out: what an exact integrator
-//! would then keep is the total energy.
+//! The strands start as the groom has them, free of stress, with fixed roots. Gravity is tilted, so they fall
+//! and swing. There is no contact and nothing drives them. Without air and fiber damping, an exact integrator
+//! would conserve the total energy.
 
 use crate::bench::FRAME;
 use glam::{Quat, Vec3};
@@ -17,13 +18,13 @@ use hairspring::{
 use hairspring_scene::Scene;
 use std::sync::Arc;
 
-/// What gravity is turned by about the Z axis [degrees]: hair that hangs then has a wide swing before it.
+/// Rotation of gravity about the Z axis [degrees], so that hanging hair swings widely.
 pub const TILT: f32 = 45.0;
 
-/// Gravity of a scene that has none [m/s²].
+/// Gravity used for a scene that has none [m/s²].
 const EARTH: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
-/// Strands of a scene, to be swung again and again.
+/// A sample of a scene's strands, which can be swung repeatedly.
 #[derive(Clone, Debug)]
 pub struct Sample {
     groom: Arc<Groom>,
@@ -34,9 +35,9 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// About `count` strands of the scene, 1 or more, evenly spread over each groom in its order, as many of each as its share; among
-    /// them the one with the shortest segment, which decides how long a step an explicit method can take. All of them where there are
-    /// no more.
+    /// Samples about `count` strands of the scene, 1 or more, or all if there are no more. They are evenly
+    /// spread over each groom in order, in proportion to its size. The strand with the shortest segment is
+    /// always included, because it determines the longest stable step of an explicit method.
     pub fn new(scene: &Scene, count: usize) -> Self {
         let mut sample = Groom { offsets: vec![0], ..Groom::default() };
         let mut materials = Vec::new();
@@ -79,25 +80,26 @@ impl Sample {
         }
     }
 
-    /// Without air and without damping of the fibre: nothing then takes energy but the integrator.
+    /// Removes air drag and fiber damping, so that only the integrator dissipates energy.
     pub fn without_losses(mut self) -> Self {
         self.materials.iter_mut().for_each(|m| (m.damping, m.drag) = (0.0, 0.0));
         self
     }
 
-    /// Number of strands.
+    /// Returns the number of strands.
     pub fn strand_count(&self) -> usize {
         self.groom.strand_count()
     }
 
-    /// Length of the shortest segment that is not driven [m].
+    /// Returns the length of the shortest segment that is not driven by a root [m].
     pub fn shortest_segment(&self) -> f32 {
         let segments = |s: usize| self.groom.strand(s).windows(2).skip(1).map(|w| w[0].distance(w[1]));
         (0..self.strand_count()).flat_map(segments).fold(f32::INFINITY, f32::min)
     }
 
-    /// The shortest time that sound takes along a segment that is not driven, L √(ρ/E) [s]: about the longest step of an explicit method,
-    /// whose h ω must stay under 2 where the fastest ring of a chain is ω = 2 √(E/ρ) / L.
+    /// Returns the shortest time in which sound crosses a free segment, L √(ρ/E) [s]. This is about the
+    /// longest stable step of an explicit method: h ω must stay below 2, and the highest natural frequency of
+    /// a chain is ω = 2 √(E/ρ) / L.
     pub fn sound_time(&self) -> f64 {
         let of = |s: usize| {
             let shortest = self
@@ -113,22 +115,23 @@ impl Sample {
     }
 }
 
-/// A sample in motion, by steps of any length.
+/// A sample in motion, advanced by steps of any length.
 pub struct Swing {
     simulation: Simulation,
     roots: Vec<RigidTransform>,
-    /// Length of a step in the time of the simulation [s].
+    /// Step length in simulation time [s].
     step: f32,
-    /// How many times faster than ours the time of the simulation goes.
+    /// Ratio of simulation speed to real time.
     pace: f64,
 }
 
 impl Swing {
-    /// The sample at rest, to be stepped by `h` [s], above 0.
+    /// Creates the sample at rest, to be advanced by steps of `h` [s], above 0.
     pub fn new(sample: &Sample, integrator: Integrator, h: f64) -> Self {
-        // A simulation takes no step longer than a frame. A longer one is a frame of a world that runs faster: velocities grow by the
-        // pace, accelerations and stiffnesses by its square, and every length stays. Drag grows by a little more: its coefficient is that of the
-        // larger Reynolds number.
+        // A simulation takes no step longer than a frame. A longer step is therefore simulated as a frame of
+        // a faster world: velocities scale with the pace, accelerations and stiffnesses with its square, and
+        // lengths stay. Drag grows slightly more, since its coefficient is that of the larger Reynolds
+        // number.
         let pace = (h / FRAME as f64).max(1.0);
         let (p, p2) = (pace as f32, (pace * pace) as f32);
         let materials: Vec<Material> = sample
@@ -158,7 +161,7 @@ impl Swing {
         Self { simulation, roots, step: (h / pace) as f32, pace }
     }
 
-    /// Takes one step.
+    /// Advances by one step.
     pub fn step(&mut self) -> StepReport {
         self.simulation.step(&StepInput {
             dt: self.step,
@@ -169,13 +172,13 @@ impl Swing {
         })
     }
 
-    /// Figures now.
+    /// Returns the current measurements.
     pub fn measure(&self) -> Measure {
         let measure = self.simulation.measure(&[]);
         Measure { speed_max: measure.speed_max / self.pace, ..measure }
     }
 
-    /// The energy now [J].
+    /// Returns the current energy [J].
     pub fn energy(&self) -> Energy {
         let Energy { kinetic, gravitational, bending, twisting, stretching } = self.simulation.energy();
         let p2 = self.pace * self.pace;
@@ -188,7 +191,7 @@ impl Swing {
         }
     }
 
-    /// The energy that could still turn into motion by falling [J]; see [`Simulation::energy_to_fall`].
+    /// Returns the energy that could still be released by falling [J]; see [`Simulation::energy_to_fall`].
     pub fn energy_to_fall(&self) -> f64 {
         self.simulation.energy_to_fall() / (self.pace * self.pace)
     }

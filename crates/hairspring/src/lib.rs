@@ -1,7 +1,8 @@
-//! Real-time strand hair as mass-spring chains, solved implicitly by a direct banded solver whose cost is
-//! linear in the strand's points.
+//! Real-time simulation of strand hair. Strands are mass-spring chains, integrated implicitly by a direct
+//! banded solver whose cost is linear in the number of points of a strand.
 //!
-//! SI units throughout: metres, kilograms, seconds, newtons, pascals; right-handed, Y up.
+//! All quantities are in SI units: meters, kilograms, seconds, newtons, pascals. Coordinates are
+//! right-handed, with Y up.
 
 pub mod air;
 pub mod body;

@@ -1,15 +1,16 @@
-//! Cutting a mesh along a line on its surface, so that coloured parts meet in a clean border.
+//! Cuts a mesh along a line on its surface, so that colored parts meet in a clean border.
 
 use glam::Vec3;
 use hairspring::body::Mesh;
 use std::collections::HashMap;
 
-/// Cuts `mesh` along the line where `side` changes sign: afterwards no triangle lies on both sides of it.
+/// Cuts `mesh` along the line where `side` changes sign. Afterward no triangle lies on both sides of it.
 ///
-/// Vertices near the line move onto it, so that no sliver is left; edges that still cross are split. A closed mesh stays
-/// closed, since both triangles of an edge share its new vertex. Normals of new vertices are the mean of their edge's.
+/// Vertices near the line are moved onto it, so that no slivers remain; edges that still cross are split. A
+/// closed mesh stays closed, because both triangles of an edge share its new vertex. The normal of a new
+/// vertex is interpolated along its edge.
 pub fn cut_along(mesh: &mut Mesh, side: impl Fn(Vec3) -> f32) {
-    /// A crossing nearer than this to one end of its edge, as a fraction of the edge, moves that end.
+    /// If a crossing is nearer to one end of its edge than this fraction of the edge, that end is moved.
     const SNAP: f32 = 0.3;
     let mut values: Vec<f32> = mesh.positions.iter().map(|p| side(*p)).collect();
     let mut snapped = vec![(SNAP, Vec3::ZERO); values.len()];
@@ -38,7 +39,7 @@ pub fn cut_along(mesh: &mut Mesh, side: impl Fn(Vec3) -> f32) {
     let mut triangles = Vec::with_capacity(mesh.triangles.len());
     for t in std::mem::take(&mut mesh.triangles) {
         let crosses = |i: usize| values[t[i] as usize] * values[t[(i + 1) % 3] as usize] < 0.0;
-        // Turn the triangle so that a lone corner, if any, comes first: then edges 0 and 2 are those that may cross.
+        // Rotate the triangle so that a lone corner, if any, comes first: then only edges 0 and 2 may cross.
         let Some(first) = (0..3).find(|i| crosses(*i)) else {
             triangles.push(t);
             continue;

@@ -1,20 +1,20 @@
-//! Eyebrows and eyelashes: a few hundred short hairs that make a face of a mask.
+//! Eyebrows and eyelashes: a few hundred short hairs that make the face look natural.
 
 use super::{random::Random, sdf::smoothstep, shape};
 use glam::{Vec2, Vec3, vec2, vec3};
 use hairspring::groom::Groom;
 
-/// Hairs of one brow.
+/// Number of hairs in one brow.
 const BROW_HAIRS: u32 = 420;
-/// Hairs of one upper lid: 90 to 150 on a real one.
+/// Number of hairs on one upper lid; a real one has 90 to 150.
 const LASHES: u32 = 110;
-/// Points of each hair.
+/// Points per hair.
 const POINTS: usize = 6;
 /// Radius at the root [m]: brow hairs and lashes are coarser than scalp hair.
 const RADIUS: f32 = 45e-6;
-/// Smallest distance of any point but the root from the skin [m].
+/// Minimum distance of any point except the root from the skin [m].
 const CLEARANCE: f32 = 4e-4;
-/// The brow's middle line from the nose outwards, on the left side: (x, y) and half its breadth [m].
+/// Center line of the left brow from the nose outward: (x, y), and half its width [m].
 const BROW: [(Vec2, f32); 5] = [
     (vec2(0.0125, 0.0165), 0.0034),
     (vec2(0.0210, 0.0195), 0.0036),
@@ -23,7 +23,7 @@ const BROW: [(Vec2, f32); 5] = [
     (vec2(0.0485, 0.0185), 0.0007),
 ];
 
-/// Both brows and the lashes of both upper lids.
+/// Creates both brows and the lashes of both upper lids.
 pub fn groom(seed: u32) -> Groom {
     let mut strands = Vec::new();
     let mut groups = Vec::new();
@@ -47,9 +47,10 @@ pub fn groom(seed: u32) -> Groom {
     groom
 }
 
-/// One hair of the brow on `side` (1: left): it leans up and outwards, more outwards farther from the nose.
+/// Creates one hair of the brow on `side` (1: left). It leans up and outward, more outward farther from the
+/// nose.
 fn brow_hair(side: f32, mut random: Random) -> [Vec3; POINTS] {
-    // Along the brow, and across it: thickest about the middle line.
+    // Position along the brow and across it: densest at the center line.
     let along = random.unit() * (BROW.len() - 1) as f32;
     let (i, t) = (along as usize, along.fract());
     let (a, b) = (BROW[i], BROW[(i + 1).min(BROW.len() - 1)]);
@@ -66,7 +67,7 @@ fn brow_hair(side: f32, mut random: Random) -> [Vec3; POINTS] {
     strand(root, heading, heading.reject_from(normal) * 0.4 - normal * 0.35, length, side)
 }
 
-/// The `i`-th lash of the upper lid on `side` (1: left): out, then up, fanned towards the corners.
+/// Creates the `i`-th lash of the upper lid on `side` (1: left): out, then up, fanned toward the corners.
 fn lash(side: f32, i: u32, mut random: Random) -> [Vec3; POINTS] {
     let u = (i as f32 + random.unit()) / LASHES as f32 * 1.86 - 0.93;
     let root = surface(shape::upper_lid(u) + Vec2::Y * random.within(0.0006, 0.0012));
@@ -75,7 +76,8 @@ fn lash(side: f32, i: u32, mut random: Random) -> [Vec3; POINTS] {
     strand(root, heading, vec3(0.15 * u + 0.1, 0.85, 0.1), length, side)
 }
 
-/// A hair of the left side, or its mirror image, that leaves `root` along `heading` and bends by `bend` over its length.
+/// Creates a hair of the left side, or its mirror image, that leaves `root` along `heading` and bends by
+/// `bend` over its length.
 fn strand(root: Vec3, heading: Vec3, bend: Vec3, length: f32, side: f32) -> [Vec3; POINTS] {
     let step = length / (POINTS - 1) as f32;
     let mut points = [root; POINTS];
@@ -93,7 +95,7 @@ fn strand(root: Vec3, heading: Vec3, bend: Vec3, length: f32, side: f32) -> [Vec
     points.map(|p| p * vec3(side, 1.0, 1.0))
 }
 
-/// The foremost point of the skin at (x, y) [m], found by walking in from the front.
+/// Returns the foremost point of the skin at (x, y) [m], found by marching in from the front.
 fn surface(at: Vec2) -> Vec3 {
     let mut p = at.extend(0.12);
     for _ in 0..60 {

@@ -1,4 +1,4 @@
-//! The bust as a body: meshes with coloured parts, skeleton and skin weights.
+//! The bust as a body: meshes with colored parts, skeleton and skin weights.
 
 use super::{
     borders, nets,
@@ -8,14 +8,14 @@ use super::{
 use glam::{Affine3A, Vec3, vec3};
 use hairspring::body::{Body, Joint, Mesh, Part, Skin, Trs};
 
-/// Index of each joint.
+/// Index of the chest joint.
 pub const CHEST: usize = 0;
-/// Child of the chest.
+/// Index of the neck joint, a child of the chest.
 pub const NECK: usize = 1;
-/// Child of the neck.
+/// Index of the head joint, a child of the neck.
 pub const HEAD: usize = 2;
 
-/// Where the joints are in the rest pose [m]: between the shoulder blades, at the base of the neck (vertebra C7),
+/// Rest positions of the joints [m]: between the shoulder blades, at the base of the neck (vertebra C7), and
 /// at the top of the spine (atlas, between the ears).
 const JOINTS: [(&str, Vec3); 3] = [
     ("chest", vec3(0.0, -0.27, -0.05)),
@@ -23,7 +23,7 @@ const JOINTS: [(&str, Vec3); 3] = [
     ("head", vec3(0.0, -0.022, -0.02)),
 ];
 
-/// The bust that is drawn and that hair grows on.
+/// Builds the bust that is drawn and that hair grows on.
 pub fn drawn() -> Body {
     let axes = [
         nets::planes(-0.26, 0.26, |x| {
@@ -48,10 +48,10 @@ pub fn drawn() -> Body {
     rigged(mesh)
 }
 
-/// How far the collision mesh lies inside the skin [m]: so that no hair of the rest pose starts in contact.
+/// Depth of the collision mesh below the skin [m], so that no hair starts in contact in the rest pose.
 const INSET: f32 = 5e-4;
 
-/// A coarser closed mesh, [`INSET`] inside the drawn one, for hair to collide with.
+/// Builds a coarser closed mesh, [`INSET`] inside the drawn one, for collisions.
 pub fn collision() -> Body {
     let axes = [
         nets::planes(-0.27, 0.27, |x| 0.0105 + 0.12 * (x.abs() - 0.09).clamp(0.0, 0.08)),
@@ -62,7 +62,8 @@ pub fn collision() -> Body {
     rigged(nets::mesh(&axes, distance, |p| sdf::normal(distance, p, 1e-3)))
 }
 
-/// The bust's head alone, on its neck and asleep: a closed mesh of some thousand vertices, small enough for a file. Its parts are "skin", "lips" and "scalp".
+/// Builds only the bust's head with its neck and closed eyes: a closed mesh of a few thousand vertices, small
+/// enough for a file. Its parts are "skin", "lips" and "scalp".
 pub fn head() -> Mesh {
     let axes = [
         nets::planes(-0.09, 0.09, |x| 0.0042 + 0.25 * (x.abs() - 0.036).clamp(0.0, 0.04)),
@@ -79,7 +80,7 @@ pub fn head() -> Mesh {
     mesh
 }
 
-/// Skeleton and weights for any mesh of the bust.
+/// Adds the skeleton and weights to a mesh of the bust.
 fn rigged(mesh: Mesh) -> Body {
     let mut joints = Vec::new();
     let mut above = Vec3::ZERO;
@@ -96,9 +97,10 @@ fn rigged(mesh: Mesh) -> Body {
     Body { mesh, joints, skin: Some(skin) }
 }
 
-/// How much the chest, the neck and the head move a point of the rest pose [m]; the fourth is unused.
+/// Returns the weights of chest, neck and head for a point of the rest pose [m]; the fourth is unused.
 fn weights(p: Vec3) -> [f32; 4] {
-    // Heights along the neck, tilted so that chin and skull base both count as head; shoulders stay with the chest.
+    // Heights along the tilted neck, so that chin and skull base both belong to the head and the shoulders to
+    // the chest.
     let head_height = p.y + 0.35 * p.z;
     let chest_height = p.y + 0.25 * p.z - 0.8 * (p.x.abs() - 0.055).max(0.0);
     let head = smoothstep(-0.160, -0.098, head_height);
@@ -106,7 +108,7 @@ fn weights(p: Vec3) -> [f32; 4] {
     [chest, 1.0 - head - chest, head, 0.0]
 }
 
-/// Sorts the triangles into parts and colours these.
+/// Sorts the triangles into parts and sets the colors of these.
 fn color(mesh: &mut Mesh) {
     let part = |t: &[u32; 3]| {
         let middle = t.iter().map(|i| mesh.positions[*i as usize]).sum::<Vec3>() / 3.0;
@@ -124,7 +126,7 @@ fn color(mesh: &mut Mesh) {
     let looks = [
         ("skin", vec3(0.44, 0.262, 0.186), 0.58),
         ("lips", vec3(0.33, 0.115, 0.100), 0.42),
-        // Stubble-dark between the roots.
+        // Darkened by stubble between the roots.
         ("scalp", vec3(0.29, 0.17, 0.125), 0.75),
         ("clothes", vec3(0.030, 0.033, 0.040), 0.85),
     ];
@@ -134,20 +136,23 @@ fn color(mesh: &mut Mesh) {
     }
 }
 
-/// Adds an eyeball: a closed ball with its pole to the front, so that iris and pupil are round; `side` 1: left, −1: right.
+/// Adds an eyeball: a closed ball with its pole at the front, so that iris and pupil are round. `side`: 1 is
+/// left, −1 right.
 fn add_eye(mesh: &mut Mesh, side: f32) {
-    /// Points round the axis.
+    /// Number of points around the axis.
     const ROUND: usize = 40;
-    /// Angles from the axis of gaze of the rings between the poles [rad]. The second ends the pupil, the sixth the iris.
+    /// Angles of the rings between the poles from the axis of gaze [rad]. The second is the edge of the
+    /// pupil, the sixth that of the iris.
     const RINGS: [f32; 13] = [0.07, 0.155, 0.22, 0.28, 0.35, 0.42, 0.48, 0.62, 0.85, 1.15, 1.57, 2.1, 2.65];
     let center = shape::EYE_CENTER * vec3(side, 1.0, 1.0);
-    // Lines of sight meet some 2 m ahead: nearly parallel, 1° outwards of the sockets' own axis, a little up.
+    // The lines of sight meet about 2 m ahead: nearly parallel, 1° outward from the axes of the sockets,
+    // slightly upward.
     let gaze = glam::Quat::from_rotation_x(-0.01);
     let first = mesh.positions.len() as u32;
     let mut point = |angle: f32, turn: f32| {
         let (s, c) = angle.sin_cos();
         let n = gaze * vec3(s * turn.cos(), s * turn.sin(), c);
-        // The cornea: the iris bulges out a little.
+        // The cornea: the iris bulges outward slightly.
         let bulge = 0.0006 * (1.0 - smoothstep(0.2, 0.52, angle));
         mesh.positions.push(center + n * (shape::EYE_RADIUS + bulge));
         mesh.normals.push(n);

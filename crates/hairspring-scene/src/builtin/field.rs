@@ -1,4 +1,4 @@
-//! The space in which hair is combed: distance and outward direction of the bust, read from a grid.
+//! The distance field in which hair is combed: distance and outward direction of the bust, sampled on a grid.
 
 use super::{
     sdf::{ellipsoid, union},
@@ -7,14 +7,16 @@ use super::{
 use glam::{Vec3, vec3};
 use rayon::prelude::*;
 
-/// The corner of the grid with the smallest coordinates [m], and the opposite one: the bust and a hand's breadth around it.
+/// Lowest corner of the grid [m]. The grid contains the bust and a margin of about 10 cm.
 const LOW: Vec3 = vec3(-0.29, -0.33, -0.20);
-/// See [`LOW`].
+/// Highest corner of the grid [m].
 const HIGH: Vec3 = vec3(0.29, 0.19, 0.20);
-/// Edge of a cell [m]: finer than the gentle shapes that a comb follows; points near the skin are settled exactly afterwards.
+/// Edge of a cell [m]. It resolves the gentle shapes that a comb follows; points near the skin are placed
+/// exactly afterward.
 pub const CELL: f32 = 0.005;
 
-/// Distance to the bust *as a comb sees it*: the face and the ears under a smooth shield that keeps hair out of them.
+/// Distance to the bust for combing: the face and the ears are covered by a smooth shield that keeps hair out
+/// of them.
 pub struct Field {
     size: [usize; 3],
     values: Vec<f32>,
@@ -34,7 +36,7 @@ impl Field {
         Self { size, values }
     }
 
-    /// Distance [m] and unit outward direction at `p` [m], trilinear.
+    /// Returns the distance [m] and unit outward direction at `p` [m], by trilinear interpolation.
     pub fn at(&self, p: Vec3) -> (f32, Vec3) {
         let limit = vec3(self.size[0] as f32, self.size[1] as f32, self.size[2] as f32) - 1.001;
         let g = ((p - LOW) / CELL).clamp(Vec3::ZERO, limit);
@@ -57,7 +59,7 @@ impl Field {
     }
 }
 
-/// [`shape::distance`] with the face and the ears under their shields.
+/// [`shape::distance`] with the face and the ears covered by shields.
 fn shielded(p: Vec3) -> f32 {
     let q = vec3(p.x.abs(), p.y, p.z);
     let face = ellipsoid(q, vec3(0.0, -0.045, 0.050), vec3(0.063, 0.098, 0.066));

@@ -1,4 +1,4 @@
-//! The groom: courses gathered into locks, waved, and laid clear of the skin.
+//! Builds the groom: hair paths are gathered into locks, waved, and placed clear of the skin.
 
 use super::{
     field::{CELL, Field},
@@ -17,16 +17,16 @@ use hairspring::{
 use rayon::prelude::*;
 use std::{collections::HashMap, f32::consts::TAU};
 
-/// Hairs in a lock, on average.
+/// Average number of hairs in a lock.
 const LOCK: usize = 180;
-/// Hairs in a wisp, the smaller bundles that a lock is made of.
+/// Average number of hairs in a wisp, the smaller bundles that make up a lock.
 const WISP: usize = 20;
-/// Smallest distance of any point but the root from the skin [m].
+/// Minimum distance of any point except the root from the skin [m].
 const CLEARANCE: f32 = 0.0005;
-/// Names of the groups, by where the root is.
+/// Names of the groups, by the position of the root.
 const GROUPS: [&str; 3] = ["front", "sides", "back"];
 
-/// A hair before it is waved: its course and what it shares with its lock.
+/// A hair before waves are added: its path, and the parameters that it shares with its lock.
 struct Strand {
     place: Place,
     length: f32,
@@ -39,7 +39,7 @@ struct Strand {
     amplitude: f32,
 }
 
-/// `count` hairs of `points` points each in the style `cut` on the scalp of `mesh`.
+/// Creates `count` hairs of `points` points each in the style `cut` on the scalp of `mesh`.
 pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> Groom {
     let field = Field::new();
     let tier = |count: usize, purpose: u32| -> Vec<Strand> {
@@ -50,10 +50,10 @@ pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> 
             .map(|(i, (p, n))| grown(&field, cut, Place::new(*p, *n), seed, purpose, i))
             .collect()
     };
-    // Locks are made of wisps, wisps of hairs: each tier gathers about the one before.
+    // Locks consist of wisps, and wisps of hairs: each tier gathers around the previous one.
     let locks = tier(count.div_ceil(LOCK), 2);
     let mut wisps = tier(count.div_ceil(WISP), 3);
-    // The parting separates locks, but for hair that stands.
+    // The parting separates locks, except for standing hair.
     let apart = if cut.stand > 0.5 { 0.0 } else { 1.0 };
     gather(&mut wisps, &locks, cut.clump * 0.8, 0.4, apart);
     let mut hairs = tier(count, 4);
@@ -66,7 +66,7 @@ pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> 
         resample(&curve, hair.length / cut.step(), out);
         settle(&field, out);
     });
-    // Human hair is thinner at its tip, where it is oldest and, in part, only just grown.
+    // Human hair is thinner at its tip, where it is oldest.
     let taper =
         |k: usize| DEFAULT_RADIUS * (1.0 - 0.6 * smoothstep(0.6, 1.0, k as f32 / (points - 1).max(1) as f32));
     let radii: Vec<f32> = (0..points).map(taper).collect();
@@ -76,7 +76,7 @@ pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> 
     groom
 }
 
-/// Index in [`GROUPS`] of a root.
+/// Returns the index of a root's group in [`GROUPS`].
 fn group(place: &Place) -> u16 {
     let angle = place.root.x.abs().atan2(place.root.z + 0.015);
     if angle < 0.75 {
@@ -88,7 +88,7 @@ fn group(place: &Place) -> u16 {
     }
 }
 
-/// Grows the `index`-th course of a tier.
+/// Grows the path with number `index` of a tier.
 fn grown(field: &Field, cut: &Cut, place: Place, seed: u32, purpose: u32, index: usize) -> Strand {
     let mut random = Random::new(seed, purpose, index as u32);
     let layer = (1.0 - place.from_parting / 0.22).clamp(0.05, 1.0) * random.within(0.75, 1.1);
@@ -101,10 +101,11 @@ fn grown(field: &Field, cut: &Cut, place: Place, seed: u32, purpose: u32, index:
     Strand { place, length, course, phase, pitch, amplitude }
 }
 
-/// Draws every strand towards the nearest of `centers` on its side of the parting: by `strength` at the tip.
+/// Pulls every strand toward the nearest of `centers`, preferring its own side of the parting, with
+/// `strength` at the tip.
 ///
-/// Waves are the center's but for a share `jitter` of the strand's own; `apart` is how much farther a center counts that
-/// lies across the parting [m].
+/// The waves are those of the center, except for a fraction `jitter` of the strand's own. `apart` is added to
+/// the distance of a center on the other side of the parting [m].
 fn gather(strands: &mut [Strand], centers: &[Strand], strength: f32, jitter: f32, apart: f32) {
     let index = Nearest::new(centers);
     strands.par_iter_mut().for_each(|strand| {
@@ -114,13 +115,13 @@ fn gather(strands: &mut [Strand], centers: &[Strand], strength: f32, jitter: f32
         let steps = strand.course.len() as f32;
         for (k, p) in strand.course.iter_mut().enumerate() {
             let t = k as f32 / steps;
-            // Past the center's tip: straight on along its last segment.
+            // Beyond the center's tip, continue straight along its last segment.
             let at = if k <= last {
                 center.course[k]
             } else {
                 center.course[last] + (center.course[last] - center.course[last - 1]) * (k - last) as f32
             };
-            // Locks taper: a hair keeps its place in the lock at the root, and less and less of it along the way.
+            // Locks taper: the offset of a hair from the center decreases toward the tip.
             let target = at + offset * (1.0 - 0.85 * smoothstep(0.1, 1.0, t));
             *p = p.lerp(target, strength * smoothstep(0.02, 0.55, t));
         }
@@ -130,7 +131,7 @@ fn gather(strands: &mut [Strand], centers: &[Strand], strength: f32, jitter: f32
     });
 }
 
-/// Finds the strand whose root is nearest, on one side of the parting.
+/// Finds the strand with the nearest root.
 struct Nearest {
     cell: f32,
     cells: HashMap<IVec3, Vec<u32>>,
@@ -138,7 +139,7 @@ struct Nearest {
 
 impl Nearest {
     fn new(centers: &[Strand]) -> Self {
-        // About one root a cell on a scalp of some 0.07 m².
+        // Aims at one root per cell on a scalp of about 0.07 m².
         let cell = (0.07 / centers.len().max(1) as f32).sqrt().max(1e-4);
         let mut cells: HashMap<IVec3, Vec<u32>> = HashMap::new();
         for (i, c) in centers.iter().enumerate() {
@@ -165,7 +166,7 @@ impl Nearest {
                     }
                 }
             }
-            // Cells beyond `reach` are farther than this.
+            // All cells beyond `reach` are farther than this.
             if best.0 <= reach as f32 * self.cell {
                 break;
             }
@@ -178,7 +179,7 @@ fn key(place: &Place, cell: f32) -> IVec3 {
     (place.root / cell).floor().as_ivec3()
 }
 
-/// The course with its waves.
+/// Returns the path with its waves.
 fn waved(field: &Field, cut: &Cut, hair: &Strand, mut random: Random) -> Vec<Vec3> {
     // One hair in sixty strays from its lock.
     let stray = if random.unit() < 1.0 / 60.0 { 4.0 } else { 1.0 };
@@ -202,7 +203,8 @@ fn waved(field: &Field, cut: &Cut, hair: &Strand, mut random: Random) -> Vec<Vec
         .collect()
 }
 
-/// `p`, moved out of the bust as the comb sees it: where gathering or a wave has led it too far in. `share` of the way.
+/// Moves `p` out of the bust's combing field, if gathering or a wave has moved it too far in. `share` is the
+/// fraction of the correction that is applied.
 fn clear(field: &Field, p: Vec3, share: f32) -> Vec3 {
     let mut out = p;
     for _ in 0..6 {
@@ -215,7 +217,7 @@ fn clear(field: &Field, p: Vec3, share: f32) -> Vec3 {
     p.lerp(out, share)
 }
 
-/// Writes points evenly spaced along the first `steps` segments of `curve`.
+/// Writes evenly spaced points along the first `steps` segments of `curve`.
 fn resample(curve: &[Vec3], steps: f32, out: &mut [Vec3]) {
     let whole: f32 = curve.windows(2).map(|w| w[0].distance(w[1])).sum();
     let share = steps / (curve.len() - 1) as f32;
@@ -235,14 +237,16 @@ fn resample(curve: &[Vec3], steps: f32, out: &mut [Vec3]) {
     }
 }
 
-/// Cosine of the sharpest turn from one segment to the next: 75°.
+/// Cosine of the largest allowed turn between adjacent segments: 75°.
 const SHARPEST: f32 = 0.26;
 
-/// Lays every point but the root at least [`CLEARANCE`] from the skin, the segments as even as they were, and without folds.
+/// Moves every point except the root to at least [`CLEARANCE`] from the skin, with even segments and without
+/// folds.
 fn settle(field: &Field, points: &mut [Vec3]) {
     let step = points[0].distance(points[1]);
     for k in 1..points.len() {
-        // Each point follows the one before at a segment's length, and both conditions are met in turn.
+        // Each point is placed one segment length from the previous one. Both conditions are enforced in
+        // turn.
         let before = points[k - 1];
         let along = if k > 1 { (before - points[k - 2]).normalize_or_zero() } else { Vec3::ZERO };
         let mut p = outside(field, points[k]);
@@ -258,7 +262,8 @@ fn settle(field: &Field, points: &mut [Vec3]) {
     }
 }
 
-/// The direction nearest to `way` that turns from `along` by no more than [`SHARPEST`] says; both are unit vectors, or `along` is zero.
+/// Returns the direction nearest to `way` that turns from `along` by no more than [`SHARPEST`] allows. Both
+/// are unit vectors, or `along` is zero.
 fn unfolded(along: Vec3, way: Vec3) -> Vec3 {
     if along == Vec3::ZERO || along.dot(way) >= SHARPEST {
         return way;
@@ -267,9 +272,10 @@ fn unfolded(along: Vec3, way: Vec3) -> Vec3 {
     along * SHARPEST + aside * (1.0 - SHARPEST * SHARPEST).sqrt()
 }
 
-/// The place nearest to `p`, or nearly so, that is [`CLEARANCE`] from the skin.
+/// Returns approximately the nearest point to `p` that is [`CLEARANCE`] from the skin.
 fn outside(field: &Field, mut p: Vec3) -> Vec3 {
-    // The grid is too coarse to settle by, but tells what is far: it never errs by as much as a cell.
+    // The grid is too coarse for the final placement, but it rules out points that are far: its error is
+    // below one cell.
     if field.at(p).0 > CELL {
         return p;
     }

@@ -1,7 +1,7 @@
-//! An open right hand, made by code: its fingers a little spread and a little bent, as one strokes a head.
+//! An open right hand, generated in code. Its fingers are slightly spread and bent, as when stroking a head.
 //!
 //! ```text
-//!      y  ╷ ╷ ╷          the fingers point along y, the back looks along z, and the palm the other way;
+//!      y  ╷ ╷ ╷          the fingers point along +y, the back of the hand faces +z, and the palm −z;
 //!      │╷ │ │ │ ╷        the thumb is at −x. The origin is in the middle of the palm
 //!      ││ │ │ │ │
 //!      │ ╲│     │ ╱
@@ -15,22 +15,22 @@ use super::{
 use glam::{Quat, Vec3, vec3};
 use hairspring::body::{Mesh, Part};
 
-/// Millimetres in a metre: this file's lengths are in millimetres but for what it gives.
+/// Millimeters per meter. Lengths in this file are in millimeters, except for the results.
 const MM: f32 = 1000.0;
 
-/// Over which fingers are blended with the palm [mm], and the rows of the palm with each other.
+/// Blending distance of the fingers with the palm [mm].
 const BLEND: f32 = 7.0;
-/// See [`BLEND`].
+/// Blending distance between the rows of the palm [mm].
 const FLAT: f32 = 4.0;
 
-/// Farther than any piece [mm].
+/// A distance farther than any piece [mm].
 const FAR: f32 = 1e4;
 
-/// How much thinner a finger is at its next joint [1].
+/// Ratio of a finger's radius at one joint to that at the joint before [1].
 const THINNER: f32 = 0.93;
 
-/// Where a finger begins, its radius there, how far it is turned to the little finger's side and bent at its first joint [degrees], its three bones, and how far
-/// the two joints between these bend.
+/// A finger: position of its knuckle and the radius there; its rotation toward the little finger's side; the
+/// bend at each of its three joints, first the knuckle [degrees]; and the lengths of its three bones.
 struct Finger {
     knuckle: Vec3,
     radius: f32,
@@ -39,7 +39,8 @@ struct Finger {
     bones: [f32; 3],
 }
 
-/// Bones as in Buryanov & Kotiuk 2010, *Proportions of Hand Segments*: means of grown-ups, the last with the pulp of the tip but for its radius.
+/// Bone lengths from Buryanov & Kotiuk 2010, *Proportions of Hand Segments*: means of adults. The last
+/// includes the pulp of the tip, less its radius.
 const FINGERS: [Finger; 4] = [
     Finger {
         knuckle: vec3(-27.0, 38.0, -1.0),
@@ -71,7 +72,7 @@ const FINGERS: [Finger; 4] = [
     },
 ];
 
-/// Joints of the thumb from the wrist to its tip, and the radius at each.
+/// Joints of the thumb from the wrist to its tip, with the radius at each.
 const THUMB: [(Vec3, f32); 4] = [
     (vec3(-16.0, -36.0, -9.0), 14.0),
     (vec3(-42.0, -8.0, -15.0), 12.0),
@@ -79,37 +80,40 @@ const THUMB: [(Vec3, f32); 4] = [
     (vec3(-70.0, 41.0, -22.0), 8.2),
 ];
 
-/// Height of the wrist, half of its width, and where the arm ends.
+/// Height of the wrist, half of its width, and the height of the arm's end.
 const WRIST: [f32; 3] = [-46.0, 15.0, -72.0];
 
-/// Radius of the palm at the knuckles, at the wrist, and of the wrist.
+/// Radius of the palm at the knuckles and at the wrist, and radius of the wrist.
 const PALM: [f32; 3] = [10.8, 13.5, 16.0];
 
-/// Rows of the palm: one to each finger, and one between two.
+/// Rows of the palm: one for each finger, and one between each two.
 const ROWS: usize = 7;
 
-/// An open right hand with a piece of its arm, its fingers a little spread and a little bent. They point along +y, the back looks along +z, the thumb is at −x, and the
-/// origin is in the middle of the palm.
+/// An open right hand with a piece of its arm. The fingers are slightly spread and bent. They point along +y,
+/// the back of the hand faces +z, the thumb is at −x, and the origin is in the middle of the palm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hand {
-    /// Its skin, closed [m].
+    /// Its skin, a closed mesh [m].
     pub mesh: Mesh,
-    /// What hair meets: both ends of each capsule's axis, and its radius [m]. Together they are the skin but for 3 mm where fingers begin.
+    /// Collision shapes: both ends of each capsule's axis, and its radius [m]. Together they match the skin,
+    /// except for 3 mm at the base of the fingers.
     pub capsules: Vec<(Vec3, Vec3, f32)>,
 }
 
 impl Hand {
-    /// From the wrist's fold to the tip of the middle finger [m]: between the means of women and of men.
+    /// Length from the crease of the wrist to the tip of the middle finger [m]: between the means of women
+    /// and of men.
     pub const LENGTH: f32 = 0.177;
 
-    /// Edge of a cell of the skin that the window shows [m].
+    /// Edge of a meshing cell for the skin that is displayed [m].
     pub const CELL: f32 = 0.0022;
 }
 
-/// A piece: from where with which radius, to where with which [mm].
+/// A piece: start point and radius there, end point and radius there [mm].
 type Piece = (Vec3, f32, Vec3, f32);
 
-/// The pieces of the palm, and those of each finger: one begins where the one before ends, as thick.
+/// Returns the pieces of the palm and those of each finger. Within a finger, each piece starts where the
+/// previous one ends, with the same radius.
 fn parts() -> [Vec<Piece>; 6] {
     let [wrist, half, end] = WRIST;
     let row = |row: usize| {
@@ -120,7 +124,7 @@ fn parts() -> [Vec<Piece>; 6] {
         (foot, PALM[1], knuckle, PALM[0])
     };
     let arm = |x: f32| (vec3(x, wrist, 0.0), PALM[2] - 2.5, vec3(x, end, 0.0), PALM[2]);
-    // The ball of the little finger's side.
+    // The ball of the hand below the little finger.
     let ball = (vec3(15.0, -34.0, -5.0), 12.5, vec3(27.0, 8.0, -6.0), 10.0);
     let palm = (0..ROWS).map(row).chain([-9.0, 0.0, 9.0].map(arm)).chain([ball]).collect();
     let finger = |finger: &Finger| {
@@ -140,8 +144,9 @@ fn parts() -> [Vec<Piece>; 6] {
     [palm, thumb.collect(), finger(a), finger(b), finger(c), finger(d)]
 }
 
-/// Makes the hand: the same bits for any number of threads. `cell` is the edge of a cell that its skin is meshed in [m], up to 0.005, where fingers are still round;
-/// [`Hand::CELL`] is fine enough to be looked at closely.
+/// Creates the hand. The result is bitwise identical for any number of threads. `cell` is the edge of a
+/// meshing cell [m], up to 0.005, at which fingers are still round; [`Hand::CELL`] is fine enough for close
+/// views.
 pub fn hand(cell: f32) -> Hand {
     let parts = parts();
     let distance = |p: Vec3| {
@@ -154,7 +159,7 @@ pub fn hand(cell: f32) -> Hand {
     let planes = |from: f32, to: f32| nets::planes(from, to, |_| cell);
     let axes = [planes(-0.090, 0.075), planes(-0.098, 0.150), planes(-0.070, 0.030)];
     let mut mesh = nets::mesh(&axes, distance, |p| sdf::normal(distance, p, 2e-4));
-    // Linear RGB; matt, so that hair is what shines.
+    // Linear RGB; matte, so that the hair has the only highlights.
     let (color, all) = (vec3(0.50, 0.36, 0.29), 0..mesh.triangles.len() as u32);
     mesh.parts.push(Part { name: "hand".into(), triangles: all, color, roughness: 0.7 });
     let capsule = |(a, ra, b, rb): Piece| (a / MM, b / MM, ra.max(rb) / MM);
@@ -172,7 +177,7 @@ mod tests {
         assert!((high.y + 0.001 * -WRIST[0] - Hand::LENGTH).abs() < 0.002, "{} m above the palm", high.y);
         assert!(low.cmpgt(vec3(-0.088, -0.096, -0.068)).all(), "{low}");
         assert!(high.cmplt(vec3(0.073, 0.148, 0.028)).all(), "{high}");
-        // Each edge belongs to two triangles, once each way.
+        // Each edge belongs to two triangles, once in each direction.
         let mut edges = std::collections::HashMap::new();
         for [a, b, c] in &mesh.triangles {
             for (a, b) in [(a, b), (b, c), (c, a)] {
@@ -182,7 +187,7 @@ mod tests {
         assert!(edges.values().all(|n| *n == 0), "it is closed");
         let volume: f32 =
             (0..mesh.triangles.len()).map(|t| mesh.corners(t)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
-        // A hand with a piece of its arm displaces about a third of a litre.
+        // A hand with a piece of its arm displaces about a third of a liter.
         assert!((2.5e-4..4.5e-4).contains(&volume), "{} l", 1e3 * volume);
         let off = |p: &Vec3| {
             let capsule = |(a, b, radius): &(Vec3, Vec3, f32)| {

@@ -1,4 +1,5 @@
-//! The built-in scene: a bust with a full head of hair that nods, turns and shakes. Made by code, no file needed.
+//! The built-in scene: a bust with a full head of hair that nods, turns and shakes. It is generated in code,
+//! without files.
 
 mod borders;
 mod brows;
@@ -23,23 +24,23 @@ use super::{Camera, Guides, HairLook, Scene, SceneGroom};
 use glam::vec3;
 use hairspring::material::Material;
 
-/// What to build.
+/// Options of the built-in scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuiltinOptions {
-    /// Hairs on the scalp. Default 100,000: a human head.
+    /// Number of hairs on the scalp. Default 100,000: a human head.
     pub strands: u32,
-    /// Points of each hair, 3 or more. Default: [`Style::points`].
+    /// Points per hair, 3 or more. Default: [`Style::points`].
     pub points: u32,
     /// The hairstyle. Default wavy.
     pub style: Style,
-    /// Which of many heads of hair of this style. Default 1.
+    /// Random seed of the groom. Default 1.
     pub seed: u32,
-    /// Which hairs are simulated. Default 2,000 of them.
+    /// The simulated hairs. Default: 2,000 of them.
     pub guides: Guides,
 }
 
 impl BuiltinOptions {
-    /// The defaults for a style.
+    /// Returns the defaults for a style.
     pub fn new(style: Style) -> Self {
         Self { strands: 100_000, points: style.points(), style, seed: 1, guides: Guides::Count(2_000) }
     }
@@ -51,7 +52,7 @@ impl Default for BuiltinOptions {
     }
 }
 
-/// Builds the scene: the same bits for the same options, whatever the number of threads.
+/// Builds the scene. The result is bitwise identical for the same options and any number of threads.
 pub fn scene(options: &BuiltinOptions) -> Scene {
     let (body, collision) = rayon::join(bust::drawn, bust::collision);
     let (strands, points) = (options.strands as usize, options.points.max(3) as usize);
@@ -63,7 +64,8 @@ pub fn scene(options: &BuiltinOptions) -> Scene {
     scene
 }
 
-/// The scene without its geometry, at once: its grooms, the head of hair and the brows and lashes, have no strands, and there is no body.
+/// Returns the scene without its geometry, which is immediate: its two grooms (hair, and brows with lashes)
+/// have no strands, and there is no body.
 pub fn settings(options: &BuiltinOptions) -> Scene {
     let hair = SceneGroom {
         materials: vec![options.style.material()],
@@ -90,9 +92,10 @@ pub fn settings(options: &BuiltinOptions) -> Scene {
     }
 }
 
-/// A portrait: three quarters from her left, a little above the eyes, from where a face is not foreshortened.
+/// Returns a portrait camera: a three-quarter view from her left, slightly above the eyes, far enough to
+/// avoid foreshortening of the face.
 fn camera(style: Style) -> Camera {
-    // A halo stands higher than hair that falls.
+    // A halo stands higher than falling hair.
     let (height, fov) = if style == Style::Coily { (-0.01, 21.0) } else { (-0.06, 18.0) };
     Camera { position: vec3(0.60, 0.05, 1.28), target: vec3(0.0, height, -0.005), fov }
 }

@@ -1,13 +1,13 @@
-//! The head's motion: nods, turns to both sides, a shake, and back to rest.
+//! The head's motion: nods, turns to both sides, a shake, and a return to rest.
 
 use super::bust::{CHEST, HEAD, NECK};
 use glam::{EulerRot, Quat};
 use hairspring::body::{Body, Clip, Trs, ease};
 use std::f32::consts::TAU;
 
-/// Frames a second [Hz].
+/// Frame rate [Hz].
 const RATE: f32 = 60.0;
-/// Length [s].
+/// Duration [s].
 const DURATION: f32 = 5.0;
 
 /// A key: time [s], angle [degrees].
@@ -29,18 +29,18 @@ const PITCH: [Key; 10] = [
 /// Turns: positive to the left. Within the neck's range of about 70°; peak speed under 250°/s.
 const YAW: [Key; 7] =
     [(1.35, 0.0), (1.95, 50.0), (2.15, 50.0), (2.90, -46.0), (3.10, -46.0), (3.55, 0.0), (4.8, 0.0)];
-/// Tilts of the head to the shoulder: positive to the right.
+/// Tilts of the head toward the shoulder: positive to the right.
 const ROLL: [Key; 5] = [(1.35, 0.0), (2.00, -5.0), (2.95, 5.0), (3.55, 0.0), (4.8, 0.0)];
-/// The shake: from, to [s].
+/// Start and end of the shake [s].
 const SHAKE: (f32, f32) = (3.50, 4.75);
-/// Its swing to each side [degrees] and rate [Hz]: a firm "no". Peak speed 2π · 20° · 2.3 Hz = 290°/s.
+/// Amplitude of the shake [degrees]: a firm "no". The peak speed is 2π · 20° · 2.3 Hz = 290°/s.
 const SWING: f32 = 20.0;
-/// See [`SWING`].
+/// Frequency of the shake [Hz].
 const SHAKE_RATE: f32 = 2.3;
-/// How much of each angle the chest, the neck and the head take.
+/// Fractions of each angle taken by the chest, the neck and the head.
 const SHARES: [(usize, f32); 3] = [(CHEST, 0.07), (NECK, 0.33), (HEAD, 0.60)];
 
-/// The motion for the joints of the bust; the first and the last frame are the rest pose, at rest.
+/// Creates the motion of the bust's joints. The first and the last frame are the rest pose, without velocity.
 pub fn clip(body: &Body) -> Clip {
     let rest = body.rest_pose();
     let frames = (DURATION * RATE) as usize + 1;
@@ -58,7 +58,7 @@ pub fn clip(body: &Body) -> Clip {
     Clip { name: "nods, turns and a shake".into(), rate: f64::from(RATE), joint_count: rest.len(), samples }
 }
 
-/// The shake's angle at `t` [s] in degrees: a sine that swells and dies away.
+/// Returns the shake's angle at `t` [s] in degrees: a sine with a smooth envelope.
 fn shake(t: f32) -> f32 {
     let u = (t - SHAKE.0) / (SHAKE.1 - SHAKE.0);
     if !(0.0..=1.0).contains(&u) {
@@ -68,7 +68,8 @@ fn shake(t: f32) -> f32 {
     window * SWING * (TAU * SHAKE_RATE * (t - SHAKE.0)).sin()
 }
 
-/// The angle between keys, with no speed nor acceleration at any of them; 0 before the first and after the last.
+/// Returns the angle between keys, with zero velocity and acceleration at each. It is 0 before the first key
+/// and constant after the last.
 fn eased(keys: &[Key], t: f32) -> f32 {
     let first = (0.0, 0.0);
     let mut before = first;

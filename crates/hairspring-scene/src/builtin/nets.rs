@@ -1,10 +1,11 @@
-//! Meshing: naive surface nets (Gibson 1998) over a grid whose planes may lie closer together where detail is.
+//! Meshing by naive surface nets (Gibson 1998) over a grid with variable spacing.
 
 use glam::{USizeVec3, Vec3, usizevec3};
 use hairspring::body::Mesh;
 use rayon::prelude::*;
 
-/// Positions of a grid's planes along one axis: from `from` to `to`, spaced by `spacing(position)` (all [m]).
+/// Returns the positions of a grid's planes along one axis: from `from` to `to`, spaced by
+/// `spacing(position)` (all [m]).
 pub fn planes(from: f32, to: f32, spacing: impl Fn(f32) -> f32) -> Vec<f32> {
     let mut planes = vec![from];
     let mut at = from;
@@ -15,10 +16,10 @@ pub fn planes(from: f32, to: f32, spacing: impl Fn(f32) -> f32) -> Vec<f32> {
     planes
 }
 
-/// The surface where `distance` is 0 as a closed mesh, if the grid's border lies outside of it.
+/// Meshes the surface where `distance` is 0. The mesh is closed if the grid's border is outside the surface.
 ///
 /// `axes` are the planes along x, y and z [m]. `distance` must not exceed the true distance by half or more.
-/// Vertices lie on the surface; normals are its own (from `normal`).
+/// The vertices lie on the surface; normals come from `normal`.
 pub fn mesh(
     axes: &[Vec<f32>; 3],
     distance: impl Fn(Vec3) -> f32 + Sync,
@@ -53,7 +54,8 @@ pub fn mesh(
         mesh.positions.push(sum / count);
     }
 
-    // One quad across every grid edge that crosses the surface, as two triangles along the shorter diagonal.
+    // One quad for every grid edge that crosses the surface, split into two triangles along the shorter
+    // diagonal.
     for node in each(nodes) {
         for (axis, u, v) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             if node[axis] + 1 >= nodes[axis] || node[u] == 0 || node[v] == 0 {
@@ -86,11 +88,11 @@ pub fn mesh(
     mesh
 }
 
-/// Moves every vertex onto the surface and fills the normals.
+/// Moves every vertex onto the surface and computes the normals.
 pub fn settle(mesh: &mut Mesh, distance: impl Fn(Vec3) -> f32 + Sync, normal: impl Fn(Vec3) -> Vec3 + Sync) {
     mesh.positions.par_iter_mut().for_each(|p| {
-        // Newton along the normal: twice is enough from within half a cell of a smooth surface. Steps are limited
-        // so that a vertex at a crease stays in its cell.
+        // Newton's method along the normal: two iterations are enough from within half a cell of a smooth
+        // surface. Steps are limited so that a vertex at a crease stays in its cell.
         for _ in 0..2 {
             *p -= normal(*p) * distance(*p).clamp(-1e-3, 1e-3);
         }
@@ -98,12 +100,13 @@ pub fn settle(mesh: &mut Mesh, distance: impl Fn(Vec3) -> f32 + Sync, normal: im
     mesh.normals = mesh.positions.par_iter().map(|p| normal(*p)).collect();
 }
 
-/// All grid coordinates below `size`, x fastest.
+/// Iterates over all grid coordinates below `size`, x fastest.
 fn each(size: USizeVec3) -> impl Iterator<Item = USizeVec3> {
     (0..size.z).flat_map(move |z| (0..size.y).flat_map(move |y| (0..size.x).map(move |x| usizevec3(x, y, z))))
 }
 
-/// Distance at every node; blocks of nodes far from the surface are filled with the value at their middle.
+/// Samples the distance at every node. Blocks of nodes far from the surface are filled with the value at
+/// their center.
 fn sample(
     nodes: USizeVec3,
     at: impl Fn(USizeVec3) -> Vec3 + Sync,
@@ -119,7 +122,8 @@ fn sample(
                 let (lo, hi) = (usizevec3(x0, y0, z0), (usizevec3(x0, y0, z0) + (BLOCK - 1)).min(nodes - 1));
                 let (a, b) = (at(lo), at(hi));
                 let middle = distance((a + b) * 0.5);
-                // 1.5: the shapes' distance may be that much too small or large away from the surface.
+                // Factor 1.5: away from the surface, the shapes' distance may be wrong by that factor in
+                // either direction.
                 let far = middle.abs() > 0.75 * a.distance(b);
                 for z in lo.z..=hi.z {
                     for y in lo.y..=hi.y {

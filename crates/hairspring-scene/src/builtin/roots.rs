@@ -1,13 +1,14 @@
-//! Roots spread evenly over the scalp.
+//! Distributes roots evenly over the scalp.
 
 use super::{random::Random, shape};
 use glam::Vec3;
 use hairspring::body::Mesh;
 
-/// `count` places on the scalp of `mesh` [m] with their outward normals, evenly spread: every triangle gets its share by
-/// area to within one root, and inside a triangle they follow a low-discrepancy sequence.
+/// Returns `count` points on the scalp of `mesh` [m] with their outward normals, evenly spread. The number of
+/// roots on each triangle is proportional to its area to within one root. Inside a triangle they follow a
+/// low-discrepancy sequence.
 pub fn roots(mesh: &Mesh, count: usize, seed: u32) -> Vec<(Vec3, Vec3)> {
-    // Subtriangles on the scalp: small enough that the hairline is sharp to a millimetre or so.
+    // Subtriangles on the scalp, small enough that the hairline is accurate to about a millimeter.
     let mut pieces: Vec<[Vec3; 6]> = Vec::new();
     for t in &mesh.triangles {
         let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
@@ -20,7 +21,7 @@ pub fn roots(mesh: &Mesh, count: usize, seed: u32) -> Vec<(Vec3, Vec3)> {
     let area = |p: &[Vec3; 6]| (p[1] - p[0]).cross(p[2] - p[0]).length() as f64 * 0.5;
     let total: f64 = pieces.iter().map(area).sum();
     let mut roots = Vec::with_capacity(count);
-    // Systematic sampling: the k-th root falls where the running area passes (k + ½)/count of the whole.
+    // Systematic sampling: root k is where the accumulated area passes (k + ½)/count of the total.
     let mut covered = 0.0;
     for (i, piece) in pieces.iter().enumerate() {
         covered += area(piece);
@@ -41,7 +42,8 @@ pub fn roots(mesh: &Mesh, count: usize, seed: u32) -> Vec<(Vec3, Vec3)> {
     roots
 }
 
-/// Adds the parts of a triangle (corners, then normals) that lie on the scalp, down to `depth` halvings of its edges.
+/// Adds the parts of a triangle (corners, then normals) that are on the scalp, with up to `depth`
+/// subdivisions.
 fn split(pieces: &mut Vec<[Vec3; 6]>, t: [Vec3; 6], depth: u32) {
     let inside = (0..3).filter(|i| shape::scalp(t[*i]) > 0.0).count();
     if inside == 3 || (depth == 0 && shape::scalp((t[0] + t[1] + t[2]) / 3.0) > 0.0) {

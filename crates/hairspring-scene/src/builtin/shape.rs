@@ -1,36 +1,37 @@
-//! The bust as one signed distance: head, face, ears, neck and shoulders.
+//! The bust as a signed distance function: head, face, ears, neck and shoulders.
 //!
-//! Proportions are those of a grown woman's head by the drawing canon (Loomis 1943): eyes at half height; brow,
-//! nose base and chin a third of the face apart; eyes an eye's width apart. Inside this file lengths are in
-//! **millimetres**, the unit in which heads are measured; the public functions take and give metres.
-//! The head is symmetric: everything is modelled for x ≥ 0.
+//! The proportions are those of a woman's head in the drawing canon (Loomis 1943): eyes at half height; brow,
+//! nose base and chin a third of the face apart; eyes one eye's width apart. Inside this file lengths are in
+//! **millimeters**, the unit in which heads are measured; the public functions take and return meters. The
+//! head is symmetric: everything is modeled for x ≥ 0.
 
 use super::sdf::{
     self, almond, both, cut, ellipsoid, elliptic_ring, limb, smoothstep, sphere, turned_ellipsoid, union,
 };
 use glam::{Quat, Vec2, Vec3, vec2, vec3};
 
-/// Millimetres in a metre.
+/// Millimeters per meter.
 const MM: f32 = 1000.0;
 
-/// Middle of the (left) eyeball [m].
+/// Center of the (left) eyeball [m].
 pub const EYE_CENTER: Vec3 = vec3(0.0315, 0.001, 0.0605);
 
-/// Radius of the eyeball [m]: 2 mm more than a real one, so that it fills a lid opening of 28 mm.
+/// Radius of the eyeball [m]: 2 mm larger than a real one, so that it fills a lid opening of 28 mm.
 pub const EYE_RADIUS: f32 = 0.0142;
 
-/// Where the bust is cut off flat [m].
+/// Height at which the bust is cut off flat [m].
 pub const BASE: f32 = -0.30;
 
-/// Where the head alone is cut off flat [m].
+/// Height at which the head alone is cut off flat [m].
 pub const NECK: f32 = -0.155;
 
-/// Signed distance to the skin and the clothes [m] at `p` [m]. Slightly below the true distance where shapes blend.
+/// Returns the signed distance to the skin and the clothes [m] at `p` [m]. Slightly below the true distance
+/// where shapes blend.
 pub fn distance(p: Vec3) -> f32 {
     bust(p, ear)
 }
 
-/// [`distance`] with closed eyes and ears without hollows: what a coarse mesh can follow.
+/// [`distance`] with closed eyes and ears without hollows, for coarse meshes.
 pub fn plain_distance(p: Vec3) -> f32 {
     let eye = sphere(vec3(p.x.abs(), p.y, p.z), EYE_CENTER, EYE_RADIUS);
     let ear = |q, d| {
@@ -39,17 +40,17 @@ pub fn plain_distance(p: Vec3) -> f32 {
     bust(p, ear).min(eye)
 }
 
-/// [`plain_distance`] of the head alone, asleep: its lids are shut, and its neck is cut off flat.
+/// [`plain_distance`] of the head alone, with closed lids and the neck cut off flat.
 pub fn head_distance(p: Vec3) -> f32 {
     let lid = sphere(vec3(p.x.abs(), p.y, p.z) * MM, EYE_CENTER * MM, EYE_RADIUS * MM + LID);
     both(union(plain_distance(p) * MM, lid, 3.0), NECK * MM - p.y * MM, 12.0) / MM
 }
 
-/// The bust with ears that `ear` adds to the head.
+/// Returns the distance to the bust, with ears added to the head by `ear`.
 fn bust(p: Vec3, ear: impl Fn(Vec3, f32) -> f32) -> f32 {
     let q = mirrored(p);
     let body = torso(q);
-    // Far below the head its details cannot matter.
+    // Far below the head, its details have no effect.
     if q.y < -265.0 {
         return both(body, BASE * MM - q.y, 6.0) / MM;
     }
@@ -58,15 +59,16 @@ fn bust(p: Vec3, ear: impl Fn(Vec3, f32) -> f32) -> f32 {
     both(d, BASE * MM - q.y, 6.0) / MM
 }
 
-/// `p` [m] in millimetres on the left side. Rounded over 4 mm so that the two halves meet without a crease.
+/// Mirrors `p` [m] to the left side and converts it to millimeters. Rounded over 4 mm, so that the halves
+/// meet without a crease.
 fn mirrored(p: Vec3) -> Vec3 {
     let x = p.x * MM;
     vec3((x * x + 9.0).sqrt() - 1.5, p.y * MM, p.z * MM)
 }
 
-/// Unit outward normal of [`distance`] at `p` [m], by central differences.
+/// Returns the unit outward normal of [`distance`] at `p` [m], by central differences.
 pub fn normal(p: Vec3) -> Vec3 {
-    // 0.2 mm: well under the smallest feature, well over the rounding of f32 at these sizes.
+    // 0.2 mm is well below the smallest feature and well above the rounding of f32 at these sizes.
     sdf::normal(distance, p, 2e-4)
 }
 
@@ -80,12 +82,12 @@ fn head(q: Vec3) -> f32 {
 
 /// Adds the face to the cranium `d`.
 fn face(q: Vec3, d: f32) -> f32 {
-    // The mask from brow to jaw, the jawline and the chin.
+    // The face from brow to jaw, the jawline and the chin.
     let mut f = ellipsoid(q, vec3(0.0, -22.0, 17.0), vec3(60.0, 86.0, 64.5));
     f = union(f, limb(q, vec3(44.0, -50.0, 0.0), 15.0, vec3(13.0, -97.0, 57.0), 13.0), 30.0);
     f = union(f, ellipsoid(q, vec3(0.0, -101.0, 64.0), vec3(16.0, 13.5, 16.5)), 26.0);
     let mut d = union(d, f, 22.0);
-    // Cheekbones, the round of the muzzle under the lips, a soft brow.
+    // Cheekbones, the rounding under the lips, a soft brow.
     d = union(d, ellipsoid(q, vec3(38.0, -21.0, 47.0), vec3(21.0, 16.0, 21.0)), 30.0);
     d = union(d, ellipsoid(q, vec3(0.0, -68.0, 58.0), vec3(30.0, 25.0, 28.0)), 18.0);
     d = union(d, limb(q, vec3(4.0, 20.0, 73.0), 8.5, vec3(46.0, 20.0, 53.0), 8.0), 26.0);
@@ -94,7 +96,7 @@ fn face(q: Vec3, d: f32) -> f32 {
     mouth(q, d)
 }
 
-/// Hollows the eye sockets and lays the lids over the eyeball, which is a mesh of its own.
+/// Hollows the eye sockets and places the lids over the eyeball, which is a separate mesh.
 fn eyes(q: Vec3, d: f32) -> f32 {
     let c = EYE_CENTER * MM;
     let d = cut(d, ellipsoid(q, c + vec3(0.0, 1.5, 27.0), vec3(19.0, 11.0, 15.0)), 16.0);
@@ -104,22 +106,22 @@ fn eyes(q: Vec3, d: f32) -> f32 {
     let across = vec2(q.x - c.x, q.y - c.y);
     let fold = vec2(across.y - 8.6 + across.x * across.x * 0.024, q.z - c.z - 14.5);
     let d = if q.z > c.z { cut(d, (fold.length() - 0.7).max(across.x.abs() - 15.0), 2.4) } else { d };
-    // The opening: an almond, its outer corner a little higher, cut as deep as the middle of the ball.
+    // The opening: an almond with a slightly higher outer corner, cut as deep as the center of the ball.
     let tilted = Vec2::from_angle(-LID_TILT).rotate(across);
     let opening = almond(tilted - LID_MIDDLE, LID_SIZE.x, LID_SIZE.y).max(c.z - q.z);
     cut(d, opening, 1.6)
 }
 
-/// How thick the lids are [mm].
+/// Thickness of the lids [mm].
 const LID: f32 = 1.7;
-/// How far the outer corner of the lids lies higher than the inner [rad].
+/// Angle by which the outer corner of the lids is higher than the inner [rad].
 const LID_TILT: f32 = 0.09;
-/// Half the width and the height of the opening between the lids [mm].
+/// Half the width and half the height of the opening between the lids [mm].
 const LID_SIZE: Vec2 = vec2(13.4, 4.7);
-/// Its middle, from the eyeball's, before the tilt [mm].
+/// Offset of its center from that of the eyeball, before the tilt [mm].
 const LID_MIDDLE: Vec2 = vec2(0.0, -1.0);
 
-/// The edge of the upper lid, from the inner corner (`u` = −1) to the outer (1): (x, y) [m].
+/// Returns the edge of the upper lid, from the inner corner (`u` = −1) to the outer (1): (x, y) [m].
 pub fn upper_lid(u: f32) -> Vec2 {
     let (w, h) = (LID_SIZE.x, LID_SIZE.y);
     let drop = (w * w - h * h) / (2.0 * h);
@@ -136,11 +138,11 @@ fn nose(q: Vec3, d: f32) -> f32 {
     cut(d, ellipsoid(q, vec3(5.6, -47.5, 92.0), vec3(3.0, 4.0, 4.6)), 3.0)
 }
 
-/// Adds the lips and parts them.
+/// Adds the lips and separates them.
 fn mouth(q: Vec3, d: f32) -> f32 {
     // The groove under the nose.
     let d = cut(d, limb(q, vec3(0.0, -50.0, 95.0), 3.0, vec3(0.0, -59.0, 93.5), 4.0), 6.0);
-    // The mouth bends back round the teeth: its own depth at each x.
+    // The mouth curves back around the teeth: its depth depends on x.
     let bend = vec3(0.0, 0.0, q.x * q.x * 0.016);
     let p = q + bend;
     let upper = union(
@@ -157,22 +159,22 @@ fn mouth(q: Vec3, d: f32) -> f32 {
     cut(d, sphere(q, vec3(25.5, -68.5, 80.0), 3.0), 9.0)
 }
 
-/// Middle of the ear [mm].
+/// Center of the ear [mm].
 const EAR: Vec3 = vec3(73.5, -7.0, -14.0);
 
-/// From the ear's own space: z out of it, x to the back of the head, y up along its length.
+/// Rotation from the ear's own space: z outward, x to the back of the head, y up along its length.
 fn ear_turn() -> Quat {
     Quat::from_rotation_y(1.15) * Quat::from_rotation_z(0.20)
 }
 
-/// Adds the ear: a shell that stands off the head, its rim, bowl, lobe and tragus.
+/// Adds the ear: a shell that stands off the head, with rim, bowl, lobe and tragus.
 fn ear(q: Vec3, d: f32) -> f32 {
-    // Beyond its reach and its blend.
+    // Beyond the extent of the ear and its blend.
     if q.distance(EAR) > 60.0 {
         return d;
     }
     let mut e = ear_turn().inverse() * (q - EAR);
-    // Narrower towards the lobe.
+    // Narrower toward the lobe.
     e.x *= 1.0 - (e.y / 31.0).clamp(-1.0, 1.0) * 0.22;
     let mut shell = ellipsoid(e, Vec3::ZERO, vec3(16.5, 29.0, 5.0));
     shell = union(shell, elliptic_ring(e - vec3(0.0, 2.0, 2.5), vec2(14.6, 26.0), 2.6), 3.0);
@@ -196,12 +198,12 @@ fn torso(q: Vec3) -> f32 {
     d = union(d, limb(q, vec3(20.0, -150.0, -66.0), 20.0, vec3(125.0, -222.0, -58.0), 20.0), 44.0);
     d = union(d, limb(q, vec3(60.0, -232.0, -52.0), 44.0, vec3(160.0, -240.0, -55.0), 42.0), 40.0);
     d = union(d, limb(q, vec3(168.0, -245.0, -55.0), 47.0, vec3(182.0, -330.0, -52.0), 40.0), 30.0);
-    // Collar bones.
+    // Collarbones.
     d = union(d, limb(q, vec3(16.0, -209.0, 5.0), 5.5, vec3(130.0, -206.0, -32.0), 7.0), 20.0);
     d
 }
 
-/// Above 0 inside the red of the lips [m-like measure].
+/// Positive inside the red of the lips; not an exact distance [m].
 pub fn lips(p: Vec3) -> f32 {
     let q = vec3(p.x.abs(), p.y, p.z) * MM;
     if q.z < 60.0 {
@@ -214,33 +216,33 @@ pub fn lips(p: Vec3) -> f32 {
     (bow - q.y).min(q.y - under) / MM
 }
 
-/// Above 0 where clothes are [m]: below a scooped neckline.
+/// Positive where there are clothes [m]: below a scooped neckline.
 pub fn clothes(p: Vec3) -> f32 {
     let q = vec3(p.x.abs(), p.y, p.z) * MM;
     let line = -238.0 + 46.0 * smoothstep(30.0, 130.0, q.x) + 30.0 * smoothstep(0.0, -90.0, q.z);
     (line - q.y) / MM
 }
 
-/// Above 0 where hair grows [m-like measure]: 0 on the hairline.
+/// Positive where hair grows, and 0 on the hairline; not an exact distance [m].
 pub fn scalp(p: Vec3) -> f32 {
     let q = vec3(p.x.abs(), p.y, p.z) * MM;
-    // Height of the hairline by the angle round the head, 0 at the front and π at the nape.
+    // Height of the hairline by the angle around the head, 0 at the front and π at the nape.
     let angle = q.x.atan2(q.z + 15.0);
     let line = HAIRLINE.windows(2).find(|w| angle <= w[1].0).map_or(HAIRLINE[HAIRLINE.len() - 1].1, |w| {
         let t = ((angle - w[0].0) / (w[1].0 - w[0].0)).clamp(0.0, 1.0);
         w[0].1 + (w[1].1 - w[0].1) * smoothstep(0.0, 1.0, t)
     });
-    // Not on the ear itself.
+    // Excludes the ear.
     let ear =
         turned_ellipsoid(q, vec3(77.0, -8.0, -15.0), vec3(13.0, 36.0, 20.0), Quat::from_rotation_x(0.15));
     (q.y - line).min(ear) / MM
 }
 
-/// The hairline: (angle round the head [rad], height [mm]) from the middle of the forehead to the nape.
+/// The hairline: (angle around the head [rad], height [mm]) from the middle of the forehead to the nape.
 const HAIRLINE: [(f32, f32); 9] = [
     (0.0, 77.0),
     (0.32, 76.0),
-    // The temple: recedes, then comes forward and down before the ear.
+    // The temple: recedes, then comes forward and down in front of the ear.
     (0.62, 66.0),
     (0.95, 44.0),
     (1.22, 8.0),

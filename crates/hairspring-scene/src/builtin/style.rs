@@ -1,4 +1,4 @@
-//! The hairstyles: what makes one differ from another, in numbers.
+//! The hairstyles of the built-in scene and their parameters.
 
 use crate::{HairColor, HairLook};
 use hairspring::material::{self, Material};
@@ -19,34 +19,35 @@ pub enum Style {
     ShortFur,
 }
 
-/// The shape of a style. Lengths in metres.
+/// The parameters of a style. Lengths are in meters.
 #[derive(Clone, Copy, Debug)]
 pub struct Cut {
-    /// Length of hair from the parting to the tip, along its gentle course [m].
+    /// Length of hair at the parting, from root to tip along its path [m].
     pub length: f32,
-    /// How much shorter hair is for each metre that its root lies farther from the parting: 1 lets all tips end level.
+    /// Decrease of length per meter of the root's distance from the parting. With 1, all tips end at the same
+    /// level.
     pub level: f32,
     /// Shortest hair [m].
     pub shortest: f32,
-    /// Height of the outermost layer over the skull [m].
+    /// Height of the outermost layer above the skull [m].
     pub volume: f32,
     /// Length of hair over which it rises to its layer [m].
     pub rise: f32,
     /// How steeply hair leaves the skin, 0 (flat) to 1 (straight out).
     pub lift: f32,
-    /// How much hair keeps growing outward rather than falling, 0 (falls) to 1 (stands).
+    /// How much hair grows outward rather than falling, 0 (falls) to 1 (stands).
     pub stand: f32,
     /// Radius of the waves [m].
     pub wave: f32,
-    /// Length of one wave along the hair's course [m].
+    /// Wavelength along the hair's path [m].
     pub wave_length: f32,
-    /// Depth of the waves over their width: 0 flat waves, 1 round coils.
+    /// Depth of the waves relative to their width: 0 is flat waves, 1 round coils.
     pub roundness: f32,
-    /// How strongly hairs gather in locks towards their tips, 0 to 1.
+    /// How strongly hairs gather in locks toward their tips, 0 to 1.
     pub clump: f32,
-    /// Spread of single hairs about their lock [m].
+    /// Spread of single hairs around their lock [m].
     pub frizz: f32,
-    /// Points of a hair that show the style well.
+    /// Number of points per hair that resolves the style well.
     pub points: u32,
 }
 
@@ -54,27 +55,28 @@ impl Style {
     /// All styles, in the order of [`material::PRESETS`].
     pub const ALL: [Style; 5] = [Style::Straight, Style::Wavy, Style::Curly, Style::Coily, Style::ShortFur];
 
-    /// Its name, one of [`material::PRESETS`].
+    /// Returns the name, one of [`material::PRESETS`].
     pub fn name(self) -> &'static str {
         material::PRESETS[self as usize]
     }
 
-    /// The style of this name; `None` for any other than [`material::PRESETS`].
+    /// Returns the style with this name; `None` for any name not in [`material::PRESETS`].
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|s| s.name() == name)
     }
 
-    /// Its fibre: the preset of the same name.
+    /// Returns its material: the preset of the same name.
     pub fn material(self) -> Material {
         material::preset(self.name()).unwrap_or_default()
     }
 
-    /// Points of a hair that show it well: straight hair needs few, coils several a turn.
+    /// Returns the number of points per hair that resolves the style well: straight hair needs few, coils
+    /// several per turn.
     pub fn points(self) -> u32 {
         self.cut().points
     }
 
-    /// Its shape.
+    /// Returns its parameters.
     pub(super) fn cut(self) -> Cut {
         let wavy = Cut {
             length: 0.40,
@@ -150,7 +152,7 @@ impl Style {
         }
     }
 
-    /// Its colour.
+    /// Returns its color.
     pub(super) fn look(self) -> HairLook {
         HairLook::from(match self {
             Style::Straight => HairColor::DarkBrown,
@@ -163,8 +165,8 @@ impl Style {
 }
 
 impl Cut {
-    /// Distance between the points of a hair's course while it grows [m]: short against its length, the skull's radius
-    /// and its waves.
+    /// Returns the distance between the points of a hair's path while it grows [m]. It is short compared with
+    /// the hair's length, the skull's radius and the waves.
     pub fn step(&self) -> f32 {
         (self.length / 48.0).min(self.wave_length / 8.0).min(0.007)
     }

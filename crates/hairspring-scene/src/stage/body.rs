@@ -1,4 +1,4 @@
-//! The posed body and what hair collides with.
+//! The posed body, and the colliders.
 
 use super::{
     PosedBody,
@@ -17,47 +17,50 @@ use hairspring::{
     math::RigidTransform,
 };
 
-/// Cells along the longest side of the body's distance field, which is as much of the body as hair can reach: 4 mm for half a metre.
+/// Cells along the longest side of the distance field, which covers the part of the body that hair can reach:
+/// 4 mm for half a meter.
 const CELLS: f32 = 128.0;
 
-/// Longest piece of a body that has a field of its own, over the edge of the body's cells [1]: its field is of all of it, wherever hair is.
+/// Maximum length of a rigid part that gets its own field, in cells of the body's field [1]. Its field covers
+/// all of it, wherever the hair is.
 const PIECE: f32 = 2.0 * CELLS;
 
-/// Pose and colliders of the scene's body now.
+/// Current pose and colliders of the scene's body.
 pub(super) struct StagedBody {
-    /// Model-space matrix of each joint, at rest and now.
+    /// Model-space matrix of each joint, at rest and currently.
     rest: Vec<Affine3A>,
     world: Vec<Affine3A>,
-    /// Whether what moves by itself is elsewhere at the start than at rest.
+    /// Whether separate props are at a different pose initially than at rest.
     apart: bool,
-    /// Where all of it is carried besides its clip.
+    /// Rigid motion of the whole body in addition to its clip.
     moved: RigidTransform,
-    /// The joint that most of the head moves with: hair and fields are kept in its space.
+    /// The joint that most of the head moves with. Hair and fields are stored in its space.
     anchor: usize,
-    /// Where the clip cuts.
+    /// Cuts of the clip.
     cuts: Cuts,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// Those made of meshes, the scene's colliders, its charged bodies, what the app pushes.
+    /// Colliders in this order: those made of meshes, the scene's colliders, its charged bodies, the user's
+    /// colliders.
     obstacles: Vec<MovingCollider>,
-    /// What moves each obstacle of the first two kinds.
+    /// What moves each collider of the first two kinds.
     carriers: Vec<Carrier>,
-    /// How many there are of the first kind.
+    /// Number of colliders of the first kind.
     meshes: usize,
-    /// What is made anew as it deforms.
+    /// Deforming meshes, whose colliders are rebuilt.
     surfaces: Vec<Deforming>,
     reach: Reach,
     /// See [`StagedBody::thin`].
     thin: Option<ThinMesh>,
     charged: StagedCharged,
-    /// How many shapes the app pushes, and where their space goes next.
+    /// Number of user colliders, and their pose in the next step.
     pushed: (usize, RigidTransform),
 }
 
-/// What moves an obstacle.
+/// What moves a collider.
 #[derive(Clone, Copy)]
 enum Carrier {
-    /// Nothing.
+    /// Nothing: it is fixed in the world.
     Fixed,
     /// A joint; the shape is in the space of the rest pose.
     Joint(usize),
@@ -65,28 +68,28 @@ enum Carrier {
     Anchor,
 }
 
-/// A skinned mesh and the obstacle that is made of it.
+/// A skinned mesh and the collider made of it.
 struct Deforming {
     surface: Surface,
     mesh: Mesh,
-    /// What is left of the mesh, where pieces of it are colliders of their own.
+    /// The remaining mesh, if rigid parts of it are separate colliders.
     rest: Option<Body>,
     obstacle: usize,
 }
 
 impl Deforming {
-    /// What it is made of.
+    /// Returns the body that the collider is made of.
     fn body<'a>(rest: &'a Option<Body>, mesh: Mesh, scene: &'a Scene) -> Option<&'a Body> {
         rest.as_ref().or_else(|| mesh.of(scene))
     }
 }
 
-/// Which of the scene's meshes.
+/// A collision mesh of the scene.
 #[derive(Clone, Copy)]
 enum Mesh {
-    /// The closed one.
+    /// The closed mesh.
     Closed,
-    /// A sheet.
+    /// An open mesh, by its index.
     Sheet(usize),
 }
 
@@ -99,11 +102,11 @@ impl Mesh {
     }
 }
 
-/// Where hair can be: no farther from a root than the longest strand is long.
+/// The region that hair can reach: points no farther from a root than the longest strand.
 struct Reach {
-    /// The skin's vertices around the roots.
+    /// Vertices of the skin around the roots.
     vertices: Vec<u32>,
-    /// From those to the farthest tip, with room for the strain limit [m].
+    /// Distance from those to the farthest tip, with a margin for the strain limit [m].
     length: f32,
 }
 
@@ -117,7 +120,7 @@ impl Reach {
                 reach.length = reach.length.max(1.02 * groom.strand_length(s) + root.offset.length());
             }
             if groom.roots.is_empty() && groom.strand_count() > 0 {
-                // Roots that no skin carries may be anywhere.
+                // Roots that are not bound to the skin may be anywhere.
                 return Self { vertices: Vec::new(), length: 0.0 };
             }
         }
@@ -126,7 +129,8 @@ impl Reach {
         reach
     }
 
-    /// The box (min, max) that hair stays in, in the space that `to` takes the skin's `positions` to; `None`: no bound is known.
+    /// Returns the bounding box (min, max) of the hair, in the space that `to` maps the skin's `positions`
+    /// to; `None` if there is no bound.
     fn bounds(&self, positions: &[Vec3], to: impl Fn(Vec3) -> Vec3) -> Option<(Vec3, Vec3)> {
         let mut roots = self.vertices.iter().map(|v| to(positions[*v as usize]));
         let first = roots.next()?;
@@ -136,7 +140,8 @@ impl Reach {
 }
 
 impl StagedBody {
-    /// The body as hair is made on it: at rest, and what moves by itself beside it where it is at the start. With what follows the joints that were found.
+    /// Creates the body in the pose in which hair is built on it: at rest, with separate props where they are
+    /// initially. Attaches colliders and charged bodies to the joints in `joints`.
     pub(super) fn new(scene: &Scene, joints: &Joints) -> Self {
         let rest = scene.body.as_ref().map(|b| b.world(&b.rest_pose())).unwrap_or_default();
         let anchor = scene.body.as_ref().map_or(0, |b| anchor_joint(b, scene));
@@ -176,14 +181,14 @@ impl StagedBody {
         staged
     }
 
-    /// Finds the cuts of the scene's clip, as they are by its settings.
+    /// Finds the cuts of the scene's clip with the current settings.
     pub(super) fn find_cuts(&mut self, scene: &Scene) {
         if let (Some(body), Some(clip)) = (&scene.body, &scene.clip) {
             self.cuts = Cuts::new(body, clip, self.anchor, scene.solver.teleport_distance);
         }
     }
 
-    /// Colliders have not moved to where they are.
+    /// Sets the start pose of all colliders to their end pose, so that they have no velocity.
     fn stand_still(&mut self) {
         self.charged.rest();
         self.obstacles.iter_mut().for_each(|obstacle| obstacle.start = obstacle.end);
@@ -194,24 +199,26 @@ impl StagedBody {
         self.carriers.push(carrier);
     }
 
-    /// After what is made of meshes.
+    /// Adds the scene's colliders. Must be called after the mesh colliders have been added.
     fn add_colliders(&mut self, colliders: &[Collider], joints: &Joints) {
         for (collider, joint) in colliders.iter().zip(&joints.colliders) {
             let carrier = joint.map_or(self.carrier(self.anchor), Carrier::Joint);
-            // Points that span no volume are nothing to collide with.
+            // A hull whose points span no volume is ignored.
             if let Some(shape) = collider.shape.obstacle() {
                 self.add(shape, carrier);
             }
         }
     }
 
-    /// After all others but what the app pushes: they move by themselves.
+    /// Adds the charged bodies. Must be called after all other colliders except the user's, because they move
+    /// by themselves.
     fn add_charged(&mut self, scene: &Scene, joints: &Joints) {
         self.charged = StagedCharged::new(&scene.charged, joints.charged.clone());
         self.obstacles.extend(self.charged.obstacles(&scene.charged));
     }
 
-    /// Takes up other colliders and charged bodies in the midst of the play, at `time` [s]: where they are now, without motion.
+    /// Replaces the colliders and charged bodies at `time` [s] while the scene is running. The new ones start
+    /// without velocity.
     pub(super) fn update_settings(&mut self, scene: &Scene, joints: &Joints, time: f64) {
         let pushed = self.obstacles.split_off(self.obstacles.len() - self.pushed.0);
         self.obstacles.truncate(self.meshes);
@@ -239,7 +246,7 @@ impl StagedBody {
     ) {
         let (count, first) = (shapes.clone().count(), self.obstacles.len() - self.pushed.0);
         if count == self.pushed.0 {
-            // The same, perhaps of another size: it goes on as it moved.
+            // The same shapes, perhaps of another size, keep their motion.
             self.obstacles[first..].iter_mut().zip(shapes).for_each(|(o, shape)| o.shape.clone_from(shape));
         } else {
             self.obstacles.truncate(first);
@@ -248,7 +255,7 @@ impl StagedBody {
         self.pushed = (count, pose);
     }
 
-    /// A joint of the body, if there is any.
+    /// Returns a joint of the body as a carrier, if the body has joints.
     fn carrier(&self, joint: usize) -> Carrier {
         if self.rest.is_empty() { Carrier::Fixed } else { Carrier::Joint(joint) }
     }
@@ -262,13 +269,14 @@ impl StagedBody {
         let Some((lo, hi)) = body.mesh.bounds() else { return };
         let within = scene.body.as_ref().and_then(|b| self.reach.bounds(&b.mesh.positions, |p| p));
         let (lo, hi) = within.map_or((lo, hi), |(a, b)| (lo.max(a), hi.min(b)));
-        // Hair that cannot reach the body meets a field of one cell.
+        // If the hair cannot reach the body, the field has only one cell.
         let cell = (hi - lo).max_element().max(1e-3) / CELLS;
         self.thin = ThinMesh::find(&body.mesh, cell, within);
         self.add_mesh(scene, Mesh::Closed, SurfaceKind::Field(cell));
     }
 
-    /// Adds the collider of one of the scene's meshes. What is rigid is made once, in the space of the rest pose.
+    /// Adds the collider of one of the scene's meshes. A rigid one is built once, in the space of the rest
+    /// pose.
     fn add_mesh(&mut self, scene: &Scene, mesh: Mesh, making: SurfaceKind) {
         let Some(body) = mesh.of(scene) else { return };
         if body.skin.is_none() {
@@ -291,7 +299,8 @@ impl StagedBody {
         }
     }
 
-    /// Makes the colliders of skinned meshes anew, in the anchor's space; `since` the time [s] of the pose that they have moved from, where they have, and the time now.
+    /// Rebuilds the colliders of skinned meshes, in the anchor's space. `since` is the time [s] of the pose
+    /// that they moved from and the current time, or `None` if they did not move.
     fn rebuild_surfaces(&mut self, scene: &Scene, since: Option<(f64, f64)>) {
         let anchor = self.anchor();
         let within = self.reach.bounds(&self.positions, |p| anchor.inverse_point(p));
@@ -305,11 +314,12 @@ impl StagedBody {
             shares = self.surfaces.iter().map(parts).collect();
             let most = shares.iter().copied().max().unwrap_or(1);
             if shares.iter().any(|share| *share != 1 && *share != most) {
-                // Each has a part of the most that there are, or as many.
+                // Make each number of slices a divisor of the largest.
                 shares.iter_mut().for_each(|share| *share = share.next_power_of_two());
             }
             let parts = shares.iter().copied().max().unwrap_or(1);
-            // Wherever all of it is carried: what is made is in the anchor's space.
+            // The motion of the whole body has no effect here, because the colliders are in the anchor's
+            // space.
             poses.extend((1..parts).map(|part| {
                 let time = from + (to - from) * (part as f64 / parts as f64);
                 let world = body.world(&self.cuts.sample(clip, time));
@@ -326,20 +336,21 @@ impl StagedBody {
         }
     }
 
-    /// Poses the body for the time `to` [s], `from` the time of the last pose; motion since then is what colliders do in this frame. Returns where a cut of
-    /// the clip takes the hair, if there is one: cuts are no motion, and colliders that they move start where they are taken.
+    /// Poses the body for the time `to` [s]; `from` is the time of the last pose. The motion in between is
+    /// that of the colliders in this frame. Returns the rigid motion of the hair if the clip has a cut. A cut
+    /// is not a motion: colliders that it moves start the frame at their new pose.
     pub(super) fn advance(&mut self, scene: &Scene, (from, to): (f64, f64)) -> Option<RigidTransform> {
         self.stand_still();
         let cut = self.cut(scene, (from, to));
         self.pose(scene, to);
-        // A surface that was cut has not moved since.
+        // A surface that was cut has no motion in this frame.
         self.rebuild_surfaces(scene, cut.is_none().then_some((from, to)));
         self.repose(scene, to);
         cut
     }
 
-    /// Takes what is on the joints that are cut after the time `from` until the time `to` [s] to where the cuts take it, and returns where that is for
-    /// the anchor.
+    /// Moves colliders on joints that have a cut between the times `from` and `to` [s] across the cut.
+    /// Returns the rigid motion of the anchor.
     fn cut(&mut self, scene: &Scene, times: (f64, f64)) -> Option<RigidTransform> {
         let (Some(body), Some(clip)) = (&scene.body, &scene.clip) else { return None };
         let cut = self.cuts.between(body, clip, times);
@@ -362,7 +373,7 @@ impl StagedBody {
         by(self.anchor)
     }
 
-    /// Poses the body for time `time` [s] without motion.
+    /// Poses the body for time `time` [s] without velocity.
     pub(super) fn place(&mut self, scene: &Scene, time: f64) {
         self.moved = RigidTransform::default();
         self.pose(scene, time);
@@ -387,7 +398,8 @@ impl StagedBody {
         }
     }
 
-    /// Where obstacles and charged bodies are in the current pose, at `time` [s], and what the app pushes where that goes.
+    /// Updates the poses of colliders and charged bodies from the current body pose, at `time` [s], and that
+    /// of the user colliders.
     fn repose(&mut self, scene: &Scene, time: f64) {
         let anchor = self.anchor();
         let Self { world, rest, obstacles, carriers, charged, pushed: (count, pose), .. } = self;
@@ -403,27 +415,28 @@ impl StagedBody {
         obstacles.iter_mut().rev().take(*count).for_each(|pushed| pushed.end = *pose);
     }
 
-    /// Where what a joint carries has gone since rest; nowhere without a joint.
+    /// Returns the motion since rest of what `joint` carries; the identity without a joint.
     pub(super) fn carried(&self, joint: Option<usize>) -> RigidTransform {
         carried(&self.world, &self.rest, joint)
     }
 
-    /// What of the mesh that hair collides with is too thin for its field.
+    /// Returns a report if parts of the collision mesh are too thin for its field.
     pub(super) fn thin(&self) -> Option<ThinMesh> {
         self.thin
     }
 
-    /// The charged bodies in the last frame.
+    /// Returns the charged bodies in the last frame.
     pub(super) fn charged(&self) -> &[ChargedBall] {
         self.charged.balls()
     }
 
-    /// Whether what moves by itself is elsewhere at the start than at rest.
+    /// Returns whether separate props are at a different pose initially than at rest.
     pub(super) fn stands_apart(&self) -> bool {
         self.apart
     }
 
-    /// Corners of a triangle of the skin as hair is made on it, of a body that has just been made.
+    /// Returns the corners of a triangle of the skin in the initial pose. Must be called before the body
+    /// moves.
     pub(super) fn first_corners(&self, mesh: &body::Mesh, triangle: usize) -> [Vec3; 3] {
         match self.apart {
             true => mesh.triangles[triangle].map(|i| self.positions[i as usize]),
@@ -431,32 +444,32 @@ impl StagedBody {
         }
     }
 
-    /// The frame that roots move with.
+    /// Returns the frame that roots move with.
     pub(super) fn anchor(&self) -> RigidTransform {
         self.world.get(self.anchor).map_or(RigidTransform::default(), RigidTransform::from_affine)
     }
 
-    /// The same at rest.
+    /// Returns the anchor at rest.
     pub(super) fn rest_anchor(&self) -> RigidTransform {
         self.rest.get(self.anchor).map_or(RigidTransform::default(), RigidTransform::from_affine)
     }
 
-    /// The colliders and how they moved in the last frame.
+    /// Returns the colliders with their motion in the last frame.
     pub(super) fn obstacles(&self) -> &[MovingCollider] {
         &self.obstacles
     }
 
-    /// Those that are the scene's.
+    /// Returns the colliders listed in the scene.
     pub(super) fn colliders(&self) -> &[MovingCollider] {
         &self.obstacles[self.meshes..self.carriers.len()]
     }
 
-    /// The colliders as they are now.
+    /// Returns the current poses of the colliders.
     pub(super) fn poses(&self) -> Vec<ColliderPose> {
         self.obstacles.iter().map(MovingCollider::now).collect()
     }
 
-    /// Vertex positions now [m]; empty without a body.
+    /// Returns the current vertex positions [m]; empty without a body.
     pub(super) fn positions(&self) -> &[Vec3] {
         &self.positions
     }
@@ -467,13 +480,15 @@ impl StagedBody {
     }
 }
 
-/// Where what a joint carries has gone since `rest`, now that joints are at `world`; nowhere without a joint.
+/// Returns the motion since `rest` of what `joint` carries, with joints currently at `world`; the identity
+/// without a joint.
 fn carried(world: &[Affine3A], rest: &[Affine3A], joint: Option<usize>) -> RigidTransform {
     joint.map_or(RigidTransform::default(), |j| RigidTransform::from_affine(&(world[j] * rest[j].inverse())))
 }
 
-/// Model-space matrix of each joint as hair is made on the body: the joints that hang together with `anchor` at rest, and all others, each a thing by
-/// itself, where the clip begins. At rest they may be in each other.
+/// Returns the model-space matrix of each joint in the initial pose. Joints connected with `anchor` are at
+/// rest. All others are separate props, which are placed where the clip begins, because at rest they may
+/// intersect.
 fn first_pose(body: &Body, anchor: usize, scene: &Scene) -> Vec<Affine3A> {
     let mut pose = body.rest_pose();
     let top = |mut joint: usize| {
@@ -490,7 +505,7 @@ fn first_pose(body: &Body, anchor: usize, scene: &Scene) -> Vec<Affine3A> {
     body.world(&pose)
 }
 
-/// The joint that carries most of the vertices near the roots; joint 0 of a rigid body.
+/// Returns the joint that carries most of the vertices near the roots; joint 0 for a rigid body.
 fn anchor_joint(body: &Body, scene: &Scene) -> usize {
     let Some(skin) = &body.skin else { return 0 };
     let mut weight = vec![0.0; body.joints.len()];

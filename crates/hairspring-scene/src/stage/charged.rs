@@ -1,4 +1,4 @@
-//! The scene's charged bodies, where they are now.
+//! The scene's charged bodies at their current poses.
 
 use glam::Vec3;
 use hairspring::{
@@ -16,7 +16,7 @@ pub(super) struct StagedCharged {
 }
 
 impl StagedCharged {
-    /// At rest, each carried by one of `joints`.
+    /// Creates the charged bodies at rest, each carried by one of `joints`.
     pub(super) fn new(settings: &[Charged], joints: Vec<Option<usize>>) -> Self {
         let balls = settings.iter().map(|c| ChargedBall {
             radius: c.radius,
@@ -26,7 +26,7 @@ impl StagedCharged {
         Self { joints, balls: balls.collect() }
     }
 
-    /// The solid ones, in their order, for hair to collide with.
+    /// Returns colliders for the solid ones, in order.
     pub(super) fn obstacles(&self, settings: &[Charged]) -> Vec<MovingCollider> {
         let solid = settings.iter().filter(|c| c.solid);
         let ball = |c: &Charged| {
@@ -36,14 +36,15 @@ impl StagedCharged {
         solid.map(ball).collect()
     }
 
-    /// A new frame begins where the last one ended.
+    /// Starts a new frame where the last one ended.
     pub(super) fn rest(&mut self) {
         for ball in &mut self.balls {
             ball.centers[0] = ball.centers[1];
         }
     }
 
-    /// Takes those on joints that are cut, and the `obstacles` of the solid ones, to where `by` says that the cut takes the joint: they start the frame there.
+    /// Moves the start of balls on joints that have a cut, and the `obstacles` of the solid ones, across the
+    /// cut. `by` returns the rigid motion of a joint due to the cut.
     pub(super) fn cut(
         &mut self,
         settings: &[Charged],
@@ -61,8 +62,8 @@ impl StagedCharged {
         }
     }
 
-    /// Puts them, and the `obstacles` of the solid ones, where they are at the end of a frame, at `time` [s]; `carried` tells where a joint has taken what
-    /// it carries.
+    /// Updates the end positions for a frame that ends at `time` [s], and those of the `obstacles` of solid
+    /// ones. `carried` returns the motion of a joint since rest.
     pub(super) fn advance(
         &mut self,
         settings: &[Charged],
@@ -82,7 +83,7 @@ impl StagedCharged {
         }
     }
 
-    /// All of them, from the start to the end of the last frame.
+    /// Returns all charged balls, with their motion in the last frame.
     pub(super) fn balls(&self) -> &[ChargedBall] {
         &self.balls
     }

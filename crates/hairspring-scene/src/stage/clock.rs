@@ -1,30 +1,33 @@
 //! Time as a count of frames.
 //!
-//! A sum of frame lengths drifts: each addition rounds, and the length itself is rounded. A count of frames over a rational rate does neither.
+//! A sum of frame durations drifts: each addition rounds, and the duration itself is rounded. A count of
+//! frames at a rational rate does neither.
 
 use std::{fmt, str::FromStr};
 
-/// Frames per second as a fraction, so that 24000/1001 is exact.
+/// A frame rate as a fraction, so that 24000/1001 is exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameRate {
     frames: u32,
     seconds: u32,
 }
 
-/// Largest relative difference between a rounded rate and the standard rate that it stands for [1]: six digits of a frame time, such as 0.008333 s.
+/// Largest relative difference between a rounded rate and the standard rate that it represents [1]. It allows
+/// for six digits of a frame time, such as 0.008333 s.
 const ROUNDED: f64 = 5e-5;
 
-/// Digits after the decimal point that [`FrameRate::nearest`] keeps, as a factor.
+/// Precision of [`FrameRate::nearest`]: six decimals, as a factor.
 const DIGITS: u32 = 1_000_000;
 
 impl FrameRate {
-    /// `frames` frames in `seconds` seconds; `None` if either is 0.
+    /// Creates the rate of `frames` frames in `seconds` seconds; `None` if either is 0.
     pub const fn new(frames: u32, seconds: u32) -> Option<Self> {
         if frames == 0 || seconds == 0 { None } else { Some(Self { frames, seconds }) }
     }
 
-    /// The rate that a rounded number of frames per second [Hz] stands for: a whole number, or a whole number over 1.001 (29.97 is 30000/1001), where one is
-    /// near; otherwise the number with six decimals. `None` if that is not above 0 or does not fit.
+    /// Returns the rate that a rounded number of frames per second [Hz] represents. This is a nearby whole
+    /// number or whole number over 1.001 (29.97 is 30000/1001); otherwise it is the number with six decimals.
+    /// Returns `None` if that is not above 0 or does not fit.
     pub fn nearest(hertz: f64) -> Option<Self> {
         let near = |rate: f64| rate > 0.0 && (hertz / rate - 1.0).abs() < ROUNDED;
         let whole = |hertz: f64| Some(hertz.round()).filter(|n| (1.0..1e6).contains(n));
@@ -40,24 +43,24 @@ impl FrameRate {
             .then_some(Self { frames: scaled as u32, seconds: DIGITS })
     }
 
-    /// Frames per second [Hz].
+    /// Returns the number of frames per second [Hz].
     pub fn hertz(self) -> f64 {
         f64::from(self.frames) / f64::from(self.seconds)
     }
 
-    /// Time from one frame to the next [s].
+    /// Returns the duration of a frame [s].
     pub fn frame_length(self) -> f64 {
         self.time_of(1)
     }
 
-    /// Time of a frame, counted from 0 [s].
+    /// Returns the time of a frame, counted from 0 [s].
     pub fn time_of(self, frame: u64) -> f64 {
-        // The product is exact up to 2^53, so the only rounding is that of the quotient.
+        // The product is exact up to 2^53, so only the quotient is rounded.
         frame as f64 * f64::from(self.seconds) / f64::from(self.frames)
     }
 }
 
-/// `30`, `29.97` or `30000/1001`.
+/// Parses `30`, `29.97` or `30000/1001`.
 impl FromStr for FrameRate {
     type Err = String;
 
@@ -81,7 +84,7 @@ impl fmt::Display for FrameRate {
     }
 }
 
-/// Time played: whole frames at one rate since the rate last changed.
+/// Elapsed time: the number of frames since the rate last changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
     /// Time at which the count began [s].
@@ -94,12 +97,12 @@ impl Clock {
     /// Time 0.
     pub(super) const ZERO: Self = Self { start: 0.0, frames: 0, rate: FrameRate { frames: 1, seconds: 1 } };
 
-    /// Time [s].
+    /// Returns the time [s].
     pub(super) fn time(&self) -> f64 {
         self.start + self.rate.time_of(self.frames)
     }
 
-    /// One frame later.
+    /// Returns the clock advanced by one frame.
     pub(super) fn after_frame(self, rate: FrameRate) -> Self {
         if rate == self.rate {
             Self { frames: self.frames + 1, ..self }
@@ -108,7 +111,7 @@ impl Clock {
         }
     }
 
-    /// Later by `dt` [s].
+    /// Returns the clock advanced by `dt` [s].
     pub(super) fn after(self, dt: f64) -> Self {
         Self { start: self.time() + dt, frames: 0, ..self }
     }

@@ -1,14 +1,17 @@
-//! How fast the limbs of a skinned body, or a skinned sheet, go through hair, against how thick they are.
+//! Detects surfaces of a skinned body, or a skinned thin shell, that move fast through hair relative to their
+//! thickness.
 //!
 //! ```text
-//!   before │  │ now        a place of the skin, its normal n, its way s in the frame, and the thickness T along −n, which a ray
-//!       ◄──┼T─┤►           through the body at rest finds:
-//!          │s·n│              the frame is cut into as many parts as it takes to keep |s·n| below a part of T/2 in each
+//!   before │  │ now        a point of the skin, its normal n, its displacement s in the frame, and the thickness T along −n,
+//!       ◄──┼T─┤►           found by a ray through the body at rest:
+//!          │s·n│              the frame is divided into enough time slices to keep |s·n| below a fraction of T/2 in each
 //! ```
 //!
-//! A collider is made for each part, of the body as it is then: at the end of the frame alone, a hand would be on the other side of the hair before it met it. It is what
-//! shorter substeps are for a body that moves as one piece (`simulation/substeps.rs`), but dear, since a field takes longer than a substep does. So only
-//! what goes across itself counts, where hair can be. A sheet is half as thick as it reaches to both sides.
+//! A collider is built for each time slice, from the body's pose at its end. With a single collider at the
+//! end of the frame, a fast hand would jump to the other side of the hair without touching it. For rigid
+//! bodies, shorter substeps do the same (`simulation/substeps.rs`). Time slices are expensive, since building
+//! a field takes longer than a substep. Therefore only motion along the normal counts, and only where hair
+//! can be. The half-thickness of a thin shell is the distance that it extends to each side.
 
 use super::thickness::{Place, normal, places, thicknesses};
 use glam::{Affine3A, Vec3};
@@ -18,30 +21,34 @@ use hairspring::{
     simulation::MAX_TRAVEL,
 };
 
-/// Edge of the cubes that one triangle for each way it may face stands for, over the edge of the field's cells [1]: two to a finger.
+/// Edge of the sampling cubes, in cells of the field [1]: two cubes across a finger. In each cube, one
+/// triangle is sampled for each direction.
 const SPACING: f32 = 3.0;
 
-/// Most parts of a frame that limbs ask for: each takes a distance field. A hand, 2 cm thick, asks for so many at 5 m/s and 30 frames a second.
+/// Maximum number of time slices for a closed mesh, each of which needs a distance field. A hand 2 cm thick
+/// reaches it at 5 m/s and 30 frames per second.
 const MOST: f32 = 32.0;
 
-/// Most parts of a frame that a sheet asks for, which is made sooner: 2 mm thick, at 5 m/s and 60 frames a second, it then moves by two thirds of that in each.
+/// Maximum number of time slices for a thin shell, which is faster to build. At 5 m/s and 60 frames per
+/// second, a shell of 2 mm then moves by two thirds of its thickness in each.
 const MOST_OF_SHEET: f32 = 64.0;
 
-/// Places of a skinned mesh that are looked at.
+/// Sample points of a skinned mesh.
 pub(super) struct FastSurfaceProbe {
     probes: Vec<Probe>,
-    /// Most parts that they ask for.
+    /// Maximum number of time slices.
     most: f32,
 }
 
 struct Probe {
     triangle: u32,
-    /// Half of how thick the body is behind it [m], or a cell of its field, which is about what that knows: meshes have folds, and nails within fingers.
+    /// Half of the thickness of the body behind it [m], at least one cell of its field, which is about its
+    /// resolution. Meshes may have folds, and nails inside of fingers.
     half: f32,
 }
 
 impl FastSurfaceProbe {
-    /// Those of a closed `mesh` in the rest pose whose field has cells of `cell` [m].
+    /// Creates the samples of a closed `mesh` in the rest pose. `cell` is the cell of its field [m].
     pub fn of_solid(mesh: &Mesh, cell: f32) -> Self {
         let probe =
             |((triangle, ..), thickness): (Place, f32)| Probe { triangle, half: (0.5 * thickness).max(cell) };
@@ -49,15 +56,16 @@ impl FastSurfaceProbe {
         Self { probes, most: MOST }
     }
 
-    /// Those of an open `mesh` in the rest pose that reaches `thickness` [m] to both sides.
+    /// Creates the samples of an open `mesh` in the rest pose that extends by `thickness` [m] to both sides.
     pub fn of_sheet(mesh: &Mesh, thickness: f32) -> Self {
         let probe = |(triangle, ..): Place| Probe { triangle, half: thickness };
         let probes = places(mesh, 2.0 * SPACING * thickness).into_iter().map(probe).collect();
         Self { probes, most: MOST_OF_SHEET }
     }
 
-    /// Into how many parts a frame is to be cut in which the body goes from vertices `before`, in the anchor's space, to where its joints and the anchor are now; what stays
-    /// out of the box `within`, where hair is, does not count.
+    /// Returns the number of time slices for a frame. The body moves from the vertices `before`, in the
+    /// anchor's space, to the current pose of its joints and anchor. Surfaces outside the box `within`, where
+    /// the hair is, do not count.
     pub fn parts(
         &self,
         (mesh, skin): (&Mesh, &Skin),
@@ -87,7 +95,7 @@ impl FastSurfaceProbe {
 mod tests {
     use super::*;
 
-    /// A tube of 2 cm with square ends along X, from 0 to 8 cm, whose far half a joint moves.
+    /// A square tube of 2 cm along X, from 0 to 8 cm. A joint moves its far half.
     fn finger() -> (Mesh, Skin) {
         let ring = |k: u32| {
             let x = 0.01 * k as f32;
@@ -118,17 +126,17 @@ mod tests {
             let world = [Affine3A::IDENTITY, Affine3A::from_translation(moved)];
             limbs.parts((&mesh, &skin), &mesh.positions, (&world, RigidTransform::default()), within)
         };
-        // 2 cm thick: half a centimetre a part.
+        // 2 cm thick: half a centimeter for each slice.
         assert_eq!(parts(Vec3::ZERO, None), 1);
         assert_eq!(parts(Vec3::Y * 0.004, None), 1);
         assert_eq!(parts(Vec3::Y * 0.019, None), 4);
         assert_eq!(parts(Vec3::Z * -0.031, None), 7);
         assert_eq!(parts(Vec3::Y * 9.0, None), MOST as usize);
-        // Along itself it is 8 cm long.
+        // Along its axis it is 8 cm long.
         assert_eq!(parts(Vec3::X * 0.019, None), 1);
         let far = Vec3::splat(0.5);
         assert_eq!(parts(Vec3::Y * 0.019, Some((far, far + 1.0))), 1);
-        // On its way past.
+        // It passes through the box.
         assert_eq!(parts(Vec3::Y * 0.019, Some((Vec3::new(-1.0, 0.025, -1.0), Vec3::ONE))), 4);
     }
 
@@ -140,7 +148,7 @@ mod tests {
             let world = [Affine3A::IDENTITY, Affine3A::from_translation(moved)];
             sheet.parts((&mesh, &skin), &mesh.positions, (&world, RigidTransform::default()), None)
         };
-        // A millimetre a part.
+        // A millimeter for each slice.
         assert_eq!(parts(Vec3::Y * 0.0009), 1);
         assert_eq!(parts(Vec3::Y * 0.0195), 20);
         assert_eq!(parts(Vec3::Y * 9.0), MOST_OF_SHEET as usize);

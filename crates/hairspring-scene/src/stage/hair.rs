@@ -1,4 +1,4 @@
-//! One groom of the scene: which of its strands are simulated, where their roots are, and the hairs that follow them.
+//! One groom of the scene: its simulated strands, their roots, and the hairs that follow them.
 
 use super::{Strands, body::StagedBody};
 use crate::{Guides, HairLook, Scene, SceneGroom};
@@ -16,33 +16,34 @@ use hairspring::{
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Guides of a groom that names none and a scene that asks for no number.
+/// Number of guides if neither the groom nor the scene specifies them.
 const DEFAULT_GUIDES: usize = 2_000;
 
 pub(super) struct StagedHair {
     groom: Arc<Groom>,
     materials: Vec<Material>,
     look: HairLook,
-    /// The simulated strands, as indices of the groom.
+    /// Simulated strands, as indices of the groom.
     strands: Vec<u32>,
-    /// The first of them among those of all grooms.
+    /// Index of the first of them among the simulated strands of all grooms.
     first: usize,
-    /// `None` where every strand is simulated.
+    /// `None` if every strand is simulated.
     follow: Option<Follow>,
-    /// Orientation of each simulated root's triangle at rest, inverted; empty while the roots are bound to nothing.
+    /// Inverse orientation of each simulated root's triangle at rest; empty while the roots are unbound.
     rest_frames: Vec<Quat>,
     triangles: Vec<[u32; 3]>,
     roots: Vec<RigidTransform>,
     turns: Vec<Quat>,
-    /// Points of the simulated strands; of use where others follow them.
+    /// Points of the simulated strands; used if other strands follow them.
     guide_points: Vec<Vec3>,
     points: Vec<Vec3>,
-    /// Whether the follow hairs among `points` are left to who draws them, and not up to date.
+    /// Whether the renderer interpolates the follow hairs, so that those in `points` are not up to date.
     left: bool,
 }
 
 impl StagedHair {
-    /// The hair of `groom` at rest on the body as it is at the start; its first simulated strand is the `first` of those of all grooms.
+    /// Creates the hair of `groom` at rest, on the body in its initial pose. `first` is the index of its
+    /// first simulated strand among those of all grooms.
     pub(super) fn new(groom: SceneGroom, first: usize, scene: &Scene, body: &StagedBody) -> Self {
         let SceneGroom { groom, materials, guides, effects, look } = groom;
         let mesh = scene.body.as_ref().map(|b| &b.mesh).filter(|_| !groom.roots.is_empty());
@@ -88,7 +89,8 @@ impl StagedHair {
         }
     }
 
-    /// Takes up other settings in the midst of the play; whether the materials, and whether the effects are others than before.
+    /// Replaces the settings while the scene is running. Returns whether the materials and whether the
+    /// styling changed.
     pub(super) fn update_settings(&mut self, settings: SceneGroom) -> (bool, bool) {
         let SceneGroom { materials, effects, look, .. } = settings;
         self.look = look;
@@ -98,7 +100,7 @@ impl StagedHair {
         (made, laid)
     }
 
-    /// Where the roots are on the posed body.
+    /// Updates the roots from the posed body.
     pub(super) fn pose_roots(&mut self, body: &StagedBody) {
         if self.rest_frames.is_empty() {
             return;
@@ -113,7 +115,7 @@ impl StagedHair {
         }
     }
 
-    /// Brings the points of all strands up to date, but for follow hairs that are left to who draws them.
+    /// Updates the points of all strands, except for follow hairs that the renderer interpolates.
     pub(super) fn show(&mut self, simulation: &Simulation, body: &StagedBody) {
         let own = self.first..self.first + self.strands.len();
         let Some(follow) = &mut self.follow else {
@@ -137,12 +139,13 @@ impl StagedHair {
         }
     }
 
-    /// What places the follow hairs as they are now, where there are any.
+    /// Returns the data that places the follow hairs in the current frame, if there are any.
     fn followed<'a>(&'a self, body: &'a StagedBody) -> Option<HairInterpolation<'a>> {
         Some(self.follow.as_ref()?.now(&self.guide_points, body.obstacles()))
     }
 
-    /// Looks at each strand's points as they are now, those left to who draws them too, on many threads.
+    /// Calls `look` with the current points of each strand, in parallel. This includes follow hairs that the
+    /// renderer interpolates.
     pub(super) fn each_strand<'a, T: Send + 'a>(
         &'a self,
         body: &'a StagedBody,
@@ -161,7 +164,8 @@ impl StagedHair {
         strands.into_par_iter().with_min_len(256).map_init(Vec::new, of_strand)
     }
 
-    /// Points of a simulated strand, by its place among them and its number in the groom [m].
+    /// Returns the points of a simulated strand [m]. `k` is its index among the simulated strands, `strand`
+    /// that in the groom.
     pub(super) fn guide_points(&self, k: usize, strand: usize) -> &[Vec3] {
         match &self.follow {
             Some(follow) => &self.guide_points[follow.guide_range(k)],
@@ -169,18 +173,20 @@ impl StagedHair {
         }
     }
 
-    /// The place of a strand among the simulated ones, if it is one.
+    /// Returns the index of a strand among the simulated ones, or `None` if it is not simulated.
     pub(super) fn simulated(&self, strand: usize) -> Option<usize> {
         self.follow.as_ref().map_or(Some(strand), |follow| follow.guide(strand))
     }
 
-    /// The same of the first guide that a strand follows; its own where it is simulated.
+    /// Returns the index among the simulated strands of the first guide of a strand, or its own if it is
+    /// simulated.
     pub(super) fn first_guide(&self, strand: usize) -> usize {
         self.follow.as_ref().map_or(strand, |follow| follow.first_guide(strand))
     }
 
-    /// Writes one number a point of all strands: what `of_guide` writes for each simulated strand (its place among them, its number in the groom), and
-    /// follow hairs by their first guide.
+    /// Writes one value for each point of all strands. `of_guide` writes those of a simulated strand, given
+    /// its index among the simulated strands and in the groom. Follow hairs take the values of their first
+    /// guide.
     pub(super) fn values(&self, of_guide: impl Fn(usize, usize, &mut [f32]) + Sync, out: &mut Vec<f32>) {
         let mut offsets = vec![0];
         for s in &self.strands {
@@ -198,7 +204,8 @@ impl StagedHair {
         }
     }
 
-    /// How far each joint of a simulated strand (its place among them, its number in the groom) is turned from the groom's, carried along by the root [rad].
+    /// Computes the angle of each joint of a simulated strand from that of the groom, after transport from
+    /// the root [rad]. `k` is its index among the simulated strands, `strand` that in the groom.
     pub(super) fn turns(&self, k: usize, strand: usize, out: &mut [f32]) {
         let (rest, now) = (self.groom.strand(strand), self.guide_points(k, strand));
         let mut turn = self.roots[k].rotation;
@@ -206,7 +213,7 @@ impl StagedHair {
         for (i, angle) in out.iter_mut().enumerate().take(rest.len() - 1) {
             let was = (turn * (rest[i + 1] - rest[i])).try_normalize();
             if let (Some(was), Some(is)) = (was, (now[i + 1] - now[i]).try_normalize()) {
-                // The first segment has no joint: the root turns it.
+                // The first segment has no joint: it rotates with the root.
                 *angle = if i == 0 { 0.0 } else { was.cross(is).length().atan2(was.dot(is)) };
                 turn = (Quat::from_rotation_arc(was, is) * turn).normalize();
             }
@@ -226,28 +233,29 @@ impl StagedHair {
         &self.materials
     }
 
-    /// Where the simulated roots are, and how they have turned since rest.
+    /// Returns the transforms of the simulated roots since rest.
     pub(super) fn roots(&self) -> &[RigidTransform] {
         &self.roots
     }
 
-    /// The simulated strands, as indices of the groom.
+    /// Returns the simulated strands, as indices of the groom.
     pub(super) fn simulated_strands(&self) -> &[u32] {
         &self.strands
     }
 
-    /// The first of them among those of all grooms.
+    /// Returns the index of the first of them among the simulated strands of all grooms.
     pub(super) fn first(&self) -> usize {
         self.first
     }
 
-    /// How many hairs each of them stands for.
+    /// Returns the multiplicity of each simulated strand: how many hairs it represents.
     pub(super) fn hairs(&self) -> impl Iterator<Item = f32> + use<> {
         let hairs = self.groom.strand_count() as f32 / self.strands.len() as f32;
         std::iter::repeat_n(hairs, self.strands.len())
     }
 
-    /// Takes the hair as it is in `simulation`, among `obstacles`, for its groom. Nothing is laid over follow hairs for that.
+    /// Makes the current state of the hair in `simulation` its groom, with colliders at `obstacles`. Styling
+    /// of follow hairs is not included.
     pub(super) fn rest_as(&mut self, simulation: &Simulation, body: &StagedBody, obstacles: &[ColliderPose]) {
         let effects = self.follow.as_mut().map(|follow| follow.set_effects(Effects::default()));
         self.show(simulation, body);
@@ -260,7 +268,7 @@ impl StagedHair {
     }
 }
 
-/// The strands of a groom where the body has their roots at the start, where it has other things than at rest.
+/// Moves the strands of a groom to the initial pose of the body, which may differ from the rest pose.
 fn stand(groom: Groom, body: &StagedBody, mesh: &Mesh) -> Groom {
     let mut points = groom.points.clone();
     for (s, root) in groom.roots.iter().enumerate() {
@@ -273,7 +281,7 @@ fn stand(groom: Groom, body: &StagedBody, mesh: &Mesh) -> Groom {
     Groom { points, ..groom }
 }
 
-/// Which strands are simulated, and what the others follow (`None`: there are no others).
+/// Returns the simulated strands, and the guides of the others; `None` if there are no others.
 fn roles(groom: &Groom, guides: Guides) -> (Vec<u32>, Option<Vec<GuideWeights>>) {
     let all = || (0..groom.strand_count() as u32).collect::<Vec<_>>();
     let simulated = match guides {

@@ -1,4 +1,4 @@
-//! The simulated strands of all grooms, simulated together: hair of one groom meets that of another as it meets its own.
+//! Joins the simulated strands of all grooms into one simulation, so that hair of different grooms interacts.
 
 use super::hair::StagedHair;
 use crate::Scene;
@@ -8,7 +8,8 @@ use hairspring::{
 };
 use std::sync::Arc;
 
-/// All of `hair` at rest, groom after groom, by the scene's settings but for the solver's; the anchor is at `anchor` and colliders are as `obstacles`.
+/// Creates the simulation of all of `hair` at rest, groom after groom. Settings are the scene's, except for
+/// the solver's. The anchor is at `anchor`, and colliders are at `obstacles`.
 pub(super) fn simulation(
     hair: &[StagedHair],
     scene: &Scene,
@@ -28,7 +29,8 @@ pub(super) fn simulation(
     simulation
 }
 
-/// The simulated strands as a groom of their own, each groom's materials after those of the one before, and what a simulation asks of them.
+/// Joins the simulated strands into one groom with the data that a simulation needs. The materials of the
+/// grooms are concatenated.
 fn join(hair: &[StagedHair]) -> (Groom, Vec<Material>) {
     let mut all = Groom { offsets: vec![0], ..Groom::default() };
     let mut materials = Vec::new();
@@ -44,7 +46,7 @@ fn join(hair: &[StagedHair]) -> (Groom, Vec<Material>) {
             all.points.extend_from_slice(groom.strand(s));
             all.radii.extend_from_slice(&groom.radii[groom.range(s)]);
             all.offsets.push(all.points.len() as u32);
-            // A group past the end has the last material of its groom.
+            // A group beyond the end uses the last material of its groom.
             all.groups.push((first + groom.group(s) as usize).min(last) as u16);
             all.scales.push(groom.scale(s));
         }

@@ -1,10 +1,11 @@
-//! The joints that a scene's colliders, sources of wind, charged bodies and hands follow: found at once, before anything is changed.
+//! Joint indices of a scene's colliders, wind sources, charged bodies and hands. All are resolved before
+//! anything changes, so that an error leaves the stage as it was.
 
 use super::StageError;
 use crate::Scene;
 use hairspring::body::Body;
 
-/// The joint of each, as an index of the body's; `None` where none is named.
+/// Joint index of each item; `None` if it names no joint.
 pub(super) struct Joints {
     pub(super) colliders: Vec<Option<usize>>,
     pub(super) wind: Vec<Option<usize>>,
@@ -13,7 +14,7 @@ pub(super) struct Joints {
 }
 
 impl Joints {
-    /// Those that `settings` name, of `body`.
+    /// Resolves the joints named in `settings`.
     pub(super) fn new(settings: &Scene, body: Option<&Body>) -> Result<Self, StageError> {
         let colliders = settings.colliders.iter().map(|c| &c.joint);
         let wind = settings.wind_sources.iter().map(|s| &s.joint);
@@ -28,7 +29,7 @@ impl Joints {
     }
 }
 
-/// The joints of these names; `what` is to follow them.
+/// Returns the joints with these names; `what` describes the items in the error.
 fn find<'a>(
     body: Option<&Body>,
     what: &'static str,

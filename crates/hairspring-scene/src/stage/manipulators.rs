@@ -1,4 +1,5 @@
-//! The scene's hands at work: each takes hold, moves and lets go when its settings say so, at the start of a frame.
+//! The scene's hands: each adds, moves and removes its manipulator according to its settings, at the start of
+//! a frame.
 
 use super::body::StagedBody;
 use crate::Hand;
@@ -7,11 +8,11 @@ use hairspring::{
     simulation::{ManipulatorId, Simulation},
 };
 
-/// Where a hand is in its work.
+/// State of a hand.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Work {
     Before,
-    /// With its tool in the hair.
+    /// Its manipulator is in use.
     Now(ManipulatorId),
     After,
 }
@@ -19,18 +20,18 @@ enum Work {
 /// All hands of a scene.
 pub(super) struct StagedHands {
     work: Vec<Work>,
-    /// Joint of each; `None`: the world.
+    /// Joint of each; `None`: fixed in the world.
     joints: Vec<Option<usize>>,
 }
 
 impl StagedHands {
-    /// One for each of `joints`, before they begin.
+    /// Creates one hand for each of `joints`, before they begin.
     pub(super) fn new(joints: Vec<Option<usize>>) -> Self {
         Self { work: vec![Work::Before; joints.len()], joints }
     }
 
-    /// Takes up the hands `now` in place of those `before`: a hand of the same settings goes on with its work, all others let go, and new ones are
-    /// yet to begin.
+    /// Replaces the hands `before` by `now`. A hand with the same settings keeps its state. Other old hands
+    /// stop, and new ones have yet to begin.
     pub(super) fn update_settings(
         &mut self,
         (before, now): (&[Hand], &[Hand]),
@@ -51,14 +52,14 @@ impl StagedHands {
         }
     }
 
-    /// Back to before they began.
+    /// Resets all hands to before they begin.
     pub(super) fn reset(&mut self) {
         self.work.fill(Work::Before);
     }
 
-    /// Takes and lets go what is due at `time` [s], the body being posed for it.
+    /// Adds and removes the manipulators that are due at `time` [s], with the body posed for that time.
     pub(super) fn begin(&mut self, hands: &[Hand], time: f64, body: &StagedBody, hair: &mut Simulation) {
-        // Rounded as the settings are: a hand that begins at 0.1 s begins in the frame at 6/60 s.
+        // Rounded like the settings: a hand that begins at 0.1 s begins in the frame at 6/60 s.
         let now = time as f32;
         for (k, hand) in hands.iter().enumerate() {
             if self.work[k] == Work::Before && hand.from <= now {
@@ -74,7 +75,7 @@ impl StagedHands {
         }
     }
 
-    /// Sends them to where they are at `time` [s], the end of a frame for which the body is posed.
+    /// Sets the poses of the manipulators for `time` [s], the end of a frame for which the body is posed.
     pub(super) fn advance(&self, hands: &[Hand], time: f64, body: &StagedBody, hair: &mut Simulation) {
         for (k, hand) in hands.iter().enumerate() {
             if let Work::Now(id) = self.work[k] {

@@ -1,4 +1,5 @@
-//! A scene being played: the body posed, the guides stepped, the follow hairs placed, frame after frame.
+//! A running scene: in every frame, the body is posed, the guides are simulated, and the follow hairs are
+//! placed.
 
 mod body;
 mod charged;
@@ -42,7 +43,7 @@ use manipulators::StagedHands;
 use std::time::{Duration, Instant};
 use wind::StagedWind;
 
-/// Why a scene cannot be played.
+/// Errors of a scene that cannot be played.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StageError {
     /// The scene has no strands at all.
@@ -57,7 +58,7 @@ pub enum StageError {
         groom: usize,
         /// Index of the strand.
         strand: usize,
-        /// How many points it has.
+        /// Number of points that it has.
         points: usize,
     },
     /// The clip does not belong to the body.
@@ -67,19 +68,19 @@ pub enum StageError {
     JointCount {
         /// Name of the clip.
         clip: String,
-        /// Joints a frame of the clip.
+        /// Number of joints in the clip.
         clip_joints: usize,
         /// Joints of the body.
         body_joints: usize,
     },
-    /// Settings for another number of grooms than are on the stage.
+    /// The settings have another number of grooms than the stage.
     #[error(
         "there are settings for {settings} grooms, and {grooms} are on the stage: their hair needs a stage of its own"
     )]
     GroomCount {
-        /// Grooms of the settings.
+        /// Number of grooms in the settings.
         settings: usize,
-        /// Grooms on the stage.
+        /// Number of grooms on the stage.
         grooms: usize,
     },
     /// A strand is too far from the origin for single precision.
@@ -87,52 +88,54 @@ pub enum StageError {
     TooFar {
         /// Index of the groom in the scene.
         groom: usize,
-        /// Which strand, and how far.
+        /// The strand and its distance.
         why: Imprecise,
     },
-    /// A length that no frame could hold.
+    /// A coordinate or length is not finite or too large.
     #[error("{what} is not finite or exceeds {MAX_COORDINATE} m, the largest length that is simulated")]
     OutOfRange {
-        /// What has it.
+        /// Description of the item.
         what: String,
     },
-    /// Something is to follow a joint that is not there.
+    /// An item names a joint that does not exist.
     #[error("{what} follows the joint '{joint}', and the body has none of that name")]
     NoSuchJoint {
-        /// What follows it.
+        /// Description of the item that names the joint.
         what: &'static str,
-        /// The name.
+        /// Name of the joint.
         joint: String,
     },
 }
 
-/// What a frame did and took.
+/// Results and timings of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameReport {
-    /// Of the simulated strands.
+    /// Report of the simulated strands.
     pub step: StepReport,
-    /// Posing the body and rebuilding its distance field.
+    /// Time to pose the body and rebuild its colliders.
     pub body: Duration,
-    /// Stepping the simulated strands.
+    /// Time to simulate the strands.
     pub simulate: Duration,
-    /// Placing the follow hairs.
+    /// Time to place the follow hairs.
     pub follow: Duration,
 }
 
-/// One groom as it is now, to draw or to write.
+/// One groom in its current state, for drawing or writing.
 #[derive(Clone, Copy)]
 pub struct Strands<'a> {
-    /// Points of all strands [m]; where `follow` is there, those of follow hairs are as they were when they were last placed here.
+    /// Points of all strands [m]. If `follow` is present, those of follow hairs are as they were last placed
+    /// here.
     pub points: &'a [Vec3],
-    /// The groom they belong to: offsets, radii, colours.
+    /// The groom that they belong to: offsets, radii, colors.
     pub groom: &'a Groom,
-    /// How it is drawn.
+    /// Color and shading.
     pub look: &'a HairLook,
-    /// What places its follow hairs, where that is left to who draws them ([`Stage::set_external_interpolation`]).
+    /// Data for placing its follow hairs, if the renderer interpolates them
+    /// ([`Stage::set_external_interpolation`]).
     pub follow: Option<HairInterpolation<'a>>,
 }
 
-/// The body as it is now, to draw.
+/// The body in its current pose, for drawing.
 #[derive(Clone, Copy)]
 pub struct PosedBody<'a> {
     /// Triangles and parts.
@@ -143,7 +146,7 @@ pub struct PosedBody<'a> {
     pub normals: &'a [Vec3],
 }
 
-/// A scene in motion. Settings are the scene's; state is the pose, the strands and the time.
+/// A running scene. The settings are those of the scene; the state is the pose, the strands and the time.
 pub struct Stage {
     scene: Scene,
     body: StagedBody,
@@ -151,15 +154,16 @@ pub struct Stage {
     hair: Vec<StagedHair>,
     /// The simulated strands of all grooms, groom after groom.
     simulation: Simulation,
-    /// Their roots.
+    /// The roots of the simulated strands.
     roots: Vec<RigidTransform>,
     hands: StagedHands,
     clock: Clock,
 }
 
 impl Stage {
-    /// Sets the scene up at time 0: the body in the first pose of its clip, the hair at rest on it. Roots without a binding are
-    /// bound to the nearest place of the body. With `solver.preroll`, hair falls here, and this takes as long as to play so much of the scene.
+    /// Sets the scene up at time 0: the body is in the first pose of its clip, with the hair at rest on it.
+    /// Roots without a binding are bound to the nearest point of the body. With `solver.preroll`, this
+    /// includes the pre-roll, which takes as long as simulating that much of the scene.
     pub fn new(mut scene: Scene) -> Result<Self, StageError> {
         check(&scene)?;
         if let Some(body) = &scene.body {
@@ -184,7 +188,8 @@ impl Stage {
         Ok(stage)
     }
 
-    /// Back to time 0; no tool is in use, and the body goes by its clip alone. What [`Stage::set_user_colliders`] brought stays where it is.
+    /// Resets to time 0. All manipulators are removed, and [`Stage::move_body`] is undone. Colliders of
+    /// [`Stage::set_user_colliders`] stay where they are.
     pub fn reset(&mut self) {
         self.clock = Clock::ZERO;
         self.body.place(&self.scene, 0.0);
@@ -195,7 +200,7 @@ impl Stage {
         self.update_render_points();
     }
 
-    /// Where the roots are on the posed body.
+    /// Updates the roots from the posed body.
     fn pose_roots(&mut self) {
         self.roots.clear();
         for hair in &mut self.hair {
@@ -204,32 +209,37 @@ impl Stage {
         }
     }
 
-    /// Takes a tool to the hair of all grooms as it is now, its space being at `pose` in the world, besides what the scene's hands do. It acts in every
-    /// step until it is let go of, or until a reset.
+    /// Adds a manipulator to the hair of all grooms in its current state, with its space at `pose` in the
+    /// world, in addition to the scene's hands. It acts in every step until it is removed or the stage is
+    /// reset.
     pub fn add_manipulator(&mut self, tool: Manipulator, pose: RigidTransform) -> ManipulatorId {
         self.simulation.add_manipulator(tool, pose)
     }
 
-    /// Moves a tool: its space goes to `pose` in the next step.
+    /// Moves a manipulator: its space is at `pose` at the end of the next step.
     pub fn set_manipulator_pose(&mut self, id: ManipulatorId, pose: RigidTransform) {
         self.simulation.set_manipulator_pose(id, pose);
     }
 
-    /// Lets go of a tool, and of what it holds.
+    /// Removes a manipulator and releases the points that it holds.
     pub fn remove_manipulator(&mut self, id: ManipulatorId) {
         self.simulation.remove_manipulator(id);
     }
 
-    /// Carries the whole body by `by` besides its clip, from the next step on: a rotation about the world's origin, then a translation [m]. The last
-    /// call counts, from where the clip has the body and not from the call before. What moves farther than `Solver::jump` in a step takes its hair along as
-    /// it is. Hair without a body stays.
+    /// Sets a rigid motion `by` of the whole body in addition to its clip, from the next step on: a rotation
+    /// about the world's origin, then a translation [m]. It replaces that of the previous call. If the motion
+    /// exceeds `Solver::teleport_distance` in a step, the hair is moved rigidly with it. Hair without a body
+    /// does not move.
     pub fn move_body(&mut self, by: RigidTransform) {
         self.body.move_to(by);
     }
 
-    /// A body in the world that an app moves, a ball or a hand: closed shapes in a space of its own, which is at `pose`. They are colliders of all hair, the last of
-    /// [`Stage::obstacles`], and drawn by nobody here. It goes from where it was to `pose` in the next step and passes on that velocity; it has none where it
-    /// appears, which it does with another number of shapes. What is not finite or has no inside is left out; without shapes, there is nothing.
+    /// Sets the user colliders: a body that the app moves, such as a ball or a hand, made of closed shapes in
+    /// their own space, which is at `pose`. They collide with all hair and are the last of
+    /// [`Stage::obstacles`]; the stage does not draw them. They move from their previous pose to `pose`
+    /// during the next step. New colliders start with zero velocity; this includes calls with a different
+    /// number of shapes. Shapes that are not finite or have no interior are ignored. An empty slice removes
+    /// all of them.
     pub fn set_user_colliders(&mut self, shapes: &[ColliderShape], pose: RigidTransform) {
         let place = pose.translation.is_finite() && pose.rotation.is_finite();
         let solid = |shape: &&ColliderShape| {
@@ -239,65 +249,69 @@ impl Stage {
         self.body.set_user_colliders(shapes.iter().filter(solid), pose);
     }
 
-    /// The colliders as they are now, and how they moved in the last step.
+    /// Returns the colliders in their current state, with their motion in the last step.
     pub fn obstacles(&self) -> &[MovingCollider] {
         self.body.obstacles()
     }
 
-    /// Those of them that are the scene's own colliders, in its order; hulls that span no volume are left out.
+    /// Returns those of them that are the scene's own colliders, in its order, without hulls that span no
+    /// volume.
     pub fn colliders(&self) -> &[MovingCollider] {
         self.body.colliders()
     }
 
-    /// What of the mesh that hair collides with is thinner than its distance field can tell.
+    /// Returns a report if parts of the collision mesh are thinner than its distance field can resolve.
     pub fn thin_mesh(&self) -> Option<ThinMesh> {
         self.body.thin()
     }
 
-    /// Where what the body's joint of this name carries has gone since rest; nowhere without a joint of that name.
+    /// Returns the motion since rest of what the joint with this name carries; the identity if there is no
+    /// such joint.
     pub fn carried(&self, joint: Option<&str>) -> RigidTransform {
         let joint = joint.and_then(|name| self.scene.body.as_ref()?.joint(name));
         self.body.carried(joint)
     }
 
-    /// Where the frame is now that roots and fields move with: the joint that carries most of the skin around the roots (the head); the identity without a
-    /// body.
+    /// Returns the current transform of the anchor, which roots and fields move with. It is the joint that
+    /// carries most of the skin around the roots (the head), or the identity without a body.
     pub fn body_anchor(&self) -> RigidTransform {
         self.body.anchor()
     }
 
-    /// Plays `dt` [s] (above 0) of the scene. For frames at a fixed rate, [`Stage::step_frame`] keeps exact time.
+    /// Advances the scene by `dt` [s] (above 0). For frames at a fixed rate, [`Stage::step_frame`] keeps
+    /// exact time.
     pub fn step(&mut self, dt: f32) -> FrameReport {
         let mut report = self.advance(dt);
         report.follow = self.update_render_points();
         report
     }
 
-    /// Plays one frame at `rate`. Time is a count of such frames, so that it is exact after any number of them.
+    /// Advances the scene by one frame at `rate`. Time is a count of such frames, so it stays exact.
     pub fn step_frame(&mut self, rate: FrameRate) -> FrameReport {
         let mut report = self.advance_frame(rate);
         report.follow = self.update_render_points();
         report
     }
 
-    /// Plays `dt` [s] (above 0) of what is simulated alone: what [`Stage::strands`] shows stays as it is until [`Stage::show`], and costs nothing in frames that
-    /// nobody looks at. No result depends on which frames are shown.
+    /// Advances only the simulation by `dt` [s] (above 0). The points of [`Stage::strands`] do not change
+    /// until [`Stage::update_render_points`], which saves their cost in frames that are not drawn. The
+    /// results do not depend on which frames are drawn.
     pub fn advance(&mut self, dt: f32) -> FrameReport {
         self.advance_to(self.clock.after(f64::from(dt)), dt)
     }
 
-    /// Plays one frame at `rate` of what is simulated alone, as [`Stage::advance`] does.
+    /// Advances only the simulation by one frame at `rate`, like [`Stage::advance`].
     pub fn advance_frame(&mut self, rate: FrameRate) -> FrameReport {
         self.advance_to(self.clock.after_frame(rate), rate.frame_length() as f32)
     }
 
-    /// Plays to the time `end`, which is `dt` [s] after now.
+    /// Advances to the time `end`, which is `dt` [s] after the current time.
     fn advance_to(&mut self, end: Clock, dt: f32) -> FrameReport {
         let mut report = FrameReport::default();
         let began = Instant::now();
         let (from, to) = (self.clock.time(), end.time());
         self.hands.begin(&self.scene.hands, from, &self.body, &mut self.simulation);
-        // Sources are where they are at the start, as points are.
+        // Sources are at their poses at the start of the frame, as points are.
         self.wind.advance(&self.scene, from.midpoint(to), &self.body);
         if let Some(cut) = self.body.advance(&self.scene, (from, to)) {
             self.simulation.teleport(cut);
@@ -321,87 +335,89 @@ impl Stage {
         report
     }
 
-    /// Brings the points of all strands up to date after [`Stage::advance`]; how long it took.
+    /// Updates the points of all strands after [`Stage::advance`]. Returns the time that this took.
     pub fn update_render_points(&mut self) -> Duration {
         let began = Instant::now();
         self.hair.iter_mut().for_each(|hair| hair.show(&self.simulation, &self.body));
         began.elapsed()
     }
 
-    /// Time played since the start [s].
+    /// Returns the time since the start of the scene [s].
     pub fn time(&self) -> f64 {
         self.clock.time()
     }
 
-    /// The scene's settings; its grooms have moved into the stage.
+    /// Returns the scene's settings, without its grooms, which have moved into the stage.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// All grooms as they are now.
+    /// Returns all grooms in their current state.
     pub fn strands(&self) -> impl ExactSizeIterator<Item = Strands<'_>> {
         self.hair.iter().map(|h| h.strands(&self.body))
     }
 
-    /// Leaves follow hairs to who draws them, a viewer that places them on a graphics card: a step then finds no more than how guides carry them, which
-    /// [`Strands::follow`] gives, and their points stay behind. Off at the start; turned off, they are placed at once.
+    /// Sets whether the renderer interpolates the follow hairs, for example on the GPU. If so, a step only
+    /// computes the guides' transforms, which are in [`Strands::follow`], and the points of follow hairs are
+    /// not updated. Off by default. Turning it off places them at once.
     pub fn set_external_interpolation(&mut self, left: bool) {
         self.hair.iter_mut().for_each(|h| h.leave(left, &self.body));
     }
 
-    /// Places follow hairs that are left to who draws them, for once.
+    /// Places the follow hairs once, even if the renderer interpolates them.
     pub fn place_follow_hairs(&mut self) {
         self.hair.iter_mut().for_each(|h| h.place_followers(&self.body));
     }
 
-    /// The body as it is now; `None` for a scene without one.
+    /// Returns the body in its current pose; `None` for a scene without one.
     pub fn body(&self) -> Option<PosedBody<'_>> {
         self.body.posed(&self.scene)
     }
 
-    /// Strands that are simulated, of how many there are.
+    /// Returns the number of simulated strands and the total number.
     pub fn simulated_strands(&self) -> (usize, usize) {
         let all = self.hair.iter().map(|h| h.groom().strand_count()).sum();
         (self.simulation.strand_count(), all)
     }
 
-    /// Points that are simulated, of how many there are.
+    /// Returns the number of simulated points and the total number.
     pub fn simulated_points(&self) -> (usize, usize) {
         let all = self.hair.iter().map(|h| h.groom().point_count()).sum();
         (self.simulation.point_count(), all)
     }
 
-    /// Joints that the sag-free start had to make stiffer than the fibre, and those that are softer than they should be.
+    /// Returns the number of joints that the sag-free start made stiffer than the fiber, and of those that
+    /// are softer than needed.
     pub fn start(&self) -> Start {
         self.simulation.start()
     }
 
-    /// What is known of the hair's volume; `None` where strands pass through each other.
+    /// Returns a report of the hair's volume; `None` if strands pass through each other.
     pub fn volume(&self) -> Option<VolumeReport> {
         self.simulation.volume()
     }
 
-    /// What is known of strands that meet each other one by one; `None` where none do.
+    /// Returns a report of the contacts between strands; `None` if they are off.
     pub fn neighbours(&self) -> Option<NeighboursReport> {
         self.simulation.neighbours()
     }
 
-    /// Name of the instruction set that strands are simulated with.
+    /// Returns the name of the instruction set used by the simulation.
     pub fn instruction_set(&self) -> String {
         self.simulation.instruction_set()
     }
 
-    /// Energy of all simulated strands at the end of the last step.
+    /// Returns the energy of all simulated strands at the end of the last step.
     pub fn energy(&self) -> Energy {
         self.simulation.energy()
     }
 
-    /// What colliders hold out now, and how many points had one looked up.
+    /// Returns the current contacts with colliders, and the number of points for which one was evaluated.
     pub fn contacts(&self) -> Contacts {
         self.simulation.contacts(self.body.obstacles())
     }
 
-    /// Figures over all simulated strands at the end of the last step.
+    /// Returns measurements over all simulated strands at the end of the last step.
     pub fn measure(&self) -> Measure {
         self.simulation.measure(self.body.obstacles())
     }
@@ -442,7 +458,7 @@ fn check(scene: &Scene) -> Result<(), StageError> {
     Ok(())
 }
 
-/// Refuses effects that would displace follow hairs beyond what is simulated.
+/// Rejects effects that would displace follow hairs beyond what is simulated.
 fn check_effects(scene: &Scene) -> Result<(), StageError> {
     for (g, effects) in scene.grooms.iter().map(|groom| groom.effects).enumerate() {
         let lengths = Vec3::new(effects.curl_radius, effects.curl_length, effects.noise);
@@ -451,7 +467,7 @@ fn check_effects(scene: &Scene) -> Result<(), StageError> {
     Ok(())
 }
 
-/// Refuses coordinates that are not finite or beyond [`MAX_COORDINATE`].
+/// Rejects coordinates that are not finite or beyond [`MAX_COORDINATE`].
 fn in_range<'a>(what: &str, coordinates: impl IntoIterator<Item = &'a Vec3>) -> Result<(), StageError> {
     let inside = |p: &Vec3| p.abs().cmple(Vec3::splat(MAX_COORDINATE)).all();
     match coordinates.into_iter().all(inside) {

@@ -1,8 +1,9 @@
-//! Hair falls before the scene begins, and rests where it came to lie.
+//! Pre-roll: hair falls before the scene begins, and its resting state becomes the groom.
 //!
-//! Hair that is grown by a rule stands off the skin as no hair does. To begin with it would be to begin with its fall; to put it in balance as it stands
-//! would be hair that defies gravity for good. So it falls once, onto a body that stays as hair is made on it, in still air, strands through each other, and as they lie
-//! then they take the place of the groom's: rest shapes, the volume at rest, follow hairs and every reset are of those.
+//! Procedurally grown hair stands off the skin as no real hair does. Starting with it would show it fall;
+//! balancing it as it stands would make it defy gravity permanently. In the pre-roll it falls once, onto a
+//! body that does not move, in still air, with strands passing through each other. The result replaces the
+//! groom: rest shapes, the rest volume, follow hairs and every reset use it.
 
 use super::{body::StagedBody, hair::StagedHair, join_grooms};
 use crate::Scene;
@@ -13,16 +14,17 @@ use hairspring::{
     simulation::StepInput,
 };
 
-/// Frames a second of the fall [Hz]; its substeps are the scene's.
+/// Frame rate of the fall [Hz]; the number of substeps is the scene's.
 const RATE: f32 = 60.0;
 
-/// Lets all of `hair` fall for `scene.solver.settle` from where its groom has it, at rest there, on `body`, which has just been made.
+/// Lets all of `hair` fall for `scene.solver.preroll` seconds from its groom, starting at rest. `body` must
+/// be in its initial pose.
 pub(super) fn settle(hair: &mut [StagedHair], scene: &Scene, body: &StagedBody) {
-    // Any other integrator may be there to be seen blowing up.
+    // Other integrators may be unstable on purpose.
     let solver = Solver { sag_free: false, integrator: Integrator::BackwardEuler, ..scene.solver };
     let poses = body.poses();
     let mut simulation = join_grooms::simulation(hair, scene, solver, body.anchor(), &poses);
-    // The room that they would keep is that of hair which stands out.
+    // Volume and strand contact would preserve the volume of hair that stands out.
     simulation.set_volume(&Volume::default());
     simulation.set_neighbours(&Neighbours::default());
     let roots: Vec<RigidTransform> = hair.iter().flat_map(|hair| hair.roots()).copied().collect();

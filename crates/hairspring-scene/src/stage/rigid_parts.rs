@@ -1,24 +1,26 @@
-//! A closed mesh taken apart into what moves by itself as one rigid piece, and the rest.
+//! Separates the rigid parts of a closed mesh from the rest.
 //!
-//! A thing beside the body (a second head, a tray) is part of its mesh and of its skin. As a collider it is better by itself: its distance field is made once
-//! instead of wherever it goes, it goes on its arc between frames with its own velocity in each substep, and asks for shorter ones where it is fast.
+//! A prop (a second head, a tray) is part of the body's mesh and skin. A separate collider has advantages:
+//! its distance field is built only once, it follows its arc between frames with its own velocity in each
+//! substep, and it requests shorter substeps when it moves fast.
 
 use hairspring::body::Body;
 
-/// A piece: its joint, and its mesh in the rest pose.
+/// A rigid part: its joint, and its mesh in the rest pose.
 pub(super) struct Piece {
     pub(super) joint: usize,
     pub(super) body: Body,
 }
 
-/// Takes every piece from `body` that is no longer than `longest` [m] and does not hang together with the joint `anchor`: a joint without parent and children
-/// whose vertices are its own alone.
+/// Removes from `body` every rigid part that is no longer than `longest` [m] and not connected with the joint
+/// `anchor`, and returns them. A rigid part is a joint without parent and children that shares no vertices or
+/// triangles with other joints.
 pub(super) fn take(body: &mut Body, anchor: usize, longest: f32) -> Vec<Piece> {
     let Some(skin) = &body.skin else { return Vec::new() };
     let mut alone: Vec<bool> = body.joints.iter().map(|joint| joint.parent.is_none()).collect();
     alone[anchor] = false;
     body.joints.iter().filter_map(|joint| joint.parent).for_each(|parent| alone[parent as usize] = false);
-    // The joint that a vertex has all of its weight from.
+    // The only joint that has a weight on a vertex.
     let own: Vec<Option<u16>> = skin
         .joints
         .iter()
@@ -62,7 +64,7 @@ mod tests {
     use glam::Vec3;
     use hairspring::body::{Joint, Mesh, Skin, Trs};
 
-    /// A tetrahedron of 1 m for each joint, the last two sharing a vertex's weight; parents as given.
+    /// A body with a separate tetrahedron of 1 m for each joint; parents as given.
     fn body(parents: &[Option<u32>]) -> Body {
         let mut mesh = Mesh::default();
         let mut skin = Skin { joints: Vec::new(), weights: Vec::new(), inverse_bind: Vec::new() };
@@ -83,7 +85,7 @@ mod tests {
 
     #[test]
     fn what_moves_by_itself_is_a_piece_and_the_rest_is_whole() {
-        // The anchor, a child of it, a thing, a parent and its child.
+        // The anchor, a child of it, a prop, a parent and its child.
         let mut apart = body(&[None, Some(0), None, None, Some(3)]);
         let pieces = take(&mut apart, 0, 1.5);
         assert_eq!(pieces.iter().map(|piece| piece.joint).collect::<Vec<_>>(), [2]);

@@ -1,5 +1,5 @@
-//! What hair collides with that is made from meshes: a distance field of a closed one, sheets of open ones. One that deforms is made anew
-//! in the anchor's space, whenever it moved there.
+//! Colliders made from meshes: the distance field of a closed mesh and the thin shells of open ones. A
+//! deforming collider is rebuilt in the anchor's space whenever it has moved there.
 
 use super::fast_surface::FastSurfaceProbe;
 use glam::{Affine3A, Vec3};
@@ -10,39 +10,40 @@ use hairspring::{
 };
 use std::sync::Arc;
 
-/// A surface that moved less than this in its anchor's space is rigid for this frame, as a share of its cells or its thickness.
+/// Largest displacement in the anchor's space at which a surface counts as rigid in a frame, relative to its
+/// cell or its thickness.
 const STILL: f32 = 0.0025;
 
-/// Colliders that are kept for their memory: as many as viewers look at at once.
+/// Maximum number of colliders kept for reuse: as many as viewers hold at once.
 const SPARE: usize = 4;
 
-/// What becomes of a mesh.
+/// The kind of collider that a mesh becomes.
 #[derive(Clone, Copy)]
 pub(super) enum SurfaceKind {
-    /// A distance field with cells of this edge [m].
+    /// A distance field with this cell [m].
     Field(f32),
-    /// A sheet of this thickness [m].
+    /// A thin shell of this thickness [m].
     Sheet(f32),
 }
 
-/// Makes the collider of one skinned mesh, again and again.
+/// Builds and rebuilds the collider of one skinned mesh.
 pub(super) struct Surface {
     making: SurfaceKind,
     voxelizer: Voxelizer,
-    /// Colliders of frames before that were looked at elsewhere when the next was made, for their memory.
+    /// Colliders of earlier frames that were still shared when the next was built; their memory is reused.
     spare: Vec<ColliderShape>,
-    /// Vertices in the anchor's space, now and a frame ago.
+    /// Vertices in the anchor's space, at the current and the previous update.
     now: Vec<Vec3>,
     before: Vec<Vec3>,
     normals: Vec<Vec3>,
     limbs: FastSurfaceProbe,
 }
 
-/// A body's joints, and the anchor that its colliders are in the space of.
+/// Joint matrices of a body, and the anchor whose space its colliders are in.
 pub(super) type Pose = (Vec<Affine3A>, RigidTransform);
 
 impl SurfaceKind {
-    /// A collider that is nowhere yet.
+    /// Returns an empty collider of this kind.
     pub fn nothing(self) -> ColliderShape {
         match self {
             Self::Field(_) => ColliderShape::Field(Arc::default()),
@@ -50,7 +51,7 @@ impl SurfaceKind {
         }
     }
 
-    /// The collider of a mesh that does not deform.
+    /// Builds the collider of a rigid mesh.
     pub fn rigid(self, body: &Body, within: Option<(Vec3, Vec3)>) -> ColliderShape {
         let mut shape = self.nothing();
         let (positions, triangles) = (&body.mesh.positions, &body.mesh.triangles);
@@ -58,7 +59,7 @@ impl SurfaceKind {
         shape
     }
 
-    /// Makes `shape` the collider of a mesh with vertices `now` and, where they moved, `before` [m].
+    /// Rebuilds `shape` from a mesh with vertices `now` and, if they moved, `before` [m].
     fn make(
         self,
         shape: &mut ColliderShape,
@@ -79,7 +80,7 @@ impl SurfaceKind {
     }
 }
 
-/// Whether nobody else looks at a shape.
+/// Returns whether a shape is not shared.
 fn is_free(shape: &mut ColliderShape) -> bool {
     match shape {
         ColliderShape::Field(grid) => Arc::get_mut(grid).is_some(),
@@ -89,7 +90,7 @@ fn is_free(shape: &mut ColliderShape) -> bool {
 }
 
 impl Surface {
-    /// Of a body that has a skin.
+    /// Creates the surface of a body that has a skin.
     pub(super) fn new(making: SurfaceKind, body: &Body) -> Self {
         let limbs = match making {
             SurfaceKind::Field(cell) => FastSurfaceProbe::of_solid(&body.mesh, cell),
@@ -106,7 +107,8 @@ impl Surface {
         }
     }
 
-    /// Into how many parts a frame is to be cut that ends with `body` in that pose, and was made a collider where it begins.
+    /// Returns the number of time slices for a frame that ends with `body` in this pose and starts at the
+    /// last update.
     pub(super) fn parts(
         &self,
         body: &Body,
@@ -117,8 +119,8 @@ impl Surface {
         self.limbs.parts((&body.mesh, skin), &self.now, (world, anchor), within)
     }
 
-    /// Makes `shape` the collider of `body` in the last of those poses, and others in those before it, at equal parts of the frame; `fresh`: without motion
-    /// since the last time.
+    /// Rebuilds `shape` from `body` in the last of the poses, and its previous slices from the poses before
+    /// it, at equal time slices of the frame. With `fresh`, the surface has no motion since the last update.
     pub(super) fn update<'a>(
         &mut self,
         shape: &mut ColliderShape,
@@ -138,7 +140,7 @@ impl Surface {
         shape.set_previous_slices(earlier);
     }
 
-    /// Makes `shape` the collider of `body` in a pose.
+    /// Rebuilds `shape` from `body` in one pose.
     fn make(
         &mut self,
         shape: &mut ColliderShape,
@@ -161,12 +163,13 @@ impl Surface {
                 ColliderShape::Sheet(sheet) if sheet.deforms() => ThinShell::hold_still(Arc::make_mut(sheet)),
                 _ => {}
             }
-            // What little it moved is not lost: it adds up against the surface that was made.
+            // Small motion is not lost: it accumulates relative to the last built surface.
             std::mem::swap(&mut self.now, &mut self.before);
             return;
         }
         let before = (!fresh).then_some(self.before.as_slice());
-        // Someone may still look at the last one: another is made, in place of a copy that would be written over.
+        // If the last shape is still shared, use another one. `make_mut` would make a copy only to overwrite
+        // it.
         if !is_free(shape) {
             let free = self.spare.iter_mut().position(is_free).map(|k| self.spare.swap_remove(k));
             let last = std::mem::replace(shape, free.unwrap_or_else(|| self.making.nothing()));

@@ -1,4 +1,5 @@
-//! How thick a closed mesh is, looked at along rays through it, and what of it is thinner than its distance field can tell.
+//! Measures the thickness of a closed mesh along rays through it, and finds parts that are too thin for its
+//! distance field.
 
 use glam::Vec3;
 use hairspring::body::Mesh;
@@ -9,16 +10,17 @@ use parry3d::{
 use rayon::prelude::*;
 use std::{collections::HashSet, fmt};
 
-/// A triangle, its middle and its normal.
+/// A triangle with its center and normal.
 pub(super) type Place = (u32, Vec3, Vec3);
 
-/// Triangles of a `mesh` that stand for their neighbours: one for each way it may face in each cube of edge `spacing` [m].
+/// Returns a sample of the triangles of a `mesh`: in each cube of edge `spacing` [m], one for each direction
+/// they face.
 pub(super) fn places(mesh: &Mesh, spacing: f32) -> Vec<Place> {
     let mut seen = HashSet::new();
     let place = |triangle: usize| {
         let corners = mesh.corners(triangle);
         let (middle, normal) = (corners.iter().sum::<Vec3>() / 3.0, normal(corners)?);
-        // Truncated to −1, 0 or 1 along each axis: 26 ways at most.
+        // Truncated to −1, 0 or 1 along each axis: at most 26 directions.
         let faces = (normal * 1.999).as_ivec3();
         let new = seen.insert(((middle / spacing).floor().as_ivec3(), faces));
         new.then_some((triangle as u32, middle, normal))
@@ -26,13 +28,14 @@ pub(super) fn places(mesh: &Mesh, spacing: f32) -> Vec<Place> {
     (0..mesh.triangles.len()).filter_map(place).collect()
 }
 
-/// The unit normal of a triangle; `None` where it has no area.
+/// Returns the unit normal of a triangle; `None` if it has no area.
 pub(super) fn normal([a, b, c]: [Vec3; 3]) -> Option<Vec3> {
     (b - a).cross(c - a).try_normalize()
 }
 
-/// How thick a closed `mesh` is behind places `spacing` [m] apart, `skip` [m] being nothing: each place with the way to the other side [m]. What has no other
-/// side, an open shell, tells nothing.
+/// Returns the thickness of a closed `mesh` behind samples `spacing` [m] apart: each sample with the distance
+/// to the opposite side [m]. Distances below `skip` [m] are ignored. Samples without an opposite side, as in
+/// an open shell, are omitted.
 pub(super) fn thicknesses(mesh: &Mesh, spacing: f32, skip: f32) -> Vec<(Place, f32)> {
     if !mesh.positions.iter().all(|p| p.is_finite()) {
         return Vec::new();
@@ -41,7 +44,7 @@ pub(super) fn thicknesses(mesh: &Mesh, spacing: f32, skip: f32) -> Vec<(Place, f
     let Ok(solid) = TriMesh::new(vertices, mesh.triangles.clone()) else { return Vec::new() };
     let thickness = |place: Place| {
         let (_, middle, normal) = place;
-        // From just below the surface, so that the triangle itself is not met.
+        // Starts just below the surface, so that the ray does not hit the triangle itself.
         let from = middle - normal * skip;
         let ray = Ray::new(from.to_array().into(), (-normal).to_array().into());
         Some((place, solid.cast_local_ray(&ray, f32::MAX, false)? + skip))
@@ -49,22 +52,23 @@ pub(super) fn thicknesses(mesh: &Mesh, spacing: f32, skip: f32) -> Vec<(Place, f
     places(mesh, spacing).into_par_iter().filter_map(thickness).collect()
 }
 
-/// What of a mesh that hair collides with is thinner than a cell of its distance field, so that hair may pass through it.
+/// Report of a collision mesh that is partly thinner than a cell of its distance field, so that hair may pass
+/// through it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinMesh {
-    /// Its share of the surface that hair can reach [1].
+    /// Fraction of the surface within reach of the hair that is too thin [1].
     pub share: f32,
-    /// The least thickness [m].
+    /// Minimum thickness [m].
     pub thickness: f32,
     /// Edge of the field's cells [m].
     pub cell: f32,
 }
 
 impl ThinMesh {
-    /// Share of the surface from which on it is told [1]: sharp edges of any mesh are thin.
+    /// Fraction of the surface above which it is reported [1]. Sharp edges of any mesh are thin.
     const TOLD: f32 = 0.01;
 
-    /// Of a closed `mesh` with a field of this `cell` [m], within the box that hair can be in.
+    /// Checks a closed `mesh` whose field has this `cell` [m], within the box that hair can reach.
     pub(super) fn find(mesh: &Mesh, cell: f32, within: Option<(Vec3, Vec3)>) -> Option<Self> {
         let reached = |p: Vec3| within.is_none_or(|(lo, hi)| p.cmpge(lo).all() && p.cmple(hi).all());
         let all = thicknesses(mesh, cell, 1e-3 * cell);
@@ -98,7 +102,7 @@ impl fmt::Display for ThinMesh {
 mod tests {
     use super::*;
 
-    /// A box with these half sizes [m], each side cut into `n`².
+    /// A box with these half-extents [m], each side divided into `n`² quads.
     fn cuboid(half: Vec3, n: u32) -> Mesh {
         let mut mesh = Mesh::default();
         for (axis, sign) in (0..3).flat_map(|axis| [(axis, 1.0f32), (axis, -1.0)]) {

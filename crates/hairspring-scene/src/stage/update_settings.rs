@@ -1,24 +1,28 @@
-//! Other settings in the midst of the play.
+//! Changes the settings of a running scene.
 
 use super::{Stage, StageError, check_effects, join_grooms, joints::Joints, wind::StagedWind};
 use crate::Scene;
 use hairspring::settings::Solver;
 
 impl Stage {
-    /// Takes up the settings of `settings` in the midst of the play: hair stays where it is and goes on moving as it does, and from the next step on
-    /// everything is as in a scene of these settings.
+    /// Applies the settings of `settings` to the running scene. The hair keeps its positions and velocities.
+    /// From the next step on, everything is as in a scene with these settings.
     ///
-    /// Geometry stays and is not looked at: `grooms[k].groom`, `grooms[k].guides`, `body`, `collision`, `sheets`, `clip`, `solver.collide_body` and `solver.preroll`. All else
-    /// is taken up. A material's `radius` is that of the simulated fibre alone: what is drawn has the groom's.
+    /// Geometry is kept and ignored in `settings`: `grooms[k].groom`, `grooms[k].guides`, `body`,
+    /// `collision`, `sheets`, `clip`, `solver.collide_body` and `solver.preroll`. Everything else is applied.
+    /// The `radius` of a material only affects the simulated fiber; drawn hairs have the groom's radius.
     ///
-    /// - Where materials, gravity, solver, volume, neighbours or shelter change, rest shapes are found anew: with `solver.sag_free`, the groom is in balance under the
-    ///   new gravity, as it would be from the start. What did not change costs nothing.
-    /// - How deep hair may be in a collider is what it was authored with: a collider that is new pushes out all hair.
-    /// - Tools of [`Stage::take`] go on. So does a hand of the scene whose settings are still there; others let go, and new ones begin.
+    /// - If materials, gravity, or the settings of solver, volume, neighbors or wind occlusion change, rest
+    ///   shapes are computed again. With `solver.sag_free`, the groom is in balance under the new gravity, as
+    ///   it would be from the start. Unchanged settings cost nothing.
+    /// - The allowed depth of hair in a collider is that of the authored groom: a new collider pushes out all
+    ///   hair.
+    /// - Manipulators of [`Stage::add_manipulator`] stay. A hand of the scene with unchanged settings also
+    ///   stays; other hands stop, and new ones begin.
     ///
     /// # Errors
-    /// [`StageError::GroomCount`] where there are more or fewer grooms, [`StageError::NoSuchJoint`],
-    /// [`StageError::OutOfRange`] for effects that are too large; nothing changes then.
+    /// [`StageError::GroomCount`] if the number of grooms differs, [`StageError::NoSuchJoint`],
+    /// [`StageError::OutOfRange`] for effects that are too large. In case of an error, nothing changes.
     pub fn update_settings(&mut self, settings: Scene) -> Result<(), StageError> {
         if settings.grooms.len() != self.hair.len() {
             return Err(StageError::GroomCount { settings: settings.grooms.len(), grooms: self.hair.len() });

@@ -1,36 +1,36 @@
-//! What is known of single points and strands, to colour them by and to show figures of the one that is pointed at.
+//! Values of single points and strands, for color display and for the figures of a picked strand.
 
 use super::{Stage, hair::StagedHair};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// A number that every point has.
+/// A value that every point has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Value {
-    /// The strand (index of the groom) that is simulated for it.
+    /// The simulated strand (index of the groom) that the point belongs to or follows.
     #[default]
     Guide,
-    /// Tension of the segment from the point, below 0 where it is pushed [N].
+    /// Tension of the segment after the point [N]; negative in compression.
     Tension,
-    /// How far the joint is turned from the groom's, which the root carries along [rad].
+    /// Angle of the joint from that of the groom, which moves with the root [rad].
     Turn,
-    /// How much longer the segment from the point is than at rest, over its length [1].
+    /// Relative elongation of the segment after the point [1].
     Stretch,
-    /// Speed in the world [m/s].
+    /// Speed in world space [m/s].
     Speed,
-    /// How full of hair its cell is, over what it is at rest [1]; 0 where nothing asks for the hair's volume.
+    /// Fill ratio of its grid cell relative to rest [1]; 0 if the hair's volume is not computed.
     Density,
-    /// Force with which a collider holds it out [N].
+    /// Contact force from a collider [N].
     Contact,
 }
 
 impl Value {
-    /// All of them.
+    /// All values.
     pub const ALL: [Value; 7] =
         [Self::Guide, Self::Tension, Self::Turn, Self::Stretch, Self::Speed, Self::Density, Self::Contact];
 
-    /// Its name, a word of lower case.
+    /// Returns the name, a lowercase word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Guide => "guide",
@@ -43,7 +43,7 @@ impl Value {
         }
     }
 
-    /// Its unit; "1" for a ratio, and for the guide, which is a number.
+    /// Returns the unit: "1" for a ratio, and for the guide, which is an index.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Guide | Self::Stretch | Self::Density => "1",
@@ -54,57 +54,60 @@ impl Value {
     }
 }
 
-/// The strand that a ray points at.
+/// The strand that a ray picks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Picked {
     /// Index of its groom in the scene.
     pub groom: usize,
     /// The strand, as an index of the groom.
     pub strand: usize,
-    /// The point of it that the ray comes nearest to.
+    /// The point of it that is nearest to the ray.
     pub point: usize,
-    /// How far that is from the origin of the ray [m].
+    /// Distance of that point from the origin of the ray [m].
     pub distance: f32,
 }
 
-/// Figures of one strand. Of a follow hair, what only a simulated strand has is that of its first guide.
+/// Figures of one strand. For a follow hair, values that only simulated strands have are those of its first
+/// guide.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrandFigures {
-    /// Whether it is simulated; else it follows its guides.
+    /// Whether it is simulated; otherwise it follows its guides.
     pub simulated: bool,
-    /// The strand that it follows first, as an index of the groom; itself where it is simulated.
+    /// Its first guide, as an index of the groom; the strand itself if it is simulated.
     pub guide: u32,
-    /// Points that it has.
+    /// Number of points.
     pub points: usize,
-    /// Length as authored [m].
+    /// Length in the groom [m].
     pub length: f32,
-    /// Largest |ℓ/L − 1| of a segment [1].
+    /// Largest relative length error |ℓ/L − 1| of a segment [1].
     pub stretch_max: f32,
     /// Largest tension of a segment [N].
     pub tension_max: f32,
-    /// Largest turn of a joint from the groom's [rad].
+    /// Largest angle of a joint from that of the groom [rad].
     pub turn_max: f32,
-    /// Speed of the fastest point [m/s].
+    /// Largest speed of a point [m/s].
     pub speed_max: f32,
-    /// Largest force with which a collider holds a point out [N].
+    /// Largest contact force on a point [N].
     pub contact_max: f32,
-    /// How deep its deepest point but the root is inside a collider as it is drawn; 0: none is [m].
+    /// Penetration of its deepest point, except the root, into a collider [m], as drawn; 0 if there is none.
     pub depth: f32,
 }
 
-/// What a ray hits well [1]: the tangent of 0.2°, three pixels of a picture of 1080 lines at 30° from top to bottom.
+/// Tolerance of a hit [1]: the tangent of 0.2°, three pixels in an image of 1080 lines with a vertical field
+/// of view of 30°.
 const NEAR: f32 = 0.0035;
 
-/// A point before a ray's origin.
+/// A point in front of a ray's origin.
 #[derive(Clone, Copy)]
 struct Candidate {
     picked: Picked,
-    /// Tangent of the angle between the ray and the way to it [1].
+    /// Tangent of the angle between the ray and the direction to the point [1].
     aside: f32,
 }
 
 impl Candidate {
-    /// What is hit well comes first, by its distance; then what is off, by its angle; what is alike, by its place in the scene.
+    /// Orders candidates: first those within the tolerance, by distance; then the others, by angle; ties by
+    /// their index in the scene.
     fn order(&self, other: &Self) -> Ordering {
         let key = |c: &Self| if c.aside <= NEAR { (0, c.picked.distance) } else { (1, c.aside) };
         let place = |c: &Self| (c.picked.groom, c.picked.strand, c.picked.point);
@@ -114,8 +117,9 @@ impl Candidate {
 }
 
 impl Stage {
-    /// Writes into `out` one number a point of all strands of a groom (index of the scene's) as they are drawn; follow hairs have that of their first guide
-    /// where they ride on it. Empty where there is no such groom.
+    /// Writes one value for each point of all strands of a groom (index of the scene) into `out`. Follow
+    /// hairs have the values of their first guide at the same coordinate. `out` is empty if there is no such
+    /// groom.
     pub fn values(&self, what: Value, groom: usize, out: &mut Vec<f32>) {
         out.clear();
         if let Some(hair) = self.hair.get(groom) {
@@ -123,8 +127,10 @@ impl Stage {
         }
     }
 
-    /// The strand whose points come nearest to a ray from `origin` [m] along `direction` (any length above 0), whether the body is in between or not: of
-    /// those within 0.2° the one nearest to the origin, else the one nearest in angle. `None`: no hair lies that way.
+    /// Returns the strand whose points are nearest to a ray from `origin` [m] along `direction` (any length
+    /// above 0). The body does not occlude. Of the points within 0.2° of the ray, the one nearest to the
+    /// origin is chosen, otherwise the one nearest in angle. Returns `None` if there is no hair in that
+    /// direction.
     pub fn nearest_strand(&self, origin: Vec3, direction: Vec3) -> Option<Picked> {
         let direction = direction.try_normalize()?;
         let of_strand = |groom: usize, strand: usize, points: &[Vec3]| {
@@ -148,19 +154,19 @@ impl Stage {
         self.hair.iter().enumerate().filter_map(of_groom).min_by(Candidate::order).map(|c| c.picked)
     }
 
-    /// The strand (index of the groom) that a strand follows first; itself where it is simulated.
+    /// Returns the first guide of a strand (index of the groom), or the strand itself if it is simulated.
     ///
     /// # Panics
-    /// If the scene has no such groom or the groom no such strand.
+    /// Panics if the scene has no such groom or the groom has no such strand.
     pub fn guide_of(&self, groom: usize, strand: usize) -> u32 {
         let hair = &self.hair[groom];
         hair.simulated_strands()[hair.first_guide(strand)]
     }
 
-    /// Figures of a strand (index of the groom).
+    /// Returns the figures of a strand (index of the groom).
     ///
     /// # Panics
-    /// As [`Stage::guide_of`].
+    /// Panics under the same conditions as [`Stage::guide_of`].
     pub fn strand_figures(&self, groom: usize, strand: usize) -> StrandFigures {
         let hair = &self.hair[groom];
         let (k, guide) = (hair.first_guide(strand), self.guide_of(groom, strand));
@@ -192,7 +198,8 @@ impl Stage {
         }
     }
 
-    /// Writes one number for each point of a simulated strand: its place among its groom's, and its number in that.
+    /// Writes one value for each point of a simulated strand, given by its index among the simulated strands
+    /// and in the groom.
     fn write(&self, hair: &StagedHair, what: Value, (k, strand): (usize, usize), out: &mut [f32]) {
         let (simulation, of_all) = (&self.simulation, hair.first() + k);
         let each = |out: &mut [f32], of: &dyn Fn(usize) -> f32| {

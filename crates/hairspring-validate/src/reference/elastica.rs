@@ -9,9 +9,9 @@
 //!
 //! (α only: Bisshopp & Drucker 1945, *Large deflection of cantilever beams*.)
 //!
-//! The solution uses shooting from the tip, u = 1 − s, in the angle φ = π/2 − θ from the vertical. φ'' = (Γu
-//! + α) sin φ grows from φ(0) = φₜ, φ'(0) = 0, faster for larger φₜ, and the target is φ(1) = π/2. φₜ of a
-//! heavy strand is as small as exp(−⅔√Γ), so the search uses its logarithm.
+//! The solution uses shooting from the tip, u = 1 − s, in the angle φ = π/2 − θ from the vertical.
+//! φ'' = (Γu + α) sin φ grows from φ(0) = φₜ, φ'(0) = 0, faster for larger φₜ, and the target is φ(1) = π/2.
+//! φₜ of a heavy strand is as small as exp(−⅔√Γ), so the search uses its logarithm.
 
 use super::{bisect, integrate};
 use std::f64::consts::FRAC_PI_2;

@@ -1,4 +1,5 @@
-//! How wind comes and goes: two sines whose rates have no common multiple, so that no gust is like the last.
+//! Gusts: the wind speed varies as the sum of two sines. The ratio of their rates is irrational, so the
+//! pattern never repeats.
 //!
 //! ```text
 //! factor(t) = 1 + g (0.6 sin φ + 0.4 sin(2.618 φ + 1)),   φ = 2π f t + φ₀
@@ -6,29 +7,31 @@
 
 use std::f32::consts::TAU;
 
-/// The second sine's rate over the first's: the square of the golden ratio, the hardest number to come near by a fraction.
+/// Ratio of the second sine's rate to the first's: the square of the golden ratio, which is hard to
+/// approximate by a fraction.
 const SECOND: f32 = 2.618;
 
-/// Gusts of one source of wind.
+/// The gusts of one wind source.
 #[derive(Clone, Copy)]
 pub(super) struct Gust {
-    /// How much they add and take, as a fraction of the mean, g [1].
+    /// Amplitude as a fraction of the mean wind, g [1].
     pub amount: f32,
-    /// How many there are a second, f [Hz].
+    /// Frequency, f [Hz].
     pub rate: f32,
-    /// Where they begin, φ₀ [rad].
+    /// Initial phase, φ₀ [rad].
     pub phase: f32,
 }
 
 impl Gust {
-    /// The wind at `time` [s] over its mean [1].
+    /// Returns the wind speed at `time` [s] relative to the mean [1].
     pub fn factor(&self, time: f64) -> f32 {
         let phase = f64::from(TAU * self.rate) * time + f64::from(self.phase);
         let gust = 0.6 * phase.sin() + 0.4 * (phase * f64::from(SECOND) + 1.0).sin();
         1.0 + self.amount * gust as f32
     }
 
-    /// How long the mean wind would take for the way that it makes by `time` [s]: the integral of [`Gust::factor`] [s].
+    /// Returns the integral of [`Gust::factor`] from 0 to `time` [s]: how long the mean wind takes to travel
+    /// the same distance.
     pub fn travelled(&self, time: f64) -> f64 {
         let omega = f64::from(TAU * self.rate);
         if omega == 0.0 {

@@ -1,4 +1,5 @@
-//! What velocity the air has at a place and a time: the wind of all points, sources of wind, turbulence, and who stands in their lee.
+//! Velocity of the air at a point and a time: the directional wind, wind sources, turbulence and wind
+//! occlusion.
 //!
 //! ```text
 //! air(x) = T(x) ( W(t) + Σ sources(x) + turbulence(x, t) )
@@ -6,16 +7,18 @@
 //!
 //! | file | |
 //! | --- | --- |
-//! | [`gust`] | how wind comes and goes |
+//!  [`gust`] | variation of the wind over time |
 //! | [`source`] | points, vortices and fans |
 //! | [`turbulence`] | curl noise |
-//! | [`occlusion`] | T, what a body and hair leave of the wind behind them |
+//!  [`occlusion`] | T, the fraction of the wind that bodies and hair let through |
 //!
-//! W is the directional wind, the same everywhere and known to every substep: several of them would be one. All else is found once a
-//! frame, at the places that points have at its start and the time of its middle, and frozen for the frame.
+//! W is the directional wind. It is the same everywhere and is evaluated for every substep; several
+//! directional winds would add up to one. Everything else is sampled once a frame, at the positions of the
+//! points at its start and at the time of its middle, and stays constant during the frame.
 //!
 //! # Missing
-//! Air is given, not simulated: hair and bodies shelter, but do not turn it aside. A source's own motion is not added to its wind.
+//! The air is prescribed, not simulated: hair and bodies slow it down but do not deflect it. The velocity of
+//! a moving source is not added to its wind.
 
 mod gust;
 mod occlusion;
@@ -32,21 +35,21 @@ use crate::settings::Wind;
 use glam::Vec3;
 use gust::Gust;
 
-/// The air of a frame. Default: still.
+/// The air during a frame. The default is still air.
 #[derive(Clone, Copy, Default)]
 pub struct Air<'a> {
-    /// The wind of all points.
+    /// The directional wind, the same everywhere.
     pub wind: Wind,
     /// Time at the start of the frame [s].
     pub time: f64,
-    /// What blows besides, each where it is in the frame.
+    /// Wind sources, at their poses in this frame.
     pub sources: &'a [Source],
-    /// Eddies, which the wind of all points carries along.
+    /// Turbulence, which the directional wind carries along.
     pub turbulence: Turbulence,
 }
 
 impl Air<'_> {
-    /// The wind of all points `after` the start of the frame [m/s].
+    /// Returns the directional wind at the time `after` [s] from the start of the frame [m/s].
     pub(crate) fn uniform(&self, after: f32) -> Vec3 {
         self.wind.velocity * self.gust().factor(self.time + f64::from(after))
     }
@@ -55,17 +58,17 @@ impl Air<'_> {
         Gust { amount: self.wind.gust, rate: self.wind.gust_rate, phase: 0.0 }
     }
 
-    /// Whether it moves otherwise in one place than in another.
+    /// Returns whether the velocity varies in space.
     pub(crate) fn varies(&self) -> bool {
         !self.sources.is_empty() || self.turbulence.is_on()
     }
 
-    /// Whether it moves at all.
+    /// Returns whether the air moves at all.
     pub(crate) fn moves(&self) -> bool {
         self.varies() || self.wind.velocity != Vec3::ZERO
     }
 
-    /// The air in the middle of a frame of `dt` [s]; `noise` is memory.
+    /// Samples the air at the middle of a frame of `dt` [s]. `noise` is reused as storage.
     pub(crate) fn moment<'a>(&'a self, dt: f32, noise: &'a mut Noise) -> AirSample<'a> {
         let middle = self.time + 0.5 * f64::from(dt);
         let way = self.wind.velocity.as_dvec3() * self.gust().travelled(middle);
@@ -77,22 +80,22 @@ impl Air<'_> {
     }
 }
 
-/// The air at one time.
+/// The air at one point in time.
 #[derive(Clone, Copy)]
 pub(crate) struct AirSample<'a> {
-    /// The wind of all points [m/s].
+    /// The directional wind [m/s].
     pub uniform: Vec3,
     sources: &'a [Source],
     noise: Option<&'a Noise>,
 }
 
 impl AirSample<'_> {
-    /// Its velocity at `place` without eddies: what comes from somewhere [m/s].
+    /// Returns the velocity at `place` without turbulence and without occlusion [m/s].
     pub fn steady(&self, place: Vec3) -> Vec3 {
         self.sources.iter().fold(self.uniform, |sum, source| sum + source.velocity(place))
     }
 
-    /// Its velocity at `place`, where nothing shelters it [m/s].
+    /// Returns the velocity at `place` without occlusion [m/s].
     pub fn velocity(&self, place: Vec3) -> Vec3 {
         self.steady(place) + self.noise.map_or(Vec3::ZERO, |noise| noise.velocity(place))
     }

@@ -1,16 +1,20 @@
-//! Wind occlusion: what bodies and hair leave of the wind behind them.
+//! Wind occlusion: how much of the wind reaches a point behind bodies and hair.
 //!
 //! ```text
-//!  wind ⇉    ⇉ → ( body ) ·   · → ⇉     T = e^(−τ),   τ = ∫₀^reach (1 − s/reach) ( β inside a body + η fill ) ds,   s upwind from the point
+//!  wind ⇉    ⇉ → ( body ) ·   · → ⇉     T = e^(−τ),   τ = ∫₀^reach (1 − s/reach) ( β inside a body + η fill ) ds,
+//!                                       s: distance upwind from the point
 //! ```
 //!
-//! The ray goes upstream, step by step against the wind that it meets, so that it bends around a vortex, and ends where the air is still: behind a
-//! fan. Fill is how full a cell of the hair volume's lattice is, 1 as at rest. The exponential is what is measured of wind in a canopy of plants
-//! (Cionco 1965, *A mathematical model for air flow in a vegetative canopy*), and of light in a cloud; that a body counts like dense hair, and that
-//! lee fades to nothing at `reach`, as a wake fills up, is ours. Wind is found so at the nodes of the lattice, and taken by points between them.
+//! The ray is marched upstream. Each step follows the local wind, so the ray bends around a vortex, and it
+//! ends where the air is still, such as behind a fan. The fill is the fill ratio of a cell of the hair
+//! volume's grid, 1 at rest. Exponential attenuation has been measured for wind in plant canopies (Cionco
+//! 1965, *A mathematical model for air flow in a vegetative canopy*), and also describes light in a cloud.
+//! Two parts of the model are our own: a body attenuates like dense hair, and the occlusion fades to nothing
+//! at `reach`, as a wake fills up. T is computed at the nodes of the grid and interpolated at points.
 //!
 //! # Missing
-//! Air that is kept out goes nowhere: there is no wind around an edge. Followers shelter as their guides.
+//! Blocked air does not flow around an obstacle: there is no faster wind at its edges. Follow hairs are
+//! occluded as their guides are.
 
 use super::AirSample;
 use crate::{collide::FrameColliders, volume::Density};
@@ -18,16 +22,19 @@ use glam::Vec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// How bodies and hair shelter from the wind.
+/// Occlusion of the wind by bodies and hair.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WindOcclusion {
-    /// How fast wind falls off inside a body, β [1/m], 0 or more. Default 0: bodies do not shelter. With 100 it falls to 1/e in a centimetre.
+    /// Attenuation of the wind inside a body, β [1/m], 0 or more. Default 0: bodies do not block the wind.
+    /// With 100, the wind falls to 1/e within one centimeter.
     pub body: f32,
-    /// How fast wind falls off in hair that is as dense as at rest, η [1/m], 0 or more. Default 0: hair does not shelter. With 50 it falls to
-    /// 1/e in two centimetres. A groom's guides stand for all its hair: a lone strand counts as dense hair too.
+    /// Attenuation of the wind in hair that is as dense as at rest, η [1/m], 0 or more. Default 0: hair does
+    /// not block the wind. With 50, the wind falls to 1/e within two centimeters. The guides of a groom
+    /// represent all of its hair, so even a single strand counts as dense hair.
     pub hair: f32,
-    /// How far behind what shelters it the wind is whole again [m], above 0. Default 0.5: some three heads.
+    /// Distance behind an obstacle at which the wind has recovered [m], above 0. Default 0.5: about three
+    /// head lengths.
     pub reach: f32,
 }
 
@@ -38,22 +45,22 @@ impl Default for WindOcclusion {
 }
 
 impl WindOcclusion {
-    /// Whether anything shelters.
+    /// Returns whether bodies or hair block the wind.
     pub fn is_on(&self) -> bool {
         self.body > 0.0 || self.hair > 0.0
     }
 }
 
-/// Most steps of a ray.
+/// Maximum number of steps of a ray.
 const MOST_STEPS: usize = 256;
 
-/// Depth at which nothing is left.
+/// Optical depth at which the ray stops because no wind is left.
 const DEEP: f32 = 8.0;
 
-/// Air slower than this, over that where the ray begins, is still [1].
+/// Speed below which the air counts as still, relative to the speed at the start of the ray [1].
 const CALM: f32 = 0.05;
 
-/// What is left of the wind at each node of a lattice that hair is near.
+/// T at the grid nodes that are near hair.
 #[derive(Default)]
 pub(crate) struct OcclusionSampler {
     /// T, 1 where there is no hair; shape `[nodes]`.
@@ -61,12 +68,12 @@ pub(crate) struct OcclusionSampler {
 }
 
 impl OcclusionSampler {
-    /// Room for so many nodes ever.
+    /// Reserves memory for at most `nodes` grid nodes.
     pub fn reserve(&mut self, nodes: usize) {
         self.left.reserve_exact(nodes.saturating_sub(self.left.len()));
     }
 
-    /// Finds T at the start of a frame.
+    /// Computes T at the start of a frame.
     pub fn cast(
         &mut self,
         occlusion: &WindOcclusion,
@@ -90,13 +97,13 @@ impl OcclusionSampler {
         });
     }
 
-    /// What is left of the wind at `place` in the world [1].
+    /// Returns T at `place` in world space [1].
     pub fn left(&self, hair: &Density, place: Vec3) -> f32 {
         hair.between_nodes(place, &self.left).unwrap_or(1.0)
     }
 }
 
-/// τ at a place.
+/// Returns the optical depth τ at the point `from`.
 fn depth(
     occlusion: &WindOcclusion,
     air: &AirSample,
@@ -109,12 +116,12 @@ fn depth(
     for _ in 0..MOST_STEPS {
         let wind = air.steady(at);
         let speed = wind.length();
-        // Comparisons that a NaN fails.
+        // Written so that a NaN ends the loop.
         let goes_on = speed > calm && way < occlusion.reach && depth < DEEP;
         if !goes_on {
             break;
         }
-        // Where there is no hair, as far as no body can be.
+        // Outside the hair grid, step over the distance that is certain to be free of bodies.
         let free = if hair.holds(at) { 0.0 } else { bodies.clearance(at) };
         let step = free.max(hair.cell()).min(occlusion.reach - way);
         let upwind = wind / -speed;

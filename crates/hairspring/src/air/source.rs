@@ -1,14 +1,15 @@
-//! Sources of wind besides the wind of all points, and the law of each.
+//! Wind sources, and the velocity field of each kind.
 //!
 //! ```text
-//! point     ↖ ↑ ↗      u = U (R/r)² away from the middle; U r/R inside of R. The flow of a source in a fluid that keeps its volume
-//!           ← • →          (Lamb 1932, Hydrodynamics, §56); below 0 it sucks in
+//! point     ↖ ↑ ↗      u = U (R/r)² away from the center; U r/R inside R. The flow of a point source in an incompressible
+//!           ← • →          fluid (Lamb 1932, Hydrodynamics, §56); negative speeds give a sink
 //!
 //! vortex     ⟲         u = 2U (r/R) / (1 + (r/R)²) about the axis, U at R (Kaufmann 1962; Vatistas 1991, n = 1)
 //!
-//! fan      ║⇉⇉⇉ → →    u = min(U, 2U (R/b) e^(−2 (r/b)²)) along the axis, b = R + z tan(spread); nothing behind. The round turbulent jet
-//!                          (Pope 2000, Turbulent Flows, §5.1): a core at full speed, which the mixing around it has used up where b = 2R;
-//!                          from there on each cross-section has the momentum of the mouth, ∫ u² = U² π R²
+//! fan      ║⇉⇉⇉ → →    u = min(U, 2U (R/b) e^(−2 (r/b)²)) along the axis, b = R + z tan(spread); 0 behind the opening. The
+//!                          round turbulent jet (Pope 2000, Turbulent Flows, §5.1): a core at full speed, which mixing has
+//!                          consumed where b = 2R; beyond, each cross-section has the momentum flux of the opening,
+//!                          ∫ u² = U² π R²
 //! ```
 
 use super::gust::Gust;
@@ -16,84 +17,85 @@ use crate::math::RigidTransform;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Something that blows.
+/// A source of wind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WindSource {
-    /// Name of the body's joint that carries it; `None`: it is fixed in the world.
+    /// Name of the body joint that the source is attached to. `None`: the source is fixed in the world.
     #[serde(default)]
     pub joint: Option<String>,
-    /// How it blows, in the space of the body's rest pose or of the world.
+    /// The velocity field, in the space of the body's rest pose or of the world.
     pub shape: Flow,
-    /// How much gusts add and take, as a fraction of the mean, 0 to 1. Default 0.
+    /// Gust amplitude as a fraction of the mean speed, 0 to 1. Default 0.
     #[serde(default)]
     pub gust: f32,
-    /// Gusts a second [Hz]. Default 0: none. No two sources gust at the same moments.
+    /// Gust frequency [Hz]. Default 0: none. Every source has its own gust phase.
     #[serde(default)]
     pub gust_rate: f32,
 }
 
 impl WindSource {
-    /// The source as it blows at `time` [s], carried by `pose` since rest; `number`: which of the scene's it is, so that each has its own gusts.
+    /// Returns the source at `time` [s], moved by `pose` relative to its rest pose. `number` is the index of
+    /// the source in the scene; it selects the gust phase.
     pub fn at(&self, number: usize, pose: RigidTransform, time: f64) -> Source {
-        // Golden angles: no two begin alike.
+        // Multiples of the golden angle, so that all phases differ.
         let gust = Gust { amount: self.gust, rate: self.gust_rate, phase: 2.4 * (number + 1) as f32 };
         let factor = if self.gust_rate > 0.0 { gust.factor(time) } else { 1.0 };
         Source { flow: self.shape, pose, factor }
     }
 }
 
-/// The shapes of a [`WindSource`].
+/// The velocity field of a [`WindSource`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Flow {
-    /// Out of a ball to all sides, or into it.
+    /// Flow out of a ball in all directions, or into it.
     Point {
-        /// Middle [m].
+        /// Center [m].
         center: Vec3,
         /// Radius of the ball, R [m], above 0.
         radius: f32,
-        /// Speed at the ball, U [m/s]; below 0: inward.
+        /// Speed at the surface of the ball, U [m/s]. Negative: inward.
         speed: f32,
     },
-    /// Around an axis without end.
+    /// Rotation about an infinite axis.
     Vortex {
-        /// A point of the axis [m].
+        /// A point on the axis [m].
         center: Vec3,
-        /// Direction of the axis, of any length above 0; it turns by the right hand.
+        /// Direction of the axis, of any length above 0. The rotation follows the right-hand rule.
         axis: Vec3,
-        /// Where it is fastest, from the axis, R [m], above 0.
+        /// Distance from the axis at which the flow is fastest, R [m], above 0.
         radius: f32,
-        /// Speed there, U [m/s].
+        /// Speed at that distance, U [m/s].
         speed: f32,
     },
-    /// A jet out of a round mouth.
+    /// A jet from a round opening.
     Fan {
-        /// Middle of the mouth [m].
+        /// Center of the opening [m].
         center: Vec3,
-        /// Where it blows, of any length above 0.
+        /// Direction of the jet, of any length above 0.
         axis: Vec3,
-        /// Radius of the mouth, R [m], above 0.
+        /// Radius of the opening, R [m], above 0.
         radius: f32,
-        /// Speed at the mouth, U [m/s].
+        /// Speed at the opening, U [m/s].
         speed: f32,
-        /// How wide the jet opens: angle between its axis and its edge [degrees], 0 to 80. Default 11.8: every free turbulent jet's, a fifth of
-        /// the way (Pope 2000, §5.1).
+        /// Half-angle of the jet's cone, between its axis and its edge [degrees], 0 to 80. Default 11.8, the
+        /// angle of every free turbulent jet: its radius grows by a fifth of the distance (Pope 2000, §5.1).
         #[serde(default = "free_jet")]
         spread: f32,
     },
 }
 
-/// Degrees between a free jet's axis and its edge.
+/// Half-angle of a free turbulent jet [degrees].
 fn free_jet() -> f32 {
     11.8
 }
 
-/// A radius that is 0 counts as this [m].
+/// Lower bound of a radius [m].
 const LEAST: f32 = 1e-6;
 
 impl Flow {
-    /// Velocity of the air at `p` [m/s].
+    /// Returns the velocity of the air at `p` [m/s].
     pub fn velocity(&self, p: Vec3) -> Vec3 {
         match *self {
             Self::Point { center, radius, speed } => {
@@ -123,19 +125,19 @@ impl Flow {
     }
 }
 
-/// A source of wind as it blows in a frame.
+/// A wind source as it is in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
-    /// How it blows, at rest.
+    /// The velocity field, at rest.
     pub flow: Flow,
-    /// Where what carries it has gone since rest.
+    /// Motion since rest of the joint that carries the source.
     pub pose: RigidTransform,
-    /// Its speed over the mean, by gusts [1].
+    /// Speed relative to the mean, from gusts [1].
     pub factor: f32,
 }
 
 impl Source {
-    /// Velocity of its air at `place` in the world [m/s].
+    /// Returns the velocity of the air at `place` in world space [m/s].
     pub fn velocity(&self, place: Vec3) -> Vec3 {
         self.pose.rotation * (self.flow.velocity(self.pose.inverse_point(place)) * self.factor)
     }

@@ -1,30 +1,36 @@
-//! Turbulence: curl noise, which no point gathers in and no point flees from.
+//! Turbulence: divergence-free curl noise.
 //!
 //! ```text
 //! v = ∇ × ψ,   ψ = Σ over the 8 corners c of a cell:  w_c(x) A_c(t) (x − c)        (Bridson 2007, Curl-Noise for Procedural Fluid Flow, eq. 1)
 //!   = Σ ∇w_c × A_c (x − c)  +  w_c ω_c,                ω_c = ∇ × A_c x
 //! ```
 //!
-//! ψ is gradient noise (Perlin 2002): each corner of a lattice has three gradients, the rows of A, and w is Perlin's weight of fifth degree, so that v is
-//! smooth. Its curl is written out, so that its divergence is 0 but for rounding. The noise moves in two ways: as a whole, with the wind of all
-//! points (gusts included), and by itself, as its gradients turn (Perlin & Neyret 2001, *Flow Noise*), one radian in the time ℓ/u that an eddy
-//! of size ℓ and speed u takes to turn over. Each octave has eddies of half the size, and by Kolmogorov 1941 of u ~ ℓ^(1/3).
+//! ψ is gradient noise (Perlin 2002). Each node of a lattice has three gradients, the rows of A, and w is
+//! Perlin's quintic weight, so v is smooth. The curl is evaluated analytically, so the divergence is 0 up to
+//! rounding. The noise moves in two ways. The directional wind, gusts included, carries it as a whole. The
+//! gradients also rotate (Perlin & Neyret 2001, *Flow Noise*), by one radian in the turnover time ℓ/u of an
+//! eddy of size ℓ and speed u. Each octave halves the size of the eddies; their speed follows Kolmogorov
+//! 1941, u ~ ℓ^(1/3).
 //!
 //! # Missing
-//! Sources of wind do not carry it along, and bodies do not stop it (Bridson 2007, §2.4: ψ brought to 0 at a wall).
+//! Wind sources do not carry the noise along, and bodies do not stop it (Bridson 2007, §2.4: ψ ramped to 0 at
+//! a wall).
 
 use glam::{DVec3, IVec3, Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Eddies in the air.
+/// Parameters of the turbulence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Turbulence {
-    /// Root of the mean square of their velocity [m/s], 0 or more. Default 0: none. Outdoors a tenth to a third of the wind.
+    /// Root mean square of the turbulent velocity [m/s], 0 or more. Default 0: none. Outdoors it is a tenth
+    /// to a third of the wind speed.
     pub strength: f32,
-    /// Size of the largest eddies [m], above 0. Default 0.1: half a head, so that locks move apart and not hairs.
+    /// Size of the largest eddies [m], above 0. Default 0.1: half a head, so that it moves whole locks rather
+    /// than single hairs.
     pub size: f32,
-    /// How many sizes of eddies there are, each half as large as the one before, 1 to 6. Default 2: smaller ones are smaller than a lock.
+    /// Number of octaves, each half the size of the one before, 1 to 6. Default 2: further octaves would be
+    /// smaller than a lock.
     pub octaves: u32,
 }
 
@@ -35,38 +41,38 @@ impl Default for Turbulence {
 }
 
 impl Turbulence {
-    /// Whether there is any.
+    /// Returns whether there is any turbulence.
     pub fn is_on(&self) -> bool {
         self.strength > 0.0
     }
 }
 
-/// Corners along an axis after which the noise repeats, and gradients that it draws from: a power of two.
+/// Period of the noise along each axis in lattice nodes, and the number of gradient sets. A power of two.
 const PERIOD: usize = 256;
 
-/// Root of the mean square of the curl of noise whose gradients have entries of variance 1: the mean over a cell of
-/// Σ 2|∇w|²|d|² + 4w ∇w·d + 6w², d = x − c.
+/// Root mean square of the curl of noise whose gradient components have variance 1: the square root of the
+/// mean over a cell of Σ 2|∇w|²|d|² + 4w ∇w·d + 6w², d = x − c.
 const RMS: f32 = 2.1132;
 
-/// A corner's A, and the curl of A x.
+/// The matrix A of a lattice node, and the curl of A x.
 #[derive(Clone, Copy)]
 struct Corner {
     a: Mat3,
     curl: Vec3,
 }
 
-/// One size of eddies in a frame.
+/// One octave of the noise in a frame.
 #[derive(Clone, Copy)]
 struct Octave {
-    /// Over the size of an eddy [1/m].
+    /// Reciprocal of the eddy size [1/m].
     scale: f32,
-    /// Velocity of noise whose gradients have entries of variance 1 [m/s].
+    /// Factor from noise whose gradient components have variance 1 to velocity [m/s].
     speed: f32,
-    /// How far it has been carried [eddies], less whole periods.
+    /// Displacement by the wind [eddy sizes], modulo the period.
     way: Vec3,
 }
 
-/// The noise of a frame.
+/// The turbulence of a frame.
 #[derive(Default)]
 pub(crate) struct Noise {
     octaves: Vec<Octave>,
@@ -75,12 +81,12 @@ pub(crate) struct Noise {
 }
 
 impl Noise {
-    /// The noise at `time` [s], when the wind has carried it `way` [m].
+    /// Sets the noise for `time` [s], after the wind has carried it by `way` [m].
     pub fn set(&mut self, settings: &Turbulence, way: DVec3, time: f64) {
         self.octaves.clear();
         self.corners.clear();
         let octaves = settings.octaves.clamp(1, 6);
-        // Kolmogorov's eddies: u² goes by ℓ^(2/3).
+        // Kolmogorov spectrum: u² is proportional to ℓ^(2/3).
         let share = |k: u32| 2f32.powf(-2.0 / 3.0 * k as f32);
         let all: f32 = (0..octaves).map(share).sum();
         for k in 0..octaves {
@@ -95,7 +101,7 @@ impl Noise {
         }
     }
 
-    /// Velocity of the eddies at `place` [m/s].
+    /// Returns the turbulent velocity at `place` [m/s].
     pub fn velocity(&self, place: Vec3) -> Vec3 {
         let octaves = self.octaves.iter().zip(self.corners.chunks_exact(PERIOD));
         octaves.map(|(octave, corners)| octave.velocity(place, corners)).sum()
@@ -108,7 +114,7 @@ impl Octave {
         let cell = at.floor();
         let f = at - cell;
         let cell = cell.as_ivec3();
-        // Perlin's weight of the upper corner along each axis, and its slope.
+        // Perlin's weight of the upper node along each axis, and its derivative.
         let upper = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
         let slope = f * f * (f * (f - 2.0) + 1.0) * 30.0;
         let sides = [(Vec3::ONE - upper, -slope), (upper, slope)];
@@ -125,25 +131,25 @@ impl Octave {
     }
 }
 
-/// Which gradients the corner `at` of a lattice has, the same again after [`PERIOD`] corners.
+/// Returns the index of the gradients at lattice node `at`. The lattice repeats every [`PERIOD`] nodes.
 fn hash(at: IVec3) -> usize {
     let [x, y, z] = (at & (PERIOD as i32 - 1)).to_array().map(|k| k as u32);
     scatter(x | y << 8 | z << 16) as usize % PERIOD
 }
 
-/// A number that looks drawn at random (Jarzynski & Olano 2020, *Hash Functions for GPU Rendering*: PCG).
+/// A hash with pseudo-random bits (Jarzynski & Olano 2020, *Hash Functions for GPU Rendering*: PCG).
 fn scatter(n: u32) -> u32 {
     let state = n.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = (state >> ((state >> 28) + 4) ^ state).wrapping_mul(277_803_737);
     word >> 22 ^ word
 }
 
-/// The gradients of number `n`, after eddies have turned by `turned` [rad].
+/// Returns the gradients with index `n`, after the eddies have turned by `turned` [rad].
 fn corner(n: u32, turned: f64) -> Corner {
-    // Evenly between ±√3: of variance 1.
+    // Uniform in ±√3, which has variance 1.
     let draw = |k: u32| (scatter(n * 19 + k) as f32 / u32::MAX as f32 - 0.5) * 12f32.sqrt();
     let matrix = |from: u32| Mat3::from_cols_array(&std::array::from_fn(|k| draw(from + k as u32)));
-    // Some turn faster than others, so that the noise never comes again.
+    // The rotation rates differ, so that the noise does not repeat in time.
     let angle = turned * f64::from(1.0 + 0.2 * draw(18));
     let (sin, cos) = (angle.sin() as f32, angle.cos() as f32);
     let a = matrix(0) * cos + matrix(9) * sin;

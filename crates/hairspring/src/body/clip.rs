@@ -1,4 +1,4 @@
-//! Motion: the local transform of every joint, sampled at a fixed rate.
+//! Motion clips: the local transform of every joint, sampled at a fixed rate.
 
 use glam::{Affine3A, Quat, Vec3};
 
@@ -9,7 +9,7 @@ pub struct Trs {
     pub translation: Vec3,
     /// Unit rotation.
     pub rotation: Quat,
-    /// Scale, 1 for none.
+    /// Scale; 1 is none.
     pub scale: Vec3,
 }
 
@@ -20,12 +20,13 @@ impl Default for Trs {
 }
 
 impl Trs {
-    /// The transform as a matrix.
+    /// Returns the transform as a matrix.
     pub fn to_affine(&self) -> Affine3A {
         Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
     }
 
-    /// Between `self` (`t` = 0) and `other` (`t` = 1): linear, rotation on the shorter arc.
+    /// Interpolates between `self` (`t` = 0) and `other` (`t` = 1): linearly, with the rotation along the
+    /// shorter arc.
     pub fn lerp(&self, other: &Trs, t: f32) -> Trs {
         Trs {
             translation: self.translation.lerp(other.translation, t),
@@ -35,53 +36,55 @@ impl Trs {
     }
 }
 
-/// How near a time is to a frame that it counts as being on [frames].
+/// A time this close to a frame counts as being at that frame [frames].
 const ON_FRAME: f64 = 1e-6;
 
-/// A motion: for every frame and joint, the joint's local transform.
+/// A motion clip: for every frame and joint, the joint's local transform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
-    /// The file's name for it.
+    /// Name of the clip in the file.
     pub name: String,
-    /// Frames a second [Hz], above 0.
+    /// Frame rate [Hz], above 0.
     pub rate: f64,
-    /// Joints a frame.
+    /// Number of joints in each frame.
     pub joint_count: usize,
-    /// Local transforms, frame after frame; shape `[frames][joints]`.
+    /// Local transforms, one frame after the other; shape `[frames][joints]`.
     pub samples: Vec<Trs>,
 }
 
 impl Clip {
-    /// Number of frames.
+    /// Returns the number of frames.
     pub fn frame_count(&self) -> usize {
         self.samples.len().checked_div(self.joint_count).unwrap_or(0)
     }
 
-    /// From the first frame to the last [s].
+    /// Returns the time from the first frame to the last [s].
     pub fn duration(&self) -> f64 {
         self.frame_count().saturating_sub(1) as f64 / self.rate
     }
 
-    /// The clip from frame `first` on; the last frame alone where there is no such frame.
+    /// Returns the clip starting at frame `first`, or only the last frame if `first` is beyond it.
     pub fn from_frame(mut self, first: usize) -> Self {
         let first = first.min(self.frame_count().saturating_sub(1));
         self.samples.drain(..first * self.joint_count);
         self
     }
 
-    /// Local transforms at `time` [s], held at the ends; shape `[joints]`.
+    /// Returns the local transforms at `time` [s], clamped to the first and last frame; shape `[joints]`.
     pub fn sample(&self, time: f64) -> Vec<Trs> {
         let (i, t) = self.place(time);
         self.frame(i).iter().zip(self.frame(i + 1)).map(|(a, b)| a.lerp(b, t)).collect()
     }
 
-    /// Local transforms of a frame, the last one's beyond it; shape `[joints]`.
+    /// Returns the local transforms of a frame, or of the last frame if `frame` is beyond it; shape
+    /// `[joints]`.
     pub(crate) fn frame(&self, frame: usize) -> &[Trs] {
         let last = self.frame_count().saturating_sub(1);
         &self.samples[frame.min(last) * self.joint_count..][..self.joint_count]
     }
 
-    /// The frame at or before `time` [s], and how far it is from there to the next, 0 to below 1. A time that is on a frame but for rounding is on it.
+    /// Returns the frame at or before `time` [s] and the fraction of the way to the next frame, 0 to below 1.
+    /// A time that differs from a frame only by rounding counts as being at that frame.
     pub(crate) fn place(&self, time: f64) -> (usize, f32) {
         let last = self.frame_count().saturating_sub(1);
         let at = (time * self.rate).clamp(0.0, last as f64);

@@ -1,54 +1,58 @@
-//! Cuts of a clip: places where a body is put elsewhere between two frames, instead of moving there.
+//! Cuts of a clip: intervals in which the body is placed elsewhere instead of moving there.
 //!
 //! ```text
-//!   position │            ●──●──●      The step D of the run of frame intervals differs from what the intervals before and
-//!            │                         after it predict, v·T, by more than the threshold: no motion does that. The pose is
-//!            │  ●──●──●                held until the run's last frame, and changes there at once.
+//!   position │            ●──●──●      The displacement D over a run of frame intervals differs by more than the threshold
+//!            │                         from that predicted by the intervals before and after it, v·T: no real motion does
+//!            │  ●──●──●                that. The pose is held until the run's last frame, and changes there at once.
 //!            └──────────────────► time
 //! ```
 //!
-//! A cut is found in the frames of the clip, so that it does not depend on the rate at which the clip is played. Joints that hang together cut together, by
-//! the motion of one of them: the joint that carries the hair, or the topmost one.
+//! Cuts are found in the frames of the clip, so they do not depend on the playback rate. Connected joints
+//! share their cuts. These are found in the motion of one joint: the one that carries the hair, or the
+//! topmost.
 
 use super::{Body, Clip, Trs};
 use crate::math::RigidTransform;
 use glam::{Affine3A, Quat, Vec3};
 
-/// Time in which the teleport distance is the threshold [s]: over longer intervals a genuine motion goes farther, in proportion.
+/// Frame time for which the threshold is the teleport distance [s]. For longer intervals the threshold grows
+/// in proportion, since real motion goes farther.
 const REFERENCE: f64 = 1.0 / 24.0;
 
-/// Turn beyond the predicted one that is a teleport in [`REFERENCE`] [rad].
+/// Rotation in excess of the prediction that counts as a teleport within [`REFERENCE`] [rad].
 const TELEPORT_ANGLE: f32 = std::f32::consts::FRAC_PI_2;
 
-/// Least motion next to a teleport that is counted as part of it, over the teleport's length [1].
+/// Smallest motion next to a cut that is counted as part of it, as a fraction of the teleport distance [1].
 const REST: f32 = 0.05;
 
-/// Whether no genuine motion goes `off` [m] and turns by `turned` [rad] from where it is expected after `dt` [s], where `distance` [m] is what a teleport takes
-/// in a frame of film.
+/// Returns whether a deviation from the predicted pose after `dt` [s] is too large for real motion. `off` is
+/// the deviation in position [m], `turned` that in rotation [rad], and `distance` [m] the teleport distance
+/// for one frame at 24 Hz.
 pub(crate) fn is_teleport(off: f32, turned: f32, distance: f32, dt: f64) -> bool {
     let longer = (dt / REFERENCE).max(1.0) as f32;
     off > distance * longer || turned > TELEPORT_ANGLE * longer
 }
 
-/// The cuts of a clip that moves a body.
+/// The cuts of a clip on a body.
 #[derive(Debug, Default)]
 pub struct Cuts {
     trees: Vec<Tree>,
-    /// The tree of each joint.
+    /// Index of the tree that each joint belongs to.
     tree_of: Vec<usize>,
 }
 
-/// Joints that hang together.
+/// A tree of connected joints.
 #[derive(Debug)]
 struct Tree {
-    /// The joint whose motion has the cuts.
+    /// The joint in whose motion the cuts are found.
     joint: usize,
-    /// The last frame before each cut and the first one after it, in order.
+    /// The last frame before each cut and the first frame after it, in order.
     cuts: Vec<(usize, usize)>,
 }
 
 impl Cuts {
-    /// The cuts of `clip`, where a teleport is farther than `distance` [m]; `anchor` is the joint that carries the hair.
+    /// Finds the cuts of `clip`. `distance` is the teleport distance [m], and `anchor` the joint that carries
+    /// the hair.
     pub fn new(body: &Body, clip: &Clip, anchor: usize, distance: f32) -> Self {
         let mut cuts = Self::default();
         for (joint, parent) in body.joints.iter().map(|j| j.parent).enumerate() {
@@ -69,7 +73,8 @@ impl Cuts {
         cuts
     }
 
-    /// Local transforms at `time` [s], as [`Clip::sample`], but no joint is on its way across a cut; shape `[joints]`.
+    /// Returns local transforms at `time` [s] like [`Clip::sample`], but does not interpolate across a cut;
+    /// shape `[joints]`.
     pub fn sample(&self, clip: &Clip, time: f64) -> Vec<Trs> {
         let (frame, t) = clip.place(time);
         let place = |tree: &Tree| match tree.cut_at(frame) {
@@ -84,7 +89,8 @@ impl Cuts {
         self.tree_of.iter().enumerate().map(local).collect()
     }
 
-    /// Where each joint is taken by the cuts after the time `from` until the time `to` [s]; `None` for joints without one. Empty if there is no cut.
+    /// Returns the rigid motion of each joint due to the cuts after time `from` and up to `to` [s]; `None`
+    /// for joints without a cut. Empty if there is no cut at all.
     pub fn between(&self, body: &Body, clip: &Clip, (from, to): (f64, f64)) -> Vec<Option<RigidTransform>> {
         let (first, last) = (clip.place(from).0, clip.place(to).0);
         let mut moved = Vec::new();
@@ -103,19 +109,19 @@ impl Cuts {
 }
 
 impl Tree {
-    /// The cut that the interval after `frame` is part of.
+    /// Returns the cut that contains the interval after `frame`.
     fn cut_at(&self, frame: usize) -> Option<(usize, usize)> {
         let next = self.cuts.partition_point(|(_, after)| *after <= frame);
         self.cuts.get(next).copied().filter(|(before, _)| *before <= frame)
     }
 }
 
-/// The motion of a joint's matrix.
+/// Returns the rigid motion between two matrices of a joint.
 fn step(from: &Affine3A, to: &Affine3A) -> RigidTransform {
     RigidTransform::from_affine(to).after(&RigidTransform::from_affine(from).inverse())
 }
 
-/// Where a joint is in a pose.
+/// Returns the world transform of a joint in a pose.
 fn world_of(body: &Body, pose: &[Trs], joint: usize) -> RigidTransform {
     let mut world = pose[joint].to_affine();
     let mut parent = body.joints[joint].parent;
@@ -126,14 +132,15 @@ fn world_of(body: &Body, pose: &[Trs], joint: usize) -> RigidTransform {
     RigidTransform::from_affine(&world)
 }
 
-/// Velocity and rotation vector over time of an interval of frames [m, rad a frame].
+/// Velocity and rotation vector of an interval between two frames [m/frame, rad/frame].
 #[derive(Clone, Copy, Default)]
 struct Pace {
     velocity: Vec3,
     spin: Vec3,
 }
 
-/// The cuts of a joint's path, a pose for each frame: the last frame before each and the first one after it, in order.
+/// Returns the cuts of a joint's path, which has one pose for each frame: the last frame before each cut and
+/// the first frame after it, in order.
 pub(super) fn find(path: &[RigidTransform], rate: f64, distance: f32) -> Vec<(usize, usize)> {
     let intervals = path.len().saturating_sub(1);
     let pace = |k: usize| {
@@ -142,7 +149,7 @@ pub(super) fn find(path: &[RigidTransform], rate: f64, distance: f32) -> Vec<(us
         let turn = if turn.w < 0.0 { -turn } else { turn };
         Pace { velocity: b.translation - a.translation, spin: turn.to_scaled_axis() }
     };
-    // Outside of the clip the body stands still.
+    // Outside the clip, the body stands still.
     let before = |k: usize| k.checked_sub(1).map_or(Pace::default(), pace);
     let after = |k: usize| if k < intervals { pace(k) } else { Pace::default() };
     let is_cut = |from: usize, to: usize| {
@@ -156,11 +163,12 @@ pub(super) fn find(path: &[RigidTransform], rate: f64, distance: f32) -> Vec<(us
             is_teleport(off, turned, distance, f64::from(n) / rate)
         })
     };
-    // A cut between keys of 24 Hz is spread over so many frames where they were resampled.
+    // Resampling a cut between two 24 Hz keys spreads it over up to this many frame intervals.
     let longest = ((rate * REFERENCE).ceil() as usize).saturating_add(1).min(intervals);
-    // It touches one interval more than it fills where its keys lie between frames.
+    // If the keys lie between frames, the cut touches one more interval.
     let widest = longest + 1;
-    // A frame next to a cut belongs to it if it moves in the same direction and faster than the frames before and after.
+    // A frame interval next to a cut belongs to it if it moves in the same direction and faster than its
+    // other neighbor.
     let is_rest = |interval: usize, neighbour: Pace, step: Vec3| {
         let own = pace(interval);
         let off = own.velocity - neighbour.velocity;
@@ -221,12 +229,12 @@ mod tests {
         assert_eq!(cut(&[0.0, 5.0, 0.0, 0.0], 30.0), [(0, 1), (1, 2)]);
         // Resampled from keys at 24 Hz to 60 Hz.
         assert_eq!(cut(&[0.0, 0.0, 0.5, 2.5, 4.5, 5.0, 5.0], 60.0), [(1, 5)]);
-        // Keys between frames: what is left of the cut before and after an interval is part of it.
+        // Keys between frames: the remainders of the cut before and after the middle interval are part of it.
         assert_eq!(cut(&[0.0, 0.0, 0.6, 4.6, 5.0, 5.0], 30.0), [(1, 4)]);
         assert_eq!(cut(&[0.0, 0.1, 0.2, 4.3, 5.2, 5.3, 5.4], 30.0), [(2, 4)]);
-        // A run that goes on after a cut.
+        // A run that continues after a cut.
         assert_eq!(cut(&[0.0, 0.0, 5.0, 5.1, 5.2, 5.3], 30.0), [(1, 2)]);
-        // Running, falling, and a ride that begins at once.
+        // Running, falling, and a ride that starts abruptly.
         assert_eq!(cut(&[0.0, 0.0, 0.1, 0.2, 0.3, 0.3], 30.0), []);
         assert_eq!(cut(&[0.0, 0.0, 2.0, 4.0, 6.0, 8.0], 24.0), []);
         // Keys that are far apart in time are far apart in space.

@@ -1,25 +1,26 @@
-//! Motion by hand: a body, or a thing beside it, that goes from key to key as one rigid piece.
+//! Keyframed rigid motion of a body or of a separate prop.
 
 use super::{Clip, Trs};
 use crate::math::between;
 use glam::{Quat, Vec3};
 
-/// Frames a second of the clip [Hz].
+/// Frame rate of the clip [Hz].
 const RATE: f64 = 60.0;
 
-/// Where a body is at a time. Between keys it moves as people do, and is at rest at each.
+/// A keyframe of a rigid body. Motion between keys is eased and comes to rest at every key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
-    /// When [s], 0 or more.
+    /// Time [s], 0 or more.
     pub time: f32,
-    /// How far from its rest pose it is [m].
+    /// Translation from the rest pose [m].
     pub position: Vec3,
-    /// How it is turned from its rest pose.
+    /// Rotation from the rest pose.
     pub rotation: Quat,
 }
 
-/// The motion of a body's only joint through keys in order of time; it turns about `pivot` [m]. Before the first key it is as at the first, and without keys
-/// it rests.
+/// Returns the motion of a body's only joint through `keys`, which are in order of time. Rotations are about
+/// `pivot` [m]. Before the first key, the pose is that of the first key. Without keys, the body stays at
+/// rest.
 pub fn keyed(keys: &[Key], pivot: Vec3) -> Clip {
     let end = keys.last().map_or(0.0, |key| key.time);
     let frames = (f64::from(end) * RATE).ceil() as usize + 1;
@@ -27,13 +28,14 @@ pub fn keyed(keys: &[Key], pivot: Vec3) -> Clip {
     Clip { name: "keys".into(), rate: RATE, joint_count: 1, samples }
 }
 
-/// The motion of all joints of a body where things beside it go by themselves: `own` is that of its first joints (`None`: they are at `rest`), and each of `others`
-/// that of one more joint. It lasts as long as the longest of them, the others being at rest at their end.
+/// Combines the motion of a body with that of separate props. `own` moves the first joints of the result;
+/// `None` keeps them at `rest`. Each clip in `others` moves one more joint. The result is as long as the
+/// longest clip; shorter clips hold their last frame.
 pub fn beside(own: Option<Clip>, rest: &[Trs], others: &[Clip]) -> Clip {
     let still = || Clip { name: "keys".into(), rate: RATE, joint_count: rest.len(), samples: rest.to_vec() };
     let own = own.unwrap_or_else(still);
     let end = others.iter().map(Clip::duration).fold(own.duration(), f64::max);
-    // Not one more for what is rounded.
+    // The tolerance avoids an extra frame from rounding.
     let frames = (end * own.rate - 1e-3).ceil() as usize + 1;
     let all = || std::iter::once(&own).chain(others);
     let frame = |f: usize| all().flat_map(move |clip| clip.sample(f as f64 / own.rate));
@@ -50,7 +52,8 @@ fn at(keys: &[Key], pivot: Vec3, time: f64) -> Trs {
     Trs { translation: moved + pivot - rotation * pivot, rotation, scale: Vec3::ONE }
 }
 
-/// 0 to 1 with no speed nor acceleration at both ends (minimum jerk; Flash and Hogan 1985): how people move.
+/// Smooth step from 0 to 1 with zero velocity and acceleration at both ends: the minimum-jerk profile of
+/// human motion (Flash and Hogan 1985).
 pub fn ease(t: f32) -> f32 {
     t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
 }

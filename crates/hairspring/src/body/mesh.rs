@@ -7,42 +7,45 @@ use glam::{Vec2, Vec3};
 pub struct Mesh {
     /// Vertex positions in the rest pose [m]; shape `[vertices]`.
     pub positions: Vec<Vec3>,
-    /// Unit vertex normals; shape `[vertices]`. Readers fill them by [`Mesh::compute_normals`] where the file has none.
+    /// Unit vertex normals; shape `[vertices]`. If a file has none, its reader computes them with
+    /// [`Mesh::compute_normals`].
     pub normals: Vec<Vec3>,
     /// Texture coordinates; shape `[vertices]`, or empty.
     pub uvs: Vec<Vec2>,
     /// Vertex indices of each triangle; shape `[triangles]`.
     pub triangles: Vec<[u32; 3]>,
-    /// Named parts (groups, primitives), each a run of triangles, in order and covering all of them; or empty: one part.
+    /// Named parts (groups, primitives). Each is a range of triangles; together they cover all triangles in
+    /// order. Empty: the mesh is a single part.
     pub parts: Vec<Part>,
 }
 
-/// A named run of a mesh's triangles with its own colour.
+/// A named range of a mesh's triangles with its own color.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// The file's name for it.
+    /// Name of the part in the file.
     pub name: String,
-    /// Which triangles.
+    /// Range of triangle indices.
     pub triangles: std::ops::Range<u32>,
-    /// Linear RGB base colour, 0 to 1.
+    /// Linear RGB base color, 0 to 1.
     pub color: Vec3,
-    /// Specular sharpness, 0 (glossy) to 1 (matt).
+    /// Roughness, 0 (glossy) to 1 (matte).
     pub roughness: f32,
 }
 
 impl Mesh {
-    /// Corner positions of triangle `t` [m].
+    /// Returns the corner positions of triangle `t` [m].
     pub fn corners(&self, t: usize) -> [Vec3; 3] {
         self.triangles[t].map(|i| self.positions[i as usize])
     }
 
-    /// Fills `normals` from the positions: the mean of the adjoining faces' normals weighted by area.
+    /// Sets `normals` to the area-weighted mean of the normals of the adjoining faces.
     pub fn compute_normals(&mut self) {
         self.normals = vertex_normals(&self.positions, &self.triangles);
     }
 
-    /// Adds the vertices, triangles and parts of `other` after its own. A mesh without parts among ones with parts is drawn as
-    /// triangles of no part; missing texture coordinates are 0 where the other mesh has some.
+    /// Appends the vertices, triangles and parts of `other`. If only one of the two meshes has parts, the
+    /// triangles of the other belong to no part. If only one has texture coordinates, those of the other are
+    /// 0.
     pub fn append(&mut self, other: Mesh) {
         let (vertices, triangles) = (self.positions.len(), self.triangles.len() as u32);
         if !(self.uvs.is_empty() && other.uvs.is_empty()) {
@@ -58,14 +61,14 @@ impl Mesh {
         self.parts.extend(other.parts.into_iter().map(moved));
     }
 
-    /// Smallest box around all vertices, `(min, max)` [m]; `None` without vertices.
+    /// Returns the bounding box of all vertices, `(min, max)` [m]; `None` if there are no vertices.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let first = *self.positions.first()?;
         Some(self.positions.iter().fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p))))
     }
 }
 
-/// Area-weighted unit vertex normals; +Y for vertices of no triangle.
+/// Returns area-weighted unit vertex normals; +Y for vertices of no triangle.
 pub(super) fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; positions.len()];
     for t in triangles {

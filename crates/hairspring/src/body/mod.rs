@@ -1,4 +1,4 @@
-//! The body that hair grows on and meets: mesh, skeleton, skin weights, clips of motion.
+//! The body that hair grows on and collides with: mesh, skeleton, skin weights and motion clips.
 
 mod clip;
 mod cuts;

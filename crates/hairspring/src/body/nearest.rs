@@ -1,42 +1,43 @@
-//! The nearest place on a mesh, by a tree of boxes.
+//! Nearest-point queries on a mesh with a bounding volume hierarchy of axis-aligned boxes.
 
 use super::Mesh;
 use glam::Vec3;
 
-/// Triangles below which a node is not split: a handful of tests costs less than a step down.
+/// Largest number of triangles in a leaf: testing a handful of triangles costs less than another level of the
+/// tree.
 const LEAF: usize = 4;
 
-/// A place on a triangle.
+/// A point on a triangle, with its distance from the query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPlace {
     /// Index of the triangle.
     pub triangle: u32,
-    /// Barycentric coordinates of the place, each 0 to 1; sum 1.
+    /// Barycentric coordinates of the point, each 0 to 1; sum 1.
     pub barycentric: Vec3,
-    /// Squared distance to it [m²].
+    /// Squared distance from the query point [m²].
     pub distance_squared: f32,
 }
 
-/// A tree of boxes over a mesh's triangles, for nearest-place queries.
+/// A bounding volume hierarchy over the triangles of a mesh.
 pub struct NearestTree<'a> {
     mesh: &'a Mesh,
     nodes: Vec<Node>,
-    /// Triangle indices, leaf after leaf.
+    /// Triangle indices, grouped by leaf.
     triangles: Vec<u32>,
 }
 
 struct Node {
     lo: Vec3,
     hi: Vec3,
-    /// Triangles of the node: a run of `NearestTree::triangles`.
+    /// Start of the node's range in `NearestTree::triangles`.
     first: u32,
     count: u32,
-    /// The second child; the first follows its parent. 0: a leaf.
+    /// Index of the second child; the first child follows its parent. 0 marks a leaf.
     second: u32,
 }
 
 impl<'a> NearestTree<'a> {
-    /// Builds the tree; splits at the median centroid along the longest axis.
+    /// Builds the tree. Nodes are split at the median centroid along their longest axis.
     pub fn new(mesh: &'a Mesh) -> Self {
         let centroids: Vec<Vec3> =
             (0..mesh.triangles.len()).map(|t| mesh.corners(t).into_iter().sum::<Vec3>() / 3.0).collect();
@@ -68,8 +69,8 @@ impl<'a> NearestTree<'a> {
         self.split(first + middle, count - middle, centroids);
     }
 
-    /// The place nearest to `p` among the triangles that `allowed` lets through; `None` if there is none. Of places
-    /// equally near, that of the lowest triangle.
+    /// Returns the point nearest to `p` among the triangles that `allowed` accepts; `None` if there is none.
+    /// Of several points at the same distance, the one on the triangle with the lowest index is returned.
     pub fn nearest(&self, p: Vec3, allowed: impl Fn(usize) -> bool) -> Option<NearestPlace> {
         let mut best: Option<NearestPlace> = None;
         let mut stack = vec![0usize];
@@ -96,7 +97,7 @@ impl<'a> NearestTree<'a> {
                     }
                 }
             } else {
-                // The nearer child is looked into first.
+                // Visit the nearer child first.
                 let (a, b) = (n + 1, node.second as usize);
                 let near_first =
                     box_distance_squared(&self.nodes[a], p) <= box_distance_squared(&self.nodes[b], p);
@@ -107,7 +108,7 @@ impl<'a> NearestTree<'a> {
     }
 }
 
-/// The point of barycentric coordinates `b` on the triangle of `corners`.
+/// Returns the point with barycentric coordinates `b` on the triangle `corners`.
 pub(crate) fn at(b: Vec3, corners: [Vec3; 3]) -> Vec3 {
     corners[0] * b.x + corners[1] * b.y + corners[2] * b.z
 }
@@ -116,8 +117,8 @@ fn box_distance_squared(node: &Node, p: Vec3) -> f32 {
     p.distance_squared(p.clamp(node.lo, node.hi))
 }
 
-/// Barycentric coordinates of the place on a triangle nearest to `p` (Ericson 2005, *Real-Time Collision Detection*,
-/// §5.1.5).
+/// Returns the barycentric coordinates of the point on a triangle nearest to `p` (Ericson 2005, *Real-Time
+/// Collision Detection*, §5.1.5).
 #[inline]
 pub(crate) fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);

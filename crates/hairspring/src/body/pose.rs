@@ -1,4 +1,4 @@
-//! A body: mesh, skeleton and skin, and where its vertices are in a pose.
+//! A body: a mesh with its skeleton and skin, and the vertex positions in a pose.
 
 use super::{Mesh, Part, Trs, mesh::vertex_normals};
 use glam::{Affine3A, Vec3, Vec3A};
@@ -6,7 +6,7 @@ use glam::{Affine3A, Vec3, Vec3A};
 /// One joint of a skeleton.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// The file's name for it.
+    /// Name of the joint in the file.
     pub name: String,
     /// Index of the parent, always smaller than the joint's own; `None` for a root.
     pub parent: Option<u32>,
@@ -14,24 +14,25 @@ pub struct Joint {
     pub rest: Trs,
 }
 
-/// How a mesh follows its joints.
+/// Skinning data: how the vertices of a mesh follow the joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skin {
     /// Up to four joints of each vertex; shape `[vertices]`.
     pub joints: Vec<[u16; 4]>,
-    /// Their weights, summing to 1; shape `[vertices]`.
+    /// Weights of those joints, summing to 1; shape `[vertices]`.
     pub weights: Vec<[f32; 4]>,
-    /// Takes a rest-pose vertex into each joint's space; shape `[joints]`.
+    /// Transform of a rest-pose vertex into each joint's space; shape `[joints]`.
     pub inverse_bind: Vec<Affine3A>,
 }
 
 impl Skin {
-    /// From the rest pose to where each joint is whose matrix is in `world`.
+    /// Returns the transform of each joint from the rest pose to its matrix in `world`.
     pub fn matrices(&self, world: &[Affine3A]) -> Vec<Affine3A> {
         world.iter().zip(&self.inverse_bind).map(|(w, b)| *w * *b).collect()
     }
 
-    /// Where a vertex is that is at `rest` in the rest pose [m], by those matrices (linear blend skinning).
+    /// Returns the posed position of a vertex whose rest position is `rest` [m] (linear blend skinning).
+    /// `matrices` are those of [`Skin::matrices`].
     pub fn place(&self, vertex: usize, rest: Vec3, matrices: &[Affine3A]) -> Vec3 {
         let mut at = Vec3A::ZERO;
         for (j, w) in self.joints[vertex].iter().zip(self.weights[vertex]) {
@@ -48,25 +49,25 @@ impl Skin {
 pub struct Body {
     /// The surface.
     pub mesh: Mesh,
-    /// Joints, parents before children; empty: the body never moves.
+    /// Joints, parents before children. Empty: the body never moves.
     pub joints: Vec<Joint>,
-    /// Weights; `None`: rigid.
+    /// Skinning data. `None`: the body is rigid.
     pub skin: Option<Skin>,
 }
 
 impl Body {
-    /// A body that does not deform, with one joint at the origin to move it by.
+    /// Creates a rigid body with one joint at the origin.
     pub fn rigid(mesh: Mesh) -> Self {
         let joints = vec![Joint { name: "root".into(), parent: None, rest: Trs::default() }];
         Self { mesh, joints, skin: None }
     }
 
-    /// Index of the joint of this name, upper and lower case alike.
+    /// Returns the index of the joint with this name, ignoring ASCII case.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|j| j.name.eq_ignore_ascii_case(name))
     }
 
-    /// Keeps only the triangles of the parts that `keep` names true, and the vertices that they use.
+    /// Keeps only the triangles of the parts for which `keep` returns true, and the vertices that they use.
     pub fn keep_parts(&mut self, keep: impl Fn(&str) -> bool) {
         let mesh = &mut self.mesh;
         let parts = std::mem::take(&mut mesh.parts);
@@ -80,7 +81,8 @@ impl Body {
         self.drop_unused();
     }
 
-    /// The same body of some of its triangles, by their index, and of the vertices that those use; without parts.
+    /// Returns a copy of the body with only the triangles whose index `keep` accepts, and the vertices that
+    /// they use. The copy has no parts.
     pub fn of_triangles(&self, keep: impl Fn(usize) -> bool) -> Self {
         let mut body = self.clone();
         body.mesh.parts.clear();
@@ -113,7 +115,7 @@ impl Body {
         }
     }
 
-    /// Model-space matrix of every joint for local transforms `pose` of shape `[joints]`.
+    /// Returns the model-space matrix of every joint for the local transforms `pose` of shape `[joints]`.
     pub fn world(&self, pose: &[Trs]) -> Vec<Affine3A> {
         let mut world: Vec<Affine3A> = Vec::with_capacity(self.joints.len());
         for (joint, local) in self.joints.iter().zip(pose) {
@@ -123,13 +125,13 @@ impl Body {
         world
     }
 
-    /// Local transforms of the rest pose; shape `[joints]`.
+    /// Returns the local transforms of the rest pose; shape `[joints]`.
     pub fn rest_pose(&self) -> Vec<Trs> {
         self.joints.iter().map(|j| j.rest).collect()
     }
 
-    /// Writes vertex positions [m] and unit normals of the pose whose joint matrices are `world`
-    /// (linear blend skinning).
+    /// Writes the vertex positions [m] and unit normals of the pose with joint matrices `world` (linear blend
+    /// skinning).
     pub fn skinned(&self, world: &[Affine3A], positions: &mut Vec<Vec3>, normals: &mut Vec<Vec3>) {
         positions.clear();
         normals.clear();
@@ -146,7 +148,7 @@ impl Body {
     }
 }
 
-/// Drops the elements that are not used; an empty array stays empty.
+/// Removes the elements that are not used. An empty array stays empty.
 fn retain_used<T>(array: &mut Vec<T>, used: &[bool]) {
     let mut used = used.iter();
     array.retain(|_| used.next().copied().unwrap_or(false));

@@ -1,34 +1,35 @@
-//! Motion from one skeleton onto another: a head that drives a bust, or a clip onto a rig whose joints have the same
-//! names.
+//! Retargeting of motion to another skeleton: a captured head onto a bust, or a clip onto a rig with the same
+//! joint names.
 
 use super::{Body, Clip, Joint, Trs, cuts};
 use crate::{math::RigidTransform, settings::Solver};
 use glam::{Affine3A, Quat, Vec3};
 
-/// What of the head's travel through the world is kept by [`head_motion`].
+/// How much of the head's translation [`head_motion`] keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Travel {
-    /// All of it: a walk leaves the place.
+    /// All of it: the bust walks away with the capture.
     Keep,
-    /// Bobbing and swaying only: the path, averaged over a second, is taken out. The default: the bust stays in the picture.
+    /// Only bobbing and swaying: the path, averaged over a second, is removed, so the bust stays in view. The
+    /// default.
     #[default]
     InPlace,
-    /// None: the head turns about the pivot.
+    /// None: the head only rotates about the pivot.
     None,
 }
 
-/// How [`head_motion`] carries a head's motion over to a bust.
+/// Options of [`head_motion`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadMotion {
-    /// Point of the bust that it turns about: its own head joint, at the top of the neck [m].
+    /// Point that the bust rotates about [m]: its own head joint, at the top of the neck.
     pub pivot: Vec3,
-    /// Size of the bust over that of the captured person; 1 for life size. Scales translations.
+    /// Scale of the bust relative to the captured person; 1 for life size. Scales translations.
     pub scale: f32,
-    /// Frame of the clip in which the head counts as being at rest.
+    /// Frame of the clip in which the head is at rest.
     pub rest_frame: usize,
-    /// What is kept of the translation.
+    /// How much of the translation is kept.
     pub travel: Travel,
-    /// Direction that the bust faces, about +Y from +Z [radians].
+    /// Direction that the bust faces, an angle about +Y measured from +Z [rad].
     pub facing: f32,
 }
 
@@ -38,11 +39,11 @@ impl Default for HeadMotion {
     }
 }
 
-/// The motion of joint `name` relative to its rest frame, as a clip of one joint that drives a rigid body
-/// ([`Body::rigid`]); `None` where there is no such joint or no frame.
+/// Returns the motion of joint `name` relative to its rest frame, as a clip of one joint that drives a rigid
+/// body ([`Body::rigid`]). Returns `None` if there is no such joint or the clip has no frames.
 ///
-/// The person's heading in the rest frame (from the joints named left and right) is turned into the bust's, so that a
-/// nod stays a nod whichever way the capture walks.
+/// The person's heading in the rest frame, computed from the joints named left and right, is rotated to that
+/// of the bust. A nod therefore stays a nod whichever way the captured person faces.
 pub fn head_motion(joints: &[Joint], clip: &Clip, name: &str, options: &HeadMotion) -> Option<Clip> {
     let skeleton = Body { joints: joints.to_vec(), ..Body::default() };
     let head = skeleton.joint(name)?;
@@ -80,7 +81,8 @@ pub fn head_motion(joints: &[Joint], clip: &Clip, name: &str, options: &HeadMoti
     Some(Clip { name: clip.name.clone(), rate: clip.rate, joint_count: 1, samples: samples.collect() })
 }
 
-/// Takes the path, averaged over a second, out of `shifts`; the rest frame stays at zero. No average reaches across one of the `cuts`.
+/// Subtracts the path, averaged over a second, from `shifts`, and makes the rest frame zero. No average
+/// extends across one of the `cuts`.
 fn stay(shifts: &mut [Vec3], rate: f64, rest_frame: usize, cuts: &[(usize, usize)]) {
     let half = (rate * 0.5).round() as usize;
     let mut sums = vec![glam::DVec3::ZERO];
@@ -92,7 +94,7 @@ fn stay(shifts: &mut [Vec3], rate: f64, rest_frame: usize, cuts: &[(usize, usize
     starts.push(shifts.len());
     for shot in starts.windows(2) {
         for f in shot[0]..shot[1] {
-            // The window is as long to either side, so that at the ends a steady walk still averages to its middle.
+            // The window is symmetric, so a steady walk still averages to its middle frame near the ends.
             let reach = half.min(f - shot[0]).min(shot[1] - 1 - f);
             let mean = (sums[f + reach + 1] - sums[f - reach]) / (2 * reach + 1) as f64;
             shifts[f] -= mean.as_vec3();
@@ -102,7 +104,8 @@ fn stay(shifts: &mut [Vec3], rate: f64, rest_frame: usize, cuts: &[(usize, usize
     shifts.iter_mut().for_each(|s| *s -= at_rest);
 }
 
-/// Direction that a skeleton faces, about +Y from +Z [radians]: square to the mean of right-to-left pairs; 0 without.
+/// Returns the direction that a skeleton faces, an angle about +Y measured from +Z [rad]: perpendicular to
+/// the mean of the right-to-left pairs of joints. Returns 0 if there are no such pairs.
 fn heading(joints: &[Joint], world: &[Affine3A]) -> f32 {
     let mut left = Vec3::ZERO;
     for (j, joint) in joints.iter().enumerate() {
@@ -120,23 +123,24 @@ fn heading(joints: &[Joint], world: &[Affine3A]) -> f32 {
     if forward.length_squared() > 1e-12 { forward.x.atan2(forward.z) } else { 0.0 }
 }
 
-/// A clip carried over to another rig.
+/// A clip retargeted to another rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Retargeted {
     /// Motion of the body's joints.
     pub clip: Clip,
-    /// Joints of the body that the motion drives; the others keep their rest pose.
+    /// Number of joints of the body that the motion drives; the others keep their rest pose.
     pub matched: usize,
-    /// Joints of the motion that the body does not have.
+    /// Names of the motion's joints that the body does not have.
     pub unmatched: Vec<String>,
 }
 
-/// Carries a clip over to the joints of `body` that have the same names (upper and lower case, punctuation and a prefix
-/// before a colon aside); `None` if no names agree or there is no frame.
+/// Retargets a clip to the joints of `body` that have the same names. Case, punctuation and a prefix before a
+/// colon are ignored. Returns `None` if no names agree or the clip has no frames.
 ///
-/// Rotations are carried in the world: a bone of the body points where the motion's bone points, whatever the two rest
-/// poses are (arms down or out). The spine up to the head keeps the body's own curve. The root's height is scaled
-/// by the ratio of hip heights, its path starts at the body's own place, and its lowest joint starts on the same floor.
+/// Rotations are transferred in world space: a bone of the body points where the motion's bone points, even
+/// if the rest poses differ (arms down or out). The spine up to the head keeps the curve of the body's rest
+/// pose. The root's translation is scaled by the ratio of the hip heights. It starts at the body's own place,
+/// with the lowest joint on the same floor.
 pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted> {
     let source = Body { joints: joints.to_vec(), ..Body::default() };
     let map: Vec<Option<usize>> =
@@ -185,9 +189,10 @@ pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted
     Some(Retargeted { clip, matched, unmatched })
 }
 
-/// The rotation that turns each target bone's rest direction into the source bone's, in the world.
+/// Returns the world-space rotation from each target bone's rest direction to that of the source bone.
 ///
-/// A joint with one driven child points at it; with several or none it goes with its parent, or stays on the spine.
+/// A joint with one driven child points at that child. A joint with several or none inherits the rotation of
+/// its parent. Joints of the spine are not rotated.
 fn alignments(body: &Body, map: &[Option<usize>], target: &[Affine3A], source: &[Affine3A]) -> Vec<Quat> {
     let mut spine = vec![false; map.len()];
     let mut at = body.joint("head").map(|j| j as u32);
@@ -211,19 +216,19 @@ fn alignments(body: &Body, map: &[Option<usize>], target: &[Affine3A], source: &
     align
 }
 
-/// A joint's name for comparison: lower case letters and digits after the last colon.
+/// Normalizes a joint name for comparison: lowercase letters and digits after the last colon.
 fn key(name: &str) -> String {
     let own = name.rsplit(':').next().unwrap_or(name);
     own.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// Rotation and place of a joint; scale is left out.
+/// Returns the rotation and position of a joint, without its scale.
 fn split(world: &Affine3A) -> (Quat, Vec3) {
     let (_, rotation, translation) = world.to_scale_rotation_translation();
     (if rotation.is_finite() { rotation } else { Quat::IDENTITY }, translation)
 }
 
-/// Height of the lowest joint [m].
+/// Returns the height of the lowest joint [m].
 fn lowest(world: &[Affine3A]) -> f32 {
     world.iter().map(|w| w.translation.y).fold(f32::INFINITY, f32::min)
 }
@@ -236,7 +241,7 @@ mod tests {
         Joint { name: name.into(), parent, rest: Trs { translation, ..Trs::default() } }
     }
 
-    /// A person of two bones an arm: arms out (`down` 0) or hanging (`down` 1), all of size `size`.
+    /// A person of scale `size` with two bones an arm, held out (`down` 0) or hanging (`down` 1).
     fn person(size: f32, down: f32, turned: Quat) -> Body {
         let arm = Quat::from_rotation_z(-down * std::f32::consts::FRAC_PI_2) * Vec3::X * 0.3 * size;
         let mut joints = vec![
@@ -248,7 +253,7 @@ mod tests {
             joint("RightArm", Some(0), Vec3::new(-0.2, 0.5, 0.0) * size),
             joint("LeftFoot", Some(0), Vec3::new(0.1, -1.0, 0.0) * size),
         ];
-        // The forearm's own axes are turned: it must not show.
+        // The forearm's local axes are rotated; the result must not depend on it.
         joints[3].rest.rotation = turned;
         joints[4].rest.translation = turned.inverse() * arm;
         Body { joints, ..Body::default() }
@@ -282,7 +287,7 @@ mod tests {
                 let direction = |w: &[Affine3A]| (w[b].translation - w[a].translation).normalize();
                 assert!(direction(&s).distance(direction(&t)) < 1e-4, "frame {f}, bone {a}");
             }
-            // A tenth of the size walks a tenth of the way, on the same floor.
+            // A tenth of the size walks a tenth of the distance, on the same floor.
             assert!(
                 (t[0].translation * 10.0).distance(s[0].translation) < 1e-3,
                 "frame {f}: {}",

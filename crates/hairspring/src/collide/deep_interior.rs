@@ -1,9 +1,11 @@
-//! Distances deep inside a closed mesh, farther from its surface than the band of exact ones is wide.
+//! Distances deep inside a closed mesh, beyond the band of exact distances.
 
 use super::{SignedDistanceField, lattice::Lattice, voxelize::BAND};
 
-/// Extends distances beyond the band through `runs` of nodes in a row that lie deeper, in order (layer, row, first and end): one round of fast sweeping for
-/// |∇d| = 1 (Zhao 2005) over every second node along each axis, and means between those. So deep, the way out is all that is asked for.
+/// Extends the distances beyond the band, through `runs` of deeper nodes in a row, in order (layer, row,
+/// first and end). Every second node along each axis is computed by one round of fast sweeping for |∇d| = 1
+/// (Zhao 2005); the nodes between are interpolated. This accuracy is enough, because so deep only the
+/// direction out matters.
 pub(super) fn extend(
     grid: &mut SignedDistanceField,
     runs: impl DoubleEndedIterator<Item = [u32; 4]> + Clone,
@@ -11,7 +13,7 @@ pub(super) fn extend(
     let SignedDistanceField { distances: d, lattice: Lattice { size, cell, .. }, .. } = grid;
     let [nx, ny, nz] = size.to_array().map(|n| n as usize);
     let h = 2.0 * *cell;
-    // Deeper than any way out of the grid.
+    // A value deeper than any depth in the grid.
     let far = -((nx + ny + nz) as f32 * *cell);
     let runs = || runs.clone().map(|run| run.map(|i| i as usize));
     for [z, y, first, end] in runs() {
@@ -20,8 +22,8 @@ pub(super) fn extend(
     }
     let update = |d: &mut [f32], [z, y, x]: [usize; 3]| {
         let i = (z * ny + y) * nx + x;
-        // The nearer of both neighbours on each axis, as positive depths; a grid that cuts through the mesh has inside
-        // nodes on its border, which have one.
+        // The nearer of the two neighbors on each axis, as positive depths. If the grid cuts through the
+        // mesh, inside nodes on its border have only one neighbor.
         let axis = |at: usize, n: usize, stride: usize| {
             let before = if at >= 2 { d[i - 2 * stride] } else { far };
             -before.max(if at + 2 < n { d[i + 2 * stride] } else { far })
@@ -49,7 +51,7 @@ pub(super) fn extend(
         even(first, end).rev().for_each(|x| update(d, [z, y, x]));
     }
 
-    // Between them: along x, then along y, then along z. A deep node's neighbours are all inside.
+    // Interpolate the nodes between: along x, then y, then z. All neighbors of a deep node are inside.
     for [z, y, first, end] in runs().filter(coarse) {
         let row = (z * ny + y) * nx;
         for x in (first | 1..end).step_by(2) {
@@ -68,14 +70,15 @@ pub(super) fn extend(
     for [z, y, first, end] in runs().filter(|run| run[0] % 2 == 1) {
         between(z, y, first, end, [(z - 1) * ny + y, (z + 1).min(nz - 1) / 2 * 2 * ny + y]);
     }
-    // None of these is nearer to the surface than the band is wide.
+    // All of these nodes are at least as deep as the band is wide.
     for [z, y, first, end] in runs() {
         let row = (z * ny + y) * nx;
         d[row + first..row + end].iter_mut().for_each(|d| *d = d.min(-BAND * *cell));
     }
 }
 
-/// Adds the runs of nodes that lie deeper than the band in the `distances` of a row (layer, row), before distances are known there.
+/// Adds the runs of nodes in the `distances` of a row (layer, row) that are deeper than the band, before
+/// their depths are computed.
 pub(super) fn push([z, y]: [u32; 2], distances: &[f32], cell: f32, deep: &mut Vec<[u32; 4]>) {
     let known = -(BAND - 0.01) * cell;
     let mut first = 0;

@@ -1,30 +1,33 @@
-//! What is inside along rows of nodes that pass a hole of the mesh: counted along them, all of what is behind the hole would be.
+//! Sign repair for rows of nodes that pass through a hole in the mesh. Counting crossings along such a row
+//! would mark everything behind the hole as inside.
 //!
 //! ```text
-//!     ┌──────┐  row beside: enters once, leaves once
+//!     ┌──────┐  neighboring row: enters once, leaves once
 //!     │ ▓▓▓▓ │
 //!   ──│▓▓▓▓▓▓▓▓▓▓▓▓▓▓▓▓   row through a hole on the far side: never leaves, and would be a wall in the air
 //!     │ ▓▓▓▓ │
 //! ```
 //!
-//! Between two nodes of which either is more than half a cell from every triangle there is no surface: there both are inside, or neither is. Rows
-//! beside one that is told take after it, one after the other, and what is near a surface stays as it was counted.
+//! If either of two adjacent nodes is more than half a cell from every triangle, no surface passes between
+//! them, so both have the same sign. Rows next to a row with known signs copy them, one row after the other.
+//! Nodes near a surface keep the sign from counting.
 
 use super::{SignedDistanceField, deep_interior};
 
-/// Rows of a field that pass holes of its mesh; kept for the memory.
+/// Rows of a field that pass through holes of its mesh. Its buffers are reused.
 #[derive(Default)]
 pub(super) struct Holes {
-    /// Rows that are not told yet: layer, row.
+    /// Rows whose signs are not known yet: layer, row.
     open: Vec<[u32; 2]>,
-    /// Whether a row is told, layer after layer.
+    /// Whether the signs of a row are known, layer after layer.
     told: Vec<bool>,
     /// Runs of deep nodes: layer, row, first and end.
     deep: Vec<[u32; 4]>,
 }
 
 impl Holes {
-    /// Tells the `open` rows of `grid` (layer, row) anew by those beside them; returns their runs of nodes deeper than the band and the `closed` ones, in order.
+    /// Corrects the signs of the `open` rows of `grid` (layer, row) from the rows next to them. Returns, in
+    /// order, the runs of nodes deeper than the band in these rows, together with the `closed` runs.
     pub fn mend(
         &mut self,
         grid: &mut SignedDistanceField,
@@ -73,7 +76,7 @@ impl Holes {
     }
 }
 
-/// Gives the nodes of the row that begins at node `row` the side that most of the rows `beside` are on.
+/// Gives the nodes of the row that starts at node `row` the sign of the majority of the rows `beside` it.
 fn take_after(grid: &mut SignedDistanceField, row: usize, beside: [Option<usize>; 4]) {
     let far = 0.5 * grid.cell();
     for x in 0..grid.size().x as usize {
@@ -91,7 +94,7 @@ mod tests {
     use crate::collide::voxelize;
     use glam::Vec3;
 
-    /// A box of 10 cm with a slit of 3 mm in its far face, which one layer of nodes sees through.
+    /// A box of 10 cm with a slit of 3 mm in its far face. One layer of nodes passes through the slit.
     #[test]
     fn what_is_behind_a_slit_is_outside() {
         let at = |x: f32, y: f32, z: f32| 0.1 * Vec3::new(x, y, z);

@@ -1,8 +1,9 @@
-//! Convex hulls: the deepest of the faces' planes inside, the nearest place of the faces outside.
+//! Convex hulls. Inside, the distance is the maximum over the planes of the faces; outside, it is that to the
+//! nearest point of the faces.
 //!
 //! ```text
 //!   inside   d = max n·p − c           over the faces' planes (n, c)
-//!   outside  d = min |p − q|, q on a face that p is in front of: the nearest place lies on such a one
+//!   outside  d = min |p − q|, q on a face that p is in front of: the nearest point lies on such a face
 //! ```
 
 use crate::{
@@ -12,22 +13,25 @@ use crate::{
 use glam::Vec3;
 use parry3d::transformation::try_convex_hull;
 
-/// Share of the hull's radius within which a place counts as on its surface, and triangles as in one plane: `f32` has 24 bits.
+/// Tolerance relative to the hull's radius, within which a point counts as on the surface and triangles as
+/// coplanar: `f32` has 24 bits.
 const TOUCH: f32 = 1e-5;
 
-/// Least thickness, over the hull's radius: points that lie in a plane to less than this have no inside.
+/// Minimum thickness relative to the hull's radius. Points that are coplanar within this have no inside.
 const THIN: f32 = 1e-3;
 
-/// By how much points are moved at random, over the hull's radius, until quickhull holds them all: it may lose some of those that lie
-/// in a plane or nearly (joggled input: Barber, Dobkin & Huhdanpaa 1996, *The Quickhull Algorithm for Convex Hulls*).
+/// Amplitudes of random joggling relative to the hull's radius, tried until quickhull contains all points.
+/// Quickhull may lose points that are coplanar or nearly so (joggled input: Barber, Dobkin & Huhdanpaa 1996,
+/// *The Quickhull Algorithm for Convex Hulls*).
 const JOGGLES: [f32; 4] = [0.0, 1e-6, 1e-5, 1e-4];
 
-/// A convex solid, by its faces. Each costs about ten instructions for eight points that touch it, so that a hundred of them are
-/// about as fast as a distance field; what has more is better given as a mesh.
+/// A convex solid, given by its faces. Each face costs about ten instructions for eight points that touch the
+/// hull, so a hull of a hundred faces is about as fast as a distance field. A shape with more faces should be
+/// given as a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     faces: Vec<Face>,
-    /// A ball around it: middle and radius [m].
+    /// Bounding sphere: center and radius [m].
     bounds: (Vec3, f32),
 }
 
@@ -35,21 +39,22 @@ pub struct Hull {
 struct Face {
     /// Outward unit normal.
     normal: Vec3,
-    /// Where the plane is along it [m].
+    /// Offset of the plane along the normal [m].
     offset: f32,
-    /// What the face is made of, counter-clockwise seen from outside.
+    /// Triangles of the face, counter-clockwise seen from outside.
     triangles: Vec<[Vec3; 3]>,
 }
 
 impl Face {
-    /// How far `p` is in front of the face's plane [m].
+    /// Returns the height of `p` above the face's plane [m].
     fn height(&self, p: Vec3) -> f32 {
         self.normal.dot(p) - self.offset
     }
 }
 
 impl Hull {
-    /// The convex hull of points [m]; `None` where they span no volume. Points that are not finite are left out.
+    /// Creates the convex hull of points [m]. Returns `None` if they span no volume. Points that are not
+    /// finite are ignored.
     pub fn new(points: &[Vec3]) -> Option<Self> {
         let points = || points.iter().filter(|p| p.is_finite());
         let lo = points().fold(Vec3::INFINITY, |lo, p| lo.min(*p));
@@ -58,7 +63,7 @@ impl Hull {
         if !(radius > 0.0 && radius.is_finite()) {
             return None;
         }
-        // Around the origin in units of the radius: what is taken for flat or equal then depends on no unit.
+        // Normalize to the origin and unit radius, so that the tolerances do not depend on the scale.
         let unit: Vec<Vec3> = points().map(|p| (*p - center) / radius).collect();
         if thickness(&unit) < THIN {
             return None;
@@ -75,12 +80,12 @@ impl Hull {
         Some(Self { bounds: (center, radius), ..hull })
     }
 
-    /// The triangles of its faces [m], counter-clockwise seen from outside.
+    /// Returns the triangles of its faces [m], counter-clockwise seen from outside.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
         self.faces.iter().flat_map(|face| &face.triangles).copied()
     }
 
-    /// What the library makes of points around the origin that reach to about 1.
+    /// Builds the hull of points around the origin with a radius of about 1.
     fn of_unit(points: &[Vec3]) -> Option<Self> {
         let points: Vec<_> = points.iter().map(|p| p.to_array().into()).collect();
         let (corners, triangles) = try_convex_hull(&points).ok()?;
@@ -100,7 +105,7 @@ impl Hull {
         let lies_in = |f: &Face| {
             f.normal.dot(normal) > 0.0 && triangle.iter().all(|p| (f.normal.dot(*p) - f.offset).abs() < TOUCH)
         };
-        // A plane touches all corners of its triangles from outside, so that none is farther out than it.
+        // The plane is placed at the outermost corner of its triangle, so that no corner is outside.
         let offset = triangle.iter().fold(f32::MIN, |most, p| most.max(normal.dot(*p)));
         match self.faces.iter_mut().find(|f| lies_in(f)) {
             Some(face) => face.triangles.push(triangle),
@@ -108,17 +113,18 @@ impl Hull {
         }
     }
 
-    /// A ball around it: its middle and radius [m].
+    /// Returns a bounding sphere: center and radius [m].
     pub(super) fn bounds(&self) -> (Vec3, f32) {
         self.bounds
     }
 
-    /// The planes of its faces: outward unit normal, and where the plane is along it [m]. Inside, the distance is the greatest of those to the planes.
+    /// Returns the planes of its faces: outward unit normal and offset along it [m]. Inside, the distance is
+    /// the maximum of the distances to the planes.
     pub fn planes(&self) -> impl ExactSizeIterator<Item = (Vec3, f32)> + '_ {
         self.faces.iter().map(|f| (f.normal, f.offset))
     }
 
-    /// Distance [m], negative inside, and outward unit normal at `p` [m].
+    /// Returns the distance [m], negative inside, and the outward unit normal at `p` [m].
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
         let depth = |f: &Face| f.normal.dot(p) - f.offset;
         let deepest = self
@@ -137,13 +143,15 @@ impl Hull {
         (way.length(), way.normalize_or(deepest.1))
     }
 
-    /// How far `p` is in front of the plane that it is farthest in front of, or least behind [m], and its normal.
+    /// Returns the maximum height of `p` above the planes of the faces [m], negative inside, and that plane's
+    /// normal.
     fn deepest(&self, p: Vec3) -> (f32, Vec3) {
         let heights = self.faces.iter().map(|f| (f.height(p), f.normal));
         heights.fold((f32::MIN, Vec3::Y), |most, face| if face.0 > most.0 { face } else { most })
     }
 
-    /// Of eight segments that end at `p` and are `e` long, those that no face has in front of it from end to end; the others are outside.
+    /// Returns which of eight segments are not entirely in front of any face. The segments end at `p` and
+    /// have the edge vector `e`. The others are outside.
     #[inline(always)]
     pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>, e: V3<S>) -> Mask<S> {
         let mut most = F::<S>::splat(simd, f32::MIN);
@@ -157,7 +165,7 @@ impl Hull {
         most.simd_le(0.0)
     }
 
-    /// [`Hull::distance_and_normal`] of eight points.
+    /// [`Hull::distance_and_normal`] for eight points.
     #[inline(always)]
     pub(super) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let (mut most, mut normal) = (F::<S>::splat(simd, f32::MIN), V3::zero(simd));
@@ -191,7 +199,7 @@ impl Hull {
     }
 }
 
-/// How far the points reach from a plane through three that lie far from each other.
+/// Returns the maximum distance of the points from a plane through three points that are far apart.
 fn thickness(points: &[Vec3]) -> f32 {
     let farthest = |far: &dyn Fn(Vec3) -> f32| {
         points.iter().fold(points[0], |best, p| if far(*p) > far(best) { *p } else { best })
@@ -204,7 +212,8 @@ fn thickness(points: &[Vec3]) -> f32 {
     points.iter().fold(0.0, |most, p| most.max(normal.dot(*p - a).abs()))
 }
 
-/// The points moved by up to half of `size`, the same every time (xorshift, Marsaglia 2003).
+/// Moves the points randomly by up to half of `size` along each axis, deterministically (xorshift, Marsaglia
+/// 2003).
 fn joggled(points: &[Vec3], size: f32) -> Vec<Vec3> {
     let mut state = 1u64;
     let mut next = || {
@@ -216,7 +225,8 @@ fn joggled(points: &[Vec3], size: f32) -> Vec<Vec3> {
     points.iter().map(|p| *p + Vec3::new(next(), next(), next()) * size).collect()
 }
 
-/// From the nearest place of a triangle to eight points that are `height` in front of it along its unit normal `n`.
+/// Returns the vector from the nearest point of a triangle to each of eight points, which are at `height`
+/// along its unit normal `n`.
 #[inline(always)]
 fn from_triangle<S: Simd>(simd: S, p: V3<S>, corners: &[Vec3; 3], (n, height): (V3<S>, F<S>)) -> V3<S> {
     let (mut best, mut way) = (F::<S>::splat(simd, f32::MAX), n * height);
@@ -225,7 +235,8 @@ fn from_triangle<S: Simd>(simd: S, p: V3<S>, corners: &[Vec3; 3], (n, height): (
         let (a, b) = (corners[k], corners[(k + 1) % 3]);
         let edge = V3::splat(simd, b - a);
         let from = p - V3::splat(simd, a);
-        // How far past this edge, along the face: above 0 for none of the three is over the triangle.
+        // Distance past this edge within the plane. If it is positive for none of the three edges, the point
+        // projects onto the triangle.
         let past = from.dot(edge.cross(n));
         over = over.max(past);
         let t = (from.dot(edge) * (1.0 / (b - a).length_squared().max(f32::MIN_POSITIVE))).max(0.0).min(1.0);
@@ -269,7 +280,7 @@ mod tests {
         }
     }
 
-    /// A cube of 9 × 9 × 9 points, turned and drawn out.
+    /// A cube of 9 × 9 × 9 points, stretched and rotated.
     fn turned_grid() -> Vec<Vec3> {
         let turn = Mat3::from_euler(glam::EulerRot::XYZ, 0.3, 0.8, 0.2);
         let at = |k: u32| Vec3::new((k % 9) as f32, (k / 9 % 9) as f32, (k / 81) as f32) / 8.0;
@@ -279,7 +290,7 @@ mod tests {
     #[test]
     fn a_hull_holds_its_points_however_they_lie() {
         let sets = (0..600).map(|set| joggled(&[Vec3::ONE; 640], 1.0)[set..6 + set % 30 + set].to_vec());
-        // Points that lie in a plane but for noise of every size.
+        // Points that are coplanar except for noise of various amplitudes.
         let noisy = (0..40).map(|k| joggled(&turned_grid(), 10f32.powf(-8.0 + 0.15 * k as f32)));
         for points in sets.chain(noisy) {
             let hull = Hull::new(&points).unwrap();
@@ -301,7 +312,7 @@ mod tests {
         {
             assert!(Hull::new(&points).is_none(), "{points:?}");
         }
-        // What is not finite is left out, points twice there and within it change nothing.
+        // Points that are not finite are ignored; duplicates and interior points change nothing.
         let mut many = corners(0.1);
         many.extend(corners(0.1));
         many.extend([Vec3::NAN, Vec3::INFINITY, Vec3::ZERO, Vec3::splat(0.05)]);

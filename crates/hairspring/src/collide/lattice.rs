@@ -1,36 +1,37 @@
-//! Which cell of a regular lattice a place is in, for one point and for eight.
+//! Finds the cell of a regular lattice that contains a point, for one point and for eight.
 
 use crate::simd::lanes::{F, LANES, Row, Simd, V3, store};
 use glam::{UVec3, Vec3};
 
-/// Most nodes of a lattice: their index is worked out in `f32`, where whole numbers follow each other up to here.
+/// Maximum number of nodes of a lattice. Node indices are computed in `f32`, which represents all integers up
+/// to here.
 pub(super) const MAX_NODES: usize = 1 << 23;
 
-/// Nodes at equal distances; a cell goes by the index of its lower node.
+/// A regular lattice of nodes. A cell is identified by the index of its lower node.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lattice {
     /// Position of node (0, 0, 0) [m].
     pub origin: Vec3,
-    /// Distance between neighbouring nodes [m].
+    /// Distance between adjacent nodes [m].
     pub cell: f32,
     /// Nodes along each axis, each 2 or more.
     pub size: UVec3,
-    /// What `locate_lanes` would else work out at every call: the largest place inside, just below the last nodes [cells], the last cell, and how many
-    /// nodes a row has, and a slab rows.
+    /// Precomputed for `locate_lanes`: the largest point inside, just below the last nodes [cells], the last
+    /// cell, and the number of nodes in a row and of rows in a layer.
     top: Vec3,
     last: Vec3,
     rows: [f32; 2],
 }
 
 impl Lattice {
-    /// Of `size` nodes, each 2 or more.
+    /// Creates a lattice of `size` nodes, each 2 or more.
     pub fn new(origin: Vec3, cell: f32, size: UVec3) -> Self {
         let (top, last) = ((size - UVec3::ONE).as_vec3() - Vec3::splat(1e-3), (size - 2).as_vec3());
         Self { origin, cell, size, top, last, rows: [size.x as f32, size.y as f32] }
     }
 
-    /// Covers the box from `lo` to `hi` [m] and `margin` cells around it, in cells of `cell` [m], or of 1.1 to some power times that
-    /// where there would be more than `most` nodes.
+    /// Creates a lattice that covers the box from `lo` to `hi` [m] and `margin` cells around it, with cells
+    /// of `cell` [m]. If this would take more than `most` nodes, the cell is enlarged by a power of 1.1.
     pub fn covering(lo: Vec3, hi: Vec3, margin: f32, cell: f32, most: usize) -> Self {
         let mut cell = cell.max(f32::MIN_POSITIVE);
         while ((hi - lo) / cell + (2.0 * margin + 2.0)).element_product() > most as f32 {
@@ -41,26 +42,27 @@ impl Lattice {
         Self::new(lo - margin, cell, cells.max(UVec3::ONE) + UVec3::ONE)
     }
 
-    /// Number of nodes.
+    /// Returns the number of nodes.
     pub fn nodes(&self) -> usize {
         self.size.as_usizevec3().element_product()
     }
 
-    /// Index of a node, x fastest.
+    /// Returns the index of a node, x fastest.
     pub fn index(&self, at: UVec3) -> usize {
         ((at.z * self.size.y + at.y) * self.size.x + at.x) as usize
     }
 
-    /// How far `p` [m] is outside, the cell of the place in the lattice nearest to it, and that place from the cell's lower node; in cells.
+    /// Clamps `p` [m] to the lattice. Returns the offset of `p` from the clamped point, the cell of that
+    /// point, and its offset from the cell's lower node, all in cells.
     pub fn locate(&self, p: Vec3) -> (Vec3, UVec3, Vec3) {
         let g = (p - self.origin) / self.cell;
-        // `max` first: a NaN becomes 0.
+        // `max` comes first, so that a NaN becomes 0.
         let c = g.max(Vec3::ZERO).min(self.top);
         let cell = c.as_uvec3().min(self.size - 2);
         (g - c, cell, c - cell.as_vec3())
     }
 
-    /// [`Lattice::locate`] of eight points, the cells by their index.
+    /// [`Lattice::locate`] for eight points. Cells are returned by their index.
     #[inline(always)]
     pub fn locate_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (V3<S>, [usize; LANES], V3<S>) {
         let (top, last) = (self.top, self.last);
@@ -72,7 +74,8 @@ impl Lattice {
         };
         let cell = V3 { x: c.x.floor().min(last.x), y: c.y.floor().min(last.y), z: c.z.floor().min(last.z) };
         let [nx, ny] = self.rows;
-        // From here on `f32` counts in ones, and the last bits of its pattern are the number: no conversion, lane by lane.
+        // From this value on the spacing of `f32` is 1, so the low bits of its pattern are the index. This
+        // avoids converting lane by lane.
         let index = cell.z.mul_add(ny, cell.y).mul_add(nx, cell.x) + MAX_NODES as f32;
         let mut row = Row::default();
         store(index, &mut row);

@@ -1,5 +1,5 @@
-//! What hair meets: spheres, capsules, boxes, planes, convex hulls, open sheets and the signed distance field of a closed mesh, each moving as
-//! a rigid piece; sheets and fields may deform besides.
+//! Colliders: spheres, capsules, boxes, planes, convex hulls, thin shells of open meshes, and signed distance
+//! fields of closed meshes. Each moves as a rigid body; shells and fields may also deform.
 
 mod deep_interior;
 mod frame_colliders;

@@ -1,50 +1,55 @@
-//! A collider as the kernel sees it during a substep: where its shape is, who is near it, and how its surface moves, for eight points in the world at once.
+//! Collider poses: a collider shape during a substep, with the broad-phase tests and surface motion for eight
+//! world-space points at once.
 
 use super::{ColliderShape, SignedDistanceField, shape::ball_lanes, side::Edges};
 use crate::simd::lanes::{F, LANES, Mask, Row, Simd, V3, transform};
 use glam::{Mat3, Vec3};
 
-/// Cells between places that a segment longer than [`LONG`] is looked at on its way past a field [1], and from the outer ones to its ends half of that: it
-/// cannot cross what is a cell thick unseen.
+/// Distance between the samples of a segment longer than [`LONG`], in cells of a field [1]; the outer samples
+/// are half of that from its ends. A segment therefore cannot cross a feature one cell thick unnoticed.
 const LOOK: f32 = 1.5;
 
-/// Most such places [1].
+/// Maximum number of samples [1].
 const MOST_LOOKS: u32 = 8;
 
-/// Cells up to which a segment is looked at in its middle alone [1].
+/// Length up to which a segment is sampled only at its middle, in cells [1].
 const LONG: f32 = 2.0;
 
-/// An obstacle during one substep.
+/// A collider during one substep.
 #[derive(Clone)]
 pub struct ColliderPose {
     /// The shape.
     pub shape: ColliderShape,
     /// Pose at the end of the substep.
     pub end: (Mat3, Vec3),
-    /// Pose at its start.
+    /// Pose at the start of the substep.
     pub start: (Mat3, Vec3),
-    /// Fraction of an interval that the substep lasts: a deforming field's displacement is for a whole interval.
+    /// Duration of the substep as a fraction of the interval that the displacement of a deforming shape
+    /// refers to.
     pub share: f32,
-    /// A ball that holds all of it at the end: its middle in the world and its radius [m], which is infinite for a plane.
+    /// Bounding sphere at the end of the substep: center in world space and radius [m], which is infinite for
+    /// a plane.
     bounds: (Vec3, f32),
-    /// How far its places move in the substep: a matrix, by where each is from the pose's end, and what is the same for all [m].
+    /// Displacement of its points in the substep: a matrix, applied to the offset from the end pose's
+    /// translation, and a constant vector [m].
     motion: (Mat3, Vec3),
-    /// Its edges, where it is a capsule or a box.
+    /// Its edges, if it is a capsule or a box.
     pub(crate) edges: Option<Edges>,
 }
 
 impl ColliderPose {
-    /// A shape that moves from `start` to `end` in a substep that lasts `share` of an interval.
+    /// Creates the pose of a shape that moves from `start` to `end` in a substep that lasts `share` of an
+    /// interval.
     pub fn new(shape: ColliderShape, start: (Mat3, Vec3), end: (Mat3, Vec3), share: f32) -> Self {
         let (center, radius) = shape.bounds();
         let bounds = (end.0 * center + end.1, radius);
-        // What does not move does so to the last bit, which a rotation and its inverse do not.
+        // Without rotation the matrix is exactly zero; a rotation times its inverse would not be.
         let turned = if start.0 == end.0 { Mat3::ZERO } else { Mat3::IDENTITY - start.0 * end.0.transpose() };
         let edges = Edges::new(&shape, start, end);
         Self { shape, start, end, share, bounds, motion: (turned, end.1 - start.1), edges }
     }
 
-    /// Which of eight points may be inside at the end of the substep; the others are not.
+    /// Returns which of eight points may be inside at the end of the substep. The others are not.
     #[inline(always)]
     pub(crate) fn broadphase_test<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let d = p - V3::splat(simd, self.bounds.0);
@@ -60,12 +65,13 @@ impl ColliderPose {
         }
     }
 
-    /// Which of eight segments that end at `p` (world) and are `e` long may have a place between their ends that is deeper than `sag` [m] and than
-    /// both of them; the others have none that counts.
+    /// Returns which of eight segments may have an interior point that is deeper than `sag` [m] and than both
+    /// ends. The segments end at `p` (world) and have the edge vector `e`. The others have no such point that
+    /// matters.
     ///
     /// ```text
-    ///   ●─────────●    on a round shape of radius R a segment of length L is deeper between its ends by L²/8R at most:
-    ///  ╱  sag ↕    ╲   where that is below what it may, nothing need be looked at
+    ///   ●─────────●    on a round shape of radius R, a segment of length L is deeper between its ends by at most L²/8R:
+    ///  ╱  sag ↕    ╲   if that is less than the tolerance, nothing has to be sampled
     /// ```
     #[inline(always)]
     pub(crate) fn segment_may_intersect<S: Simd>(
@@ -82,7 +88,7 @@ impl ColliderPose {
         }
         let half = F::splat(simd, -0.5);
         let d = e.mul_add(half, p) - V3::splat(simd, self.bounds.0);
-        // A little over half of its length.
+        // Slightly more than half of its length.
         let reach = size.sqrt().mul_add(0.5001, F::splat(simd, self.bounds.1));
         may &= d.dot(d).simd_le(reach * reach);
         if !may.any_true() {
@@ -120,7 +126,8 @@ impl ColliderPose {
         }
     }
 
-    /// The same of segments that end beside the surface, as most of those have a place in a cell that holds one inside: it is not asked first.
+    /// [`Self::segment_may_intersect`] for segments that end near the surface. Most of these pass a cell that
+    /// contains a point inside, so that test is skipped.
     #[inline(always)]
     pub(crate) fn segment_may_penetrate<S: Simd>(
         &self,
@@ -136,9 +143,11 @@ impl ColliderPose {
         }
     }
 
-    /// Which of eight segments that end at `p` (world) and are `e` long may be deeper than `sag` [m] in a field, as distance and slope at both thirds tell: that
-    /// of a convex shape lies above its tangents. (Where they end they are outside, or a point's contact sees to it.) On a smooth body most of what lies on
-    /// it is done with here: no tangent is deeper than 10/9 of its middle.
+    /// Returns which of eight segments may be deeper than `sag` [m] in a field. The segments end at `p`
+    /// (world) and have the edge vector `e`. The test uses distance and slope at both thirds: for a convex
+    /// shape, the distance along the segment lies above its tangents. (The ends are outside, or handled by
+    /// the contacts of points.) On a smooth body this rejects most segments that lie on the surface, since
+    /// the tangents go no deeper than 10/9 of the depth at the middle.
     ///
     /// ```text
     ///   d ●                 ●
@@ -162,14 +171,14 @@ impl ColliderPose {
         let up = rise.dot(e);
         let [first, last] = [inner - down * third, outer + up * third];
         let ends = first.min(inner).min(outer).min(last).simd_lt(-sag);
-        // Where they cross, both times how far they turn there.
+        // Depth where the tangents cross; both sides are multiplied by the change of slope.
         let crossing = first * up - (outer - up * two) * down;
         let between = down.simd_lt(0.0) & up.simd_gt(0.0) & crossing.simd_lt((down - up) * sag);
         ends | between
     }
 
-    /// Of the segments in `may`, those with a place between their ends for which `holds` is true, of places that are no farther than [`LOOK`] cells of edge
-    /// `cell` [m] from each other.
+    /// Returns the segments in `may` for which `holds` is true at one of the samples. The samples are at most
+    /// [`LOOK`] cells of edge `cell` [m] apart.
     #[inline(always)]
     fn between<S: Simd>(
         &self,
@@ -179,7 +188,7 @@ impl ColliderPose {
         may: Mask<S>,
         holds: impl Fn(V3<S>) -> Mask<S>,
     ) -> Mask<S> {
-        // As many places as the longest of the eight needs.
+        // Use as many samples as the longest of the eight segments needs.
         let mut looks = 1;
         while looks < MOST_LOOKS
             && size.simd_gt(F::splat(simd, (cell * LONG.max(looks as f32 * LOOK)).powi(2))).any_true()
@@ -194,44 +203,46 @@ impl ColliderPose {
         may & held
     }
 
-    /// Eight world points in the shape's own space at the end of the substep.
+    /// Transforms eight world points to the shape's own space at the end of the substep.
     #[inline(always)]
     fn local<S: Simd>(&self, simd: S, p: V3<S>) -> V3<S> {
         transform(simd, &self.end.0.transpose(), p - V3::splat(simd, self.end.1))
     }
 
-    /// The distance from `p` [m] (world) to the surface at the end of the substep, negative inside; one point, for
-    /// checks and for follow hairs.
+    /// Returns the distance from `p` [m] (world) to the surface at the end of the substep, negative inside.
+    /// For a single point, used by checks and for follow hairs.
     pub fn distance(&self, p: Vec3) -> f32 {
         self.shape.distance(self.end.0.transpose() * (p - self.end.1))
     }
 }
 
-/// Whether any of the segments is longer than [`LONG`] of the field's cells: those are looked at in more places, by `find_deepest_point`.
+/// Returns whether any of the segments is longer than [`LONG`] cells of the field. `find_deepest_point`
+/// samples those more densely.
 #[inline(always)]
 fn is_long<S: Simd>(simd: S, grid: &SignedDistanceField, e: V3<S>) -> bool {
     e.dot(e).simd_gt(F::splat(simd, (LONG * grid.cell()).powi(2))).any_true()
 }
 
-/// World distance to the surface, and normal, of eight points at the end of a substep.
+/// Returns the distance to the surface and the normal in world space, for eight points at the end of a
+/// substep.
 #[inline(always)]
 pub(crate) fn contact<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> (F<S>, V3<S>) {
     if let ColliderShape::Sphere { radius, .. } = pose.shape {
-        // However it is turned.
+        // A sphere does not depend on the rotation.
         return ball_lanes(p - V3::splat(simd, pose.bounds.0), radius);
     }
     let (distance, normal) = pose.shape.distance_lanes(simd, pose.local(simd, p));
     (distance, transform(simd, &pose.end.0, normal))
 }
 
-/// The same, and in place of the normal how fast the distance changes with place [1].
+/// Like [`contact`], but returns the gradient of the distance [1] instead of the normal.
 #[inline(always)]
 pub(crate) fn slope<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> (F<S>, V3<S>) {
     let (distance, slope) = pose.shape.slope_lanes(simd, pose.local(simd, p));
     (distance, transform(simd, &pose.end.0, slope))
 }
 
-/// How far the surface at `p` (world, end of the substep) moved in the substep [m].
+/// Returns how far the surface at `p` (world, end of the substep) moved in the substep [m].
 #[inline(always)]
 pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> V3<S> {
     let (turned, moved) = &pose.motion;

@@ -10,53 +10,57 @@ use glam::{UVec3, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Numbers after those of the nodes, so that four may be read from the last but one on.
+/// Padding after the nodes' distances, so that four values can be loaded starting at the last node but one.
 const BEYOND: usize = 2;
 
-/// Signed distances at the nodes of a regular grid, negative inside; trilinear between them.
+/// Signed distances at the nodes of a regular grid, negative inside, with trilinear interpolation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignedDistanceField {
     pub(super) lattice: Lattice,
-    /// Distance at each node [m], and [`BEYOND`].
+    /// Distance at each node [m], followed by [`BEYOND`] values of padding.
     pub(super) distances: Vec<f32>,
-    /// Number of the nearest triangle at each node of the band, anything at others; as many as nodes.
+    /// Index of the nearest triangle for each node of the band; unspecified for other nodes. One for each
+    /// node.
     pub(super) nearest: Vec<u32>,
-    /// Corners of the triangles, and how far they moved during the last interval, in the field's space [m]; empty: the surface is rigid.
+    /// Corners of the triangles and their displacement during the last interval, in the field's space [m].
+    /// Empty: the surface is rigid.
     triangles: Vec<[Vec3; 3]>,
     moved: Vec<[Vec3; 3]>,
-    /// What it was at equal parts of the last interval, before the last of them, where it moved far in that; empty: this all along.
+    /// The field at the end of each equal time slice of the last frame, except the last slice. Empty if
+    /// the surface did not move far in that frame.
     pub(super) previous_slices: Vec<Arc<SignedDistanceField>>,
-    /// A bit for each cell that holds a place inside, at the index of its lower node; empty: any may.
+    /// One bit for each cell that has a point inside, at the index of its lower node. Empty: any cell may.
     inside: Vec<u32>,
 }
 
 impl SignedDistanceField {
-    /// Position of node (0, 0, 0) [m].
+    /// Returns the position of node (0, 0, 0) [m].
     pub fn origin(&self) -> Vec3 {
         self.lattice.origin
     }
 
-    /// Distance between neighbouring nodes [m].
+    /// Returns the distance between adjacent nodes [m].
     pub fn cell(&self) -> f32 {
         self.lattice.cell
     }
 
-    /// Nodes along each axis, each 2 or more; 2²³ in all at most.
+    /// Returns the number of nodes along each axis, each 2 or more; at most 2²³ in total.
     pub fn size(&self) -> UVec3 {
         self.lattice.size
     }
 
-    /// Distance at each node [m], x fastest; shape `[size.z][size.y][size.x]`.
+    /// Returns the distance at each node [m], x fastest; shape `[size.z][size.y][size.x]`.
     pub fn distances(&self) -> &[f32] {
         &self.distances[..self.lattice.nodes().min(self.distances.len())]
     }
 
-    /// Whether the surface moved in the field's own space.
+    /// Returns whether the surface deformed in the field's own space.
     pub fn deforms(&self) -> bool {
         !self.moved.is_empty()
     }
 
-    /// A grid of that size, whose distances and nearest triangles are still to be filled in; `before`: vertices an interval ago.
+    /// Resizes the grid to `lattice`; distances and nearest triangles are filled in later. `before` holds the
+    /// vertices one interval ago.
     pub(super) fn begin(
         &mut self,
         lattice: Lattice,
@@ -78,23 +82,25 @@ impl SignedDistanceField {
         }
     }
 
-    /// The surface is where it was an interval ago.
+    /// Discards the deformation, as if the surface had stayed in place during the last interval.
     pub fn hold_still(&mut self) {
         self.moved.clear();
     }
 
-    /// The ball around the whole grid, outside of which nothing is inside: its middle and radius [m].
+    /// Returns the bounding sphere of the whole grid: center and radius [m]. Nothing outside of it is inside
+    /// the surface.
     pub fn bounds(&self) -> (Vec3, f32) {
         let half = (self.lattice.size - UVec3::ONE).as_vec3() * (0.5 * self.lattice.cell);
         (self.lattice.origin + half, half.length())
     }
 
-    /// Length of the grid's shortest side [m].
+    /// Returns the length of the grid's shortest side [m].
     pub(super) fn shortest_side(&self) -> f32 {
         (self.lattice.size.min_element() - 1) as f32 * self.lattice.cell
     }
 
-    /// Distance [m] and outward unit normal at `p` [m]; outside the grid, the distance to the grid is added.
+    /// Returns the distance [m] and outward unit normal at `p` [m]. For points outside the grid, the distance
+    /// to the grid is added.
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
         let (out, cell, along) = self.lattice.locate(p);
         let c00 = self.corners(self.lattice.index(cell));
@@ -108,7 +114,8 @@ impl SignedDistanceField {
         (mix(y[0], y[1], fz) + out.length() * self.lattice.cell, gradient.normalize_or(Vec3::Y))
     }
 
-    /// How far the surface nearest to `p` [m] moved in the last interval [m]; 0 for a rigid one, and beyond the band of exact distances.
+    /// Returns how far the surface nearest to `p` [m] moved in the last interval [m]; 0 if the surface is
+    /// rigid or `p` is outside the band of exact distances.
     pub fn displacement(&self, p: Vec3) -> Vec3 {
         let top = (self.lattice.size - UVec3::ONE).as_vec3();
         let c = ((p - self.lattice.origin) / self.lattice.cell).max(Vec3::ZERO).min(top);
@@ -118,13 +125,13 @@ impl SignedDistanceField {
         let Some(moved) = self.moved.get(triangle).filter(|_| known) else { return Vec3::ZERO };
         let weights = nearest_on_triangle(p, self.triangles[triangle]);
         if !weights.is_finite() {
-            // Its corners lie on one another, or in a row.
+            // Degenerate triangle: its corners coincide or are collinear.
             return moved[0];
         }
         moved[0] * weights.x + moved[1] * weights.y + moved[2] * weights.z
     }
 
-    /// The eight distances around the cell with lower node `i`: x fastest, then y, then z.
+    /// Returns the eight corner distances of the cell with lower node `i`: x fastest, then y, then z.
     #[inline(always)]
     fn corners(&self, i: usize) -> [f32; 8] {
         let (dy, dz) = (self.lattice.size.x as usize, (self.lattice.size.x * self.lattice.size.y) as usize);
@@ -132,11 +139,12 @@ impl SignedDistanceField {
         [d[0], d[1], d[dy], d[dy + 1], d[dz], d[dz + 1], d[dz + dy], d[dz + dy + 1]]
     }
 
-    /// [`Grid::corners`] of eight cells. Of four nodes that are read at once two are kept: that is fewer loads than of nodes, and none waits for eight stores.
+    /// [`Self::corners`] of eight cells. Each load reads four values of which two are kept. This needs fewer
+    /// loads than reading each node, and no store of eight values has to be waited for.
     #[inline(always)]
     fn corners_lanes<S: Simd>(&self, simd: S, [a, b, c, d, e, f, g, h]: [usize; LANES]) -> [F<S>; 8] {
         let (dy, dz) = (self.lattice.size.x as usize, (self.lattice.size.x * self.lattice.size.y) as usize);
-        // One check a cell: the compiler sees that all four times four nodes lie within.
+        // One bounds check for each cell: the compiler sees that all four loads of four values are within it.
         let cell = |i: usize| &self.distances[i..i + dz + dy + 4];
         let cells = [cell(a), cell(b), cell(c), cell(d), cell(e), cell(f), cell(g), cell(h)];
         let ([k0, k1], [k2, k3]) = (pairs(simd, &cells, 0), pairs(simd, &cells, dy));
@@ -144,14 +152,14 @@ impl SignedDistanceField {
         [k0, k1, k2, k3, k4, k5, k6, k7]
     }
 
-    /// Notes which cells hold a place inside: those with a corner that does, as distances are linear between corners.
-    /// To be called when `distances` have changed.
+    /// Marks the cells that contain a point inside. These are the cells with a corner inside, since the
+    /// interpolation is trilinear. Must be called after `distances` have changed.
     pub(super) fn mark_inside(&mut self) {
         self.distances
             .par_chunks(u32::BITS as usize)
             .with_min_len(1024)
             .map(|nodes| {
-                // Most words are all the same. A NaN counts as inside: what is not known is looked at.
+                // Most words are uniform. A NaN counts as inside, so that unknown cells are tested.
                 let outside: u32 = nodes.iter().map(|d| u32::from(*d > 0.0)).sum();
                 if outside == 0 || outside == u32::BITS {
                     return if outside == 0 { u32::MAX } else { 0 };
@@ -160,7 +168,8 @@ impl SignedDistanceField {
                 !bits
             })
             .collect_into_vec(&mut self.inside);
-        // A cell reaches one node on along each axis. From the first word on: what is read is not yet written.
+        // A cell extends to the next node along each axis. Going forward, each word is read before it is
+        // overwritten.
         let (count, slab) = (self.inside.len(), self.lattice.size.x * self.lattice.size.y);
         for step in [1, self.lattice.size.x, slab] {
             let (words, bits) = ((step / u32::BITS) as usize, step % u32::BITS);
@@ -171,7 +180,7 @@ impl SignedDistanceField {
         }
     }
 
-    /// Whether the cell of `p` holds a place inside.
+    /// Returns whether the cell of `p` contains a point inside.
     pub(crate) fn may_be_inside_at(&self, p: Vec3) -> bool {
         let (_, cell, _) = self.lattice.locate(p);
         let size = self.lattice.size;
@@ -181,7 +190,7 @@ impl SignedDistanceField {
             .is_none_or(|bits| bits >> (index as u32 % u32::BITS) & 1 == 1)
     }
 
-    /// Of eight points, those in a cell that holds a place inside; the others are outside.
+    /// Returns which of eight points are in a cell that contains a point inside. The others are outside.
     #[inline(always)]
     pub(crate) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let mut may = Row([1.0; LANES]);
@@ -195,22 +204,22 @@ impl SignedDistanceField {
         load(simd, &may).simd_gt(0.0)
     }
 
-    /// [`Grid::distance_and_normal`] of eight points.
+    /// [`Self::distance_and_normal`] for eight points.
     #[inline(always)]
     pub(crate) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let (distance, gradient) = self.between_nodes(simd, p);
         (distance, gradient.length_and_unit().1)
     }
 
-    /// The distance of eight points [m], and how fast it changes with place [1]: as it lies between nodes, where walls are near each other, by up to three
-    /// times the way.
+    /// Returns the distance of eight points [m] and its gradient [1]. The gradient is that of the
+    /// interpolation; where walls are close to each other, its length is up to 3.
     #[inline(always)]
     pub(crate) fn slope_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let (distance, gradient) = self.between_nodes(simd, p);
         (distance, gradient * F::splat(simd, 1.0 / self.lattice.cell))
     }
 
-    /// Distance [m], and its gradient over a cell [m].
+    /// Returns the distance [m] and its gradient per cell [m].
     #[inline(always)]
     fn between_nodes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let (out, index, along) = self.lattice.locate_lanes(simd, p);
@@ -224,21 +233,23 @@ impl SignedDistanceField {
             z: y[1] - y[0],
         };
         let beyond = out.dot(out).sqrt() * self.lattice.cell;
-        // Where none is nearest, halfway through or beyond the band, there is no way out that is shorter: up, as of one point.
+        // Where the gradient vanishes, such as halfway through a wall or beyond the band, use +Y, as the
+        // scalar version does.
         let level = gradient.dot(gradient).simd_lt(1e-30);
         let gradient = V3::select(level, V3::splat(simd, Vec3::Y * self.lattice.cell), gradient);
         (mix(y[0], y[1], fz) + beyond, gradient)
     }
 }
 
-/// The numbers at an index of eight slices, and those after them. Two more after each are read.
+/// Returns the values at index `at` of eight slices, and the values after them. Reads two more values of each
+/// slice.
 #[inline(always)]
 fn pairs<S: Simd>(simd: S, [a, b, c, d, e, f, g, h]: &[&[f32]; LANES], at: usize) -> [F<S>; 2] {
     let (low, high) = (pairs_of_four(simd, [a, b, c, d], at), pairs_of_four(simd, [e, f, g, h], at));
     [low.0.combine(high.0), low.1.combine(high.1)].map(|eight| F::from_native(simd, eight))
 }
 
-/// The same of four.
+/// [`pairs`] for four slices.
 #[inline(always)]
 fn pairs_of_four<S: Simd>(
     simd: S,
@@ -255,7 +266,7 @@ fn four<S: Simd>(simd: S, numbers: &[f32], first: usize) -> f32x4<S::Native> {
     f32x4::from_slice(simd.native(), &numbers[first..first + 4])
 }
 
-/// `a` at `t` = 0, `b` at 1.
+/// Linear interpolation: `a` at `t` = 0, `b` at 1.
 #[inline(always)]
 fn mix<S: Simd>(a: F<S>, b: F<S>, t: F<S>) -> F<S> {
     (b - a).mul_add(t, a)
@@ -278,7 +289,7 @@ pub(super) mod tests {
     use glam::Quat;
     use std::sync::Arc;
 
-    /// Balls of many triangles, turned and overlapping; `whole`: without holes.
+    /// Balls of many triangles, rotated and overlapping; `whole`: without holes.
     pub fn balls(seed: u32, whole: bool) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let hash = |k: u32| ((seed * 977 + k).wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32;
         let (mut positions, mut triangles) = (Vec::new(), Vec::new());
@@ -331,7 +342,7 @@ pub(super) mod tests {
                 let (positions, triangles) = balls(seed, whole);
                 let mut grid = voxelize(&positions, &triangles, 0.003 + 0.0003 * seed as f32);
                 assert_marked(&grid, &format!("balls {seed}, whole: {whole}"));
-                // One that deforms, in a box that cuts through it.
+                // A deforming one, in a box that cuts through it.
                 let now: Vec<Vec3> = positions.iter().map(|p| *p * (1.0 + 3.0 * p.y)).collect();
                 let within = Some((Vec3::splat(-0.01), Vec3::new(0.06, 0.2, 0.07)));
                 Voxelizer::default().update(&mut grid, &now, Some(&positions), &triangles, within, 0.003);
@@ -340,7 +351,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Halfway through a wall the distance has no slope: a point there is led out all the same.
+    /// Halfway through a wall the distance has no gradient. A point there must still be led out.
     #[test]
     fn the_middle_of_a_wall_has_a_way_out() {
         let grid = SignedDistanceField {
@@ -358,7 +369,8 @@ pub(super) mod tests {
         });
         assert_eq!((distance, normal), (-0.02, Vec3::Y));
         assert_eq!((lanes, up), (-0.02, 1.0));
-        // As steep as a distance is, and no more: a segment that lies there would seem to reach far in.
+        // The slope is that of a distance, and no steeper: otherwise a segment there would seem to penetrate
+        // deeply.
         assert!((steep - 1.0).abs() < 1e-6, "{steep}");
     }
 

@@ -1,25 +1,27 @@
-//! Where on a segment a collider is deepest: its ends may be outside while it cuts a corner, or holds a ball smaller than itself.
+//! Finds the deepest point of a segment in a collider. The ends may be outside while the segment cuts a
+//! corner or passes through a ball smaller than itself.
 //!
 //! ```text
-//!   d ╲                ╱ d'      d along the segment, and its slope n·e, at two places beside each other:
-//!      ╲   least d   ╱           for a convex shape it lies above both tangents, and is least near where they cross
-//!       ╲╌╌╌╌╌╌╌╌╌╌╱
+//!  d ╲                ╱ d'      distance d along the segment, and its slope n·e, at two adjacent samples: for a convex
+//!     ╲   least d   ╱           shape d lies above both tangents, and its minimum is near their crossing
+//!      ╲╌╌╌╌╌╌╌╌╌╌╱
 //! ```
 
 use super::{ColliderPose, ColliderShape, pose::slope};
 use crate::simd::lanes::{F, Mask, Simd, V3};
 use glam::Vec3;
 
-/// Places of a segment that are looked at where it is measured, its end among them. Not its beginning, which is the end of the one before or goes
-/// with the root.
+/// Number of samples along a segment in depth measurements, including its end. The beginning is excluded: it
+/// is the end of the previous segment or moves with the root.
 const PLACES: usize = 8;
 
 impl ColliderShape {
-    /// The least distance on the way from `a` to `b` [m] in the collider's own space, of the eight places at each eighth of it; negative
-    /// inside. Where that is far from negative, of its middle alone.
+    /// Returns the minimum distance over eight samples of the way from `a` to `b` [m], one at each eighth, in
+    /// the collider's own space; negative inside. If the middle is far enough outside, only the middle is
+    /// sampled.
     pub fn least_distance(&self, a: Vec3, b: Vec3) -> f32 {
         let middle = self.distance(a.midpoint(b));
-        // A field's gradient is not quite of length 1: twice what could be nearer than the middle.
+        // The gradient of a field is not exactly of unit length, so the margin is doubled.
         if middle > a.distance(b) {
             return middle;
         }
@@ -29,30 +31,33 @@ impl ColliderShape {
 }
 
 impl ColliderPose {
-    /// [`ColliderShape::least_distance`] in the world at the end of the substep.
+    /// [`ColliderShape::least_distance`] in world space at the end of the substep.
     pub fn least_distance(&self, a: Vec3, b: Vec3) -> f32 {
         let own = |p: Vec3| self.end.0.transpose() * (p - self.end.1);
         self.shape.least_distance(own(a), own(b))
     }
 }
 
-/// The deepest place that was found between the ends of eight segments.
+/// The deepest point found between the ends of eight segments.
 #[derive(Clone, Copy)]
 pub(crate) struct DeepestPoint<S: Simd> {
-    /// Which of them have one within the distance that was asked for; of the others nothing is told.
+    /// Which segments have such a point within the requested distance. The other fields are valid only for
+    /// these.
     pub found: Mask<S>,
     /// Distance to the surface, negative inside [m].
     pub distance: F<S>,
-    /// The way out, a unit vector across the segment: that in which its least distance grows fastest.
+    /// Direction out of the collider, a unit vector across the segment. The minimum distance grows fastest
+    /// along it.
     pub normal: V3<S>,
-    /// How much that distance grows for each metre along it, where the segment is across walls that face away from each other, else 1 [1].
+    /// Rate at which that distance grows along `normal` if the segment crosses walls that face away from each
+    /// other, else 1 [1].
     pub gain: F<S>,
-    /// Where it is: 0 at the segment's beginning, 1 at its end.
+    /// Position along the segment: 0 at its beginning, 1 at its end.
     pub at: F<S>,
 }
 
 impl<S: Simd> DeepestPoint<S> {
-    /// This, but `other` where `mask` is true.
+    /// Replaces the lanes in `mask` by those of `other`.
     #[inline(always)]
     pub fn or(self, mask: Mask<S>, other: Self) -> Self {
         Self {
@@ -64,7 +69,7 @@ impl<S: Simd> DeepestPoint<S> {
         }
     }
 
-    /// That none was found.
+    /// Returns a value in which no segment has a point.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         let zero = F::splat(simd, 0.0);
@@ -72,18 +77,19 @@ impl<S: Simd> DeepestPoint<S> {
         Self { found, distance: zero, normal: V3::zero(simd), gain: zero, at: zero }
     }
 
-    /// The deepest place `best` of segments along `u`, with a place on its `other` side.
+    /// Returns the deepest point `best` of segments along `u`, given a sample on the `other` side of it.
     ///
     /// ```text
-    ///   ╲ n₁     n₂ ╱     on both sides of a thin wall or an edge: w n₁ + (1 − w) n₂ with nothing in it along the segment. What is deepest moves
-    ///    ╲    │    ╱      along as the segment does, so that the depth is less by that for each metre, out over the wall's rim; along one
-    ///     ╲___│___╱       side's normal it would be less here and more beyond
+    ///   ╲ n₁     n₂ ╱     on both sides of a thin wall or an edge: w n₁ + (1 − w) n₂ without a component along the segment.
+    ///    ╲    │    ╱      The deepest point slides along the segment as that moves, so the depth decreases at this rate, out
+    ///     ╲___│___╱       over the wall's rim; along one side's normal it would decrease here and increase farther on
     /// ```
     #[inline(always)]
     fn between(simd: S, found: Mask<S>, u: V3<S>, (best, other): (SdfSample<S>, SdfSample<S>)) -> Self {
         let share = best.slope / (best.slope - other.slope);
-        // Walls that face away from each other; where an edge is blunter, the nearer side's normal across the segment is enough. (At a right angle, by
-        // rounding, a box would be now one and now the other.)
+        // Only walls that face away from each other are combined. At a blunter edge the nearer side's normal
+        // across the segment is enough. (The threshold is not 0: at the right angles of a box, rounding would
+        // flip between the two cases.)
         let thin = opposite(&best, &other) & best.rise.dot(other.rise).simd_lt(APART);
         let share = thin.select(share, F::splat(simd, 0.0));
         let rise = (other.rise - best.rise).mul_add(share, best.rise);
@@ -100,26 +106,31 @@ impl<S: Simd> DeepestPoint<S> {
     }
 }
 
-/// Least growth of the distance across the segment [1]: where there is less, it comes out end first.
+/// Smallest growth of the distance across the segment [1]. With less, the segment is moved out end first.
 pub(crate) const STEEP: f32 = 0.02;
 
-/// Largest product of the rises of two sides that face away from each other [1].
+/// Largest dot product of the gradients of two sides that face away from each other [1].
 const APART: f32 = -0.1;
 
-/// Pieces between whose ends a segment is looked at: quarters, and no longer than half a cell of a field where that takes no more than the second [1].
-/// Between its nodes a field bends within a cell. Both even, so that the middle is one of the places.
+/// Number of pieces between the samples of a segment: four, or more where a piece would be longer than half a
+/// cell of a field, up to the second number [1]. Between its nodes a field curves within one cell. Both
+/// numbers are even, so that the middle is a sample.
 const PIECES: [usize; 2] = [4, 12];
 
-/// How fast a field's distance may change with place [1]: by 1 where it is smooth, and by twice that between two nodes on the two sides of a thin wall,
-/// as each is told the way to its own.
+/// Assumed maximum slope of a field [1]: 1 where it is smooth, and 2 between two nodes on opposite sides of a
+/// thin wall, since each node holds the distance to its own side.
 const STEEPEST: f32 = 2.0;
 
-/// Which of the segments from `a` to `a + e` (world) have a place between their ends, for a convex shape no nearer to the beginning than the part `from` of them, that is `within` so much of the surface, less than 0 for places
-/// inside [m], and where. The middle is looked at and both quarters, more places where a field is finer than that, and then beside
-/// the deepest of them where tangents say that it is deeper.
+/// Finds the deepest points of the segments from `a` to `a + e` (world). `found` is set for segments with a
+/// point between their ends whose distance is below `within` [m], which is negative for points inside. For a
+/// convex shape, only points from the fraction `from` of the segment on are considered. The middle and both
+/// quarters are sampled, with more samples in a field with fine cells. One more sample is then taken next to
+/// the deepest one, where tangents predict the minimum.
 ///
-/// `None` where the middle says that none has: for a convex shape distance lies above its tangent, and a field within a cell from the middle bends no
-/// other way that counts (five in ten thousand cuts are missed for it, none deeper than others); farther off it is nearer by no more than the way there.
+/// Returns `None` if the middle rules out all segments. For a convex shape the distance lies above its
+/// tangent. Within a cell of the middle, a field curves the other way only negligibly: this misses five in
+/// ten thousand cuts, none deeper than those missed otherwise. Farther off, the distance decreases by at most
+/// the length of the way.
 #[inline(always)]
 pub(crate) fn find_deepest_point<S: Simd>(
     simd: S,
@@ -144,7 +155,8 @@ pub(crate) fn find_deepest_point<S: Simd>(
     let mut seen = SampleBracket::nothing(simd);
     let (mut middle, mut last, mut refined) = (seen.best, seen.best, seen.best);
     let mut found = Mask::splat(simd, false);
-    // The middle, all from the first on, and what is beside the deepest: in a loop, so that the code that looks is there once.
+    // Samples the middle, then all points in order, then the refined point. A single loop keeps one copy of
+    // the sampling code.
     for k in 0..=pieces {
         let at = match k {
             0 => splat(0.5),
@@ -160,7 +172,7 @@ pub(crate) fn find_deepest_point<S: Simd>(
         if k == 0 {
             let nearer = match &pose.shape {
                 ColliderShape::Field(_) if pieces > PIECES[0] => l * (0.5 * STEEPEST),
-                // What is farther off than the sheet is thick is not told how far.
+                // Beyond the shell's thickness the distance is only a lower bound.
                 ColliderShape::Sheet(_) => splat(f32::INFINITY),
                 _ => here.slope.abs() * 0.5,
             };
@@ -181,15 +193,17 @@ pub(crate) fn find_deepest_point<S: Simd>(
     Some(DeepestPoint::between(simd, found, u, (best, other)))
 }
 
-/// Most places of a segment that are looked at near a convex shape.
+/// Maximum number of samples of a segment near a convex shape.
 const CONVEX_PLACES: usize = 10;
 
-/// Error of the depth at which the search near a convex shape ends, over the segment's length [1].
+/// Depth error at which the search near a convex shape ends, relative to the segment's length [1].
 const CONVEX_ERROR: f32 = 1e-4;
 
-/// The same for a convex shape, to within [`CONVEX_ERROR`]. Along the segment the distance is then a convex function: it lies above its tangents, so that its minimum is
-/// in the bracket between a place where it falls and one where it rises, no lower than where their tangents cross. That is the next place (the cutting-plane method
-/// of Kelley 1960, in one dimension). A shape that is much thinner than the segment cannot hide between samples.
+/// [`find_deepest_point`] for a convex shape, to within [`CONVEX_ERROR`]. The distance along the segment is
+/// then a convex function, which lies above its tangents. Its minimum lies between a sample where it falls
+/// and one where it rises, and is no lower than the crossing of their tangents. The crossing is the next
+/// sample (the cutting-plane method of Kelley 1960, in one dimension). A shape much thinner than the segment
+/// cannot hide between samples.
 #[inline(always)]
 fn deepest_convex<S: Simd>(
     simd: S,
@@ -214,7 +228,7 @@ fn deepest_convex<S: Simd>(
             going = found;
             at = falls.select(one, from);
         } else {
-            // The second place is the end toward which the middle falls, whatever the slope is there.
+            // The second sample is the end toward which the middle falls, whatever the slope is there.
             let is_low = if k == 1 { at.simd_eq(from) } else { falls };
             low = SdfSample::select(going & is_low, here, low);
             high = SdfSample::select(going & !is_low, here, high);
@@ -239,8 +253,9 @@ fn deepest_convex<S: Simd>(
     found.any_true().then(|| DeepestPoint::between(simd, found, u, sides))
 }
 
-/// Where the segment may be deeper than at the deepest of the places that were looked at, which are `apart`: between that and the place beside it toward
-/// which it falls, where their tangents cross; halfway where that place is not known, or it falls on beyond it.
+/// Returns where the segment may be deeper than at the deepest of the samples, which are `apart`. The point
+/// lies between the deepest sample and the neighbor toward which the distance falls, at the crossing of their
+/// tangents. It is halfway if that neighbor is unknown or the distance keeps falling there.
 #[inline(always)]
 fn beside<S: Simd>(simd: S, seen: &SampleBracket<S>, apart: f32) -> F<S> {
     let splat = |x: f32| F::<S>::splat(simd, x);
@@ -253,7 +268,7 @@ fn beside<S: Simd>(simd: S, seen: &SampleBracket<S>, apart: f32) -> F<S> {
     cross.mul_add(toward, best.at)
 }
 
-/// The deepest place that was seen on eight segments, and the places before and after it, where those were looked at.
+/// The deepest sample on eight segments, and the samples before and after it, if they were taken.
 struct SampleBracket<S: Simd> {
     before: SdfSample<S>,
     best: SdfSample<S>,
@@ -268,49 +283,50 @@ impl<S: Simd> SampleBracket<S> {
         Self { before: nothing, best: nothing, after: nothing }
     }
 
-    /// Takes up the place after `last`.
+    /// Adds the sample after `last`.
     #[inline(always)]
     fn see(&mut self, here: SdfSample<S>, last: SdfSample<S>) {
         self.after = SdfSample::select(self.best.at.simd_eq(last.at), here, self.after);
         let nearer = here.distance.simd_lt(self.best.distance);
         self.before = SdfSample::select(nearer, last, self.before);
         self.best = SdfSample::select(nearer, here, self.best);
-        // Until the next place is seen.
+        // Reset until the next sample is added.
         self.after = SdfSample::select(nearer, Self::nothing(here.at.simd).after, self.after);
     }
 
-    /// The place beside the deepest toward which that falls.
+    /// Returns the neighbor of the deepest sample toward which the distance falls.
     #[inline(always)]
     fn next(&self) -> SdfSample<S> {
         SdfSample::select(self.best.slope.simd_lt(0.0), self.after, self.before)
     }
 
-    /// The deepest place, with what was seen in a place `refined` between the deepest and the next, and the place on the other side of it.
+    /// Returns the deepest sample, taking into account the sample `refined` between the deepest and its
+    /// neighbor, and the sample on the other side of the minimum.
     #[inline(always)]
     fn sides(&self, refined: SdfSample<S>) -> (SdfSample<S>, SdfSample<S>) {
         let deeper = refined.distance.simd_lt(self.best.distance);
         let best = SdfSample::select(deeper, refined, self.best);
-        // The two sides of a place between are that which it falls from and that which it falls to.
+        // The two sides of an intermediate sample are the sample it falls from and the one it falls to.
         let beyond = SdfSample::select(opposite(&self.best, &refined), self.best, self.next());
         (best, SdfSample::select(deeper, beyond, refined))
     }
 }
 
-/// Whether the distance falls at one of the places and rises at the other.
+/// Returns whether the distance falls at one of the samples and rises at the other.
 #[inline(always)]
 fn opposite<S: Simd>(a: &SdfSample<S>, b: &SdfSample<S>) -> Mask<S> {
     (a.slope * b.slope).simd_lt(0.0)
 }
 
-/// What is seen at a place of eight segments.
+/// A sample of the distance on eight segments.
 #[derive(Clone, Copy)]
 struct SdfSample<S: Simd> {
-    /// The place: 0 at the segment's beginning, 1 at its end.
+    /// Position along the segment: 0 at its beginning, 1 at its end.
     at: F<S>,
     distance: F<S>,
-    /// How fast the distance changes with place [1].
+    /// Gradient of the distance [1].
     rise: V3<S>,
-    /// By how much the distance grows along the whole segment, by its tangent there [m].
+    /// Growth of the distance along the whole segment according to the tangent here [m].
     slope: F<S>,
 }
 
@@ -339,7 +355,7 @@ mod tests {
 
     const CELL: f32 = 0.005;
 
-    /// Three numbers from 0 to 1 by chance (SplitMix64; Steele, Lea & Flood 2014).
+    /// Three random numbers from 0 to 1 (SplitMix64; Steele, Lea & Flood 2014).
     fn vector(bits: &mut u64) -> Vec3 {
         let mut next = || {
             *bits = bits.wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -350,7 +366,7 @@ mod tests {
         Vec3::new(next(), next(), next())
     }
 
-    /// Boxes that run through each other, turned, some of them thinner than a cell and a half.
+    /// Rotated, intersecting boxes, some of them thinner than one and a half cells.
     fn boxes(bits: &mut u64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let (mut positions, mut triangles) = (Vec::new(), Vec::new());
         for first in (0..12).map(|k| 8 * k) {
@@ -367,7 +383,8 @@ mod tests {
         (positions, triangles)
     }
 
-    /// The few looks find what looks all along find, but for what only grazes: bodies that are round, and walls, ridges and creases of every angle.
+    /// The few samples find the same cuts as dense sampling, except for grazing ones. Covers round bodies,
+    /// and walls, ridges and creases of every angle.
     #[test]
     fn what_cuts_between_two_ends_that_are_outside_is_found() {
         let (mut cuts, mut missed, mut worst) = (0, 0, [0f32; 2]);
@@ -381,7 +398,9 @@ mod tests {
                 let [at, way, far] = [(); 3].map(|()| vector(&mut bits));
                 let p = grid.origin() + at * top;
                 let (distance, normal) = grid.distance_and_normal(p);
-                // The middle from a little inside to a cell outside, up to two cells from end to end; or another place, up to five.
+                // The middle lies between slightly inside and one cell outside, with segments up to two cells
+                // long; in every other turn, another point of the segment does, with segments up to five
+                // cells long.
                 let place = p - normal * (distance - CELL * (far.x * far.x - 0.05));
                 let (longest, part) = if turn % 2 == 0 { (2.0, 0.5) } else { (5.0, far.z) };
                 let e = (way - 0.5).normalize_or(Vec3::X) * (CELL * (0.5 + (longest - 0.5) * far.y));
@@ -411,7 +430,7 @@ mod tests {
         println!(
             "{missed} of {cuts} cuts are missed, at most {middle:.3} of a cell deep in the middle and {any:.3} elsewhere"
         );
-        // As with all four looks at each: what they pass over only grazes.
+        // The same bounds hold with four samples for every segment: what is missed only grazes.
         assert!(cuts > 1000 && middle < 0.05 && any < 0.06, "of {cuts}: {middle} and {any} of a cell");
     }
 }

@@ -1,21 +1,21 @@
-//! Shapes that hair meets: a distance and a normal, for one point and for eight at once, in the shape's own space.
+//! Collider shapes: the distance and normal in a shape's own space, for one point and for eight.
 
 use super::{Hull, SignedDistanceField, ThinShell};
 use crate::simd::lanes::{F, Simd, V3, transform};
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
-/// One collider: a shape in its own space.
+/// A collider shape in its own space.
 #[derive(Clone, Debug)]
 pub enum ColliderShape {
     /// A ball around `center` [m].
     Sphere {
-        /// Middle [m].
+        /// Center [m].
         center: Vec3,
         /// Radius [m].
         radius: f32,
     },
-    /// All places nearer than `radius` to the segment `a`–`b` [m].
+    /// All points nearer than `radius` to the segment `a`–`b` [m].
     Capsule {
         /// One end of the axis [m].
         a: Vec3,
@@ -26,30 +26,30 @@ pub enum ColliderShape {
     },
     /// A box.
     Cuboid {
-        /// Middle [m].
+        /// Center [m].
         center: Vec3,
-        /// Half of its edges [m].
+        /// Half-extents along the axes [m].
         half: Vec3,
-        /// Unit vectors along them, orthogonal.
+        /// Orthogonal unit vectors along the edges.
         axes: Mat3,
     },
-    /// All of space on the side of a plane that its normal points away from: a floor, a wall, a slope.
+    /// A half-space, on the side of a plane that its normal points away from: a floor, a wall, a slope.
     Plane {
-        /// A point of the plane [m].
+        /// A point on the plane [m].
         point: Vec3,
-        /// Unit normal, out of the solid.
+        /// Unit normal, pointing out of the solid.
         normal: Vec3,
     },
-    /// The inside of a closed mesh.
+    /// The interior of a closed mesh.
     Field(Arc<SignedDistanceField>),
     /// The convex hull of some points.
     Hull(Arc<Hull>),
-    /// All places nearer to an open mesh than its thickness.
+    /// All points nearer to an open mesh than its thickness.
     Sheet(Arc<ThinShell>),
 }
 
 impl ColliderShape {
-    /// Radius of what is round everywhere [m], infinite for what is flat; 0 for a shape that may have edges.
+    /// Returns the radius of a round shape [m]: infinite for a plane, and 0 for a shape that may have edges.
     pub(crate) fn roundness(&self) -> f32 {
         match self {
             ColliderShape::Plane { .. } => f32::INFINITY,
@@ -58,17 +58,19 @@ impl ColliderShape {
         }
     }
 
-    /// Whether it is a convex formula, so that the deepest place of a segment is searched for exactly. Hulls are sampled: springs tremble on their edges otherwise.
+    /// Returns whether the shape is convex and given by a formula. The deepest point of a segment is then
+    /// searched for exactly. Hulls are sampled instead, because the springs model jitters on their edges
+    /// otherwise.
     pub(crate) fn is_convex_formula(&self) -> bool {
         !matches!(self, ColliderShape::Field(_) | ColliderShape::Sheet(_) | ColliderShape::Hull(_))
     }
 
-    /// The distance from `p` [m] in the collider's own space, negative inside.
+    /// Returns the distance from `p` [m] in the collider's own space, negative inside.
     pub fn distance(&self, p: Vec3) -> f32 {
         self.distance_and_normal(p).0
     }
 
-    /// Distance [m] and outward unit normal at `p` [m] in the collider's own space.
+    /// Returns the distance [m] and outward unit normal at `p` [m] in the collider's own space.
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
         let ball = |d: Vec3, radius: f32| (d.length() - radius, d.normalize_or(Vec3::Y));
         match self {
@@ -100,7 +102,8 @@ impl ColliderShape {
         }
     }
 
-    /// How many shapes it is in a frame, one after the other, in equal parts of it: 1 but for skinned meshes that go fast across themselves.
+    /// Returns the number of equal time slices of a frame. It is 1 except for skinned meshes whose surface
+    /// moves fast.
     pub(crate) fn time_slices(&self) -> usize {
         match self {
             ColliderShape::Field(grid) => grid.previous_slices.len() + 1,
@@ -109,7 +112,7 @@ impl ColliderShape {
         }
     }
 
-    /// The shape in one of its parts, numbered from 0 as time goes.
+    /// Returns the shape in one of its time slices, numbered from 0 in order of time.
     pub(crate) fn time_slice(&self, number: usize) -> ColliderShape {
         match self {
             ColliderShape::Field(grid) => {
@@ -122,10 +125,11 @@ impl ColliderShape {
         }
     }
 
-    /// Sets the shapes of all parts of a frame but the last, which this is: others of its kind. Only fields and sheets have any.
+    /// Sets the shapes of all time slices of a frame but the last, which is `self`. They must be of the same
+    /// kind. Only fields and shells have time slices.
     pub fn set_previous_slices(&mut self, earlier: Vec<ColliderShape>) {
         if self.time_slices() == 1 && earlier.is_empty() {
-            // A copy would be made of what someone looks at.
+            // `make_mut` would copy a shape that is shared.
             return;
         }
         let earlier = earlier.into_iter();
@@ -142,7 +146,8 @@ impl ColliderShape {
         }
     }
 
-    /// Half of how thick it is where it is thickest [m]: how far its deepest place is from the surface, about; infinite for a plane.
+    /// Returns half of the thickness where the shape is thickest [m]: about the depth of its deepest point.
+    /// Infinite for a plane.
     pub fn half_thickness(&self) -> f32 {
         match self {
             ColliderShape::Sphere { radius, .. } | ColliderShape::Capsule { radius, .. } => *radius,
@@ -154,7 +159,8 @@ impl ColliderShape {
         }
     }
 
-    /// Whether it is a solid whose [half thickness](Self::half_thickness) is less than `half` [m]. A field of which no side is that short is not searched.
+    /// Returns whether it is a solid whose [half thickness](Self::half_thickness) is less than `half` [m]. A
+    /// field without a side that short is not searched.
     pub(crate) fn is_thin(&self, half: f32) -> bool {
         match self {
             ColliderShape::Sheet(_) => false,
@@ -163,7 +169,7 @@ impl ColliderShape {
         }
     }
 
-    /// A ball around all of it: its middle and radius [m].
+    /// Returns a bounding sphere: center and radius [m].
     pub fn bounds(&self) -> (Vec3, f32) {
         match self {
             ColliderShape::Sphere { center, radius } => (*center, *radius),
@@ -176,7 +182,7 @@ impl ColliderShape {
         }
     }
 
-    /// [`ColliderShape::distance_and_normal`] of eight points.
+    /// [`ColliderShape::distance_and_normal`] for eight points.
     #[inline(always)]
     pub(super) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         match self {
@@ -203,7 +209,7 @@ impl ColliderShape {
         }
     }
 
-    /// The same, and in place of the normal how fast the distance changes with place [1].
+    /// Like [`Self::distance_lanes`], but returns the gradient of the distance [1] instead of the normal.
     #[inline(always)]
     pub(super) fn slope_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         match self {
@@ -213,14 +219,15 @@ impl ColliderShape {
     }
 }
 
-/// Distance and normal of a ball of `radius`, `d` from its middle.
+/// Returns the distance and normal of a sphere of `radius`, at `d` from its center.
 #[inline(always)]
 pub(super) fn ball_lanes<S: Simd>(d: V3<S>, radius: f32) -> (F<S>, V3<S>) {
     let (length, normal) = d.length_and_unit();
     (length - radius, normal)
 }
 
-/// Distance and normal of a box around the origin: from its faces, edges and corners outside, out through the nearest face inside.
+/// Returns the distance and normal of a box around the origin: from its faces, edges and corners outside, and
+/// through the nearest face inside.
 #[inline(always)]
 fn cuboid_lanes<S: Simd>(simd: S, l: V3<S>, half: Vec3) -> (F<S>, V3<S>) {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
@@ -257,15 +264,15 @@ mod tests {
     }
 
     proptest! {
-        /// Every shape's distance is that to the nearest place of its surface, its normal the way there or from there, and eight points get
-        /// what one gets.
+        /// For every shape, the distance is that to the nearest point of its surface and the normal is the
+        /// direction to or from it. The results for eight points match those for one.
         #[test]
         fn a_step_along_the_normal_leads_to_the_surface(
             center in vector(0.2), half in vector(0.1), turn in vector(3.0), p in vector(0.4),
             points in prop::collection::vec(vector(0.2), 6..20),
         ) {
             let half = half.abs() + 0.01;
-            // Random points span a volume; what they are shrunk to need not.
+            // Random points span a volume; the points that proptest shrinks to need not.
             let hull = Hull::new(&points);
             prop_assume!(hull.is_some());
             let axes = Mat3::from_quat(Quat::from_scaled_axis(turn));
@@ -282,10 +289,11 @@ mod tests {
                 let (distance, normal) = shape.distance_and_normal(p);
                 prop_assert!((normal.length() - 1.0).abs() < 1e-5, "{shape:?}: {normal}");
                 let on = p - normal * distance;
-                // A sheet that is farther off than its thickness only says that it is at least as far.
+                // Farther off than its thickness, a shell returns only a lower bound.
                 let exact = !matches!(shape, ColliderShape::Sheet(_)) || distance < 0.999 * half.x;
                 prop_assert!(!exact || shape.distance(on).abs() < 1e-5, "{shape:?}: {} left at {on}", shape.distance(on));
-                // Nothing of the surface is nearer: a ball of that size around p has no place on the other side.
+                // No part of the surface is nearer: the ball of that radius around p lies entirely on one
+                // side.
                 for k in 0..64 {
                     let way = Quat::from_euler(glam::EulerRot::XYZ, k as f32, 1.7 * k as f32, 0.3) * Vec3::X;
                     let other = shape.distance(p + way * (0.98 * distance.abs()));

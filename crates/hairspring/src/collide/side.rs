@@ -1,31 +1,34 @@
-//! On which side of a thin rod or box a segment is, so that it stays there however far it moves in a substep.
+//! Keeps a segment on its side of a thin rod or box, however far it moves in a substep.
 //!
 //! ```text
-//!    before   │          n is normal to the segment and to an edge of the shape, and points to the side where the segment
-//!         ◯   │ →n       began the substep. The signed distance along n keeps its sign when the segment is pulled through:
-//!    after │             the distance to the shape itself is positive again there.
+//!    before   │          n is normal to the segment and to an edge of the shape, and points to the side where the
+//!         ◯   │ →n       segment was at the start of the substep. The signed distance along n keeps its sign when the
+//!    after │             segment is pulled through, while the distance to the shape itself is positive again there.
 //!          │  ◯
 //! ```
 //!
-//! A capsule has one edge, its axis; a box has edges along three axes. This is the separating-axis test of two edges (Gottschalk, Lin & Manocha 1996, *OBBTree*),
-//! with the axis and its direction fixed by the start of the substep.
+//! A capsule has one edge, its axis; a box has edges along three axes. This is the separating-axis test of
+//! two edges (Gottschalk, Lin & Manocha 1996, *OBBTree*), with the axis and its direction fixed at the start
+//! of the substep.
 
 use super::{ColliderShape, DeepestPoint, STEEP};
 use crate::simd::lanes::{F, Mask, Simd, V3, transform};
 use glam::{Mat3, Vec3};
 
-/// How far outside of the segment, over its length, the place may be that faced an edge when the substep began [1].
+/// How far outside the segment, relative to its length, the point facing an edge may be at the start of the
+/// substep [1].
 const BESIDE: f32 = 0.5;
 
-/// Least cosine between the normals before and after a substep [1]. A segment that turns farther has no side.
+/// Minimum cosine between the normals at the start and the end of a substep [1]. A segment that rotates more
+/// has no side.
 const TURNED: f32 = 0.5;
 
-/// A capsule or a box as a box with round edges around the origin of its own space.
+/// A capsule or box, represented as a box with rounded edges centered at the origin of its own space.
 #[derive(Clone)]
 pub(crate) struct Edges {
     half: Vec3,
     radius: f32,
-    /// Along how many of the axes there are edges.
+    /// Number of axes along which there are edges.
     axes: usize,
     /// Pose of its own space at the start and at the end of the substep.
     start: (Mat3, Vec3),
@@ -42,7 +45,8 @@ pub(crate) struct Side<S: Simd> {
 }
 
 impl Edges {
-    /// The edges of a shape that moves from `start` to `end`; `None` for a shape that is neither a capsule nor a box.
+    /// Creates the edges of a shape that moves from `start` to `end`. Returns `None` unless it is a capsule
+    /// or a box.
     pub fn new(shape: &ColliderShape, start: (Mat3, Vec3), end: (Mat3, Vec3)) -> Option<Self> {
         let (center, turn, half, radius, axes) = match *shape {
             ColliderShape::Capsule { a, b, radius } => {
@@ -57,29 +61,31 @@ impl Edges {
         Some(Self { half, radius, axes, start: own(start), end: own(end) })
     }
 
-    /// Whether the shape is round and thinner than `radius` [m].
+    /// Returns whether the shape is a capsule thinner than `radius` [m].
     pub fn is_rod_within<S: Simd>(&self, radius: F<S>) -> Mask<S> {
         let rod = if self.axes == 1 { self.radius } else { f32::INFINITY };
         radius.simd_gt(rod)
     }
 
-    /// Whether the shape is a box.
+    /// Returns whether the shape is a box.
     pub fn is_box(&self) -> bool {
         self.axes == 3
     }
 
-    /// Half of how thick the shape is [m].
+    /// Returns half of the shape's thickness [m].
     pub fn half_thickness(&self) -> f32 {
         if self.axes == 1 { self.radius } else { self.half.min_element() }
     }
 
-    /// The sides of the segments from `a` to `a + e` (world), which are `deep` at most, where the substep begins.
+    /// Returns the sides of the segments from `a` to `a + e` (world) at the start of the substep. A segment
+    /// deeper than `deep` [m] has no side.
     #[inline(always)]
     pub fn side<S: Simd>(&self, simd: S, segment: (V3<S>, V3<S>), deep: F<S>) -> Side<S> {
         self.side_in(simd, own(simd, &self.start, segment), deep)
     }
 
-    /// The edge that the segments from `a` to `a + e` (world) are nearest to at the end of the substep, whether they began on that side or not.
+    /// Returns the nearest edge of the segments from `a` to `a + e` (world) at the end of the substep,
+    /// whichever side they started on.
     #[inline(always)]
     pub fn nearest<S: Simd>(&self, simd: S, segment: (V3<S>, V3<S>)) -> DeepestPoint<S> {
         let any = F::splat(simd, f32::MAX);
@@ -87,7 +93,7 @@ impl Edges {
         self.past(simd, &side, segment, (F::splat(simd, 0.0), any))
     }
 
-    /// The sides of segments in the shape's own space.
+    /// Returns the sides of segments in the shape's own space.
     #[inline(always)]
     fn side_in<S: Simd>(&self, simd: S, (a, e): (V3<S>, V3<S>), deep: F<S>) -> Side<S> {
         let least = e.dot(e).sqrt() * STEEP;
@@ -111,7 +117,8 @@ impl Edges {
         Side { known, axis, normal }
     }
 
-    /// Where the segments from `a` to `a + e` (world) are past their edge from that side, or nearer to it than `within` [m], at the end of the substep.
+    /// Finds the segments from `a` to `a + e` (world) that, at the end of the substep, have passed their edge
+    /// coming from `side`, or are nearer to it than `within` [m].
     #[inline(always)]
     pub fn past<S: Simd>(
         &self,
@@ -139,13 +146,14 @@ impl Edges {
         }
     }
 
-    /// How far the shape reaches along a unit vector across its edges [m].
+    /// Returns the extent of the shape along a unit vector across its edges [m].
     #[inline(always)]
     fn reach<S: Simd>(&self, n: V3<S>) -> F<S> {
         n.x.abs() * self.half.x + n.y.abs() * self.half.y + n.z.abs() * self.half.z + self.radius
     }
 
-    /// The place of a segment that faces the edge along `axis` which is farthest along `n`: 0 at its beginning, 1 at its end.
+    /// Returns the point of a segment that faces the edge along `axis` farthest along `n`: 0 at its
+    /// beginning, 1 at its end.
     #[inline(always)]
     fn facing<S: Simd>(&self, (a, e): (V3<S>, V3<S>), axis: V3<S>, n: V3<S>) -> F<S> {
         let m = axis.cross(n);
@@ -156,7 +164,7 @@ impl Edges {
     }
 }
 
-/// A segment of the world in the space of `pose`.
+/// Transforms a world-space segment to the space of `pose`.
 #[inline(always)]
 fn own<S: Simd>(simd: S, pose: &(Mat3, Vec3), (a, e): (V3<S>, V3<S>)) -> (V3<S>, V3<S>) {
     let inverse = pose.0.transpose();

@@ -1,14 +1,16 @@
-//! Open meshes: a cape, a leaf, a hand made of one surface. Hair is kept off the nearest triangle, on both sides.
+//! Colliders of open meshes: a cape, a leaf, a hand made of one surface. Hair is kept off the nearest
+//! triangle, on both sides.
 //!
 //! ```text
 //!        ______________________
-//!       (  . . . . . . . . . . )   d(p) = min(|p − q|, 2 t) − t      q the nearest place of any triangle, t the thickness
+//!       (  . . . . . . . . . . )   d(p) = min(|p − q|, 2 t) − t      q the nearest point of any triangle, t the thickness
 //!       (______________________)
 //! ```
 //!
-//! Each cell of a lattice lists the triangles that come within 2 t of it: most cells list none, and there no point is looked at
-//! twice. A distance field would be faster where hair touches, but one with a sign needs triangles that all wind alike, one without needs
-//! cells finer than the thickness, and either blurs the rim; lists are exact for any set of triangles, and as quick to make anew.
+//! Each cell of a lattice lists the triangles within 2 t of it. Most cells list none, and points in them are
+//! rejected at once. A distance field would be faster where hair touches the shell, but it has drawbacks: a
+//! signed field needs triangles with consistent winding, an unsigned one needs cells finer than the
+//! thickness, and either blurs the rim. Lists are exact for any set of triangles and just as fast to rebuild.
 
 use super::lattice::Lattice;
 use crate::{
@@ -18,62 +20,67 @@ use crate::{
 use glam::{UVec3, Vec3};
 use std::sync::Arc;
 
-/// How far triangles are known, in thicknesses: far enough that a point that leaves is seen to leave.
+/// Distance up to which triangles are found, in thicknesses. It is larger than 1 so that a separating point
+/// is still measured.
 const REACH: f32 = 2.0;
 
-/// Most cells along the longest side.
+/// Maximum number of cells along the longest side.
 const CELLS: f32 = 128.0;
 
-/// Most nodes of the lattice.
+/// Maximum number of nodes of the lattice.
 const MAX_NODES: usize = 1 << 22;
 
 /// A mesh that need not be closed, with a thickness.
 ///
 /// # Missing
-/// - A point that moves by more than the thickness in a substep may come out on the other side: nothing here knows where it was. (Of what the sheet itself moves,
-///   frames are cut into parts and substeps so that it does not.)
-/// - Between two layers nearer to each other than twice the thickness there is no room, and a point there is pushed from one to the other.
+/// - A point that moves by more than the thickness in a substep may come out on the other side, because the
+///   shell does not know where the point was before. (Motion of the shell itself does not cause this: frames
+///   are divided into time slices and substeps that are short enough.)
+/// - Between two layers that are closer than twice the thickness there is no free space, and a point there is
+///   pushed from one layer to the other.
 #[derive(Clone, Debug, Default)]
 pub struct ThinShell {
-    /// How far it reaches from its triangles, on both sides [m].
+    /// Half-thickness: distance that it extends from its triangles on both sides [m].
     thickness: f32,
     corners: Vec<[Vec3; 3]>,
-    /// How far the corners moved during the last interval [m]; empty: it is rigid.
+    /// Displacement of the corners during the last interval [m]; empty: the shell is rigid.
     moved: Vec<[Vec3; 3]>,
     lattice: Lattice,
-    /// Where in `triangles` a cell's list begins, by the cell's index, and at last where the last one ends.
+    /// Start of each cell's list in `triangles`, by cell index, followed by the end of the last list.
     first: Vec<u32>,
-    /// Triangles that come within reach, cell after cell.
+    /// Triangles within reach, cell after cell.
     triangles: Vec<u32>,
-    /// What it was at equal parts of the last interval, before the last of them, where it moved far in that; empty: this all along.
+    /// The shell at the end of each equal time slice of the last frame, except the last slice. Empty if it
+    /// did not move far in that frame.
     pub(super) previous_slices: Vec<Arc<ThinShell>>,
 }
 
 impl ThinShell {
-    /// Its triangles [m], as they are now.
+    /// Returns its current triangles [m].
     pub fn triangles(&self) -> &[[Vec3; 3]] {
         &self.corners
     }
 
-    /// How far it reaches from its triangles [m].
+    /// Returns the distance that it extends from its triangles on each side [m].
     pub(super) fn thickness(&self) -> f32 {
         self.thickness
     }
 
-    /// Distance between neighbouring nodes of its lattice [m].
+    /// Returns the distance between adjacent nodes of its lattice [m].
     pub(super) fn cell(&self) -> f32 {
         self.lattice.cell
     }
 
-    /// The sheet of a mesh that reaches `thickness` from its triangles, to both sides [m], above 0.
+    /// Creates the shell of a mesh. It extends by `thickness` [m], above 0, to both sides of the triangles.
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]], thickness: f32) -> Self {
         let mut sheet = Self::default();
         sheet.update(positions, None, triangles, None, thickness);
         sheet
     }
 
-    /// Makes it the sheet of a mesh, in the memory that it has. `before`, where given, holds the vertices one interval ago in the same space.
-    /// Only what lies in the box `within` (min, max) [m] needs to be known, where that is given. Triangles that are not finite are left out.
+    /// Rebuilds the shell from a mesh, reusing its buffers. `before`, if given, holds the vertices one
+    /// interval ago in the same space. If `within` (min, max) [m] is given, only that box needs to be
+    /// covered. Triangles that are not finite are ignored.
     pub fn update(
         &mut self,
         positions: &[Vec3],
@@ -101,10 +108,11 @@ impl ThinShell {
         let nowhere = within.map_or(Vec3::ZERO, |(a, _)| a);
         let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (nowhere, nowhere) };
         let cell = reach.max((hi - lo).max_element() / CELLS);
-        // A cell is no shorter than the reach, so that a margin of one holds all of it.
+        // A cell is at least as long as the reach, so a margin of one cell covers it.
         self.lattice = Lattice::covering(lo, hi, 1.0, cell, MAX_NODES);
 
-        // Sorted by counting: how many in each cell, where each list ends, and from there down what is in it.
+        // Counting sort: count the triangles of each cell, find where each list ends, then fill the lists
+        // from their ends.
         self.first.clear();
         self.first.resize(self.lattice.nodes() + 1, 0);
         for t in 0..self.corners.len() {
@@ -125,7 +133,7 @@ impl ThinShell {
         }
     }
 
-    /// Cells that triangle `t` comes within `reach` [m] of, and few others.
+    /// Returns the cells within `reach` [m] of triangle `t`, and few others.
     fn near_cells(&self, t: usize, reach: f32) -> impl Iterator<Item = usize> + use<> {
         let lattice = self.lattice;
         let corners = self.corners[t].map(|p| (p - lattice.origin) / lattice.cell);
@@ -135,7 +143,8 @@ impl ThinShell {
         let lo = (a.min(b).min(c) - reach).floor().as_ivec3().max(glam::IVec3::ZERO);
         let hi = (a.max(b).max(c) + reach).floor().as_ivec3().min(last);
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        // The plane's distance from a cell's middle, and as far as a cell's corners are from there along the normal.
+        // The distance of the plane from the cell's center is compared with the reach plus the cell's extent
+        // along the normal.
         let far = reach + 0.5 * normal.abs().element_sum() + 1e-3;
         (lo.z..=hi.z)
             .flat_map(move |z| (lo.y..=hi.y).flat_map(move |y| (lo.x..=hi.x).map(move |x| [x, y, z])))
@@ -144,28 +153,29 @@ impl ThinShell {
             .map(move |cell| lattice.index(cell))
     }
 
-    /// The triangles within reach of cell `cell`, and perhaps others.
+    /// Returns the triangles within reach of cell `cell`, and possibly others.
     fn listed(&self, cell: usize) -> &[u32] {
         &self.triangles[self.first[cell] as usize..self.first[cell + 1] as usize]
     }
 
-    /// A ball around it: its middle and radius [m].
+    /// Returns a bounding sphere: center and radius [m].
     pub(super) fn bounds(&self) -> (Vec3, f32) {
         let half = (self.lattice.size - UVec3::ONE).as_vec3() * (0.5 * self.lattice.cell);
         (self.lattice.origin + half, half.length())
     }
 
-    /// Whether it moved in its own space.
+    /// Returns whether it deformed in its own space.
     pub fn deforms(&self) -> bool {
         !self.moved.is_empty()
     }
 
-    /// It is where it was an interval ago.
+    /// Discards its deformation, as if it had stayed in place during the last interval.
     pub fn hold_still(&mut self) {
         self.moved.clear();
     }
 
-    /// The way from the nearest place of a triangle to `p` [m], that triangle and the place's barycentric coordinates; `None` out of reach.
+    /// Returns the offset from the nearest point of any triangle to `p` [m], that triangle, and the
+    /// barycentric coordinates of the point; `None` out of reach.
     fn nearest(&self, cell: usize, p: Vec3) -> Option<(Vec3, usize, Vec3)> {
         let mut best = (Vec3::ZERO, usize::MAX, Vec3::X);
         let mut least = (REACH * self.thickness).powi(2);
@@ -180,7 +190,8 @@ impl ThinShell {
         (best.1 < usize::MAX).then_some(best)
     }
 
-    /// Distance [m], negative inside, and outward unit normal at `p` [m]; farther than its thickness from it, at least that and +Y.
+    /// Returns the distance [m], negative inside, and the outward unit normal at `p` [m]. Out of reach of the
+    /// triangles, it returns a distance of one thickness, which is a lower bound, and +Y.
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
         let (_, cell, _) = self.lattice.locate(p);
         self.in_cell(self.lattice.index(cell), p)
@@ -191,7 +202,7 @@ impl ThinShell {
             return ((REACH - 1.0) * self.thickness, Vec3::Y);
         };
         let distance = way.length();
-        // On the sheet itself, to the side that its triangle faces.
+        // On a triangle itself, use the triangle's own normal.
         let normal = if distance > 1e-4 * self.thickness {
             way / distance
         } else {
@@ -201,7 +212,8 @@ impl ThinShell {
         (distance - self.thickness, normal)
     }
 
-    /// How far the triangle nearest to `p` [m] moved there in the last interval [m]; 0 out of reach, or where it is rigid.
+    /// Returns how far the triangle nearest to `p` [m] moved there in the last interval [m]; 0 if it is out
+    /// of reach or the shell is rigid.
     pub fn displacement(&self, p: Vec3) -> Vec3 {
         let (_, cell, _) = self.lattice.locate(p);
         match self.nearest(self.lattice.index(cell), p) {
@@ -213,7 +225,7 @@ impl ThinShell {
         }
     }
 
-    /// Of eight points, those in a cell that a triangle comes near to; the others are outside.
+    /// Returns which of eight points are in a cell that has triangles within reach. The others are outside.
     #[inline(always)]
     pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let (_, cells, _) = self.lattice.locate_lanes(simd, p);
@@ -221,7 +233,7 @@ impl ThinShell {
         load(simd, &may).simd_gt(0.0)
     }
 
-    /// [`ThinShell::distance_and_normal`] of eight points.
+    /// [`ThinShell::distance_and_normal`] for eight points.
     #[inline(always)]
     pub(super) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let (_, cells, _) = self.lattice.locate_lanes(simd, p);

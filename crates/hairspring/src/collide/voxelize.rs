@@ -1,9 +1,11 @@
-//! From a closed triangle mesh to its signed distance field, fast enough to do anew each frame for a skinned body.
+//! Builds the signed distance field of a closed triangle mesh, fast enough to repeat every frame for a
+//! skinned body.
 //!
-//! Exact distances in a band around the surface (each triangle visits the nodes near it), the sign by counting oriented
-//! crossings along x, so that overlapping closed pieces unite; deep inside, distances are extended ([`deep`]), so that a
-//! point that got there still knows the way out; far outside they stay at the band's width.
-//! The layout follows Bridson's SDFGen (*Fluid Simulation for Computer Graphics*, 2nd ed., §4).
+//! Distances are exact in a band around the surface: each triangle visits the nodes near it. The sign comes
+//! from counting oriented crossings along x, so overlapping closed pieces are united. Deep inside, distances
+//! are extended ([`deep_interior`]), so that a point there is still led out. Far outside they stay at the
+//! width of the band. The layout follows Bridson's SDFGen (*Fluid Simulation for Computer Graphics*, 2nd ed.,
+//! §4).
 
 use super::{
     SignedDistanceField, deep_interior,
@@ -22,7 +24,7 @@ use std::ops::Range;
 /// Half-width of the band of exact distances, in cells.
 pub(super) const BAND: f32 = 2.0;
 
-/// Largest number of nodes of a grid; the cell grows until it fits. 4 Mi nodes: 16 MiB.
+/// Maximum number of nodes of a grid; the cell is enlarged until it fits. 4 Mi nodes take 16 MiB.
 const MAX_NODES: usize = lattice::MAX_NODES / 2;
 
 /// Builds the field of a closed mesh with cells of about `cell` [m].
@@ -32,23 +34,23 @@ pub fn voxelize(positions: &[Vec3], triangles: &[[u32; 3]], cell: f32) -> Signed
     grid
 }
 
-/// Builds fields again and again without allocating, once its buffers have grown.
+/// Builds fields repeatedly, without allocating once its buffers have grown.
 #[derive(Default)]
 pub struct Voxelizer {
     triangles: Vec<Flat>,
-    /// Triangles that come near each layer of nodes in z.
+    /// Triangles near each layer of nodes in z.
     layers: Vec<Vec<u32>>,
     benches: Vec<Bench>,
     holes: Holes,
 }
 
 impl Voxelizer {
-    /// Makes `grid` the field of the mesh. `before`, where given, holds the vertices one interval ago in the same
-    /// space: the grid then also knows how far the surface moved.
+    /// Rebuilds `grid` as the field of the mesh. `before`, if given, holds the vertices one interval ago in
+    /// the same space; the grid then also stores how far the surface moved.
     ///
-    /// The grid covers the mesh with a margin of the band, but no more than the box `within` (min, max) [m] where that is
-    /// given, in cells of `cell` [m] or larger where that would be too many. A mesh without triangles gives a field that
-    /// is far from everything.
+    /// The grid covers the mesh with a margin of the band, clipped to the box `within` (min, max) [m] if
+    /// given. Its cells are of `cell` [m], or larger if that would take too many. A mesh without triangles
+    /// gives a field in which every point is far outside.
     pub fn update(
         &mut self,
         grid: &mut SignedDistanceField,
@@ -62,14 +64,15 @@ impl Voxelizer {
         let lo = used().fold(Vec3::splat(f32::MAX), Vec3::min);
         let hi = used().fold(Vec3::splat(f32::MIN), Vec3::max);
         let (lo, hi) = within.map_or((lo, hi), |(a, b)| (lo.max(a), hi.min(b)));
-        // Nothing of the mesh within: a grid of a few nodes, at a corner of the box, which then lies outside.
+        // If no part of the mesh is within the box, use a grid of a few nodes at a corner of the box, which
+        // is then outside.
         let nowhere = within.map_or(Vec3::ZERO, |(a, _)| a);
         let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (nowhere, nowhere) };
         let lattice = Lattice::covering(lo, hi, BAND + 0.5, cell, MAX_NODES);
         grid.begin(lattice, positions, before, triangles);
         let size = lattice.size.as_usizevec3();
 
-        // Which triangles come near which layer.
+        // Assign the triangles to the layers that they are near to.
         self.triangles.clear();
         self.layers.resize_with(size.z.max(self.layers.len()), Vec::new);
         self.layers.iter_mut().for_each(Vec::clear);
@@ -83,7 +86,8 @@ impl Voxelizer {
             }
         }
 
-        // A few benches a thread, each for some layers in a row. A layer knows of no other: it does not matter who makes it.
+        // Use a few scratch buffers for each thread, each for several consecutive layers. Layers are
+        // independent, so the result does not depend on the threads.
         let each = size.z.div_ceil(4 * rayon::current_num_threads());
         self.benches.resize_with(size.z.div_ceil(each), Bench::default);
         let (flats, layers, level) = (&self.triangles, &self.layers, Level::new());
@@ -113,22 +117,22 @@ impl Voxelizer {
     }
 }
 
-/// A triangle in cells, with what many nodes ask of it.
+/// A triangle in units of cells, with precomputed values.
 struct Flat {
     corners: [Vec3; 3],
-    /// From each corner to the next, and one over the square of that.
+    /// Vectors from each corner to the next, and the reciprocals of their squared lengths.
     edges: [Vec3; 3],
     inverse: [f32; 3],
-    /// Unit normal; zero where the corners lie in a row.
+    /// Unit normal; zero if the corners are collinear.
     normal: Vec3,
-    /// Out of the triangle, across each edge, in its plane.
+    /// Outward across each edge, in the plane of the triangle.
     out: [Vec3; 3],
-    /// Which of the mesh's.
+    /// Index of the triangle in the mesh.
     number: u32,
 }
 
 impl Flat {
-    /// `None`: it is nowhere.
+    /// Returns `None` if a corner is not finite.
     fn new(corners: [Vec3; 3], number: u32) -> Option<Self> {
         let [a, b, c] = corners;
         let edges = [b - a, c - b, a - c];
@@ -138,7 +142,7 @@ impl Flat {
         corners.iter().all(|p| p.is_finite()).then_some(Self { corners, edges, inverse, normal, out, number })
     }
 
-    /// The nodes along each axis that may lie in its band.
+    /// Returns the range of nodes along each axis that may lie in its band.
     fn near(&self, size: UVec3) -> [Range<usize>; 3] {
         let [a, b, c] = self.corners;
         let (lo, hi) = ((a.min(b).min(c) - BAND).ceil(), (a.max(b).max(c) + BAND).floor());
@@ -149,31 +153,34 @@ impl Flat {
     }
 }
 
-/// Where some layers of a field are made, one after the other, while they sit in the nearest caches.
+/// Scratch buffers for several layers of a field. The layers are processed one after the other, so that the
+/// buffers stay in cache.
 #[derive(Default)]
 struct Bench {
-    /// Squared distance to the surface [cells²]. Rows are longer than the layer's, so that eight nodes fit from any of them on.
+    /// Squared distance to the surface [cells²]. Rows are padded, so that eight nodes can be accessed from
+    /// any node on.
     squared: Vec<f32>,
-    /// Number of the nearest triangle, as the bits of an `f32`: it is only chosen, never reckoned with.
+    /// Index of the nearest triangle, stored as the bits of an `f32`. It is only selected, never used in
+    /// arithmetic.
     nearest: Vec<f32>,
-    /// Entries (+) and exits (−) of the surface before each node, along x, and beyond the last one.
+    /// Entries (+) and exits (−) of the surface before each node along x, and after the last node.
     crossings: Vec<i16>,
-    /// Rows that any triangle is near to.
+    /// Rows that a triangle is near to.
     seen: Vec<bool>,
-    /// Runs of nodes in a row that lie deeper than the band: layer, row, first and end.
+    /// Runs of nodes in a row that are deeper than the band: layer, row, first and end.
     deep: Vec<[u32; 4]>,
-    /// Rows that pass a hole: layer, row.
+    /// Rows that pass through a hole: layer, row.
     open: Vec<[u32; 2]>,
 }
 
 impl Bench {
-    /// A layer of which nothing is known.
+    /// Starts an empty layer.
     fn begin(&mut self, size: UVec3) {
         let (nx, ny) = (size.x as usize, size.y as usize);
         let places = ny * (nx + LANES);
         self.squared.clear();
         self.squared.resize(places, BAND * BAND);
-        // What is farther than the band is the nearest of none, and its number is not asked for.
+        // Nodes outside the band have no nearest triangle, and their value is never read.
         self.nearest.resize(places, 0.0);
         self.crossings.clear();
         self.crossings.resize((nx + 1) * ny, 0);
@@ -181,8 +188,9 @@ impl Bench {
         self.seen.resize(ny, false);
     }
 
-    /// Exact distances from the nodes of layer `z` in the triangle's band to the triangle, eight nodes of a row at a time: to its plane where
-    /// the foot of the perpendicular lies in it, else to the nearest edge.
+    /// Computes exact distances from the triangle to the nodes of layer `z` in its band, eight nodes of a row
+    /// at a time: the distance to the plane if the node projects onto the triangle, else that to the nearest
+    /// edge.
     #[inline(always)]
     fn measure<S: Simd>(&mut self, simd: S, flat: &Flat, z: usize, size: UVec3) {
         let stride = size.x as usize + LANES;
@@ -192,7 +200,7 @@ impl Bench {
         let number = F::splat(simd, f32::from_bits(flat.number));
         let (zero, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
         for y in rows {
-            // Most nodes of the box are too far from the plane to be looked at closer.
+            // Most nodes of the box are too far from the plane and are skipped.
             let row = Vec3::new(0.0, y as f32, z as f32);
             let (off, slack) = (normal.dot(row - flat.corners[0]), BAND + 1e-3);
             let (mut first, mut end) = (columns.start as f32, columns.end as f32);
@@ -207,7 +215,7 @@ impl Bench {
             while x < end {
                 let mut squared = F::splat(simd, f32::MAX);
                 let mut within = zero.simd_eq(zero);
-                // What differs along a row is x alone.
+                // Only x varies along a row.
                 for k in 0..3 {
                     let from = row + Vec3::X * x - flat.corners[k];
                     let (edge, out) = (flat.edges[k], flat.out[k]);
@@ -236,7 +244,8 @@ impl Bench {
         }
     }
 
-    /// Signed distances [m] and nearest triangles of layer `z`, by winding along x: inside where more surfaces were entered than left.
+    /// Computes the signed distances [m] and nearest triangles of layer `z`. The sign comes from the winding
+    /// along x: a node is inside if more surfaces were entered than left.
     fn finish(&mut self, lattice: &Lattice, z: usize, distances: &mut [f32], nearest: &mut [u32]) {
         let nx = lattice.size.x as usize;
         let rows = self.squared.chunks(nx + LANES).zip(self.nearest.chunks(nx + LANES));
@@ -259,7 +268,7 @@ impl Bench {
                     *d = -*d;
                 }
             }
-            // Of a closed mesh as many surfaces are entered as left.
+            // A row through a closed mesh leaves as many surfaces as it enters.
             let at = [z, y].map(|i| i as u32);
             if winding + crossings[nx] == 0 {
                 deep_interior::push(at, distances, lattice.cell, &mut self.deep);
@@ -275,7 +284,8 @@ fn count_crossings(c: &[Vec3; 3], z: usize, (nx, ny): (usize, usize), crossings:
     if c.iter().all(|v| v.z < z as f32) || c.iter().all(|v| v.z > z as f32) {
         return;
     }
-    // In f64 and with the vertices in a fixed order, so that an edge shared by two triangles is decided alike.
+    // Uses f64 and a fixed vertex order, so that an edge shared by two triangles gives the same result for
+    // both.
     let p = c.map(|v| DVec2::new(v.y as f64, v.z as f64));
     let y0 = p[0].x.min(p[1].x).min(p[2].x).ceil().max(0.0) as usize;
     let y1 = p[0].x.max(p[1].x).max(p[2].x).floor().min(ny as f64 - 1.0);
@@ -295,13 +305,14 @@ fn count_crossings(c: &[Vec3; 3], z: usize, (nx, ny): (usize, usize), crossings:
         }
         let x = (w[0].1 * c[0].x as f64 + w[1].1 * c[1].x as f64 + w[2].1 * c[2].x as f64) / sum;
         let node = x.ceil().clamp(0.0, nx as f64) as usize;
-        // The normal's x is the projected triangle's signed area: positive leaves, negative enters.
+        // The x component of the normal is the signed area of the projected triangle: positive exits,
+        // negative enters.
         crossings[y * (nx + 1) + node] += if all(true) { -1 } else { 1 };
     }
 }
 
-/// On which side of the line a→b `q` lies, with points on the line given to one side by the order of the ends
-/// (simulation of simplicity), and twice the signed area.
+/// Returns the side of the line a→b on which `q` lies, and twice the signed area. Points on the line are
+/// assigned to one side by the order of the ends (simulation of simplicity).
 fn side(a: DVec2, b: DVec2, q: DVec2) -> (bool, f64) {
     let swap = (a.x, a.y) > (b.x, b.y);
     let (s, t) = if swap { (b, a) } else { (a, b) };
@@ -314,7 +325,7 @@ fn side(a: DVec2, b: DVec2, q: DVec2) -> (bool, f64) {
 mod tests {
     use super::*;
 
-    /// An octahedron's surface, subdivided onto the sphere of `radius` around `center`.
+    /// A subdivided octahedron projected onto the sphere of `radius` around `center`.
     fn ball(center: Vec3, radius: f32, levels: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let v = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
         let mut faces: Vec<[Vec3; 3]> =
@@ -373,7 +384,8 @@ mod tests {
     fn a_box_that_cuts_through_a_ball_has_the_same_distances_within() {
         let (positions, triangles) = ball(Vec3::ZERO, 0.1, 4);
         let whole = voxelize(&positions, &triangles, 0.005);
-        // Cut on every side: no surface left or right of the box tells where the inside begins.
+        // The box cuts the ball on every side, so no surface left or right of it shows where the inside
+        // begins.
         let within = (Vec3::new(-0.05, -0.02, -0.06), Vec3::new(0.04, 0.3, 0.05));
         let mut part = SignedDistanceField::default();
         Voxelizer::default().update(&mut part, &positions, None, &triangles, Some(within), 0.005);
@@ -383,7 +395,7 @@ mod tests {
             let p = Vec3::new(-0.05, -0.02, -0.06)
                 + Vec3::new(hash(0), hash(1), hash(2)) * Vec3::new(0.09, 0.13, 0.11);
             let (a, b) = (whole.distance_and_normal(p).0, part.distance_and_normal(p).0);
-            // Deep inside, the way out within the box may be longer.
+            // Deep inside, the distance to the surface within the box may be longer.
             assert!(
                 (a - b).abs() < 0.0015 || (a < -0.009 && b <= a + 0.0015 && b > -0.2),
                 "at {p}: {a} and {b}"

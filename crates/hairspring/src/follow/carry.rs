@@ -1,10 +1,11 @@
-//! How a guide carries the hairs around it.
+//! Transforms of the guides, applied to the hairs that follow them.
 
 use crate::groom::{Groom, GuideWeights};
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
 use rayon::prelude::*;
 
-/// Where along each of its guides every point rides: at the same arc length, or the tip where the guide is shorter.
+/// Returns the coordinate of every point on each of its guides: the position at the same arc length, or the
+/// tip if the guide is shorter.
 pub(super) fn rides(groom: &Groom, guides: &[u32], weights: &[GuideWeights]) -> Vec<[u16; 3]> {
     let arcs = |s: usize| {
         let mut arc = 0.0;
@@ -26,7 +27,7 @@ pub(super) fn rides(groom: &Groom, guides: &[u32], weights: &[GuideWeights]) -> 
     (0..groom.strand_count()).into_par_iter().flat_map_iter(of_strand).collect()
 }
 
-/// The place of arc length `at` among increasing `arcs`, as a 16-bit fraction of the points.
+/// Returns the position of arc length `at` among increasing `arcs`, as a 16-bit fraction of the points.
 fn position(arcs: &[f32], at: f32) -> u16 {
     let last = arcs.len() - 1;
     let i = arcs.partition_point(|a| *a <= at).clamp(1, last) - 1;
@@ -34,8 +35,8 @@ fn position(arcs: &[f32], at: f32) -> u16 {
     ((i as f32 + t) / last as f32 * u16::MAX as f32).round() as u16
 }
 
-/// From the rest pose to now, at every guide point: the root's rotation, carried along by least rotations between rest
-/// tangents and those of now.
+/// Computes the transform from rest to the current pose at every guide point. The rotation is that of the
+/// root, parallel-transported by the smallest rotations between the rest tangents and the current ones.
 pub(super) fn update_carriers(
     groom: &Groom,
     guides: &[u32],
@@ -60,7 +61,7 @@ pub(super) fn update_carriers(
     });
 }
 
-/// Carries the rest points of one strand.
+/// Applies the guides' transforms to the rest points of one strand.
 pub(super) fn carry(
     rest: &[Vec3],
     weights: &GuideWeights,

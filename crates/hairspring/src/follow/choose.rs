@@ -1,20 +1,21 @@
-//! Which strands are guides, and which guides a hair follows.
+//! Selects the guide strands, and the guides that each hair follows.
 
 use crate::groom::{Groom, GuideWeights};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// How much the difference of two strands' shapes counts against the distance of their roots [1]. Hairs on either side of a parting
-/// have near roots and should not follow each other.
+/// Weight of the difference in shape of two strands, relative to the distance of their roots [1]. Hairs on
+/// either side of a parting have nearby roots but should not follow each other.
 const SHAPE: f32 = 0.25;
 
-/// Nearest guides looked at for each hair before shape decides.
+/// Number of nearest guides considered for each hair before shape decides.
 const CANDIDATES: usize = 8;
 
-/// Chooses `count` guides spread over the scalp, in each group as many as its share of the strands (and at least one): the strand
-/// farthest from all that are chosen, again and again (farthest-point sampling; Gonzalez 1985).
+/// Chooses `count` guides spread over the scalp. Each group gets a number in proportion to its strands, and
+/// at least one. Within a group, the strand farthest from all chosen ones is added repeatedly (farthest-point
+/// sampling; Gonzalez 1985).
 ///
-/// Returns strand indices in increasing order; all strands where there are no more than `count`.
+/// Returns strand indices in increasing order, or all strands if there are no more than `count`.
 pub fn choose_guides(groom: &Groom, count: usize) -> Vec<u32> {
     let strands = groom.strand_count();
     if count >= strands {
@@ -41,7 +42,8 @@ pub fn choose_guides(groom: &Groom, count: usize) -> Vec<u32> {
 }
 
 fn farthest_points(groom: &Groom, group: Vec<u32>, count: usize) -> Vec<u32> {
-    /// Roots that one task looks at; fixed, so that ties are broken alike for any number of threads.
+    /// Roots processed by one task. The size is fixed, so that ties are resolved alike for any number of
+    /// threads.
     const CHUNK: usize = 4096;
     if count >= group.len() {
         return group;
@@ -74,8 +76,9 @@ fn farthest_points(groom: &Groom, group: Vec<u32>, count: usize) -> Vec<u32> {
     chosen
 }
 
-/// Up to three guides of each strand, of its own group where that has any, weighted by inverse squared distance of root and shape.
-/// A guide follows itself. `guides` must not be empty.
+/// Returns up to three guides for each strand, weighted by the inverse squared difference in root position
+/// and shape. The guides are of the strand's own group if that has any. A guide follows itself. `guides` must
+/// not be empty.
 pub fn assign_guides(groom: &Groom, guides: &[u32]) -> Vec<GuideWeights> {
     let grid = RootGrid::new(groom, guides);
     (0..groom.strand_count())
@@ -91,7 +94,7 @@ pub fn assign_guides(groom: &Groom, guides: &[u32]) -> Vec<GuideWeights> {
         .collect()
 }
 
-/// The nearest three of `scored` (difference [m], guide), weighted.
+/// Returns the first three of `scored` (difference [m], guide), with weights.
 fn weights(scored: &[(f32, u32)]) -> GuideWeights {
     let (first, guide) = scored[0];
     let mut out = GuideWeights { guides: [guide; 3], weights: [1.0, 0.0, 0.0] };
@@ -107,7 +110,8 @@ fn weights(scored: &[(f32, u32)]) -> GuideWeights {
     out
 }
 
-/// How unlike two strands are [m]: the distance of their roots, and some of how their middles and tips lie to them.
+/// Returns the difference of two strands [m]: the distance of their roots, plus a fraction of the difference
+/// of their middles and tips relative to the roots.
 fn difference(groom: &Groom, a: usize, b: usize) -> f32 {
     let (a, b) = (groom.strand(a), groom.strand(b));
     let shape = |part: usize| {
@@ -117,7 +121,7 @@ fn difference(groom: &Groom, a: usize, b: usize) -> f32 {
     a[0].distance(b[0]) + SHAPE * (shape(1) + shape(2)) * 0.5
 }
 
-/// Guides by the cell of their roots.
+/// A hash grid of the guides by their root positions.
 struct RootGrid {
     cell: f32,
     cells: std::collections::HashMap<[i32; 3], Vec<u32>>,
@@ -130,7 +134,7 @@ impl RootGrid {
         let roots: Vec<Vec3> = guides.iter().map(|g| groom.strand(*g as usize)[0]).collect();
         let lo = roots.iter().copied().fold(Vec3::MAX, Vec3::min);
         let hi = roots.iter().copied().fold(Vec3::MIN, Vec3::max);
-        // About two guides a cell on a surface of the box's size.
+        // Aims at about two guides in each cell, for a surface of the size of the bounding box.
         let size = (hi - lo).max_element().max(1e-4);
         let cell = (size * (2.0 / guides.len() as f32).sqrt()).max(1e-5);
         let mut grid = Self { cell, cells: Default::default(), by_group: Vec::new(), all: guides.to_vec() };
@@ -149,7 +153,8 @@ impl RootGrid {
         (p / self.cell).floor().as_ivec3().to_array()
     }
 
-    /// The nearest [`CANDIDATES`] guides of the group, by their roots; of any group where it has none.
+    /// Returns the nearest [`CANDIDATES`] guides of the group by root position, or of any group if it has
+    /// none.
     fn nearest(&self, groom: &Groom, p: Vec3, group: u16) -> Vec<u32> {
         let own = self.by_group.get(group as usize).filter(|g| !g.is_empty());
         let pool = own.unwrap_or(&self.all);
@@ -203,7 +208,7 @@ mod tests {
         assert!((98..=102).contains(&guides.len()), "{} guides", guides.len());
         let left = guides.iter().filter(|g| groom.group(**g as usize) == 0).count();
         assert!((48..=52).contains(&left), "{left} of the left half");
-        // Of 3,600 mm² each guide has 36: none is nearer to another than 3 mm.
+        // An area of 3,600 mm² leaves 36 mm² for each guide, so no two are nearer than 3 mm.
         for a in &guides {
             for b in &guides {
                 let d = groom.strand(*a as usize)[0].distance(groom.strand(*b as usize)[0]);

@@ -1,4 +1,5 @@
-//! Follow hairs stay out of the body: each point inside a collider moves to its surface, eight points at a time.
+//! Keeps follow hairs out of the colliders: each point inside is moved to the surface, eight points at a
+//! time.
 
 use crate::{
     collide::{ColliderPose, contact},
@@ -6,8 +7,8 @@ use crate::{
 };
 use glam::Vec3;
 
-/// Moves the points of one strand that are deeper inside a collider than their `clearance` (0 or less) [m] to the surface.
-/// The root, its first point, stays on the skin.
+/// Moves the points of one strand that are deeper inside a collider than their `clearance` (0 or less) [m] to
+/// that depth. The root, the first point, is not moved.
 #[inline(always)]
 pub(super) fn keep_out<S: Simd>(simd: S, obstacles: &[ColliderPose], points: &mut [Vec3], clearance: &[f32]) {
     let (Some((_, points)), Some((_, clearance))) = (points.split_first_mut(), clearance.split_first())

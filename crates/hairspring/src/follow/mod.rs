@@ -1,14 +1,14 @@
-//! Follow hairs: every hair that is not simulated, carried by up to three guides.
+//! Follow hairs: the hairs that are not simulated but interpolated from up to three guides.
 //!
-//! A follow point p₀ of the rest pose is taken along by each of its guides as a rigid piece: with g₀ the guide's rest point at the same
-//! arc length, x where it is now and R how the guide's frame has turned there,
+//! Each guide moves a point p₀ of the rest pose rigidly. Let g₀ be the guide's rest point at the same arc
+//! length, x its current position and R the rotation of the guide's frame there since rest:
 //!
 //! ```text
 //! p = Σ w (x + R (p₀ − g₀))
 //! ```
 //!
-//! which is the rest offset kept in the guide's frame without an offset to store: at rest R = I and p = p₀ to the
-//! bit of a rounding.
+//! This keeps the rest offset in the guide's frame without storing an offset. At rest R = I, and p = p₀ up to
+//! rounding.
 
 mod carry;
 mod choose;
@@ -28,48 +28,52 @@ use glam::{Affine3A, Quat, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Which hairs of a groom follow which guides, and where on them: what stays while a scene plays.
+/// The static part of the interpolation: which guides each hair of a groom follows, and at which points of
+/// them.
 #[derive(Clone, Debug)]
 pub struct FollowLayout {
-    /// The groom: points of the rest pose.
+    /// The groom, with the points of the rest pose.
     pub groom: Arc<Groom>,
     /// Guides of each strand as indices into `guides`, and weights; shape `[strands]`.
     pub weights: Vec<GuideWeights>,
-    /// The guide strands, in the order of their points.
+    /// Strand indices of the guides, in the order of their points.
     pub guides: Vec<u32>,
-    /// First point of each guide in the array of all guides' points, and their number at the end; shape `[guides + 1]`.
+    /// First point of each guide in the array of all guide points, followed by its length; shape `[guides +
+    /// 1]`.
     pub guide_offsets: Vec<u32>,
-    /// For every strand its place among the guides; `u32::MAX` for follow hairs; shape `[strands]`.
+    /// Index of each strand among the guides; `u32::MAX` for follow hairs; shape `[strands]`.
     pub guide_of: Vec<u32>,
-    /// Where along each of its guides a point rides: fraction of the guide's points, 16 bits; shape `[points]`.
+    /// Coordinate of each point on each of its guides, as a 16-bit fraction of the guide's points; shape
+    /// `[points]`.
     pub ride: Vec<[u16; 3]>,
-    /// How deep each point may be inside a collider, 0 or less [m]; shape `[points]`.
+    /// Allowed depth of each point inside a collider, 0 or less [m]; shape `[points]`.
     pub clearance: Vec<f32>,
 }
 
-/// The follow hairs of one groom: settings, and the frames of the guides in the current frame.
+/// The follow hairs of one groom: styling settings, and the transforms of the guides in the current frame.
 ///
 /// # Missing
 /// Levels of detail.
 pub struct Follow {
     layout: Arc<FollowLayout>,
     effects: Effects,
-    /// From the rest pose to now, of each guide point.
+    /// Transform from rest to the current pose for each guide point.
     carriers: Vec<Affine3A>,
 }
 
-/// What places the follow hairs of one groom as they are now: here, by [`HairInterpolation::place`], or by a viewer on a graphics card.
+/// All data needed to place the follow hairs of one groom in the current frame, either on the CPU by
+/// [`HairInterpolation::place`] or by a renderer on the GPU.
 #[derive(Clone, Copy)]
 pub struct HairInterpolation<'a> {
-    /// What stays.
+    /// The static part.
     pub layout: &'a Arc<FollowLayout>,
-    /// What is laid over the hairs.
+    /// Styling of the follow hairs.
     pub effects: Effects,
-    /// From the rest pose to now, of each guide point; shape `[guide points]`.
+    /// Transform from rest to the current pose for each guide point; shape `[guide points]`.
     pub carriers: &'a [Affine3A],
-    /// Points of all guides now [m]; shape `[guide points]`.
+    /// Current positions of all guide points [m]; shape `[guide points]`.
     pub guide_points: &'a [Vec3],
-    /// What hairs are kept out of, as it is at the end of the frame.
+    /// Colliders that hairs are kept out of, at their poses at the end of the frame.
     pub obstacles: &'a [MovingCollider],
 }
 
@@ -80,33 +84,34 @@ impl std::fmt::Debug for HairInterpolation<'_> {
 }
 
 impl FollowLayout {
-    /// The places of one strand's three guides among all guides' points.
+    /// Returns the ranges of one strand's three guides in the array of all guide points.
     fn guide_ranges(&self, strand: usize) -> [std::ops::Range<usize>; 3] {
         self.weights[strand].guides.map(|g| self.guide_range(g as usize))
     }
 
-    /// Where the points of a guide, by its place among the guides, are among all guides' points.
+    /// Returns the range of a guide, given by its index among the guides, in the array of all guide points.
     pub fn guide_range(&self, guide: usize) -> std::ops::Range<usize> {
         self.guide_offsets[guide] as usize..self.guide_offsets[guide + 1] as usize
     }
 
-    /// Place of a strand among the guides, if it is one.
+    /// Returns the index of a strand among the guides, or `None` if it is not a guide.
     pub fn guide(&self, strand: usize) -> Option<usize> {
         Some(self.guide_of[strand]).filter(|guide| *guide != u32::MAX).map(|guide| guide as usize)
     }
 
-    /// The angles at which curls and flyaways of a strand begin, 0 to 2π [rad]: the curl's, then those of the four waves of the noise.
+    /// Returns the phases of a strand's curl and of the four waves of its flyaway noise, in this order, 0 to
+    /// 2π [rad].
     pub fn phases(strand: u32) -> [f32; 5] {
         style::phases(strand)
     }
 }
 
 impl Follow {
-    /// Prepares the follow hairs of `groom`.
+    /// Creates the follow hairs of `groom`.
     ///
     /// - `guides`: the simulated strands.
-    /// - `weights`: of every strand, naming strands of the groom that are in `guides`; shape `[strands]`.
-    /// - `obstacles`: colliders at rest: points that start inside may stay as deep as they are.
+    /// - `weights`: for every strand, strands of the groom that are in `guides`; shape `[strands]`.
+    /// - `obstacles`: colliders at rest. Points that start inside may stay as deep as they are.
     pub fn new(
         groom: Arc<Groom>,
         guides: &[u32],
@@ -136,28 +141,29 @@ impl Follow {
         Self { layout: Arc::new(layout), effects, carriers }
     }
 
-    /// The same hairs, following the same guides, in another rest pose: that of `groom`, among `obstacles`.
+    /// Creates the same hairs with the same guides for another rest pose: that of `groom`, with `obstacles`.
     pub fn of(&self, groom: Arc<Groom>, obstacles: &[ColliderPose]) -> Self {
         let FollowLayout { guides, weights, .. } = &*self.layout;
         let name = |w: &GuideWeights| GuideWeights { guides: w.guides.map(|g| guides[g as usize]), ..*w };
         Self::new(groom, guides, &weights.iter().map(name).collect::<Vec<_>>(), self.effects, obstacles)
     }
 
-    /// Lays other effects over the follow hairs from now on; returns those before.
+    /// Replaces the styling of the follow hairs and returns the previous one.
     pub fn set_effects(&mut self, effects: Effects) -> Effects {
         std::mem::replace(&mut self.effects, effects)
     }
 
-    /// Finds how the guides carry the hairs around them now.
+    /// Computes the current transforms of the guides.
     ///
-    /// - `guide_points`: points of all guides now [m], as `Simulation::write_points` gives them.
+    /// - `guide_points`: current points of all guides [m], as written by `Simulation::write_points`.
     /// - `turns`: rotation of each guide's root since rest.
     pub fn carry(&mut self, guide_points: &[Vec3], turns: &[Quat]) {
         let FollowLayout { groom, guides, guide_offsets, .. } = &*self.layout;
         carry::update_carriers(groom, guides, guide_offsets, guide_points, turns, &mut self.carriers);
     }
 
-    /// The hairs as they were last carried by guides that are at `guide_points` [m], among `obstacles`.
+    /// Returns the data of the current frame: the last computed transforms, with guides at `guide_points` [m]
+    /// and colliders `obstacles`.
     pub fn now<'a>(
         &'a self,
         guide_points: &'a [Vec3],
@@ -167,23 +173,23 @@ impl Follow {
         HairInterpolation { layout, effects: *effects, carriers, guide_points, obstacles }
     }
 
-    /// Place of a strand among the guides, if it is one.
+    /// Returns the index of a strand among the guides, or `None` if it is not a guide.
     pub fn guide(&self, strand: usize) -> Option<usize> {
         self.layout.guide(strand)
     }
 
-    /// Where the points of a guide, by its place among the guides, are among all guides' points.
+    /// Returns the range of a guide, given by its index among the guides, in the array of all guide points.
     pub fn guide_range(&self, guide: usize) -> std::ops::Range<usize> {
         self.layout.guide_range(guide)
     }
 
-    /// Place among the guides of the first that a strand follows; its own where it is one.
+    /// Returns the index among the guides of the first guide of a strand, or its own if it is a guide.
     pub fn first_guide(&self, strand: usize) -> usize {
         self.guide(strand).unwrap_or(self.layout.weights[strand].guides[0] as usize)
     }
 
-    /// Writes one number a point of all strands, given those of all guides' points: guides have their own, follow hairs those of their first guide where
-    /// they ride on it.
+    /// Writes one value for each point of all strands, given the values of all guide points. Guides keep
+    /// their own values; follow hairs interpolate those of their first guide.
     pub fn spread(&self, of_guides: &[f32], out: &mut [f32]) {
         let layout = &*self.layout;
         let strands = split_by(out, &layout.groom.offsets);
@@ -203,7 +209,7 @@ impl Follow {
         });
     }
 
-    /// Bytes held.
+    /// Returns the memory used, in bytes.
     pub fn bytes(&self) -> usize {
         let FollowLayout { weights, ride, clearance, .. } = &*self.layout;
         size_of_val(&weights[..])
@@ -214,21 +220,24 @@ impl Follow {
 }
 
 impl HairInterpolation<'_> {
-    /// Writes all points of the groom [m]: guides as they are, follow hairs carried by them and kept out of the colliders.
+    /// Writes all points of the groom [m]. Guides keep their points; follow hairs are interpolated and moved
+    /// out of the colliders.
     pub fn place(&self, out: &mut [Vec3]) {
         self.place_every(1, &self.layout.groom.offsets, out);
     }
 
-    /// The same of every `every`-th strand from the first on, 1 or more, for a picture of fewer hairs.
+    /// Like [`Self::place`], but only for every `every`-th strand (1 or more), starting with the first. Used
+    /// to draw fewer hairs.
     ///
-    /// - `offsets`: first point of each of these in `out`, and the end; shape `[strands + 1]`.
+    /// - `offsets`: first point of each of these strands in `out`, followed by the end; shape `[strands +
+    ///   1]`.
     pub fn place_every(&self, every: usize, offsets: &[u32], out: &mut [Vec3]) {
         let poses: Vec<ColliderPose> = self.obstacles.iter().map(MovingCollider::now).collect();
         let strands = split_by(out, offsets).into_par_iter().enumerate();
         strands.with_min_len(64).for_each(|(s, strand)| self.place_strand(s * every, &poses, strand));
     }
 
-    /// The same of one strand, kept out of `poses`.
+    /// Like [`Self::place`], for one strand and the collider poses `poses`.
     pub fn place_strand(&self, s: usize, poses: &[ColliderPose], strand: &mut [Vec3]) {
         let layout = &**self.layout;
         if let Some(guide) = layout.guide(s) {
@@ -248,7 +257,7 @@ impl HairInterpolation<'_> {
     }
 }
 
-/// `array` cut at `offsets`.
+/// Splits `array` at `offsets`.
 pub fn split_by<'a, T>(array: &'a mut [T], offsets: &[u32]) -> Vec<&'a mut [T]> {
     let mut rest = array;
     let mut pieces = Vec::with_capacity(offsets.len().saturating_sub(1));

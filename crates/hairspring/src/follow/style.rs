@@ -1,9 +1,9 @@
-//! What is laid over follow hairs: clumps, curls, flyaways.
+//! Styling of follow hairs: clumps, curls and flyaways.
 
 use crate::settings::Effects;
 use glam::Vec3;
 
-/// Clump toward the lead guide, then curl, then noise, each growing from nothing at the root.
+/// Applies clumping toward the first guide, then curls, then noise. Each grows from zero at the root.
 pub(super) fn lay_over(
     effects: &Effects,
     strand: u32,
@@ -25,7 +25,8 @@ pub(super) fn lay_over(
     }
 }
 
-/// Adds a helix and a slow wander, both in a frame carried along the strand, so that they swing with it.
+/// Adds a helix and low-frequency noise. Both are given in a frame transported along the strand, so they
+/// swing with it.
 fn displace(effects: &Effects, strand: u32, points: &mut [Vec3]) {
     let last = (points.len() - 1) as f32;
     let [phase, wander @ ..] = phases(strand);
@@ -57,7 +58,8 @@ pub(super) fn phases(strand: u32) -> [f32; 5] {
     [0, 1, 2, 3, 4].map(|k| hash(strand, k) * std::f32::consts::TAU)
 }
 
-/// A number from 0 to 1 that only depends on the strand and `k` (an integer mix by Steele et al. 2014, SplitMix).
+/// Returns a number from 0 to 1 that depends only on the strand and `k` (an integer mix by Steele et al.
+/// 2014, SplitMix).
 fn hash(strand: u32, k: u32) -> f32 {
     let mut z = (strand as u64) << 32 | k as u64;
     z = z.wrapping_add(0x9E37_79B9_7F4A_7C15);

@@ -1,49 +1,52 @@
-//! Points bound to places in something that moves: what a grab holds, and what a tie holds.
+//! Springs that attach points to a moving manipulator: a grab or a tie.
 //!
 //! ```text
-//! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf,   |T − x| ω² no more than FIRMEST at the start of a frame
+//! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf,   |T − x| ω² ≤ FIRMEST at the start of a frame
 //! ```
 //!
-//! T goes straight from where it is at the start of the frame to where it is at its end. Where what holds it is inside of a body, T is at the nearest place
-//! outside: hair is pulled around a head and not into it.
+//! T moves linearly from its position at the start of the frame to that at the end. If the manipulator is
+//! inside a body, T is at the nearest point outside, so hair is pulled around a head and not into it.
 
 use super::StrandView;
 use crate::{collide::FrameColliders, math::RigidTransform};
 use glam::Vec3;
 
-/// Most that a bond pulls for what a point is off at the start of a frame [m/s²]: a thousand times its weight, ten times what whipping hair needs. What
-/// is pulled farther slips: a hand that jumps away does not tear.
+/// Maximum acceleration of a bond due to the position error at the start of a frame [m/s²]: a thousand times
+/// gravity, ten times what whipping hair needs. Beyond it the attachment lags behind, so a hand that jumps
+/// away does not tear the hair.
 const FIRMEST: f32 = 1e4;
 
-/// Fastest that what holds takes points along, against their root [m/s], as fast as a hand moves; the rest of its way is made up for later.
+/// Maximum speed at which points are moved relative to their root [m/s], about that of a fast hand. The
+/// remaining distance is covered in later frames.
 const FASTEST: f32 = 20.0;
 
-/// How bonds pull.
+/// Spring parameters of the bonds.
 #[derive(Clone, Copy)]
 pub(crate) struct Spring {
-    /// How fast a lone point would swing about its place [Hz].
+    /// Natural frequency of a free point on the spring [Hz].
     pub pull: f32,
-    /// Damping over the critical [1].
+    /// Damping ratio, relative to critical [1].
     pub damping: f32,
 }
 
-/// One bound point.
+/// One attached point.
 #[derive(Clone, Copy)]
 pub(crate) struct Bond {
-    /// Its strand, as an index of the groom.
+    /// Index of its strand in the groom.
     pub strand: u32,
     /// Lane of the strand in the simulation.
     pub place: u32,
-    /// The point.
+    /// Index of the point in the strand.
     pub point: u32,
-    /// Where it was bound, in the space of what holds it [m].
+    /// Position at which it was attached, in the manipulator's space [m].
     pub from: Vec3,
-    /// Where it is taken, in that space [m].
+    /// Target position in that space [m].
     pub to: Vec3,
 }
 
 impl Bond {
-    /// Where it is held at a `share` of the way [m], in the space of what holds it.
+    /// Returns the target at the fraction `share` of the way from `from` to `to` [m], in the manipulator's
+    /// space.
     pub fn at(&self, share: f32) -> Vec3 {
         self.from.lerp(self.to, share)
     }
@@ -54,13 +57,14 @@ impl Bond {
 pub(crate) struct Bonds(pub Vec<Bond>);
 
 impl Bonds {
-    /// Sorted.
+    /// Sorts `bonds`.
     pub fn new(mut bonds: Vec<Bond>) -> Self {
         bonds.sort_unstable_by_key(|b| (b.strand, b.point));
         Self(bonds)
     }
 
-    /// Pulls the bound points of a strand while what holds them goes between two `poses` and its ramp between two `shares`.
+    /// Applies the springs of a strand, while the manipulator moves between two `poses` and the target
+    /// fraction between two `shares`.
     pub fn act(
         &self,
         spring: Spring,

@@ -1,20 +1,22 @@
 //! Static charge: bodies that attract and repel charged hair, and hair that repels itself.
 //!
 //! ```text
-//!   ( + )  ← − −      F = λ l E(x),   E = k Q d / max(r, R)³,   d = x − middle, r = |d|        (Coulomb 1785; Jackson 1999, §1.1)
-//!  balloon    hair    λ: charge of a length of hair [C/m],  l: length of hair that is the point's [m]
+//!   ( + )  ← − −      F = λ l E(x),   E = k Q d / max(r, R)³,   d = x − center, r = |d|        (Coulomb 1785; Jackson 1999, §1.1)
+//!  balloon    hair    λ: charge per length of hair [C/m],  l: length of hair that the point represents [m]
 //! ```
 //!
-//! Outside, a ball's field is that of a point; inside, as if charge filled it: 0 in its middle and largest at its surface, where air can bear no
-//! more than 3 MV/m: what is charged more sparks, and has lost the rest. So no force is without bound.
+//! Outside a ball, the field is that of a point charge. Inside, it is that of a uniformly charged ball: 0 at
+//! the center and largest at the surface. Air breaks down above 3 MV/m, so a larger charge is clamped to that
+//! field. This bounds all forces.
 //!
-//! Attraction is an implicit spring to the middle, of the stiffness that gives the force where the point is: along the pull it is softer than that in
-//! truth, and cannot overshoot so. Repulsion is a frozen push; where it changes within a frame by more than explicit steps bear,
-//! what is more of its stiffness, 2F/r, is implicit. How hair repels itself is in [`HairField`].
+//! Attraction is an implicit spring to the center, whose stiffness gives the force at the point's position.
+//! Along the pull the true force is softer than this spring, so a step cannot overshoot. Repulsion is a
+//! constant acceleration during the frame. If its stiffness 2F/r exceeds what explicit steps can handle, the
+//! excess is implicit. The repulsion of hair by hair is in [`HairField`].
 //!
 //! # Missing
-//! Charge stays where it is: it does not flow along hair or over to a body that it touches, nor is it drawn to one side of an uncharged body. Hair of
-//! one groom does not repel another's.
+//! Charge does not move: it does not flow along hair or to a body in contact, and it is not displaced in an
+//! uncharged body. The hair of one groom does not repel that of another.
 
 use super::{HairField, StrandView};
 use crate::math::{RigidTransform, between};
@@ -24,26 +26,30 @@ use serde::{Deserialize, Serialize};
 /// 1/4πε₀ of air [N m²/C²].
 pub(crate) const COULOMB: f32 = 8.99e9;
 
-/// Field that air insulates [V/m]: its breakdown strength at sea level (Paschen 1889; 3 MV/m over gaps of centimetres).
+/// Maximum field in air [V/m]: its breakdown strength at sea level (Paschen 1889; 3 MV/m over gaps of
+/// centimeters).
 pub(crate) const BREAKDOWN: f32 = 3e6;
 
 /// A charged ball: a balloon, a hand, a head.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Charged {
-    /// Name of the body's joint that carries it; `None`: it is fixed in the world, but for its `path`.
+    /// Name of the body joint that carries it. `None`: it is fixed in the world, except for its `path`.
     #[serde(default)]
     pub joint: Option<String>,
-    /// Its middle at the start, in the space of the body's rest pose or of the world [m].
+    /// Its center at the start, in the space of the body's rest pose or of the world [m].
     pub center: Vec3,
     /// Its radius, R [m], above 0.
     pub radius: f32,
-    /// Its charge, Q [C], −1e-3 to 1e-3. A rubbed balloon has about −1e-7. What is above 3 MV/m at the surface counts as that: 5.6e-6 for 13 cm.
+    /// Its charge, Q [C], −1e-3 to 1e-3. A rubbed balloon has about −1e-7. The field at the surface is
+    /// clamped to 3 MV/m: 5.6e-6 for a radius of 13 cm.
     pub charge: f32,
-    /// Whether hair collides with it. Default true; false for a ball that stands for the charge of a body, such as the head's.
+    /// Whether hair collides with it. Default true. Set it to false for a ball that represents the charge of
+    /// a body, such as the head's.
     #[serde(default = "yes")]
     pub solid: bool,
-    /// Where its middle is later, in the order of time; between them it goes straight on, after the last it rests. Default: it stays.
+    /// Waypoints of its center in order of time. The center moves linearly between them and rests after the
+    /// last. Default: it does not move.
     #[serde(default)]
     pub path: Vec<Waypoint>,
 }
@@ -52,18 +58,18 @@ fn yes() -> bool {
     true
 }
 
-/// A place on the way of a [`Charged`] ball.
+/// A waypoint of a [`Charged`] ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Waypoint {
-    /// When it is there [s], above 0.
+    /// Time at which the ball is there [s], above 0.
     pub time: f32,
-    /// Where, as `center` [m].
+    /// Position, in the same space as `center` [m].
     pub center: Vec3,
 }
 
 impl Charged {
-    /// Its middle at `time` [s], where what carries it is at rest [m].
+    /// Returns its center at `time` [s], with the joint that carries it at rest [m].
     pub fn center(&self, time: f64) -> Vec3 {
         let start = Waypoint { time: 0.0, center: self.center };
         let key = |k: usize| k.checked_sub(1).map_or(start, |k| self.path[k]);
@@ -75,7 +81,7 @@ impl Charged {
 /// A charged ball in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChargedBall {
-    /// Its middle at the start and at the end of the frame, in the world [m].
+    /// Its center at the start and at the end of the frame, in world space [m].
     pub centers: [Vec3; 2],
     /// Its radius [m], above 0.
     pub radius: f32,
@@ -84,7 +90,8 @@ pub struct ChargedBall {
 }
 
 impl ChargedBall {
-    /// Where it starts for hair that was carried along by `by` before the frame: it was too, or it was not, whichever leaves it less far to go.
+    /// Adjusts the start position when hair was moved by `by` before the frame. The ball may have moved along
+    /// or not; the start that is nearer to the end position is used.
     pub(crate) fn carry(&mut self, by: Option<&RigidTransform>) {
         let [start, end] = self.centers;
         let carried = by.map_or(start, |by| by.point(start));
@@ -93,22 +100,22 @@ impl ChargedBall {
         }
     }
 
-    /// k Q, as much of it as air insulates [V m].
+    /// Returns k Q, limited by the breakdown field [V m].
     fn strength(&self) -> f32 {
         let most = BREAKDOWN * self.radius * self.radius;
         (COULOMB * self.charge).clamp(-most, most)
     }
 }
 
-/// All charge around hair in a frame.
+/// All charges that act on hair in a frame.
 pub(crate) struct Charges<'a> {
     pub balls: &'a [ChargedBall],
-    /// The hair's own.
+    /// The field of the charged hair.
     pub hair: &'a HairField,
 }
 
 impl Charges<'_> {
-    /// Lets them act on a strand with `charge` on its length [C/m].
+    /// Applies the forces to a strand with a charge of `charge` per length [C/m].
     pub fn add(&self, charge: f32, strand: &mut StrandView) {
         let [start, end] = strand.roots().map(|root| root.translation);
         let explicit = 1.0 / (strand.frame.dt * strand.frame.dt);
@@ -118,7 +125,7 @@ impl Charges<'_> {
             for ball in self.balls {
                 let d = start + x - ball.centers[0];
                 let r = d.length().max(ball.radius);
-                // The force over the distance; below 0 it attracts.
+                // Acceleration per distance; negative for attraction.
                 let rate = per_field * ball.strength() / (r * r * r);
                 if rate < 0.0 {
                     strand.add_position_spring(i, [ball.centers[0] - start, ball.centers[1] - end], -rate);

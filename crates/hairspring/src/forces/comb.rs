@@ -1,24 +1,24 @@
-//! A comb: a row of tines that goes through hair.
+//! A comb: a row of tines that is drawn through hair.
 //!
 //! ```text
-//!    a ●━┯━┯━┯━┯━● b      between tines hair slides along itself, and goes with the comb across itself
+//!    a ●━┯━┯━┯━┯━● b      between the tines, hair slides along its own direction and moves with the comb across it
 //!        │ │ │ │
 //!
 //!    a = w [ (c⊥ − c∥) (I − u uᵀ) + c∥ I ] (V − v)        u along the strand;   w = 1 − (d/r)², d the distance from a–b, its mean over the frame
 //! ```
 //!
-//! Hair that lies across the comb's way is taken along until it is taut; hair that lies along it is drawn through, with friction, to the tip. V
-//! is the comb's velocity at the point.
+//! Hair across the comb's motion is moved along until it is taut. Hair along the motion is drawn through,
+//! with friction, up to its tip. V is the comb's velocity at the point.
 //!
 //! # Missing
-//! Tines by themselves: hair is not parted into as many locks as the comb has gaps.
+//! Individual tines: the hair is not divided into locks, one for each gap.
 
 use super::StrandView;
 use crate::math::RigidTransform;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A capsule that takes hair along across itself.
+/// A capsule that drags hair along, mainly transverse to the strands.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Comb {
@@ -26,12 +26,14 @@ pub struct Comb {
     pub a: Vec3,
     /// The other end [m].
     pub b: Vec3,
-    /// How far it reaches around the line between them [m], above 0: half the length of the tines.
+    /// Radius around the line between them [m], above 0: half the length of the tines.
     pub radius: f32,
-    /// How fast hair takes on the comb's velocity across itself, c⊥ [1/s], 0 to 10000. Default 1000: within a substep, tines are hard.
+    /// Rate at which hair takes on the comb's velocity transverse to the strand, c⊥ [1/s], 0 to 10000.
+    /// Default 1000: rigid within a substep.
     #[serde(default = "firm")]
     pub grip: f32,
-    /// The same along itself, c∥ [1/s], 0 to `grip`. Default 3: hair on plastic slides, with some pull.
+    /// The same rate along the strand, c∥ [1/s], 0 to `grip`. Default 3: hair slides on plastic with some
+    /// friction.
     #[serde(default = "slick")]
     pub friction: f32,
 }
@@ -44,28 +46,28 @@ fn slick() -> f32 {
     3.0
 }
 
-/// Fastest that a comb takes hair along [m/s].
+/// Maximum speed at which a comb moves hair [m/s].
 const FASTEST: f32 = 20.0;
 
-/// Most places of a point's way through the comb in a frame that are looked at.
+/// Maximum number of samples on a point's path through the comb in a frame.
 const PLACES: f32 = 16.0;
 
 impl Comb {
-    /// w of the formula at `p` [m], in the comb's space.
+    /// Returns the weight w at `p` [m], in the comb's space.
     fn weight(&self, p: Vec3) -> f32 {
         let axis = self.b - self.a;
         let t = ((p - self.a).dot(axis) / axis.length_squared().max(1e-12)).clamp(0.0, 1.0);
         (1.0 - p.distance_squared(self.a + axis * t) / (self.radius * self.radius)).max(0.0)
     }
 
-    /// Mean of the weight along the way from `from` to `to` [m], in the comb's space.
+    /// Returns the mean weight along the path from `from` to `to` [m], in the comb's space.
     fn mean_weight(&self, from: Vec3, to: Vec3) -> f32 {
         let places = (2.0 * from.distance(to) / self.radius).ceil().clamp(1.0, PLACES);
         let at = |k: u32| from.lerp(to, (k as f32 + 0.5) / places);
         (0..places as u32).map(|k| self.weight(at(k))).sum::<f32>() / places
     }
 
-    /// Takes a strand's points along while the comb goes between two `poses`.
+    /// Applies the drag to a strand's points, while the comb moves between two `poses`.
     pub(super) fn act(&self, poses: [RigidTransform; 2], strand: &mut StrandView, points: usize) {
         let root = strand.roots()[0].translation;
         let dt = strand.frame.dt;

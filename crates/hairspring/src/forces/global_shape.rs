@@ -1,16 +1,19 @@
-//! The global shape: a weak pull of every point to where its strand's rest shape would have it, carried rigidly by the root.
+//! Global shape: a weak spring from every point to its position in the rest shape, which moves rigidly with
+//! the root.
 //!
 //! ```text
 //! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf c(s),   c from 1 at the root to `tip` at the tip, linear in the index
 //! ```
 //!
-//! The global shape of *Augmented Mass-Spring* (AMS 2025) and of the engines' tools. It is not physics: it holds a style that the fibre would not.
+//! This is the global shape of *Augmented Mass-Spring* (AMS 2025), also found in game engines. It is not
+//! physical: it holds a style that the fiber alone would not.
 
 use super::StrandView;
 use crate::material::GlobalShape;
 use glam::Vec3;
 
-/// Pulls a strand, whose authored points are `authored` [m], `scale` times as fast.
+/// Applies the springs to a strand with the authored points `authored` [m]. The frequency is multiplied by
+/// `scale`.
 pub(crate) fn apply(shape: &GlobalShape, scale: f32, authored: &[Vec3], strand: &mut StrandView) {
     let [start, end] = strand.roots();
     let way = end.translation - start.translation;

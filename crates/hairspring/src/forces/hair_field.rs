@@ -1,12 +1,14 @@
-//! The field of charged hair: what drives a head of hair apart, and stands it on end.
+//! The electric field of charged hair, which spreads hair apart and makes it stand on end.
 //!
 //! ```text
 //! E(x) = k Σ q_n (x − x_n) / (|x − x_n|² + ε²)^(3/2),   n: nodes of a lattice around all hair, 16 along its longest side, ε: its cell
 //! ```
 //!
-//! Charge is laid on the nodes with trilinear weights (a cloud in a cell: Hockney & Eastwood 1988, *Computer Simulation Using Particles*, ch. 5), the
-//! field is summed from all nodes to all nodes, softened by a cell (Plummer 1911), and taken by points with the same weights: what a strand
-//! leaves does not push itself, and momentum is kept. Charge is counted in electrons, whole numbers, so that threads may add in any order.
+//! Charge is distributed to the nodes with trilinear weights (cloud-in-cell: Hockney & Eastwood 1988,
+//! *Computer Simulation Using Particles*, ch. 5). The field is summed from all nodes to all nodes, softened
+//! by one cell (Plummer 1911), and interpolated at points with the same weights. A strand's own charge
+//! therefore does not push it, and momentum is conserved. Charge is counted in electrons, as integers, so the
+//! result does not depend on the order of threads.
 
 use super::{
     FrameMotion, StrandBatch, StrandView,
@@ -16,34 +18,36 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicI32, AtomicI64, Ordering::Relaxed};
 
-/// Cells along the longest side of the hair: some 3 cm for long hair, below which it is hair on hair that counts. Their number bounds the
-/// sum of all nodes on all, a million for a ball of hair.
+/// Cells along the longest side of the hair: about 3 cm each for long hair. Closer than that, contact between
+/// hairs dominates. The number bounds the cost of the sum of all nodes over all nodes, about a million for a
+/// ball of hair.
 const CELLS: f32 = 15.0;
 
 /// Charge of an electron [C].
 const ELECTRON: f64 = 1.602e-19;
 
-/// Charge of all hair on a lattice, and its field.
+/// The charge of all hair on a lattice, and its field.
 #[derive(Default)]
 pub(crate) struct HairField {
-    /// Lowest and highest place of a point, as [`ordered`] numbers.
+    /// Lowest and highest coordinates of the points, as [`ordered`] integers.
     lo: [AtomicI32; 3],
     hi: [AtomicI32; 3],
-    /// Where the lowest node is [m].
+    /// Position of the lowest node [m].
     origin: Vec3,
     /// Edge of a cell [m].
     cell: f32,
     dims: [usize; 3],
-    /// Electrons on each node, those that are missing.
+    /// Charge of each node, as the number of missing electrons.
     charges: Vec<AtomicI64>,
-    /// Nodes with charge: where, and how much [C].
+    /// Charged nodes: position, and charge [C].
     loaded: Vec<(Vec3, f32)>,
     /// Field at each node [V/m].
     field: Vec<Vec3>,
 }
 
 impl HairField {
-    /// Finds the field of strands with so much `charge` [C/m] each, that of all the hairs that it stands for.
+    /// Computes the field. `charge` returns the charge of a strand per length [C/m], including all hairs that
+    /// it represents.
     pub fn find(
         &mut self,
         strands: &mut StrandBatch,
@@ -57,14 +61,14 @@ impl HairField {
         self.solve();
     }
 
-    /// No hair.
+    /// Resets to an empty lattice.
     fn clear(&mut self) {
         self.lo = [i32::MAX; 3].map(AtomicI32::new);
         self.hi = [i32::MIN; 3].map(AtomicI32::new);
         self.dims = [0; 3];
     }
 
-    /// Makes the lattice reach around a strand.
+    /// Extends the bounds to include a strand.
     fn reach(&self, strand: &StrandView) {
         let root = strand.roots()[0].translation;
         let places = || strand.points().map(|(x, _)| root + x).filter(|p| p.is_finite());
@@ -76,12 +80,12 @@ impl HairField {
         }
     }
 
-    /// Lays out the lattice around all strands that it reaches around.
+    /// Sizes the lattice to the bounds of all strands.
     fn lay_out(&mut self) {
         let [lo, hi] =
             [&self.lo, &self.hi].map(|k| Vec3::from([0, 1, 2].map(|i| number(k[i].load(Relaxed)))));
         let size = hi - lo;
-        // False for NaN: there is no strand.
+        // False for NaN, which means there is no strand.
         let any = size.min_element() >= 0.0 && size.max_element() < f32::MAX;
         if !any {
             return;
@@ -89,7 +93,8 @@ impl HairField {
         self.cell = (size.max_element() / CELLS).max(1e-6);
         self.origin = lo;
         self.dims = (size / self.cell).to_array().map(|n| n.ceil().max(1.0) as usize + 1);
-        // Memory for any lattice, so that no later frame asks for more; rounding may add a cell.
+        // Reserve memory for the largest lattice, so that later frames do not allocate. Rounding may add a
+        // cell.
         let most = (CELLS as usize + 2).pow(3);
         self.loaded.reserve(most.saturating_sub(self.loaded.len()));
         self.field.reserve(most.saturating_sub(self.field.len()));
@@ -97,7 +102,7 @@ impl HairField {
         self.charges.iter_mut().for_each(|charge| *charge.get_mut() = 0);
     }
 
-    /// Lays `charge` [C/m] of a strand on the lattice.
+    /// Distributes the charge of a strand, `charge` per length [C/m], to the lattice.
     fn load(&self, charge: f32, strand: &StrandView) {
         let root = strand.roots()[0].translation;
         for (i, (x, _)) in strand.points().enumerate() {
@@ -108,7 +113,7 @@ impl HairField {
         }
     }
 
-    /// Finds the field of what lies on the lattice.
+    /// Computes the field of the charges on the lattice.
     fn solve(&mut self) {
         let nodes: usize = self.dims.iter().product();
         let ([nx, ny, _], origin, cell) = (self.dims, self.origin, self.cell);
@@ -122,7 +127,7 @@ impl HairField {
         self.field.resize(nodes, Vec3::ZERO);
         let loaded = &self.loaded;
         self.field.par_iter_mut().with_min_len(64).enumerate().for_each(|(n, field)| {
-            // Points only ask nodes that they charge.
+            // Points only read nodes that they charge.
             if charges[n].load(Relaxed) == 0 {
                 return;
             }
@@ -139,17 +144,18 @@ impl HairField {
         });
     }
 
-    /// The field at `place` in the world [V/m].
+    /// Returns the field at `place` in world space [V/m].
     pub fn field(&self, place: Vec3) -> Vec3 {
         self.around(place).into_iter().flatten().map(|(node, weight)| self.field[node] * weight).sum()
     }
 
-    /// The corners of the cell that `place` is in, and its weight in each; `None` beyond the lattice.
+    /// Returns the corner nodes of the cell that contains `place`, with their weights; `None` outside the
+    /// lattice.
     fn around(&self, place: Vec3) -> Option<[(usize, f32); 8]> {
         let [nx, ny, nz] = self.dims;
         let at = (place - self.origin) / self.cell;
         let last = Vec3::new(nx as f32, ny as f32, nz as f32) - 1.0;
-        // False for NaN, and where there is no lattice.
+        // False for NaN, and if there is no lattice.
         let inside = at.min_element() >= 0.0 && (last - at).min_element() >= 0.0;
         if !inside {
             return None;
@@ -165,13 +171,13 @@ impl HairField {
     }
 }
 
-/// A whole number that is larger where `x` is.
+/// Maps a float to an integer with the same order.
 fn ordered(x: f32) -> i32 {
     let bits = x.to_bits() as i32;
     if bits < 0 { bits ^ i32::MAX } else { bits }
 }
 
-/// The number that has this [`ordered`] one.
+/// Inverse of [`ordered`].
 fn number(ordered: i32) -> f32 {
     f32::from_bits((if ordered < 0 { ordered ^ i32::MAX } else { ordered }) as u32)
 }

@@ -1,4 +1,4 @@
-//! What a hand holds to the hair: settings of any of them, and the state of one in use.
+//! Manipulators: the settings of each kind, and the state of one in use.
 
 use super::{
     StrandView,
@@ -11,11 +11,11 @@ use crate::{collide::FrameColliders, math::RigidTransform};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// What a hand holds to the hair, in the space that it moves with.
+/// A tool that acts on hair by hand, in the space that it moves with.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Manipulator {
-    /// Its fingers: what is in a ball is held.
+    /// Fingers: points in a ball are held.
     Grab(Grab),
     /// A comb.
     Comb(Comb),
@@ -23,29 +23,30 @@ pub enum Manipulator {
     Tie(Tie),
 }
 
-/// A tool in use.
+/// A manipulator in use.
 #[derive(Clone)]
 pub(crate) struct ActiveManipulator {
-    /// Who it is.
+    /// Identifier of the manipulator.
     pub number: u32,
     pub tool: Manipulator,
-    /// Where it is at the start and at the end of the next frame.
+    /// Pose at the start and at the end of the next frame.
     pub poses: [RigidTransform; 2],
-    /// Where it would be at the start, had it gone along with hair that was carried.
+    /// Pose at the start if it had moved along with hair that was teleported.
     pub along: RigidTransform,
-    /// How long it has been in use at the start of the next frame [s].
+    /// Time in use at the start of the next frame [s].
     pub time: f32,
-    /// What it holds.
+    /// The attached points.
     pub bonds: Bonds,
 }
 
 impl Manipulator {
-    /// Whether it holds points that it has hold of, and no others.
+    /// Returns whether it attaches points when it is added and then acts only on these.
     pub(crate) fn binds(&self) -> bool {
         !matches!(self, Self::Comb(_))
     }
 
-    /// Binds what it takes hold of of a strand (index of the groom, lane) with these `points` [m], in the tool's space.
+    /// Attaches points of a strand (index in the groom, lane) with these `points` [m], in the manipulator's
+    /// space.
     pub(crate) fn bind(&self, strand: [u32; 2], points: &[Vec3], bonds: &mut Vec<Bond>) {
         match self {
             Self::Grab(grab) => grab.bind(strand, points, bonds),
@@ -56,7 +57,7 @@ impl Manipulator {
 }
 
 impl ActiveManipulator {
-    /// Acts on a strand of so many `points` among `bodies`.
+    /// Applies the manipulator to a strand of `points` points, given the `bodies`.
     pub fn act(&self, bodies: &FrameColliders, strand: &mut StrandView, points: usize) {
         match &self.tool {
             Manipulator::Grab(grab) => self.bonds.act(grab.spring(), self.poses, [1.0; 2], bodies, strand),
@@ -68,7 +69,8 @@ impl ActiveManipulator {
         }
     }
 
-    /// Where hair was carried, a tool that went along has no way of its own: its start is where the end is nearer.
+    /// After a teleport of the hair: chooses the start pose that is nearer to the end pose, so that a
+    /// manipulator that moved along has no motion of its own.
     pub fn go_along(&mut self) {
         let away = |pose: &RigidTransform| pose.translation.distance_squared(self.poses[1].translation);
         if away(&self.along) < away(&self.poses[0]) {
@@ -76,7 +78,8 @@ impl ActiveManipulator {
         }
     }
 
-    /// Where the tool is a tie that still gathers among `bodies`, lets hair slip through it; `read` writes into `points` those of a strand [m] in the world, by its lane.
+    /// If the manipulator is a tie that is still gathering, lets hair slip through it, given the `bodies`.
+    /// `read` writes the points of a strand [m] in world space into `points`, given its lane.
     pub fn slip(
         &mut self,
         bodies: &FrameColliders,

@@ -1,16 +1,18 @@
-//! What the world does to points besides gravity, bodies and holds: found once a frame, frozen for its substeps.
+//! External forces: what acts on the points apart from gravity, collisions and root constraints. They are
+//! computed once a frame and stay constant for its substeps.
 //!
-//! Everything here adds to a point's own block of the diagonal and to its right-hand side: it is implicit, and couples no two strands.
-//! The hair volume writes first, then each effect adds its part, strand by strand, one file an effect:
+//! Each force adds to a point's own diagonal block and to its right-hand side. It is therefore implicit, and
+//! couples no two strands. The hair volume writes first; then each force adds its part, strand by strand.
+//! Each has its own file:
 //!
-//! | effect | |
+//!  force | |
 //! | --- | --- |
-//! | [`global_shape`] | a weak pull to the rest shape |
-//! | [`grab`] | a hand holds what is in a ball |
-//! | [`comb`] | tines take hair along across itself |
-//! | [`tie`] | a ring gathers strands |
+//!  [`global_shape`] | a weak spring to the rest shape |
+//!  [`grab`] | a hand that holds the points in a ball |
+//!  [`comb`] | tines that drag hair transverse to itself |
+//!  [`tie`] | a ring that gathers strands |
 //! | [`charge`] | charged bodies, and charged hair |
-//! | [`wind`] | moving air that is not the same everywhere |
+//!  [`wind`] | air whose velocity varies in space |
 
 pub(crate) mod bond;
 pub mod charge;
@@ -36,7 +38,8 @@ use crate::{
     strand::tile::{RestRows, StateRows, StrandRows, TilePlace, anisotropic_drag, position_spring},
 };
 
-/// What acts on the points of all tiles in a frame; shapes `[points]` of all tiles, or empty where nothing of the kind is on.
+/// The per-point forces of all tiles in a frame. Each array has shape `[points]` over all tiles, or is empty
+/// if it is not in use.
 #[derive(Default)]
 pub(crate) struct ForceBuffers {
     /// See `Tile::external_acceleration`.
@@ -49,21 +52,21 @@ pub(crate) struct ForceBuffers {
     pub wind_delta: Vec<[Row; 3]>,
 }
 
-/// What kinds of action there are in a frame.
+/// Which force buffers are in use in a frame.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct ForceMask {
     /// Accelerations.
     pub external_acceleration: bool,
-    /// Pulls to a place or to a velocity; with them, accelerations.
+    /// Springs to a position and drag toward a velocity. They also use the accelerations.
     pub position_spring: bool,
-    /// What takes points along across their strands.
+    /// Drag transverse to the strands.
     pub anisotropic_drag: bool,
-    /// Air that moves otherwise than the wind of all points.
+    /// Air velocity that differs from the directional wind.
     pub wind_delta: bool,
 }
 
 impl ForceBuffers {
-    /// Room for what acts on `points`, of which nothing does yet.
+    /// Resizes the buffers in `kinds` for `points` points and sets all forces to zero.
     pub fn prepare(&mut self, points: usize, kinds: ForceMask) {
         let size = |on: bool| if on { points } else { 0 };
         self.external_acceleration
@@ -77,7 +80,7 @@ impl ForceBuffers {
         self.wind_delta.fill([Row::default(); 3]);
     }
 
-    /// Bytes that it holds.
+    /// Returns the memory used, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.external_acceleration[..])
             + size_of_val(&self.position_spring[..])
@@ -86,10 +89,10 @@ impl ForceBuffers {
     }
 }
 
-/// Tiles, and what acts on their points.
+/// A range of tiles, with the force buffers of their points.
 pub(crate) struct StrandBatch<'a> {
     pub tiles: &'a [TilePlace],
-    /// Strand of the groom in each lane; `u32::MAX` in lanes without one.
+    /// Index in the groom of the strand in each lane; `u32::MAX` in unused lanes.
     pub lanes: &'a [u32],
     pub strand: &'a [StrandRows],
     pub rest: &'a [RestRows],
@@ -100,18 +103,18 @@ pub(crate) struct StrandBatch<'a> {
     pub wind_delta: &'a mut [[Row; 3]],
 }
 
-/// The frame that acts: pose of the anchor at its start and its end, and its length [s].
+/// The motion of the anchor in a frame: its pose at the start and at the end, and the frame's duration [s].
 #[derive(Clone, Copy)]
 pub(crate) struct FrameMotion {
     pub anchor: [RigidTransform; 2],
     pub dt: f32,
 }
 
-/// Tiles that one task visits.
+/// Number of tiles that one task processes.
 const TILES_PER_TASK: usize = 32;
 
 impl StrandBatch<'_> {
-    /// Shows every strand to `act`, on all threads.
+    /// Calls `act` for every strand, in parallel.
     pub fn each(&mut self, frame: &FrameMotion, act: &(impl Fn(&mut StrandView) + Sync)) {
         let count = self.tiles.len();
         if count > TILES_PER_TASK {
@@ -152,7 +155,7 @@ impl StrandBatch<'_> {
         }
     }
 
-    /// The first `count` tiles, and the others.
+    /// Splits off the first `count` tiles.
     fn split(&mut self, count: usize) -> (StrandBatch<'_>, StrandBatch<'_>) {
         let points = (self.tiles[count].first - self.tiles[0].first) as usize;
         let (tiles, more_tiles) = self.tiles.split_at(count);

@@ -1,4 +1,5 @@
-//! One strand, as an effect sees it: where its points are at the start of a frame, and what acts on them in it.
+//! One strand as seen by an external force: its points at the start of a frame, and the force buffers to
+//! write to.
 
 use super::FrameMotion;
 use crate::{
@@ -8,9 +9,10 @@ use crate::{
 };
 use glam::{Quat, Vec3};
 
-/// One strand in a frame. Points are counted as the groom does; the extra particles of the springs model go with them.
+/// One strand in a frame. Points are numbered as in the groom. The extra particles of the springs model are
+/// skipped.
 pub(crate) struct StrandView<'a> {
-    /// The strand, as an index of the groom.
+    /// Index of the strand in the groom.
     pub strand: usize,
     /// The frame.
     pub frame: &'a FrameMotion,
@@ -26,7 +28,7 @@ pub(crate) struct StrandView<'a> {
 }
 
 impl<'a> StrandView<'a> {
-    /// The root at the start and at the end of the frame: place and rotation since rest, in the world.
+    /// Returns the root's world transform since rest, at the start and at the end of the frame.
     pub fn roots(&self) -> [RigidTransform; 2] {
         let number = |row: usize| self.rows[row].0[self.lane];
         let [start, end] = self.frame.anchor;
@@ -38,7 +40,8 @@ impl<'a> StrandView<'a> {
         )
     }
 
-    /// Place from the root [m] and velocity [m/s] of every point of the strand at the start of the frame, root first.
+    /// Returns the position relative to the root [m] and the velocity [m/s] of every point at the start of
+    /// the frame, root first.
     pub fn points(&self) -> impl Iterator<Item = (Vec3, Vec3)> + use<'a> {
         let (state, lane) = (self.state, self.lane);
         let vector = move |rows: &StateRows, at: usize| Vec3::from([0, 1, 2].map(|k| rows[at + k].0[lane]));
@@ -49,23 +52,24 @@ impl<'a> StrandView<'a> {
         particles.step_by(self.stride).take(self.rows[strand::POINTS].0[lane] as usize)
     }
 
-    /// Length of hair that is point `i`'s: half of the segments around it [m].
+    /// Returns the length of hair that point `i` represents: half of the adjacent segments [m].
     pub fn length(&self, i: usize) -> f32 {
         let length = |i: usize| self.rest[i * self.stride][rest::LENGTH].0[self.lane];
         0.5 * (length(i) + if i > 0 { length(i - 1) } else { 0.0 })
     }
 
-    /// Mass of point `i` [kg].
+    /// Returns the mass of point `i` [kg].
     pub fn mass(&self, i: usize) -> f32 {
         self.rest[i * self.stride][rest::MASS].0[self.lane]
     }
 
-    /// How deep point `i` may be inside a collider, 0 or less [m].
+    /// Returns the allowed depth of point `i` inside a collider, 0 or less [m].
     pub fn clearance(&self, i: usize) -> f32 {
         self.rest[i * self.stride][rest::CLEARANCE].0[self.lane]
     }
 
-    /// From point `i − 1` to point `i` at the start of the frame [m], and the velocity of point `i` [m/s]; `i` is 1 or more.
+    /// Returns the vector from point `i − 1` to point `i` at the start of the frame [m], and the velocity of
+    /// point `i` [m/s]. `i` must be 1 or more.
     pub fn segment(&self, i: usize) -> (Vec3, Vec3) {
         let vector = |i: usize, at: usize| Vec3::from([0, 1, 2].map(|k| self.state[i][at + k].0[self.lane]));
         let last = i * self.stride;
@@ -73,7 +77,7 @@ impl<'a> StrandView<'a> {
         (edge, vector(last, state::V))
     }
 
-    /// Accelerates point `i` by `a` [m/s²].
+    /// Adds the acceleration `a` [m/s²] to point `i`.
     pub fn accelerate(&mut self, i: usize, a: Vec3) {
         let rows = &mut self.external_acceleration[i * self.stride];
         for (row, a) in rows.iter_mut().zip(a.to_array()) {
@@ -81,8 +85,8 @@ impl<'a> StrandView<'a> {
         }
     }
 
-    /// Pulls point `i` to a place that goes from `from` to `to` in the frame, both from where the root is then [m], by a spring of `stiffness` over
-    /// the point's mass [1/s²].
+    /// Adds a spring that pulls point `i` to a target. The target moves from `from` to `to` during the frame,
+    /// both relative to the root at that time [m]. `stiffness` is divided by the point's mass [1/s²].
     pub fn add_position_spring(&mut self, i: usize, [from, to]: [Vec3; 2], stiffness: f32) {
         let rows = &mut self.position_spring[i * self.stride];
         rows[position_spring::STIFFNESS].0[self.lane] += stiffness;
@@ -92,13 +96,13 @@ impl<'a> StrandView<'a> {
         self.accelerate(i, to * stiffness);
     }
 
-    /// Lets point `i` take on `velocity` [m/s] at `rate` [1/s].
+    /// Adds drag that makes point `i` take on `velocity` [m/s] at `rate` [1/s].
     pub fn add_velocity_drag(&mut self, i: usize, velocity: Vec3, rate: f32) {
         self.position_spring[i * self.stride][position_spring::BRAKE].0[self.lane] += rate;
         self.accelerate(i, velocity * rate);
     }
 
-    /// Lets point `i` take on `velocity` [m/s] across its strand at `rate` [1/s].
+    /// Adds drag that makes point `i` take on `velocity` [m/s] transverse to its strand, at `rate` [1/s].
     pub fn add_transverse_drag(&mut self, i: usize, velocity: Vec3, rate: f32) {
         let rows = &mut self.anisotropic_drag[i * self.stride];
         rows[anisotropic_drag::BRAKE].0[self.lane] += rate;
@@ -109,7 +113,7 @@ impl<'a> StrandView<'a> {
         }
     }
 
-    /// Moves the air at point `i` by `velocity` [m/s], on top of the wind of all points.
+    /// Adds `velocity` [m/s] to the air at point `i`, on top of the directional wind.
     pub fn add_wind(&mut self, i: usize, velocity: Vec3) {
         let rows = &mut self.wind_delta[i * self.stride];
         for (row, v) in rows.iter_mut().zip(velocity.to_array()) {

@@ -1,20 +1,22 @@
-//! A hair tie: a ring that gathers the strands around it, and holds them where they pass through it.
+//! A hair tie: a ring that gathers strands and holds them where they pass through it.
 //!
 //! ```text
 //!   ╲  ╲ │ ╱  ╱                ╲ ╲│╱ ╱
 //!    ╲  ╲│╱  ╱     gathered     ╲│││╱
-//!  ───●──●──●───     ──►      ───●●●───  radius          axis: the way in which hair leaves the ring
+//!  ───●──●──●───     ──►      ───●●●───  radius          axis: the direction in which hair leaves the ring
 //!     ╎  ╎  ╎                    │││ │                 ↓
 //!   ╰─ reach ─╯                  │││ │   hangs free
 //! ```
 //!
-//! Every strand that comes within reach is bound at its segment nearest to the middle. The segment is laid along the axis, as far aside of it as the
-//! strand was, scaled by radius over reach; it is taken there in the time that gathering takes. Hair that is too short from the root to get there
-//! slips through the ring until it does: the next segment is bound in place of the last.
+//! Every strand that comes within reach is attached at its segment nearest to the center. The segment is
+//! aligned with the axis and moved toward it: its distance from the axis is scaled by radius over reach. The
+//! motion takes the gathering time. If the hair between root and ring is too short, the strand slips through
+//! the ring: the next segment is attached in place of the last.
 //!
 //! # Missing
-//! Strands do not push each other apart in the ring: it must be as wide as the hair is thick. It does not slide off the hair. Guides are gathered, and
-//! follow hairs keep their distance from their guides: where guides are far apart, more of them, or a clump, makes the tie tight.
+//! Strands do not push each other apart in the ring, so its radius must match the thickness of the hair. It
+//! does not slide off the hair. Only guides are gathered, and follow hairs keep their distance from their
+//! guides. If guides are far apart, more guides or clumping make the tie tight.
 
 use super::{
     bond::{Bond, Spring},
@@ -27,21 +29,21 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tie {
-    /// Middle of the ring [m], in the space that it moves with.
+    /// Center of the ring [m], in the space that it moves with.
     pub center: Vec3,
     /// Direction in which hair leaves the ring, of any length above 0.
     pub axis: Vec3,
     /// Radius of the gathered hair [m], above 0.
     pub radius: f32,
-    /// How far from the middle a strand may pass to be gathered [m], above 0.
+    /// Maximum distance from the center at which a strand is gathered [m], above 0.
     pub reach: f32,
-    /// How long gathering takes [s], 0 or more. Default 0.5: at once it would be a jerk.
+    /// Duration of gathering [s], 0 or more. Default 0.5, which avoids a jerk.
     #[serde(default = "half")]
     pub gather: f32,
-    /// How fast a lone point would swing about its place, f [Hz], 0 to 1000. Default 60.
+    /// Natural frequency of a free point, f [Hz], 0 to 1000. Default 60.
     #[serde(default = "firm")]
     pub pull: f32,
-    /// Damping over the critical, ζ, 0 to 10. Default 1.
+    /// Damping ratio, relative to critical, ζ, 0 to 10. Default 1.
     #[serde(default = "critical")]
     pub damping: f32,
 }
@@ -50,10 +52,10 @@ fn half() -> f32 {
     0.5
 }
 
-/// How long after gathering hair may still slip through [s].
+/// Time after gathering during which hair may still slip through [s].
 const SETTLES: f32 = 1.0;
 
-/// Hair slips where it is off its place by more than this share of its segment [1].
+/// Hair slips if its offset from the target exceeds this fraction of its segment [1].
 const SLIPS: f32 = 0.5;
 
 impl Tie {
@@ -61,7 +63,7 @@ impl Tie {
         Spring { pull: self.pull, damping: self.damping }
     }
 
-    /// Binds a strand with these `points` [m], in the space of the ring, if it comes within reach.
+    /// Attaches a strand with these `points` [m], in the space of the ring, if it comes within reach.
     pub(super) fn bind(&self, [strand, place]: [u32; 2], points: &[Vec3], bonds: &mut Vec<Bond>) {
         let axis = self.axis.normalize_or(Vec3::NEG_Y);
         let middle = |i: usize| points[i].midpoint(points[i + 1]) - self.center;
@@ -83,19 +85,21 @@ impl Tie {
         }
     }
 
-    /// Share of gathering that is done `time` after it began [s]: at rest at both ends.
+    /// Returns the completed fraction of gathering at `time` [s] after it began. Its rate is zero at both
+    /// ends.
     pub(super) fn gathered(&self, time: f32) -> f32 {
         let t = if self.gather > 0.0 { (time / self.gather).min(1.0) } else { 1.0 };
         t * t * (3.0 - 2.0 * t)
     }
 
-    /// Whether hair may still slip through `time` after gathering began [s].
+    /// Returns whether hair may still slip through at `time` [s] after gathering began.
     pub(super) fn settles(&self, time: f32) -> bool {
         time < self.gather + SETTLES
     }
 
-    /// Lets the next segment of `points`, which are those of the strand in the space of the ring [m], take the place of the bound one where that is held
-    /// back; false where the strand has none left and is out of the ring. `out` says where a place is that hair is pulled to, outside of bodies.
+    /// If the attached segment of a strand lags behind, attaches the next segment instead. `points` are those
+    /// of the strand in the space of the ring [m]. Returns false if no segment is left, so the strand is out
+    /// of the ring. `out` moves a target outside of bodies.
     pub(super) fn slip(
         &self,
         time: f32,

@@ -1,10 +1,10 @@
-//! Moving air that is not the same everywhere: sources of wind, eddies, and what is left of all wind in the lee of bodies and hair.
+//! Wind that varies in space: wind sources, turbulence, and occlusion by bodies and hair.
 //!
 //! ```text
-//! Δu = T(x) (W + Σ sources(x) + turbulence(x)) − W          W: the wind of all points, which the kernel has of every substep
+//!  Δu = T(x) (W + Σ sources(x) + turbulence(x)) − W          W: the directional wind, which the solver applies in every substep
 //! ```
 //!
-//! Drag (`strand/drag.rs`) acts on the velocity of that air relative to each point.
+//! The drag (`strand/drag.rs`) uses the velocity of this air relative to each point.
 
 use super::StrandView;
 use crate::{
@@ -14,14 +14,14 @@ use crate::{
 
 /// The air of a frame.
 pub(crate) struct WindSampler<'a> {
-    /// In the open.
+    /// The air without occlusion.
     pub air: AirSample<'a>,
-    /// What shelters from it.
+    /// Wind occlusion.
     pub shade: Option<(&'a OcclusionSampler, Density<'a>)>,
 }
 
 impl WindSampler<'_> {
-    /// Moves the air around a strand.
+    /// Adds the air velocity at the points of a strand.
     pub fn add(&self, strand: &mut StrandView) {
         let [root, _] = strand.roots();
         for (i, (x, _)) in strand.points().enumerate().skip(2) {

@@ -1,55 +1,58 @@
-//! Where a strand's root sits on the scalp.
+//! Binding of strand roots to the scalp.
 
 use super::Groom;
 use crate::body::{Mesh, NearestTree, place_on};
 use glam::{Mat3, Quat, Vec3};
 use rayon::prelude::*;
 
-/// A root's place on a triangle mesh: it goes where the triangle goes.
+/// Binding of a root to a triangle of a mesh: the root moves with the triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootBinding {
     /// Index of the triangle.
     pub triangle: u32,
-    /// Barycentric coordinates on it, each 0 to 1; sum 1.
+    /// Barycentric coordinates on the triangle, each 0 to 1; sum 1.
     pub barycentric: Vec3,
-    /// From that place on the surface to the root, in the triangle's frame ([`RootBinding::frame`]; y along the normal),
-    /// kept while the skin moves [m]. Along the surface it is 0 but for roots that lie past an edge.
+    /// Offset from that point on the surface to the root, in the triangle's frame ([`RootBinding::frame`]; y
+    /// along the normal) [m]. It stays constant while the skin moves. Its tangential components are 0 except
+    /// for roots beyond an edge of the mesh.
     pub offset: Vec3,
 }
 
 impl RootBinding {
-    /// The binding of root `p` [m] to the place `barycentric` of the triangle of `corners`, which `triangle` numbers.
+    /// Binds the root `p` [m] to the point `barycentric` of the triangle with these `corners` and the index
+    /// `triangle`.
     pub fn new(triangle: u32, barycentric: Vec3, corners: [Vec3; 3], p: Vec3) -> Self {
         let offset = triangle_frame(corners).inverse() * (p - place_on(barycentric, corners));
         Self { triangle, barycentric, offset }
     }
 
-    /// Where the root is when its triangle has these corners [m].
+    /// Returns the position of the root when its triangle has these corners [m].
     pub fn position(&self, corners: [Vec3; 3]) -> Vec3 {
         place_on(self.barycentric, corners) + self.frame(corners) * self.offset
     }
 
-    /// How a triangle of these corners is turned: x along its first edge, y along its normal. Between two poses the
-    /// root turns by `frame(posed) * frame(rest).inverse()`.
+    /// Returns the orientation of a triangle with these corners: x along its first edge, y along its normal.
+    /// Between two poses the root rotates by `frame(posed) * frame(rest).inverse()`.
     pub fn frame(&self, corners: [Vec3; 3]) -> Quat {
         triangle_frame(corners)
     }
 }
 
-/// Orientation of a triangle: x along the first edge, y along the normal; any such frame where it is degenerate.
+/// Returns the orientation of a triangle: x along the first edge, y along the normal. A degenerate triangle
+/// gets an arbitrary frame.
 fn triangle_frame([a, b, c]: [Vec3; 3]) -> Quat {
     let x = (b - a).try_normalize().or((c - a).try_normalize()).unwrap_or(Vec3::X);
     let y = (b - a).cross(c - a).try_normalize().unwrap_or_else(|| x.any_orthonormal_vector());
     Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize()
 }
 
-/// Binds every root to the nearest place of `mesh`, unless the groom has bindings already. A mesh without triangles
-/// binds nothing.
+/// Binds every root to the nearest point of `mesh`, unless the groom already has bindings. A mesh without
+/// triangles binds nothing.
 pub fn bind_roots(groom: &mut Groom, mesh: &Mesh) {
     bind_roots_where(groom, mesh, |_, _| true);
 }
 
-/// As [`bind_roots`], but strand `s` binds only to triangles `t` with `allowed(s, t)`, as far as there are any.
+/// Like [`bind_roots`], but strand `s` is bound only to triangles `t` with `allowed(s, t)`, if there are any.
 pub fn bind_roots_where(groom: &mut Groom, mesh: &Mesh, allowed: impl Fn(usize, usize) -> bool + Sync) {
     if !groom.roots.is_empty() {
         return;
@@ -133,7 +136,7 @@ mod tests {
             let binding = groom.roots[0];
             let back = binding.position(corners);
             prop_assert!(back.distance(root) < 1e-5, "{back} is not {root}");
-            // Slivers have no stable frame to turn by.
+            // Slivers have no stable frame.
             let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
             prop_assume!(area > 1e-2);
             let turn = Quat::from_axis_angle(axis.normalize_or(Vec3::Y), angle);

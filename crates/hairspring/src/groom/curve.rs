@@ -1,42 +1,44 @@
-//! Neighbours in space as neighbours in order.
+//! Space-filling curve that orders strands by position.
 
 use glam::Vec3;
 
-/// A space-filling curve through a cube: places that are close on it are close in space (the Z-order curve, Morton 1966, *A Computer Oriented Geodetic
-/// Data Base and a New Technique in File Sequencing*).
+/// A space-filling curve through a cube: places that are close on the curve are close in space (the Z-order
+/// curve, Morton 1966, *A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing*).
 ///
-/// Who works on strands along it finds what they read, and where they write, in the caches: files keep strands in any order.
+/// Files store strands in any order. Processing them along the curve keeps the data that they read and write
+/// in cache.
 #[derive(Clone, Copy, Debug)]
 pub struct Curve {
     lo: Vec3,
-    /// Steps of the curve a metre [1/m].
+    /// Steps of the curve per meter [1/m].
     scale: f32,
 }
 
-/// Steps of the curve along each axis: three coordinates of ten bits make one number of 30.
+/// Steps of the curve along each axis: three coordinates of ten bits are interleaved into 30 bits.
 const STEPS: f32 = 1024.0;
 
 impl Curve {
-    /// The curve through the cube on the box from `lo` to `hi` [m].
+    /// Creates the curve through the cube that starts at `lo` and covers the box from `lo` to `hi` [m].
     pub fn through(lo: Vec3, hi: Vec3) -> Self {
         Self { lo, scale: (STEPS - 1.0) / (hi - lo).max_element().max(1e-9) }
     }
 
-    /// The curve through the cube around `places` [m].
+    /// Creates the curve through the cube around `places` [m].
     pub fn around(places: impl Iterator<Item = Vec3>) -> Self {
         let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (lo, hi) = places.fold(none, |(lo, hi), place| (lo.min(place), hi.max(place)));
         Self::through(lo, hi)
     }
 
-    /// How far along the curve a place [m] is, 0 to 2³⁰ - 1; what is outside of the cube counts as on its surface.
+    /// Returns the position of a place [m] along the curve, 0 to 2³⁰ - 1. Places outside the cube are clamped
+    /// to its surface.
     pub fn along(&self, place: Vec3) -> u32 {
         let [x, y, z] = ((place - self.lo) * self.scale).to_array().map(spread);
         x | y << 1 | z << 2
     }
 }
 
-/// Two zeros after each of ten bits.
+/// Inserts two zeros after each of ten bits.
 fn spread(x: f32) -> u32 {
     let mut x = x.clamp(0.0, STEPS - 1.0) as u32;
     x = (x | x << 16) & 0x0300_00ff;

@@ -1,23 +1,24 @@
-//! Hair grown from a surface, for a character that comes without a groom: fur, a fringe, a test.
+//! Grows hair from a surface, for a character without a groom: fur, a fringe, a test.
 
 use super::{DEFAULT_RADIUS, Groom, RootBinding};
 use crate::body::{Mesh, place_on};
 use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// How [`grow`] lays hair on a surface.
+/// Settings of [`grow`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Growth {
-    /// Strands, 1 to 10,000,000. Default 1,000.
+    /// Number of strands, 1 to 10,000,000. Default 1,000.
     pub strands: u32,
-    /// Points of a strand, 3 to 256. Default 16.
+    /// Points per strand, 3 to 256. Default 16.
     pub points: u32,
-    /// Longest strand [m], above 0. Default 0.1.
+    /// Length of the longest strand [m], above 0. Default 0.1.
     pub length: f32,
-    /// How much shorter the shortest strand is, 0 (all alike) to 1. Default 0.2.
+    /// Variation of the length: the shortest strand is shorter by this fraction, 0 (all alike) to 1. Default
+    /// 0.2.
     pub spread: f32,
-    /// How far a strand bends over on its way to the tip: 0 stands along the surface's normal, 1 ends pointing down.
+    /// How far a strand bends down toward its tip: 0 follows the surface's normal, 1 ends pointing down.
     /// Default 0.5.
     pub fall: f32,
 }
@@ -28,8 +29,9 @@ impl Default for Growth {
     }
 }
 
-/// Strands evenly spread by area over the triangles `t` of `mesh` with `allowed(t)`, each a smooth arc from the normal
-/// towards −Y, bound to the place that it grows from. No strands where no area is allowed.
+/// Grows strands from the triangles `t` of `mesh` with `allowed(t)`, uniformly by area. Each is a smooth arc
+/// from the normal toward −Y, bound to the point that it grows from. Returns no strands if the allowed area
+/// is zero.
 pub fn grow(mesh: &Mesh, growth: &Growth, allowed: impl Fn(usize) -> bool) -> Groom {
     let area = |t: usize| {
         let [a, b, c] = mesh.corners(t);
@@ -47,7 +49,7 @@ pub fn grow(mesh: &Mesh, growth: &Growth, allowed: impl Fn(usize) -> bool) -> Gr
     let mut covered = 0.0;
     for (t, area) in skin {
         covered += area;
-        // Systematic sampling: root k lies where the running area passes (k + ½)/count of the whole.
+        // Systematic sampling: root k is where the accumulated area passes (k + ½)/count of the total.
         while strands.len() < count && (strands.len() as f64 + 0.5) * total <= covered * count as f64 {
             let k = strands.len();
             let uv = evenly(k);
@@ -64,14 +66,14 @@ pub fn grow(mesh: &Mesh, growth: &Growth, allowed: impl Fn(usize) -> bool) -> Gr
     Groom { roots, ..Groom::from_strands(strands, DEFAULT_RADIUS) }
 }
 
-/// Strand `k`: an arc that leaves `root` along `normal`.
+/// Returns the points of strand `k`, an arc that leaves `root` along `normal`.
 fn arc(root: Vec3, normal: Vec3, k: usize, growth: &Growth) -> Vec<Vec3> {
-    // A third low-discrepancy coordinate, apart from the two of the place.
+    // A third low-discrepancy coordinate, independent of the two for the position.
     let shorter = (k as f64 * 0.618_033_988_749_895).fract() as f32;
     let n = growth.points as usize;
     let step = growth.length * (1.0 - growth.spread * shorter) / (n - 1) as f32;
     let side = normal.cross(Vec3::NEG_Y).try_normalize().unwrap_or_else(|| {
-        // Straight up or down: every way is as good, so each strand takes its own.
+        // The normal points straight up or down, so no direction is preferred: each strand gets its own.
         Quat::from_axis_angle(normal, std::f32::consts::TAU * shorter) * normal.any_orthonormal_vector()
     });
     let over = normal.angle_between(Vec3::NEG_Y) * growth.fall;
@@ -85,7 +87,7 @@ fn arc(root: Vec3, normal: Vec3, k: usize, growth: &Growth) -> Vec<Vec3> {
     points
 }
 
-/// Place `i` of a sequence that fills the unit square evenly, however many of it are taken (Roberts 2018, R2).
+/// Returns element `i` of a low-discrepancy sequence in the unit square (Roberts 2018, R2).
 pub(super) fn evenly(i: usize) -> Vec2 {
     let i = i as f64;
     Vec2::new(
@@ -125,7 +127,7 @@ mod tests {
             );
             assert!(groom.strand(s)[1].y > 0.0, "strand {s} leaves into the skin");
         }
-        // As many in each of twelve equal fields, within sampling.
+        // Each of twelve equal fields has the same number of strands, within sampling.
         let mut fields = [0; 12];
         for s in 0..500 {
             let p = groom.strand(s)[0];

@@ -1,27 +1,31 @@
-//! How far from the origin strands may be: the farther a place, the coarser single precision knows it.
+//! Limits on the distance of strands from the origin: the resolution of single precision decreases with
+//! distance.
 
 use super::Groom;
 use std::fmt;
 
-/// Largest coordinate that is simulated [m]. Beyond it, single precision resolves less than 6 cm, and products of lengths come near to overflow.
+/// Largest coordinate that is simulated [m]. Beyond it, single precision resolves no better than 6 cm, and
+/// products of lengths may overflow.
 pub const MAX_COORDINATE: f32 = 1e6;
 
-/// Distance from the origin within which strands of any size are accepted [m]: places are known to 8 µm.
+/// Distance from the origin within which strands of any size are accepted [m]: positions are resolved to 8
+/// µm.
 const NEAR: f32 = 128.0;
 
-/// Largest distance of neighbouring numbers over a segment [1]: a segment's direction is then known to a degree.
+/// Largest spacing of adjacent floats relative to a segment [1]: the segment's direction is then known to
+/// within a degree.
 const COARSEST: f32 = 0.02;
 
-/// A strand that is too far from the origin for the length of its segments.
+/// Error for a strand that is too far from the origin for the length of its segments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imprecise {
     /// Index of the strand.
     pub strand: usize,
-    /// Largest coordinate of its nearest point [m].
+    /// Largest coordinate of its nearest point, in absolute value [m].
     pub distance: f32,
-    /// Distance of neighbouring numbers there [m].
+    /// Spacing of adjacent floats at that distance [m].
     pub resolution: f32,
-    /// Length of its segments, the median or the mean [m].
+    /// Median length of its segments, or the mean if the median is zero [m].
     pub segment: f32,
 }
 
@@ -36,8 +40,8 @@ impl fmt::Display for Imprecise {
     }
 }
 
-/// The first strand whose segments are too short for its distance from the origin, or that is beyond [`MAX_COORDINATE`]. Single points that went astray do
-/// not count; [`sanitize`](super::sanitize) brings them back.
+/// Returns the first strand whose segments are too short for its distance from the origin, or that is beyond
+/// [`MAX_COORDINATE`]. Single outlying points do not count; [`sanitize`](super::sanitize) corrects them.
 pub fn first_imprecise(groom: &Groom) -> Option<Imprecise> {
     let of_strand = |strand: usize| {
         let points = groom.strand(strand);

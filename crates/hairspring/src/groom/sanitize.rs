@@ -1,48 +1,50 @@
-//! Repairs of what real files contain: duplicate points, non-finite values, strands of a single point.
+//! Repairs defects found in real files: duplicate points, non-finite values, strands of a single point.
 
 use super::{DEFAULT_RADIUS, Groom, MAX_COORDINATE};
 use glam::Vec3;
 
-/// What [`sanitize`] found and repaired. Nothing is dropped without being counted here.
+/// Counts of what [`sanitize`] found and repaired. Nothing is changed without being counted here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repairs {
-    /// Points with a NaN or infinite coordinate, moved onto the line between their finite neighbours.
+    /// Points with a NaN or infinite coordinate, moved onto the line between their finite neighbors.
     pub non_finite_points: usize,
-    /// Segments shorter than the shortest allowed, spread out along the strand.
+    /// Segments below the minimum length, whose points were spread out along the strand.
     pub zero_segments: usize,
-    /// Strands with fewer than three points, given points in between (a single point: a stub of 1 mm along +Y).
+    /// Strands with fewer than three points, which were given intermediate points. A single point becomes a
+    /// stub of 1 mm along +Y.
     pub short_strands: usize,
-    /// Radii that were not positive and finite, replaced by the strand's mean or the default.
+    /// Radii that were not positive and finite, replaced by the strand's mean or by the default.
     pub bad_radii: usize,
-    /// Joints at which a strand turns by more than 150°. They are counted and left as they are.
+    /// Joints at which a strand turns by more than 150°. They are counted, not changed.
     pub folds: usize,
 }
 
 impl Repairs {
-    /// Sum of all counts of what was repaired.
+    /// Returns the total number of repairs.
     pub fn total(&self) -> usize {
         self.non_finite_points + self.zero_segments + self.short_strands + self.bad_radii
     }
 }
 
-/// Shortest allowed segment as a fraction of the strand's mean segment: 1 %.
+/// Minimum segment length as a fraction of the strand's mean segment: 1 %.
 ///
-/// A stretch spring's stiffness is EA/L, so a segment of a hundredth of the mean is a hundred times stiffer than its
-/// neighbours and the band solver in f32 still has five digits for them; artists' own uneven spacing (root
-/// segments of a tenth of the mean are usual) is left alone.
+/// The stiffness of a stretch spring is EA/L, so a segment of a hundredth of the mean is a hundred times
+/// stiffer than its neighbors. The band solver in f32 still has five digits left for them. Uneven spacing by
+/// artists is not changed; root segments of a tenth of the mean are common.
 const SHORTEST_SEGMENT: f32 = 0.01;
 
-/// Length that a strand must have for its shape to count [m]; a shorter one is a point, and becomes a stub.
+/// Minimum length of a strand that has a shape [m]. A shorter strand counts as a point and becomes a stub.
 const SHORTEST_STRAND: f32 = 1e-6;
 
-/// Length of the stub that stands in for a strand without a shape [m].
+/// Length of the stub that replaces a strand without a shape [m].
 const STUB: f32 = 1e-3;
 
-/// Repairs `groom` in place and says what was repaired: afterwards every strand has three points at least, every
-/// coordinate and radius is finite, and no segment is near zero. No strand is dropped, and a second call finds nothing.
+/// Repairs `groom` in place and returns what was repaired. Afterward every strand has at least three points,
+/// all coordinates and radii are finite, and no segment is near zero length. No strand is removed, and a
+/// second call finds nothing to repair.
 ///
-/// A strand that is shorter than the resolution of single precision at its place has no shape to keep. A groom with such strands is better refused
-/// beforehand; [`first_imprecise`](super::first_imprecise) finds them.
+/// A strand shorter than the resolution of single precision at its position has no shape to keep. Such grooms
+/// should be rejected first; [`first_imprecise`](super::first_imprecise) finds them.
 pub fn sanitize(groom: &mut Groom) -> Repairs {
     let mut repairs = Repairs::default();
     if groom.offsets.is_empty() {
@@ -60,14 +62,14 @@ pub fn sanitize(groom: &mut Groom) -> Repairs {
     repairs
 }
 
-/// Joints that turn by more than 150°.
+/// Counts the joints that turn by more than 150°.
 fn folds(points: &[Vec3]) -> usize {
     const COSINE: f32 = -0.866;
     let turn = |w: &[Vec3]| (w[1] - w[0]).normalize_or_zero().dot((w[2] - w[1]).normalize_or_zero());
     points.windows(3).filter(|w| turn(w) < COSINE).count()
 }
 
-/// Gives strands of fewer than three points their missing ones, by resampling every per-point array.
+/// Adds the missing points to strands with fewer than three, by resampling every per-point array.
 fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
     repairs.short_strands = groom.offsets.windows(2).filter(|w| w[1] - w[0] < 3).count();
     if repairs.short_strands == 0 {
@@ -78,7 +80,7 @@ fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
     let mut offsets = vec![0];
     for s in 0..old.strand_count() {
         let range = old.range(s);
-        // Which of the old points each new one lies between, and how far: a pair (i, t).
+        // Old point indices and interpolation parameter (a, b, t) of each new point.
         let places: Vec<(usize, usize, f32)> = match range.len() {
             0 => Vec::new(),
             1 => vec![(range.start, range.start, 0.0); 3],
@@ -90,7 +92,7 @@ fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
             _ => range.clone().map(|i| (i, i, 0.0)).collect(),
         };
         if places.is_empty() {
-            // A strand without points has no place either: a stub at the origin.
+            // A strand without points has no position either: it becomes a stub at the origin.
             groom.points.extend([Vec3::ZERO; 3]);
             groom.radii.extend([DEFAULT_RADIUS; 3].iter().filter(|_| has_radii));
             groom.colors.extend([Vec3::ZERO; 3].iter().filter(|_| has_colors));
@@ -115,8 +117,9 @@ fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
     };
 }
 
-/// Moves points that are not finite (or beyond [`MAX_COORDINATE`]) onto the line between their finite neighbours; at the ends,
-/// onward by the nearest segment; a strand without a finite point goes to the origin. Returns how many.
+/// Repairs points that are not finite or beyond [`MAX_COORDINATE`]. They move onto the line between their
+/// finite neighbors; at the ends, they continue the strand. A strand without a finite point moves to the
+/// origin. Returns the number of repaired points.
 fn fill_non_finite(points: &mut [Vec3]) -> usize {
     let good = |p: &Vec3| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE;
     let finite: Vec<usize> = (0..points.len()).filter(|i| good(&points[*i])).collect();
@@ -135,7 +138,7 @@ fn fill_non_finite(points: &mut [Vec3]) -> usize {
             *p = a.lerp(b, i as f32 / steps);
         }
     }
-    // The ends: the finite points' own mean step, carried on.
+    // The ends continue with the mean step of the finite points.
     let steps = (last - first).max(1) as f32;
     let step = (points[last] - points[first]) / steps;
     for i in (0..first).rev() {
@@ -147,10 +150,11 @@ fn fill_non_finite(points: &mut [Vec3]) -> usize {
     bad
 }
 
-/// Spreads points whose segments are below the shortest allowed, along the strand as it is; where that is not enough (a
-/// strand folded onto itself), evenly; then straight out; and what has no shape even so becomes a stub. Returns how many
-/// segments were too short. Each way out is judged as the strand that came in was, so that a second call finds nothing:
-/// a way along the old strand is shorter than it, by its corners, and may fall below what counts as a shape.
+/// Repairs segments below the minimum length; returns their number. The methods are tried in order: spread
+/// the points along the strand, space them evenly along it (for a strand folded onto itself), space them on a
+/// straight line, and replace the strand by a stub. Each result is checked like the input, so that a second
+/// call finds nothing. This matters because a resampled strand cuts corners, is therefore shorter, and may
+/// fall below the length of a shape.
 fn spread_zero_segments(points: &mut [Vec3]) -> usize {
     let short = short_segments(points);
     if short == 0 {
@@ -172,7 +176,8 @@ fn spread_zero_segments(points: &mut [Vec3]) -> usize {
     short
 }
 
-/// Segments below the shortest allowed; all of them where the strand is too short to have a shape.
+/// Counts the segments below the minimum length. If the strand is too short to have a shape, all segments
+/// count.
 fn short_segments(points: &[Vec3]) -> usize {
     let length: f32 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
     if length < SHORTEST_STRAND.max(noise_of(points)) {
@@ -182,14 +187,14 @@ fn short_segments(points: &[Vec3]) -> usize {
     points.windows(2).filter(|w| w[0].distance(w[1]) < shortest).count()
 }
 
-/// Shortest segment that a strand of `count` points and `length` [m] may have [m].
+/// Returns the minimum segment length for a strand of `count` points and `length` [m].
 fn shortest_segment(count: usize, length: f32) -> f32 {
     SHORTEST_SEGMENT * length / (count - 1) as f32
 }
 
-/// Moves the points that are too near to a neighbour along the old strand (`at` [m]: how far along it each point is):
-/// no nearer to the one before than twice the shortest, and the same from the tip back, so that the tip stays. Twice,
-/// because chords at a bend are shorter than the way along it.
+/// Moves points that are too near to a neighbor along the old strand; `at` [m] is the arc length of each
+/// point. The spacing is at least twice the minimum, first from root to tip, then back from the tip, so that
+/// the tip stays in place. The factor of two allows for chords at bends, which are shorter than the arc.
 fn spread_apart(points: &mut [Vec3], old: &[Vec3], at: &[f32]) {
     let (last, length) = (at.len() - 1, at[at.len() - 1]);
     let gap = 2.0 * shortest_segment(at.len(), length);
@@ -225,8 +230,8 @@ fn spread_straight(points: &mut [Vec3], old: &[Vec3], at: &[f32]) {
     }
 }
 
-/// Replaces a strand without a shape by a straight one along +Y from its root (toward the origin where the root is at the
-/// end of what is believed), long enough to be told from noise wherever it is.
+/// Replaces a strand without a shape by a straight one along +Y from its root, long enough to exceed rounding
+/// noise at its position. If the root is near the upper limit of the coordinates, the direction is −Y.
 fn stub(points: &mut [Vec3]) {
     let root = points[0];
     let up = if root.y > MAX_COORDINATE * 0.5 { -1.0 } else { 1.0 };
@@ -236,18 +241,18 @@ fn stub(points: &mut [Vec3]) {
     }
 }
 
-/// Length that f32 can not tell from zero for a strand at these coordinates [m]: below their spacing a length is noise.
+/// Returns the length below which f32 cannot distinguish a strand at these coordinates from a point [m].
 fn noise_of(points: &[Vec3]) -> f32 {
     let reach = points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
     reach * f32::EPSILON * 16.0 * (points.len() - 1) as f32
 }
 
-/// The point with no coordinate beyond [`MAX_COORDINATE`].
+/// Clamps each coordinate of a point to ±[`MAX_COORDINATE`].
 fn within_reach(p: Vec3) -> Vec3 {
     p.clamp(Vec3::splat(-MAX_COORDINATE), Vec3::splat(MAX_COORDINATE))
 }
 
-/// The place at distance `d` along a strand whose points are at distances `at`.
+/// Returns the point at arc length `d` along a strand whose points are at arc lengths `at`.
 fn along(points: &[Vec3], at: &[f32], d: f32) -> Vec3 {
     let j = at.partition_point(|a| *a < d).clamp(1, points.len() - 1);
     let span = at[j] - at[j - 1];
@@ -255,7 +260,8 @@ fn along(points: &[Vec3], at: &[f32], d: f32) -> Vec3 {
     points[j - 1].lerp(points[j], t)
 }
 
-/// Replaces radii that are not positive and finite by the mean of the strand's good ones, or the default. Returns how many.
+/// Replaces radii that are not positive and finite by the mean of the strand's valid ones, or by the default.
+/// Returns the number of replaced radii.
 fn mend_radii(radii: &mut [f32]) -> usize {
     let good = |r: f32| r.is_finite() && r > 0.0;
     let (count, sum) =
@@ -330,8 +336,9 @@ mod tests {
         assert_eq!(groom.radii, [2e-5; 3]);
     }
 
-    /// A zigzag of a little more than a micrometre with a short segment at its first fold, where spreading along the
-    /// strand brings two points together; spread evenly, it cuts its corners and is shorter than a micrometre.
+    /// A zigzag slightly longer than a micrometer, with a short segment at its first fold. Spreading along
+    /// the strand brings two points together there; spaced evenly, the strand cuts its corners and is shorter
+    /// than a micrometer.
     #[test]
     fn a_repair_that_leaves_no_shape_is_a_stub() {
         let width = 1.02e-6 / 13.0;
@@ -344,7 +351,7 @@ mod tests {
         assert_eq!(sanitize(&mut groom).total(), 0);
     }
 
-    /// Coordinates as bad files have them.
+    /// Coordinates as they occur in defective files.
     fn coordinate() -> impl Strategy<Value = f32> {
         prop_oneof![
             6 => -1.0f32..1.0,
@@ -360,7 +367,7 @@ mod tests {
             strands in prop::collection::vec(
                 prop::collection::vec((coordinate(), coordinate(), coordinate(), 0u8..4), 0..12), 0..6),
             radius in prop_oneof![Just(4e-5f32), Just(0.0), Just(f32::NAN)],
-            // Some grooms are of the size at which a strand ceases to have a shape.
+            // Some grooms have the size at which a strand ceases to have a shape.
             scale in prop_oneof![2 => Just(1.0f32), 1 => 1e-7f32..1e-5],
         ) {
             let strands: Vec<Vec<Vec3>> = strands
@@ -368,7 +375,7 @@ mod tests {
                 .map(|s| {
                     let mut points: Vec<Vec3> = Vec::new();
                     for (x, y, z, kind) in s {
-                        // Some repeat the point before, or fold back to the one before that.
+                        // Some repeat the previous point or fold back to the one before it.
                         let back = points.len().checked_sub(kind as usize);
                         let folded = back.filter(|_| kind > 0).and_then(|i| points.get(i)).copied();
                         points.push(folded.filter(|_| kind < 3).unwrap_or(Vec3::new(x, y, z) * scale));

@@ -1,19 +1,20 @@
-//! Follow hairs around the strands of a sparse groom, as its makers drew it (TressFX: "follow hairs per guide").
+//! Adds follow hairs around the strands of a sparse groom, as its authoring tool shows it (TressFX: "follow
+//! hairs per guide").
 
 use super::{Groom, GuideWeights, grow::evenly};
 use crate::body::{Mesh, NearestTree};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// How [`thicken`] surrounds each strand.
+/// Settings of [`thicken`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Thicken {
-    /// Follow hairs of each strand, 0 to 1,000. Default 0.
+    /// Number of follow hairs for each strand, 0 to 1,000. Default 0.
     pub copies: u32,
     /// Radius of the disc on the skin in which they grow [m], 0 or more. Default 0.001.
     pub radius: f32,
-    /// How far from their strand they are at the tip, over how far at the root; 0 or more. Default 1.
+    /// Distance from their strand at the tip, relative to that at the root; 0 or more. Default 1.
     pub tip: f32,
 }
 
@@ -23,10 +24,12 @@ impl Default for Thicken {
     }
 }
 
-/// Adds `copies` strands around each strand of a groom that is not yet bound, which they name as their only guide
-/// (or they share its guides, where it has some). Strand `s` of `n` has the copies `s + n`, `s + 2n`, ….
+/// Adds `copies` strands around each strand of a groom that is not yet bound. Each copy has its strand as its
+/// only guide, or shares the guides that the strand already has. Strand `s` of `n` has the copies `s + n`, `s
+/// + 2n`, ….
 ///
-/// They grow in a disc on the skin that is nearest to the root; without a mesh, in one across the root's direction.
+/// The copies grow in a disc on the triangle nearest to the root. Without a mesh, the disc is perpendicular
+/// to the strand's direction at the root.
 pub fn thicken(groom: &mut Groom, thicken: &Thicken, mesh: Option<&Mesh>) {
     let n = groom.strand_count();
     if thicken.copies == 0 || n == 0 {
@@ -72,7 +75,7 @@ pub fn thicken(groom: &mut Groom, thicken: &Thicken, mesh: Option<&Mesh>) {
     repeat(&mut groom.guides, times);
 }
 
-/// `array`, `times` over; an empty one stays empty.
+/// Repeats `array` `times` times. An empty array stays empty.
 fn repeat<T: Clone>(array: &mut Vec<T>, times: usize) {
     let n = array.len();
     array.reserve(n * (times - 1));
@@ -93,7 +96,7 @@ mod tests {
             ..Mesh::default()
         };
         mesh.compute_normals();
-        // Lying flat: a disc across the strand would put half of the copies below the skin.
+        // The strands lie flat: a disc perpendicular to them would put half of the copies below the skin.
         let strand = |x: f32| {
             (0..4)
                 .map(move |i| Vec3::new(x, 0.01 * (i > 0) as u8 as f32, -0.1 * i as f32 - 0.3))

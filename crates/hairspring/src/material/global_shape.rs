@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A pull to the rest shape.
+/// Parameters of the global shape.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GlobalShape {
-    /// How fast a lone point would swing about its place, f [Hz], 0 to 60. Default 0: there is no global shape. Hair keeps its style in a walk from
-    /// about 1, and looks set from about 4.
+    /// Natural frequency of a free point, f [Hz], 0 to 60. Default 0: no global shape. From about 1 on, hair
+    /// keeps its style during a walk; from about 4 on, it looks set.
     pub pull: f32,
-    /// The same at the tip, over that at the root, 0 or more. Default 1.
+    /// Frequency at the tip relative to that at the root, 0 or more. Default 1.
     pub tip: f32,
-    /// Damping over the critical, ζ, 0 to 10. Default 0.5.
+    /// Damping ratio, relative to critical, ζ, 0 to 10. Default 0.5.
     pub damping: f32,
 }
 
@@ -22,7 +22,7 @@ impl Default for GlobalShape {
 }
 
 impl GlobalShape {
-    /// Whether it pulls at all.
+    /// Returns whether the global shape is enabled.
     pub fn is_on(&self) -> bool {
         self.pull > 0.0
     }

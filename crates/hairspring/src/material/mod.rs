@@ -1,4 +1,4 @@
-//! What the hair is made of: constants of the human fibre, and presets of style.
+//! Materials: the physical constants of human hair, and presets of hair types.
 
 mod global_shape;
 
@@ -6,57 +6,64 @@ pub use global_shape::GlobalShape;
 
 use serde::{Deserialize, Serialize};
 
-/// The fibre of one group of strands: physical constants, and dimensionless multipliers for the artist.
+/// The fiber of one group of strands: physical constants, and dimensionless multipliers for artists.
 ///
 /// The constants are those of human hair (Robbins 2012, *Chemical and Physical Behavior of Human Hair*).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Material {
-    /// What holds a strand's shape. Default `auto`.
+    /// Elastic model of a strand. Default `auto`.
     pub model: Model,
-    /// Fibre radius [m], over the groom's own; `None`: the groom's. Human hair: 25e-6 to 50e-6.
+    /// Fiber radius [m], which replaces the groom's; `None`: the groom's radius. Human hair: 25e-6 to 50e-6.
     pub radius: Option<f32>,
-    /// Density of the fibre [kg/m³]. Default 1310: dry hair, 1300 to 1320.
+    /// Density of the fiber [kg/m³]. Default 1310: dry hair, 1300 to 1320.
     pub density: f32,
-    /// How the mass lies along a strand: weights at equal spacing in arc length from root to tip, linear in between. Default `[1.0]`: evenly.
-    /// Only their ratios count, and a strand weighs what its density says: `[1.0, 3.0]` is three times as heavy at the tip as at the
-    /// root. Stiffness and the air's force on a length are those of the fibre's radius, whatever its mass.
+    /// Distribution of mass along a strand: weights at equal spacing in arc length from root to tip, linear
+    /// in between. Default `[1.0]`: uniform. Only the ratios count; the total mass is given by the density.
+    /// For example, `[1.0, 3.0]` is three times as heavy at the tip as at the root. The profile does not
+    /// affect the stiffness or the drag of a length of hair, which depend on the fiber's radius.
     ///
-    /// 1 to 64 values above 0, the largest at most 100 times the smallest: a light strand under a heavy tip is as hard to solve as one of many
-    /// more points. In the bench's shake at 4 substeps, 32 points stay quiet with `[1, 1, 1, 100]`; 64 points do with
-    /// `[1, 1, 1, 10]`, and with 30 in place of 10 at 8 substeps.
+    /// 1 to 64 values above 0, the largest at most 100 times the smallest. A light strand under a heavy tip
+    /// is as hard to solve as one with many more points. In the bench's shake at 4 substeps, 32 points do not
+    /// jitter with `[1, 1, 1, 100]`; nor do 64 points with `[1, 1, 1, 10]`, or with 30 in place of 10 at 8
+    /// substeps.
     pub mass_profile: Vec<f32>,
-    /// Young's modulus along the fibre [Pa]. Default 3.9e9.
+    /// Young's modulus along the fiber [Pa]. Default 3.9e9.
     pub young: f32,
-    /// Shear modulus of the fibre [Pa], above 0. Default 0.89e9: hair is anisotropic, so that it is set by itself and not from
-    /// Young's modulus; GJ/EI is then 0.46.
+    /// Shear modulus of the fiber [Pa], above 0. Default 0.89e9. It is independent of Young's modulus because
+    /// hair is anisotropic; with the defaults, GJ/EI is 0.46.
     pub shear: f32,
-    /// Multiplier over the bending and twisting stiffness EI and GJ, 0 or more. Default 1: a single hair. A styled head is held
-    /// by wax and neighbours, so presets use more.
+    /// Multiplier of the bending and twisting stiffness EI and GJ, 0 or more. Default 1: a single hair.
+    /// Styled hair is also held by products and neighboring hairs, so presets use more.
     pub bend: f32,
     /// Bending stiffness at the tip as a fraction of that at the root, 0 to 1 or more. Default 1.
     pub bend_tip: f32,
-    /// Short over long axis of the fibre's section, above 0, at most 1; its area is kept. Default 1: round. Asian hair is about 0.9, African
-    /// about 0.6. The long axis lies along the normal of the strand's frame at its root. For the rod model.
+    /// Ratio of the short to the long axis of the fiber's cross-section, above 0, at most 1; the area is
+    /// kept. Default 1: round. Asian hair is about 0.9, African about 0.6. The long axis is along the normal
+    /// of the strand's frame at its root. Only the rod model uses it.
     pub flatness: f32,
-    /// Relaxation time of the fibre's bending [s], 0 or more: larger stops the hair's own vibrations sooner. Default 0.01: the
-    /// solver adds next to none, and in a head of hair neighbours take a swing's energy within a second.
+    /// Relaxation time of the fiber's bending [s], 0 or more. Larger values damp the hair's own vibrations
+    /// faster. Default 0.01: the solver adds almost no damping, and in a head of hair, neighboring hairs
+    /// absorb a swing within a second.
     pub damping: f32,
-    /// Multiplier over the drag of the air on a lone, smooth fiber, 0 or more. Default 1. In a scene, dense hair shelters itself from the air
-    /// by its density besides.
+    /// Multiplier of the air drag of a single, smooth fiber, 0 or more. Default 1. In a scene, dense hair
+    /// also shields itself from the air according to its density.
     pub drag: f32,
-    /// Coulomb friction against the body, 0 to 1: static, what holds. Default 0.3: hair on skin, 0.1 to 0.3 along the scales, higher against.
+    /// Static Coulomb friction coefficient against the body, 0 to 1. Default 0.3. Hair on skin has 0.1 to 0.3
+    /// along the scales, and more against them.
     pub friction: f32,
-    /// Kinetic friction over static, 0 to 1: what holds a strand back that slides faster than a millimetre a second. Default 1: one coefficient for both, with
-    /// which nothing jerks as it comes loose.
+    /// Ratio of kinetic to static friction, 0 to 1. Kinetic friction acts on a strand that slides faster than
+    /// a millimeter per second. Default 1: one coefficient for both, which avoids jerks when a strand comes
+    /// loose.
     pub friction_kinetic: f32,
-    /// Pull to the rest shape, carried by the root; switched by `Solver::global_shape`. Default: none.
+    /// Spring to the rest shape, carried by the root; enabled by `Solver::global_shape`. Default: none.
     pub global_shape: GlobalShape,
-    /// How far a point may get from its root, over how far it was at rest [1], 1 to 10 (a long range attachment); 0, the default: as far as it goes. Not physics:
-    /// for hair that is to fall so far and no farther. From 1.01 on it does not act at rest.
+    /// Maximum distance of a point from its root, relative to that at rest [1], 1 to 10 (long-range
+    /// attachment). 0, the default: no limit. Not physical: it limits how far hair falls. From 1.01 on it has
+    /// no effect at rest.
     pub tether: f32,
-    /// Static charge of a length of hair [C/m], −1e-6 to 1e-6. Default 0. Hair of 35 µm holds 6e-9 at most, where air breaks down at its surface; a
-    /// field of 100 kV/m lifts it against gravity from 5e-10 on.
+    /// Static charge per length of hair [C/m], −1e-6 to 1e-6. Default 0. Hair of 35 µm holds at most 6e-9,
+    /// where the air at its surface breaks down. From 5e-10 on, a field of 100 kV/m lifts it against gravity.
     pub charge: f32,
 }
 
@@ -64,22 +71,23 @@ pub struct Material {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
-    /// The rod; for strands that are straight and round, where it comes to the same, the cheaper curvature model.
+    /// The rod model. Straight, round strands, for which the result is the same, use the cheaper curvature
+    /// model.
     #[default]
     Auto,
     /// Stretch, bend, torsion and altitude springs (Selle 2008), with an extra particle beside each segment.
     Springs,
-    /// Stretch and bending by the curvature vector, in a frame carried from the root that knows no twist.
+    /// Stretch, and bending by the curvature vector in a frame transported from the root, without twist.
     Curvature,
     /// A discrete elastic rod: curvature, and a twist angle for each segment.
     Rod,
 }
 
 impl Model {
-    /// All of them.
+    /// All models.
     pub const ALL: [Model; 4] = [Self::Auto, Self::Springs, Self::Curvature, Self::Rod];
 
-    /// Its name in scene files and on the command line.
+    /// Returns the name used in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -113,10 +121,11 @@ impl Default for Material {
     }
 }
 
-/// Names of the presets, in the order that [`preset`] knows them.
+/// Names of the presets known to [`preset`].
 pub const PRESETS: [&str; 5] = ["straight", "wavy", "curly", "coily", "short-fur"];
 
-/// The preset of this name: `straight`, `wavy`, `curly`, `coily` or `short-fur`; `None` for any other.
+/// Returns the preset with this name: `straight`, `wavy`, `curly`, `coily` or `short-fur`; `None` for any
+/// other name.
 pub fn preset(name: &str) -> Option<Material> {
     let base = Material::default();
     Some(match name {

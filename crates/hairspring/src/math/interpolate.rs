@@ -1,8 +1,9 @@
-//! Ways with times: between which of its keys something is. A body or a prop that goes by keys, a hand and a charged ball all have such a way; what their
-//! keys hold differs, and how they go from one to the next.
+//! Lookup of the two keyframes around a time. Keyed bodies and props, hands and the charged ball all use it;
+//! what a key holds and how two keys are interpolated differs between them.
 
-/// The keys around `time` [s], by their numbers, and how far it is from the one to the other, 0 to 1; before the first and after the last, that one twice. Of
-/// `count` keys, each is `at` a time [s], later than the one before. `None` without keys.
+/// Returns the indices of the two keys around `time` [s] and the interpolation fraction between them, 0 to 1.
+/// Before the first key and after the last, both indices are that key. `at` returns the time of a key [s];
+/// the `count` keys are in ascending order of time. Returns `None` if there are no keys.
 pub fn between(count: usize, at: impl Fn(usize) -> f32, time: f64) -> Option<(usize, usize, f32)> {
     let last = count.checked_sub(1)?;
     let at = |key| f64::from(at(key));

@@ -1,8 +1,8 @@
-//! Rotation and translation: how a collider, a root or a joint is placed.
+//! Rigid transforms: the poses of colliders, roots and joints.
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 
-/// Rotation and translation.
+/// A rotation followed by a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidTransform {
     /// Unit rotation.
@@ -18,13 +18,14 @@ impl Default for RigidTransform {
 }
 
 impl RigidTransform {
-    /// The rotation and translation of a joint's matrix; its scale is dropped.
+    /// Returns the rotation and translation of a joint's matrix, without its scale.
     pub fn from_affine(m: &Affine3A) -> Self {
         let (_, rotation, translation) = m.to_scale_rotation_translation();
         Self { rotation: rotation.normalize(), translation }
     }
 
-    /// Between `self` (`t` = 0) and `other` (`t` = 1), on the shorter arc; exactly either one at its end.
+    /// Interpolates between `self` (`t` = 0) and `other` (`t` = 1) along the shorter arc. The result is exact
+    /// at both ends.
     pub fn lerp(&self, other: &RigidTransform, t: f32) -> RigidTransform {
         if t >= 1.0 || self == other {
             return *other;
@@ -35,12 +36,12 @@ impl RigidTransform {
         }
     }
 
-    /// As a matrix and a translation [m].
+    /// Returns the transform as a rotation matrix and a translation [m].
     pub fn matrix(&self) -> (Mat3, Vec3) {
         (Mat3::from_quat(self.rotation), self.translation)
     }
 
-    /// `first`, then `self`.
+    /// Returns the transform that applies `first`, then `self`.
     pub fn after(&self, first: &RigidTransform) -> RigidTransform {
         RigidTransform {
             rotation: self.rotation * first.rotation,
@@ -48,18 +49,18 @@ impl RigidTransform {
         }
     }
 
-    /// What undoes it.
+    /// Returns the inverse transform.
     pub fn inverse(&self) -> RigidTransform {
         let rotation = self.rotation.inverse();
         RigidTransform { rotation, translation: -(rotation * self.translation) }
     }
 
-    /// A point of this frame in the world [m].
+    /// Transforms a point from local to world space [m].
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.rotation * p + self.translation
     }
 
-    /// A world point in this frame [m].
+    /// Transforms a point from world to local space [m].
     pub fn inverse_point(&self, p: Vec3) -> Vec3 {
         self.rotation.inverse() * (p - self.translation)
     }

@@ -2,20 +2,22 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How strands meet their neighbours, one by one: the reference for the volume, for guides and small scenes. Between the simulated strands of all grooms.
+/// Settings of contact between individual strands, for guides and small scenes. It is the reference for the
+/// volume methods, and acts between the simulated strands of all grooms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Neighbours {
-    /// Whether they do. Default false: strands pass through each other.
+    /// Whether strands collide. Default false: they pass through each other.
     pub on: bool,
-    /// Radius of a strand where it meets others [m], above 0: a strand stands for the hairs around it. It is nowhere more than half of the way to the nearest
-    /// other strand at rest, so that nothing touches there. `None`, the default: half of that way in the mean, at most half a segment.
+    /// Contact radius of a strand [m], above 0: a strand represents the hairs around it. It is limited
+    /// everywhere to half the distance to the nearest other strand at rest, so that nothing touches at rest.
+    /// `None`, the default: half the mean of that distance, and at most half a segment.
     pub radius: Option<f32>,
-    /// Coulomb friction of strands on each other [1], 0 or more. Default 0.3: scales let hair slide more easily toward the tip than toward the root, and it is
-    /// between the two.
+    /// Coulomb friction coefficient between strands [1], 0 or more. Default 0.3, a mean value: because of the
+    /// scales, hair slides more easily toward the tip than toward the root.
     pub friction: f32,
-    /// Force that two segments which have been pressed together hold with, along and across, besides friction; it breaks when more pulls [N], 0 or more.
-    /// Default 0. A hair of 25 cm weighs 1.6e-5 N.
+    /// Stiction: normal and tangential force that two segments in contact resist, in addition to friction,
+    /// before they separate [N], 0 or more. Default 0. A hair of 25 cm weighs 1.6e-5 N.
     pub stiction: f32,
 }
 

@@ -2,84 +2,92 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Time steps and contact.
+/// Settings of time steps and contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Solver {
-    /// Substeps in a frame of 1/60 s, 1 to 64. Default 4: the substep is 1/240 s whatever the frame rate.
+    /// Number of substeps in a frame of 1/60 s, 1 to 64. Default 4: substeps of 1/240 s at any frame rate.
     pub substeps: u32,
-    /// Whether rest shapes are solved so that the groom starts in balance under gravity. Default true.
+    /// Whether rest shapes are computed so that the groom starts in static balance under gravity. Default
+    /// true.
     pub sag_free: bool,
-    /// How long hair falls from where its groom has it before the scene begins [s], 0 to 60. Where it lies then is its groom from there on: what
-    /// [`Solver::sag_free`] puts in balance, and what a reset goes back to. Default 0: grooms are as they are made. For hair that is grown by a rule, 3: it stands
-    /// off the skin, and long hair lies still by then.
+    /// Pre-roll: time that hair falls from its authored pose before the scene begins [s], 0 to 60. The
+    /// resulting pose becomes the groom: [`Solver::sag_free`] puts it in balance, and a reset returns to it.
+    /// Default 0: grooms as authored. For procedurally grown hair that stands off the skin, use 3; long hair
+    /// is at rest by then.
     pub preroll: f32,
     /// Whether hair collides with the body's mesh. Default true.
     pub collide_body: bool,
-    /// What keeps hair out of colliders. Default `both`.
+    /// Contact method. Default `both`.
     pub contact: Response,
-    /// Whether segments are held out of colliders between their points as well. Default true; where none of them is longer than what it collides with is
-    /// round, points alone do.
+    /// Whether segments are also kept out of colliders between their points. Default true. Points alone are
+    /// enough if no segment is longer than the radius of curvature of the colliders.
     pub segment_contacts: bool,
-    /// Iterations of fast projection a substep (Goldenthal 2007), 0 to 20; strands of more than 32 points for each may take one for every
-    /// 32. Default 3. For the implicit integrators.
+    /// Iterations of fast projection in a substep (Goldenthal 2007), 0 to 20. Strands of more than 32 points
+    /// may take one for every 32 points in place of each. Default 3. Only for the implicit integrators.
     pub projection_iterations: u32,
-    /// How a substep is made. Default `backward-euler`.
+    /// Time integrator. Default `backward-euler`.
     pub integrator: Integrator,
-    /// How exactly its equations are solved. Default `normal`.
+    /// Accuracy of the solve in each substep. Default `normal`.
     pub quality: Quality,
-    /// How much of the head's motion hair feels, 0 (none: it moves as if the head stood still) to 1 (all of it, the default): for art direction.
+    /// Fraction of the head's motion that acts on the hair, for art direction: 0 (none, as if the head stood
+    /// still) to 1 (all, the default).
     pub inertia: f32,
-    /// A head that moves farther than this in a frame, over how it moved before, has jumped, and hair is carried along as it is [m], above 0. Default 1:
-    /// what moves so in 1/24 s is accelerated by 60 g.
+    /// Teleport threshold [m], above 0. If the head moves farther than this in one frame, in excess of its
+    /// previous motion, the hair is moved rigidly with it. Default 1: such a motion within 1/24 s would be an
+    /// acceleration of 60 g.
     pub teleport_distance: f32,
-    /// Whether materials' global shapes pull. Default true; no material has one by default.
+    /// Whether the materials' global shapes are enabled. Default true; by default, no material has one.
     pub global_shape: bool,
 }
 
-/// What answers a point, or a segment, that is inside of a collider (Sams 2014, §3.3).
+/// Contact method for points and segments inside a collider (Sams 2014, §3.3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Response {
-    /// A force that is part of the solve, and what is inside after it moves to the nearest free position: the force carries weight and tension without a
-    /// jerk, the projection stops what lands.
+    /// An implicit force in the solve, followed by projection of what is still inside to the nearest free
+    /// position. The force carries weight and tension without jerks; the projection stops impacts.
     #[default]
     Both,
-    /// The force alone, implicit: soft, what lands goes in and comes out again. Integrators without a solve that knows of contact (all but
-    /// backward Euler and BDF2) project.
+    /// Only the implicit force. It is soft: hair that hits a surface sinks in and comes out again. Only
+    /// backward Euler and BDF2 have contact in their solve; the other integrators project.
     Penalty,
-    /// The projection alone: the inward motion ends, the point moves to the nearest free position (Liu 2013).
+    /// Only the projection: inward motion is removed, and the point moves to the nearest free position (Liu
+    /// 2013).
     Projection,
 }
 
 impl Response {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Response; 3] = [Self::Both, Self::Penalty, Self::Projection];
 }
 
-/// How positions and velocities come out of a substep; all on the same strands, to be compared.
+/// Time integration method. All methods act on the same strands, for comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integrator {
-    /// x⁺ = x + h v, v⁺ = v + h a with the fibre's own stiffness: the baseline that blows up.
+    /// x⁺ = x + h v, v⁺ = v + h a with the fiber's own stiffness: a baseline that is unstable.
     ExplicitEuler,
-    /// Position Verlet with the fibre's own stiffness (Müller 2008).
+    /// Position Verlet with the fiber's own stiffness (Müller 2008).
     Verlet,
-    /// The banded direct solver, linearised once, then fast projection and a strain limit (Baraff & Witkin 1998; Goldenthal 2007).
+    /// The direct banded solver, linearized once, followed by fast projection and a strain limit (Baraff &
+    /// Witkin 1998; Goldenthal 2007).
     #[default]
     BackwardEuler,
-    /// The same with the backward differentiation formula of second order: swings keep their amplitude (Choi & Ko 2002).
+    /// Like backward Euler, with the second-order backward differentiation formula: swings keep their
+    /// amplitude (Choi & Ko 2002).
     Bdf2,
-    /// A constant matrix and a projection of every spring by itself (Liu 2013); always by the curvature model.
+    /// Local-global solver: a constant matrix, and a separate projection of every spring (Liu 2013). Always
+    /// uses the curvature model.
     LocalGlobal,
-    /// Follow the leader: inextensible, no bending.
+    /// Follow the leader: inextensible, without bending.
     Ftl,
-    /// Follow the leader with corrected velocities (Müller 2012).
+    /// Dynamic follow the leader, with corrected velocities (Müller 2012).
     Dftl,
 }
 
 impl Integrator {
-    /// All of them, in the order of the page that compares them.
+    /// All integrators, in the order of the page that compares them.
     pub const ALL: [Integrator; 7] = [
         Self::ExplicitEuler,
         Self::Verlet,
@@ -90,7 +98,7 @@ impl Integrator {
         Self::Dftl,
     ];
 
-    /// Its name in scene files and on the command line.
+    /// Returns the name used in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::ExplicitEuler => "explicit-euler",
@@ -103,20 +111,21 @@ impl Integrator {
         }
     }
 
-    /// Whether no segment leaves a substep more than 1 % longer or shorter than at rest; the others are shown as they are.
+    /// Returns whether the strain limit applies: no segment leaves a substep more than 1 % longer or shorter
+    /// than at rest. The other integrators have no such limit.
     pub fn limits_strain(self) -> bool {
         matches!(self, Self::BackwardEuler | Self::Bdf2)
     }
 }
 
-/// How exactly a substep's equations are solved.
+/// Accuracy of the solve in each substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quality {
-    /// One linear solve (10 iterations of local–global).
+    /// One linear solve (10 iterations of local-global).
     #[default]
     Normal,
-    /// Newton iterations with a line search, to the end (40 iterations of local–global).
+    /// Newton iterations with a line search until convergence (40 iterations of local-global).
     High,
 }
 

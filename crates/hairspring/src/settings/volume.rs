@@ -2,24 +2,28 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How hair meets hair: the simulated strands of all grooms, each weighing what the hairs weigh that follow it.
+/// Settings of the hair volume, which acts between the simulated strands of all grooms. Each strand has the
+/// mass of the hairs that follow it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Volume {
-    /// What keeps hair from crowding. Default `off`: strands pass through each other.
+    /// Volume method. Default `off`: strands pass through each other.
     pub method: VolumeMethod,
-    /// Edge of a cell [m], above 0; it grows where there would be more than two million. `None`, the default: the smallest in which a cell
-    /// with hair holds eight points at rest, so that its density is more than chance.
+    /// Edge of a cell [m], above 0; it is enlarged if there would be more than two million cells. `None`, the
+    /// default: the smallest cell in which cells with hair contain eight points at rest, so that the density
+    /// is statistically meaningful.
     pub cell: Option<f32>,
-    /// How fast hair takes on the velocity of the hair around it [1/s], 0 or more. Default 3: strands lose a twentieth of what
-    /// is between their velocities in 1/60 s; as a PIC/FLIP blend, 0.95 FLIP. What goes across other hair is stopped besides, see `volume/crossing.rs`.
+    /// Rate at which hair takes on the velocity of the surrounding hair [1/s], 0 or more. Default 3: strands
+    /// lose a twentieth of their relative velocity in 1/60 s, which corresponds to a PIC/FLIP blend of 0.95
+    /// FLIP. Motion across other hair is stopped separately, see `volume/crossing.rs`.
     pub friction: f32,
-    /// Speed with which a crowd spreads, for `density` [m/s], 0 or more; it counts as at most half a cell in 1/240 s, beyond which a step
-    /// would overshoot. Default 0.5.
+    /// Speed at which compressed hair spreads, for `density` [m/s], 0 or more. It is limited to half a cell
+    /// in 1/240 s, to prevent overshoot. Default 0.5.
     pub pressure: f32,
-    /// How fast lost volume is regained, for `incompressible`: the share a second [1/s], 0 or more, and at most all of it in 1/240 s.
-    /// Default 30: hair that falls from standing out and is shaken keeps nine tenths of its volume so, three quarters with 10, and a
-    /// quarter without a method (`hairspring bench --hair-hair`).
+    /// Rate at which lost volume is recovered, for `incompressible`, as a fraction per second [1/s], 0 or
+    /// more; at most all of it in 1/240 s. Default 30. For hair that falls from standing out and is shaken,
+    /// this keeps nine tenths of the volume; 10 keeps three quarters, and no method a quarter (`hairspring
+    /// bench --hair-hair`).
     pub recovery_rate: f32,
 }
 
@@ -29,24 +33,26 @@ impl Default for Volume {
     }
 }
 
-/// What keeps hair from crowding.
+/// Method that keeps hair from being compressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VolumeMethod {
-    /// Nothing.
+    /// None.
     #[default]
     Off,
-    /// Pressure down the gradient of density, where hair is denser than at rest (Petrovic 2005): cheap, and gives way.
+    /// A force along the negative density gradient where hair is denser than at rest (Petrovic 2005). Cheap,
+    /// but soft.
     Density,
-    /// Velocities that close in on full cells are taken out, and lost volume is regained (McAdams 2009): firm, for a linear solve each 1/240 s.
+    /// Velocities that converge on full cells are projected out, and lost volume is recovered (McAdams 2009).
+    /// Firm, at the cost of a linear solve every 1/240 s.
     Incompressible,
 }
 
 impl VolumeMethod {
-    /// All of them.
+    /// All methods.
     pub const ALL: [VolumeMethod; 3] = [Self::Off, Self::Density, Self::Incompressible];
 
-    /// Its name in scene files and on the command line.
+    /// Returns the name used in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Off => "off",

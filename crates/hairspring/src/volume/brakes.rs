@@ -1,4 +1,5 @@
-//! What points take from each node: what pressure does, and what brakes them against the hair around, friction and crossing.
+//! Values that points interpolate from each node: the acceleration by pressure, and the drag by friction and
+//! crossing hair.
 
 use super::{
     crossing::Crossing,
@@ -8,12 +9,13 @@ use crate::settings;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// β of full cells for intervals of `dt` [s] [1/s].
+/// Returns β of full cells for intervals of `dt` [s] [1/s].
 pub fn friction(settings: &settings::Volume, dt: f32) -> f32 {
     -(-settings.friction * dt).exp_m1() / dt
 }
 
-/// Writes what points take from each node: `acceleration` by index and mass, and what brakes them: friction and crossing.
+/// Writes the values that points interpolate from each node: `acceleration`, given a node's index and mass,
+/// and the drag by friction and crossing hair.
 pub fn fill_push(
     field: &mut Field,
     (friction, crossing): (f32, Crossing),
@@ -27,12 +29,12 @@ pub fn fill_push(
             let [x, y, z, mass] = nodes[n];
             *push = [0.0; PUSH];
             if mass > 0.0 {
-                // Hair rubs as far as there is hair: a lone strand meets none.
+                // Friction is proportional to the fill, up to 1: a single strand has none.
                 let full: f32 = corners.iter().map(|corner| fill[n - corner]).sum();
                 let [tx, ty, tz, differ] = spread[n];
                 let met = crossing.rate(mass, differ);
                 let beta = friction * (0.125 * full).min(1.0) + met;
-                // Along the strands nothing is met.
+                // There is no drag by crossing along the direction of the strands.
                 let (t, v) = (Vec3::new(tx, ty, tz), Vec3::new(x, y, z));
                 let brake = [0, 1, 2].map(|k| Vec3::AXES[k] * beta - t * (met * t[k]));
                 let a = acceleration(n, mass) + Vec3::from(brake.map(|row| row.dot(v)));

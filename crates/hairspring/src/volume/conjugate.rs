@@ -1,48 +1,52 @@
-//! Conjugate gradients for D M⁻¹ Dᵀ p = b, preconditioned by the diagonal; the matrix is never stored.
+//! Matrix-free conjugate gradients for D M⁻¹ Dᵀ p = b with diagonal preconditioning.
 //!
-//! Every sum is made slab by slab in f64 and the slabs' in their order, so any thread count gives the same bits. Of each row of cells only the
-//! span from the first to the last with pressure is touched.
+//! Each sum is computed per slab in f64, and the slabs are added in order, so the result is bitwise identical
+//! for any number of threads. In each row of cells, only the span between the first and the last cell with
+//! pressure is processed.
 
 use super::grid_bounds::GridBounds;
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What is left of the residual when a solve ends, over the right-hand side [1]: of a divergence, a twentieth is not seen.
+/// Residual at which a solve ends, relative to the right-hand side [1]. A twentieth of the divergence is not
+/// visible.
 pub const TOLERANCE: f64 = 0.05;
 
-/// Pressure below which a cell is softened when those that pull are let go, over the root mean square [1].
+/// Pressure, relative to the root mean square, below which a cell is softened when cells with negative
+/// pressure are released [1].
 const HARDLY: f32 = 0.1;
 
-/// Most iterations of a solve: what spreads farther than so many cells in an interval is left to the next.
+/// Maximum number of iterations of a solve. Effects that spread farther than this many cells are left to the
+/// next interval.
 pub const ITERATIONS: u32 = 24;
 
-/// One system and its solution. All arrays have the shape of the window's nodes.
+/// A linear system and its solution. All arrays have the shape of the grid's nodes.
 #[derive(Default)]
 pub struct Solve {
     window: GridBounds,
-    /// Of the nodes; 0 where there is no hair and where it cannot move.
+    /// Inverse mass of the nodes; 0 where there is no hair and where it cannot move.
     pub inverse_mass: Vec<f32>,
     /// Inverse diagonal; 0 in cells that have no pressure.
     inverse_diagonal: Vec<f32>,
-    /// What is added to the diagonal: how a cell yields to pressure.
+    /// Compliance of each cell, added to the diagonal.
     compliance: Vec<f32>,
     right: Vec<f32>,
     residual: Vec<f32>,
     pressure: Vec<f32>,
-    /// What the last system's pressures were, and its window; none where a frame begins.
+    /// Pressures of the last system with its bounds; empty at the start of a frame.
     last: (GridBounds, Vec<f32>),
     direction: Vec<f32>,
     image: Vec<f32>,
-    /// M⁻¹ Dᵀ of what was applied last, a component each.
+    /// Components of M⁻¹ Dᵀ applied to the last operand.
     flux: [Vec<f32>; 3],
-    /// Where a row of cells has any with pressure; shape `[z][y]`.
+    /// Span of cells with pressure in each row; shape `[z][y]`.
     spans: Vec<Span>,
-    /// Sums of the slabs.
+    /// Partial sums of the slabs.
     partial: Vec<f64>,
 }
 
-/// Cells of a row.
+/// A range of cells in a row.
 #[derive(Clone, Copy, Default)]
 struct Span {
     from: u32,
@@ -50,7 +54,7 @@ struct Span {
 }
 
 impl Span {
-    /// Both and what is between them.
+    /// Returns the smallest span that contains both.
     fn with(self, other: Self) -> Self {
         match (self.from < self.to, other.from < other.to) {
             (true, true) => Self { from: self.from.min(other.from), to: self.to.max(other.to) },
@@ -64,14 +68,14 @@ impl Span {
     }
 }
 
-/// Indices in a slab of rows of `nx`.
+/// Returns the index ranges of the spans in a slab with rows of length `nx`.
 fn indices(spans: &[Span], nx: usize) -> impl Iterator<Item = Range<usize>> {
     let there = spans.iter().enumerate().filter(|(_, span)| span.from < span.to);
     there.map(move |(y, span)| y * nx + span.from as usize..y * nx + span.to as usize)
 }
 
 impl Solve {
-    /// Every array of numbers.
+    /// Returns all arrays of floats.
     fn arrays(&mut self) -> [&mut Vec<f32>; 11] {
         let [fx, fy, fz] = &mut self.flux;
         [
@@ -89,21 +93,21 @@ impl Solve {
         ]
     }
 
-    /// Room for so many nodes ever.
+    /// Reserves memory for at most `nodes` nodes.
     pub fn reserve(&mut self, nodes: usize) {
         self.arrays().into_iter().for_each(|array| array.reserve_exact(nodes));
         self.last.1.reserve_exact(nodes);
-        // No window has more rows than nodes over three: its ring.
+        // Because of its empty ring, a grid has at most a third as many rows as nodes.
         self.spans.reserve_exact(nodes / 3);
         self.partial.reserve_exact(nodes / 9);
     }
 
-    /// The next system knows of no other.
+    /// Discards the warm start of the next system.
     pub fn forget(&mut self) {
         self.pressure.clear();
     }
 
-    /// A new system, all 0 but the pressures, which are the last one's.
+    /// Starts a new system. Everything is 0 except for the pressures, which are those of the last system.
     pub fn begin(&mut self, window: GridBounds) {
         self.last.0 = self.window;
         std::mem::swap(&mut self.last.1, &mut self.pressure);
@@ -120,7 +124,7 @@ impl Solve {
         if last.is_empty() {
             return;
         }
-        // Rows of both windows, from the first to the last x of both.
+        // Copies the rows that both bounds share, over their common range of x.
         let (from, to) = (before.lo.max(window.lo), before.end().min(window.end()));
         let count = usize::try_from(to.x - from.x).unwrap_or(0);
         for (z, y) in (from.z..to.z).flat_map(|z| (from.y..to.y).map(move |y| (z, y))) {
@@ -131,8 +135,9 @@ impl Solve {
         }
     }
 
-    /// Takes up the cells of which `cell` has a right-hand side and a hardness, more than 0 to 1; how many they are. What is less than hard yields to pressure:
-    /// its diagonal d is d over its hardness, so that it takes part in the system the less, the softer it is.
+    /// Adds the cells for which `cell` returns a right-hand side and a hardness, above 0 and at most 1.
+    /// Returns their number. A cell with a hardness below 1 is compliant: its diagonal is divided by the
+    /// hardness, so a softer cell takes less part in the system.
     pub fn fill(&mut self, cell: impl Fn(usize) -> Option<(f32, f32)> + Sync) -> usize {
         let [nx, ny, nz] = self.window.dims;
         let (slab, corners, inverse_mass) = (nx * ny, self.window.corners(), &self.inverse_mass);
@@ -142,7 +147,7 @@ impl Solve {
         parts
             .map(|(z, ((((diagonal, right), pressure), compliance), spans))| {
                 let mut cells = 0;
-                // The last slab and the last row hold no cells.
+                // The last slab and the last row have no cells.
                 let rows = if z + 1 < nz { ny - 1 } else { 0 };
                 for (y, span) in spans.iter_mut().enumerate().take(rows) {
                     for x in 0..nx - 1 {
@@ -158,7 +163,7 @@ impl Solve {
                         }
                     }
                 }
-                // What is of the system no more does not press.
+                // Cells that are no longer part of the system get zero pressure.
                 let of_none = pressure.iter_mut().zip(diagonal).filter(|(_, diagonal)| **diagonal == 0.0);
                 of_none.for_each(|(pressure, _)| *pressure = 0.0);
                 cells
@@ -166,8 +171,9 @@ impl Solve {
             .sum()
     }
 
-    /// Lets go of the cells that pull, and softens those that hardly press: how many are left. Were there nothing between, the last bit of a place would tell
-    /// whether a cell presses once others are let go.
+    /// Releases the cells with negative pressure and softens those with a small one. Returns the number of
+    /// remaining cells. Softening prevents the rounding of a position from deciding whether a cell has
+    /// pressure after others are released.
     pub fn let_go(&mut self) -> usize {
         let slab = self.window.slab();
         let (square, cells) = (
@@ -196,7 +202,8 @@ impl Solve {
             .sum()
     }
 
-    /// Solves from the pressures as they are: iterations taken, and what is left of the residual over the right-hand side.
+    /// Solves, starting from the current pressures. Returns the number of iterations and the residual
+    /// relative to the right-hand side.
     pub fn run(&mut self) -> (u32, f64) {
         let [nx, ny, _] = self.window.dims;
         let slab = nx * ny;
@@ -208,13 +215,13 @@ impl Solve {
         }
         let (mut energy, mut left) = (0.0, 1.0);
         for iteration in 0..=ITERATIONS {
-            // The first time, the image is that of the pressures that there were, and all of it counts.
+            // In the first iteration, the image is that of the initial pressures and is subtracted entirely.
             let alpha = match iteration {
                 0 => 1.0,
                 _ => {
                     self.apply();
                     let curvature = self.sum(|s, k| f64::from(s.direction[k]) * f64::from(s.image[k]));
-                    // What no pressure can change is left.
+                    // No pressure can reduce the residual further.
                     if curvature <= 0.0 || energy <= 0.0 {
                         return (iteration, left);
                     }
@@ -254,19 +261,19 @@ impl Solve {
         (ITERATIONS, left)
     }
 
-    /// Leaves the flux of the pressures, without what still pulls.
+    /// Computes the flux of the pressures, with negative pressures clamped to 0.
     pub fn press(&mut self) {
         self.direction.par_iter_mut().zip(&self.pressure).for_each(|(out, p)| *out = p.max(0.0));
         self.apply();
     }
 
-    /// M⁻¹ Dᵀ p at node `n`, after [`Solve::press`].
+    /// Returns M⁻¹ Dᵀ p at node `n`, after [`Solve::press`].
     pub fn change(&self, n: usize) -> Vec3 {
         let [x, y, z] = &self.flux;
         Vec3::new(x[n], y[n], z[n])
     }
 
-    /// A sum over all cells with pressure.
+    /// Returns a sum over all cells with pressure.
     fn sum(&mut self, of: impl Fn(&Self, usize) -> f64 + Sync) -> f64 {
         let [nx, ny, _] = self.window.dims;
         let mut partial = std::mem::take(&mut self.partial);
@@ -278,14 +285,14 @@ impl Solve {
         self.partial.iter().sum()
     }
 
-    /// `flux` and `image` of `direction`.
+    /// Computes `flux` and `image` of `direction`.
     fn apply(&mut self) {
         let [nx, ny, nz] = self.window.dims;
         let (slab, spans, p) = (nx * ny, &self.spans, &self.direction);
         let [fx, fy, fz] = &mut self.flux;
         let parts = fx.par_chunks_mut(slab).zip(fy.par_chunks_mut(slab)).zip(fz.par_chunks_mut(slab));
         let parts = parts.zip(self.inverse_mass.par_chunks(slab)).enumerate();
-        // Rayon's `skip` and `take` would ask for memory.
+        // Rayon's `skip` and `take` would allocate.
         parts.filter(|(z, _)| *z > 0).for_each(|(z, (((fx, fy), fz), inverse))| {
             for y in 1..ny {
                 let near = [(y - 1, z - 1), (y, z - 1), (y - 1, z), (y, z)];
@@ -293,7 +300,7 @@ impl Solve {
                 if span.from >= span.to {
                     continue;
                 }
-                // The nodes at both ends of its cells, and of each the cell before and after it.
+                // The nodes at both ends of its cells; for each, the cells before and after it.
                 let (from, count) = (span.from as usize, (span.to - span.from) as usize + 1);
                 let first = y * nx + from;
                 let before = near.map(|(y, z)| &p[z * slab + y * nx + from - 1..][..count]);

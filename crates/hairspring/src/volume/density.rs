@@ -1,25 +1,28 @@
-//! Pressure down the gradient of density, and friction (Petrovic, Henne, Anderson 2005, *Volumetric Methods for Simulation and Rendering of Hair*).
+//! Pressure along the negative density gradient, and friction (Petrovic, Henne, Anderson 2005, *Volumetric
+//! Methods for Simulation and Rendering of Hair*).
 //!
 //! ```text
-//! cell   p = c² e ρ_least           e: how much fuller the cell is than it may be,   ρ_least: the least density at its corners
+//! cell   p = c² e ρ_least           e: excess of the cell's fill over the allowed fill,   ρ_least: the smallest density at its corners
 //! node   A = −∇p / ρ
 //! ```
 //!
-//! What pushes a node pushes another back, so momentum is kept; ρ_least bounds what a node with next to no hair can take, and makes the
-//! pressure 0 at the surface. The density that hair is pressed toward is that of the groom: cells are filled as at rest.
+//! The force on each node has an opposite reaction, so momentum is conserved. ρ_least bounds the acceleration
+//! of nodes with very little hair, and makes the pressure 0 at the surface. The target density is that of the
+//! groom: cells as full as at rest.
 
 use super::field::Field;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Most that pressure knows of how overfull a cell is [1].
+/// Largest excess that the pressure takes into account [1].
 pub const MOST_EXCESS: f32 = 1.0;
 
-/// Least time in which pressure crosses a cell, in intervals: it acts at the end of one on what was at its start, and a wave that crosses
-/// a cell in less than that grows (Courant, Friedrichs, Lewy 1928), the faster the more diagonal: √3.
+/// Minimum time for a pressure wave to cross a cell, in intervals. The pressure is computed at the start of
+/// an interval and acts during it, so faster waves grow (Courant, Friedrichs, Lewy 1928). Diagonal waves are
+/// the most critical: √3.
 const CROSSING: f32 = 2.0;
 
-/// Pressure of every cell, in the mass of the largest point [1]: e ρ_least.
+/// Computes the pressure of every cell, e ρ_least, with mass relative to the largest point's [1].
 pub fn pressures(field: &Field, excess: impl Fn(usize) -> f32 + Sync, pressures: &mut Vec<f32>) {
     let window = field.window;
     let (slab, corners) = (window.slab(), window.corners());
@@ -44,8 +47,8 @@ pub fn pressures(field: &Field, excess: impl Fn(usize) -> f32 + Sync, pressures:
     });
 }
 
-/// Acceleration of the nodes by these pressures of the cells, in the lattice's axes [m/s²], for waves of `speed` [m/s] in cells of `cell` [m] and
-/// intervals of `dt` [s].
+/// Acceleration of the nodes from the cells' pressures, in the grid's axes [m/s²]. Waves have the speed
+/// `speed` [m/s] in cells of `cell` [m] and intervals of `dt` [s].
 pub struct Push<'a> {
     pressures: &'a [f32],
     corners: [usize; 8],
@@ -54,17 +57,18 @@ pub struct Push<'a> {
 }
 
 impl<'a> Push<'a> {
-    /// See [`Push`].
+    /// Creates the accelerations, see [`Push`].
     pub fn new(field: &Field, pressures: &'a [f32], speed: f32, cell: f32, dt: f32) -> Self {
         let speed = speed.min(cell / (CROSSING * dt));
         Self { pressures, corners: field.window.corners(), strength: speed * speed / (4.0 * cell) }
     }
 
-    /// Of node `n`, of this mass, inside of the window's ring.
+    /// Returns the acceleration of node `n` with this mass. The node must not be in the outer ring of the
+    /// bounds.
     pub fn at(&self, n: usize, mass: f32) -> Vec3 {
         let mut sum = Vec3::ZERO;
         for (k, corner) in self.corners.iter().enumerate() {
-            // A node that is a cell's upper corner is pushed up.
+            // A node that is the upper corner of a cell is pushed upward.
             let p = self.pressures[n - corner];
             let along = |bit: usize| if k & bit == 0 { -p } else { p };
             sum += Vec3::new(along(1), along(2), along(4));

@@ -1,4 +1,4 @@
-//! What the sums of all points come to at each node and cell.
+//! Node and cell values computed from the sums over all points.
 
 use super::{
     grid_bounds::GridBounds,
@@ -6,33 +6,34 @@ use super::{
 };
 use rayon::prelude::*;
 
-/// Numbers of [`Field::push`] that there are, and with those that fill up the last four.
+/// Number of used values in an element of [`Field::push`].
 pub const TAKEN: usize = 9;
 pub const PUSH: usize = 12;
 
-/// Which of [`Field::push`] are the rows of the symmetric matrix.
+/// Indices in an element of [`Field::push`] of the rows of the symmetric matrix.
 pub const BRAKE: [[usize; 3]; 3] = [[3, 6, 8], [6, 4, 7], [8, 7, 5]];
 
-/// Hair as a continuum, and what it does to the points in it.
+/// Hair as a continuum, and its effect on the points in it.
 #[derive(Default)]
 pub struct Field {
-    /// Where.
+    /// Bounds of the grid.
     pub window: GridBounds,
-    /// Mean velocity at each node [m/s], and its mass in that of the largest point; shape `[nodes]`.
+    /// Mean velocity at each node [m/s], and its mass relative to that of the largest point; shape `[nodes]`.
     pub nodes: Vec<[f32; 4]>,
-    /// Mean direction of the strands at each node, as long as they agree on it [1], and the root of the mean square of what velocities differ
-    /// by from their mean [m/s].
+    /// Mean direction of the strands at each node [1], whose length shows how far they agree, and the
+    /// standard deviation of the velocities [m/s].
     pub spread: Vec<[f32; 4]>,
-    /// Room of the points at each node [cells].
+    /// Rest volume of the points at each node [cells].
     rooms: Vec<f32>,
-    /// How full each cell is: room over volume, the mean of its corners [1].
+    /// Fill of each cell: rest volume over cell volume, the mean of its corners [1].
     pub fill: Vec<f32>,
-    /// What a point takes with its trilinear weights: an acceleration [m/s²], and a symmetric matrix that takes of its own velocity [1/s].
+    /// Values that a point interpolates with its trilinear weights: an acceleration [m/s²], and a symmetric
+    /// drag matrix that multiplies its own velocity [1/s].
     pub push: Vec<[f32; PUSH]>,
 }
 
 impl Field {
-    /// Room for so many nodes ever.
+    /// Reserves memory for at most `nodes` nodes.
     pub fn reserve(&mut self, nodes: usize) {
         self.nodes.reserve_exact(nodes);
         self.spread.reserve_exact(nodes);
@@ -41,7 +42,7 @@ impl Field {
         self.push.reserve_exact(nodes);
     }
 
-    /// Adds up what each thread has summed.
+    /// Adds up the sums of all threads.
     pub fn collect(&mut self, window: GridBounds, units: &Units, sums: &[Sums]) {
         self.window = window;
         let (count, slab) = (window.nodes(), window.slab());
@@ -50,7 +51,7 @@ impl Field {
         self.rooms.resize(count, 0.0);
         self.fill.resize(count, 0.0);
         self.push.resize(count, [0.0; PUSH]);
-        // In double precision: what velocities differ by is the difference of two squares.
+        // Uses double precision, because the variance of the velocities is the difference of two squares.
         let to_mass = 1.0 / units.mass;
         let to_speed = f64::from(units.mass) / f64::from(units.momentum);
         let to_square = f64::from(units.mass) / f64::from(units.energy);
@@ -84,7 +85,8 @@ impl Field {
         self.fill_cells();
     }
 
-    /// `fill` from `rooms`: the mean of a cell's eight corners, which a point's way from one cell into the next does not change at once.
+    /// Computes `fill` from `rooms` as the mean of a cell's eight corners. It is continuous when a point
+    /// crosses from one cell to the next.
     fn fill_cells(&mut self) {
         let [nx, ny, nz] = self.window.dims;
         let (slab, corners, rooms) = (nx * ny, self.window.corners(), &self.rooms);

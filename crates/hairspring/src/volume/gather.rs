@@ -1,4 +1,4 @@
-//! Lattice to points: one acceleration a point, frozen for the interval.
+//! Interpolates the grid at the points: one acceleration for each point, constant for the interval.
 
 use super::{
     field::{BRAKE, PUSH, TAKEN},
@@ -10,13 +10,15 @@ use crate::{
     strand::tile::state,
 };
 
-/// Tiles that one task runs.
+/// Number of tiles that one task processes.
 const TILES_PER_TASK: usize = 32;
 
-/// What points took in the last interval, and the sum of all that acts on them, shape `[points]` of some tiles [m/s²].
+/// Accelerations of the points in the last interval, and the sum of all external accelerations; shape
+/// `[points]` of some tiles [m/s²].
 type Points<'a> = (&'a mut [[Row; 3]], &'a mut [[Row; 3]]);
 
-/// Puts the acceleration of every point in the place of what it was, in the sum too, on all threads; 0 outside of the window.
+/// Replaces the last interval's acceleration of every point by the new one, also in the sum, in parallel. It
+/// is 0 outside the grid bounds.
 pub fn all(
     tiles: &Tiles,
     chart: &GridTransform,
@@ -37,7 +39,7 @@ pub fn all(
     );
 }
 
-/// The same on one thread.
+/// [`all`] on one thread.
 #[expect(clippy::needless_range_loop, reason = "a lane is one point, in several rows")]
 fn gather(
     tiles: &Tiles,

@@ -1,7 +1,8 @@
-//! The part of the lattice that holds the hair of this frame, and where eight points lie in it.
+//! The part of the grid that holds the hair of a frame, and the positions of eight points in it.
 //!
-//! The lattice is fixed to the anchor (the head), so that hair that is carried along lies in the same cells in every pose, and what was
-//! measured at rest can be told cell by cell. A cell has the index of its lowest corner, a node of the lattice.
+//! The grid is fixed to the anchor (the head). Hair that moves with it stays in the same cells in every pose,
+//! so that measurements at rest apply cell by cell. A cell is identified by its lowest corner, a node of the
+//! grid.
 
 use crate::{
     math::RigidTransform,
@@ -10,82 +11,85 @@ use crate::{
 };
 use glam::{IVec3, Mat3, Vec3};
 
-/// A box of nodes, x fastest. A ring of cells around its hair is empty: no sum over a cell's or a node's neighbours looks past the end.
+/// A box of nodes, x fastest. A ring of cells around the hair is empty, so that sums over the neighbors of a
+/// cell or node stay within the box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GridBounds {
-    /// Its lowest node on the lattice.
+    /// Lowest node on the grid.
     pub lo: IVec3,
-    /// Nodes along x, y, z.
+    /// Number of nodes along x, y, z.
     pub dims: [usize; 3],
 }
 
 impl GridBounds {
-    /// The window of hair between `lo` and `hi` [cells].
+    /// Creates the bounds of hair between `lo` and `hi` [cells].
     pub fn around(lo: Vec3, hi: Vec3) -> Self {
         let lo = lo.floor().as_ivec3() - 2;
         let dims = (hi.floor().as_ivec3() - lo + 4).to_array().map(|n| n.max(0) as usize);
         Self { lo, dims }
     }
 
-    /// The node after its highest along every axis.
+    /// Returns the node one past the highest along every axis.
     pub fn end(&self) -> IVec3 {
         self.lo + IVec3::from(self.dims.map(|n| n as i32))
     }
 
-    /// How many nodes there are.
+    /// Returns the number of nodes.
     pub fn nodes(&self) -> usize {
         self.dims.iter().product()
     }
 
-    /// Nodes in a slab of one z.
+    /// Returns the number of nodes in a slab of constant z.
     pub fn slab(&self) -> usize {
         self.dims[0] * self.dims[1]
     }
 
-    /// From a node to the eight corners of the cell that has its index; x, then y, then z.
+    /// Returns the index offsets from a node to the eight corners of the cell with the same index; x fastest,
+    /// then y, then z.
     pub fn corners(&self) -> [usize; 8] {
         let (row, slab) = (self.dims[0], self.slab());
         [0, 1, row, row + 1, slab, slab + 1, slab + row, slab + row + 1]
     }
 
-    /// The index of a node or cell of the lattice; `None`: it is not inside.
+    /// Returns the index of a node or cell of the grid; `None` if it is outside.
     pub fn index(&self, at: IVec3) -> Option<usize> {
         let [x, y, z] = (at - self.lo).to_array().map(|k| usize::try_from(k).unwrap_or(usize::MAX));
         let [nx, ny, nz] = self.dims;
         (x < nx && y < ny && z < nz).then(|| (z * ny + y) * nx + x)
     }
 
-    /// The lattice coordinates of an index.
+    /// Returns the grid coordinates of an index.
     pub fn place(&self, index: usize) -> IVec3 {
         let [nx, ny, _] = self.dims;
         self.lo + IVec3::new((index % nx) as i32, (index / nx % ny) as i32, (index / nx / ny) as i32)
     }
 }
 
-/// How points are taken to the lattice: turned with the anchor, in cells.
+/// Transform of points to the grid: rotation to the anchor's axes, scaled to cells.
 #[derive(Clone, Copy)]
 pub struct GridTransform {
-    /// World axes to the anchor's, over the cell [1/m].
+    /// Rotation from world axes to the anchor's, divided by the cell [1/m].
     turn: Mat3,
-    /// Over the cell [1/m].
+    /// Reciprocal of the cell [1/m].
     scale: f32,
-    /// The part of their way in a frame that roots have gone [1].
+    /// Fraction of the frame's motion that roots have completed [1].
     gone: f32,
 }
 
 impl GridTransform {
-    /// With cells of `cell` [m], where the anchor is at `anchor` and roots are at the end of their way.
+    /// Creates the transform for cells of `cell` [m] with the anchor at `anchor`, and roots at the end of the
+    /// frame.
     pub fn new(anchor: &RigidTransform, cell: f32) -> Self {
         Self::on_the_way(anchor, cell, 1.0)
     }
 
-    /// The same where roots have gone a part of their way.
+    /// Like [`Self::new`], with roots at the fraction `gone` of their motion in the frame.
     pub fn on_the_way(anchor: &RigidTransform, cell: f32, gone: f32) -> Self {
         let scale = 1.0 / cell;
         Self { turn: Mat3::from_quat(anchor.rotation).transpose() * scale, scale, gone }
     }
 
-    /// Roots of eight strands, from the node `from` [cells].
+    /// Returns the roots of eight strands relative to the node `from` [cells].
     pub fn roots(&self, rows: &StrandRows, from: IVec3) -> [[f32; LANES]; 3] {
         let from = from.as_vec3().to_array();
         std::array::from_fn(|k| {
@@ -96,7 +100,7 @@ impl GridTransform {
         })
     }
 
-    /// Takes eight places [cells] from a point of their strands to the next.
+    /// Advances eight positions [cells] from one point of their strands to the next.
     #[inline(always)]
     pub fn walk(&self, places: &mut [[f32; LANES]; 3], next: &StateRows) {
         let [Row(x), Row(y), Row(z)] =
@@ -110,27 +114,29 @@ impl GridTransform {
     }
 }
 
-/// Eight points in a window.
+/// Eight points in the grid bounds.
 pub struct Placed {
-    /// Lowest corner of each one's cell.
+    /// Lowest corner of each point's cell.
     pub cell: [i32; LANES],
-    /// Share of each point in the eight corners of its cell (trilinear), in the order of [`Window::corners`] [1].
+    /// Trilinear weight of each point at the eight corners of its cell, in the order of
+    /// [`GridBounds::corners`] [1].
     pub weights: [[f32; LANES]; 8],
-    /// 1 for points that are inside, 0 for those that are not and those that are not finite.
+    /// 1 for points inside, 0 for points outside or not finite.
     pub inside: [f32; LANES],
 }
 
-/// Added to a number below 2²² and taken away again, this rounds it to the nearest whole one; the bits in between hold that number.
+/// Adding and subtracting this constant rounds a number below 2²² to the nearest integer. The low bits of the
+/// intermediate sum are that integer.
 pub const ROUND: f32 = 1.5 * (1 << 23) as f32;
 
-/// The whole number nearest to `x`, below 2²² in size.
+/// Returns the integer nearest to `x`, which must be below 2²² in absolute value.
 #[inline(always)]
 pub fn nearest(x: f32) -> i32 {
     ((x + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
 }
 
 impl Placed {
-    /// Where points [cells, from the window's lowest node] are.
+    /// Locates points, which are relative to the lowest node of the bounds [cells].
     #[inline(always)]
     pub fn new(points: &[[f32; LANES]; 3], window: &GridBounds) -> Self {
         let strides = [1, window.dims[0] as i32, window.slab() as i32];
@@ -140,11 +146,12 @@ impl Placed {
             let last = (window.dims[k] - 2) as f32;
             for lane in 0..LANES {
                 let at = points[k][lane];
-                // Comparisons that a NaN fails.
+                // Comparisons that are false for a NaN.
                 let low = if at > 0.0 { at } else { 0.0 };
                 let clamped = if low < last { low } else { last };
                 inside[lane] = if at == clamped { inside[lane] } else { 0.0 };
-                // A point on a node may count to the cell before it, with all of its weight at that node.
+                // A point on a node may be assigned to the previous cell; its weight is still entirely at
+                // that node.
                 let floor = (clamped - 0.5 + ROUND) - ROUND;
                 f[k][lane] = clamped - floor;
                 cell[lane] += nearest(floor) * strides[k];

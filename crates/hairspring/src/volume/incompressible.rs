@@ -1,68 +1,76 @@
-//! Velocities made free of divergence (McAdams, Selle, Ward, Sifakis, Teran 2009, *Detail Preserving Continuum Simulation of Straight Hair*).
+//! Projects velocities to be free of divergence (McAdams, Selle, Ward, Sifakis, Teran 2009, *Detail
+//! Preserving Continuum Simulation of Straight Hair*).
 //!
 //! ```text
 //! D M⁻¹ Dᵀ p = d − D v       v⁺ = v + M⁻¹ Dᵀ p       p ≥ 0,       d = e/τ where a cell is overfull by e
 //! ```
 //!
-//! over the cells that are full. (D v) of a cell is the divergence of the velocities at its eight corners, p its pressure times time, M the
-//! mass at the nodes: one operator and its transpose, so that what pushes a node pushes another back and the result is exact for these
-//! very velocities. Cells that are not full have no pressure: hair's surface is free. Nodes inside a collider move with it and have no
-//! inverse mass: hair is pressed off the body.
+//! The system covers the full cells. (D v) of a cell is the divergence of the velocities at its eight
+//! corners, p its pressure times time, and M the mass at the nodes. The same operator and its transpose are
+//! used, so momentum is conserved and the result is exact for these velocities. Cells that are not full have
+//! no pressure: the surface of the hair is free. Nodes inside a collider move with it and have zero inverse
+//! mass, so hair is pushed off the body.
 //!
-//! Hair is no liquid, and nothing keeps it from parting: pressure only presses (as Narain, Golas, Lin 2010 have it for sand). Cells that the solve
-//! finds to pull are let go, and the others solved again from what they have: one step of an active set, after which what still pulls counts as 0.
+//! Hair is not a liquid: nothing keeps it from separating. The pressure is therefore never negative (like
+//! that of sand in Narain, Golas, Lin 2010). Cells with negative pressure in the first solve are released,
+//! and the others are solved again, starting from their pressures. This is one step of an active-set method;
+//! pressures that are still negative count as 0.
 
 use super::{conjugate::Solve, field::Field};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// How full a cell is that hair begins to press in, and from which on it is hard [1]: below what chance leaves of a full one, see `rest::POINTS_A_CELL`.
+/// Fill at which a cell begins to have pressure, and at which it is hard [1]. Both are below the random
+/// variation of a full cell, see `rest::POINTS_A_CELL`.
 const FULL: [f32; 2] = [0.9, 0.95];
 
-/// Least mass at a corner of such a cell, over the mean of its eight [1], where it begins to press and where it is hard: what hangs on less is at the surface.
+/// The same thresholds for the smallest mass at a corner of the cell relative to the mean of its eight [1]. A
+/// cell with less is at the surface.
 const LEAST_MASS: [f32; 2] = [0.025, 0.05];
 
-/// How hard a cell is, 0 to 1, of which something is at `x`. Were there nothing between, the last bit of a place would tell whether a cell presses.
+/// Returns the hardness of a cell for a value `x`, 0 to 1. The ramp prevents the rounding of a position from
+/// deciding whether the cell has pressure.
 fn hardness(x: f32, [soft, hard]: [f32; 2]) -> f32 {
     ((x - soft) / (hard - soft)).clamp(0.0, 1.0)
 }
 
-/// Solves: of all full cells, then of those that press.
+/// Number of solves: one for all full cells, then one for those with positive pressure.
 const SOLVES: usize = 2;
 
-/// What the projection keeps from frame to frame: memory.
+/// Buffers of the projection, kept from frame to frame.
 #[derive(Default)]
 pub struct Projection {
     solve: Solve,
-    /// Velocities in the lattice's axes [m/s].
+    /// Velocities in the grid's axes [m/s].
     velocities: [Vec<f32>; 3],
 }
 
-/// What a projection came to.
+/// Statistics of a projection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Projected {
-    /// Cells that press.
+    /// Number of cells with pressure.
     pub cells: usize,
-    /// Iterations of the last solve.
+    /// Number of iterations of the last solve.
     pub iterations: u32,
-    /// What is left of the divergence of the cells that press, over what it was (root mean squares) [1].
+    /// Remaining divergence of the cells with pressure, relative to that before (root mean squares) [1].
     pub left: f64,
 }
 
 impl Projection {
-    /// Room for so many nodes ever.
+    /// Reserves memory for at most `nodes` nodes.
     pub fn reserve(&mut self, nodes: usize) {
         self.solve.reserve(nodes);
         self.velocities.iter_mut().for_each(|v| v.reserve_exact(nodes));
     }
 
-    /// The next projection knows of none before it.
+    /// Discards the warm start of the next projection.
     pub fn forget(&mut self) {
         self.solve.forget();
     }
 
-    /// Finds what changes the velocities of `field`. `to_lattice` turns a node's velocity into the lattice's axes and says whether the node
-    /// is solid, in which case it is the solid's; `wanted` is the divergence that a cell is to have, times 4 cells [m/s].
+    /// Computes the change of the velocities of `field`. `to_lattice` rotates a node's velocity to the grid's
+    /// axes and returns whether the node is solid; if so, the velocity is that of the solid. `wanted` is the
+    /// target divergence of a cell, times 4 cells [m/s].
     pub fn project(
         &mut self,
         field: &Field,
@@ -120,7 +128,7 @@ impl Projection {
         projected
     }
 
-    /// Change of the velocity of node `n` in the lattice's axes [m/s].
+    /// Returns the change of the velocity of node `n` in the grid's axes [m/s].
     pub fn change(&self, n: usize) -> Vec3 {
         self.solve.change(n)
     }

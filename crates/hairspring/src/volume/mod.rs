@@ -1,35 +1,46 @@
-//! Hair on hair, as a volume: in intervals of 1/240 s all simulated points leave their mass and momentum on a lattice, and take from it
-//! one acceleration each, which is frozen for the interval and all that the strands' solver sees.
+//! Hair-hair interaction on a grid. In intervals of 1/240 s, the mass and momentum of all simulated points
+//! are splatted to a grid. Each point receives one acceleration in return, which stays constant for the
+//! interval. The strands' solver sees only this acceleration.
 //!
 //! ```text
 //! node    M = Σ w m,   V = Σ w m v / M                         (Petrovic 2005)
 //! point   a = Σ w (A + β V + R V) − Σ w (β + R) v,   β = (1 − e^(−friction dt)) / dt
 //! ```
 //!
-//! - A is what the nodes' pressure does, by one of two methods: `density` (Petrovic 2005) or `incompressible` (McAdams 2009).
-//! - β is friction: the exact relaxation of the velocity relative to that of the hair around. It cannot overshoot, brakes no common motion, and
-//!   keeps momentum, because Σ m over the points of w (V − v) is 0 at every node. With A = (V⁺ − V)/dt, e^(−friction dt) of the velocity comes by
-//!   FLIP and the rest by PIC (Zhu & Bridson 2005, as McAdams 2009), in a blend that does not depend on the length of the interval.
-//! - R is what hair takes from hair that goes across it, a matrix, see `crossing`. Pressure and friction do not know of strands that go through each other within a cell.
+//! - A is the acceleration from the nodes' pressure, by one of two methods: `density` (Petrovic 2005) or
+//!   `incompressible` (McAdams 2009).
+//! - β is friction: the exact relaxation of the velocity toward that of the surrounding hair. It cannot
+//!   overshoot, does not damp common motion, and conserves momentum, because at every node the sum over the
+//!   points Σ m w (V − v) is 0. With A = (V⁺ − V)/dt, the fraction e^(−friction dt) of the velocity comes
+//!   from FLIP and the rest from PIC (Zhu & Bridson 2005, like McAdams 2009). This blend does not depend on
+//!   the length of the interval.
+//! - R is the drag matrix of hair that crosses other hair, see `crossing`. Pressure and friction do not
+//!   detect strands that pass through each other within a cell.
 //!
-//! All of it is a rate or exact for an interval of any length, and intervals are as long at any frame rate (`simulation/strand_parts.rs`): results depend on the frame
-//! rate as little as the strands do.
+//! All terms are rates, or exact for an interval of any length, and the length of intervals does not depend
+//! on the frame rate (`simulation/strand_parts.rs`). The results therefore depend as little on the frame rate
+//! as the strands do.
 //!
-//! # The five steps of McAdams 2009 here
-//! - Steps 1 and 2, positions and velocities free of collision and what forces make of the velocities, are the strands' state and their solve.
-//! - Step 3, the volume's correction, comes before step 2 instead of after it: it goes into the implicit solve, so that it stretches no strand.
-//! - Step 4, contact strand by strand where the lattice is too coarse to see it, so that webs of straight hair are not gone through, is
-//!   `neighbours`, switched on beside it.
-//! - Contact with the body and step 5, the new positions, end every substep as without it.
+//! # Correspondence to the five steps of McAdams 2009
+//! - Steps 1 and 2 (positions and velocities free of collisions, and the effect of forces on velocities) are
+//!   the strands' state and solve.
+//! - Step 3, the volume correction, comes before step 2 instead of after it. It is part of the implicit
+//!   solve, so it stretches no strand.
+//! - Step 4, contact between individual strands where the grid is too coarse, so that sheets of straight hair
+//!   do not pass through each other, is `neighbours`, which can be enabled in addition.
+//! - Contact with the body and step 5, the new positions, end every substep as they do without the volume.
 //!
 //! # Cost
-//! A point's 12 bytes of position are read for the window, its 24 of position and velocity and 8 of its own for the sums, 24 again for the
-//! acceleration, which is 12 to write here, 24 to change in the sum of all that acts, and 12 to read by the substeps. It adds 64 whole numbers at eight nodes and takes 96.
-//! Measured on one core with SSE2, bench scene of 96,000 points in 21,000 nodes: 56 ns a point and exchange for `density`, 117 for `incompressible` (solve of
-//! 34,000 nodes), caches that the strands then find cold and tiles that run one substep at a time included; a frame of 1/60 s has four exchanges.
+//! For the bounds, 12 bytes of a point's position are read. For the sums, 24 bytes of position and velocity
+//! and 8 bytes of constant data are read. For the acceleration, 24 bytes are read again, 12 are written here,
+//! 24 are changed in the sum of all external accelerations, and 12 are read by the substeps. Each point adds
+//! 64 integers at eight nodes and reads 96 values. Measured on one core with SSE2, for the bench scene with
+//! 96,000 points in 21,000 nodes: 56 ns per point and exchange for `density`, 117 for `incompressible` (solve
+//! of 34,000 nodes). This includes the cold caches that the strands find afterward, and tiles that run one
+//! substep at a time. A frame of 1/60 s has four exchanges.
 //!
 //! # Missing
-//! Followers are moved by their guides alone.
+//! Follow hairs are moved only by their guides.
 
 mod brakes;
 mod conjugate;
@@ -63,65 +74,68 @@ use rest::Rest;
 pub(crate) use sample::Density;
 use splat::{Extent, OwnRows, Sums, Tiles, Units, own};
 
-/// Most nodes of a window: those of a head of long hair in every direction in cells of a centimetre, and 75 MB for each thread.
+/// Maximum number of nodes: enough for a head of long hair spread in every direction, in cells of a
+/// centimeter. It takes 75 MB for each thread.
 const MOST_NODES: f32 = (1 << 21) as f32;
 
-/// Nodes of a window beyond its hair, along each axis [cells].
+/// Number of nodes beyond the hair, along each axis [cells].
 const RING: f32 = 6.0;
 
-/// Farthest cell from the anchor: single precision knows places there to a quarter of one.
+/// Maximum distance of a cell from the anchor [cells], where single precision resolves a quarter of a cell.
 const FARTHEST: f32 = (1 << 22) as f32;
 
-/// Most threads that sum by themselves: each has a grid to be added up.
+/// Maximum number of threads that sum separately: each has a grid, and the grids must be added up.
 const MOST_GRIDS: usize = 8;
 
-/// The hair volume of some simulated strands: what is known of their rest, and memory.
+/// The hair volume of some simulated strands: measurements at rest, and buffers.
 pub(crate) struct Volume {
     settings: settings::Volume,
     /// Edge of a cell [m].
     cell: f32,
-    /// Whether the cell is larger than was asked for, so that their number stays bounded.
+    /// Whether the cell is larger than requested, to bound the number of cells.
     grown: bool,
-    /// The box that hair can reach from where its roots are at rest, in the anchor's space [m].
+    /// The box that hair can reach with its roots at rest, in the anchor's space [m].
     reach: (Vec3, Vec3),
     /// Length of the longest strand [m].
     length: f32,
-    /// Distance of neighbouring strands at rest [m].
+    /// Distance of adjacent strands at rest [m].
     spacing: f32,
-    /// Length of strand in each mass of 1 [m].
+    /// Length of strand per unit of mass [m].
     per_mass: f32,
-    /// Index of each tile's first point, and of the first after the last.
+    /// Index of each tile's first point, followed by the end.
     firsts: Vec<u32>,
     own: Vec<OwnRows>,
     points: usize,
-    /// Sum of the points' masses over the largest.
+    /// Sum of the points' masses relative to the largest.
     total: f64,
     rest: Rest,
-    /// What acts on the points in this interval, shape `[points]` of all tiles [m/s²].
+    /// Accelerations of the points in this interval; shape `[points]` of all tiles [m/s²].
     acceleration: Vec<[Row; 3]>,
     sums: Vec<Sums>,
     field: Field,
     pressures: Vec<f32>,
     projection: Projection,
-    /// What hair took up of its cells at rest and at the start of the last interval, see [`taken_up`].
+    /// Result of [`fill_ratio`] at rest and at the start of the last interval.
     taken_up: [f64; 2],
 }
 
-/// What is known of a simulation's hair volume.
+/// Report of a simulation's hair volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VolumeReport {
     /// Edge of a cell [m].
     pub cell: f32,
-    /// Whether that is larger than was asked for, so that the number of cells stays bounded.
+    /// Whether that is larger than requested, to bound the number of cells.
     pub grown: bool,
-    /// Nodes of the lattice that the last interval used.
+    /// Number of grid nodes in the last interval.
     pub nodes: usize,
-    /// The volume that the hair took up at the start of the last interval, over that at rest [1]. The volume is that of its cells as far as
-    /// they are filled, none more than once: where strands crowd into each other's room, theirs is lost.
+    /// Volume of the hair at the start of the last interval relative to that at rest [1]. The volume is that
+    /// of its cells as far as they are filled, each at most once: where strands are compressed into each
+    /// other's rest volume, it is lost.
     pub share: f64,
 }
 
-/// When an interval begins: where the anchor is then, and which part of their way in the frame roots have gone [1].
+/// State at the start of an interval: the anchor, and the fraction of their motion in the frame that roots
+/// have completed [1].
 pub(crate) struct Now {
     pub anchor: RigidTransform,
     pub gone: f32,
@@ -133,32 +147,34 @@ impl Now {
     }
 }
 
-/// Strands at rest, as a simulation is built.
+/// Strands at rest, from which the volume is built.
 pub(crate) struct AtRest<'a> {
-    /// Index of each tile's first point, and of the first after the last.
+    /// Index of each tile's first point, followed by the end.
     pub firsts: Vec<u32>,
-    /// Mass of each point [kg], 0 for what is no point of a strand; shape `[points]` of all tiles.
+    /// Mass of each point [kg], 0 for particles that are not points of a strand; shape `[points]` of all
+    /// tiles.
     pub mass: Vec<Row>,
     /// Shape `[tiles]`.
     pub strand: &'a [StrandRows],
     /// Shape `[points]` of all tiles.
     pub state: &'a [StateRows],
-    /// Where the anchor is.
+    /// Pose of the anchor.
     pub anchor: RigidTransform,
-    /// Mean segment of the strands [m].
+    /// Mean segment length of the strands [m].
     pub segment: f32,
-    /// The longest strand [m].
+    /// Length of the longest strand [m].
     pub length: f32,
 }
 
 impl Volume {
-    /// The volume of strands at rest; `None` where there is nothing to it, or where it is off and not to be `measured` either.
+    /// Creates the volume of strands at rest. Returns `None` if there is no mass, or if the method is off and
+    /// `measured` is false.
     pub fn new(settings: &settings::Volume, measured: bool, at: AtRest) -> Option<Self> {
         let largest = at.mass.iter().flat_map(|m| m.0).fold(0.0, f32::max);
         if (settings.method == VolumeMethod::Off && !measured) || largest <= 0.0 {
             return None;
         }
-        // Rooms begin as the masses are, and are found below.
+        // Initially, rest volumes are proportional to the masses; they are computed below.
         let mut own: Vec<OwnRows> = at
             .mass
             .iter()
@@ -169,12 +185,12 @@ impl Volume {
         let tiles = Tiles { firsts: &at.firsts, strand: at.strand, state: at.state, own: &own };
         let grain = rest::grain(&tiles, &at.anchor, at.segment.max(1e-4));
         let asked = settings.cell.unwrap_or(grain.cell);
-        // Hair reaches no farther from its roots than it is long.
+        // Hair reaches no farther from its roots than its length.
         let extent = Extent::of(&tiles, &GridTransform::new(&at.anchor, 1.0), Vec3::ZERO);
         let reach = rest::reach((extent.lo, extent.hi), at.length);
         let size = (reach.1 - reach.0).max(Vec3::splat(asked));
         let mut cell = asked.max((size.element_product() / (0.5 * MOST_NODES)).cbrt());
-        // Around hair in two places far apart, most of the lattice is the ring.
+        // If hair is in two places far apart, most of the grid is the ring.
         let farthest = reach.0.abs().max(reach.1.abs()).max_element();
         while (size / cell + RING + 1.0).element_product() > MOST_NODES || farthest / cell > FARTHEST {
             cell *= 1.1;
@@ -213,7 +229,8 @@ impl Volume {
         Some(volume)
     }
 
-    /// Memory for a window around all that hair can reach, and a grid for each thread, so that no step has to ask for any.
+    /// Reserves memory for a grid around everything that hair can reach, and a grid for each thread, so that
+    /// no step allocates.
     fn reserve(&mut self) {
         let nodes = self.most_nodes();
         let grids = rayon::current_num_threads().clamp(1, MOST_GRIDS);
@@ -229,34 +246,36 @@ impl Volume {
         }
     }
 
-    /// See [`VolumeReport`].
+    /// Returns the report, see [`VolumeReport`].
     pub fn report(&self) -> VolumeReport {
         let nodes = self.field.window.nodes();
         VolumeReport { cell: self.cell, grown: self.grown, nodes, share: self.taken_up[1] / self.taken_up[0] }
     }
 
-    /// Bytes that it holds a strand's points in, the lattice not counted.
+    /// Returns the memory used for the points, in bytes, without the grid.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.own[..]) + size_of_val(&self.acceleration[..])
     }
 
-    /// Whether it does anything to the points.
+    /// Returns whether it acts on the points.
     pub fn acts(&self) -> bool {
         self.settings.method != VolumeMethod::Off
     }
 
-    /// Most nodes that it ever has.
+    /// Returns the maximum number of nodes.
     pub fn most_nodes(&self) -> usize {
         GridBounds::around(self.reach.0 / self.cell, self.reach.1 / self.cell).nodes()
     }
 
-    /// How full of hair every place was when it was last measured, and the anchor at `anchor`.
+    /// Returns the density at its last measurement, with the anchor at `anchor`.
     pub fn density(&self, anchor: RigidTransform) -> Density<'_> {
         Density::new(&self.field, self.cell, anchor)
     }
 
-    /// The window of hair of this extent, as far as it can reach from its roots: what is beyond is lost. Where roots have gone so far from where they are at
-    /// rest in the anchor's space that nodes would be too many, it is what hair reaches from there; what is elsewhere then meets nothing.
+    /// Returns the grid bounds for hair of this extent, limited to what it can reach from its roots; hair
+    /// beyond is ignored. If roots have moved so far from their rest position in the anchor's space that
+    /// there would be too many nodes, the bounds are those reachable from the rest position, and hair
+    /// elsewhere does not interact.
     fn window(&self, extent: &Extent) -> GridBounds {
         let rest = [self.reach.0 / self.cell, self.reach.1 / self.cell];
         let within = |[lo, hi]: [Vec3; 2]| [extent.lo, extent.hi].map(|corner| corner.clamp(lo, hi));
@@ -269,14 +288,15 @@ impl Volume {
         GridBounds::around(lo, hi)
     }
 
-    /// Begins a frame in which nothing of this acts yet. Pressures of the intervals in it begin with those of the last; those of its first do not, so that a frame
-    /// follows from places and velocities alone.
+    /// Begins a frame, in which nothing of this acts yet. Each interval's pressures start from those of the
+    /// previous interval, except for the first of a frame, so that a frame depends only on positions and
+    /// velocities.
     pub fn begin_frame(&mut self) {
         self.projection.forget();
         self.acceleration.fill([Row::default(); 3]);
     }
 
-    /// Measures where hair is, at the start of an interval.
+    /// Measures the hair at the start of an interval.
     pub fn measure(&mut self, (strand, state): (&[StrandRows], &[StateRows]), now: &Now) {
         self.reserve();
         let chart = now.chart(self.cell);
@@ -298,8 +318,9 @@ impl Volume {
         self.taken_up[1] = fill_ratio(&self.field.fill);
     }
 
-    /// Finds the accelerations of all points for an interval of `dt` [s] that has been measured, and puts them in the place of the last interval's in
-    /// `push` [m/s²], shape `[points]` of all tiles. `obstacles` are in the interval's first substep, of `h` [s].
+    /// Computes the accelerations of all points for an interval of `dt` [s] that has been measured. They
+    /// replace those of the last interval in `push` [m/s²], shape `[points]` of all tiles. `obstacles` are
+    /// the colliders in the first substep of the interval, of `h` [s].
     pub fn exchange(
         &mut self,
         dt: f32,
@@ -318,12 +339,12 @@ impl Volume {
         gather::all(&tiles, &now.chart(self.cell), &self.field.window, &self.field.push, points);
     }
 
-    /// What crossing hair takes in an interval of `dt` [s].
+    /// Returns the drag of crossing hair in an interval of `dt` [s].
     fn crossing(&self, dt: f32) -> Crossing {
         Crossing::new(self.spacing, self.per_mass, self.cell, dt)
     }
 
-    /// Acceleration by the pressure of crowded cells.
+    /// Computes the acceleration by the pressure of overfull cells.
     fn press(&mut self, dt: f32, anchor: &RigidTransform) {
         let (field, rest, window) = (&self.field, &self.rest, self.field.window);
         let excess = |cell: usize| rest.over_density(&window, cell, field.fill[cell]);
@@ -334,7 +355,7 @@ impl Volume {
         fill_push(&mut self.field, brakes, |n, mass| turn * push.at(n, mass));
     }
 
-    /// Acceleration that makes velocities free of divergence where hair is full.
+    /// Computes the acceleration that makes velocities free of divergence where hair is full.
     fn project(&mut self, dt: f32, anchor: &RigidTransform, obstacles: (&[ColliderPose], f32)) {
         let (field, rest, window, cell) = (&self.field, &self.rest, self.field.window, self.cell);
         let turn = Mat3::from_quat(anchor.rotation);
@@ -359,7 +380,8 @@ impl Volume {
     }
 }
 
-/// The part of the points' rooms that is filled once [1]: what is fuller than full has lost it.
+/// Returns the fraction of the points' rest volume that fills cells at most once [1]. What exceeds a full
+/// cell is lost.
 fn fill_ratio(fill: &[f32]) -> f64 {
     let (all, once) = fill
         .iter()
@@ -367,7 +389,8 @@ fn fill_ratio(fill: &[f32]) -> f64 {
     if all > 0.0 { once / all } else { 1.0 }
 }
 
-/// Velocity of the collider that `place` [m] is in at the start of a substep of `h` [s], in the world [m/s].
+/// Returns the velocity of the collider that contains `place` [m] at the start of a substep of `h` [s], in
+/// world space [m/s].
 fn solid((obstacles, h): (&[ColliderPose], f32), place: Vec3) -> Option<Vec3> {
     obstacles.iter().find_map(|o| {
         let local = o.start.0.transpose() * (place - o.start.1);

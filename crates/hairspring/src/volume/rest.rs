@@ -1,4 +1,4 @@
-//! What is measured once, at rest: the cell, each point's part of the hair's volume, and how full each cell is.
+//! Measurements at rest, made once: the cell size, each point's rest volume, and the fill of each cell.
 
 use super::{
     field::Field,
@@ -13,28 +13,32 @@ use crate::{
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 
-/// Points that a cell with any should hold at rest, in the mean: the sum over a cell and its neighbours is then of some 150 points, and
-/// rough to 8 % if they lie at random.
+/// Mean number of points that an occupied cell should hold at rest. A cell and its neighbors then contain
+/// about 150 points, whose number varies by 8 % if they are placed at random.
 const POINTS_A_CELL: f32 = 8.0;
 
-/// Largest room of a point [cells]: a lone one fills its own cell and a third of what is around it.
+/// Largest rest volume of a point [cells]: a single point fills its own cell and a third of the surrounding
+/// ones.
 const MOST_ROOM: f32 = 4.0;
 
-/// What may be fuller than at rest before it counts [1]: above what cells are filled unevenly by where they lie in hair that moves through them, and hardly seen.
+/// Fill ratio above which a cell counts as overfull [1]. It exceeds the variation from hair that moves
+/// through the cells, and is hardly visible.
 const SLACK: f32 = 1.1;
 
-/// How hair lies at rest.
+/// The distribution of hair at rest.
 pub struct Grain {
-    /// The smallest cell that holds [`POINTS_A_CELL`] points, and is no smaller than the mean segment [m].
+    /// Smallest cell that holds [`POINTS_A_CELL`] points on average and is no smaller than the mean segment
+    /// [m].
     pub cell: f32,
-    /// Distance of neighbouring strands [m].
+    /// Distance of adjacent strands [m].
     pub spacing: f32,
 }
 
-/// How hair with a mean segment of `segment` [m], above 0, lies at rest.
+/// Measures the distribution of hair at rest, with a mean segment of `segment` [m], above 0.
 ///
-/// The spacing is that of the strands around the mean point: with N points in a cell of edge c, n = ℓ Σ N (N − 1) / (c³ Σ N) is the length of
-/// the others' strands per volume around it, whose cross-section each shares with n others: 1/√n apart.
+/// The spacing is that of the strands around an average point. With N points in a cell of edge c, the length
+/// of other strands per volume around it is n = ℓ Σ N (N − 1) / (c³ Σ N). Then n strands pass through a unit
+/// cross-section, at a spacing of 1/√n.
 pub fn grain(tiles: &Tiles, anchor: &RigidTransform, segment: f32) -> Grain {
     let (mut cell, mut spacing) = (segment, segment);
     let mut occupied: Vec<u64> = Vec::new();
@@ -65,7 +69,7 @@ pub fn grain(tiles: &Tiles, anchor: &RigidTransform, segment: f32) -> Grain {
     Grain { cell, spacing }
 }
 
-/// How full cells are at rest, where that is more than full.
+/// Fill of the cells at rest, where that is above 1.
 #[derive(Default)]
 pub struct Rest {
     window: GridBounds,
@@ -73,17 +77,21 @@ pub struct Rest {
 }
 
 impl Rest {
-    /// How much fuller than it may be a cell of `window` is, when it is this full; 0 or less: it is not [1].
+    /// Returns the excess of a cell of `window` with this fill over the allowed fill; 0 or less if there is
+    /// none [1].
     pub fn over_density(&self, window: &GridBounds, cell: usize, fill: f32) -> f32 {
         let at = if *window == self.window { Some(cell) } else { self.window.index(window.place(cell)) };
         fill - SLACK * at.map_or(1.0, |at| self.fill[at].max(1.0))
     }
 
-    /// Gives every point its room, such that hair at rest fills the cells of `grain` [m] that it is in, or those of the lattice where they are smaller, and
-    /// remembers how full those of the lattice are, of `cell` [m].
+    /// Computes the rest volume of every point, such that hair at rest fills the cells that it occupies.
+    /// These are cells of `grain` [m], or of the grid if its `cell` [m] is smaller. Then stores the fill of
+    /// the grid's cells at rest.
     ///
-    /// Rooms are to be what is between strands, wherever a bundle goes in the lattice. So they are not such that larger cells are full, all of each that hair
-    /// reaches into; and they are found once, by how full cells are when all rooms are the same, and not until those at the surface are as full as those inside.
+    /// A rest volume should be the space between strands, wherever the bundle lies in the grid. Rest volumes
+    /// are therefore not chosen to fill larger cells, which hair occupies only partly. For the same reason
+    /// they are computed in a single pass, from the fill with equal rest volumes, and not iterated until
+    /// cells at the surface are as full as those inside.
     pub fn measure(
         &mut self,
         tiles: (&[StrandRows], &[StateRows], &[u32]),
@@ -94,7 +102,7 @@ impl Rest {
         let (strand, state, firsts) = tiles;
         let fine = cell.min(grain);
         let chart = GridTransform::new(anchor, fine);
-        // What is a cell of the fine lattice, in the lattice's.
+        // Volume of a fine cell in units of the grid's cell.
         let share = (fine / cell).powi(3);
         let Some(window) = fill(&Tiles { firsts, strand, state, own }, &chart, sums, field) else { return };
         for (rows, first) in strand.iter().zip(firsts.windows(2)) {
@@ -118,14 +126,14 @@ impl Rest {
     }
 }
 
-/// Finds how full the cells of hair are; the window around it, or `None` where there is none.
+/// Computes the fill of the cells. Returns the bounds of the hair, or `None` if there is none.
 fn fill(tiles: &Tiles, chart: &GridTransform, sums: &mut Sums, field: &mut Field) -> Option<GridBounds> {
     let extent = Extent::of(tiles, chart, Vec3::ZERO);
     if !(extent.lo.is_finite() && extent.hi.is_finite()) {
         return None;
     }
     let window = GridBounds::around(extent.lo, extent.hi);
-    // Any mass will do, rooms are sums of their own.
+    // Only the rest volumes are used here, so any unit of mass will do.
     let units = Units { mass: 1.0, momentum: 0.0, energy: 0.0, speed: 0.0, carried: Vec3::ZERO };
     sums.clear(window.nodes());
     sums.add(tiles, chart, &window, &units);
@@ -133,7 +141,7 @@ fn fill(tiles: &Tiles, chart: &GridTransform, sums: &mut Sums, field: &mut Field
     Some(window)
 }
 
-/// The box that strands with roots in one box (`lo`, `hi`) and no longer than `length` can reach.
+/// Returns the box that strands of at most `length` can reach, if their roots are in the box (`lo`, `hi`).
 pub fn reach((lo, hi): (Vec3, Vec3), length: f32) -> (Vec3, Vec3) {
     (lo - length, hi + length)
 }

@@ -1,10 +1,10 @@
-//! The lattice of a frame, read at any place.
+//! Samples the hair density of a frame at any point.
 
 use super::{field::Field, grid_bounds::GridBounds};
 use crate::math::RigidTransform;
 use glam::Vec3;
 
-/// How full of hair every place is.
+/// The hair density field.
 pub(crate) struct Density<'a> {
     field: &'a Field,
     cell: f32,
@@ -12,57 +12,59 @@ pub(crate) struct Density<'a> {
 }
 
 impl<'a> Density<'a> {
-    /// What `field` holds on a lattice with cells of `cell` [m], where the anchor is at `anchor`.
+    /// Creates the density from `field`, with grid cells of `cell` [m] and the anchor at `anchor`.
     pub(super) fn new(field: &'a Field, cell: f32, anchor: RigidTransform) -> Self {
         Self { field, cell, anchor }
     }
 
-    /// Edge of a cell [m].
+    /// Returns the edge of a cell [m].
     pub fn cell(&self) -> f32 {
         self.cell
     }
 
-    /// How many nodes there are.
+    /// Returns the number of nodes.
     pub fn nodes(&self) -> usize {
         self.field.window.nodes()
     }
 
-    /// Nodes in a slab of one z.
+    /// Returns the number of nodes in a slab of constant z.
     pub fn slab(&self) -> usize {
         self.field.window.slab()
     }
 
-    /// Whether there is hair in a cell around a node.
+    /// Returns whether there is hair in a cell around a node.
     pub fn is_near(&self, node: usize) -> bool {
         self.field.nodes[node][3] > 0.0
     }
 
-    /// Where a node is in the world [m].
+    /// Returns the position of a node in world space [m].
     pub fn place(&self, node: usize) -> Vec3 {
         self.anchor.point(self.field.window.place(node).as_vec3() * self.cell)
     }
 
-    /// Whether `place` in the world is where the lattice is.
+    /// Returns whether `place` in world space is inside the grid.
     pub fn holds(&self, place: Vec3) -> bool {
         self.corner(self.on_lattice(place)).is_some()
     }
 
-    /// How full of hair `place` in the world is, 1 where as full as at rest [1]; between the middles of cells.
+    /// Returns the fill at `place` in world space, 1 where it is as full as at rest [1], interpolated between
+    /// cell centers.
     pub fn fill(&self, place: Vec3) -> f32 {
         self.between(self.on_lattice(place) - 0.5, &self.field.fill).unwrap_or(0.0)
     }
 
-    /// What `values`, one a node, are at `place` in the world; `None` beyond the lattice.
+    /// Interpolates `values`, one for each node, at `place` in world space; `None` outside the grid.
     pub fn between_nodes(&self, place: Vec3, values: &[f32]) -> Option<f32> {
         self.between(self.on_lattice(place), values)
     }
 
-    /// `place` in the world, from the window's lowest node [cells].
+    /// Transforms `place` from world space to cells from the lowest node of the bounds.
     fn on_lattice(&self, place: Vec3) -> Vec3 {
         self.anchor.inverse_point(place) / self.cell - self.field.window.lo.as_vec3()
     }
 
-    /// Index of the node below `at` whose seven neighbours above are of the window too, and how far above it `at` is.
+    /// Returns the index of the lowest node of the cell that contains `at`, and the offset of `at` from it;
+    /// `None` outside the bounds.
     fn corner(&self, at: Vec3) -> Option<(usize, Vec3)> {
         let GridBounds { dims, .. } = self.field.window;
         let floor = at.floor();
@@ -71,7 +73,7 @@ impl<'a> Density<'a> {
         inside.then(|| ((z as usize * dims[1] + y as usize) * dims[0] + x as usize, at - floor))
     }
 
-    /// Trilinear between `values` that lie on whole numbers.
+    /// Interpolates `values` at integer positions trilinearly.
     fn between(&self, at: Vec3, values: &[f32]) -> Option<f32> {
         let (first, f) = self.corner(at)?;
         let v = self.field.window.corners().map(|corner| values[first + corner]);

@@ -1,6 +1,7 @@
-//! Points to lattice: mass, momentum, direction, energy and room to the corners of a point's cell.
+//! Splats points to the grid: mass, momentum, direction, energy and rest volume are distributed to the
+//! corners of a point's cell.
 //!
-//! Sums are whole numbers, so that they have the same bits in any order, and each thread may have a grid of its own.
+//! Sums are integers, so the result is bitwise identical in any order, and each thread can have its own grid.
 
 use super::grid_bounds::{GridBounds, GridTransform, Placed, nearest};
 use crate::{
@@ -9,46 +10,46 @@ use crate::{
 };
 use glam::{IVec3, Vec3};
 
-/// What is known of one point of eight strands for good.
+/// Constant data of a point of eight strands.
 pub mod own {
-    /// Mass over the largest of all points'; 0 for what is no point of a strand [1].
+    /// Mass relative to the largest point's; 0 for particles that are not points of a strand [1].
     pub const MASS: usize = 0;
-    /// The part of the hair's rest volume that is the point's, a whole number of [`super::ROOM`]ths of a cell.
+    /// Rest volume of the point, an integer in units of 1/[`super::ROOM`] of a cell.
     pub const ROOM: usize = 1;
-    /// Rows a point.
+    /// Number of rows per point.
     pub const ROWS: usize = 2;
 }
 
-/// What is known of one point of eight strands for good.
+/// Constant data of a point of eight strands.
 pub type OwnRows = [Row; own::ROWS];
 
-/// Units of room in a cell: a point's room, about an eighth of a cell, is then known to a ten thousandth at each corner, and to a tenth in cells ten times as
-/// large.
+/// Units of rest volume per cell. A typical point has an eighth of a cell, so its contribution to each corner
+/// is accurate to 1/10,000, and to a tenth if cells are ten times as large.
 pub const ROOM: f32 = 524288.0;
 
-/// Speed that counts as no more [m/s]: one strand that is gone wild takes no digits from the others.
+/// Limit of the speed [m/s], so that a single unstable strand does not reduce the precision of the others.
 const FASTEST: f32 = 50.0;
 
-/// Some tiles that follow each other.
+/// A range of consecutive tiles.
 #[derive(Clone, Copy)]
 pub struct Tiles<'a> {
-    /// Index of each one's first point, and of the first after the last.
+    /// Index of each tile's first point, followed by the end.
     pub firsts: &'a [u32],
     /// Shape `[tiles]`.
     pub strand: &'a [StrandRows],
-    /// Shape `[points]` of all tiles, as `own`.
+    /// Shape `[points]` of all tiles, like `own`.
     pub state: &'a [StateRows],
     /// Shape `[points]` of all tiles.
     pub own: &'a [OwnRows],
 }
 
 impl<'a> Tiles<'a> {
-    /// How many there are.
+    /// Returns the number of tiles.
     pub fn count(&self) -> usize {
         self.strand.len()
     }
 
-    /// Each tile's strands and points.
+    /// Iterates over each tile's strands and points.
     pub fn iter(&self) -> impl Iterator<Item = (&'a StrandRows, &'a [StateRows], &'a [OwnRows])> {
         let (state, own) = (self.state, self.own);
         self.strand.iter().zip(self.firsts.windows(2)).map(move |(strand, first)| {
@@ -57,7 +58,7 @@ impl<'a> Tiles<'a> {
         })
     }
 
-    /// The `part`th of `parts` that are about as large.
+    /// Returns one of `parts` parts of about equal size.
     pub fn part(&self, part: usize, parts: usize) -> Self {
         let at = |k: usize| k * self.count() / parts;
         let (a, b) = (at(part), at(part + 1));
@@ -65,21 +66,22 @@ impl<'a> Tiles<'a> {
     }
 }
 
-/// The box that points are in, that of their roots, and the fastest of them.
+/// Bounding box of the points, bounding box of their roots, and the maximum speed.
 #[derive(Clone, Copy)]
 pub struct Extent {
     /// Lowest corner [cells].
     pub lo: Vec3,
     /// Highest corner [cells].
     pub hi: Vec3,
-    /// Lowest and highest corner of the roots' [cells].
+    /// Lowest and highest corner of the roots' box [cells].
     pub roots: [Vec3; 2],
-    /// Largest component of a velocity relative to that of the roots, at most [`FASTEST`] [m/s].
+    /// Largest component of a velocity relative to `carried`, at most [`FASTEST`] [m/s].
     pub speed: f32,
 }
 
-/// The velocity that all are counted from: the middle of what those of the roots are [m/s]. Hair that is carried along at 5 m/s, and moves by 1 cm/s against its
-/// neighbours, would lose the digits of that.
+/// Returns the reference velocity: the midpoint of the range of the roots' velocities [m/s]. Without it, hair
+/// that moves at 5 m/s with the head and by 1 cm/s relative to its neighbors would lose the precision of the
+/// latter.
 pub fn root_velocity(tiles: &Tiles) -> Vec3 {
     let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for (_, state, own) in tiles.iter() {
@@ -95,7 +97,7 @@ pub fn root_velocity(tiles: &Tiles) -> Vec3 {
 }
 
 impl Extent {
-    /// Of no points.
+    /// The extent of no points.
     pub const NONE: Self = Self {
         lo: Vec3::INFINITY,
         hi: Vec3::NEG_INFINITY,
@@ -103,7 +105,8 @@ impl Extent {
         speed: 0.0,
     };
 
-    /// Of these points, velocities counted from `carried` [m/s]; what is not finite does not count.
+    /// Computes the extent of these points, with velocities relative to `carried` [m/s]. Values that are not
+    /// finite are ignored.
     pub fn of(tiles: &Tiles, chart: &GridTransform, carried: Vec3) -> Self {
         let (mut lo, mut hi) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
         let mut speed = [0.0_f32; LANES];
@@ -122,7 +125,7 @@ impl Extent {
                     let counts = own[own::MASS].0[lane] > 0.0;
                     for k in 0..3 {
                         let p = places[k][lane];
-                        // Comparisons that a NaN fails.
+                        // Comparisons that are false for a NaN.
                         lo[k][lane] = if counts & (p < lo[k][lane]) { p } else { lo[k][lane] };
                         hi[k][lane] = if counts & (p > hi[k][lane]) { p } else { hi[k][lane] };
                         let v = (at[state::V + k].0[lane] - carried[k]).abs();
@@ -136,7 +139,7 @@ impl Extent {
         Self { lo: lo.map(least).into(), hi: hi.map(most).into(), roots, speed: most(speed).min(FASTEST) }
     }
 
-    /// Of the points of both.
+    /// Returns the extent of the points of both.
     pub fn with(self, other: Self) -> Self {
         Self {
             lo: self.lo.min(other.lo),
@@ -147,10 +150,10 @@ impl Extent {
     }
 }
 
-/// The whole numbers that mass and momentum are counted in.
+/// Integer units in which mass and momentum are counted.
 #[derive(Clone, Copy)]
 pub struct Units {
-    /// Units in the largest point's mass.
+    /// Number of units in the largest point's mass.
     pub mass: f32,
     /// Units of momentum of that mass at 1 m/s [s/m].
     pub momentum: f32,
@@ -158,16 +161,17 @@ pub struct Units {
     pub energy: f32,
     /// Largest component of a velocity relative to `carried` [m/s].
     pub speed: f32,
-    /// The velocity that those of points are counted from [m/s].
+    /// Reference velocity of the points [m/s].
     pub carried: Vec3,
 }
 
-/// Most units in a point: they are rounded by [`nearest`].
+/// Maximum number of units in a point, since [`nearest`] rounds them.
 const MOST_UNITS: f32 = (1 << 21) as f32;
 
 impl Units {
-    /// As fine as they can be while a node could hold all `points`, of `total` mass over the largest one's, and none faster than `speed`
-    /// [m/s] relative to `carried` [m/s]: the sum of what 320,000 points could leave in one node is below 2³¹, each to one part in 6,000.
+    /// Chooses units as fine as possible without overflow, even if one node held all `points`, with a `total`
+    /// mass relative to the largest, and speeds up to `speed` [m/s] relative to `carried` [m/s]. The sum of
+    /// 320,000 points in one node stays below 2³¹, with a precision of one part in 6,000 for each.
     pub fn new(points: usize, total: f64, (speed, carried): (f32, Vec3)) -> Self {
         // Each may be rounded up by half a unit.
         let most = (f64::from(i32::MAX) - 0.5 * points as f64) / total.max(1.0);
@@ -177,26 +181,27 @@ impl Units {
     }
 }
 
-/// Sums at the nodes and cells of a window.
+/// Sums at the nodes of the grid bounds.
 #[derive(Default)]
 pub struct Sums {
-    /// Of each node: momentum along x, y, z, mass, the sum of the directions of strands times their mass along x, y, z, and the sum of m |v|².
+    /// For each node: momentum along x, y, z; mass; the mass-weighted sum of strand directions along x, y, z;
+    /// the sum of m |v|².
     pub nodes: Vec<i32>,
-    /// Room of the points at each node.
+    /// Rest volume of the points at each node.
     pub rooms: Vec<u32>,
 }
 
-/// Numbers a node.
+/// Number of values per node.
 pub const NODE: usize = 8;
 
 impl Sums {
-    /// Room for so many nodes ever.
+    /// Reserves memory for at most `nodes` nodes.
     pub fn reserve(&mut self, nodes: usize) {
         self.nodes.reserve_exact((nodes * NODE).saturating_sub(self.nodes.len()));
         self.rooms.reserve_exact(nodes.saturating_sub(self.rooms.len()));
     }
 
-    /// So many nodes, all 0.
+    /// Resizes to `nodes` nodes and sets all sums to 0.
     pub fn clear(&mut self, nodes: usize) {
         self.nodes.clear();
         self.nodes.resize(nodes * NODE, 0);
@@ -213,7 +218,7 @@ impl Sums {
             for (at, own) in state.iter().zip(own) {
                 chart.walk(&mut places, at);
                 let placed = Placed::new(&places, window);
-                // Momentum, mass, direction and energy, and room, of eight points.
+                // Momentum, mass, direction, energy and rest volume of eight points.
                 let mut there = placed.inside;
                 for k in 0..3 {
                     let Row(v) = &at[state::V + k];
@@ -229,7 +234,7 @@ impl Sums {
                     room[lane] = own[own::ROOM].0[lane] * there[lane];
                     let edge = [0, 1, 2].map(|k: usize| at[state::EDGE + k].0[lane]);
                     let length = (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]).sqrt();
-                    // The edge to a root has no direction.
+                    // The edge vector to a root has no direction.
                     let share = if length > 0.0 { counted[3][lane] / length } else { 0.0 };
                     for k in 0..3 {
                         counted[4 + k][lane] = if there[lane] > 0.0 { edge[k] * share } else { 0.0 };

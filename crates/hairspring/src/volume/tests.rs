@@ -1,5 +1,5 @@
-//! What the lattice does to hair that is laid into it by hand: it takes nothing from a rest or a common motion, keeps momentum, presses
-//! what is squeezed apart, and leaves no divergence where hair is full.
+//! Tests of the grid methods on a synthetic bundle of strands: they do not disturb hair at rest or in common
+//! motion, conserve momentum, push compressed hair apart, and leave no divergence in full cells.
 
 use super::{AtRest, Now, Volume, conjugate::TOLERANCE, field::Field, incompressible::Projection};
 use crate::settings;
@@ -11,18 +11,18 @@ use crate::{
 };
 use glam::{Quat, Vec3};
 
-/// Points of a strand.
+/// Number of points in a strand.
 const POINTS: usize = 16;
-/// Strands along a side of the bundle.
+/// Number of strands along a side of the bundle.
 const SIDE: usize = 24;
-/// Distance of neighbouring strands, and of neighbouring points [m].
+/// Distance of adjacent strands, and of adjacent points [m].
 const APART: f32 = 0.005;
-/// Length of an interval [s].
+/// Duration of an interval [s].
 const DT: f32 = 1.0 / 60.0;
 
 const METHODS: [VolumeMethod; 2] = [VolumeMethod::Density, VolumeMethod::Incompressible];
 
-/// A square bundle of strands, whose masses differ.
+/// A square bundle of strands with different masses.
 struct Bundle {
     strand: Vec<StrandRows>,
     state: Vec<StateRows>,
@@ -30,7 +30,7 @@ struct Bundle {
 }
 
 impl Bundle {
-    /// At rest.
+    /// Creates the bundle at rest.
     fn new() -> Self {
         let tiles = SIDE * SIDE / LANES;
         let mut bundle = Self {
@@ -47,9 +47,9 @@ impl Bundle {
         bundle
     }
 
-    /// Where point `i` of strand `s` is at rest, seen from the middle of the bundle.
+    /// Returns the rest position of point `i` of strand `s`, relative to the center of the bundle.
     fn rest(s: usize, i: usize) -> Vec3 {
-        // Off the lattice of the bundle by less than it is apart, so that no two planes of points coincide with cells.
+        // Jittered by less than the spacing, so that no plane of points coincides with cells.
         let chance =
             |k: usize| (((s * 7 + i * 3 + k) * 2_654_435_761 % 1_000) as f32 / 1_000.0 - 0.5) * APART;
         let p = Vec3::new((s % SIDE) as f32, i as f32, (s / SIDE) as f32) * APART
@@ -57,7 +57,7 @@ impl Bundle {
         p - Vec3::new(SIDE as f32, POINTS as f32, SIDE as f32) * (0.5 * APART)
     }
 
-    /// Puts every point where `of` its rest says, with that velocity, seen from `anchor`.
+    /// Sets the position and velocity of every point to `of` its rest position, in the space of `anchor`.
     fn set(&mut self, of: impl Fn(Vec3) -> (Vec3, Vec3), anchor: &RigidTransform) {
         for s in 0..SIDE * SIDE {
             let (tile, lane) = (s / LANES, s % LANES);
@@ -78,7 +78,7 @@ impl Bundle {
         }
     }
 
-    /// Its volume, of what it is now as its rest.
+    /// Creates its volume, with the current state as the rest state.
     fn volume(&self, method: VolumeMethod) -> Volume {
         let at = AtRest {
             firsts: (0..=self.strand.len() as u32).map(|t| t * POINTS as u32).collect(),
@@ -92,7 +92,7 @@ impl Bundle {
         Volume::new(&settings::Volume { method, ..settings::Volume::default() }, false, at).unwrap()
     }
 
-    /// The accelerations that it gets, of all points.
+    /// Returns the resulting accelerations of all points.
     fn exchange(&self, volume: &mut Volume, anchor: &RigidTransform) -> Vec<Vec3> {
         let mut push = vec![[Row::default(); 3]; self.state.len()];
         let now = Now { anchor: *anchor, gone: 1.0 };
@@ -120,7 +120,8 @@ fn a_rest_is_left_alone_in_every_pose_of_the_head() {
             bundle.set(|p| (p, Vec3::ZERO), &anchor);
             let push = bundle.exchange(&mut volume, &anchor);
             let most = push.iter().map(|a| a.length()).fold(0.0, f32::max);
-            // A point that rounding takes to the next cell fills it by a few hundredths: a tenth of gravity, there.
+            // Where rounding moves a point to the next cell, that is overfull by a few hundredths: a tenth of
+            // gravity.
             assert!(most < 1.0, "{method:?}, pose {k}: {most} m/s²");
         }
     }
@@ -137,7 +138,7 @@ fn what_moves_together_is_not_braked() {
             .iter()
             .map(|a| a.length())
             .fold(0.0, f32::max);
-        // All of it in a frame would be 220 m/s².
+        // Stopping all motion in one frame would take 220 m/s².
         assert!(most < 0.05, "{method:?}: {most} m/s²");
     }
 }
@@ -147,7 +148,8 @@ fn strands_that_cross_stop_each_other_and_slide_along_each_other() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
-        // Half of the points one way and half the other, wherever they are; what of it is taken in an interval [1].
+        // Half of the points move one way and half the other, regardless of position. Returns the fraction of
+        // their velocity that is removed in an interval [1].
         let mut taken = |direction: Vec3| {
             let side = |p: Vec3| if (1e5 * (p.x + p.z)) as i32 & 1 == 0 { 1.0 } else { -1.0 };
             bundle.set(|p| (p, direction * side(p)), &RigidTransform::default());
@@ -159,7 +161,7 @@ fn strands_that_cross_stop_each_other_and_slide_along_each_other() {
             let sum: f32 = push.iter().enumerate().map(|(k, a)| a.dot(velocity(k))).sum();
             -DT * sum / push.len() as f32 / direction.length_squared()
         };
-        // With λ of 5 mm, as the strands are apart, 3/4 at 1 m/s and 1/4 at 0.1 m/s: u dt / (λ + u dt).
+        // With λ of 5 mm, the spacing of the strands, u dt / (λ + u dt) is 3/4 at 1 m/s and 1/4 at 0.1 m/s.
         let (fast, slow, along) = (taken(Vec3::X), taken(0.1 * Vec3::Z), taken(Vec3::Y));
         println!("{method:?}: {fast} at 1 m/s, {slow} at 0.1 m/s, {along} along");
         assert!((0.5..0.85).contains(&fast), "{method:?}: {fast} at 1 m/s");
@@ -208,14 +210,14 @@ fn what_is_squeezed_is_pressed_apart() {
 fn no_divergence_is_left_where_hair_is_full() {
     let mut bundle = Bundle::new();
     let mut volume = bundle.volume(VolumeMethod::Incompressible);
-    // Falls in on itself, and is heavier on one side than on the other.
+    // The bundle collapses, and is heavier on one side than on the other.
     bundle.set(|p| (p, Vec3::new(-4.0, 1.0, -2.0) * p), &RigidTransform::default());
     bundle.exchange(&mut volume, &RigidTransform::default());
     let field: &Field = &volume.field;
     let mut projection = Projection::default();
     let found = projection.project(field, |_, v| (Vec3::new(v[0], v[1], v[2]), false), |_| 0.0);
     assert!(found.cells > 500 && found.left < TOLERANCE, "{found:?}");
-    // By hand, over the cells inside: what flows out of each.
+    // Independent check: the net outflow of each full cell.
     let corners = field.window.corners();
     let out = |cell: usize, projected: bool| -> f64 {
         let flow = |(k, corner): (usize, &usize)| {
