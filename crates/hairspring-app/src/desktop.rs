@@ -41,7 +41,8 @@ fn said(why: &str, missing: &[&(&str, &str)]) -> String {
 
 /// Returns the entries of `libraries` that the system does not have.
 fn missing<'a>(libraries: &'a [(&'a str, &'a str)]) -> Vec<&'a (&'a str, &'a str)> {
-    // SAFETY: these are the libraries that the window has just looked for by the same names: what they do when they are loaded is what they do in every window.
+    // SAFETY: the window has just tried to load the same libraries by the same names, so loading them runs only
+    // the initializers that run in every window.
     let found = |name: &str| unsafe { libloading::Library::new(name) }.is_ok();
     libraries.iter().filter(|(name, _)| !found(name)).collect()
 }

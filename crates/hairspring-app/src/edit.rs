@@ -18,8 +18,8 @@ pub fn of(
     Ok(match parameter.name {
         // A material without a preset is a single hair.
         "preset" => vec![(key, value.filter(|value| value.as_str() != Some("none")))],
-        // A look has either melanin or two colors. Setting one removes the other; removing melanin restores
-        // the colors of the time of opening.
+        // A look has either melanin or two colors. Setting melanin removes the colors; removing melanin
+        // restores the colors of the time of opening.
         "look.melanin" => {
             let pigment = value.is_some();
             let colors = ["root_color", "tip_color"].map(|name| {

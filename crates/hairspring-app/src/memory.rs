@@ -12,7 +12,8 @@ const PAGES: i32 = 4 << 20;
 /// From now on, large allocations are returned to the system as soon as they are freed.
 pub fn keep_little() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    // SAFETY: any thread may call it at any time; it sets a number. Else the number grows with what is freed, up to 32 MiB.
+    // SAFETY: `mallopt` may be called from any thread at any time; it sets a number. By default the number
+    // grows with the size of freed blocks, up to 32 MiB.
     unsafe {
         libc::mallopt(libc::M_MMAP_THRESHOLD, PAGES);
     }
@@ -21,7 +22,8 @@ pub fn keep_little() {
 /// Returns freed memory to the system.
 pub fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    // SAFETY: any thread may call it at any time; it takes each arena's lock, and leaves alone what is in use.
+    // SAFETY: `malloc_trim` may be called from any thread at any time. It takes each arena's lock, and does not
+    // touch memory in use.
     unsafe {
         libc::malloc_trim(0);
     }

@@ -1,14 +1,14 @@
 //! Scripted sessions: user input line by line, for tests, pictures and demonstrations.
 //!
 //! ```text
-//! # from the picture's top left corner (0, 0) to its bottom right (1, 1)
-//! wait 30                          steps of the simulation
-//! set groom[0].look.roughness 0.5  a value by its key; `unset KEY` takes it away
-//! hand grab                        look, grab, ball, head, pick, comb, hand
-//! drag 0.4 0.6 0.7 0.5 30          presses, moves in so many frames of the window, releases
-//! hold 0.4 0.6 0.7 0.5 30          the same, and holds on until `release`: to see what a tool does
-//! shot window.png                  the window as it is; paused, once it is drawn in full
-//! pace                             prints how it draws, how many pictures come in a second, and a step's time
+//! # coordinates: from the picture's top left corner (0, 0) to its bottom right (1, 1)
+//! wait 30                          waits for steps of the simulation
+//! set groom[0].look.roughness 0.5  writes a value by its key; `unset KEY` removes it
+//! hand grab                        selects a tool: look, grab, ball, head, pick, comb, hand
+//! drag 0.4 0.6 0.7 0.5 30          presses, moves in this number of frames of the window, releases
+//! hold 0.4 0.6 0.7 0.5 30          the same, but holds until `release`, to show the effect of a tool
+//! shot window.png                  writes a picture of the window; if paused, once it is drawn in full quality
+//! pace                             prints the renderer, the pictures per second, and the time of a step
 //! ```
 //!
 //! Other commands: `play`, `pause`, `step`, `reset`, `speed X`, `undo`, `redo`, `new STYLE`, `open FILE`,

@@ -42,7 +42,7 @@ mod tests {
     #[test]
     fn values_are_taken_from_all_along_strands_of_any_number_of_points() {
         for points in 2..200usize {
-            // Values from 0 at the root to 1 at the tip, with so many strands that any stride would be a
+            // Values from 0 at the root to 1 at the tip, for enough strands that any stride would be a
             // multiple of their points.
             let along = |i: usize| (i % points) as f32 / (points - 1) as f32;
             let values = [(0..points * 2048).map(along).collect::<Vec<f32>>(), vec![0.5; 3]];

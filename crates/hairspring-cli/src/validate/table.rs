@@ -1,4 +1,5 @@
-//! `hairspring validate --table`: every case with every model at 32 to 1,024 points, as the Markdown table of docs/validation.md.
+//! `hairspring validate --table`: every case with every model at 32 to 1,024 points, as the Markdown table of
+//! docs/validation.md.
 
 use crate::{
     console::{Console, say},
