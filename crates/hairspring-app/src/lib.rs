@@ -1,27 +1,23 @@
 //! The live window: hair can be viewed, touched and tuned while it is simulated.
 //!
-//!  | module | content |
-//!  | --- | --- |
-//!  | `document`, `effective`, `defaults` | the scene's text, edited in place; undo, save; its effective
-//! values, reference values and defaults |
-//!  | `destination` | paths of files to be written |
-//!  | `key`, `parameter`, `field` | keys of values; every parameter and every field of list entries, with
-//! unit, range and description |
-//!  | `edit` | how a new value of a parameter is written |
-//!  | `inactive_parameters` | parameters without effect in the current scene, and why |
-//!  | `differ` | differences between two compared scenes |
-//!  | `player`, `snapshot` | the simulation on its own thread, and its state at one moment |
-//!  | `pointer_collider`, `drag_limiter` | a sphere and a hand to push through hair, and the limits of what
-//! the pointer moves |
-//!  | `session`, `reading` | document and player together, controlled by actions; reading a scene in the
-//! background |
-//!  | `view`, `orbit`, `overlay`, `axes`, `ramp` | camera, tools and overlays |
-//!  | `handle`, `carried` | handles in the picture, and the current transforms of objects |
-//!  | `painter` | the renderers of the hair |
-//!  | `panel` | the panels around the picture |
-//!  | `record`, `letters`, `script` | recordings and text on them; scripted sessions |
-//!  | `memory` | returns unused memory to the system |
-//!  | `app`, `desktop` | the window, and the message if it cannot open |
+//! | module | content |
+//! | --- | --- |
+//! | `document`, `effective`, `defaults` | the scene's text, edited in place; undo, save; its effective values, reference values and defaults |
+//! | `destination` | paths of files to be written |
+//! | `key`, `parameter`, `field` | keys of values; every parameter and every field of list entries, with unit, range and description |
+//! | `edit` | how a new value of a parameter is written |
+//! | `inactive_parameters` | parameters without effect in the current scene, and why |
+//! | `differ` | differences between two compared scenes |
+//! | `player`, `snapshot` | the simulation on its own thread, and its state at one moment |
+//! | `pointer_collider`, `drag_limiter` | a sphere and a hand to push through hair, and the limits of what the pointer moves |
+//! | `session`, `reading` | document and player together, controlled by actions; reading a scene in the background |
+//! | `view`, `orbit`, `overlay`, `axes`, `ramp` | camera, tools and overlays |
+//! | `handle`, `carried` | handles in the picture, and the current transforms of objects |
+//! | `painter` | the renderers of the hair |
+//! | `panel` | the panels around the picture |
+//! | `record`, `letters`, `script` | recordings and text on them; scripted sessions |
+//! | `memory` | returns unused memory to the system |
+//! | `app`, `desktop` | the window, and the message if it cannot open |
 //!
 //! Data flows in one direction: panels read the session and return actions, the session edits the document
 //! and sends orders to the player, the player publishes snapshots, and a painter draws them.
