@@ -1,5 +1,5 @@
 #![no_main]
-//! `hairspring_io::makehuman::parse` on a small mesh and any rig and weights, parted by a zero byte.
+//! `hairspring_io::makehuman::parse` on a small mesh and any rig and weights, separated by a zero byte.
 const MESH: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\ng joint-a\nf 1 2 3\n";
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {

@@ -1,4 +1,5 @@
-//! Every fuzz target for a while, on stable Rust: libFuzzer needs no sanitizer to find a panic or a hang.
+//! Runs every fuzz target for a while, on stable Rust. libFuzzer needs no sanitizer to find a panic or a
+//! hang.
 
 use crate::run;
 use std::{
@@ -6,20 +7,21 @@ use std::{
     process::Child,
 };
 
-/// Targets that run at the same time.
+/// Number of targets that run at the same time.
 const AT_ONCE: usize = 2;
 
-/// Seed of the search that CI makes: one and the same, so that whether a commit passes is a matter of the commit.
+/// Seed of the search in CI. It is fixed, so that only the commit decides whether CI passes.
 pub const ALWAYS_THE_SAME: Option<u32> = Some(1);
 
-/// No target simulates, so that the solver's kernels are compiled for the oldest instruction set alone.
+/// No target simulates, so the solver's kernels are compiled for the oldest instruction set only.
 const ONE_INSTRUCTION_SET: &str =
     "--cfg disable_dispatch_avx512 --cfg disable_dispatch_avx2 --cfg disable_dispatch_sse4_2";
 
-/// Builds all targets, fills their corpora with the seeds that are made by code, and runs each for `seconds`. Without a
-/// `seed` every run is another search.
+/// Builds all targets, fills their corpora with generated seeds, and runs each target for `seconds`. Without
+/// a `seed` every run is a different search.
 pub fn all(seconds: u32, seed: Option<u32>) -> Result<(), String> {
-    // With the features of the whole workspace, as the tests: for the example's package alone, libraries have fewer, and the kernels are compiled twice.
+    // Uses the features of the whole workspace, as the tests do. For the example's package alone, libraries
+    // have fewer features, and the kernels would be compiled twice.
     run::cargo(&["build", "--release", "--workspace", "--example", "fuzz_seeds"], &[])?;
     let built = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
     run::program(&built.join("release/examples/fuzz_seeds"), &["fuzz/corpus"])?;
@@ -33,9 +35,9 @@ pub fn all(seconds: u32, seed: Option<u32>) -> Result<(), String> {
         }
         println!("fuzzing {target} for {seconds} s");
         let time = format!("-max_total_time={seconds}");
-        // libFuzzer's own default, 0, is a new seed each time.
+        // 0, libFuzzer's default, is a new seed each time.
         let seed = format!("-seed={}", seed.unwrap_or(0));
-        // A gibibyte and ten seconds for one input are what no reader may take.
+        // No reader may take more than one gibibyte of memory and ten seconds for one input.
         let arguments = [
             "fuzz",
             "run",

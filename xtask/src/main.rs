@@ -1,4 +1,4 @@
-//! Every developer command, the same ones that CI runs: `cargo xtask NAME`.
+//! All developer commands: `cargo xtask NAME`. CI runs the same ones.
 
 mod fuzz;
 mod layers;
@@ -65,12 +65,12 @@ fn main() {
     }
 }
 
-/// Draws the pictures of a page about the window, by a script.
+/// Draws the pictures of a page about the window with a script.
 fn window(script: &str) -> Result<(), String> {
     run::cargo(&["run", "--release", "--", "live", "--script", script], &[])
 }
 
-/// Lets a random hand play with the window's controls.
+/// Presses the window's controls at random.
 fn monkey(minutes: &str) -> Result<(), String> {
     let minutes: f64 = minutes.parse().map_err(|_| format!("'{minutes}' is not a number of minutes"))?;
     let seconds = format!("{}", (minutes * 60.0).round() as u64);
@@ -86,6 +86,6 @@ fn lint() -> Result<(), String> {
         &[],
     )?;
     run::cargo(&["doc", "--release", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")])?;
-    // Advisories are left out: their database comes over the network, on which no check of ours may depend.
+    // Advisories are left out: their database comes from the network, and no check of ours may depend on it.
     run::cargo(&["deny", "--workspace", "check", "bans", "licenses", "sources"], &[])
 }

@@ -1,15 +1,15 @@
-//! The pictures of the book, drawn by the program from the table `docs/pictures.toml`: scenes as they are, and each parameter of a scene at
-//! a low and at a high value.
+//! Draws the pictures of the book with the program, from the table `docs/pictures.toml`: scenes as they are,
+//! and each parameter of a scene at a low and at a high value.
 //!
 //! ```text
 //! [[scene]]                             [[parameter]]
 //! file = "examples/scenes/fan.toml"    name = "material.bend"           where the change goes, see `set`
 //! picture = "gallery/fan"              scene = "rail"                   of docs/parameters/scenes
-//! frame = 90                           frame = 30                       at 30 frames a second
-//! data = true  (files from elsewhere)
+//! frame = 90                           frame = 30                       at 30 frames per second
+//! data = true  (third-party files)
 //! card = true  (drawn with --gpu)      low = 0.5                        any value of TOML
 //!                                      high = 8.0
-//!                                      with = { "wind.gust" = 1.0 }     what is changed in both, if anything
+//!                                      with = { "wind.gust" = 1.0 }     optional changes in both
 //! ```
 
 use crate::run;
@@ -22,17 +22,18 @@ use toml::{Table, Value};
 
 const TABLE: &str = "docs/pictures.toml";
 
-/// Where scenes with one change are written: as deep as the scenes that they are made from, so that relative names hold.
+/// Folder for scenes with one change. It is as deep as that of the original scenes, so that relative paths
+/// still work.
 const CHANGED: &str = "out/pictures/scenes";
 
-/// Draws those whose name contains `part`.
+/// Draws the pictures whose name contains `part`.
 pub fn draw(part: &str) -> Result<(), String> {
     let table = read(Path::new(TABLE))?;
     let program = program()?;
     fs::create_dir_all(CHANGED).map_err(|why| format!("{CHANGED}: {why}"))?;
     for entry in entries(&table, "scene") {
         let (file, picture) = (word(entry, "file")?, word(entry, "picture")?);
-        // Scenes of other people's hair lie beside the checkout where there are any.
+        // Scenes of third-party hair may be next to the checkout.
         if entry.get("data").is_some() && !Path::new("../shared/data").exists() {
             println!("{picture}: skipped, the data that {file} names is not here");
         } else if picture.contains(part) {
@@ -62,7 +63,7 @@ pub fn draw(part: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The program, built; or the one that the environment names, for who has one.
+/// Builds the program, or uses the one that the environment variable names.
 fn program() -> Result<PathBuf, String> {
     if let Some(built) = std::env::var_os("HAIRSPRING") {
         return Ok(built.into());
@@ -72,7 +73,7 @@ fn program() -> Result<PathBuf, String> {
     Ok(target.join("release").join(format!("hairspring{}", std::env::consts::EXE_SUFFIX)))
 }
 
-/// Draws one frame of a scene as a picture of the book, on the processor or on the graphics card.
+/// Draws one frame of a scene as a picture of the book, on the CPU or on the GPU.
 fn render(
     program: &Path,
     scene: &Path,
@@ -103,8 +104,9 @@ fn render(
     }
 }
 
-/// Sets a parameter by its name in the book: keys with dots between them, of which those that are not there yet are made. In an array
-/// of tables it is set in each, and so in each material, whatever that is called.
+/// Sets a parameter by its name in the book: keys separated by dots. Missing tables are created. In an array
+/// of tables the parameter is set in each of them. In the same way it is set in every material, whatever its
+/// name is.
 fn set(scene: &mut Table, name: &str, value: &Value) -> Result<(), String> {
     if let Some(field) = name.strip_prefix("material.") {
         let materials = scene.get_mut("material").and_then(Value::as_table_mut);
@@ -121,7 +123,7 @@ fn set(scene: &mut Table, name: &str, value: &Value) -> Result<(), String> {
     }
 }
 
-/// The same below a value of the scene.
+/// Like [`set`], below a value of the scene.
 fn set_in(place: &mut Value, name: &str, value: &Value) -> Result<(), String> {
     match place {
         Value::Table(table) => set(table, name, value),

@@ -1,16 +1,16 @@
-//! Running other programs.
+//! Runs other programs.
 
 use std::{
     path::Path,
     process::{Command, Stdio},
 };
 
-/// `cargo` with these arguments and environment, its output shown.
+/// Runs `cargo` with these arguments and environment, and shows its output.
 pub fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), String> {
     finish("cargo", arguments, command(arguments, environment))
 }
 
-/// A program that was built, its output shown.
+/// Runs a program that was built, and shows its output.
 pub fn program(path: &Path, arguments: &[&str]) -> Result<(), String> {
     let mut command = Command::new(path);
     command.args(arguments).stdin(Stdio::null());
@@ -27,7 +27,7 @@ fn finish(name: &str, arguments: &[&str], mut command: Command) -> Result<(), St
     }
 }
 
-/// The command without running it.
+/// Returns the command without running it.
 pub fn command(arguments: &[&str], environment: &[(&str, &str)]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     command.args(arguments).envs(environment.iter().copied()).stdin(Stdio::null());

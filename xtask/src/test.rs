@@ -1,4 +1,4 @@
-//! All tests, and one line with their sum at the end.
+//! Runs all tests, and prints one line with the totals at the end.
 
 use crate::run;
 use std::{
@@ -6,13 +6,13 @@ use std::{
     process::Stdio,
 };
 
-/// Seed of what the tests draw at random: one and the same, so that whether a commit passes is a matter of the commit. `cargo test` draws anew
-/// each time.
+/// Seed of the tests' random input. It is fixed, so that only the commit decides whether CI passes. `cargo
+/// test` uses a new seed each time.
 const ALWAYS_THE_SAME: (&str, &str) = ("PROPTEST_RNG_SEED", "1");
 
 /// Runs every test of the workspace in release, the profile of the program, so that both share one build.
 pub fn all() -> Result<(), String> {
-    // The build without SIMD is compiled for its own test; with the feature the table of the bench has its row.
+    // With this feature, the build without SIMD is tested, and the bench table has its row.
     let arguments =
         ["test", "--release", "--workspace", "--no-fail-fast", "--features", "hairspring-cli/scalar"];
     println!("$ cargo {}", arguments.join(" "));
@@ -37,7 +37,7 @@ pub fn all() -> Result<(), String> {
     }
 }
 
-/// Adds a `test result: ok. 3 passed; 0 failed; 1 ignored; …` to passed, failed and skipped.
+/// Adds a line `test result: ok. 3 passed; 0 failed; 1 ignored; …` to passed, failed and skipped.
 fn add(sum: &mut [u64; 3], line: &str) {
     let Some(counts) = line.strip_prefix("test result: ") else { return };
     for part in counts.split([';', '.']) {

@@ -1,26 +1,29 @@
-//! Frames as three short lines each: red x, green y, blue z. Of the head; of roots, as the skin turns them; and along the strand that is picked and the one that it follows.
+//! Draws coordinate frames as three short lines: red x, green y, blue z. There are frames of the head, of
+//! roots (as the skin rotates them), and along the picked strand and the strand that it follows.
 //!
-//! Along a strand green leads to the next point, and red and blue are the root's, carried from segment to segment without twist (Bishop 1975, "There is more than one way to frame a curve": the
-//! frame that turns least).
+//! Along a strand, green points to the next point. Red and blue are those of the root, carried from segment
+//! to segment without twist (Bishop 1975, "There is more than one way to frame a curve": the
+//! rotation-minimizing frame).
 //!
 //! # Missing
-//! The twist that the rod model solves for is not shown: the library hands out no frames.
+//! The twist that the rod model solves for is not shown, because the library does not expose its frames.
 
 use crate::{overlay::OverlayPainter, snapshot::StageSnapshot};
 use eframe::egui::{Align2, Color32, FontId, Stroke, vec2};
 use glam::{Mat3, Quat, Vec3};
 
-/// Roots whose frames are drawn: more would be a carpet.
+/// Maximum number of roots whose frames are drawn. More would hide the hair.
 const ROOTS: usize = 160;
 /// Length of a root's axes [m].
 const SHORT: f32 = 0.009;
 /// Length of the head's axes [m].
 const LONG: f32 = 0.15;
-/// Colours of x, y and z.
+/// Colors of x, y and z.
 const COLORS: [Color32; 3] =
     [Color32::from_rgb(255, 80, 70), Color32::from_rgb(110, 230, 90), Color32::from_rgb(100, 160, 255)];
 
-/// Draws them; `picked`: groom and number of strands that are drawn along their whole length.
+/// Draws the frames. `picked` lists groom and index of strands whose frames are drawn along their whole
+/// length.
 pub fn draw(pen: &OverlayPainter, scenery: &StageSnapshot, picked: &[[usize; 2]]) {
     let (m, at) = scenery.anchor.matrix();
     frame(pen, at, m, LONG, 2.0);
@@ -29,7 +32,7 @@ pub fn draw(pen: &OverlayPainter, scenery: &StageSnapshot, picked: &[[usize; 2]]
             pen.painter.text(tip, Align2::LEFT_BOTTOM, name, FontId::proportional(13.0), Color32::WHITE);
         }
     }
-    // A groom of few hairs, such as brows, has as few frames.
+    // All grooms use the same stride, so a groom of few hairs, such as brows, has few frames.
     let every = 1 + scenery.still.counts[1] / ROOTS;
     for (g, (still, points)) in scenery.still.grooms.iter().zip(scenery.points()).enumerate() {
         for strand in (0..still.strands()).step_by(every) {
@@ -57,14 +60,14 @@ pub fn draw(pen: &OverlayPainter, scenery: &StageSnapshot, picked: &[[usize; 2]]
     );
 }
 
-/// Three axes at a place.
+/// Draws three axes at a position.
 fn frame(pen: &OverlayPainter, at: Vec3, axes: Mat3, length: f32, width: f32) {
     for (axis, color) in [axes.x_axis, axes.y_axis, axes.z_axis].into_iter().zip(COLORS) {
         pen.line(at, at + axis * length, Stroke::new(width, color));
     }
 }
 
-/// The frames of a strand's segments, at their middles; the strand itself in white.
+/// Draws the frames at the middles of a strand's segments, and the strand itself in white.
 fn along(pen: &OverlayPainter, points: &[Vec3], root: Mat3) {
     for (pair, axes) in points.windows(2).zip(carried(points, root)) {
         pen.line(pair[0], pair[1], Stroke::new(1.0, Color32::WHITE));
@@ -73,7 +76,7 @@ fn along(pen: &OverlayPainter, points: &[Vec3], root: Mat3) {
     }
 }
 
-/// The frame of each segment: y along it, x and z carried from the root's by the smallest turns.
+/// The frame of each segment: y along it, x and z carried from the root by the smallest rotations.
 fn carried(points: &[Vec3], root: Mat3) -> impl Iterator<Item = Mat3> {
     points.windows(2).scan(root, |frame, pair| {
         if let Some(way) = (pair[1] - pair[0]).try_normalize() {
@@ -90,7 +93,7 @@ mod tests {
 
     #[test]
     fn frames_lie_along_the_strand_and_do_not_twist() {
-        // A quarter of a circle in the plane of x and y: z stays z.
+        // A quarter of a circle in the plane of x and y: z does not change.
         let on = |k: usize| {
             let (sin, cos) = (k as f32 / 16.0 * std::f32::consts::FRAC_PI_2).sin_cos();
             Vec3::new(1.0 - cos, sin, 0.0)

@@ -1,23 +1,24 @@
-//! Where joints have carried what a scene lists: a collider is written down as it is at rest, and met where the head has taken it.
+//! Current transforms of the listed objects of a scene. For example, a collider is written at its rest
+//! position, but acts where the head has moved it.
 
 use hairspring::math::RigidTransform;
 use hairspring_scene::stage::Stage;
 
-/// How far each entry of a list has gone since rest, in the order of the scene file.
+/// Motion of each entry of a list since the rest pose, in the order of the scene file.
 #[derive(Default)]
 pub struct Carried {
-    /// Of `[[collider]]`.
+    /// For `[[collider]]`.
     pub colliders: Vec<RigidTransform>,
-    /// Of `[[wind_source]]`.
+    /// For `[[wind_source]]`.
     pub wind_sources: Vec<RigidTransform>,
-    /// Of `[[charged]]`, without their own ways.
+    /// For `[[charged]]`, without their own paths.
     pub charged: Vec<RigidTransform>,
-    /// Of `[[hand]]`, without their own ways.
+    /// For `[[hand]]`, without their own paths.
     pub hands: Vec<RigidTransform>,
 }
 
 impl Carried {
-    /// Takes up a stage as it is now.
+    /// Updates the transforms from the current state of a stage.
     pub fn fill(&mut self, stage: &Stage) {
         let scene = stage.scene();
         self.colliders.clear();

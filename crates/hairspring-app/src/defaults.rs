@@ -1,29 +1,31 @@
-//! What would count in a scene that nobody changed: as it was opened, and by the defaults of the library, of a built-in style and of the presets of materials.
+//! Reference values of a scene: those at the time it was opened, and the defaults of the library, of a
+//! built-in style and of material presets.
 
 use crate::effective::{effective, entries};
 use hairspring_io::read_settings;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Lists that are edited entry by entry: they have no default.
+/// Lists that are edited entry by entry. They have no defaults.
 const LISTS: [&str; 5] = ["collider", "hand", "wind_source", "charged", "sheet"];
 
-/// The values of a scene whose text is that of another, but for what defaults hang on: the built-in style, and which presets its materials begin from. Those it takes over.
+/// The values of a reference scene. Its text is that of another scene, except for what determines defaults:
+/// the built-in style and the presets of its materials are those of the current scene.
 pub struct Reference {
-    /// The other's text.
+    /// The text of the reference scene.
     from: Table,
-    /// What was read last.
+    /// The text that was last read.
     text: Table,
     values: Table,
 }
 
 impl Reference {
-    /// Of the scene `said` as it is now: what is changed later is compared with this.
+    /// Creates the reference for the scene `said` in its current state. Later changes are compared with it.
     pub fn opened(path: &Path, said: &Table) -> Self {
         Self::new(path, said, said.clone())
     }
 
-    /// Of a scene that says of its hair, body and motion what they are, and nothing else.
+    /// Creates the reference for a scene that specifies only the sources of its hair, body and motion.
     pub fn library(path: &Path, said: &Table) -> Self {
         Self::new(path, said, bare(said))
     }
@@ -35,7 +37,7 @@ impl Reference {
         reference
     }
 
-    /// Takes over the style and the presets that the scene says now.
+    /// Adopts the current style and presets of the scene.
     pub fn follow(&mut self, path: &Path, said: &Table) {
         let mut named = self.from.clone();
         take_over(named.get_mut("builtin"), said.get("builtin"), "style");
@@ -57,9 +59,10 @@ impl Reference {
         if text == self.text {
             return;
         }
-        // What the scene itself can be read with can be read here: less is said.
+        // This contains less than the scene's own text, so it can be read if that can.
         if let Ok(settings) = read_settings(path, &text.to_string()) {
-            // The names are the other's: a preset that was chosen since differs from what it was.
+            // The names are those of the reference, so that a preset that was chosen later counts as a
+            // difference.
             self.values = effective(&settings, &named);
             let style = self.from.get("builtin").map(|b| b.get("style").cloned().unwrap_or("wavy".into()));
             let grooms = self.values.get_mut("groom").and_then(Value::as_array_mut);
@@ -70,18 +73,18 @@ impl Reference {
         self.text = text;
     }
 
-    /// Its values, by the names of [`effective`].
+    /// The reference values, with the keys of [`effective`].
     pub fn values(&self) -> &Table {
         &self.values
     }
 
-    /// The other's text.
+    /// The text of the reference scene.
     pub fn said(&self) -> &Table {
         &self.from
     }
 }
 
-/// Writes what `said` says of `name`, or that it says nothing of it.
+/// Copies the value of `name` from `said`, or removes it if `said` does not have it.
 fn take_over(table: Option<&mut Value>, said: Option<&Value>, name: &str) {
     if let Some(table) = table.and_then(Value::as_table_mut) {
         match said.and_then(|said| said.get(name)) {
@@ -91,7 +94,7 @@ fn take_over(table: Option<&mut Value>, said: Option<&Value>, name: &str) {
     }
 }
 
-/// The scene's hair, body and motion, by no more than what they are made from.
+/// Reduces a scene to the sources of its hair, body and motion.
 fn bare(said: &Table) -> Table {
     let only = |value: &Value, names: &[&str]| -> Value {
         let table = names.iter().filter_map(|name| Some(((*name).to_owned(), value.get(name)?.clone())));

@@ -1,8 +1,9 @@
-//! What a window takes of the system, and what is said where that is missing: one sentence, never a panic.
+//! System requirements of the window. A missing one is reported in one sentence and never causes a panic.
 
 use std::sync::Arc;
 
-/// Libraries that the window's own libraries look for when it opens, and Debian's packages of them. Some systems do without the one or the other: only what failed names what is missing.
+/// Shared libraries that the window's own dependencies load at startup, and their Debian packages. Not every
+/// system needs all of them; they are only checked after a failure.
 const LIBRARIES: &[(&str, &str)] = if cfg!(target_os = "linux") {
     &[
         ("libX11.so.6", "libx11-6"),
@@ -20,7 +21,7 @@ const LIBRARIES: &[(&str, &str)] = if cfg!(target_os = "linux") {
     &[]
 };
 
-/// What to say where no window could be opened for this reason.
+/// Returns the message for a window that could not be opened for this reason.
 pub fn sentence(why: &str) -> String {
     said(why, &missing(LIBRARIES))
 }
@@ -38,14 +39,15 @@ fn said(why: &str, missing: &[&(&str, &str)]) -> String {
     }
 }
 
-/// Those of `libraries` that the system does not find.
+/// Returns the entries of `libraries` that the system does not have.
 fn missing<'a>(libraries: &'a [(&'a str, &'a str)]) -> Vec<&'a (&'a str, &'a str)> {
-    // SAFETY: these are the libraries that the window has just looked for by the same names: what they do when they are loaded is what they do in every window.
+    // SAFETY: the window has just tried to load the same libraries by the same names, so loading them runs only
+    // the initializers that run in every window.
     let found = |name: &str| unsafe { libloading::Library::new(name) }.is_ok();
     libraries.iter().filter(|(name, _)| !found(name)).collect()
 }
 
-/// A reason without the place in somebody's source that it was found at, as in `os error at mod.rs:788: no such thing`.
+/// Removes the source location from a reason, as in `os error at mod.rs:788: no such thing`.
 fn plain(why: &str) -> &str {
     if why.contains("for any enabled backend") {
         return "no graphics driver draws on this desktop";
@@ -56,7 +58,8 @@ fn plain(why: &str) -> &str {
     after.trim_end_matches('.')
 }
 
-/// Runs `open`; an error where a library of the desktop is missing, which the window's library says by a panic. Other panics go on.
+/// Runs `open`. If a library of the desktop is missing, which the window's dependency reports by a panic,
+/// this returns an error. Other panics continue.
 pub fn without_library<R>(open: impl FnOnce() -> R) -> Result<R, String> {
     const SIGN: &str = "could not be loaded";
     let usual: Arc<dyn Fn(&std::panic::PanicHookInfo<'_>) + Send + Sync> = Arc::from(std::panic::take_hook());

@@ -1,4 +1,4 @@
-//! Where a file goes that a person names: into which folder really, and what is said where there is none.
+//! Paths of files to be written: resolves the folder, and reports a missing one.
 
 use crate::AppError;
 use std::{
@@ -6,10 +6,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The path of a file that will be written, from the top and without `..`: what is said of it can be found.
+/// Returns the path of a file to be written as an absolute path without `..`, so that messages show where it
+/// is.
 ///
 /// # Errors
-/// If its folder is not there, or it names no file.
+/// Returns an error if the folder does not exist, or if the path names no file.
 pub fn destination(path: &Path) -> Result<PathBuf, AppError> {
     let whole = std::path::absolute(path)
         .map_err(|why| AppError::new(format!("{} names no file: {why}", path.display())))?;
@@ -31,7 +32,7 @@ pub fn destination(path: &Path) -> Result<PathBuf, AppError> {
     }
 }
 
-/// The same path without `..`, where its folder is there: a link in place of the file stays one.
+/// Returns the path without `..` if its folder exists. A symbolic link as the last component is kept.
 pub fn settled(path: &Path) -> PathBuf {
     destination(path).unwrap_or_else(|_| path.to_owned())
 }

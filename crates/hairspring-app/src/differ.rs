@@ -1,11 +1,11 @@
-//! What two scenes that are compared differ in, in the words of the panel.
+//! Lists the differences between two compared scenes, with the labels of the panel.
 
 use crate::parameter;
 
-/// Most differences that are named: what does not fit under a picture is counted.
+/// Maximum number of differences that are listed. The rest does not fit under a picture and is only counted.
 const MOST: usize = 3;
 
-/// What the left and the right scene differ in, by their effective values: a line for each.
+/// The differences between the effective values of the left and the right scene, as one line for each.
 pub fn captions(left: &toml::Table, right: &toml::Table) -> [String; 2] {
     let mut found = Vec::new();
     let [left, right] = [left, right].map(|t| toml::Value::Table(t.clone()));
@@ -24,7 +24,7 @@ pub fn captions(left: &toml::Table, right: &toml::Table) -> [String; 2] {
     })
 }
 
-/// Goes into tables and lists of tables; all else is a value.
+/// Descends into tables and lists of tables; everything else is compared as a value.
 fn differences(
     key: &str,
     left: Option<&toml::Value>,
@@ -65,12 +65,12 @@ fn written(value: Option<&toml::Value>) -> String {
     }
 }
 
-/// What the panel calls a value, or its key.
+/// The panel's label of a value, or its key.
 fn label(key: &str) -> &str {
     let known = |p: &&parameter::Parameter| {
         key == p.name || key.strip_suffix(p.name).is_some_and(|k| k.ends_with('.'))
     };
-    // Of names that end alike the longest is meant.
+    // If several names have the same ending, the longest one is used.
     parameter::ALL.iter().filter(known).max_by_key(|p| p.name.len()).map_or(key, |p| p.label)
 }
 

@@ -1,51 +1,53 @@
-//! What the pointer moves, moved as a person would: no faster than an arm; an open hand with its palm to the head, and its fingers across the way that it strokes.
+//! Limits the motion of what the pointer drags to that of a person: no faster than an arm. An open hand turns
+//! its palm to the head and its fingers perpendicular to the stroke.
 
 use crate::{player::STEP, pointer_collider::Pushed};
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{collide::ColliderShape, math::RigidTransform};
 use hairspring_scene::stage::PosedBody;
 
-/// Fastest that the pointer takes a tool along, or what is pushed [m/s]: a hand that throws. Where steps take longer than they last, the pointer is that much
-/// faster in the scene than on the desk.
+/// Maximum speed of a dragged tool or pushed object [m/s]: that of a throwing hand. If steps take longer than
+/// real time, the pointer is correspondingly faster in the scene than on the desk.
 pub const FASTEST: f32 = 4.0;
 
-/// The same of an open hand [m/s]: a quick stroke. Where steps take long, four metres a second would be a blow, which ruffles a head of hair.
+/// Maximum speed of an open hand [m/s]: a quick stroke. If steps take long, four meters per second would act
+/// as a blow that ruffles the hair.
 pub const FASTEST_STROKE: f32 = 1.5;
 
-/// The same of the head [m/s]: one that is shaken hard.
+/// Maximum speed of the head [m/s]: a head that is shaken hard.
 pub const FASTEST_HEAD: f32 = 1.5;
 
-/// How soon a hand lies as it should [1/s]: within a fifth of a second.
+/// Rate at which a hand assumes its orientation [1/s]: within a fifth of a second.
 const TURN: f32 = 12.0;
 
-/// How much of the last step's way counts in that of a stroke [1].
+/// Weight of the last step's motion in the stroke direction [1].
 const STROKE: f32 = 0.15;
 
-/// Speed of a stroke below which fingers turn the less the slower it is [m/s].
+/// Speed below which a stroke turns the fingers only partially [m/s].
 const SLOW: f32 = 0.3;
 
-/// Hair that has room between a hand and the skin, over the hand's length [1]: 5 mm.
+/// Space for hair between the hand and the skin, relative to the hand's length [1]: 5 mm.
 const ROOM: f32 = 0.03;
 
-/// Over which distance a palm sees the skin as one plane, over the hand's length [1].
+/// Distance over which the skin is averaged to a plane under the palm, relative to the hand's length [1].
 const PALM: f32 = 0.2;
 
-/// What the pointer pulls.
+/// An object that follows the pointer.
 #[derive(Clone, Copy, Default)]
 pub struct Pulled {
-    /// Where it is.
+    /// The current pose.
     pub now: RigidTransform,
-    /// Where the pointer has it.
+    /// The pose of the pointer.
     pub wanted: RigidTransform,
 }
 
 impl Pulled {
-    /// Something that is taken at `pose`.
+    /// Creates an object that is grabbed at `pose`.
     pub fn at(pose: RigidTransform) -> Self {
         Self { now: pose, wanted: pose }
     }
 
-    /// Goes on for a step, no faster than so many metres a second; whether it moved.
+    /// Advances by one step, with at most `fastest` [m/s]. Returns whether the object moved.
     pub fn go(&mut self, fastest: f32) -> bool {
         let way = self.wanted.translation - self.now.translation;
         let moved = self.now != self.wanted;
@@ -55,31 +57,31 @@ impl Pulled {
     }
 }
 
-/// What is to be pushed, and how it is looked at.
+/// A request to push an object, and the orientation of the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
     /// A ball or a hand.
     pub what: Pushed,
-    /// Where the pointer has its middle [m].
+    /// Center of the object at the pointer [m].
     pub at: Vec3,
-    /// Which way is right in the picture, and which up.
+    /// The right and the up direction of the picture.
     pub axes: [Vec3; 2],
 }
 
-/// What is being pushed.
+/// The object that is being pushed.
 pub struct Pushing {
     push: Push,
     pulled: Pulled,
-    /// Of `push.what`, in its own space.
+    /// Colliders of `push.what`, in its own space.
     shapes: Vec<ColliderShape>,
-    /// How far a hand is lifted off the skin [m].
+    /// Distance by which a hand is lifted off the skin [m].
     lift: f32,
-    /// The way of a stroke, over some steps [m/s].
+    /// Velocity of the stroke, averaged over a few steps [m/s].
     stroke: Vec3,
 }
 
 impl Pushing {
-    /// What is put in over this body.
+    /// Creates the object over this body.
     pub fn new(push: Push, body: Option<PosedBody>) -> Self {
         let (shapes, mut place) =
             (push.what.shapes(), RigidTransform { translation: push.at, ..RigidTransform::default() });
@@ -91,7 +93,7 @@ impl Pushing {
         Self { shapes, push, pulled: Pulled::at(place), lift: 0.0, stroke: Vec3::ZERO }
     }
 
-    /// What the pointer wants now.
+    /// Updates the target of the pointer.
     pub fn want(&mut self, push: Push) {
         if push.what != self.push.what {
             self.shapes = push.what.shapes();
@@ -99,22 +101,23 @@ impl Pushing {
         self.push = push;
     }
 
-    /// What hair meets of it, and where that is.
+    /// The colliders of the object, and their pose.
     pub fn placed(&self) -> (&[ColliderShape], RigidTransform) {
         (&self.shapes, self.pulled.now)
     }
 
-    /// What is pushed, and where it is.
+    /// The object and its pose, for drawing.
     pub fn shown(&self) -> (Pushed, RigidTransform) {
         (self.push.what, self.pulled.now)
     }
 
-    /// Goes on for a step, over this body; whether it moved.
+    /// Advances by one step over this body. Returns whether the object moved.
     pub fn go(&mut self, body: Option<PosedBody>) -> bool {
         let before = self.pulled.now;
         self.pulled.wanted = RigidTransform { translation: self.push.at, ..before };
         if let Pushed::Hand(length) = self.push.what {
-            // In steps that are not longer than it may go: it comes to no other side of the head.
+            // Each step is limited in length, so that the hand cannot pass through to the other side of the
+            // head.
             let way = (self.push.at - before.translation).clamp_length_max(FASTEST_STROKE * STEP);
             let back = back(&self.push, length, before.translation + way, body);
             let speed = self.stroke.length();
@@ -127,7 +130,8 @@ impl Pushing {
                 rotation: before.rotation.slerp(wanted, soon(TURN)),
                 translation: before.translation + way,
             };
-            // It comes down slower than it goes up: it glides over a nose, and does not drop behind it.
+            // It descends more slowly than it rises, so that it glides over a nose instead of dropping behind
+            // it.
             self.lift = (self.lift * (1.0 - soon(TURN))).max(lift(&self.shapes, place, length, body));
             self.pulled.wanted =
                 RigidTransform { translation: place.translation + back * self.lift, ..place };
@@ -139,31 +143,33 @@ impl Pushing {
     }
 }
 
-/// Share of the way that is done in a step at this rate [1/s].
+/// Fraction of the remaining distance that is covered in a step at this rate [1/s].
 fn soon(rate: f32) -> f32 {
     1.0 - (-rate * STEP).exp()
 }
 
-/// A hand that points along `fingers` as far as it can with its back to `back`.
+/// A hand that points along `fingers` as far as possible with its back toward `back`.
 fn turned(fingers: Vec3, back: Vec3) -> Quat {
     let fingers = fingers.reject_from_normalized(back).try_normalize();
     let fingers = fingers.unwrap_or_else(|| back.any_orthonormal_vector());
     Quat::from_mat3(&Mat3::from_cols(fingers.cross(back), fingers, back)).normalize()
 }
 
-/// Where the back of a hand looks with its middle at `p`: away from the skin where that is near, else at who pushes it.
+/// Direction of the back of a hand with its center at `p`: away from the skin near it, otherwise toward the
+/// viewer.
 fn back(push: &Push, length: f32, p: Vec3, body: Option<PosedBody>) -> Vec3 {
     let viewer = push.axes[0].cross(push.axes[1]).normalize_or(Vec3::Z);
     let Some((nearest, normal)) = body.and_then(|body| skin(&body, p, PALM * length)) else { return viewer };
-    // At a hand's length it begins to turn, at half of it it lies.
+    // The hand begins to turn at a distance of its length, and lies flat at half of it.
     let near = (2.0 - 2.0 * p.distance(nearest) / length).clamp(0.0, 1.0);
     viewer.lerp(normal, near * near * (3.0 - 2.0 * near)).normalize_or(normal)
 }
 
-/// How far a hand of these shapes at `place` has to be lifted for hair to have room under its joints [m].
+/// Distance by which a hand with these shapes at `place` must be lifted, so that hair has space under its
+/// joints [m].
 fn lift(shapes: &[ColliderShape], place: RigidTransform, length: f32, body: Option<PosedBody>) -> f32 {
     let Some(body) = body else { return 0.0 };
-    // What is farther than the hand is long touches nothing.
+    // Vertices farther away than the hand's length cannot touch it.
     let skin: Vec<(Vec3, Vec3)> = body
         .positions
         .iter()
@@ -184,7 +190,8 @@ fn lift(shapes: &[ColliderShape], place: RigidTransform, length: f32, body: Opti
     missing.fold(0.0, f32::max)
 }
 
-/// The place of a body that is nearest to `p`, and the mean normal of what is around it, by a Gaussian of width `size` [m]; `None` where there is none.
+/// The point of a body that is nearest to `p`, and the mean normal around it, weighted by a Gaussian of width
+/// `size` [m]; `None` if there is no vertex.
 fn skin(body: &PosedBody, p: Vec3, size: f32) -> Option<(Vec3, Vec3)> {
     let away = |q: &Vec3| q.distance_squared(p);
     let nearest =
@@ -193,7 +200,7 @@ fn skin(body: &PosedBody, p: Vec3, size: f32) -> Option<(Vec3, Vec3)> {
     let mut normal = Vec3::ZERO;
     for (q, n) in body.positions.iter().zip(body.normals) {
         let power = scale * (away(q) - least);
-        // What is farther than four widths counts for nothing.
+        // Normals farther away than four widths are ignored.
         if power > -8.0 {
             normal += *n * power.exp();
         }
@@ -209,7 +216,7 @@ mod tests {
 
     const LENGTH: f32 = Hand::LENGTH;
 
-    /// A head: a ball of 9 cm around the origin.
+    /// A head: a sphere of 9 cm around the origin.
     fn head() -> Mesh {
         let golden = std::f32::consts::PI * (3.0 - 5f32.sqrt());
         let on = |k: usize| {
@@ -241,7 +248,7 @@ mod tests {
     fn it_goes_around_a_head_with_its_palm_to_it_and_no_faster_than_it_may() {
         let head = head();
         let mut pushing = Pushing::new(push(Vec3::new(0.0, 0.0, 0.12)), Some(posed(&head)));
-        // Straight through the head, from its front to beyond its side, at once.
+        // Straight through the head, from its front to beyond its side, in one move.
         let beyond = Vec3::new(0.3, 0.0, 0.03);
         pushing.want(push(beyond));
         let mut last = pushing.pulled.now;

@@ -1,12 +1,13 @@
-//! What a parameter's new value writes in the scene's text: mostly itself, and what cannot stand beside it makes room.
+//! Converts a new value of a parameter into edits of the scene's text. Mostly this is the value itself;
+//! values that exclude each other are removed.
 
 use crate::{AppError, document::Document, key::Key, parameter::Parameter};
 use toml_edit::Value;
 
-/// What one step writes: values by their keys; none are taken away.
+/// The edits of one step: values by their keys. `None` removes the value.
 pub type Edits = Vec<(Key, Option<Value>)>;
 
-/// What writes `value` to a parameter of this groom and group of it; `None`: as it is unsaid.
+/// Returns the edits that write `value` to a parameter of this groom and group; `None` restores the default.
 pub fn of(
     document: &mut Document,
     parameter: &Parameter,
@@ -15,9 +16,10 @@ pub fn of(
 ) -> Result<Edits, AppError> {
     let key = parameter.place(document, groom, group)?;
     Ok(match parameter.name {
-        // A material without a preset is a lone hair.
+        // A material without a preset is a single hair.
         "preset" => vec![(key, value.filter(|value| value.as_str() != Some("none")))],
-        // A look has pigment or two colours: one makes room for the other, which comes back as the scene was opened with it.
+        // A look has either melanin or two colors. Setting melanin removes the colors; removing melanin
+        // restores the colors of the time of opening.
         "look.melanin" => {
             let pigment = value.is_some();
             let colors = ["root_color", "tip_color"].map(|name| {
@@ -27,7 +29,8 @@ pub fn of(
             });
             std::iter::once((key, value)).chain(colors).collect()
         }
-        // A camera is said as a whole: of one that stands where a style put it, the rest is written as it is.
+        // A camera is written as a whole. If the style placed it, its other values are written with their
+        // current ones.
         "camera.position" | "camera.target" | "camera.fov" => {
             let whole = ["position", "target", "fov"].map(|name| {
                 let key = key.sibling(name);
@@ -42,16 +45,17 @@ pub fn of(
     })
 }
 
-/// What puts a parameter back: as it was when the scene was opened. `None` where that said nothing of it.
+/// Returns the value that resets a parameter to the state at the time of opening; `None` if it was not in the
+/// text then.
 pub fn reset(document: &Document, parameter: &Parameter, (groom, group): (usize, usize)) -> Option<Value> {
     if parameter.name == "preset" || parameter.name.starts_with("camera.") {
-        // Unsaid, these would be no style's.
+        // Without a value, these would lose the value of the style.
         return parameter.key(groom, group).look_up(document.opened().values()).and_then(written);
     }
     parameter.said(document, groom, group)?.look_up(document.opened().said()).and_then(written)
 }
 
-/// A value as the text has it.
+/// Converts a value to the form in which it is written in the text.
 pub fn written(value: &toml::Value) -> Option<Value> {
     value.to_string().parse().ok()
 }

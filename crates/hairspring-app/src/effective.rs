@@ -1,4 +1,4 @@
-//! Every value of a scene that counts, whether its text says it or its default does.
+//! All effective values of a scene, whether they are in its text or are defaults.
 
 use hairspring::{
     groom::{Growth, Thicken},
@@ -13,8 +13,10 @@ fn value(of: &impl serde::Serialize) -> toml::Value {
     toml::Value::try_from(of).unwrap_or_else(|why| unreachable!("settings are plain data: {why}"))
 }
 
-/// Of these settings, by the names of a scene file; but that `groom` lists all grooms, the built-in scene's among them with what `[builtin]` says of it, and that a
-/// groom's `material` is the list of its materials, each with its `preset`. `said` is the text's own table: a motion is no setting, and its keys count as they are written.
+/// Returns the effective values of these settings, with the keys of a scene file. There are two differences:
+/// `groom` lists all grooms, including those of the built-in scene with the values of `[builtin]`; and a
+/// groom's `material` is the list of its materials, each with its `preset`. `said` is the parsed text. A
+/// motion is not a setting, so its keys are taken from the text.
 pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
     let made = scene.grooms.len().saturating_sub(entries(said, "groom").len());
     let grooms = scene.grooms.iter().enumerate().map(|(place, groom)| {
@@ -80,7 +82,7 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
     all
 }
 
-/// What `[builtin]` says of the head of hair besides what every groom has.
+/// Adds the values of `[builtin]` that other grooms do not have.
 fn built(text: &toml::Value, table: &mut toml::Table) {
     let style =
         text.get("style").and_then(toml::Value::as_str).and_then(Style::from_name).unwrap_or_default();
@@ -90,7 +92,7 @@ fn built(text: &toml::Value, table: &mut toml::Table) {
     table.insert("motion".into(), text.get("motion").cloned().unwrap_or(true.into()));
 }
 
-/// What a `[[groom]]` says besides: how many hairs it is made, and where it stands.
+/// Adds the values of a `[[groom]]` that the settings do not have: the number of hairs, and the placement.
 fn listed(text: &toml::Value, table: &mut toml::Table) {
     let over = |base: toml::Value, name: &str| {
         let (mut base, said) = (base.try_into::<toml::Table>().unwrap_or_default(), text.get(name));
@@ -115,14 +117,14 @@ fn listed(text: &toml::Value, table: &mut toml::Table) {
         place.insert(name.into(), value(&[x; 3]));
     }
     let mut place = over(place.into(), "transform");
-    // One factor is as good as three alike.
+    // A single factor is equivalent to three equal ones.
     if let Some(factor) = place.get("scale").filter(|scale| !scale.is_array()).cloned() {
         place.insert("scale".into(), vec![factor; 3].into());
     }
     table.insert("transform".into(), place.into());
 }
 
-/// A motion as it is written, with what counts of a file's where the text leaves it out.
+/// A motion as it is written, with defaults for the fields of a motion file that are left out.
 fn motion(clip: &toml::Value) -> toml::Value {
     let mut table = clip.as_table().cloned().unwrap_or_default();
     if clip.get("keys").is_none() {
@@ -136,7 +138,7 @@ fn motion(clip: &toml::Value) -> toml::Value {
     table.into()
 }
 
-/// These fields of a table, where they are said.
+/// These fields of a table, if they are present.
 fn picked(text: &toml::Value, names: &[&str]) -> toml::Table {
     names.iter().filter_map(|name| Some(((*name).to_owned(), text.get(name)?.clone()))).collect()
 }
@@ -149,7 +151,8 @@ fn guides(groom: &SceneGroom) -> toml::Value {
     }
 }
 
-/// Name of the preset that a material of a groom, of which `text` tells, begins from; `built`: of the built-in scene, whose style has a material.
+/// Name of the preset that a groom's material is based on. `text` is the groom's table; `built` marks that of
+/// the built-in scene, whose style has a material.
 fn preset_of(
     said: &toml::Table,
     text: Option<&toml::Value>,
@@ -173,7 +176,8 @@ pub fn entries<'a>(said: &'a toml::Table, list: &str) -> &'a [toml::Value] {
     said.get(list).and_then(toml::Value::as_array).map_or(&[], Vec::as_slice)
 }
 
-/// Settings are single precision: each number is the shortest that reads as it, as a person would write it.
+/// Settings have single precision. Each number is replaced by its shortest decimal representation, as a
+/// person would write it.
 fn shortest(value: &mut toml::Value) {
     match value {
         toml::Value::Float(x) => *x = (*x as f32).to_string().parse().unwrap_or(*x),

@@ -1,15 +1,15 @@
-//! Why the window cannot do what it was asked to.
+//! Errors of the window.
 
 use hairspring_scene::stage::StageError;
 use hairspring_view::OutputError;
 
-/// One sentence for the person at the window.
+/// One sentence for the user of the window.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct AppError(String);
 
 impl AppError {
-    /// An error that says this.
+    /// Creates an error with this message.
     pub fn new(sentence: impl Into<String>) -> Self {
         Self(sentence.into())
     }

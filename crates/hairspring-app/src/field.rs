@@ -1,15 +1,16 @@
-//! Fields of the entries of lists: colliders, hands, sources of wind, charged bodies, keys. As `parameter` is for what a scene has once: what each is called, its unit, what it does.
+//! Fields of list entries: colliders, tools, wind sources, charged bodies, keys. Like `parameter` for values
+//! that a scene has once, this gives each field's label, unit and description.
 
-/// What a field takes.
+/// The type of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// A number, or three.
+    /// One number, or three.
     Number,
     /// On or off.
     Switch,
     /// The name of a joint of the body, or none.
     Joint,
-    /// A number that may be left out, with what to begin from.
+    /// An optional number, with its initial value.
     Maybe(f64),
     /// A list of keys.
     Keys(Keys),
@@ -18,26 +19,26 @@ pub enum Kind {
 /// How a list of keys is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keys {
-    /// Fields of a key: times are one number, all else three.
+    /// Fields of a key. A time is one number; all others are three.
     pub columns: &'static [&'static str],
-    /// Whether a key is a list of its numbers; else it is a table of its fields.
+    /// Whether a key is written as a list of its numbers; otherwise it is a table of its fields.
     pub plain: bool,
 }
 
 /// A field of an entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
-    /// Its name in the file.
+    /// Name in the scene file.
     pub name: &'static str,
-    /// What it is called.
+    /// Label in the panel.
     pub label: &'static str,
-    /// Its unit, empty for plain numbers.
+    /// Unit, empty for plain numbers.
     pub unit: &'static str,
-    /// Whether it may be left out: then its default counts.
+    /// Whether the field is optional, so that its default applies without it.
     pub optional: bool,
-    /// What it takes.
+    /// Type.
     pub kind: Kind,
-    /// What it does.
+    /// Tooltip.
     pub tip: &'static str,
 }
 
@@ -56,7 +57,7 @@ macro_rules! fields {
     };
 }
 
-/// Keys of a hand, which are lists of four numbers.
+/// Keys of a tool, which are lists of four numbers.
 const WAY: Kind = Kind::Keys(Keys { columns: &["time", "position"], plain: true });
 /// Keys of a charged body.
 const PLACES: Kind = Kind::Keys(Keys { columns: &["time", "center"], plain: false });
@@ -65,7 +66,7 @@ const MOTION: Kind = Kind::Keys(Keys { columns: &["time", "position", "rotation"
 /// Corners of a hull.
 const CORNERS: Kind = Kind::Keys(Keys { columns: &["point"], plain: true });
 
-/// All of them. A name means the same wherever it stands, but for `path`: see [`of`].
+/// All fields. A name has the same meaning in every list, except `path`: see [`of`].
 const ALL: &[Field] = fields! {
     given "center", "Middle", "m", Kind::Number, "Its middle. It can be dragged in the picture.";
     given "a", "One end", "m", Kind::Number, "One end of its axis. It can be dragged in the picture.";
@@ -100,7 +101,7 @@ const ALL: &[Field] = fields! {
     maybe "pivot", "Turns about", "m", Kind::Number, "The point of the body that its motion turns it about.";
 };
 
-/// The way of a charged body, which is where it is instead of how far it has gone.
+/// The path of a charged body. It gives absolute positions instead of displacements.
 const CHARGED_WAY: Field = Field {
     name: "path",
     label: "Way",
@@ -110,7 +111,7 @@ const CHARGED_WAY: Field = Field {
     tip: "Where its middle is later; straight on between. Times are above 0.",
 };
 
-/// The field `name` of an entry of `list`, if there is such a one.
+/// Returns the field `name` of an entry of `list`, if it exists.
 pub fn of(list: &str, name: &str) -> Option<&'static Field> {
     match (list, name) {
         ("charged", "path") => Some(&CHARGED_WAY),
@@ -118,7 +119,7 @@ pub fn of(list: &str, name: &str) -> Option<&'static Field> {
     }
 }
 
-/// Where a field of this name stands among the others of an entry.
+/// Rank of a field among the fields of an entry, for sorting.
 pub fn place(name: &str) -> usize {
     ALL.iter().position(|field| field.name == name).unwrap_or(ALL.len())
 }

@@ -1,4 +1,4 @@
-//! The pointer of a script: what it does comes in where a person's would.
+//! The pointer of a script. It creates the same input events as that of a user.
 
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, RawInput};
 use std::{
@@ -6,16 +6,16 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// What the finger is doing.
+/// The pending events of the pointer.
 #[derive(Default)]
 struct Move {
-    /// Events that are due, one batch a frame of the window.
+    /// Events to send, one batch per frame of the window.
     due: VecDeque<Vec<Event>>,
-    /// Where it ends.
+    /// Final position.
     at: Pos2,
 }
 
-/// A finger that a script moves.
+/// A pointer that a script moves.
 #[derive(Clone, Default)]
 pub struct Finger(Arc<Mutex<Move>>);
 
@@ -24,7 +24,7 @@ fn button(pos: Pos2, pressed: bool) -> Event {
 }
 
 impl Finger {
-    /// A finger on this window.
+    /// Creates the pointer of this window.
     pub fn new(ctx: &egui::Context) -> Self {
         let finger = Self::default();
         ctx.add_plugin(finger.clone());
@@ -35,7 +35,7 @@ impl Finger {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Presses at `from` and goes to `to` in so many frames.
+    /// Presses at `from` and moves to `to` in `frames` frames.
     pub fn hold(&self, from: Pos2, to: Pos2, frames: u32) {
         let mut moves = self.moves();
         moves.due.push_back(vec![Event::PointerMoved(from)]);
@@ -47,7 +47,7 @@ impl Finger {
         moves.at = to;
     }
 
-    /// Lets go.
+    /// Releases the button.
     pub fn release(&self) {
         let mut moves = self.moves();
         let at = moves.at;
@@ -55,7 +55,7 @@ impl Finger {
         moves.due.push_back(vec![Event::PointerGone]);
     }
 
-    /// Whether nothing is due.
+    /// Whether no event is pending.
     pub fn rests(&self) -> bool {
         self.moves().due.is_empty()
     }

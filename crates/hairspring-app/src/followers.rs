@@ -1,6 +1,7 @@
-//! Hairs that are left to who draws them: how guides carry them at one moment.
+//! Follow hairs that the renderer interpolates: the transforms of their guides at one moment.
 //!
-//! A graphics card places all; a picture of every eighth hair needs an eighth of them; a picture that nobody draws none.
+//! A GPU interpolates all of them. A picture of every eighth hair needs an eighth of them, and a moment that
+//! is not drawn needs none.
 
 use glam::{Affine3A, Vec3};
 use hairspring::{
@@ -10,26 +11,26 @@ use hairspring::{
 };
 use std::sync::{Arc, OnceLock};
 
-/// How guides carry the hairs of a groom.
+/// The data for interpolating the hairs of a groom.
 pub struct Followers {
-    /// What stays as it is.
+    /// The static data.
     pub layout: Arc<FollowLayout>,
     effects: Effects,
     carriers: Vec<Affine3A>,
     guide_points: Vec<Vec3>,
-    /// All of them, once somebody asks: a record, an overlay.
+    /// All points, computed on the first request, for a recording or an overlay.
     placed: OnceLock<Vec<Vec3>>,
 }
 
 impl Followers {
-    /// Memory for it.
+    /// Allocates memory for a groom.
     pub fn new(follow: HairInterpolation) -> Self {
         let layout = follow.layout.clone();
         let (carriers, guide_points) = (Vec::new(), Vec::new());
         Self { layout, effects: follow.effects, carriers, guide_points, placed: OnceLock::new() }
     }
 
-    /// Copies a moment, into the memory that is there.
+    /// Copies a moment, reusing the memory.
     pub fn fill(&mut self, follow: HairInterpolation) {
         self.layout.clone_from(follow.layout);
         self.effects = follow.effects;
@@ -40,13 +41,13 @@ impl Followers {
         self.placed = OnceLock::new();
     }
 
-    /// For who places them.
+    /// The data for a renderer that interpolates the hairs.
     pub fn now<'a>(&'a self, obstacles: &'a [MovingCollider]) -> HairInterpolation<'a> {
         let Self { layout, effects, carriers, guide_points, .. } = self;
         HairInterpolation { layout, effects: *effects, carriers, guide_points, obstacles }
     }
 
-    /// Where they are [m]; placed when it is first asked for.
+    /// All points [m], computed on the first request.
     pub fn points(&self, obstacles: &[MovingCollider]) -> &[Vec3] {
         self.placed.get_or_init(|| {
             let mut points = vec![Vec3::ZERO; self.layout.groom.points.len()];
@@ -55,7 +56,7 @@ impl Followers {
         })
     }
 
-    /// Where every `every`-th strand is [m], each from its place in `offsets` on.
+    /// Points of every `every`-th strand [m], each starting at its index in `offsets`.
     pub fn some_points(&self, every: usize, offsets: &[u32], obstacles: &[MovingCollider]) -> Vec<Vec3> {
         let mut points = vec![Vec3::ZERO; offsets.last().map_or(0, |end| *end as usize)];
         self.now(obstacles).place_every(every, offsets, &mut points);

@@ -1,51 +1,56 @@
-//! Handles in the picture: the arrow of the wind, and what the scene lists (colliders, hands, sources of wind, charged bodies), to be taken with the mouse, moved, turned and widened where they
-//! are. What a handle does is what a slider would: it writes into the scene's text.
+//! Handles in the picture: the wind arrow, and the listed objects of the scene (colliders, tools, wind
+//! sources, charged bodies). They can be moved, rotated and resized with the mouse. A handle has the same
+//! effect as a slider: it writes into the scene's text.
 
 use crate::{document::Document, key::Key, orbit::Lens, session::Action, snapshot::StageSnapshot};
 use glam::{Vec2, Vec3};
 use hairspring::math::RigidTransform;
 use toml_edit::Value;
 
-/// Where the wind's arrow begins in the picture, from its top left corner, over its width and height [1].
+/// Position of the wind arrow's base, from the picture's top left corner, relative to its width and height
+/// [1].
 const ROSE: Vec2 = Vec2::new(0.8, 0.7);
-/// Length of the arrow of a storm, over the height of the picture [1].
+/// Length of the arrow for a storm, relative to the height of the picture [1].
 const LONGEST: f32 = 0.25;
 /// Speed of that storm [m/s].
 const STORM: f32 = 20.0;
-/// An arrow shorter than this is calm, over the height of the picture [1]: a hand does not find 0 otherwise.
+/// An arrow shorter than this means calm, relative to the height of the picture [1]. Otherwise it would be
+/// hard to set 0 by hand.
 const CALM: f32 = 0.015;
-/// Length of the arrow of a source that blows at 1 m/s [m]; as the root of the speed.
+/// Length of the arrow of a source that blows at 1 m/s [m]. The length is proportional to the square root of
+/// the speed.
 const ARROW: f32 = 0.08;
-/// Narrowest that something is pulled [m].
+/// Minimum radius that a handle can set [m].
 const NARROWEST: f32 = 1e-3;
 
-/// What pulling a handle changes.
+/// The value that a handle changes.
 #[derive(Clone, Debug)]
 enum Pull {
-    /// The scene's wind: an arrow from this place, so many metres long in a storm.
+    /// The scene's wind: base of the arrow, and its length for a storm [m].
     Wind(Vec3, f32),
-    /// A place.
+    /// A position.
     Place(Key),
-    /// How far something reaches from its middle.
+    /// A radius around a center.
     Radius(Key, Vec3),
-    /// Which way an axis points from its middle and, by the arrow's length, how fast air goes along it: above or below 0 as it is now.
+    /// The direction of an axis from its center and, by the arrow's length, the air speed along it. The speed
+    /// keeps its current sign.
     Axis(Key, Option<(Key, f32)>, Vec3),
 }
 
-/// Something to take.
+/// A handle.
 #[derive(Clone, Debug)]
 pub struct Handle {
-    /// Where it is in the world [m].
+    /// Position in world space [m].
     pub at: Vec3,
-    /// What it is, in words.
+    /// Label.
     pub name: String,
     pull: Pull,
-    /// Where what it belongs to has been carried.
+    /// Transform of the object that the handle belongs to, since the rest pose.
     pose: RigidTransform,
 }
 
 impl Handle {
-    /// What being pulled to a place of the world comes to.
+    /// The action for dragging the handle to a position in world space.
     pub fn pulled(&self, to: Vec3) -> Action {
         let own = |place: Vec3| list(self.pose.inverse_point(place), 1e4);
         match &self.pull {
@@ -77,7 +82,7 @@ impl Handle {
         }
     }
 
-    /// From where an arrow leads to it, if it is the tip of one.
+    /// Base of the arrow, if the handle is the tip of one.
     pub fn arrow(&self) -> Option<Vec3> {
         match self.pull {
             Pull::Wind(from, _) | Pull::Axis(.., from) => Some(from),
@@ -85,7 +90,7 @@ impl Handle {
         }
     }
 
-    /// The middle that it is the rim of, if it is.
+    /// Center of the circle, if the handle is on its rim.
     pub fn rim(&self) -> Option<Vec3> {
         match self.pull {
             Pull::Radius(_, middle) => Some(middle),
@@ -93,13 +98,13 @@ impl Handle {
         }
     }
 
-    /// Whether it is the wind's.
+    /// Whether this is the wind handle.
     pub fn is_wind(&self) -> bool {
         matches!(self.pull, Pull::Wind(..))
     }
 }
 
-/// All handles of a scene, seen through `lens` by an eye that is so far from what it looks at [m].
+/// All handles of a scene, as seen through `lens`. `distance` is that from the camera to its target [m].
 pub fn all(document: &Document, scenery: &StageSnapshot, lens: &Lens, distance: f32) -> Vec<Handle> {
     let mut handles = vec![wind(document, lens, distance)];
     let carried = &scenery.carried;
@@ -122,7 +127,7 @@ pub fn all(document: &Document, scenery: &StageSnapshot, lens: &Lens, distance: 
 fn wind(document: &Document, lens: &Lens, distance: f32) -> Handle {
     let (eye, way) = lens.ray(ROSE);
     let from = eye + way * distance;
-    // Metres that the picture is high at this depth.
+    // Height of the picture in meters at this depth.
     let longest = LONGEST / lens.scale(distance, 1.0);
     let key = Key::top("wind").field("velocity");
     let velocity = vector(key.look_up(document.effective())).unwrap_or_default();
@@ -132,7 +137,7 @@ fn wind(document: &Document, lens: &Lens, distance: f32) -> Handle {
     Handle { at: from + tip, name, pull: Pull::Wind(from, longest), pose: RigidTransform::default() }
 }
 
-/// The table that holds an entry's places: its `shape`'s or its `tool`'s, or its own.
+/// The table that holds an entry's positions: its `shape`, its `tool`, or the entry itself.
 fn shape(key: Key, entry: &toml::Value) -> (Key, &toml::Value) {
     for name in ["shape", "tool"] {
         if let Some((kind, inner)) =
@@ -144,7 +149,7 @@ fn shape(key: Key, entry: &toml::Value) -> (Key, &toml::Value) {
     (key, entry)
 }
 
-/// Handles of a shape: its places, its radius about its middle, its axis.
+/// Handles of a shape: its positions, its radius around its center, and its axis.
 fn of_shape(
     name: &str,
     (key, table): (&Key, &toml::Value),
@@ -182,7 +187,7 @@ fn vector(value: Option<&toml::Value>) -> Option<Vec3> {
 }
 
 fn rounded(x: f32, parts: f64) -> f64 {
-    // A number that is no place on the grid of doubles is written as short as it is read.
+    // Rounding may leave a number that is not exact in binary; the shortest representation is written.
     (f64::from(x) * parts).round() / parts
 }
 
@@ -216,7 +221,8 @@ mod tests {
     fn a_handle_that_is_pulled_nowhere_changes_nothing() {
         let (mut document, scenery, lens) = scene();
         let handles = all(&document, &scenery, &lens, 2.0);
-        // The wind; a ball's middle and rim; a comb's ends; a fan's middle, rim and tip; a balloon's middle and rim.
+        // The wind; a sphere's center and rim; a comb's ends; a fan's center, rim and tip; a charged sphere's
+        // center and rim.
         assert_eq!(handles.len(), 1 + 2 + 2 + 3 + 2);
         let before = document.effective().clone();
         for handle in handles {
@@ -236,7 +242,7 @@ mod tests {
         }
     }
 
-    /// Whether two values are the same up to the tenth of a millimetre to which a handle's are written.
+    /// Whether two values are equal up to a tenth of a millimeter, the precision to which a handle writes.
     fn alike(a: &toml::Value, b: &toml::Value) -> bool {
         use toml::Value::{Array, Float, Table};
         match (a, b) {
@@ -258,7 +264,7 @@ mod tests {
         let handles = all(&document, &scenery, &lens, 2.0);
         let ball = &handles[1];
         assert!(ball.at.distance(Vec3::new(0.25, 1.8, 0.0)) < 1e-6, "{}", ball.at);
-        // 5 cm further along the world's x are 5 cm further along its own z.
+        // 5 cm along the world's x are 5 cm along its own z.
         let Action::Set(key, value) = ball.pulled(ball.at + Vec3::X * 0.05) else { panic!() };
         document.set(&key, value).unwrap();
         assert!(document.text().contains("center = [0.0, 1.3, 0.3]"), "{}", document.text());

@@ -1,11 +1,12 @@
-//! Parameters that do not count as the scene stands: what they belong to is off, or something else takes their place. Each is grey in the panel and says why, so that no slider is moved in vain.
+//! Parameters without effect in the current scene, because a feature is off or another value replaces them.
+//! The panel grays them out and shows the reason.
 
 use crate::{document::Document, key::Key, parameter::Parameter};
 
-/// What counts in a scene, as its rules ask for it.
+/// A scene and the selection that the rules are evaluated for.
 struct Asked<'a> {
     document: &'a Document,
-    /// Of the chosen groom, and of the chosen group of it.
+    /// Keys of the selected groom, and of the material of the selected group.
     groom: Key,
     material: Key,
 }
@@ -31,12 +32,12 @@ impl Asked<'_> {
         word(self.scene("solver.integrator"))
     }
 
-    /// Whether hair bends: follow the leader knows of lengths alone.
+    /// Whether hair bends: follow the leader only keeps lengths.
     fn bends(&self) -> bool {
         !["ftl", "dftl"].contains(&self.integrator())
     }
 
-    /// Whether any air is moved.
+    /// Whether there is any air motion.
     fn blows(&self) -> bool {
         some(self.scene("wind.velocity"))
             || some(self.scene("turbulence.strength"))
@@ -44,7 +45,7 @@ impl Asked<'_> {
     }
 }
 
-/// Whether a switch is on, a number or one of several is other than 0, a list has entries.
+/// Whether a switch is on, a number or one of several is not 0, or a list has entries.
 fn some(value: Option<&toml::Value>) -> bool {
     match value {
         Some(toml::Value::Boolean(on)) => *on,
@@ -60,7 +61,7 @@ fn word(value: Option<&toml::Value>) -> &str {
 }
 
 impl Parameter {
-    /// Why it does not count in this scene, for this groom and group of it; `None`: it does.
+    /// Why a parameter has no effect in this scene, for this groom and group; `None` if it has.
     pub fn inactive_reason(
         &self,
         document: &Document,
@@ -168,7 +169,7 @@ mod tests {
         parameter.inactive_reason(&document, (0, 0)).is_some()
     }
 
-    /// Parameters that do not count in the built-in scene, and what makes them count.
+    /// Parameters without effect in the built-in scene, and text that activates them.
     const WOKEN: [(&str, &str); 23] = [
         ("effects.curl_length", "[builtin.effects]\ncurl_radius = 0.004\n"),
         ("global_shape.tip", "[material.m]\nglobal_shape = { pull = 2.0 }\n"),
@@ -227,7 +228,7 @@ mod tests {
             assert!(!idle(HEAD, name), "{name} counts by default");
             assert!(idle(&format!("{HEAD}{text}"), name), "{name} with {text}");
         }
-        // What takes the place of another.
+        // Values that replace others.
         assert!(idle(&format!("{HEAD}[builtin.look]\nmelanin = 0.5\n"), "look.root_color"));
     }
 }

@@ -1,61 +1,62 @@
-//! Names of values in a scene file, such as `groom[0].look.roughness`, and writing at them without touching the rest of the text.
+//! Keys of values in a scene file, such as `groom[0].look.roughness`, and writing at them without touching
+//! the rest of the text.
 
 use std::{fmt, str::FromStr};
 use toml_edit::{Item, Table, TableLike, Value};
 
-/// A step into a scene file.
+/// One component of a key.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Step {
-    /// Into a table's field.
+    /// A field of a table.
     Field(String),
-    /// Into a list.
+    /// An index into a list.
     Place(usize),
 }
 
-/// The way to a value of a scene file, from its top; by default, the top itself.
+/// The path to a value of a scene file, from its root. The default is the root itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Key(Vec<Step>);
 
 impl Key {
-    /// A field at the top of the file.
+    /// A field at the root of the file.
     pub fn top(name: &str) -> Self {
         Self(vec![Step::Field(name.into())])
     }
 
-    /// The field `name` of what this key names.
+    /// Appends the field `name`.
     pub fn field(&self, name: &str) -> Self {
         let mut steps = self.0.clone();
         steps.extend(name.split('.').map(|n| Step::Field(n.into())));
         Self(steps)
     }
 
-    /// The entry of a table by its name, whatever letters that has.
+    /// Appends a table entry by its name, which may contain any characters.
     pub fn entry(&self, name: &str) -> Self {
         let mut steps = self.0.clone();
         steps.push(Step::Field(name.into()));
         Self(steps)
     }
 
-    /// The entry `place` of the list that this key names.
+    /// Appends the index `place` into a list.
     pub fn place(&self, place: usize) -> Self {
         let mut steps = self.0.clone();
         steps.push(Step::Place(place));
         Self(steps)
     }
 
-    /// The field `name` beside what this key names.
+    /// The field `name` in the same table as this key.
     pub fn sibling(&self, name: &str) -> Self {
         self.parent().entry(name)
     }
 
-    /// What holds what this key names.
+    /// The key of the containing table or list.
     pub fn parent(&self) -> Self {
         let mut steps = self.0.clone();
         steps.pop();
         Self(steps)
     }
 
-    /// The list at the top of the file, and the place in it, of the entry that this key belongs to, if it does.
+    /// The list at the root of the file and the index in it, if the key is inside such a list.
     pub fn listed(&self) -> Option<(&str, usize)> {
         match &self.0[..] {
             [Step::Field(list), Step::Place(place), ..] => Some((list, *place)),
@@ -63,7 +64,7 @@ impl Key {
         }
     }
 
-    /// The same of the entry at another place of that list.
+    /// The same key for the entry at another index of that list.
     pub fn relisted(&self, place: usize) -> Self {
         let mut key = self.clone();
         if let [Step::Field(_), Step::Place(old), ..] = &mut key.0[..] {
@@ -72,7 +73,7 @@ impl Key {
         key
     }
 
-    /// What a table of effective values says here.
+    /// Looks up the value in a table of effective values.
     pub fn look_up<'a>(&self, table: &'a toml::Table) -> Option<&'a toml::Value> {
         let Some((Step::Field(first), rest)) = self.0.split_first() else { return None };
         rest.iter().try_fold(table.get(first)?, |value, step| match step {
@@ -81,8 +82,9 @@ impl Key {
         })
     }
 
-    /// Writes `value` here, or takes the field away so that its default counts; tables on the way are made. False, and nothing is written, where the
-    /// way does not exist and cannot be made.
+    /// Writes `value` at this key, or removes the field if it is `None`, so that its default applies. Missing
+    /// tables on the path are created. Returns false and writes nothing if the path does not exist and cannot
+    /// be created.
     pub(crate) fn write(&self, table: &mut dyn TableLike, value: Option<Value>) -> bool {
         write(table, &self.0, value)
     }
@@ -93,7 +95,7 @@ fn write(table: &mut dyn TableLike, steps: &[Step], value: Option<Value>) -> boo
         [Step::Field(name)] => {
             match (value, table.get_mut(name)) {
                 (Some(mut value), Some(Item::Value(old))) => {
-                    // A comment behind the value stays behind it.
+                    // A comment after the value is kept.
                     *value.decor_mut() = old.decor().clone();
                     *old = value;
                 }

@@ -1,4 +1,4 @@
-//! Words on a picture that is written to a file: the window's own font, without the window.
+//! Draws text on pictures that are written to files, in the window's font, but without a window.
 
 use eframe::egui::{
     Color32, FontId,
@@ -6,12 +6,12 @@ use eframe::egui::{
 };
 use hairspring_view::Image;
 
-/// Height of letters [pixels].
+/// Height of the text [pixels].
 const HEIGHT: f32 = 15.0;
-/// Their colour.
+/// Color of the text.
 const LIGHT: f32 = 225.0;
 
-/// Writes words.
+/// Draws text.
 pub struct Letters(Fonts);
 
 impl Default for Letters {
@@ -21,7 +21,8 @@ impl Default for Letters {
 }
 
 impl Letters {
-    /// Writes a line with its upper left corner at `[x, y]`, no wider than `width` [pixels]: what does not fit is left out, with a sign.
+    /// Draws a line of text with its upper left corner at `[x, y]`. Text wider than `width` [pixels] is cut
+    /// off with an ellipsis.
     pub fn write(&mut self, image: &mut Image, [x, y]: [u32; 2], width: u32, text: &str) {
         let mut job = LayoutJob::simple_singleline(text.into(), FontId::proportional(HEIGHT), Color32::WHITE);
         job.wrap = TextWrapping::truncate_at_width(width as f32);
@@ -35,7 +36,7 @@ impl Letters {
         };
         for row in &line.rows {
             let visuals = &row.row.visuals;
-            // A letter is four corners, the first the upper left, the last the lower right one.
+            // A glyph has four corners; the first is the upper left, the last the lower right.
             for corners in visuals.mesh.vertices[visuals.glyph_vertex_range.clone()].chunks_exact(4) {
                 let (from, to) = (corners[0], corners[3]);
                 let size = to.pos - from.pos;
@@ -59,7 +60,7 @@ impl Letters {
     }
 }
 
-/// All columns and rows of something so many pixels large.
+/// All columns and rows of an area of this size.
 fn pixels(width: f32, height: f32) -> impl Iterator<Item = (u32, u32)> {
     let (columns, rows) = (width.round() as u32, height.round() as u32);
     (0..rows).flat_map(move |j| (0..columns).map(move |i| (i, j)))

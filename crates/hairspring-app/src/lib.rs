@@ -1,25 +1,26 @@
-//! The live window: hair simulated while it is looked at, touched and tuned.
+//! The live window: hair can be viewed, touched and tuned while it is simulated.
 //!
-//! | file | what is in it |
+//! | module | content |
 //! | --- | --- |
-//! | `document`, `effective`, `defaults` | the scene's text, edited in place; undo, save; what counts in it, and what would had nobody changed it |
-//! | `destination` | where a file goes that a person names |
-//! | `key`, `parameter`, `field` | names of its values; every parameter, and every field of a list's entries, with its unit, range and what it does |
-//! | `edit` | what a parameter's new value writes, and where |
-//! | `idle` | what does not count as the scene stands, and why |
-//! | `differ` | what two scenes that are compared differ in |
-//! | `player`, `snapshot` | the simulation on a thread of its own, and what that shows of a moment |
-//! | `pushed`, `pulled` | a ball and a hand to push through hair, and how the pointer moves whatever it moves |
-//! | `session`, `reading` | document and player together: whatever is done to them is an action; a scene that is read again meanwhile |
-//! | `view`, `orbit`, `overlay`, `axes`, `ramp` | camera and tools, and what is laid over the picture |
-//! | `handle`, `carried` | what can be taken in the picture, and where joints have carried it |
-//! | `painter` | who draws the hair |
-//! | `panel` | what stands around the picture |
-//! | `record`, `letters`, `script` | files of what is seen, and words on them; a session line by line |
-//! | `memory` | what is not needed any more goes back to the system |
-//! | `app`, `desktop` | all of it in a window, and what is said where there can be none |
+//! | `document`, `effective`, `defaults` | the scene's text, edited in place; undo, save; its effective values, reference values and defaults |
+//! | `destination` | paths of files to be written |
+//! | `key`, `parameter`, `field` | keys of values; every parameter and every field of list entries, with unit, range and description |
+//! | `edit` | how a new value of a parameter is written |
+//! | `inactive_parameters` | parameters without effect in the current scene, and why |
+//! | `differ` | differences between two compared scenes |
+//! | `player`, `snapshot` | the simulation on its own thread, and its state at one moment |
+//! | `pointer_collider`, `drag_limiter` | a sphere and a hand to push through hair, and the limits of what the pointer moves |
+//! | `session`, `reading` | document and player together, controlled by actions; reading a scene in the background |
+//! | `view`, `orbit`, `overlay`, `axes`, `ramp` | camera, tools and overlays |
+//! | `handle`, `carried` | handles in the picture, and the current transforms of objects |
+//! | `painter` | the renderers of the hair |
+//! | `panel` | the panels around the picture |
+//! | `record`, `letters`, `script` | recordings and text on them; scripted sessions |
+//! | `memory` | returns unused memory to the system |
+//! | `app`, `desktop` | the window, and the message if it cannot open |
 //!
-//! Data goes one way: panels read the session and say actions, the session edits the document and tells the player, the player shows snapshots, a painter draws them.
+//! Data flows in one direction: panels read the session and return actions, the session edits the document
+//! and sends orders to the player, the player publishes snapshots, and a painter draws them.
 //!
 //! # Missing
 //! A thumbnail shows no motion.
@@ -71,13 +72,14 @@ pub use session::{Action, Session};
 
 use eframe::egui;
 
-/// Size of the window when it opens [points].
+/// Initial size of the window [points].
 const SIZE: [f32; 2] = [1360.0, 860.0];
 
-/// Opens the window and stays until it is closed.
+/// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// If there is no desktop to open a window on, or a library of it is missing: what, and what to do.
+/// Returns an error if there is no desktop, or if one of its libraries is missing. The message says what is
+/// missing and what to do.
 pub fn run(options: Options) -> Result<(), AppError> {
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -85,7 +87,8 @@ pub fn run(options: Options) -> Result<(), AppError> {
             .with_app_id("hairspring")
             .with_inner_size(SIZE)
             .with_drag_and_drop(true),
-        // The picture of the hair has its own; the rest is flat. Software drivers take as long for it as for the letters.
+        // The hair's picture has its own dithering, and the rest is flat. Software drivers take as long for
+        // dithering as for the text.
         dithering: false,
         ..Default::default()
     };

@@ -1,35 +1,36 @@
-//! The camera of the window: turned about what it looks at, moved across, brought nearer.
+//! The camera of the window: it orbits around a target, pans and zooms.
 
 use glam::{Vec2, Vec3};
 use hairspring_scene::Camera;
 
-/// Nearest that it comes to what it looks at [m].
+/// Minimum distance to the target [m].
 const NEAREST: f32 = 0.02;
-/// Farthest [m].
+/// Maximum distance [m].
 const FARTHEST: f32 = 100.0;
-/// Steepest look from above or below [rad]: straight down has no way up.
+/// Maximum elevation [rad]. Looking straight down has no up direction.
 const STEEPEST: f32 = 1.5;
 
-/// A picture narrower than this, over its height, takes in as much across as one that is not: of two heads side by side, the hair of both is seen.
+/// Aspect ratio below which the horizontal field of view is kept constant, so that narrow pictures in a
+/// comparison show the hair of both heads.
 pub const NARROW: f32 = 0.85;
 
-/// A camera about a target.
+/// A camera that orbits around a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
-    /// What it looks at [m].
+    /// Target [m].
     pub target: Vec3,
-    /// About the vertical, from +Z to +X [rad].
+    /// Azimuth around the vertical, from +Z to +X [rad].
     pub turn: f32,
-    /// Above the horizon [rad].
+    /// Elevation above the horizon [rad].
     pub rise: f32,
-    /// How far off [m].
+    /// Distance [m].
     pub distance: f32,
     /// Vertical field of view [degrees].
     pub fov: f32,
 }
 
 impl Orbit {
-    /// The orbit on which this camera stands.
+    /// Creates the orbit of this camera.
     pub fn new(camera: &Camera) -> Self {
         let back = camera.position - camera.target;
         let distance = back.length().clamp(NEAREST, FARTHEST);
@@ -44,27 +45,28 @@ impl Orbit {
         Camera { position: self.target + back * self.distance, target: self.target, fov: self.fov }
     }
 
-    /// The camera through which a picture so many times as wide as high is seen.
+    /// The camera for a picture with this aspect ratio.
     pub fn seen(&self, aspect: f32) -> Camera {
         let slope = (0.5 * self.fov.to_radians()).tan() * (NARROW / aspect).max(1.0);
         let fov = if aspect < NARROW { 2.0 * slope.atan().to_degrees() } else { self.fov };
         Camera { fov, ..self.camera() }
     }
 
-    /// Turns by a drag of so many parts of the picture's height.
+    /// Rotates by a drag, given in fractions of the picture's height.
     pub fn drag(&mut self, by: Vec2) {
         self.turn -= by.x * 3.0;
         self.rise = (self.rise + by.y * 3.0).clamp(-STEEPEST, STEEPEST);
     }
 
-    /// Moves across, so that the target stays under the pointer in a picture so many times as wide as high; `by` in parts of its height.
+    /// Pans so that the target stays under the pointer, for a picture with this aspect ratio. `by` is in
+    /// fractions of its height.
     pub fn pan(&mut self, by: Vec2, aspect: f32) {
         let lens = Lens::new(&self.seen(aspect), aspect);
         let size = 2.0 * self.distance * lens.slope;
         self.target += (lens.up * by.y - lens.right * by.x) * size;
     }
 
-    /// Comes nearer (above 1) or goes away.
+    /// Zooms in (above 1) or out.
     pub fn zoom(&mut self, factor: f32) {
         if factor.is_finite() && factor > 0.0 {
             self.distance = (self.distance / factor).clamp(NEAREST, FARTHEST);
@@ -72,20 +74,21 @@ impl Orbit {
     }
 }
 
-/// From places to the picture and back. Picture coordinates: (0, 0) the top left corner, (1, 1) the bottom right.
+/// Maps points to the picture and back. Picture coordinates: (0, 0) is the top left corner, (1, 1) the bottom
+/// right.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
     eye: Vec3,
     right: Vec3,
     up: Vec3,
     forward: Vec3,
-    /// Slope at the picture's upper edge.
+    /// Slope of the ray through the picture's upper edge.
     slope: f32,
     aspect: f32,
 }
 
 impl Lens {
-    /// Of a camera and a picture so many times as wide as high.
+    /// Creates the lens of a camera, for a picture with this aspect ratio.
     pub fn new(camera: &Camera, aspect: f32) -> Self {
         let forward = (camera.target - camera.position).try_normalize().unwrap_or(Vec3::NEG_Z);
         let side = if forward.y.abs() > 0.9999 { Vec3::Z } else { Vec3::Y };
@@ -94,21 +97,21 @@ impl Lens {
         Self { eye: camera.position, right, up: right.cross(forward), forward, slope, aspect }
     }
 
-    /// Up in the picture.
+    /// The up direction in the picture.
     pub fn up(&self) -> Vec3 {
         self.up
     }
 
-    /// Where it is seen from [m].
+    /// Position of the camera [m].
     pub fn eye(&self) -> Vec3 {
         self.eye
     }
 
-    /// Where a place is in the picture, and how deep [m]; `None` behind the camera.
+    /// Picture coordinates and depth [m] of a point; `None` behind the camera.
     pub fn project(&self, p: Vec3) -> Option<(Vec2, f32)> {
         let d = p - self.eye;
         let depth = d.dot(self.forward);
-        // What is not a number is nowhere either.
+        // NaN is rejected too.
         if depth.is_nan() || depth <= 1e-3 {
             return None;
         }
@@ -117,23 +120,24 @@ impl Lens {
         Some((at, depth))
     }
 
-    /// The ray through a place of the picture: from where, and its direction with length 1 along the axis.
+    /// The ray through a point of the picture: its origin, and its direction with length 1 along the optical
+    /// axis.
     pub fn ray(&self, at: Vec2) -> (Vec3, Vec3) {
         let [x, y] = [(at.x - 0.5) * 2.0 * self.slope * self.aspect, (0.5 - at.y) * 2.0 * self.slope];
         (self.eye, self.forward + self.right * x + self.up * y)
     }
 
-    /// How deep a place is [m].
+    /// Depth of a point [m].
     pub fn depth(&self, p: Vec3) -> f32 {
         (p - self.eye).dot(self.forward)
     }
 
-    /// Which way is right.
+    /// The right direction in the picture.
     pub fn right(&self) -> Vec3 {
         self.right
     }
 
-    /// Pixels to a metre at `depth` [m] in a picture so many pixels high.
+    /// Pixels per meter at `depth` [m], for a picture of this height [pixels].
     pub fn scale(&self, depth: f32, height: f32) -> f32 {
         0.5 * height / (depth * self.slope)
     }

@@ -1,4 +1,5 @@
-//! What is drawn over the picture to see inside: outlines of colliders, a slice through their distance, cells of the hair's volume, roots; and handles. Frames are in `axes`.
+//! Overlays on the picture: outlines of colliders, a slice through the distance field, cells of the hair's
+//! volume, roots, and handles. Coordinate frames are in `axes`.
 
 use crate::{
     axes,
@@ -13,48 +14,48 @@ use glam::{Mat3, Vec2, Vec3};
 use hairspring::collide::{ColliderPose, ColliderShape};
 use std::collections::HashMap;
 
-/// Pieces of a circle.
+/// Segments of a circle.
 const PIECES: usize = 32;
 /// Squares along a side of the slice.
 const SQUARES: usize = 48;
-/// Most cells of the volume that are drawn: more would be a wall.
+/// Maximum number of cells of the volume that are drawn. More would hide everything.
 const CELLS: usize = 6000;
 
-/// Most triangles of a sheet that are drawn, and dots on a body.
+/// Maximum number of triangles of a sheet that are drawn, and of dots on a body.
 const TRIANGLES: usize = 3000;
 /// See [`TRIANGLES`].
 const DOTS: usize = 8000;
 
-/// A painter of lines in space.
+/// Draws lines in 3D.
 pub struct OverlayPainter<'a> {
-    /// What it draws on.
+    /// The painter to draw on.
     pub painter: &'a egui::Painter,
-    /// Through which the picture is seen.
+    /// The lens of the picture.
     pub lens: Lens,
-    /// Where the picture is.
+    /// Rectangle of the picture.
     pub rect: egui::Rect,
 }
 
 impl OverlayPainter<'_> {
-    /// Where a place is on the screen; `None` behind the camera.
+    /// Screen position of a point; `None` behind the camera.
     pub fn at(&self, p: Vec3) -> Option<Pos2> {
         let (at, _) = self.lens.project(p)?;
         Some(self.place(at))
     }
 
-    /// Where a place of the picture is on the screen.
+    /// Screen position of a point of the picture.
     fn place(&self, at: Vec2) -> Pos2 {
         self.rect.min + egui::vec2(at.x * self.rect.width(), at.y * self.rect.height())
     }
 
-    /// A line in space.
+    /// Draws a line in 3D.
     pub fn line(&self, a: Vec3, b: Vec3, stroke: Stroke) {
         if let (Some(a), Some(b)) = (self.at(a), self.at(b)) {
             self.painter.line_segment([a, b], stroke);
         }
     }
 
-    /// A circle between two axes.
+    /// Draws a circle in the plane of two axes.
     fn circle(&self, center: Vec3, x: Vec3, y: Vec3, stroke: Stroke) {
         let on = |k: usize| {
             let (sin, cos) = (k as f32 / PIECES as f32 * std::f32::consts::TAU).sin_cos();
@@ -63,7 +64,7 @@ impl OverlayPainter<'_> {
         (0..PIECES).for_each(|k| self.line(on(k), on(k + 1), stroke));
     }
 
-    /// A ball by three circles.
+    /// Draws a sphere as three circles.
     fn ball(&self, center: Vec3, radius: f32, stroke: Stroke) {
         let [x, y, z] = [Vec3::X * radius, Vec3::Y * radius, Vec3::Z * radius];
         self.circle(center, x, y, stroke);
@@ -72,7 +73,7 @@ impl OverlayPainter<'_> {
     }
 }
 
-/// Draws what is switched on over the picture at `rect`.
+/// Draws the enabled overlays over the picture at `rect`.
 pub fn draw(
     pen: &OverlayPainter,
     scenery: &StageSnapshot,
@@ -111,7 +112,7 @@ pub fn draw(
         fingers(pen, center, radius, Stroke::new(2.0, Color32::from_white_alpha(170)));
     }
     if let Some((center, radius)) = view.reached().filter(|_| view.hand == Hand::Ball) {
-        // A ball behind hair or in the head is not lost.
+        // A sphere behind hair or in the head stays visible.
         let [x, y] = [pen.lens.right(), pen.lens.up()].map(|axis| axis * radius);
         pen.circle(center, x, y, Stroke::new(1.0, Color32::from_white_alpha(90)));
     }
@@ -120,7 +121,7 @@ pub fn draw(
     }
 }
 
-/// Five fingers, as wide and as long as they reach.
+/// Draws five fingers with their actual width and reach.
 fn fingers(pen: &OverlayPainter, center: Vec3, radius: f32, stroke: Stroke) {
     let (right, down) = (pen.lens.right() * (FINGERS * radius), -pen.lens.up() * radius);
     pen.line(center - right, center + right, stroke);
@@ -130,7 +131,7 @@ fn fingers(pen: &OverlayPainter, center: Vec3, radius: f32, stroke: Stroke) {
     }
 }
 
-/// A handle, and its name where the pointer is on it.
+/// Draws a handle, and its name if the pointer is on it.
 fn handle_at(pen: &OverlayPainter, handle: &Handle, touched: bool) {
     let color = if touched { Color32::from_rgb(255, 210, 90) } else { Color32::from_rgb(120, 200, 255) };
     let Some(at) = pen.at(handle.at) else { return };
@@ -148,7 +149,7 @@ fn handle_at(pen: &OverlayPainter, handle: &Handle, touched: bool) {
     }
     if let Some(middle) = handle.rim() {
         let radius = middle.distance(handle.at);
-        // What is not touched is hinted at: hair is looked at, and not its colliders.
+        // Untouched handles are faint, so that they do not distract from the hair.
         pen.ball(middle, radius, Stroke::new(1.0, color.gamma_multiply(if touched { 0.8 } else { 0.2 })));
     }
     let radius = if touched { 6.0 } else { 4.0 };
@@ -168,7 +169,8 @@ fn handle_at(pen: &OverlayPainter, handle: &Handle, touched: bool) {
     }
 }
 
-/// A level ring about the wind's beginning, and how far its tip is above or below it: else nobody sees how an arrow lies in space.
+/// Draws a level ring around the wind arrow's base, and the height of its tip, so that the arrow's direction
+/// in 3D can be seen.
 fn rose(pen: &OverlayPainter, from: Vec3, tip: Vec3, color: Color32) {
     let thin = Stroke::new(1.0, color.gamma_multiply(0.5));
     let radius = 0.09 / pen.lens.scale(pen.lens.depth(from), 1.0);
@@ -178,7 +180,7 @@ fn rose(pen: &OverlayPainter, from: Vec3, tip: Vec3, color: Color32) {
     pen.line(level, tip, thin);
 }
 
-/// The outline of a collider.
+/// Draws the outline of a collider.
 fn collider(
     pen: &OverlayPainter,
     scenery: &StageSnapshot,
@@ -241,7 +243,7 @@ fn triangle(pen: &OverlayPainter, [a, b, c]: [Vec3; 3], stroke: Stroke) {
     [(a, b), (b, c), (c, a)].into_iter().for_each(|(a, b)| pen.line(a, b, stroke));
 }
 
-/// The side of the body that is seen, by dots: its field is as fine as its mesh.
+/// Draws the visible side of the body as dots. The resolution of its field is similar to that of its mesh.
 fn skin(pen: &OverlayPainter, scenery: &StageSnapshot, color: Color32) {
     let vertices = scenery.positions.iter().zip(&scenery.normals);
     for (p, n) in vertices.step_by(1 + scenery.positions.len() / DOTS) {
@@ -251,7 +253,8 @@ fn skin(pen: &OverlayPainter, scenery: &StageSnapshot, color: Color32) {
     }
 }
 
-/// A horizontal slice through the distance to all colliders: blue inside, the surface white, red as far as 5 cm outside.
+/// Draws a horizontal slice through the distance to all colliders: blue inside, white at the surface, red up
+/// to 5 cm outside.
 fn slice(pen: &OverlayPainter, scenery: &StageSnapshot, height: f32) {
     let Some((low, high)) = scenery.bounds() else { return };
     let poses: Vec<ColliderPose> = scenery
@@ -293,7 +296,7 @@ fn slice(pen: &OverlayPainter, scenery: &StageSnapshot, height: f32) {
     pen.painter.add(mesh);
 }
 
-/// Cells of the volume's lattice with hair in them, the fuller the warmer.
+/// Draws the grid cells of the volume that contain hair, in warmer colors the fuller they are.
 fn volume(pen: &OverlayPainter, scenery: &StageSnapshot) {
     let cell = scenery.volume.map_or(0.015, |v| v.cell);
     let anchor = scenery.anchor;

@@ -1,36 +1,37 @@
-//! Every parameter of a scene file that is one number, switch, choice, colour or direction, as an artist looks for it: what it is called, its unit, its range, what it does. Their defaults are the
-//! library's; entries of lists (colliders, hands, sources of wind, charged bodies, keys) are in `field`.
+//! Every parameter of a scene file that is a single number, switch, choice, color or direction, with label,
+//! unit, range and description. Defaults are those of the library. Fields of list entries (colliders, tools,
+//! wind sources, charged bodies, keys) are in `field`.
 
 use crate::{document::Document, key::Key};
 use hairspring::material::PRESETS;
 
-/// What an artist thinks of.
+/// Groups of parameters by artistic purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Group {
-    /// What hair it is, how much of it, and what is laid over it.
+    /// Hairstyle, amount of hair, and styling effects.
     Style,
     /// How hair holds its shape.
     Stiffness,
-    /// How heavy it is.
+    /// Mass of the hair.
     Weight,
-    /// How the body moves.
+    /// Motion of the body.
     Motion,
-    /// What blows.
+    /// Wind and turbulence.
     Air,
-    /// Bodies.
+    /// Collision with bodies.
     Collision,
-    /// Hair on hair.
+    /// Contact between hairs.
     Volume,
-    /// Colour and gloss.
+    /// Color and gloss.
     Look,
-    /// Where it is seen from.
+    /// Camera.
     Camera,
-    /// How time is cut.
+    /// Time steps and solver.
     Solver,
 }
 
 impl Group {
-    /// All of them, in the order of the panel.
+    /// All groups, in the order of the panel.
     pub const ALL: [Self; 10] = [
         Self::Style,
         Self::Stiffness,
@@ -44,7 +45,7 @@ impl Group {
         Self::Solver,
     ];
 
-    /// Its heading.
+    /// Heading in the panel.
     pub fn name(self) -> &'static str {
         match self {
             Self::Style => "Style",
@@ -61,50 +62,50 @@ impl Group {
     }
 }
 
-/// What a parameter is a setting of.
+/// The object that a parameter belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
     /// The scene.
     Scene,
-    /// The chosen groom.
+    /// The selected groom.
     Groom,
-    /// The material of the chosen group of it.
+    /// The material of the selected group of the groom.
     Material,
 }
 
-/// What values it takes.
+/// Type of a parameter's values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// A number; the range of its slider, which is not always all that the file takes.
+    /// A number, with the range of its slider. The file may accept a larger range.
     Number {
-        /// Least.
+        /// Minimum.
         min: f64,
-        /// Most.
+        /// Maximum.
         max: f64,
-        /// Whether equal ways of the slider are equal factors.
+        /// Whether the slider is logarithmic.
         log: bool,
     },
-    /// A number that may be left out, with what to begin from.
+    /// An optional number, with its initial value.
     Maybe {
-        /// Least.
+        /// Minimum.
         min: f64,
-        /// Most.
+        /// Maximum.
         max: f64,
-        /// Where it starts when it is switched on.
+        /// Initial value when it is switched on.
         from: f64,
-        /// What counts while it is left out.
+        /// Text that describes the state without a value.
         without: &'static str,
     },
-    /// A whole number of guides, or a word for them.
+    /// A whole number of guides, or a keyword.
     Guides {
-        /// Most.
+        /// Maximum.
         max: i64,
     },
-    /// A whole number; where it spans more than a thousandfold, equal ways of the slider are equal factors.
+    /// A whole number. Its slider is logarithmic if the range spans more than a factor of a thousand.
     Count {
-        /// Least.
+        /// Minimum.
         min: i64,
-        /// Most.
+        /// Maximum.
         max: i64,
     },
     /// On or off.
@@ -113,38 +114,38 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// Linear red, green, blue.
     Color,
-    /// A colour that may be left out.
+    /// An optional color.
     MaybeColor {
-        /// Where it starts when it is switched on.
+        /// Initial value when it is switched on.
         from: [f64; 3],
-        /// What counts while it is left out.
+        /// Text that describes the state without a value.
         without: &'static str,
     },
     /// Three numbers.
     Vector {
-        /// Farthest from 0 of each.
+        /// Maximum absolute value of each.
         reach: f64,
     },
-    /// Numbers from root to tip.
+    /// Weights from root to tip.
     Profile,
 }
 
 /// A parameter of the scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// Where it stands.
+    /// Group in the panel.
     pub group: Group,
-    /// What it is a setting of.
+    /// The object that it belongs to.
     pub of: Of,
-    /// Its name there.
+    /// Name in that object.
     pub name: &'static str,
-    /// What it is called.
+    /// Label in the panel.
     pub label: &'static str,
-    /// Its unit, empty for plain numbers.
+    /// Unit, empty for plain numbers.
     pub unit: &'static str,
-    /// Values.
+    /// Type and range of the values.
     pub kind: Kind,
-    /// What it does.
+    /// Tooltip.
     pub tip: &'static str,
 }
 
@@ -162,7 +163,7 @@ macro_rules! parameters {
     };
 }
 
-/// All of them.
+/// All parameters.
 pub const ALL: &[Parameter] = parameters! {
     Style {
         Groom "style", "Hairstyle", "", Kind::Choice(&PRESETS), "Hairstyle of the built-in head: sets cut, wave, color and material together.";
@@ -280,7 +281,7 @@ pub const ALL: &[Parameter] = parameters! {
 };
 
 impl Parameter {
-    /// Where its effective value stands, for this groom and group.
+    /// Key of the effective value, for this groom and group.
     pub fn key(&self, groom: usize, group: usize) -> Key {
         match self.of {
             Of::Scene => Key::default().field(self.name),
@@ -289,7 +290,7 @@ impl Parameter {
         }
     }
 
-    /// Whether it is of hair, body or motion themselves: the scene begins anew with it.
+    /// Whether the parameter determines hair, body or motion. Changing it restarts the scene.
     pub fn is_geometry(&self) -> bool {
         const NAMES: [&str; 7] =
             ["style", "strands", "guides", "motion", "radius", "solver.collide_body", "solver.preroll"];
@@ -297,7 +298,7 @@ impl Parameter {
         NAMES.contains(&self.name) || self.name.split_once('.').is_some_and(|(t, _)| TABLES.contains(&t))
     }
 
-    /// Where the text may say it; `None` where it has no place for it yet.
+    /// Key in the text; `None` if the text has no place for it yet.
     pub fn said(&self, document: &Document, groom: usize, group: usize) -> Option<Key> {
         match self.of {
             Of::Scene => Some(self.key(0, 0)),
@@ -309,7 +310,7 @@ impl Parameter {
         }
     }
 
-    /// Where to write it; a material of its own is made for the group where it has none.
+    /// Key to write to. If the group has no material of its own, one is created.
     pub fn place(&self, document: &mut Document, groom: usize, group: usize) -> Result<Key, crate::AppError> {
         match self.of {
             Of::Material => document.own_material(groom, group, self.name),

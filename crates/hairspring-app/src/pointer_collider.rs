@@ -1,4 +1,4 @@
-//! What the pointer pushes through hair, a ball or a hand: as hair meets it, and as it is drawn.
+//! The object that the pointer pushes through hair, a sphere or a hand: its colliders and its mesh.
 
 use glam::Vec3;
 use hairspring::{
@@ -10,20 +10,20 @@ use hairspring_scene::builtin::{Hand, hand};
 use hairspring_view::MeshDraw;
 use std::{f32::consts::PI, sync::LazyLock};
 
-/// Corners of the ball from pole to pole, and around.
+/// Vertices of the sphere from pole to pole, and around.
 const ROWS: u32 = 24;
 const COLUMNS: u32 = 48;
 
-/// What is pushed, in a space of its own: the ball around the origin, the hand as in [`hand`].
+/// A pushed object in its own space: the sphere around the origin, the hand as in [`hand`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pushed {
-    /// A ball of this radius [m].
+    /// A sphere of this radius [m].
     Ball(f32),
     /// An open hand of this length [m].
     Hand(f32),
 }
 
-/// A ball of radius 1.
+/// A sphere of radius 1.
 static BALL: LazyLock<Mesh> = LazyLock::new(|| {
     let corner = |k: u32| {
         let (row, column) = (k / COLUMNS, k % COLUMNS);
@@ -36,18 +36,18 @@ static BALL: LazyLock<Mesh> = LazyLock::new(|| {
         [[at(0, 0), at(1, 0), at(1, 1)], [at(0, 0), at(1, 1), at(0, 1)]]
     };
     let triangles: Vec<_> = (0..ROWS * COLUMNS).flat_map(square).collect();
-    // Pale and matt, so that hair is seen on it.
+    // Pale and matte, so that hair is visible in front of it.
     let (color, all) = (Vec3::new(0.5, 0.52, 0.55), 0..triangles.len() as u32);
     let parts = vec![Part { name: "ball".into(), triangles: all, color, roughness: 0.6 }];
     let corners: Vec<Vec3> = (0..(ROWS + 1) * COLUMNS).map(corner).collect();
     Mesh { normals: corners.clone(), positions: corners, triangles, parts, ..Mesh::default() }
 });
 
-/// A hand of its natural size.
+/// A hand of natural size.
 static HAND: LazyLock<Hand> = LazyLock::new(|| hand(Hand::CELL));
 
 impl Pushed {
-    /// As it is made, and how many times as large it is.
+    /// The mesh at its natural size, and the scale factor.
     fn made(self) -> (&'static Mesh, f32) {
         match self {
             Self::Ball(radius) => (&BALL, radius),
@@ -55,7 +55,7 @@ impl Pushed {
         }
     }
 
-    /// What hair meets of it.
+    /// The colliders of the object.
     pub fn shapes(self) -> Vec<ColliderShape> {
         match self {
             Self::Ball(radius) => vec![ColliderShape::Sphere { center: Vec3::ZERO, radius }],
@@ -71,7 +71,7 @@ impl Pushed {
         }
     }
 
-    /// As it is drawn with its space at `pose`.
+    /// The mesh with its space at `pose`, for drawing.
     pub fn placed(self, pose: RigidTransform) -> Placed {
         let (mesh, scale) = self.made();
         Placed {
@@ -82,7 +82,7 @@ impl Pushed {
     }
 }
 
-/// What is pushed, at a place.
+/// A pushed object at a pose.
 pub struct Placed {
     mesh: &'static Mesh,
     positions: Vec<Vec3>,
@@ -90,7 +90,7 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// To draw.
+    /// The mesh to draw.
     pub fn mesh(&self) -> MeshDraw<'_> {
         MeshDraw {
             positions: &self.positions,

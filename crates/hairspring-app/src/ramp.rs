@@ -1,8 +1,9 @@
-//! Numbers as colours: from blue over green and yellow to red, dark to bright in the middle, told apart by eyes that see no red too.
+//! Maps values to colors: from blue through green and yellow to red, dark at the ends and bright in the
+//! middle, so that color-blind users can read it too.
 
 use glam::Vec3;
 
-/// Turbo (Mikhailov 2019) at eight places, linear RGB.
+/// The Turbo color map (Mikhailov 2019) at eight positions, linear RGB.
 const STOPS: [[f32; 3]; 8] = [
     [0.030, 0.006, 0.045],
     [0.057, 0.149, 0.750],
@@ -14,7 +15,7 @@ const STOPS: [[f32; 3]; 8] = [
     [0.195, 0.001, 0.001],
 ];
 
-/// The colour of `value` between the two ends of `range`; beyond them, theirs. What is not a number is white.
+/// Color of `value` in `range`, clamped to its ends. NaN is white.
 pub fn color(value: f32, range: [f32; 2]) -> Vec3 {
     if !value.is_finite() {
         return Vec3::ONE;
@@ -25,12 +26,12 @@ pub fn color(value: f32, range: [f32; 2]) -> Vec3 {
     Vec3::from(STOPS[k]).lerp(STOPS[k + 1].into(), at - k as f32)
 }
 
-/// The colours of many.
+/// Colors of several values.
 pub fn colors(values: &[f32], range: [f32; 2]) -> Vec<Vec3> {
     values.iter().map(|v| color(*v, range)).collect()
 }
 
-/// Whole numbers as colours far apart, for guides: turns of the golden ratio through the hues.
+/// Maps indices to well-separated positions on the ramp, for guides, with multiples of the golden ratio.
 pub fn scattered(number: u32) -> f32 {
     (f64::from(number) * 0.618_033_988_749_895).fract() as f32
 }

@@ -1,4 +1,5 @@
-//! Stills, pictures, clips and turntables of what is seen, both sides where two scenes are compared. Every frame is drawn in full, however long that takes: while a record runs, the simulation waits for it.
+//! Records the view: stills, pictures, clips and turntables, with both sides of a comparison. Every frame is
+//! drawn in full quality. The simulation waits for the recording.
 
 use crate::{
     AppError,
@@ -21,39 +22,39 @@ use std::{
     },
 };
 
-/// Frames a second of clips: every second step.
+/// Frames per second of clips: every second step.
 const RATE: u32 = 30;
-/// Steps between them.
+/// Steps per frame.
 const STEPS: u64 = 2;
-/// Size of what is recorded [pixels].
+/// Size of a recorded frame [pixels].
 const SIZE: [u32; 2] = [1280, 720];
-/// Between two that are compared [pixels].
+/// Gap between two compared pictures [pixels].
 const GAP: u32 = 4;
-/// Height of what stands under them [pixels].
+/// Height of the captions below them [pixels].
 const CAPTION: u32 = 28;
-/// How far words stand off [pixels].
+/// Inset of the text [pixels].
 const INSET: u32 = 10;
-/// Gray between and under them.
+/// Gray of the gap and of the captions.
 const DARK: u8 = 24;
 
-/// What is recorded.
+/// Kind of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The moment, as a picture.
+    /// The current moment, as a picture.
     Still,
-    /// Pictures, one a frame.
+    /// One picture per frame.
     Pictures,
-    /// A clip of the play.
+    /// A clip of the playing scene.
     Clip,
-    /// A clip once around the moment.
+    /// A clip of one turn around the current moment.
     Turntable,
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 4] = [Self::Still, Self::Clip, Self::Pictures, Self::Turntable];
 
-    /// What the dialog is called.
+    /// Title of the dialog.
     pub fn title(self) -> &'static str {
         match self {
             Self::Still => "Still",
@@ -63,7 +64,7 @@ impl Kind {
         }
     }
 
-    /// A file to begin from.
+    /// Suggested file name.
     pub fn file(self) -> &'static str {
         match self {
             Self::Still => "hair.png",
@@ -74,25 +75,25 @@ impl Kind {
     }
 }
 
-/// What is to be recorded.
+/// A request for a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordRequest {
-    /// What.
+    /// Kind of the recording.
     pub kind: Kind,
-    /// Where it is written: `.png` or `.jpg` for a still, `.png` with `#` for pictures, else `.mp4`.
+    /// Path of the file: `.png` or `.jpg` for a still, `.png` with `#` for pictures, otherwise `.mp4`.
     pub path: PathBuf,
-    /// How long [s]; not of a still.
+    /// Duration [s]; not used for a still.
     pub seconds: f32,
 }
 
-/// A frame of a record.
+/// A frame of a recording.
 struct Shot {
     snapshot: Arc<Snapshot>,
-    /// How each stage is looked at.
+    /// View parameters of each stage.
     sights: Vec<ViewParameters>,
-    /// What stands under two that are compared.
+    /// Captions of two compared pictures.
     captions: [String; 2],
-    /// From 1.
+    /// Frame number, from 1.
     number: u32,
 }
 
@@ -101,24 +102,25 @@ enum Job {
     Finish,
 }
 
-/// A record being made.
+/// A recording in progress.
 pub struct Recorder {
     wish: RecordRequest,
     frames: u32,
-    /// Frames handed over.
+    /// Frames that were sent to the writer.
     sent: u32,
-    /// Frames written.
+    /// Frames that were written.
     written: u32,
-    /// The step that is waited for.
+    /// The step that the recording waits for.
     due: u64,
-    /// Whether the scene played before.
+    /// Whether the scene was playing before.
     played: bool,
     jobs: Option<Sender<Job>>,
     done: Receiver<Result<(), AppError>>,
 }
 
 impl Recorder {
-    /// Begins; the play is paused and goes on by what is recorded. It is drawn by `gpu`, if there is one, else by the CPU.
+    /// Starts a recording. The scene is paused and advances with the recording. The frames are drawn by
+    /// `gpu`, or by the CPU if it is `None`.
     pub fn new(
         mut wish: RecordRequest,
         session: &mut Session,
@@ -146,7 +148,7 @@ impl Recorder {
         Ok(Self { frames, sent: 0, written: 0, due: snapshot.step, played, jobs: Some(jobs), done, wish })
     }
 
-    /// Goes on as far as there is something to do; `Some` when it ended, with what to say.
+    /// Advances as far as possible. Returns `Some` with a message when the recording has ended.
     pub fn advance(
         &mut self,
         session: &mut Session,
@@ -159,7 +161,7 @@ impl Recorder {
             }
             self.written += 1;
         }
-        // One frame more than was sent: the file is complete.
+        // The writer reports one more frame than was sent when the file is complete.
         if self.written > self.frames {
             let path = self.wish.path.display();
             let said = match self.wish.kind {
@@ -185,7 +187,7 @@ impl Recorder {
             } else if matches!(self.wish.kind, Kind::Clip | Kind::Pictures) {
                 self.due = snapshot.step + STEPS;
                 for _ in 0..STEPS {
-                    // Orders to a session that lives cannot fail.
+                    // Commands to a live session cannot fail.
                     let _ = session.act(Action::Step);
                 }
             }
@@ -195,7 +197,7 @@ impl Recorder {
 
     fn tell(&self, job: Job) {
         if let Some(jobs) = &self.jobs {
-            // A writer that ended has said why, which is heard above.
+            // A writer that has ended has reported its error, which is received above.
             let _ = jobs.send(job);
         }
     }
@@ -206,18 +208,19 @@ impl Recorder {
         outcome
     }
 
-    /// Ends before its end; what to say. A clip that is not complete leaves nothing behind, and the scene plays on as before.
+    /// Stops the recording early and returns the message. No file of an incomplete clip is left, and the
+    /// scene continues as before.
     pub fn stop(mut self, session: &mut Session) -> Result<String, AppError> {
         self.end(session, Ok("stopped: a clip that is not complete is not kept".into()))
     }
 
-    /// Frames written, of how many.
+    /// Number of frames written, and total number of frames.
     pub fn progress(&self) -> (u32, u32) {
         (self.written.min(self.frames), self.frames)
     }
 }
 
-/// Who draws a record: whoever draws the window.
+/// The renderer of a recording, which is of the same kind as that of the window.
 enum Brush {
     Cpu(Box<Renderer>),
     Gpu(Box<GpuRenderer>),
@@ -238,7 +241,7 @@ impl Brush {
                 Ok(scenery.draw(sight, false, |frame| renderer.draw(frame).clone()))
             }
             Self::Gpu(renderer) => {
-                // Snapshots use their memory again: what lies where it lay is not what was sent.
+                // Snapshots reuse their memory, so an array at the same address may have new content.
                 renderer.forget();
                 scenery.draw(sight, true, |frame| {
                     renderer.draw(frame, width, height);
@@ -249,7 +252,7 @@ impl Brush {
     }
 }
 
-/// Where frames go.
+/// The output of the frames.
 struct Sink {
     path: PathBuf,
     clip: Option<ClipWriter>,
@@ -281,7 +284,8 @@ impl Sink {
         Ok(Self { path, clip, brush, letters: Letters::default() })
     }
 
-    /// Draws and writes until it is told to finish, and tells `said` of each frame and of the end; nothing is left of a clip that is not finished.
+    /// Draws and writes until it receives the end. `said` is called with the result of each frame and at the
+    /// end. No file of an unfinished clip is left.
     fn run(mut self, todo: &Receiver<Job>, said: impl Fn(Result<(), AppError>) -> bool) {
         for job in todo {
             let outcome = match job {
@@ -317,7 +321,7 @@ impl Sink {
         Ok(())
     }
 
-    /// Two that are compared, side by side, with what they differ in under them.
+    /// Draws two compared pictures side by side, with their differences as captions.
     fn pair(
         &mut self,
         sides: [(&StageSnapshot, &ViewParameters); 2],
@@ -341,7 +345,7 @@ impl Sink {
     }
 }
 
-/// Writes a picture by its file's extension.
+/// Writes a picture in the format of the file's extension.
 pub fn write(path: &Path, image: &hairspring_view::Image) -> Result<(), AppError> {
     let jpeg = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("jpg"));
     let written = if jpeg { write_jpeg(path, image) } else { write_png(path, image) };

@@ -1,18 +1,20 @@
-//! A session by a script: what a person would do, line by line, for tests, pictures and demonstrations.
+//! Scripted sessions: user input line by line, for tests, pictures and demonstrations.
 //!
 //! ```text
-//! # from the picture's top left corner (0, 0) to its bottom right (1, 1)
-//! wait 30                          steps of the simulation
-//! set groom[0].look.roughness 0.5  a value by its key; `unset KEY` takes it away
-//! hand grab                        look, grab, ball, head, pick, comb, hand
-//! drag 0.4 0.6 0.7 0.5 30          presses, moves in so many frames of the window, releases
-//! hold 0.4 0.6 0.7 0.5 30          the same, and holds on until `release`: to see what a tool does
-//! shot window.png                  the window as it is; paused, once it is drawn in full
-//! pace                             prints how it draws, how many pictures come in a second, and a step's time
+//! # coordinates: from the picture's top left corner (0, 0) to its bottom right (1, 1)
+//! wait 30                          waits for steps of the simulation
+//! set groom[0].look.roughness 0.5  writes a value by its key; `unset KEY` removes it
+//! hand grab                        selects a tool: look, grab, ball, head, pick, comb, hand
+//! drag 0.4 0.6 0.7 0.5 30          presses, moves in this number of frames of the window, releases
+//! hold 0.4 0.6 0.7 0.5 30          the same, but holds until `release`, to show the effect of a tool
+//! shot window.png                  writes a picture of the window; if paused, once it is drawn in full quality
+//! pace                             prints the renderer, the pictures per second, and the time of a step
 //! ```
 //!
-//! Further: `play`, `pause`, `step`, `reset`, `speed X`, `undo`, `redo`, `new STYLE`, `open FILE`, `save FILE`, `show VALUE` (or `natural`), `find TEXT` (parameters), `overlay NAME on|off`,
-//! `compare on|off`, `second on|off`, `graphs on|off`, `presets on|off`, `help on|off`, `panels on|off`, `still FILE`, `clip FILE SECONDS`, `pictures FILE SECONDS`, `turntable FILE SECONDS`, `quit`.
+//! Other commands: `play`, `pause`, `step`, `reset`, `speed X`, `undo`, `redo`, `new STYLE`, `open FILE`,
+//! `save FILE`, `show VALUE` (or `natural`), `find TEXT` (parameters), `overlay NAME on|off`, `compare
+//! on|off`, `second on|off`, `graphs on|off`, `presets on|off`, `help on|off`, `panels on|off`, `still FILE`,
+//! `clip FILE SECONDS`, `pictures FILE SECONDS`, `turntable FILE SECONDS`, `quit`.
 
 use crate::{AppError, key::Key, record::Kind, view::Hand};
 use glam::Vec2;
@@ -22,53 +24,53 @@ use std::{collections::VecDeque, path::PathBuf};
 /// A line of a script.
 #[derive(Clone, Debug)]
 pub enum Line {
-    /// Waits so many steps.
+    /// Waits for this number of steps.
     Wait(u64),
     /// Plays or pauses.
     Play(bool),
-    /// Steps.
+    /// Advances by one step.
     Step,
-    /// Resets.
+    /// Returns to time 0.
     Reset,
-    /// Seconds of the scene in a second.
+    /// Playback speed in scene seconds per second.
     Speed(f32),
-    /// Writes a value.
+    /// Writes a value, or removes it.
     Set(Key, Option<toml_edit::Value>),
-    /// Goes a step back.
+    /// Undoes one step.
     Undo,
-    /// Goes a step forth.
+    /// Redoes one step.
     Redo,
-    /// The built-in head in a style.
+    /// Opens the built-in head in a style.
     New(String),
     /// Opens a file.
     Open(PathBuf),
     /// Saves the scene.
     Save(PathBuf),
-    /// Takes a tool.
+    /// Selects a tool.
     Hand(Hand),
-    /// Drags from a place of the picture to another in so many frames.
+    /// Drags from one point of the picture to another in this number of frames.
     Drag(Vec2, Vec2, u32),
-    /// The same, but holds on.
+    /// Like `Drag`, but does not release.
     Hold(Vec2, Vec2, u32),
-    /// Lets go.
+    /// Releases the pointer.
     Release,
-    /// What colours show.
+    /// Selects the value that colors show.
     Show(Option<Value>),
-    /// Finds parameters, whose groups open.
+    /// Searches for parameters, whose groups open.
     Find(String),
-    /// Switches something on or off, by its name.
+    /// Switches something on or off by its name.
     Switch(String, bool),
-    /// Records for so many seconds.
+    /// Records for this number of seconds.
     Record(Kind, PathBuf, f32),
     /// Writes the window as a picture.
     Shot(PathBuf),
-    /// Prints how quick it is.
+    /// Prints the speed.
     Pace,
     /// Closes the window.
     Quit,
 }
 
-/// Names of what [`Line::Switch`] switches.
+/// Names of the switches of [`Line::Switch`].
 pub const SWITCHES: [&str; 14] = [
     "compare",
     "second",
@@ -86,7 +88,7 @@ pub const SWITCHES: [&str; 14] = [
     "handles",
 ];
 
-/// Reads a script.
+/// Parses a script.
 pub fn parse(text: &str) -> Result<VecDeque<Line>, AppError> {
     let mut lines = VecDeque::new();
     for (number, line) in text.lines().enumerate() {

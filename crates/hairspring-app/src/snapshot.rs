@@ -1,4 +1,4 @@
-//! What the simulation's thread shows of a moment: enough to draw it and to say how it is.
+//! The state of the simulation at one moment, as needed for drawing and for figures.
 
 use crate::{
     carried::Carried,
@@ -20,24 +20,24 @@ use hairspring_scene::{
 use hairspring_view::{Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality};
 use std::{sync::Arc, time::Duration};
 
-/// What does not move: made once a scene.
+/// Static data, created once per scene.
 pub struct Still {
-    /// Offsets, radii and colours of each groom's strands.
+    /// Offsets, radii and colors of each groom's strands.
     pub grooms: Vec<StillGroom>,
     /// Triangles and parts of the body.
     pub body: Option<(Vec<[u32; 3]>, Vec<Part>)>,
-    /// Simulated strands and all, simulated points and all.
+    /// Numbers of simulated strands, all strands, simulated points, and all points.
     pub counts: [usize; 4],
     /// Name of the instruction set.
     pub instruction_set: String,
 }
 
-/// What does not move of one groom.
+/// The static data of one groom.
 pub struct StillGroom {
     offsets: Vec<u32>,
     radii: Vec<f32>,
     colors: Vec<Vec3>,
-    /// Where each strand sits on the body; empty where none carries it.
+    /// Binding of each strand's root to the body; empty if the roots are not bound.
     bindings: Vec<RootBinding>,
 }
 
@@ -47,7 +47,7 @@ impl StillGroom {
         self.offsets.len().saturating_sub(1)
     }
 
-    /// Points of a strand; none where there is no such strand.
+    /// Points of a strand; empty if the strand does not exist.
     pub fn strand(&self, strand: usize) -> std::ops::Range<usize> {
         match self.offsets.get(strand..strand + 2) {
             Some(&[from, to]) => from as usize..to as usize,
@@ -57,7 +57,7 @@ impl StillGroom {
 }
 
 impl Still {
-    /// Of this stage.
+    /// Collects the static data of this stage.
     pub fn new(stage: &Stage) -> Self {
         let grooms = stage.strands().map(|s| StillGroom {
             offsets: s.groom.offsets.clone(),
@@ -78,40 +78,41 @@ impl Still {
 
 /// A stage at one moment.
 pub struct StageSnapshot {
-    /// What does not move.
+    /// The static data.
     pub still: Arc<Still>,
-    /// How each groom is drawn.
+    /// The look of each groom.
     pub looks: Vec<HairLook>,
-    /// Points of each groom [m]; of use where its hairs are not left to who draws them.
+    /// Points of each groom [m]. They are only valid for grooms whose follow hairs are not left to the
+    /// renderer.
     points: Vec<Vec<Vec3>>,
-    /// How the guides of each groom carry its hairs, where those are.
+    /// Interpolation data of the follow hairs that are left to the renderer.
     followers: Vec<Option<Followers>>,
-    /// One number a point of each groom, where a value is shown; else empty.
+    /// One value per point of each groom if a value is shown; otherwise empty.
     pub values: Vec<Vec<f32>>,
-    /// Vertices and normals of the body.
+    /// Vertex positions and normals of the body.
     pub positions: Vec<Vec3>,
     /// See `positions`.
     pub normals: Vec<Vec3>,
-    /// What the body stands on.
+    /// The ground.
     ground: Option<Ground>,
     /// Colliders.
     pub obstacles: Vec<MovingCollider>,
-    /// The frame that roots move with.
+    /// The rigid transform of the roots.
     pub anchor: RigidTransform,
-    /// Stretch, depth, speed: of this moment or, while it plays, of one a few steps ago.
+    /// Stretch, depth and speed, of this moment or, while playing, of a few steps ago.
     pub measure: Measure,
     /// Energy of the same moment.
     pub energy: Energy,
-    /// What is known of the hair's volume, where strands do not pass through each other.
+    /// Report of the volume method, if one is on.
     pub volume: Option<VolumeReport>,
-    /// Where what the scene lists has been carried.
+    /// Current transforms of the scene's listed objects.
     pub carried: Carried,
-    /// What is pushed through hair, and where it is.
+    /// The pushed object and its pose.
     pub pushed: Option<(Pushed, RigidTransform)>,
 }
 
 impl StageSnapshot {
-    /// Memory for a stage's moments.
+    /// Allocates memory for the snapshots of a stage.
     pub fn new(still: Arc<Still>) -> Self {
         Self {
             still,
@@ -132,7 +133,7 @@ impl StageSnapshot {
         }
     }
 
-    /// Copies a stage as it is now, into the memory that is there.
+    /// Copies the current state of a stage, reusing the memory.
     pub fn fill(&mut self, stage: &Stage, still: &Arc<Still>, value: Option<Value>) {
         self.still = still.clone();
         let grooms = stage.strands().len();
@@ -172,13 +173,15 @@ impl StageSnapshot {
         self.carried.fill(stage);
     }
 
-    /// The frame that a strand's root moves with: that of the skin's triangle (x along an edge, y along the normal), or the head's where no skin carries it.
+    /// Coordinate frame of a strand's root: that of the skin triangle (x along an edge, y along the normal),
+    /// or that of the head if the root is not bound to skin.
     pub fn root_frame(&self, groom: usize, strand: usize) -> Mat3 {
         let skin = self.skin_at(groom, strand);
         skin.map_or(self.anchor.matrix().0, |(binding, corners)| Mat3::from_quat(binding.frame(corners)))
     }
 
-    /// Where a strand's root is [m]: of a hair that is left to who draws it, the root alone is placed where skin carries it.
+    /// Position of a strand's root [m]. For hairs that are left to the renderer, only the root is computed,
+    /// from its binding to the skin.
     pub fn root(&self, groom: usize, strand: usize) -> Option<Vec3> {
         match self.skin_at(groom, strand) {
             Some((binding, corners)) => Some(binding.position(corners)),
@@ -186,7 +189,8 @@ impl StageSnapshot {
         }
     }
 
-    /// How the skin carries a strand, and the corners of its triangle [m]; `None` where no skin does.
+    /// Binding of a strand to the skin, and the corners of its triangle [m]; `None` if the strand is not
+    /// bound.
     fn skin_at(&self, groom: usize, strand: usize) -> Option<(&RootBinding, [Vec3; 3])> {
         let binding = self.still.grooms.get(groom)?.bindings.get(strand)?;
         let corners = self.still.body.as_ref()?.0.get(binding.triangle as usize)?;
@@ -194,7 +198,7 @@ impl StageSnapshot {
         Some((binding, [a?, b?, c?]))
     }
 
-    /// The box (min, max) of all hair [m]; `None` where no point is finite.
+    /// The box (min, max) of all hair [m]; `None` if no point is finite.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let points = self.points().flatten().filter(|p| p.is_finite());
         points.fold(None, |b, p| {
@@ -203,7 +207,8 @@ impl StageSnapshot {
         })
     }
 
-    /// Points of each groom [m]. Those of hairs that are left to who draws them are placed when they are first asked for.
+    /// Points of each groom [m]. Follow hairs that are left to the renderer are interpolated on the first
+    /// request.
     pub fn points(&self) -> impl ExactSizeIterator<Item = &[Vec3]> {
         (0..self.points.len()).map(|g| self.points_of(g))
     }
@@ -215,13 +220,13 @@ impl StageSnapshot {
         }
     }
 
-    /// Draws by `draw` what is seen by this camera: every `every`-th hair, those that are drawn being wider by as much. `card`: what draws can place hairs that
-    /// are left to it.
+    /// Calls `draw` with the frame for this view. Only every `every`-th hair is included, drawn
+    /// correspondingly wider. `card` tells whether the renderer can interpolate follow hairs.
     pub fn draw<R>(&self, sight: &ViewParameters, card: bool, draw: impl FnOnce(&Frame) -> R) -> R {
         let left = |g: usize| self.followers[g].as_ref().filter(|_| card);
         let thinned: Vec<Option<Thin>> = (0..self.points.len())
             .map(|g| {
-                // Brows are few, and stay.
+                // Brows have few hairs and are not thinned.
                 let every = sight.every.min(self.still.grooms[g].strands() / FEW).max(1);
                 (every > 1).then(|| Thin::new(self, g, every))
             })
@@ -284,10 +289,10 @@ impl StageSnapshot {
     }
 }
 
-/// Strands of a groom that are few: brows, a test.
+/// Number of strands below which a groom is not thinned, such as brows.
 const FEW: usize = 500;
 
-/// Every so-manieth strand of a groom.
+/// Every n-th strand of a groom.
 struct Thin {
     every: usize,
     strands: Vec<std::ops::Range<usize>>,
@@ -327,48 +332,49 @@ impl Thin {
     }
 }
 
-/// How a moment is looked at.
+/// The parameters of a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewParameters {
-    /// From where.
+    /// The camera.
     pub camera: hairspring_scene::Camera,
-    /// The camera that the lamps stand by: it does not turn with the view, so that light stays on the head as one walks around it.
+    /// The camera that the lamps are placed for. It does not rotate with the view, so that the light stays
+    /// fixed to the head during orbiting.
     pub lit_for: hairspring_scene::Camera,
     /// Brightness [stops].
     pub exposure: f32,
-    /// How much wider than they are hairs are drawn.
+    /// Factor for the width of drawn hairs.
     pub width: f32,
-    /// Every so-manieth hair is drawn, 1 or more.
+    /// Stride between the drawn hairs, 1 or more.
     pub every: usize,
-    /// Values of colours at the two ends of the ramp.
+    /// Values at the two ends of the color ramp.
     pub range: [f32; 2],
     /// Whether hair is drawn.
     pub hair: bool,
     /// Whether the body is drawn.
     pub body: bool,
-    /// Work to spend.
+    /// Rendering quality.
     pub quality: Quality,
 }
 
-/// Everything that the window knows of a moment.
+/// The state of the simulation that the window shows.
 pub struct Snapshot {
-    /// Counts snapshots: another number, something else to see, whether time went on or a colour changed.
+    /// Number of the snapshot. A different number means that something changed: the time, or only a color.
     pub number: u64,
-    /// Steps since the scene was opened; goes up by one each.
+    /// Number of steps since the scene was opened.
     pub step: u64,
-    /// Counts scenes: another number, another scene.
+    /// Number of the scene. A different number means another scene.
     pub scene: u64,
     /// Time in the scene [s].
     pub time: f64,
-    /// The scene, and beside it the one that it is compared with.
+    /// The scene, and the one that it is compared with.
     pub stages: Vec<StageSnapshot>,
-    /// Where the step's time went.
+    /// Time of each stage of the step.
     pub report: FrameReport,
-    /// How long a step takes, all that belongs to it included, over some steps.
+    /// Total time of a step, averaged over some steps.
     pub took: Duration,
-    /// Strands put back to rest since the scene was opened.
+    /// Number of strands that were reset since the scene was opened.
     pub reset_strands: usize,
-    /// The strand that was picked, as it is now.
+    /// The picked strand and its current figures.
     pub picked: Option<(Picked, StrandFigures)>,
 }
 

@@ -1,64 +1,65 @@
-//! The command line as a whole; each command's options are beside the command.
+//! The command line. Each command's options are in the module of the command.
 
 use crate::{bake, bench, compare, convert, demo, info, live, render, validate};
 use clap::{Parser, Subcommand};
 
 const AFTER_HELP: &str = "\
 Examples:
-  hairspring                                             the window, on a moving head of hair
-  hairspring live shot.toml                              a scene in it
-  hairspring demo --style curly --seconds 2              the same in curls
-  hairspring info ponytail.tfx                           what a file holds
-  hairspring convert head.hair head.tfx                  one groom format to another
-  hairspring render head.hair -o head.png                a picture of a groom
-  hairspring render shot.toml -o shot.mp4                a scene as a clip
+  hairspring                                             open the window with a moving head of hair
+  hairspring live shot.toml                              open a scene in the window
+  hairspring demo --style curly --seconds 2              write a clip of curly hair
+  hairspring info ponytail.tfx                           describe a file
+  hairspring convert head.hair head.tfx                  convert a groom
+  hairspring render head.hair -o head.png                draw a groom
+  hairspring render shot.toml -o shot.mp4                write a scene as a clip
   hairspring render shot.toml -o f.####.png --frames 20-80 --resume
-  hairspring bake shot.toml -o hair.####.hair            a scene as one groom file a frame
-  hairspring bench --strands 100000 --json               how fast this machine is
-  hairspring compare --report compare.html               what each integrator does to the same hair
-  hairspring validate --report validation.html           whether its hair is physics
+  hairspring bake shot.toml -o hair.####.hair            write one groom file per frame
+  hairspring bench --strands 100000 --json               measure the speed
+  hairspring compare --report compare.html               compare the integrators
+  hairspring validate --report validation.html           compare the simulation with closed-form solutions
 
 Results go to standard output, progress and notes to standard error.
 
 Exit codes:
-  0    done
-  1    a validation is out of its tolerance
-  2    the command line asks for something that there is not
+  0    success
+  1    a validation result is outside its tolerance
+  2    invalid argument
   3    a file was not found or could not be read
   4    a file's content is wrong
   5    a file could not be written
   6    the scene cannot be simulated
-  7    the machine lacks what was asked for: a desktop, a GPU
-  70   an error of the program itself
-  130  interrupted (Ctrl-C): the frame in hand was completed, nothing is half-written";
+  7    the machine lacks what the command needs: a desktop, a GPU
+  70   internal error
+  130  interrupted (Ctrl-C): the current frame was completed, no partial file is left";
 
 /// Heading of the options that every command has.
-const EVERYWHERE: &str = "With every command";
+const EVERYWHERE: &str = "Global options";
 
-/// Real-time strand hair: simulate it, draw it, convert it, bake it, measure it.
+/// Real-time strand hair: simulate, draw, convert, bake and measure it.
 ///
-/// Without a command, opens the window on a moving head of hair; without a desktop, writes a clip and a still of it (`hairspring demo`).
+/// Without a command, this opens a window with a moving head of hair. Without a desktop, it writes a clip and
+/// a still picture instead (`hairspring demo`).
 #[derive(Parser)]
 #[command(name = "hairspring", version, after_help = AFTER_HELP, max_term_width = 110)]
 pub struct Cli {
-    /// Threads to work on [default: one a processor]
+    /// Number of threads [default: one per processor]
     #[arg(long, global = true, help_heading = EVERYWHERE, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 
-    /// Say nothing but results and errors
+    /// Print only results and errors
     #[arg(short, long, global = true, help_heading = EVERYWHERE, conflicts_with = "verbose")]
     pub quiet: bool,
 
-    /// Say what each frame of a long run took
+    /// Print the time of each frame of a long run
     #[arg(short, long, global = true, help_heading = EVERYWHERE)]
     pub verbose: bool,
 
-    /// What to do.
+    /// The command to run.
     #[command(subcommand)]
     pub command: Option<Command>,
 }
 
-/// The commands; what each is for stands with its options.
+/// The commands. Each is documented at its options.
 #[derive(Subcommand)]
 pub enum Command {
     Live(live::Options),

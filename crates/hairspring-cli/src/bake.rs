@@ -1,4 +1,4 @@
-//! `hairspring bake`: a scene's hair, one groom file a frame.
+//! `hairspring bake`: writes a scene's hair as one groom file per frame.
 
 use crate::{
     console::{Console, say},
@@ -19,11 +19,11 @@ use std::{
     time::Instant,
 };
 
-/// Simulates a scene and writes its hair, one groom file a frame (.hair, .tfx or .data), in metres, Y up.
+/// Simulates a scene and writes its hair as one groom file per frame (.hair, .tfx or .data), in meters, Y up.
 ///
-/// Frame 1 is the rest pose at time 0. The hairs of all grooms of the scene come one groom after the other, and every
-/// frame has the same strands in the same order. Files appear only when they are complete, and are the same bits for any
-/// number of threads.
+/// Frame 1 is the rest pose at time 0. A file holds the hairs of all grooms of the scene, one groom after the
+/// other. Every frame has the same strands in the same order. A file appears only when it is complete. The
+/// result is bit-identical for any number of threads.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
@@ -34,24 +34,24 @@ pub struct Options {
     #[command(flatten)]
     input: Input,
 
-    /// Files to write, `#` standing for the digits of the frame number: NAME.####.hair, .tfx or .data
+    /// Files to write; `#` signs stand for the digits of the frame number: NAME.####.hair, .tfx or .data
     #[arg(short, long, value_name = "NAME.####.hair")]
     output: PathBuf,
 
-    /// Frames to write, such as 1-150 or 60 [default: the scene's motion, 5 seconds without one]
+    /// Frames to write, such as 1-150 or 60 [default: the scene's motion, or 5 seconds without one]
     #[arg(long, value_name = "A-B")]
     frames: Option<FrameRange>,
 
-    /// Frames a second
+    /// Frames per second
     #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
     fps: FrameRate,
 
-    /// Skip frames whose file is there and complete; they are simulated through, so that the result is the same bits
-    /// as without an interruption. Give the same scene and options as before
+    /// Skip frames that already have a complete file. They are still simulated, so that the result is
+    /// bit-identical to an uninterrupted run. Use the same scene and options as before
     #[arg(long)]
     resume: bool,
 
-    /// Print what ran as JSON
+    /// Print a summary as JSON
     #[arg(long)]
     json: bool,
 }
@@ -60,14 +60,13 @@ pub struct Options {
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let pattern = &options.output;
     if !Format::of(pattern).is_some_and(|f| Format::GROOMS.contains(&f)) {
-        let text =
-            format!("{}: hair is baked to .hair, .tfx or .data, told by the extension", pattern.display());
+        let text = format!("{}: unknown extension; hair is baked to .hair, .tfx or .data", pattern.display());
         return Err(Fault::Usage(text));
     }
     let one = options.frames.is_some_and(|f| f.count() == 1);
     if !output::is_sequence(pattern) && !one {
         let text = format!(
-            "{} is one file for many frames: put # signs where the frame number goes (NAME.####.hair)",
+            "{} is one file for many frames; put # signs where the frame number goes (NAME.####.hair)",
             pattern.display()
         );
         return Err(Fault::Usage(text));
@@ -104,7 +103,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     drop(progress);
     if let Ending::Stopped(after) = ending {
         let text = format!(
-            "stopped after frame {after} of {}: run the same command with --resume to go on",
+            "stopped after frame {after} of {}; run the same command with --resume to continue",
             range.last
         );
         return Err(Fault::Interrupted(text));
@@ -119,14 +118,14 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         });
         say(totals.json(&stage, summary));
     } else {
-        let skipped = if skipped > 0 { format!(", {skipped} were there already") } else { String::new() };
+        let skipped = if skipped > 0 { format!(", {skipped} existed already") } else { String::new() };
         say(format_args!("wrote    {} ({}{skipped})", pattern.display(), totals::frames(wanted.len())));
         totals.tell(&stage);
     }
     Ok(())
 }
 
-/// All grooms of a stage as the strands of one file; what does not move is kept from frame to frame.
+/// All grooms of a stage as the strands of one file. The static arrays are kept from frame to frame.
 struct Sheaf {
     points: Vec<Vec3>,
     offsets: Vec<u32>,
@@ -143,12 +142,12 @@ impl Sheaf {
             let before = offsets.last().copied().unwrap_or(0);
             offsets.extend(groom.offsets.iter().skip(1).map(|o| o + before));
         }
-        // A file has a colour at every point or at none, and the same for texture coordinates.
+        // A file has a color at every point or none at all; the same holds for texture coordinates.
         let colored = grooms.iter().filter(|g| !g.colors.is_empty()).count();
         let mapped = grooms.iter().filter(|g| !g.root_uvs.is_empty()).count();
-        for (some, what) in [(colored, "colours"), (mapped, "texture coordinates")] {
+        for (some, what) in [(colored, "colors"), (mapped, "texture coordinates")] {
             if some > 0 && some < grooms.len() {
-                console.note(format_args!("{some} of {} grooms have {what}: left out", grooms.len()));
+                console.note(format_args!("only {some} of {} grooms have {what}; left out", grooms.len()));
             }
         }
         Self {
@@ -172,7 +171,7 @@ impl Sheaf {
         if let Some(point) = self.points.iter().position(|p| !p.is_finite()) {
             let strand = self.offsets.partition_point(|first| *first as usize <= point) - 1;
             let text = format!(
-                "strand {strand} is not finite at {} s, so {} was not written: a setting of the scene is too large",
+                "strand {strand} is not finite at {} s, so {} was not written; a setting of the scene is too large",
                 stage.time(),
                 path.display()
             );
@@ -188,7 +187,7 @@ impl Sheaf {
         write_strands(path, strands).map(drop).map_err(Fault::writing)
     }
 
-    /// Whether a complete file of as many strands and points is there.
+    /// Whether a complete file with the same strands and points exists.
     fn is_baked(&self, path: &Path) -> bool {
         let options = ReadOptions { scale: Some(1.0), up: None };
         read_groom(path, &options).is_ok_and(|l| l.value.offsets == self.offsets)

@@ -1,4 +1,4 @@
-//! `hairspring bench`: the speed and the quality of the simulation on the standard scene.
+//! `hairspring bench`: the speed and the quality of the simulation on the standard bench scene.
 
 mod scene;
 mod table;
@@ -22,19 +22,21 @@ use std::{path::PathBuf, time::Instant};
 
 /// Measures the simulation on the standard bench scene.
 ///
-/// A sphere scalp of radius 0.1 m, strands of 0.25 m evenly over its upper half, frames of 1/60 s, the scalp shaken
-/// 5 cm at 2 Hz, contact with the sphere, every strand simulated.
+/// The scene is a spherical scalp of radius 0.1 m with strands of 0.25 m spread evenly over its upper half.
+/// The scalp is shaken by 5 cm at 2 Hz in frames of 1/60 s. Hair collides with the sphere, and every strand
+/// is simulated.
 ///
-/// `ns_per_point_substep` is per core: wall time x threads / (strands x points x substeps). Stretch and depth are
-/// measured between the frames, outside the timed part: as they are after the last frame, and (`_ever`) the worst after
-/// any frame.
+/// `ns_per_point_substep` is per core: wall time x threads / (strands x points x substeps). Stretch and depth
+/// are measured between frames and are not timed. They are given for the last frame and, with the suffix
+/// `_ever`, for the worst frame.
 ///
-/// `--scene` plays a scene instead and prints medians of its frames: what each stage takes, a point and substep of the
-/// solve, how many points and segments colliders hold out, and how many points have a collider looked up.
+/// `--scene` runs a scene instead and prints medians over its frames: the time of each stage, the time of the
+/// solve per point and substep, the number of points and segments that colliders push out, and the number of
+/// points that need a collider distance.
 ///
-/// `--table` steps the scene for every elastic model on every instruction set that this processor has, turn by turn in
-/// one process, so that whatever else the machine does slows all of them alike. Built with `--features scalar`, it has a
-/// last row of the same code without SIMD.
+/// `--table` steps the scene with every elastic model on every instruction set of this processor. All of them
+/// run in turn in one process, so that other load on the machine affects all of them alike. Built with
+/// `--features scalar`, the table has a last row for the same code without SIMD.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
@@ -44,59 +46,63 @@ Examples:
   hairspring bench --table --frames 60
   hairspring bench --scene shot.toml --frames 120")]
 pub struct Options {
-    /// Strands
+    /// Number of strands
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     strands: u32,
 
-    /// Points of each strand
+    /// Points per strand
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(3..=1024))]
     points: u32,
 
-    /// Frames of 1/60 s; 300 are 5 seconds
+    /// Number of frames of 1/60 s; 300 are 5 seconds
     #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
 
-    /// Substeps a frame
+    /// Substeps per frame
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64))]
     substeps: u32,
 
-    /// How time is stepped: backward-euler, bdf2, explicit-euler, verlet, local-global, ftl, dftl
+    /// Time integrator: backward-euler, bdf2, explicit-euler, verlet, local-global, ftl, dftl
     #[arg(long, value_name = "NAME", default_value = Integrator::default().name())]
     integrator: String,
 
-    /// What holds a strand's shape: auto, springs, curvature, rod (auto takes curvature here, where strands are straight)
+    /// Elastic model: auto, springs, curvature, rod (auto selects curvature here, because the strands are
+    /// straight)
     #[arg(long, value_name = "NAME", default_value = Model::default().name())]
     model: String,
 
-    /// Iterate each substep to the end (Newton)
+    /// Iterate each substep to convergence (Newton)
     #[arg(long)]
     high_quality: bool,
 
-    /// Where it runs: cpu
+    /// Device to run on: cpu
     #[arg(long, value_name = "NAME", default_value = DEVICES[0])]
     device: String,
 
-    /// Let hair meet hair as a volume: off, density, incompressible [default: off; density where no method is named]
+    /// Hair-hair volume method: off, density, incompressible [default: off; density if no method is given]
     #[arg(long, value_name = "METHOD", num_args = 0..=1, default_value = VolumeMethod::Off.name(), default_missing_value = VolumeMethod::Density.name(), hide_default_value = true)]
     hair_hair: String,
 
-    /// What hair meets as the head: sphere, sdf (the distance field of its mesh, as a scene's body is met)
+    /// Collider for the head: sphere, sdf (the signed distance field of its mesh, as for the body of a scene)
     #[arg(long, value_name = "NAME", default_value = Head::default().name())]
     head: String,
 
-    /// Speed of the wind, which gusts once a second by half [m/s]
+    /// Wind speed, with a gust of half of it once per second [m/s]
     #[arg(long, value_name = "SPEED", default_value_t = 0.0, value_parser = wind_speed)]
     wind: f32,
 
-    /// Instruction set, an older one of this processor (avx512, avx2, sse2) [default: its best]
+    /// Instruction set to use instead of the best one of this processor (avx512, avx2, sse2) [default: the
+    /// best]
     #[arg(long, value_name = "NAME")]
     simd: Option<String>,
 
-    /// Compare all models on all instruction sets of this processor and without any, the same frames for each
+    /// Compare all models on all instruction sets of this processor and, if built in, without SIMD, over the
+    /// same frames
     #[arg(long, conflicts_with_all = ["simd", "model", "integrator", "high_quality", "hair_hair", "head", "wind"])]
     table: bool,
 
-    /// Measure a scene (.toml) or a groom as it is, instead of the standard scene: what the stages of its frames take, and what its hair meets
+    /// Measure a scene (.toml) or a groom instead of the standard scene: the time of each stage and the
+    /// contacts of its hair
     #[arg(long, value_name = "FILE", conflicts_with_all = ["table", "strands", "points", "substeps", "simd", "model", "integrator", "high_quality", "device", "hair_hair", "head", "wind"])]
     scene: Option<PathBuf>,
 
@@ -107,29 +113,30 @@ pub struct Options {
 
 const DEVICES: [&str; 1] = ["cpu"];
 
-/// Most points of a bench: their state is some 100 bytes a point.
+/// Maximum number of points of a bench. Their state takes about 100 bytes per point.
 const MOST_POINTS: u64 = 200_000_000;
 
-/// A speed of the wind [m/s]; above that of sound a strand would only be torn.
+/// Parses a wind speed [m/s]. Above the speed of sound a strand would only be torn.
 fn wind_speed(text: &str) -> Result<f32, String> {
     match text.parse() {
         Ok(speed) if (0.0..=300.0).contains(&speed) => Ok(speed),
-        _ => Err("a speed of 0 to 300 m/s is expected".into()),
+        _ => Err("expected a speed of 0 to 300 m/s".into()),
     }
 }
 
-/// What each frame took [s].
+/// The time of each frame [s].
 struct Times(Vec<f64>);
 
 impl Times {
-    /// The time that a share of the frames stayed under, of a frame that there was (the nearest rank) [ms].
+    /// The time that the given share of the frames stay under [ms]. It is the time of an actual frame
+    /// (nearest rank).
     fn rank(&self, share: f64) -> f64 {
         let mut sorted = self.0.clone();
         sorted.sort_by(f64::total_cmp);
         sorted[((share * sorted.len() as f64).ceil() as usize).clamp(1, sorted.len()) - 1] * 1e3
     }
 
-    /// Of the median frame of a bench on all threads, per core [ns a point and substep].
+    /// Time of the median frame per core, over all threads [ns per point and substep].
     fn per_point(&self, options: &Options) -> f64 {
         let Options { strands, points, substeps, .. } = *options;
         let work = f64::from(strands) * f64::from(points) * f64::from(substeps);
@@ -147,7 +154,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let quality = if options.high_quality { Quality::High } else { Quality::Normal };
     known("head", &options.head, &Head::ALL.map(Head::name))?;
     let head = Head::ALL.into_iter().find(|h| h.name() == options.head).unwrap_or_default();
-    known("method of hair on hair", &options.hair_hair, &VolumeMethod::ALL.map(VolumeMethod::name))?;
+    known("hair-hair method", &options.hair_hair, &VolumeMethod::ALL.map(VolumeMethod::name))?;
     let method = VolumeMethod::ALL.into_iter().find(|m| m.name() == options.hair_hair).unwrap_or_default();
     known("device", &options.device, &DEVICES)?;
     let benches = if options.table { table::cells().len() } else { 1 };
@@ -262,23 +269,23 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         options.device, options.integrator
     ));
     say(format_args!(
-        "time     {median:.2} ms a frame (median), {fastest:.2} ms (fastest), {p95:.2} ms (95 %)"
+        "time     {median:.2} ms per frame (median), {fastest:.2} ms (fastest), {p95:.2} ms (95 %)"
     ));
-    say(format_args!("         {ns:.2} ns a point and substep per core (wall time x threads)"));
+    say(format_args!("         {ns:.2} ns per point and substep, per core (wall time x threads)"));
     say(format_args!(
-        "stretch  {:.4} % mean, {:.3} % worst at the end; {:.3} % worst ever",
+        "stretch  {:.4} % mean, {:.3} % maximum at the end; {:.3} % maximum over all frames",
         measure.stretch_mean * 1e2,
         measure.stretch_max * 1e2,
         stretch_ever * 1e2
     ));
     say(format_args!(
-        "contact  {} points inside at the end, {:.4} mm the deepest; {:.4} mm ever",
+        "contact  {} points inside at the end, at most {:.4} mm deep; {:.4} mm over all frames",
         measure.inside_points,
         measure.max_depth * 1e3,
         depth_ever * 1e3
     ));
     say(format_args!(
-        "         {} segments inside at the end, {} of them deeper than 1 mm, {:.4} mm the deepest; {:.4} mm ever",
+        "         {} segments inside at the end, {} of them deeper than 1 mm, at most {:.4} mm deep; {:.4} mm over all frames",
         measure.inside_segments,
         measure.deep_segments,
         measure.segment_depth * 1e3,
@@ -286,42 +293,40 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     ));
     if let Some(volume) = simulation.volume() {
         say(format_args!(
-            "volume   {}, cells of {:.1} mm, {} nodes, {:.1} % of the rest volume taken up",
+            "volume   {}, cells of {:.1} mm, {} nodes, {:.1} % of the rest volume filled",
             method.name(),
             volume.cell * 1e3,
             grouped(volume.nodes),
             volume.share * 1e2
         ));
     }
-    say(format_args!("memory   {bytes:.1} bytes a point"));
+    say(format_args!("memory   {bytes:.1} bytes per point"));
     say(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
     Ok(())
 }
 
-/// Says what hair is stepped.
+/// Prints the size of the simulated hair.
 fn say_scene(options: &Options) {
     let (strands, points) = (options.strands as usize, options.points as usize);
     let all = grouped(strands * points);
     say(format_args!("scene    {} strands x {points} points = {all} points", grouped(strands)));
 }
 
-/// Whether the user let the bench go on after a frame.
+/// Returns an error if the user has interrupted the bench.
 fn go_on(frame: u32, frames: u32) -> Result<(), Fault> {
     match interrupt::asked() {
         false => Ok(()),
         true => {
-            let text = format!("stopped after frame {frame} of {frames}: no figures were taken");
+            let text = format!("stopped after frame {frame} of {frames}; nothing was measured");
             Err(Fault::Interrupted(text))
         }
     }
 }
 
-/// Refuses a name that is not among those that there are.
+/// Returns an error if `name` is not one of the valid names in `there`.
 fn known(what: &str, name: &str, there: &[&str]) -> Result<(), Fault> {
     match there.contains(&name) {
         true => Ok(()),
-        false => {
-            Err(Fault::Usage(format!("there is no {what} '{name}' here; there is: {}", there.join(", "))))
-        }
+        false => Err(Fault::Usage(format!("unknown {what} '{name}'; expected one of: {}", there.join(", ")))),
     }
 }

@@ -26,42 +26,43 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use swing::{LongestStep, Swung};
 
-/// Compares the integrators: the same hair, the same substeps, one method after the other.
+/// Compares the integrators on the same hair with the same substeps.
 ///
-/// Three experiments. The scene is played by each: does it stay stable, how far do segments stretch, what does a step cost? Strands of it
-/// are let go without air, damping or body: how much of its energy does a free swing keep? And a few of them swing with steps of
-/// any length: which is the longest that is stable? The report explains each method with its equations, and shows the scene
-/// at the same moments side by side.
+/// There are three experiments. Each integrator plays the scene: is it stable, how far do segments stretch,
+/// and what does a step cost? Strands of the scene swing freely without air, damping or a body: how much of
+/// the energy is kept? A few of them swing with steps of different lengths: which is the longest stable step?
+/// The report explains each method with its equations, and shows the scene at the same moments side by side.
 ///
-/// Without SCENE, a head of straight hair that nods, turns and shakes.
+/// Without SCENE, the scene is a head of straight hair that nods, turns and shakes.
 #[derive(Parser)]
 #[command(after_help = after_help())]
 pub struct Options {
-    /// A scene (.toml), or a groom (.hair, .tfx, .data) that hangs still under gravity [default: the built-in head]
+    /// A scene (.toml), or a groom (.hair, .tfx, .data) that hangs still under gravity [default: the built-in
+    /// head]
     #[arg(value_name = "SCENE|GROOM")]
     scene: Option<PathBuf>,
 
     #[command(flatten)]
     units: Units,
 
-    /// Strands to simulate in each groom, the others follow: a number, `all`, or `file` for those that it names
-    /// [default: as the scene says; 300 of the built-in head]
+    /// Strands to simulate in each groom; the others follow. A number, `all`, or `file` for the guides that
+    /// the file names [default: from the scene; 300 for the built-in head]
     #[arg(long, value_name = "N|all|file", value_parser = frames::guides)]
     guides: Option<Guides>,
 
-    /// Substeps in 1/60 s of every method [default: as the scene says, 4 where it does not]
+    /// Substeps per 1/60 s, for every method [default: from the scene, otherwise 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     substeps: Option<u32>,
 
-    /// How much of the scene is played and how long the free swing lasts [s]
+    /// Length of the scene that is played, and of the free swing [s]
     #[arg(long, value_name = "SECONDS", default_value = "3", value_parser = frames::positive)]
     seconds: f32,
 
-    /// Which to compare, such as verlet,backward-euler [default: all]
+    /// Integrators to compare, such as verlet,backward-euler [default: all]
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     integrators: Vec<String>,
 
-    /// Write a page that explains and shows the comparison
+    /// Write an HTML page that explains and shows the comparison
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 
@@ -77,17 +78,17 @@ fn after_help() -> String {
         "\
 Integrators: {names}
 
-The figures of each, as JSON keys:
-  stable                    no strand turned non-finite and no segment was ever twice its length, in the scene
-  reset_strands             strands that turned non-finite and were put back to rest, frame after frame
+The figures of each integrator, as JSON keys:
+  stable                    in the scene, no strand became non-finite and no segment reached twice its length
+  reset_strands             strands that became non-finite and were reset, summed over all frames
   stretch_mean              mean of |l/L - 1| over segments and frames
-  stretch_max               the worst segment of any frame; null where it was beyond numbers
-  swing_stretch_max         the worst segment of the free swing, which meets nothing; null where it blew up
-  energy_drift              what the free swing has gained or lost, over all that it can turn into motion by falling;
-                            null where it blew up
+  stretch_max               maximum over segments and frames; null if it was not finite
+  swing_stretch_max         maximum in the free swing, which has no contact; null if it blew up
+  energy_drift              energy gained or lost in the free swing, over the energy that falling can release;
+                            null if it blew up
   ns_per_point_substep      wall time x threads / (points x substeps), the median frame of the scene
-  longest_stable_step_s     {longest} is the longest tried; null: not even {shortest} is stable
-  points_in_real_time       that one thread keeps up with at that step; null where there is none
+  longest_stable_step_s     {longest} is the longest tried; null if not even {shortest} is stable
+  points_in_real_time       points that one thread simulates in real time at that step; null if there is none
 
 Examples:
   hairspring compare --report compare.html
@@ -96,13 +97,15 @@ Examples:
     )
 }
 
-/// Largest |ℓ/L − 1| of a method that counts as stable [1]: beyond, a segment is twice as long as it should be, and the method has lost it.
+/// Largest |ℓ/L − 1| of a method that counts as stable [1]. Above it, a segment is more than twice as long as
+/// it should be, and the method has diverged.
 const BOUND: f64 = 1.0;
 
 /// Strands in the free swing.
 const SWINGING: usize = 64;
 
-/// Strands that look for the longest stable step, which takes a microsecond's method hundreds of thousands of steps: one tile.
+/// Strands in the search for the longest stable step: one tile. A method that needs steps of a microsecond
+/// takes hundreds of thousands of steps here.
 const STEPPING: usize = 8;
 
 /// Strands of the built-in head, and how many of them are simulated.
@@ -111,7 +114,7 @@ const HEAD: (u32, u32) = (4_000, 300);
 /// Longest comparison [s].
 const LONGEST: f32 = 600.0;
 
-/// What was found of one integrator.
+/// The results of one integrator.
 struct Trial {
     integrator: Integrator,
     played: Played,
@@ -120,19 +123,19 @@ struct Trial {
 }
 
 impl Trial {
-    /// Whether it held the scene together.
+    /// Whether the method kept the scene stable.
     fn stable(&self) -> bool {
-        // A stretch that is no number is not within the bound.
+        // A stretch that is NaN is not within the bound.
         self.played.reset_strands == 0 && self.played.stretch_max <= BOUND
     }
 
-    /// Points that one thread keeps up with at the longest stable step.
+    /// Number of points that one thread can simulate in real time at the longest stable step.
     fn points_in_real_time(&self) -> Option<f64> {
         self.longest.seconds().map(|h| h / (self.played.ns * 1e-9))
     }
 }
 
-/// What was compared.
+/// The setup of a comparison.
 struct Setting {
     name: String,
     simulated_strands: usize,
@@ -158,7 +161,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let still =
         scene.wind.velocity.length() == 0.0 && scene.wind_sources.is_empty() && !scene.turbulence.is_on();
     if scene.clip.is_none() && still && scene.charged.is_empty() {
-        console.note("nothing moves the hair of this scene: only the swing tells the methods apart");
+        console.note("nothing moves the hair of this scene; only the free swing shows a difference between the methods");
     }
     interrupt::listen();
     let frames = ((options.seconds * 60.0).round() as u32).max(play::MOMENTS);
@@ -169,7 +172,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let draw = options.report.is_some();
     let mut setting = None;
     let mut played = Vec::with_capacity(integrators.len());
-    let mut progress = console.progress("playing the scene by each", frames * integrators.len() as u32);
+    let mut progress = console.progress("playing the scene", frames * integrators.len() as u32);
     for &integrator in &integrators {
         let mut scene = scene.clone();
         scene.solver.integrator = integrator;
@@ -192,7 +195,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
 
     let mut trials = Vec::with_capacity(integrators.len());
     let mut progress = console.progress_in(
-        "swinging, and looking for the longest step",
+        "swinging, and searching for the longest step",
         integrators.len() as u32,
         "methods",
     );
@@ -218,7 +221,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The integrators of these names, each once; all of them for none.
+/// Returns the integrators of these names, each once. If there are no names, returns all of them.
 fn integrators(names: &[String]) -> Result<Vec<Integrator>, Fault> {
     if names.is_empty() {
         return Ok(Integrator::ALL.to_vec());
@@ -227,7 +230,7 @@ fn integrators(names: &[String]) -> Result<Vec<Integrator>, Fault> {
     for name in names.iter().map(|n| n.trim()) {
         let found = Integrator::ALL.into_iter().find(|i| i.name() == name).ok_or_else(|| {
             let there = Integrator::ALL.map(Integrator::name).join(", ");
-            Fault::Usage(format!("there is no integrator '{name}' here; there is: {there}"))
+            Fault::Usage(format!("unknown integrator '{name}'; expected one of: {there}"))
         })?;
         if !chosen.contains(&found) {
             chosen.push(found);
@@ -242,14 +245,15 @@ fn scene(options: &Options, console: Console) -> Result<Scene, Fault> {
         return Input { path: path.clone(), units, guides, substeps }.scene(console);
     }
     if units.scale.is_some() || units.up.is_some() {
-        return Err(Fault::Usage("--scale and --up are for a groom: name one".into()));
+        return Err(Fault::Usage("--scale and --up apply to a groom file; none is given".into()));
     }
     let mut scene = builtin::scene(&BuiltinOptions {
         strands: HEAD.0,
         guides: guides.unwrap_or(Guides::Count(HEAD.1)),
         ..BuiltinOptions::new(Style::Straight)
     });
-    // Brows and lashes are too short and stiff to tell anything, and the shortest segment decides the longest step.
+    // Eyebrows and eyelashes are too short and stiff to be informative, and the shortest segment determines
+    // the longest step.
     scene.grooms.truncate(1);
     scene.solver.substeps = substeps.unwrap_or(scene.solver.substeps);
     Ok(scene)
@@ -286,7 +290,7 @@ fn as_json(setting: &Setting, trials: &[Trial], options: &Options) -> Value {
     })
 }
 
-/// Heads of the table's columns.
+/// Column headers of the table.
 const HEADS: [&str; 8] = [
     "integrator",
     "stable",
@@ -298,7 +302,7 @@ const HEADS: [&str; 8] = [
     "points in real time",
 ];
 
-/// A row of the table, in words.
+/// A row of the table, as text.
 fn row(t: &Trial) -> [String; 8] {
     let stable = match (t.stable(), t.played.reset_strands) {
         (true, _) => "yes".into(),
@@ -327,7 +331,7 @@ fn print(setting: &Setting, trials: &[Trial]) {
         grouped(setting.simulated_points)
     ));
     say(format_args!(
-        "each     {} s of it, {} substeps in 1/60 s, {} threads, {}",
+        "each     {} s of the scene, {} substeps per 1/60 s, {} threads, {}",
         number(setting.seconds),
         setting.substeps,
         rayon::current_num_threads(),
@@ -339,7 +343,7 @@ fn print(setting: &Setting, trials: &[Trial]) {
         std::array::from_fn(|c| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0));
     for row in &rows {
         let cells = row.iter().zip(widths).enumerate().map(|(c, (cell, width))| match c {
-            // Numbers stand right.
+            // Numbers are right-aligned.
             2.. => format!("{cell:>width$}"),
             _ => format!("{cell:<width$}"),
         });
@@ -348,12 +352,12 @@ fn print(setting: &Setting, trials: &[Trial]) {
     say(format_args!("{}", limits(setting)));
 }
 
-/// What the table's words mean.
+/// Explains the terms of the table.
 fn limits(setting: &Setting) -> String {
     format!(
-        "Stable: no strand turned non-finite and no segment was ever twice its length. Energy drift: of a free swing of {} strands in \
-         {} s, gravity turned by {TILT}°, over the energy that it can turn into motion by falling. Longest step: at which {} strands, \
-         the shortest segment {} mm, which sound crosses in {}, keep within that bound for {} s and {} steps; between {} and {}.",
+        "Stable: no strand became non-finite and no segment reached twice its length. Energy drift: of a free swing of {} strands in \
+         {} s, gravity turned by {TILT}°, over the energy that falling can release. Longest step: the longest at which {} strands, \
+         with a shortest segment of {} mm that sound crosses in {}, stay within that bound for {} s and {} steps; between {} and {}.",
         setting.swinging.strand_count(),
         number(setting.seconds),
         setting.stepping.strand_count(),
@@ -366,7 +370,7 @@ fn limits(setting: &Setting) -> String {
     )
 }
 
-/// A share in per cent, or that there is no such number.
+/// Formats a fraction in percent; ∞ if it is not finite.
 fn percent(share: f64) -> String {
     match share {
         s if !s.is_finite() => "∞".into(),
@@ -377,7 +381,7 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// A time in the unit that suits it.
+/// Formats a time in a suitable unit.
 fn duration(seconds: f64) -> String {
     let (value, unit) = match seconds {
         s if s < 1e-3 => (s * 1e6, "µs"),
@@ -386,7 +390,7 @@ fn duration(seconds: f64) -> String {
     format!("{} {unit}", number(two_digits(value)))
 }
 
-/// Rounded to two significant digits: as exactly as it is known.
+/// Rounds to two significant digits, which is the precision that is known.
 fn two_digits(x: f64) -> f64 {
     let power = 10f64.powf(x.log10().floor() - 1.0);
     if x > 0.0 { (x / power).round() * power } else { x }

@@ -1,4 +1,4 @@
-//! What the user is told: results on standard output, everything else on standard error.
+//! Messages to the user: results on standard output, everything else on standard error.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::{
@@ -6,60 +6,61 @@ use std::{
     io::{IsTerminal, Write, stderr, stdout},
 };
 
-/// How much is said.
+/// How much is printed.
 #[derive(Clone, Copy)]
 pub struct Console {
     quiet: bool,
     verbose: bool,
 }
 
-/// A line of the result. A reader that has gone away (`| head`) is no error.
+/// Prints a line of the result. A closed output (`| head`) is not an error.
 pub fn say(line: impl Display) {
     let _ = writeln!(stdout(), "{line}");
 }
 
-/// A line about what went wrong.
+/// Prints a line about an error.
 pub fn complain(line: &impl Display) {
     let _ = writeln!(stderr(), "error: {line}");
 }
 
 impl Console {
-    /// `quiet`: only results and errors; `verbose`: also what each frame took.
+    /// `quiet`: only results and errors; `verbose`: also the time of each frame.
     pub fn new(quiet: bool, verbose: bool) -> Self {
         Self { quiet, verbose }
     }
 
-    /// Something that the user should know.
+    /// Prints a note that the user should know about.
     pub fn note(self, line: impl Display) {
         if !self.quiet {
             let _ = writeln!(stderr(), "note: {line}");
         }
     }
 
-    /// A note for each thing, if there is any.
+    /// Prints one note for each item.
     pub fn note_all(self, things: impl IntoIterator<Item = impl Display>) {
         things.into_iter().for_each(|thing| self.note(thing));
     }
 
-    /// What is being done, where it takes a moment.
+    /// Prints what the program is doing, if it takes a moment.
     pub fn doing(self, line: impl Display) {
         if !self.quiet {
             let _ = writeln!(stderr(), "{line}");
         }
     }
 
-    /// Shows the progress of `total` frames of `what`: a bar on a terminal, a line every tenth elsewhere.
+    /// Shows the progress of `total` frames of `what`: a bar on a terminal, otherwise a line every tenth.
     pub fn progress(self, what: &'static str, total: u32) -> Progress {
         self.progress_in(what, total, "frames")
     }
 
-    /// The same in units other than frames.
+    /// Like [`Console::progress`], in units other than frames.
     pub fn progress_in(self, what: &'static str, total: u32, unit: &'static str) -> Progress {
         let bar = (!self.quiet && stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(Some(total.into()), ProgressDrawTarget::stderr());
-            // The template has no part of the user's: it parses, or the plain bar is shown.
+            // The template has no user input, so it always parses. If it did not, the plain bar would be
+            // shown.
             let template =
-                format!("{{msg}} [{{bar:32}}] {{pos}}/{{len}} {unit}, {{elapsed}} gone, {{eta}} to go");
+                format!("{{msg}} [{{bar:32}}] {{pos}}/{{len}} {unit}, {{elapsed}} elapsed, {{eta}} left");
             if let Ok(style) = ProgressStyle::with_template(&template) {
                 bar.set_style(style.progress_chars("=> "));
             }
@@ -81,7 +82,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// One step is done; `detail` is said where the user asked for it.
+    /// Counts one finished step; `detail` is printed in verbose mode.
     pub fn step(&mut self, detail: impl FnOnce() -> String) {
         self.done += 1;
         match &self.bar {

@@ -11,10 +11,11 @@ use clap::Parser;
 use hairspring_io::{Format, read_groom, write_groom};
 use std::path::PathBuf;
 
-/// Converts a groom from one format to another, told by the extensions .hair, .tfx and .data.
+/// Converts a groom between the formats .hair, .tfx and .data; the file extension selects the format.
 ///
-/// What is written is in metres, Y up, and repaired: no zero-length segment, no value that is not finite, three points a
-/// strand at least. What was repaired, guessed, or has no place in the new format is said on standard error.
+/// The output is in meters, Y up, and repaired: it has no segment of zero length and no value that is not
+/// finite, and every strand has at least three points. Standard error reports what was repaired, guessed or
+/// could not be stored in the new format.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
@@ -37,8 +38,7 @@ pub struct Options {
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let Options { from, to, units } = options;
     if !Format::of(to).is_some_and(|f| Format::GROOMS.contains(&f)) {
-        let text =
-            format!("{}: a groom is written as .hair, .tfx or .data, told by the extension", to.display());
+        let text = format!("{}: unknown extension; a groom is written as .hair, .tfx or .data", to.display());
         return Err(Fault::Usage(text));
     }
     output::try_folder(to)?;

@@ -1,4 +1,5 @@
-//! `hairspring demo`, and what runs without a command: the built-in head, as a clip and a still.
+//! `hairspring demo`, which also runs without a command if there is no desktop: the built-in head, as a clip
+//! and a still.
 
 use crate::{
     console::{Console, say},
@@ -21,30 +22,30 @@ use std::path::PathBuf;
 
 /// Simulates the built-in head of hair and writes hairspring.mp4 and hairspring.png.
 ///
-/// The head nods, turns to both sides and shakes in five seconds, then rests.
+/// The head nods, turns to both sides and shakes for five seconds, then rests.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
   hairspring demo --style coily
   hairspring demo --strands 10000 --guides all --seconds 3 --size 640x360")]
 pub struct Options {
-    /// The hairstyle
+    /// Hairstyle
     #[arg(long, value_name = "STYLE", default_value = Style::Wavy.name(), value_parser = PossibleValuesParser::new(PRESETS))]
     style: String,
 
-    /// Hairs on the head
+    /// Number of hairs on the head
     #[arg(long, value_name = "N", default_value_t = BuiltinOptions::default().strands, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
     strands: u32,
 
-    /// Points of each hair, 3 to 256 [default: what shows the style well, 32 for wavy hair]
+    /// Points per hair, 3 to 256 [default: depends on the style; 32 for wavy hair]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=256))]
     points: Option<u32>,
 
-    /// Hairs to simulate, the others follow: a number or `all`
+    /// Hairs to simulate; the others follow: a number or `all`
     #[arg(long, value_name = "N|all", default_value = "2000", value_parser = frames::guides)]
     guides: Guides,
 
-    /// Which of many heads of this style
+    /// Seed of the random variation of the style
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u32,
 
@@ -52,30 +53,30 @@ pub struct Options {
     #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = frames::positive)]
     seconds: f32,
 
-    /// Frames a second
+    /// Frames per second
     #[arg(long, value_name = "RATE", default_value = "24", value_parser = frames::rate)]
     fps: FrameRate,
 
     #[command(flatten)]
     view: View,
 
-    /// Folder to write to; made if it is not there
+    /// Output folder; created if it does not exist
     #[arg(short, long, value_name = "FOLDER", default_value = "out")]
     output: PathBuf,
 
-    /// Print what ran as JSON
+    /// Print a summary as JSON
     #[arg(long)]
     json: bool,
 }
 
-/// Time of the still [s]: the head sweeps to one side, its hair flying after it, the face still seen.
+/// Time of the still [s]: the head sweeps to one side, the hair trails behind it, and the face is visible.
 const STILL: f64 = 2.67;
 
 /// Runs the command.
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let style = Style::from_name(&options.style).unwrap_or_default();
     std::fs::create_dir_all(&options.output).map_err(|e| {
-        Fault::Unwritable(format!("the folder {} could not be made: {e}", options.output.display()))
+        Fault::Unwritable(format!("the folder {} could not be created: {e}", options.output.display()))
     })?;
     let (film, still) = (options.output.join("hairspring.mp4"), options.output.join("hairspring.png"));
     output::try_folder(&film)?;
@@ -97,7 +98,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let wanted: Vec<u32> = (1..=frames).collect();
     let (stage, totals, ending) = shoot(scene, &wanted, options.fps, &options.view, None, sinks, console)?;
     if let Ending::Stopped(after) = ending {
-        let text = format!("stopped after frame {after} of {frames}: the clip was not written");
+        let text = format!("stopped after frame {after} of {frames}; the clip was not written");
         return Err(Fault::Interrupted(text));
     }
     let (width, height) = options.view.size;
@@ -113,7 +114,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         say(totals.json(&stage, summary));
     } else {
         say(format_args!(
-            "clip     {} ({frames} frames, {width}x{height}, {} a second)",
+            "clip     {} ({frames} frames, {width}x{height}, {} per second)",
             film.display(),
             options.fps
         ));

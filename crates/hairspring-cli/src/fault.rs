@@ -1,19 +1,19 @@
-//! Why the program ends without having done its work: one sentence and an exit code.
+//! Why the program ends without having finished: one sentence and an exit code.
 
 use hairspring_io::Error as FileError;
 use hairspring_scene::stage::StageError;
 use hairspring_view::{OutputError, gpu::GpuError};
 use std::{fmt, path::Path};
 
-/// Exit code of an error of the program itself (EX_SOFTWARE of sysexits.h).
+/// Exit code of an internal error of the program (EX_SOFTWARE of sysexits.h).
 pub const PANICKED: u8 = 70;
 
-/// What went wrong, as one sentence.
+/// An error, described in one sentence.
 #[derive(Debug)]
 pub enum Fault {
-    /// The command line asks for something that there is not.
+    /// The command line has an invalid argument.
     Usage(String),
-    /// A file is missing or the system does not give it.
+    /// A file does not exist or cannot be read.
     Unreadable(String),
     /// A file's content is wrong.
     Content(String),
@@ -21,11 +21,11 @@ pub enum Fault {
     Unwritable(String),
     /// The scene cannot be simulated.
     Scene(String),
-    /// The machine lacks what was asked for: a desktop, a GPU.
+    /// The machine lacks something that the command needs: a desktop, a GPU.
     Lacking(String),
-    /// The simulation does not agree with a closed form.
+    /// The simulation does not agree with a closed-form solution.
     Invalid(String),
-    /// The user stopped it.
+    /// The user stopped the run.
     Interrupted(String),
 }
 
@@ -44,8 +44,8 @@ impl Fault {
         }
     }
 
-    /// What reading `asked`, a file named on the command line, ended with: an unknown kind of file is an error of the
-    /// command line there, and one of the content where a scene names it.
+    /// Converts an error of reading `asked`, a file named on the command line. An unknown kind of file is an
+    /// error of the command line if it is `asked` itself, and an error of the content if a scene names it.
     pub fn reading(error: FileError, asked: &Path) -> Self {
         let sentence = error.to_string();
         match &error {
@@ -55,7 +55,7 @@ impl Fault {
         }
     }
 
-    /// What writing ended with.
+    /// Converts an error of writing a file.
     pub fn writing(error: FileError) -> Self {
         match error {
             FileError::Unsupported { .. } => Self::Usage(error.to_string()),
@@ -96,14 +96,14 @@ impl fmt::Display for Fault {
     }
 }
 
-/// A panic is an error of the program: it says so in one line, and how to report it.
+/// Reports a panic as an internal error, in one line that says how to report it.
 pub fn report_panics() {
     std::panic::set_hook(Box::new(|panic| {
         let what = panic.payload_as_str().unwrap_or("no reason given").replace('\n', " ");
         let place = panic.location().map_or(String::new(), |l| format!(" at {}:{}", l.file(), l.line()));
         let sentence = format!(
-            "hairspring {} met an error of its own{place} ({what}); please report this line with the command and the file \
-             that led to it",
+            "internal error in hairspring {}{place} ({what}); please report this line with the command and the file \
+             that caused it",
             env!("CARGO_PKG_VERSION")
         );
         crate::console::complain(&sentence);

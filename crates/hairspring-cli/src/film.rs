@@ -1,4 +1,4 @@
-//! Pictures and clips being written while the next frame is simulated and drawn.
+//! Writes pictures and clips on a separate thread while the next frame is simulated and drawn.
 
 use crate::{fault::Fault, output};
 use hairspring_view::{ClipWriter, Image, OutputError, write_jpeg, write_png};
@@ -13,7 +13,7 @@ use std::{
 pub enum Sink {
     /// All frames in one clip.
     Clip(Box<ClipWriter>),
-    /// Each frame in a picture of its own, `#` in the name standing for its number.
+    /// Each frame as a separate picture; `#` signs in the name stand for its number.
     Pictures(PathBuf),
     /// One frame as a picture.
     Still(PathBuf, u32),
@@ -24,10 +24,11 @@ enum Job {
     Finish,
 }
 
-/// Writes frames on a thread of its own. Dropped before [`Film::finish`] it leaves no clip and no half a picture.
+/// Writes frames on its own thread. If it is dropped before [`Film::finish`], no clip and no partial picture
+/// is left.
 pub struct Film {
     jobs: Option<SyncSender<Job>>,
-    /// Pictures whose memory is free again.
+    /// Images whose memory can be reused.
     spare: Receiver<Image>,
     thread: Option<JoinHandle<Result<Duration, OutputError>>>,
 }
@@ -35,7 +36,8 @@ pub struct Film {
 impl Film {
     /// Starts writing to `sinks`.
     pub fn new(mut sinks: Vec<Sink>) -> Self {
-        // One frame waits while one is written: memory stays small, and a slow disk slows the run instead of filling it.
+        // One frame waits while another is written. Memory use stays small, and a slow disk slows the run
+        // down instead of filling memory.
         let (jobs, todo) = sync_channel(1);
         let (done, spare) = channel();
         let thread = std::thread::spawn(move || {
@@ -47,7 +49,7 @@ impl Film {
                         for sink in &mut sinks {
                             sink.write(number, &image)?;
                         }
-                        // Nobody wants it back after the last frame.
+                        // After the last frame nobody receives the image.
                         let _ = done.send(image);
                     }
                     Job::Finish => {
@@ -63,14 +65,14 @@ impl Film {
         Self { jobs: Some(jobs), spare, thread: Some(thread) }
     }
 
-    /// Hands a frame over.
+    /// Queues a frame for writing.
     pub fn show(&mut self, number: u32, image: &Image) -> Result<(), Fault> {
         let mut copy = self.spare.try_recv().unwrap_or_default();
         copy.clone_from(image);
         self.send(Job::Frame(number, copy))
     }
 
-    /// Completes all files; returns how long the writing took.
+    /// Completes all files; returns the time spent on writing.
     pub fn finish(mut self) -> Result<Duration, Fault> {
         self.send(Job::Finish)?;
         self.join()
@@ -96,7 +98,7 @@ impl Drop for Film {
     fn drop(&mut self) {
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
-            // What it ended with no longer matters: the run has failed already.
+            // The result no longer matters, because the run has failed already.
             let _ = thread.join();
         }
     }

@@ -1,4 +1,4 @@
-//! Frame numbers, sizes and guides as the command line writes them.
+//! Parses frame numbers, sizes and guides from the command line.
 
 use hairspring::body::Clip;
 use hairspring_scene::{Guides, stage::FrameRate};
@@ -13,22 +13,22 @@ pub struct FrameRange {
     pub last: u32,
 }
 
-/// Most frames of a run: nine hours at 30 frames a second.
+/// Maximum number of frames of a run: nine hours at 30 frames per second.
 const MOST: u32 = 1_000_000;
 
 impl FrameRange {
-    /// The frames of a motion at the rate `fps`, its last moment included; five seconds without one.
+    /// The frames of a motion at the rate `fps`, including its last moment; five seconds without a motion.
     pub fn whole(clip: Option<&Clip>, fps: FrameRate) -> Self {
         let fps = fps.hertz();
         let frames = match clip.filter(|c| c.frame_count() > 1) {
-            // Half a thousandth of a frame for a duration that is not a round number in binary.
+            // Adds a small tolerance (0.0005 frames) for durations that are not exact in binary.
             Some(clip) => (clip.duration() * fps + 5e-4).floor() + 1.0,
             None => (5.0 * fps).round(),
         };
         Self { first: 1, last: (frames as u32).clamp(1, MOST) }
     }
 
-    /// Number of frames.
+    /// The number of frames.
     pub fn count(self) -> u32 {
         self.last - self.first + 1
     }
@@ -47,52 +47,52 @@ impl FromStr for FrameRange {
         let number = |n: &str| n.trim().parse::<u32>().ok().filter(|n| (1..=MOST).contains(n));
         match (number(first), number(last)) {
             (Some(first), Some(last)) if first <= last => Ok(Self { first, last }),
-            _ => Err(format!("frames are a number or a range from 1 to {MOST}, such as 60 or 1-150")),
+            _ => Err(format!("expected a frame or a range of frames from 1 to {MOST}, such as 60 or 1-150")),
         }
     }
 }
 
-/// Width and height of a picture [pixels], each 1 to 16,384, from `1280x720`.
+/// Parses the width and height of a picture [pixels], each 1 to 16,384, from text such as `1280x720`.
 pub fn size(text: &str) -> Result<(u32, u32), String> {
     let side = |n: &str| n.trim().parse::<u32>().ok().filter(|n| (1..=16_384).contains(n));
     text.split_once(['x', 'X'])
         .and_then(|(w, h)| Some((side(w)?, side(h)?)))
-        .ok_or_else(|| "a size is width x height in pixels, each 1 to 16384, such as 1280x720".into())
+        .ok_or_else(|| "expected width x height in pixels, each 1 to 16384, such as 1280x720".into())
 }
 
-/// Frames per second, 1 to 240.
+/// Parses a number of frames per second, 1 to 240.
 pub fn rate(text: &str) -> Result<FrameRate, String> {
     let rate = text.parse::<FrameRate>().ok().filter(|rate| (1.0..=240.0).contains(&rate.hertz()));
     rate.ok_or_else(|| {
-        "a frame rate is a number or a fraction from 1 to 240, such as 30, 23.976 or 24000/1001".into()
+        "expected a number or a fraction from 1 to 240, such as 30, 23.976 or 24000/1001".into()
     })
 }
 
-/// Which strands are simulated: `all`, `file` or a number.
+/// Parses which strands are simulated: `all`, `file` or a number.
 pub fn guides(text: &str) -> Result<Guides, String> {
     match text {
         "all" => Ok(Guides::All),
         "file" => Ok(Guides::FromGroom),
         _ => text.parse().ok().filter(|n| *n > 0).map(Guides::Count).ok_or_else(|| {
-            "guides are a number above 0, `all`, or `file` for those that the groom names".into()
+            "expected a number above 0, `all`, or `file` for the guides that the groom names".into()
         }),
     }
 }
 
-/// A point, `x,y,z` [m].
+/// Parses a point, `x,y,z` [m].
 pub fn point(text: &str) -> Result<glam::Vec3, String> {
     let numbers: Option<Vec<f32>> =
         text.split(',').map(|n| n.trim().parse().ok().filter(|n: &f32| n.is_finite())).collect();
     numbers
         .and_then(|n| <[f32; 3]>::try_from(n).ok())
         .map(Into::into)
-        .ok_or_else(|| "a point is three numbers in metres, such as 0,1.6,0.5".into())
+        .ok_or_else(|| "expected three numbers in meters, such as 0,1.6,0.5".into())
 }
 
-/// A number above 0.
+/// Parses a number above 0.
 pub fn positive(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|n| n.is_finite() && *n > 0.0);
-    number.ok_or_else(|| "a number above 0 is expected".into())
+    number.ok_or_else(|| "expected a number above 0".into())
 }
 
 #[cfg(test)]

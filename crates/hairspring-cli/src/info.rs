@@ -1,4 +1,4 @@
-//! `hairspring info`: what a file holds.
+//! `hairspring info`: describes the content of a file.
 
 use crate::{
     console::{Console, say},
@@ -17,11 +17,11 @@ use hairspring_scene::{Guides, Scene};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Says what a groom, body, motion or scene file holds, in metres, Y up.
+/// Describes the content of a groom, body, motion or scene file, in meters, Y up.
 ///
-/// For a groom, `repaired` counts what was mended while reading: points that were not finite, segments of no length,
-/// strands of fewer than three points, radii that were not above 0. `length_m` is the shortest, the median and the
-/// longest strand.
+/// For a groom, `repaired` counts what was fixed while reading: points that were not finite, segments of zero
+/// length, strands of fewer than three points, and radii that were not above 0. `length_m` is the length of
+/// the shortest, the median and the longest strand.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
@@ -48,7 +48,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let wrong = |e| Fault::reading(e, path);
     let format = Format::of(path).ok_or_else(|| {
         Fault::Usage(format!(
-            "{}: known are .hair, .tfx, .data, .glb, .gltf, .obj, .tfxmesh, .tfxbone, .bvh and .toml, told by the extension",
+            "{}: unknown extension; expected .hair, .tfx, .data, .glb, .gltf, .obj, .tfxmesh, .tfxbone, .bvh or .toml",
             path.display()
         ))
     })?;
@@ -113,7 +113,7 @@ fn groom(groom: &Groom, repairs: &Repairs) -> Value {
     })
 }
 
-/// Strands that the file names as guides.
+/// Number of strands that the file names as guides.
 fn guides(groom: &Groom) -> usize {
     let mut used: Vec<u32> = groom.guides.iter().flat_map(|g| g.guides).collect();
     used.sort_unstable();
@@ -150,7 +150,7 @@ fn scene(scene: &Scene, repairs: &Repairs) -> Value {
         .map(|g| {
             let mut found = groom(&g.groom, &Repairs::default());
             if let Value::Object(found) = &mut found {
-                // Counted for all grooms together.
+                // Repairs are counted for all grooms together.
                 found.remove("repaired");
             }
             found["simulated"] = match g.guides {
@@ -178,7 +178,7 @@ fn bounds(bounds: Option<(Vec3, Vec3)>) -> Value {
     json!(bounds.map(|(low, high)| [low.to_array(), high.to_array()]))
 }
 
-/// The figures as lines of `name value`, groups of them indented under their name.
+/// Prints the figures as lines of `name value`, with groups indented under their name.
 fn lines(path: &Path, all: &Value) {
     say(path.display());
     show(all, 1);

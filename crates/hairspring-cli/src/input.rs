@@ -1,4 +1,4 @@
-//! What is simulated: a scene file, or a groom file alone.
+//! The input of a simulation: a scene file, or a groom file on its own.
 
 use crate::{console::Console, fault::Fault, frames};
 use clap::{Args, ValueEnum};
@@ -8,14 +8,15 @@ use hairspring_io::{Axis, Format, ReadOptions, read_groom, read_scene};
 use hairspring_scene::{Guides, Scene, SceneGroom};
 use std::path::{Path, PathBuf};
 
-/// The units of a file that does not say them.
+/// The units of a file, if the file does not specify them.
 #[derive(Args, Clone, Copy)]
 pub struct Units {
-    /// Metres in one unit of the file, for a file that does not say [default: guessed, and the guess is printed]
-    #[arg(long, value_name = "METRES", value_parser = frames::positive)]
+    /// Meters in one unit of the file, if the file does not specify it [default: guessed; the guess is
+    /// printed]
+    #[arg(long, value_name = "METERS", value_parser = frames::positive)]
     pub scale: Option<f32>,
 
-    /// The axis that points up in the file [default: by its format]
+    /// Axis that points up in the file [default: depends on the format]
     #[arg(long, value_name = "AXIS")]
     pub up: Option<Up>,
 }
@@ -39,7 +40,7 @@ impl From<Units> for ReadOptions {
     }
 }
 
-/// The input of a simulation and what is changed in it.
+/// The input of a simulation and the settings that override it.
 #[derive(Args)]
 pub struct Input {
     /// A scene (.toml), or a groom (.hair, .tfx, .data) that hangs still under gravity
@@ -49,12 +50,12 @@ pub struct Input {
     #[command(flatten)]
     pub units: Units,
 
-    /// Strands to simulate in each groom, the others follow: a number, `all`, or `file` for those that it names
-    /// [default: as the scene says; 2000 where nothing does]
+    /// Strands to simulate in each groom; the others follow. A number, `all`, or `file` for the guides that
+    /// the file names [default: from the scene, otherwise 2000]
     #[arg(long, value_name = "N|all|file", value_parser = frames::guides)]
     pub guides: Option<Guides>,
 
-    /// Substeps in 1/60 s, whatever the frame rate [default: as the scene says, 4 where it does not]
+    /// Substeps per 1/60 s, for any frame rate [default: from the scene, otherwise 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     pub substeps: Option<u32>,
 }
@@ -66,7 +67,7 @@ impl Input {
         let mut scene = if Format::of(path) == Some(Format::Scene) {
             if self.units.scale.is_some() || self.units.up.is_some() {
                 let text =
-                    "--scale and --up are for a groom alone; a scene sets them for each file that it names";
+                    "--scale and --up apply to a groom file; a scene sets them for each file that it names";
                 return Err(Fault::Usage(text.into()));
             }
             let loaded = read_scene(path).map_err(|e| Fault::reading(e, path))?;
@@ -75,7 +76,7 @@ impl Input {
         } else {
             let loaded = read_groom(path, &self.units.into()).map_err(|e| match e {
                 hairspring_io::Error::Unsupported { .. } if Format::of(path).is_none() => Fault::Usage(format!(
-                    "{}: a scene is read from .toml, a groom from .hair, .tfx or .data, told by the extension",
+                    "{}: unknown extension; a scene is read from .toml, a groom from .hair, .tfx or .data",
                     path.display()
                 )),
                 other => Fault::reading(other, path),
@@ -93,7 +94,7 @@ impl Input {
     }
 }
 
-/// A groom in the air: roots fixed, gravity, nothing else.
+/// A scene with only a groom: fixed roots and gravity.
 fn alone(path: &Path, groom: hairspring::groom::Groom) -> Scene {
     Scene {
         name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
@@ -103,7 +104,7 @@ fn alone(path: &Path, groom: hairspring::groom::Groom) -> Scene {
     }
 }
 
-/// Shows what a reader guessed, left out and repaired.
+/// Prints what a reader guessed, left out and repaired.
 pub fn tell(notes: &[String], repairs: &Repairs, console: Console) {
     notes.iter().for_each(|n| console.note(n));
     if repairs.total() > 0 {
@@ -111,17 +112,17 @@ pub fn tell(notes: &[String], repairs: &Repairs, console: Console) {
     }
     if repairs.folds > 0 {
         console.note(format_args!(
-            "{} joints turn by more than 150°: strands are folded there; they are kept as they are",
+            "{} joints bend by more than 150°, so that strands are folded there; they are kept as they are",
             repairs.folds
         ));
     }
 }
 
-/// What was repaired, in words; empty where nothing was.
+/// Describes what was repaired; empty if nothing was.
 pub fn repaired(repairs: &Repairs) -> String {
     let parts = [
         (repairs.non_finite_points, "points that were not finite"),
-        (repairs.zero_segments, "segments of no length"),
+        (repairs.zero_segments, "segments of zero length"),
         (repairs.short_strands, "strands of fewer than 3 points"),
         (repairs.bad_radii, "radii that were not above 0"),
     ];

@@ -1,47 +1,47 @@
-//! `hairspring live`, and what runs without a command where there is a desktop: the window.
+//! `hairspring live`: the window. It also opens without a command if there is a desktop.
 
 use crate::{console::Console, demo, fault::Fault};
 use clap::{Parser, ValueEnum};
 use hairspring_app::{Document, Drawn, read_script};
 use std::path::PathBuf;
 
-/// Opens the window: hair to look at, touch and tune while it moves.
+/// Opens a window where hair can be viewed, touched and tuned while it moves.
 #[derive(Parser, Default)]
 #[command(after_help = "\
 Examples:
   hairspring live shot.toml
   hairspring live --script show.txt
 
-Keys are on `?` in the window. A script is a session line by line: wait 30, set KEY VALUE, drag X Y X Y FRAMES, shot FILE.png, pace, quit.")]
+Press `?` in the window for the keys. A script has one command per line: wait 30, set KEY VALUE, drag X Y X Y FRAMES, shot FILE.png, pace, quit.")]
 pub struct Options {
-    /// A scene file; without one, the built-in head
+    /// A scene file [default: the built-in head]
     scene: Option<PathBuf>,
 
-    /// Does what a script says, line by line
+    /// Run a script, line by line
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
 
-    /// Who draws the hair
+    /// Renderer for the hair
     #[arg(long, value_name = "WHO", default_value = "auto")]
     draw: Draw,
 }
 
-/// Who draws the hair.
+/// Renderer for the hair.
 #[derive(Clone, Copy, Default, ValueEnum)]
 enum Draw {
-    /// The GPU, where there is a real one
+    /// The GPU if there is a hardware one, otherwise the CPU
     #[default]
     Auto,
-    /// The window's device, even where that is software
+    /// The window's device, even if it is a software renderer
     Gpu,
-    /// The CPU rasteriser
+    /// The CPU rasterizer
     Cpu,
 }
 
 /// Runs the command.
 pub fn run(options: &Options) -> Result<(), Fault> {
     if !has_desktop() {
-        let text = "there is no desktop to open a window on: neither WAYLAND_DISPLAY nor DISPLAY is set";
+        let text = "there is no desktop to open a window on; neither WAYLAND_DISPLAY nor DISPLAY is set";
         return Err(Fault::Lacking(text.into()));
     }
     let document = options.scene.as_ref().map(|path| Document::open(path)).transpose();
@@ -63,7 +63,8 @@ pub fn run(options: &Options) -> Result<(), Fault> {
         .map_err(|why| Fault::Lacking(why.to_string()))
 }
 
-/// What runs without a command: the window where there can be one, else the clip, with one sentence.
+/// Runs without a command: opens the window if possible. Otherwise it prints one sentence and writes the
+/// clip.
 pub fn run_or_demo(console: Console) -> Result<(), Fault> {
     let why = match run(&Options::default()) {
         Err(Fault::Lacking(why)) => why,
@@ -73,7 +74,8 @@ pub fn run_or_demo(console: Console) -> Result<(), Fault> {
     demo::run(&demo::Options::parse_from(["demo"]), console)
 }
 
-/// Whether a window system is named in the environment; everywhere but on Unixes with X11 or Wayland there always is one.
+/// Whether there is a desktop. On Windows and macOS there always is; elsewhere the environment must name an
+/// X11 or Wayland display.
 fn has_desktop() -> bool {
     let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     cfg!(any(windows, target_os = "macos")) || set("WAYLAND_DISPLAY") || set("DISPLAY")

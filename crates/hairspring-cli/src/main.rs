@@ -37,7 +37,7 @@ fn main() -> ExitCode {
             console::complain(&fault);
             ExitCode::from(fault.code())
         }
-        // The hook has said it.
+        // The panic hook has already printed the error.
         Err(_) => ExitCode::from(fault::PANICKED),
     }
 }

@@ -1,4 +1,4 @@
-//! A stage as a picture: camera, light, and what is drawn of it.
+//! Draws a stage: camera, lights and renderer.
 
 use crate::{fault::Fault, frames};
 use clap::Args;
@@ -10,18 +10,18 @@ use hairspring_view::{
 };
 use std::time::Instant;
 
-/// How pictures are taken.
+/// Size, camera and renderer of pictures.
 #[derive(Args)]
 pub struct View {
     /// Width and height of the picture [pixels]
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = frames::size)]
     pub size: (u32, u32),
 
-    /// Where the camera stands [m] [default: as the scene says, else where all hair is seen]
+    /// Camera position [m] [default: from the scene, otherwise one that shows all hair]
     #[arg(long, value_name = "X,Y,Z", value_parser = frames::point, allow_hyphen_values = true)]
     pub camera: Option<Vec3>,
 
-    /// What the camera looks at [m]
+    /// Point that the camera looks at [m]
     #[arg(long, value_name = "X,Y,Z", value_parser = frames::point, allow_hyphen_values = true)]
     pub target: Option<Vec3>,
 
@@ -29,45 +29,46 @@ pub struct View {
     #[arg(long, value_name = "DEGREES", value_parser = clap::value_parser!(u8).range(1..=170))]
     pub fov: Option<u8>,
 
-    /// Multiplies the width of drawn hairs [default: 1 for 100,000 hairs and more; up to 10 where fewer stand for a head]
+    /// Factor for the width of drawn hairs [default: 1 for 100,000 hairs and more, up to 10 for fewer]
     #[arg(long, value_name = "FACTOR", value_parser = frames::positive)]
     pub hair_width: Option<f32>,
 
-    /// Draw on the graphics card [default: on the processor, whose picture is the one of record]
+    /// Draw on the GPU [default: on the CPU, whose picture is the reference]
     #[arg(long)]
     pub gpu: bool,
 }
 
-/// Hairs on a human head.
+/// Number of hairs on a human head.
 const HEAD: f32 = 100_000.0;
 
-/// Widest that a hair is drawn by default, times its own width: 0.7 mm, a thin lock.
+/// Largest default factor for the width of a hair: 0.7 mm, a thin lock.
 const WIDEST: f32 = 10.0;
 
-/// What draws.
+/// The renderer.
 enum Painter {
     Cpu(Box<Renderer>),
     Gpu(Box<Card>),
 }
 
-/// A graphics card, and the last picture that came back from it.
+/// A GPU renderer, and the last picture that was read back from it.
 struct Card {
     renderer: GpuRenderer,
     size: (u32, u32),
     image: Image,
 }
 
-/// A camera, its lamps and a renderer.
+/// A camera, its lights and a renderer.
 pub struct Studio {
     painter: Painter,
-    /// Where the camera begins, and where it stands.
+    /// The initial camera and the current camera.
     start: Camera,
     camera: Camera,
     width_scale: f32,
 }
 
 impl Studio {
-    /// Sets up for the stage as it is now; a graphics card takes over placing its follow hairs, where it can.
+    /// Sets up for the current state of the stage. If the GPU draws and supports it, the GPU also
+    /// interpolates the follow hairs.
     pub fn new(view: &View, stage: &mut Stage) -> Result<Self, Fault> {
         let (width, height) = view.size;
         let mut camera =
@@ -76,7 +77,7 @@ impl Studio {
         camera.target = view.target.unwrap_or(camera.target);
         camera.fov = view.fov.map_or(camera.fov, f32::from);
         if camera.position.distance(camera.target) < 1e-3 {
-            let text = "the camera stands on what it looks at; move --camera or --target".into();
+            let text = "the camera is at its target; move --camera or --target".into();
             return Err(Fault::Usage(text));
         }
         let strands = stage.simulated_strands().1 as f32;
@@ -92,7 +93,7 @@ impl Studio {
         Ok(Self { painter, start: camera, camera, width_scale })
     }
 
-    /// The graphics card that draws, if one does.
+    /// Name of the GPU that draws, if one does.
     pub fn card(&self) -> Option<&str> {
         match &self.painter {
             Painter::Cpu(_) => None,
@@ -100,7 +101,7 @@ impl Studio {
         }
     }
 
-    /// Bytes that were sent to the graphics card for the last picture.
+    /// Bytes that were sent to the GPU for the last picture.
     pub fn sent(&self) -> u64 {
         match &self.painter {
             Painter::Cpu(_) => 0,
@@ -108,19 +109,20 @@ impl Studio {
         }
     }
 
-    /// How much wider than they are hairs are drawn.
+    /// Factor for the width of drawn hairs.
     pub fn width_scale(&self) -> f32 {
         self.width_scale
     }
 
-    /// Carries the camera round the vertical through what it looks at, by a share of a whole turn from where it began; seen from above, against the clock.
+    /// Rotates the camera around the vertical axis through its target. `share` is a fraction of a full turn
+    /// from the initial position, counterclockwise as seen from above.
     pub fn turn(&mut self, share: f32) {
         let turn = Quat::from_rotation_y(share * std::f32::consts::TAU);
         let back = self.start.position - self.start.target;
         self.camera.position = self.start.target + turn * back;
     }
 
-    /// Draws the stage as it is now.
+    /// Draws the current state of the stage.
     pub fn draw(&mut self, stage: &Stage) -> Result<(&Image, Timings), Fault> {
         let hair: Vec<HairDraw> =
             stage.strands().map(|s| HairDraw { width_scale: self.width_scale, ..HairDraw::of(s) }).collect();
@@ -150,7 +152,7 @@ impl Card {
         let most = gpu.most_pixels();
         if size.0.max(size.1) > most {
             let text = format!(
-                "the graphics card draws no picture of {}x{}: {most} pixels a side is its most; draw it without --gpu",
+                "a picture of {}x{} is too large for the GPU, which supports {most} pixels per side; draw it without --gpu",
                 size.0, size.1
             );
             return Err(Fault::Usage(text));
@@ -158,7 +160,8 @@ impl Card {
         Ok(Self { renderer: GpuRenderer::new(&gpu), size, image: Image::default() })
     }
 
-    /// Sending and recording count as work on strands, everything that the card does then as work on tiles.
+    /// Uploads and command recording count as work on strands; everything that the GPU does afterwards counts
+    /// as work on tiles.
     fn draw(&mut self, frame: &Frame) -> Result<(&Image, Timings), Fault> {
         let start = Instant::now();
         self.renderer.draw(frame, self.size.0, self.size.1);
@@ -169,7 +172,7 @@ impl Card {
     }
 }
 
-/// A camera that sees all hair, with room for it to move.
+/// A camera that sees all hair, with a margin for motion.
 fn overview(stage: &Stage, aspect: f32) -> Camera {
     let bounds = stage.strands().flat_map(|s| s.points.iter().copied()).fold(None, |b, p| {
         let (low, high): (Vec3, Vec3) = b.unwrap_or((p, p));

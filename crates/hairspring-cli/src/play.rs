@@ -1,4 +1,4 @@
-//! Frame after frame of a scene, until the last or until the user stops it.
+//! Plays the frames of a scene until the last one, or until the user stops the run.
 
 use crate::{fault::Fault, interrupt};
 use hairspring_scene::stage::{FrameRate, FrameReport, Stage};
@@ -8,12 +8,12 @@ use hairspring_scene::stage::{FrameRate, FrameReport, Stage};
 pub enum Ending {
     /// All frames were played.
     Played,
-    /// The user stopped it after this frame.
+    /// The user stopped the run after this frame.
     Stopped(u32),
 }
 
-/// Plays `stage`, which is at time 0, to frame `last` at the rate `fps`, and hands each frame's number and what
-/// stepping to it took to `show`. Frame 1 is the start: nothing is stepped for it.
+/// Plays `stage`, which is at time 0, to frame `last` at the rate `fps`. Calls `show` with the number of each
+/// frame and the report of its step. Frame 1 is the initial state and takes no step.
 pub fn play(
     stage: &mut Stage,
     last: u32,

@@ -1,4 +1,4 @@
-//! `hairspring render`: a scene or a groom as pictures.
+//! `hairspring render`: draws a scene or a groom.
 
 use crate::{
     console::{Console, say},
@@ -22,8 +22,8 @@ use std::path::{Path, PathBuf};
 
 /// Simulates a scene or a groom and draws it.
 ///
-/// Frame 1 is the rest pose at time 0. Frames before the first that is drawn are simulated all the same. Files appear
-/// only when they are complete.
+/// Frame 1 is the rest pose at time 0. Frames before the first drawn one are simulated too. A file appears
+/// only when it is complete.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
@@ -36,30 +36,31 @@ pub struct Options {
     #[command(flatten)]
     input: Input,
 
-    /// What to write: still.png, still.jpg, numbered pictures such as frame.####.png, or clip.mp4
+    /// File to write: still.png, still.jpg, numbered pictures such as frame.####.png, or clip.mp4
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
-    /// Frames to draw, such as 1-150 or 60 [default: the scene's motion, 5 seconds without one; frame 1 for a still]
+    /// Frames to draw, such as 1-150 or 60 [default: the scene's motion, or 5 seconds without one; frame 1
+    /// for a still]
     #[arg(long, value_name = "A-B")]
     frames: Option<FrameRange>,
 
-    /// Frames a second
+    /// Frames per second
     #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
     fps: FrameRate,
 
     #[command(flatten)]
     view: View,
 
-    /// Carry the camera round what it looks at, once in the frames that are drawn; its lamps go with it
+    /// Rotate the camera and its lights around the target, one full turn over the drawn frames
     #[arg(long)]
     turntable: bool,
 
-    /// Skip pictures that are there, complete and of this size; they are simulated through
+    /// Skip pictures that already exist, complete and in this size. Their frames are still simulated
     #[arg(long)]
     resume: bool,
 
-    /// Print what ran as JSON
+    /// Print a summary as JSON
     #[arg(long)]
     json: bool,
 }
@@ -70,12 +71,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     output::try_folder(&output::frame_path(&options.output, 1))?;
     if options.resume && kind != Kind::Pictures {
         let text =
-            "--resume needs numbered pictures, such as frame.####.png: a clip or a still is drawn as a whole";
+            "--resume needs numbered pictures, such as frame.####.png; a clip or a still cannot be resumed";
         return Err(Fault::Usage(text.into()));
     }
     if options.turntable && kind == Kind::Still {
-        let text =
-            "--turntable needs a clip (turn.mp4) or numbered pictures (turn.####.png): a still does not turn";
+        let text = "--turntable needs a clip (turn.mp4) or numbered pictures (turn.####.png)";
         return Err(Fault::Usage(text.into()));
     }
     let scene = options.input.scene(console)?;
@@ -83,7 +83,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         (Kind::Still, None) => FrameRange { first: 1, last: 1 },
         (Kind::Still, Some(range)) if range.count() > 1 => {
             let text = format!(
-                "{} takes one frame: name it (--frames {}), or number the pictures (frame.####.png)",
+                "{} holds one frame; select it (--frames {}), or number the pictures (frame.####.png)",
                 options.output.display(),
                 range.first
             );
@@ -106,10 +106,10 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         shoot(scene, &wanted, options.fps, &options.view, turn, vec![sink], console)?;
     if let Ending::Stopped(after) = ending {
         let how = match kind {
-            Kind::Pictures => "run the same command with --resume to go on",
+            Kind::Pictures => "run the same command with --resume to continue",
             Kind::Clip | Kind::Still => "the file was not written; numbered pictures can be resumed",
         };
-        return Err(Fault::Interrupted(format!("stopped after frame {after} of {}: {how}", range.last)));
+        return Err(Fault::Interrupted(format!("stopped after frame {after} of {}; {how}", range.last)));
     }
     if options.json {
         let summary = json!({
@@ -123,7 +123,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     } else {
         let skipped = match range.count() as usize - wanted.len() {
             0 => String::new(),
-            n => format!(", {n} were there already"),
+            n => format!(", {n} existed already"),
         };
         say(format_args!(
             "wrote    {} ({}{skipped})",
@@ -135,7 +135,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Plays a scene and films the frames in `wanted`, which are in order; in the frames of `turn` the camera goes round once.
+/// Plays a scene and draws the frames in `wanted`, which are in order. Over the frames of `turn` the camera
+/// makes one full turn.
 pub fn shoot(
     scene: Scene,
     wanted: &[u32],
@@ -151,7 +152,7 @@ pub fn shoot(
     let mut studio = Studio::new(view, &mut stage)?;
     if studio.width_scale() != 1.0 {
         console.note(format_args!(
-            "{} hairs are drawn {:.2} times as wide as they are; --hair-width sets another factor",
+            "{} hairs are drawn {:.2} times as wide as they are; set --hair-width to change it",
             stage.simulated_strands().1,
             studio.width_scale()
         ));
@@ -193,7 +194,7 @@ pub fn shoot(
     Ok((stage, totals, ending))
 }
 
-/// Starts a clip; a size or rate that clips cannot have is an error of the command line.
+/// Starts a clip. A size or rate that clips do not support is an error of the command line.
 pub fn clip(path: &Path, (width, height): (u32, u32), fps: f64) -> Result<Box<ClipWriter>, Fault> {
     ClipWriter::create(path, width, height, fps).map(Box::new).map_err(|e| match e {
         OutputError::Clip { .. } => Fault::Usage(e.to_string()),
@@ -201,7 +202,7 @@ pub fn clip(path: &Path, (width, height): (u32, u32), fps: f64) -> Result<Box<Cl
     })
 }
 
-/// What an output's name asks for.
+/// The kind of output that a file name selects.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Clip,
@@ -216,14 +217,14 @@ impl Kind {
             ("png" | "jpg", false) => Ok(Self::Still),
             ("mp4", false) => Ok(Self::Clip),
             _ => Err(Fault::Usage(format!(
-                "{}: pictures are written as still.png, still.jpg or frame.####.png, clips as clip.mp4",
+                "{}: unknown output; pictures are written as still.png, still.jpg or frame.####.png, clips as clip.mp4",
                 path.display()
             ))),
         }
     }
 }
 
-/// Whether a complete picture of this size is there.
+/// Whether a complete picture of this size exists.
 fn is_drawn(path: &Path, (width, height): (u32, u32)) -> bool {
     read_png(path).is_ok_and(|p| (p.width, p.height) == (width, height))
 }

@@ -1,4 +1,4 @@
-//! What ran and how fast, for people and for machines.
+//! A summary of what was simulated and how fast, as text and as JSON.
 
 use crate::console::say;
 use hairspring_scene::stage::{FrameReport, Stage};
@@ -11,7 +11,7 @@ pub struct Totals {
     began: Instant,
     steps: u32,
     drawn: u32,
-    /// Bytes sent to a graphics card, but for the first picture, which takes what stays.
+    /// Bytes sent to the GPU. The first picture is not counted, because it uploads the static data.
     sent: u64,
     substeps: u32,
     reset_strands: usize,
@@ -25,7 +25,7 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// A run begins.
+    /// Starts counting.
     pub fn new() -> Self {
         Self {
             began: Instant::now(),
@@ -44,7 +44,7 @@ impl Totals {
         }
     }
 
-    /// A frame was stepped to; frame 1 takes no step.
+    /// Adds the step to a frame. Frame 1 takes no step.
     pub fn stepped(&mut self, frame: u32, report: &FrameReport) {
         if frame > 1 {
             self.steps += 1;
@@ -56,7 +56,7 @@ impl Totals {
         }
     }
 
-    /// A frame was drawn, for which a graphics card was sent some bytes.
+    /// Adds a drawn frame; `sent` is the number of bytes that were sent to the GPU for it.
     pub fn drawn(&mut self, timings: Timings, sent: u64) {
         self.sent += if self.drawn > 0 { sent } else { 0 };
         self.drawn += 1;
@@ -64,13 +64,13 @@ impl Totals {
         self.draw += timings.strands + timings.tiles;
     }
 
-    /// `frames` frames were written in `time`.
+    /// Adds `frames` frames that were written in `time`.
     pub fn written(&mut self, frames: u32, time: Duration) {
         self.written += frames;
         self.write += time;
     }
 
-    /// Mean milliseconds a frame of each stage that ran.
+    /// Mean time per frame of each stage that ran [ms].
     fn stages(&self) -> Vec<(&'static str, f64)> {
         let mean = |time: Duration, n: u32| time.as_secs_f64() * 1e3 / f64::from(n);
         [
@@ -87,12 +87,12 @@ impl Totals {
         .collect()
     }
 
-    /// Bytes sent to a graphics card a frame, but for the first.
+    /// Bytes sent to the GPU per frame, without the first frame.
     fn sent_a_frame(&self) -> f64 {
         self.sent as f64 / f64::from(self.drawn.saturating_sub(1).max(1))
     }
 
-    /// What ran and how fast, in lines on standard output.
+    /// Prints the summary on standard output.
     pub fn tell(&self, stage: &Stage) {
         let (guides, strands) = stage.simulated_strands();
         let (guide_points, points) = stage.simulated_points();
@@ -108,8 +108,8 @@ impl Totals {
         };
         say(format_args!("ran      {ran}"));
         let substeps = match self.substeps {
-            0 => "no substep".into(),
-            n => format!("{n} substeps a frame"),
+            0 => "no substeps".into(),
+            n => format!("{n} substeps per frame"),
         };
         say(format_args!(
             "on       {} threads, {}, {substeps}",
@@ -119,19 +119,19 @@ impl Totals {
         let start = stage.start();
         if start.stiffened > 0 {
             say(format_args!(
-                "start    {} stiffer than their fibre, by the least that holds the groom as authored",
+                "start    {} stiffer than their fiber, by the least amount that holds the groom as authored",
                 joints(start.stiffened)
             ));
         }
         if start.coils > 0 {
             let coils = start.coils;
             say(format_args!(
-                "start    {coils} strands coil by more than one and a half turns: the curvature model has no twist, and they are simulated as rods"
+                "start    {coils} strands coil by more than one and a half turns; they are simulated as rods, because the curvature model has no twist"
             ));
         }
         if start.held_back > 0 {
             say(format_args!(
-                "start    {} softer than asked, because the solver holds no more at {} substeps: use more of them",
+                "start    {} softer than specified, the most that is stable at {} substeps; use more substeps",
                 joints(start.held_back),
                 stage.scene().solver.substeps
             ));
@@ -139,24 +139,24 @@ impl Totals {
         let neighbours = stage.neighbours().unwrap_or_default();
         if neighbours.same > 0 {
             say(format_args!(
-                "same     {} strands are the same as others, and meet the rest as one with them",
+                "same     {} strands are identical to others and share their contacts",
                 grouped(neighbours.same)
             ));
         }
         if neighbours.crowded > 0 {
             say(format_args!(
-                "crowded  {} segments had more neighbors at once than are looked at: they met some of them only",
+                "crowded  {} segments had more neighbors at once than are tested; some contacts were missed",
                 grouped(neighbours.crowded)
             ));
         }
         let stages: Vec<String> = self.stages().iter().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
         say(format_args!("ms/frame {}", stages.join(", ")));
         if self.sent > 0 {
-            say(format_args!("sent     {:.1} MB a frame to the graphics card", self.sent_a_frame() * 1e-6));
+            say(format_args!("sent     {:.1} MB per frame to the GPU", self.sent_a_frame() * 1e-6));
         }
         let contact = stage.measure();
         say(format_args!(
-            "contact  {} points inside at the end, {:.3} mm the deepest; {} segments deeper than 1 mm, {:.3} mm the deepest",
+            "contact  {} points inside at the end, at most {:.3} mm deep; {} segments deeper than 1 mm, at most {:.3} mm deep",
             grouped(contact.inside_points),
             contact.max_depth * 1e3,
             grouped(contact.deep_segments),
@@ -164,21 +164,18 @@ impl Totals {
         ));
         if contact.held_segments > 0 {
             say(format_args!(
-                "         {} more begin inside where the root holds them, {:.3} mm deep the deepest",
+                "         {} more segments start inside, held there by the root, at most {:.3} mm deep",
                 grouped(contact.held_segments),
                 contact.held_depth * 1e3
             ));
         }
         if self.reset_strands > 0 {
-            say(format_args!(
-                "reset    {} strands turned non-finite and were put back to rest",
-                self.reset_strands
-            ));
+            say(format_args!("reset    {} strands became non-finite and were reset", self.reset_strands));
         }
         say(format_args!("took     {:.1} s", self.began.elapsed().as_secs_f64()));
     }
 
-    /// The same for machines; `extra` keys come first.
+    /// Returns the summary as JSON; the keys of `extra` come first.
     pub fn json(&self, stage: &Stage, extra: Value) -> Value {
         let (guides, strands) = stage.simulated_strands();
         let (guide_points, points) = stage.simulated_points();

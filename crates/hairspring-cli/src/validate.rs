@@ -1,4 +1,4 @@
-//! `hairspring validate`: the simulation held against closed forms.
+//! `hairspring validate`: compares the simulation with closed-form solutions.
 
 mod report;
 mod table;
@@ -16,16 +16,16 @@ use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
-/// Holds the simulation against closed forms of mechanics.
+/// Compares the simulation with closed-form solutions of mechanics.
 ///
-/// Each case is an experiment with one strand whose outcome is known: how far a cantilever droops, at which weight a standing
-/// strand gives way, how long a wide swing lasts. The reference is computed for any parameter from the differential equation,
-/// an elliptic integral or an eigenvalue in f64; the measured value is read off a simulation. Without CASE, all run at their
-/// default parameters.
+/// Each case is an experiment with one strand whose result is known: how far a cantilever droops, at which
+/// weight a standing strand buckles, how long the period of a wide swing is. The reference is computed in f64
+/// for any parameter, from the differential equation, an elliptic integral or an eigenvalue. The measured
+/// value is taken from a simulation. Without CASE, all cases run with their default parameters.
 #[derive(Parser)]
 #[command(after_help = after_help())]
 pub struct Options {
-    /// The experiment, one of those below [default: all]
+    /// Case to run, one of those below [default: all]
     case: Option<String>,
 
     /// Γ = ρgAL³/EI, weight over bending stiffness
@@ -36,19 +36,19 @@ pub struct Options {
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     alpha: Option<f64>,
 
-    /// κL, natural turn of the whole strand [rad]
+    /// κL, natural rotation over the whole strand [rad]
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     kappa_l: Option<f64>,
 
-    /// GJ/EI, twisting over bending stiffness
+    /// GJ/EI, twisting stiffness over bending stiffness
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     gj_over_ei: Option<f64>,
 
-    /// Turns of a helix
+    /// Number of turns of a helix
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     turns: Option<f64>,
 
-    /// H/L, height of a clamp over a plane
+    /// H/L, height of a clamp above a plane
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     height: Option<f64>,
 
@@ -60,7 +60,7 @@ pub struct Options {
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     amplitude_deg: Option<f64>,
 
-    /// L/span, length over the distance of the supports
+    /// L/span, length over the distance between the supports
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     length_over_span: Option<f64>,
 
@@ -68,7 +68,7 @@ pub struct Options {
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     mu: Option<f64>,
 
-    /// U, speed of the wind [m/s]
+    /// U, wind speed [m/s]
     #[arg(long, value_name = "X", help_heading = "Parameters of a case")]
     wind_speed: Option<f64>,
 
@@ -76,7 +76,7 @@ pub struct Options {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=1024), help_heading = "How it is simulated")]
     points: Option<u32>,
 
-    /// Substeps of a frame of 1/60 s, 1 to 64 [default: 4 at rest, 8 in motion]
+    /// Substeps per frame of 1/60 s, 1 to 64 [default: 4 at rest, 8 in motion]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "How it is simulated")]
     substeps: Option<u32>,
 
@@ -84,15 +84,17 @@ pub struct Options {
     #[arg(long, value_name = "NAME", help_heading = "How it is simulated")]
     model: Option<String>,
 
-    /// How time is stepped: explicit-euler, verlet, backward-euler, bdf2, local-global, ftl, dftl [default: backward-euler]
+    /// Time integrator: explicit-euler, verlet, backward-euler, bdf2, local-global, ftl, dftl [default:
+    /// backward-euler]
     #[arg(long, value_name = "NAME", help_heading = "How it is simulated")]
     integrator: Option<String>,
 
-    /// Write a page with a plot of each case: the reference as a curve, measured points over it
+    /// Write an HTML page with a plot of each case: the reference as a curve and measured points
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 
-    /// Print a Markdown table of the worst error of each case with every model at 32 to 1,024 points, and why where there is none
+    /// Print a Markdown table of the largest error of each case, for every model at 32 to 1,024 points, and
+    /// the reason where there is no value
     #[arg(long, conflicts_with_all = ["points", "model", "substeps", "integrator", "report", "json"])]
     table: bool,
 
@@ -101,9 +103,9 @@ pub struct Options {
     json: bool,
 }
 
-/// The cases, from their own words.
+/// Lists the cases with their descriptions and parameters.
 fn after_help() -> String {
-    let mut text = String::from("Cases, and the parameters that each takes:\n");
+    let mut text = String::from("Cases and their parameters:\n");
     for case in CASES {
         text += &format!("  {:<18}{}\n", case.name, case.about);
         for (k, p) in case.parameters.iter().enumerate() {
@@ -126,10 +128,10 @@ Examples:
   hairspring validate bend-twist --kappa-l 12 --json
   hairspring validate --report validation.html
 
-The exit code is 1 where a measured value is out of its tolerance."
+The exit code is 1 if a measured value is outside its tolerance."
 }
 
-/// The values, each once.
+/// The values without duplicates.
 fn distinct(mut values: Vec<String>) -> Vec<String> {
     let mut seen = Vec::new();
     values.retain(|v| {
@@ -170,25 +172,26 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if let Some(path) = &options.report {
         let page = report::page(&jobs, &outcomes);
         output::write_whole(path, page.as_bytes())?;
-        console.doing(format_args!("the report is {}", path.display()));
+        console.doing(format_args!("wrote the report {}", path.display()));
     }
     let failed = outcomes.iter().filter(|o| !o.pass()).count();
     match failed {
         0 => Ok(()),
         _ => Err(Fault::Invalid(format!(
-            "{failed} of {} measured values are out of tolerance",
+            "{failed} of {} measured values are outside their tolerance",
             outcomes.len()
         ))),
     }
 }
 
-/// What the command line asks for: the named case, or all of them, at the given parameters or their defaults.
+/// Returns the runs that the command line requests: the named case or all cases, with the given parameters or
+/// their defaults.
 fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
     let cases: Vec<&'static Case> = match &options.case {
         None => CASES.to_vec(),
         Some(name) => vec![case(name).ok_or_else(|| {
             let names: Vec<&str> = CASES.iter().map(|c| c.name).collect();
-            Fault::Usage(format!("there is no case '{name}'; there is: {}", names.join(", ")))
+            Fault::Usage(format!("unknown case '{name}'; expected one of: {}", names.join(", ")))
         })?],
     };
     for (symbol, _) in given(options) {
@@ -199,8 +202,11 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
             return Err(Fault::Usage(text));
         }
         if !takers.contains(&cases[0].name) {
-            let text =
-                format!("the case {} has no --{symbol}; it belongs to: {}", cases[0].name, takers.join(", "));
+            let text = format!(
+                "the case {} has no --{symbol}; cases that have it: {}",
+                cases[0].name,
+                takers.join(", ")
+            );
             return Err(Fault::Usage(text));
         }
     }
@@ -208,7 +214,7 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
     for case in cases {
         let asked = options.points.filter(|_| !case.points_fixed || options.case.is_some());
         if case.points_fixed && asked.is_some_and(|points| points != case.method.points) {
-            let text = format!("the case {} is about a strand of {} points", case.name, case.method.points);
+            let text = format!("the case {} needs a strand of {} points", case.name, case.method.points);
             return Err(Fault::Usage(text));
         }
         let method = Method {
@@ -226,7 +232,7 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
                     let (low, high) = parameter.range;
                     if !(low..=high).contains(&x) {
                         return Err(Fault::Usage(format!(
-                            "--{} is {x}; the case {} is meant for {low} to {high}",
+                            "--{} is {x}; the case {} accepts {low} to {high}",
                             parameter.symbol.name, case.name
                         )));
                     }
@@ -242,7 +248,7 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
     Ok(jobs)
 }
 
-/// The setting among `all` that was asked for by its `name`.
+/// Finds the setting called `asked` in `all`.
 fn chosen<T: Copy>(
     what: &str,
     asked: &Option<String>,
@@ -253,11 +259,11 @@ fn chosen<T: Copy>(
     let found = all.iter().copied().find(|t| name(*t) == asked);
     let there: Vec<&str> = all.iter().map(|t| name(*t)).collect();
     found.map(Some).ok_or_else(|| {
-        Fault::Usage(format!("there is no {what} '{asked}' here; there is: {}", there.join(", ")))
+        Fault::Usage(format!("unknown {what} '{asked}'; expected one of: {}", there.join(", ")))
     })
 }
 
-/// The parameters on the command line.
+/// The parameters that the command line sets.
 fn given(options: &Options) -> impl Iterator<Item = (&'static str, f64)> {
     let of = |name| match name {
         "gamma" => options.gamma,
@@ -277,7 +283,7 @@ fn given(options: &Options) -> impl Iterator<Item = (&'static str, f64)> {
     all.into_iter()
 }
 
-/// An outcome under the documented keys; what could not be measured is null.
+/// An outcome as JSON with the documented keys. Values that could not be measured are null.
 fn as_json(outcome: &Outcome) -> Value {
     let mut parameters = Map::new();
     for (name, value) in &outcome.parameters {
@@ -303,7 +309,7 @@ fn as_json(outcome: &Outcome) -> Value {
     })
 }
 
-/// The table that a person reads.
+/// Prints the outcomes as a table.
 fn print_table(outcomes: &[Outcome]) {
     let rows: Vec<[String; 7]> = std::iter::once(
         ["case", "parameters", "quantity", "measured", "reference", "error", ""].map(String::from),
@@ -314,14 +320,14 @@ fn print_table(outcomes: &[Outcome]) {
     let widths: [usize; 7] = std::array::from_fn(width);
     for row in &rows {
         let cells = row.iter().zip(widths).enumerate().map(|(c, (cell, width))| {
-            // Numbers stand right.
+            // Numbers are right-aligned.
             if (3..6).contains(&c) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
         });
         say(cells.collect::<Vec<_>>().join("  ").trim_end());
     }
     let passed = outcomes.iter().filter(|o| o.pass()).count();
     say(format_args!("{passed} of {} pass", outcomes.len()));
-    // Why, once a case.
+    // Reasons, printed once per case.
     let mut reasons: Vec<(&str, &str)> =
         outcomes.iter().filter_map(|o| Some((o.case, o.reason()?))).collect();
     reasons.dedup();
@@ -330,7 +336,7 @@ fn print_table(outcomes: &[Outcome]) {
     }
 }
 
-/// An outcome in the words of the table.
+/// An outcome as a row of the table.
 fn row(outcome: &Outcome) -> [String; 7] {
     let told = |value: &Result<f64, _>| value.map_or("-".into(), number);
     let verdict = match (&outcome.measured, &outcome.reference) {
@@ -352,11 +358,11 @@ fn row(outcome: &Outcome) -> [String; 7] {
     ]
 }
 
-/// How an outcome was simulated.
+/// Describes how an outcome was simulated.
 fn how(outcome: &Outcome) -> String {
     let Method { points, substeps, model, integrator } = outcome.method;
     let (model, integrator) = (model.name(), integrator.name());
-    format!("{points} points, {substeps} substeps a frame, model {model}, {integrator}")
+    format!("{points} points, {substeps} substeps per frame, model {model}, {integrator}")
 }
 
 /// The parameters of an outcome, as on the command line.

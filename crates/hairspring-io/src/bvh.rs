@@ -1,5 +1,6 @@
-//! Biovision `.bvh` motion capture (Meredith & Maddock 2001, "Motion Capture File Formats Explained"): a hierarchy of
-//! joints with offsets and channels in any order, then a line of numbers a frame.
+//! Reader for Biovision `.bvh` motion capture (Meredith & Maddock 2001, "Motion Capture File Formats
+//! Explained"). A file holds a hierarchy of joints with offsets and channels in any order, then one line of
+//! numbers per frame.
 
 use crate::{
     Axis, Motion, Place, Problem, ReadOptions,
@@ -11,7 +12,7 @@ use glam::{Quat, Vec3};
 use hairspring::body::{Body, Clip, Joint, Trs};
 use hairspring_scene::stage::FrameRate;
 
-/// One number of a frame's line.
+/// One number in a frame's line.
 #[derive(Clone, Copy)]
 enum Channel {
     Position(usize),
@@ -20,7 +21,7 @@ enum Channel {
 
 struct Hierarchy {
     joints: Vec<Joint>,
-    /// Ends of limbs: the joint that carries them, and where from it.
+    /// Ends of limbs: the joint that each belongs to, and its offset from that joint.
     ends: Vec<(u32, Vec3)>,
     /// Channels of each joint, in the file's order.
     channels: Vec<Vec<Channel>>,
@@ -31,12 +32,13 @@ struct Hierarchy {
 /// Rotations are applied in the order in which the file lists them: the first listed is the outermost.
 ///
 /// # Errors
-/// A hierarchy that is not closed, a line of frames with too few numbers, or a frame time that is not above 0.
+/// Returns an error if the hierarchy is not closed, if a line of frames has too few numbers, or if the frame
+/// time is not above 0.
 pub fn parse(data: &[u8]) -> Result<Motion, Problem> {
     read(data).map(|(motion, _)| motion)
 }
 
-/// The motion, and the ends of its limbs: the joint that carries each, and where from it.
+/// Reads the motion and the ends of its limbs, each as a joint and an offset from it.
 fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
     let text = as_text(data);
     let mut words = Words::new(&text);
@@ -47,7 +49,7 @@ fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
     words.expect("Frame")?;
     words.expect("Time:")?;
     let frame_time: f64 = words.number("the time of a frame")?;
-    // 1 µs to 100 s a frame: outside it a clip's times are no longer exact.
+    // A frame takes 1 µs to 100 s. Outside that range a clip's times are no longer exact.
     if !(1e-6..=100.0).contains(&frame_time) {
         return Err(Problem::line(
             words.line(),
@@ -55,7 +57,7 @@ fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
         ));
     }
     let width: usize = channels.iter().map(Vec::len).sum();
-    // A number and a space are two bytes at least; a file without channels has one still frame.
+    // A number and a space take at least two bytes. A file without channels has one still frame.
     if frames == 0 || frames.saturating_mul(width.max(1)) > text.len() / 2 + 1 {
         let text =
             format!("{frames} frames of {width} numbers do not fit into a file of {} bytes", text.len());
@@ -68,28 +70,28 @@ fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
             samples.push(local(joint, channels, || words.finite(&format!("a number of frame {frame}")))?);
         }
     }
-    // Frame times are rounded to six digits or so, and stand for a standard rate.
+    // Frame times are rounded to about six digits and stand for a standard rate.
     let rate = FrameRate::nearest(1.0 / frame_time).map_or(1.0 / frame_time, FrameRate::hertz);
     let clip = Clip { name: String::new(), rate, joint_count: joints.len(), samples };
     Ok((Motion { joints, clip }, ends))
 }
 
-/// Units that captures come in [m]: metres, centimetres, CMU's (1/0.45 inch), inches, decimetres.
+/// Units that captures use [m]: meters, centimeters, CMU's (1/0.45 inch), inches, decimeters.
 const UNITS: [(f32, &str); 5] = [
-    (1.0, "metres"),
-    (0.01, "centimetres"),
+    (1.0, "meters"),
+    (0.01, "centimeters"),
     (0.0254 / 0.45, "CMU units of 1/0.45 inch"),
     (0.0254, "inches"),
-    (0.1, "decimetres"),
+    (0.1, "decimeters"),
 ];
 
-/// Height of a person's skeleton [m]: it ends some 10 cm below the crown and at the ankle or the toe.
+/// Height of a person's skeleton [m]. It ends about 10 cm below the crown, and at the ankle or the toe.
 const PERSON: std::ops::RangeInclusive<f32> = 1.35..=1.95;
-/// Height that is assumed where no known unit gives a person [m].
+/// Height that is assumed if no known unit gives the height of a person [m].
 const TYPICAL: f32 = 1.6;
 
-/// Reads a `.bvh` file into metres and Y up, with notes on what was guessed: the unit and the axis from the person's
-/// height in the frames.
+/// Reads a `.bvh` file and converts it to meters and Y up. The unit and the up axis are guessed from the
+/// person's height in the frames; the notes say what was guessed.
 pub(crate) fn read_in_metres(
     data: &[u8],
     options: &ReadOptions,
@@ -99,7 +101,7 @@ pub(crate) fn read_in_metres(
     let size = median_size(&motion, &ends);
     let up = options.up.unwrap_or(if size.z > size.y { Axis::Z } else { Axis::Y });
     if options.up.is_none() && up == Axis::Z {
-        notes.push("read as Z up, since the person is tallest along Z; `up` sets another".into());
+        notes.push("read as Z up, since the person is tallest along Z; set `up` to change it".into());
     }
     let height = if up == Axis::Z { size.z } else { size.y };
     let scale = options.scale.unwrap_or_else(|| {
@@ -107,10 +109,10 @@ pub(crate) fn read_in_metres(
         let (scale, name) = match unit {
             Some((metres, name)) => (*metres, (*name).to_owned()),
             None if height > 0.0 => (TYPICAL / height, format!("units of {:.5} m", TYPICAL / height)),
-            None => (1.0, "metres".into()),
+            None => (1.0, "meters".into()),
         };
         notes.push(format!(
-            "a .bvh names no unit: guessed {name} (the person is then {:.2} m tall); `scale` sets another",
+            "a .bvh file has no unit; guessed {name} (the person is then {:.2} m tall); set `scale` to change it",
             height * scale
         ));
         scale
@@ -120,7 +122,7 @@ pub(crate) fn read_in_metres(
     Ok((motion, scale, notes))
 }
 
-/// Size of the box around the joints and ends, the median over some frames, by axis [file units].
+/// Size of the box around the joints and ends along each axis, as the median over some frames [file units].
 fn median_size(motion: &Motion, ends: &[(u32, Vec3)]) -> Vec3 {
     let body = Body { joints: motion.joints.clone(), ..Body::default() };
     let clip = &motion.clip;
@@ -165,7 +167,7 @@ fn local(
 
 fn hierarchy(words: &mut Words<'_>) -> Result<Hierarchy, Problem> {
     let mut read = Hierarchy { joints: Vec::new(), ends: Vec::new(), channels: Vec::new() };
-    // Joints whose braces are open; `None` for an end site.
+    // Joints whose braces are still open; `None` for an end site.
     let mut open: Vec<Option<u32>> = Vec::new();
     words.expect("HIERARCHY")?;
     loop {
@@ -173,7 +175,7 @@ fn hierarchy(words: &mut Words<'_>) -> Result<Hierarchy, Problem> {
         match word.map(str::to_ascii_uppercase).as_deref() {
             Some(kind @ ("ROOT" | "JOINT")) => {
                 if (kind == "ROOT") != open.is_empty() || open.last().is_some_and(Option::is_none) {
-                    return Err(Problem::line(words.line(), format!("{kind} can not stand here")));
+                    return Err(Problem::line(words.line(), format!("{kind} is not allowed here")));
                 }
                 let name = opened(words)?;
                 if read.joints.len() > u16::MAX as usize {
@@ -212,8 +214,7 @@ fn hierarchy(words: &mut Words<'_>) -> Result<Hierarchy, Problem> {
                 }
             }
             Some("}") => {
-                open.pop()
-                    .ok_or_else(|| Problem::line(words.line(), "a brace is closed that was not opened"))?;
+                open.pop().ok_or_else(|| Problem::line(words.line(), "unmatched closing brace"))?;
             }
             Some("MOTION") if open.is_empty() && !read.joints.is_empty() => return Ok(read),
             Some(_) => {
@@ -221,7 +222,7 @@ fn hierarchy(words: &mut Words<'_>) -> Result<Hierarchy, Problem> {
                 let open = open.len();
                 return Err(Problem::line(
                     words.line(),
-                    format!("`{word}` can not stand here ({open} braces are open)"),
+                    format!("`{word}` is not allowed here ({open} braces are open)"),
                 ));
             }
             None => return Err(words.missing("MOTION", None)),
@@ -229,7 +230,7 @@ fn hierarchy(words: &mut Words<'_>) -> Result<Hierarchy, Problem> {
     }
 }
 
-/// The rest of a line up to the brace that opens a joint, which may stand on the next line.
+/// Reads the rest of a line up to the brace that opens a joint. The brace may be on the next line.
 fn opened(words: &mut Words<'_>) -> Result<String, Problem> {
     let mut rest = words.rest_of_line();
     if rest.last() == Some(&"{") {

@@ -1,4 +1,4 @@
-//! Walking through a file's bytes: no count is believed before the bytes that it promises are seen.
+//! A cursor over a file's bytes. It trusts no count before it has checked that the bytes are there.
 
 use crate::{Place, Problem};
 use bytemuck::Pod;
@@ -8,7 +8,7 @@ compile_error!(
     "binary files are little-endian and are read as whole arrays: this machine would need swapped bytes"
 );
 
-/// A file's bytes and how far they are read.
+/// A file's bytes and the current read position.
 pub(crate) struct Bytes<'a> {
     data: &'a [u8],
     at: usize,
@@ -27,7 +27,7 @@ impl<'a> Bytes<'a> {
         self.data.len() - self.at
     }
 
-    /// Moves to offset `at`, which `what` names.
+    /// Moves to offset `at`. `what` names the data there, for error messages.
     pub(crate) fn seek(&mut self, at: usize, what: &str) -> Result<(), Problem> {
         if at > self.data.len() {
             let text = format!(
@@ -40,7 +40,7 @@ impl<'a> Bytes<'a> {
         Ok(())
     }
 
-    /// The next `count` bytes.
+    /// Reads the next `count` bytes.
     pub(crate) fn take(&mut self, count: usize, what: &str) -> Result<&'a [u8], Problem> {
         if count > self.remaining() {
             let text = format!(
@@ -54,12 +54,12 @@ impl<'a> Bytes<'a> {
         Ok(taken)
     }
 
-    /// The next value.
+    /// Reads the next value.
     pub(crate) fn value<T: Pod>(&mut self, what: &str) -> Result<T, Problem> {
         self.take(size_of::<T>(), what).map(bytemuck::pod_read_unaligned)
     }
 
-    /// The next `count` values; nothing is allocated unless the bytes are there.
+    /// Reads the next `count` values. Nothing is allocated unless the bytes are there.
     pub(crate) fn array<T: Pod>(&mut self, count: usize, what: &str) -> Result<Vec<T>, Problem> {
         let size = count.checked_mul(size_of::<T>()).ok_or_else(|| self.cut_short(count, what))?;
         let bytes = self.take(size, &format!("{what} ({count} values)"))?;

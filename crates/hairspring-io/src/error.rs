@@ -1,4 +1,4 @@
-//! What can go wrong with a file, said in one sentence.
+//! Errors of reading and writing files, each described in one sentence.
 
 use std::{
     fmt, io,
@@ -8,19 +8,19 @@ use std::{
 /// The result of reading or writing a file.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Why a file could not be read or written. Its text is one sentence: which file, where in it, what was
-/// expected and what to do.
+/// Why a file could not be read or written. Its text is one sentence that names the file, the place in it,
+/// what was expected and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("{path} was not found{why}", path = path.display())]
     NotFound {
-        /// The file looked for.
+        /// The path that was looked for.
         path: PathBuf,
-        /// Who asked for it (`": the groom named in scene.toml, line 3"`), or nothing.
+        /// What refers to the file (`": the groom named in scene.toml, line 3"`), or empty.
         why: String,
     },
-    /// The file is there but the system would not give its bytes.
+    /// The file exists, but the system could not read it.
     #[error("{path} could not be read: {source}", path = path.display())]
     Unreadable {
         /// The file.
@@ -28,7 +28,7 @@ pub enum Error {
         /// The system's reason.
         source: io::Error,
     },
-    /// The file is not what its format asks for.
+    /// The content of the file violates its format.
     #[error("{path}{between}{problem}", path = path.display(), between = problem.between())]
     Malformed {
         /// The file.
@@ -36,7 +36,7 @@ pub enum Error {
         /// What is wrong, and where.
         problem: Problem,
     },
-    /// The file asks for more than the reader's limits.
+    /// The file exceeds one of the reader's limits.
     #[error("{path}{between}{problem}", path = path.display(), between = problem.between())]
     Limit {
         /// The file.
@@ -44,23 +44,23 @@ pub enum Error {
         /// Which limit, and where.
         problem: Problem,
     },
-    /// No reader or writer for this extension, or none for this purpose.
+    /// There is no reader or writer for this extension, or none for this purpose.
     #[error("{path}: {reason}", path = path.display())]
     Unsupported {
         /// The file.
         path: PathBuf,
-        /// What is known instead.
+        /// Which formats are supported instead.
         reason: String,
     },
-    /// The format can not hold what was to be written.
-    #[error("{path} can not be written: {reason}", path = path.display())]
+    /// The format cannot hold the data that was to be written.
+    #[error("{path} cannot be written: {reason}", path = path.display())]
     Unwritable {
         /// The file.
         path: PathBuf,
         /// What does not fit, and what to do.
         reason: String,
     },
-    /// The system would not take the bytes; nothing is left half-written.
+    /// The system could not write the file. No partial file is left.
     #[error("{path} could not be written: {source}", path = path.display())]
     Write {
         /// The file.
@@ -70,25 +70,25 @@ pub enum Error {
     },
 }
 
-/// What an [`Error`] is, for exit codes and retries.
+/// The category of an [`Error`], for exit codes and retries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// A file that is not there.
+    /// The file does not exist.
     NotFound,
-    /// A file that can not be opened or read.
+    /// The file cannot be opened or read.
     Unreadable,
-    /// A file whose content is wrong.
+    /// The file's content is wrong.
     Malformed,
-    /// A file larger than the limits.
+    /// The file is larger than the limits.
     Limit,
-    /// A kind of file that is not known, or one that can not hold the data.
+    /// The kind of file is unknown, or it cannot hold the data.
     Unsupported,
-    /// A file that could not be written.
+    /// The file could not be written.
     Write,
 }
 
 impl Error {
-    /// What kind of error it is.
+    /// Returns the category of the error.
     pub fn kind(&self) -> ErrorKind {
         match self {
             Self::NotFound { .. } => ErrorKind::NotFound,
@@ -100,7 +100,7 @@ impl Error {
         }
     }
 
-    /// The file that it is about.
+    /// Returns the path of the file that the error is about.
     pub fn path(&self) -> &Path {
         match self {
             Self::NotFound { path, .. }
@@ -114,7 +114,7 @@ impl Error {
     }
 }
 
-/// Where in a file something is wrong.
+/// A position in a file where something is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Offset from the file's start [bytes].
@@ -125,44 +125,44 @@ pub enum Place {
     Whole,
 }
 
-/// What a reader found wrong in a file's bytes; it does not know the file's name.
+/// What a reader found wrong in a file's bytes. It does not know the file's name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// Where.
+    /// Where the problem is.
     pub place: Place,
-    /// What was expected, what was found, what to do.
+    /// What was expected, what was found, and what to do.
     pub text: String,
-    /// Whether a limit was met, rather than the format broken.
+    /// Whether a limit was exceeded, rather than the format violated.
     pub limit: bool,
 }
 
 impl Problem {
-    /// A breach of the format at `place`.
+    /// Creates a violation of the format at `place`.
     pub(crate) fn new(place: Place, text: impl Into<String>) -> Self {
         Self { place, text: text.into(), limit: false }
     }
 
-    /// A breach of the format in line `line`, counted from 1.
+    /// Creates a violation of the format in line `line`, counted from 1.
     pub(crate) fn line(line: usize, text: impl Into<String>) -> Self {
         Self::new(Place::Line(line), text)
     }
 
-    /// A breach of the format that belongs to no one place.
+    /// Creates a violation of the format that has no single place.
     pub(crate) fn whole(text: impl Into<String>) -> Self {
         Self::new(Place::Whole, text)
     }
 
-    /// More than the reader takes.
+    /// Creates a problem for data that exceeds a limit of the reader.
     pub(crate) fn limit(place: Place, text: impl Into<String>) -> Self {
         Self { place, text: text.into(), limit: true }
     }
 
-    /// What stands between a file's name and the problem: the place is part of the name, the sentence is not.
+    /// The separator between a file's name and the problem. A place continues the name; a sentence does not.
     fn between(&self) -> &'static str {
         if self.place == Place::Whole { ": " } else { ", " }
     }
 
-    /// The error of the file at `path`.
+    /// Converts the problem into an error about the file at `path`.
     pub fn in_file(self, path: &Path) -> Error {
         let path = path.to_owned();
         if self.limit {

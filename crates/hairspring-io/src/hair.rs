@@ -1,5 +1,5 @@
-//! The `.hair` format of Cem Yuksel (cemyuksel.com, "HAIR Model Files"): a 128-byte header, then the arrays
-//! that its flags name, each for all strands.
+//! Reader and writer for the `.hair` format of Cem Yuksel (cemyuksel.com, "HAIR Model Files"): a 128-byte
+//! header, then the arrays that its flags name, each for all strands.
 
 use crate::{
     Place, Problem,
@@ -18,7 +18,8 @@ const HAS_THICKNESS: u32 = 4;
 const HAS_TRANSPARENCY: u32 = 8;
 const HAS_COLORS: u32 = 16;
 
-/// What our writer puts into the header's free text; a file that begins so is in metres, Y up, with true radii.
+/// What our writer puts into the header's free text. A file that begins with it is in meters, Y up, with true
+/// radii.
 const MARK: &[u8] = b"Hairspring: metres, Y up";
 
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -28,7 +29,7 @@ struct Header {
     strands: u32,
     points: u32,
     flags: u32,
-    /// Segments of every strand where there is no array of them.
+    /// Number of segments of every strand if there is no array of them.
     segments: u32,
     /// Diameter.
     thickness: f32,
@@ -40,7 +41,7 @@ struct Header {
 /// Reads a `.hair` file, in its own units.
 ///
 /// # Errors
-/// A wrong magic, counts that disagree, or a file cut short.
+/// Returns an error for a wrong magic, counts that disagree, or a truncated file.
 pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
     read(data).map(Read::in_file_units)
 }
@@ -51,13 +52,13 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     if &header.magic != b"HAIR" {
         return Err(Problem::new(
             Place::Byte(0),
-            "a .hair file begins with the letters HAIR, this one does not",
+            "a .hair file begins with the letters HAIR; this one does not",
         ));
     }
     if header.flags & HAS_POINTS == 0 {
         return Err(Problem::new(
             Place::Byte(12),
-            "the header says that there are no points: nothing to read",
+            "the header says that there are no points; there is nothing to read",
         ));
     }
     let (strands, points) = (header.strands as usize, header.points as usize);
@@ -67,10 +68,11 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         gather_offsets(segments.iter().map(|s| *s as usize + 1), points, at)?
     } else {
         let per_strand = header.segments as usize + 1;
-        // Every strand has at least one point, so `strands` is bounded by `points`, and that by the file.
+        // Every strand has at least one point, so `points` bounds `strands`, and the file's size bounds
+        // `points`.
         if strands.checked_mul(per_strand) != Some(points) || points > bytes.remaining() / size_of::<Vec3>() {
             let text = format!(
-                "{strands} strands of {per_strand} points (the header's default) are not the {points} points that it names, or the file is cut short"
+                "{strands} strands of {per_strand} points (the header's default) do not give the {points} points of the header, or the file is cut short"
             );
             return Err(Problem::new(Place::Byte(4), text));
         }
@@ -86,12 +88,13 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     };
     if header.flags & HAS_TRANSPARENCY != 0 {
         let _: Vec<f32> = bytes.array(points, "the transparencies")?;
-        notes.push("the transparency of each point is not used: it follows from the fibre's width".into());
+        notes.push("the transparency of each point is not used; it follows from the fiber's width".into());
     }
     if header.flags & HAS_COLORS != 0 {
-        groom.colors = bytes.array(points, "the colours")?;
+        groom.colors = bytes.array(points, "the colors")?;
     }
-    // Thickness is a diameter. Without an array the header's default is a line width for display, not a measure.
+    // Thickness is a diameter. The header's default is a line width for display, not a measurement, so it is
+    // not used.
     let radii = match thickness {
         Some(diameters) => Some(diameters.iter().map(|d| d * 0.5).collect()),
         None if ours => Some(vec![header.thickness * 0.5; points]),
@@ -100,13 +103,13 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let units = if ours {
         FileUnits { scale: Some(1.0), up: Some(Axis::Y) }
     } else {
-        notes.push("read as Z up, as .hair models are; `up` sets another".into());
+        notes.push("read as Z up, the convention of .hair models; set `up` to change it".into());
         FileUnits { scale: None, up: Some(Axis::Z) }
     };
     Ok(Read { groom, radii, true_radii: ours, units, notes })
 }
 
-/// Writes strands as a `.hair` file in metres, Y up.
+/// Writes strands as a `.hair` file in meters, Y up.
 pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()> {
     let counts: Vec<u16> = strands.counts().map(|n| (n - 1) as u16).collect();
     let uniform = counts.windows(2).all(|w| w[0] == w[1]);

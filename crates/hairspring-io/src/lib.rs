@@ -1,8 +1,10 @@
 //! Readers and writers of hairstyles, bodies, motion and scenes for Hairspring.
 //!
-//! Files are told apart by their extension. Everything read is in metres, right-handed, Y up; what a file does not say of
-//! its units is guessed, and the guess is among the notes of [`Loaded`]. Each format also has a `parse` function over
-//! bytes, without units, which no input makes panic or allocate more than a small multiple of its own size.
+//! The extension of a file selects its format. All content is returned in meters, right-handed, Y up. If a
+//! file does not specify its units, they are guessed, and the guess is in the notes of [`Loaded`].
+//!
+//! Each format also has a `parse` function over bytes, which keeps the file's own units. It never panics, and
+//! it never allocates more than a small multiple of the size of its input.
 
 mod bytes;
 mod error;

@@ -1,4 +1,4 @@
-//! Opening a file by its name.
+//! Opens a file; its extension selects the format.
 
 use crate::{
     Character, Error, Motion, Problem, ReadOptions, Result, bvh, gltf, hair, obj,
@@ -13,7 +13,7 @@ use hairspring::{
 };
 use std::{io, path::Path};
 
-/// The kinds of file that are known.
+/// The supported kinds of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Cem Yuksel's `.hair`: a groom.
@@ -22,7 +22,7 @@ pub enum Format {
     Tfx,
     /// USC-HairSalon's `.data`: a groom.
     Usc,
-    /// TressFX `.tfxbone`: bones of a groom's roots.
+    /// TressFX `.tfxbone`: the bones that a groom's roots follow.
     TfxBone,
     /// TressFX `.tfxmesh`: a skinned body.
     TfxMesh,
@@ -37,10 +37,10 @@ pub enum Format {
 }
 
 impl Format {
-    /// Formats that hold a groom, and can be written.
+    /// Formats that hold a groom. These can also be written.
     pub const GROOMS: [Format; 3] = [Format::Hair, Format::Tfx, Format::Usc];
 
-    /// The format of a path's extension, upper and lower case alike; `None` for any other.
+    /// Returns the format for a path's extension, ignoring case; `None` for an unknown extension.
     pub fn of(path: &Path) -> Option<Format> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         Some(match extension.as_str() {
@@ -57,7 +57,7 @@ impl Format {
         })
     }
 
-    /// Its usual extension, without the dot.
+    /// Returns the format's usual extension, without the dot.
     pub fn name(self) -> &'static str {
         match self {
             Self::Hair => "hair",
@@ -73,28 +73,28 @@ impl Format {
     }
 }
 
-/// What was read, and what is to be said about it.
+/// The content of a file, with notes about how it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded<T> {
-    /// The content, in metres, Y up.
+    /// The content, in meters, Y up.
     pub value: T,
     /// The file's format.
     pub format: Format,
-    /// Metres in one unit of the file [m].
+    /// Meters in one unit of the file [m].
     pub scale: f32,
-    /// What was repaired in a groom; zero for anything else.
+    /// What was repaired in a groom; zero for other content.
     pub repairs: Repairs,
-    /// Guesses made and things left out, a sentence each, to be shown to the user.
+    /// What was guessed and what was left out, one sentence each, to be shown to the user.
     pub notes: Vec<String>,
 }
 
-/// Largest file that is read [bytes]: 4 GiB, some 300 million points.
+/// Largest file that is read [bytes]: 4 GiB, about 300 million points.
 const MAX_FILE: u64 = 4 << 30;
 
 /// Reads a hairstyle from a `.hair`, `.tfx` or `.data` file and repairs it (`groom::sanitize`).
 ///
 /// # Errors
-/// A file that is missing, unreadable, of another kind, broken or without strands.
+/// Returns an error if the file is missing, unreadable, of another kind, malformed or without strands.
 pub fn read_groom(path: &Path, options: &ReadOptions) -> Result<Loaded<Groom>> {
     let format = format_of(path, &Format::GROOMS, "a hairstyle")?;
     check_scale(path, options)?;
@@ -119,7 +119,7 @@ pub fn read_groom(path: &Path, options: &ReadOptions) -> Result<Loaded<Groom>> {
 /// Reads a body from a `.gltf`, `.glb`, `.obj` or `.tfxmesh` file, with the motions that it holds.
 ///
 /// # Errors
-/// A file that is missing, unreadable, of another kind or broken.
+/// Returns an error if the file is missing, unreadable, of another kind or malformed.
 pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
     let format = format_of(path, &[Format::Gltf, Format::Obj, Format::TfxMesh], "a body")?;
     check_scale(path, options)?;
@@ -127,7 +127,7 @@ pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>
     let mut units = FileUnits::default();
     let (mut character, mut notes) = match format {
         Format::Gltf => {
-            // Metres and Y up by the specification (§3.4).
+            // The specification requires meters and Y up (§3.4).
             units.scale = Some(1.0);
             gltf::parse(&data, &|name| sibling(path, name))
         }
@@ -141,10 +141,12 @@ pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>
     Ok(Loaded { value: character, format, scale, repairs: Repairs::default(), notes })
 }
 
-/// Reads a motion from a `.bvh` file, or the animation called `name` (the first without one) from a `.gltf` or `.glb`.
+/// Reads a motion from a `.bvh` file, or the animation called `name` from a `.gltf` or `.glb` file. If `name`
+/// is `None`, the first animation is read.
 ///
 /// # Errors
-/// A file that is missing, unreadable, of another kind or broken, or an animation that is not there.
+/// Returns an error if the file is missing, unreadable, of another kind or malformed, or if there is no such
+/// animation.
 pub fn read_motion(path: &Path, name: Option<&str>, options: &ReadOptions) -> Result<Loaded<Motion>> {
     let format = format_of(path, &[Format::Bvh, Format::Gltf], "a motion")?;
     if format == Format::Bvh {
@@ -160,16 +162,17 @@ pub fn read_motion(path: &Path, name: Option<&str>, options: &ReadOptions) -> Re
     Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes })
 }
 
-/// Reads the bones of a groom's roots from a `.tfxbone` file.
+/// Reads the bones that a groom's roots follow from a `.tfxbone` file.
 ///
 /// # Errors
-/// A file that is missing, unreadable, of another kind or broken.
+/// Returns an error if the file is missing, unreadable, of another kind or malformed.
 pub fn read_bones(path: &Path) -> Result<tfxbone::RootBones> {
-    format_of(path, &[Format::TfxBone], "the bones of roots")?;
+    format_of(path, &[Format::TfxBone], "root bones")?;
     tfxbone::parse(&bytes_of(path)?).map_err(|p| p.in_file(path))
 }
 
-/// The clip called `name` (upper and lower case alike), or the first; the sentence names those that there are.
+/// Returns the clip called `name`, ignoring case, or the first if `name` is `None`. The error lists the
+/// available names.
 pub(crate) fn pick_clip<'a>(
     clips: &'a [hairspring::body::Clip],
     name: Option<&str>,
@@ -181,13 +184,13 @@ pub(crate) fn pick_clip<'a>(
     found.ok_or_else(|| {
         let known: Vec<&str> = clips.iter().map(|c| c.name.as_str()).collect();
         match name {
-            Some(name) => format!("there is no motion called {name:?}; there are: {}", list(&known)),
+            Some(name) => format!("there is no motion called {name:?}; available: {}", list(&known)),
             None => "the file holds no motion".into(),
         }
     })
 }
 
-/// Names in a sentence.
+/// Joins names for a sentence.
 pub(crate) fn list(names: &[&str]) -> String {
     if names.is_empty() { "none".into() } else { names.join(", ") }
 }
@@ -196,11 +199,11 @@ fn still(body: Body) -> Character {
     Character { body, clips: Vec::new() }
 }
 
-/// The format of `path`, which must be among `known`.
+/// Returns the format of `path`, which must be one of `known`.
 fn format_of(path: &Path, known: &[Format], what: &str) -> Result<Format> {
     Format::of(path).filter(|f| known.contains(f)).ok_or_else(|| {
         let names: Vec<String> = known.iter().map(|f| format!(".{}", f.name())).collect();
-        let reason = format!("{what} is read from {}, told by the extension", names.join(", "));
+        let reason = format!("unknown extension; {what} is read from {}", names.join(", "));
         Error::Unsupported { path: path.to_owned(), reason }
     })
 }
@@ -208,14 +211,14 @@ fn format_of(path: &Path, known: &[Format], what: &str) -> Result<Format> {
 fn check_scale(path: &Path, options: &ReadOptions) -> Result<()> {
     match options.scale {
         Some(s) if !(s.is_finite() && s > 0.0) => {
-            let reason = format!("a scale of {s} metres a unit is not above 0");
+            let reason = format!("a scale of {s} meters per unit is not above 0");
             Err(Error::Unsupported { path: path.to_owned(), reason })
         }
         _ => Ok(()),
     }
 }
 
-/// All bytes of a file.
+/// Reads all bytes of a file.
 pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
     let unreadable = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound => Error::NotFound { path: path.to_owned(), why: String::new() },
@@ -223,13 +226,13 @@ pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
     };
     let size = std::fs::metadata(path).map_err(unreadable)?.len();
     if size > MAX_FILE {
-        let text = format!("the file has {size} bytes, more than the {MAX_FILE} that are read");
+        let text = format!("the file has {size} bytes, more than the limit of {MAX_FILE}");
         return Err(Problem::limit(crate::Place::Whole, text).in_file(path));
     }
     std::fs::read(path).map_err(unreadable)
 }
 
-/// The bytes of a file beside `path`: in its folder or below, never above.
+/// Reads a file next to `path`: in its folder or below, never above.
 fn sibling(path: &Path, name: &str) -> Option<Vec<u8>> {
     let inside = Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
     let beside = path.parent().unwrap_or(Path::new("")).join(name);

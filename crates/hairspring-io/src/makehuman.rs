@@ -1,7 +1,9 @@
-//! MakeHuman rigs: `base.obj` with a rig and weights in JSON (MPFB 2 of the MakeHuman community, `data/rigs/standard`).
+//! Reader for MakeHuman rigs: `base.obj` with a rig and weights in JSON (MPFB 2 of the MakeHuman community,
+//! `data/rigs/standard`).
 //!
-//! A bone's head is the middle of a group of helper vertices of the mesh (`joint-…`), or of vertices named one by one.
-//! Bones are taken as not turned in the rest pose: skinning needs only their places, and retargeting aligns the bones.
+//! The head of a bone is the center of a group of helper vertices of the mesh (`joint-…`), or of vertices
+//! that are listed one by one. Bones have no rotation in the rest pose: skinning needs only their positions,
+//! and retargeting aligns the bones.
 
 use crate::{Character, Place, Problem, skin::four_heaviest};
 use glam::{Affine3A, Vec3};
@@ -9,17 +11,17 @@ use hairspring::body::{Body, Joint, Mesh, Skin, Trs};
 use serde::Deserialize;
 use std::collections::{BTreeMap, HashMap};
 
-/// Metres in one unit of MakeHuman's meshes [m]: decimetres.
+/// Meters in one unit of MakeHuman's meshes [m]: decimeters.
 pub(crate) const SCALE: f32 = 0.1;
 
-/// One bone of a rig file. Fields of no use here are passed over.
+/// One bone of a rig file. Fields that are not needed here are ignored.
 #[derive(Deserialize)]
 struct Bone {
     head: End,
     parent: String,
 }
 
-/// Where an end of a bone is.
+/// How the position of a bone's end is defined.
 #[derive(Deserialize)]
 struct End {
     strategy: String,
@@ -33,11 +35,11 @@ struct WeightFile {
     weights: BTreeMap<String, Vec<(u32, f32)>>,
 }
 
-/// Joins a mesh, its rig and its weights into a skinned body, in the mesh's own units.
+/// Combines a mesh, its rig and its weights into a skinned body, in the mesh's own units.
 ///
 /// # Errors
-/// JSON of another shape, bones in a circle, or references to vertices, groups or bones that are not there; the problem
-/// says in which of the files.
+/// Returns an error if the JSON has another structure, if bones form a cycle, or if a vertex, group or bone
+/// that is referred to does not exist. The problem says which of the files it is in.
 pub fn parse(mesh: Mesh, rig: &[u8], weights: &[u8]) -> Result<Character, Problem> {
     let bones: BTreeMap<String, Bone> = json(rig, "rig")?;
     let WeightFile { weights } = json(weights, "weights")?;
@@ -82,7 +84,7 @@ fn json<'a, T: Deserialize<'a>>(data: &'a [u8], what: &str) -> Result<T, Problem
         .map_err(|e| Problem::line(e.line(), format!("the {what} file is not as expected: {e}")))
 }
 
-/// Middle of each named group's vertices.
+/// Center of each named group's vertices.
 fn group_centers(mesh: &Mesh) -> HashMap<&str, Vec3> {
     let mut centers = HashMap::new();
     for part in &mesh.parts {
@@ -123,15 +125,16 @@ fn parents_first(bones: &BTreeMap<String, Bone>) -> Result<Vec<&str>, Problem> {
         stack.extend(children.get(name).into_iter().flatten());
     }
     if order.len() < bones.len() {
-        return Err(Problem::whole("some bones of the rig are each other's parents"));
+        return Err(Problem::whole("the bones of the rig form a cycle"));
     }
     Ok(order)
 }
 
-/// Where an end of bone `name` is [file units].
+/// Position of an end of bone `name` [file units].
 fn place(mesh: &Mesh, groups: &HashMap<&str, Vec3>, name: &str, end: &End) -> Result<Vec3, Problem> {
-    let missing =
-        |what: &str| Problem::whole(format!("bone {name:?} stands at {what}, which the mesh does not have"));
+    let missing = |what: &str| {
+        Problem::whole(format!("bone {name:?} is placed at {what}, which the mesh does not have"))
+    };
     let vertex =
         |v: &u32| mesh.positions.get(*v as usize).copied().ok_or_else(|| missing(&format!("vertex {v}")));
     match (end.strategy.as_str(), &end.cube_name, &end.vertex_indices, end.vertex_index) {
@@ -146,7 +149,7 @@ fn place(mesh: &Mesh, groups: &HashMap<&str, Vec3>, name: &str, end: &End) -> Re
         ("VERTEX", _, _, Some(v)) => vertex(&v),
         (strategy, ..) => {
             let text = format!(
-                "bone {name:?} is placed by {strategy:?}; CUBE, MEAN and VERTEX with what they name are known"
+                "bone {name:?} is placed by {strategy:?}; expected CUBE, MEAN or VERTEX with the vertices that it needs"
             );
             Err(Problem::whole(text))
         }

@@ -1,4 +1,4 @@
-//! A motion as a file holds it: a skeleton of its own, and what it does.
+//! A motion as a file holds it: a skeleton and a clip for it.
 
 use crate::{Place, Problem};
 use hairspring::body::{Clip, Joint};
@@ -8,11 +8,11 @@ use hairspring::body::{Clip, Joint};
 pub struct Motion {
     /// Joints, parents before children.
     pub joints: Vec<Joint>,
-    /// Their motion.
+    /// The clip that moves them.
     pub clip: Clip,
 }
 
-/// Most joint samples (frames × joints) that a clip may have: a quarter of an hour of a hundred joints at 120 Hz.
+/// Maximum number of joint samples (frames × joints) of a clip: 15 minutes of a hundred joints at 120 Hz.
 pub(crate) const MAX_SAMPLES: usize = 12_000_000;
 
 /// Checks `frames` × `joints` against [`MAX_SAMPLES`].

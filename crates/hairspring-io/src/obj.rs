@@ -1,8 +1,8 @@
-//! Wavefront `.obj` meshes (Alias|Wavefront, "Object Files", 1995): vertices, polygons, groups.
+//! Reader for Wavefront `.obj` meshes (Alias|Wavefront, "Object Files", 1995): vertices, polygons, groups.
 //!
 //! Vertices keep the file's order and are not split at texture seams, so that a closed mesh stays closed and
-//! weights given per vertex fit. Each vertex takes the first texture coordinate that a face gives it; normals are
-//! computed. Materials are not read: a scene file sets the colour.
+//! per-vertex weights fit. Each vertex takes the first texture coordinate that a face gives it. Normals are
+//! computed. Materials are not read: a scene file sets the color.
 
 use crate::{
     Place, Problem,
@@ -11,15 +11,15 @@ use crate::{
 use glam::{Vec2, Vec3};
 use hairspring::body::{Mesh, Part};
 
-/// Colour of a surface whose file says nothing: a neutral light grey, linear RGB.
+/// Color of a surface whose file does not specify one: a neutral light gray, linear RGB.
 pub(crate) const DEFAULT_COLOR: Vec3 = Vec3::splat(0.5);
-/// Roughness of a surface whose file says nothing: skin and cloth are rather matt.
+/// Roughness of a surface whose file does not specify one: skin and cloth are rather matte.
 pub(crate) const DEFAULT_ROUGHNESS: f32 = 0.6;
 
 /// Reads an `.obj` file, in its own units.
 ///
 /// # Errors
-/// A number that is none, or a face that names a vertex that is not there.
+/// Returns an error for an invalid number, or for a face that refers to a missing vertex.
 pub fn parse(data: &[u8]) -> Result<Mesh, Problem> {
     let text = as_text(data);
     let mut mesh = Mesh::default();
@@ -46,7 +46,7 @@ pub fn parse(data: &[u8]) -> Result<Mesh, Problem> {
                     }
                     face.push(v);
                 }
-                // A polygon is a fan of triangles about its first corner.
+                // A polygon becomes a fan of triangles around its first corner.
                 for w in face.get(1..).unwrap_or_default().windows(2) {
                     mesh.triangles.push([face[0], w[0], w[1]]);
                 }
@@ -70,7 +70,7 @@ pub fn parse(data: &[u8]) -> Result<Mesh, Problem> {
     Ok(mesh)
 }
 
-/// The next `N` words as numbers.
+/// Reads the next `N` words as numbers.
 fn numbers<'a, const N: usize>(
     words: &mut impl Iterator<Item = &'a str>,
     line: usize,
@@ -86,7 +86,8 @@ fn numbers<'a, const N: usize>(
     Ok(out)
 }
 
-/// Index from 0 of an `.obj` reference: from 1, or from the end where it is negative.
+/// Converts an `.obj` reference to an index from 0. A reference counts from 1, or from the end if it is
+/// negative.
 fn index(word: &str, count: usize, line: usize, what: &str) -> Result<u32, Problem> {
     let n: i64 = word.parse().map_err(|_| {
         Problem::line(line, format!("expected a face of vertex numbers, found `{}`", shortened(word)))
@@ -95,11 +96,11 @@ fn index(word: &str, count: usize, line: usize, what: &str) -> Result<u32, Probl
     if (0..count as i64).contains(&i) {
         Ok(i as u32)
     } else {
-        Err(Problem::line(line, format!("the face names {what} {n}, but {count} are known so far")))
+        Err(Problem::line(line, format!("the face names {what} {n}, but only {count} are defined so far")))
     }
 }
 
-/// Gathers runs of triangles under their names.
+/// Collects runs of triangles under their names.
 #[derive(Default)]
 struct Parts {
     parts: Vec<Part>,
@@ -125,7 +126,7 @@ impl Parts {
         }
     }
 
-    /// All parts; none where the file names none.
+    /// Returns all parts; none if the file names none.
     fn finish(mut self, triangles: usize) -> Vec<Part> {
         self.close(triangles);
         if self.parts.iter().all(|p| p.name.is_empty()) { Vec::new() } else { self.parts }

@@ -1,4 +1,4 @@
-//! Writing a groom, whole or not at all.
+//! Writes a groom to a file that is either complete or absent.
 
 use crate::{Error, Format, Result, Strands, hair, tfx, usc};
 use hairspring::groom::Groom;
@@ -7,41 +7,44 @@ use std::{
     path::Path,
 };
 
-/// Writes a groom in the format of the path's extension (`.hair`, `.tfx`, `.data`), in metres, Y up, replacing a file
-/// that is there only once the new one is whole. Returns what the format could not hold, a sentence each.
+/// Writes a groom in the format of the path's extension (`.hair`, `.tfx`, `.data`), in meters, Y up. An
+/// existing file is replaced only when the new one is complete. Returns what the format could not hold, one
+/// sentence each.
 ///
 /// # Errors
-/// Another extension, strands that the format can not hold, or a system that does not take the bytes.
+/// Returns an error for another extension, for strands that the format cannot hold, or if the system cannot
+/// write the file.
 pub fn write_groom(path: &Path, groom: &Groom) -> Result<Vec<String>> {
     let format = write_strands(path, groom.into())?;
     let mut lost = Vec::new();
     let parts = [
         (groom.groups.iter().any(|g| *g != 0), "groups"),
-        (!groom.scales.is_empty(), "multipliers of single strands"),
+        (!groom.scales.is_empty(), "per-strand multipliers"),
         (!groom.guides.is_empty(), "guide weights"),
         (!groom.roots.is_empty(), "root bindings"),
         (!groom.root_uvs.is_empty() && format != Format::Tfx, "texture coordinates"),
-        (!groom.colors.is_empty() && format == Format::Usc, "colours"),
+        (!groom.colors.is_empty() && format == Format::Usc, "colors"),
         (varies_along(groom) && format == Format::Tfx, "radii that vary along a strand"),
         (format == Format::Usc, "radii"),
     ];
     let names: Vec<&str> = parts.iter().filter(|(there, _)| *there).map(|(_, name)| *name).collect();
     if !names.is_empty() {
-        lost.push(format!("a .{} file has no place for {}: left out", format.name(), names.join(", ")));
+        lost.push(format!("a .{} file cannot hold {}; left out", format.name(), names.join(", ")));
     }
     Ok(lost)
 }
 
-/// Writes borrowed strands, such as one baked frame, in the format of the path's extension; as [`write_groom`].
+/// Writes borrowed strands, such as one baked frame, in the format of the path's extension. Otherwise like
+/// [`write_groom`].
 ///
 /// # Errors
-/// As [`write_groom`].
+/// See [`write_groom`].
 pub fn write_strands(path: &Path, strands: Strands<'_>) -> Result<Format> {
     let unwritable = |reason: String| Error::Unwritable { path: path.to_owned(), reason };
     let format =
         Format::of(path).filter(|f| Format::GROOMS.contains(f)).ok_or_else(|| Error::Unsupported {
             path: path.to_owned(),
-            reason: "a hairstyle is written as .hair, .tfx or .data, told by the extension".into(),
+            reason: "unknown extension; a hairstyle is written as .hair, .tfx or .data".into(),
         })?;
     strands.check().map_err(unwritable)?;
     let misfit = match format {
@@ -65,7 +68,7 @@ pub fn write_strands(path: &Path, strands: Strands<'_>) -> Result<Format> {
     Ok(format)
 }
 
-/// Whether a strand's radius is not the same at all its points.
+/// Whether any strand's radius varies along its points.
 fn varies_along(groom: &Groom) -> bool {
     (0..groom.strand_count()).any(|s| {
         let radii = groom.radii.get(groom.range(s)).unwrap_or_default();
@@ -73,15 +76,17 @@ fn varies_along(groom: &Groom) -> bool {
     })
 }
 
-/// Has `write` fill a temporary file in the folder of `path`, then renames it: a file is there whole or not at all, with the rights that new files have.
+/// Writes a file atomically. `write` fills a temporary file in the folder of `path`, which is then renamed.
+/// The finished file has the permissions of a new file.
 ///
 /// # Errors
-/// What `write` or the system says; nothing is left behind then.
+/// Returns the error of `write` or of the system. Nothing is left behind in that case.
 pub fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hairspring-");
-    // Temporary files are private by default; a finished one has the usual rights (cut by the umask).
+    // Temporary files are private by default. The finished file gets the usual permissions, limited by the
+    // umask.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let file = builder.tempfile_in(folder)?;

@@ -1,13 +1,14 @@
-//! Weights of a vertex or a root over its joints.
+//! Skinning weights of a vertex or a root.
 
-/// `weights` without what is negative or not finite, summing to 1; all on the first joint where nothing is left.
+/// Removes weights that are negative or not finite, and scales the rest to a sum of 1. If nothing is left,
+/// the first joint gets all the weight.
 pub(crate) fn normalised(weights: [f32; 4]) -> [f32; 4] {
     let clean = weights.map(|w| if w.is_finite() && w > 0.0 { w } else { 0.0 });
     let sum: f32 = clean.iter().sum();
     if sum.is_finite() && sum > 0.0 { clean.map(|w| w / sum) } else { [1.0, 0.0, 0.0, 0.0] }
 }
 
-/// The four heaviest of any number of `(joint, weight)` pairs, normalised.
+/// Returns the four largest of any number of `(joint, weight)` pairs, normalized.
 pub(crate) fn four_heaviest(mut pairs: Vec<(u16, f32)>) -> ([u16; 4], [f32; 4]) {
     pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
     let at = |i: usize| pairs.get(i).copied().unwrap_or((0, 0.0));

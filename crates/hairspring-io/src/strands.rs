@@ -1,4 +1,4 @@
-//! What every groom reader hands on and every groom writer takes.
+//! The common output of all groom readers and the common input of all groom writers.
 
 use crate::{
     Place, Problem, ReadOptions,
@@ -7,14 +7,14 @@ use crate::{
 use glam::{Vec2, Vec3};
 use hairspring::groom::{DEFAULT_RADIUS, Groom};
 
-/// Strands to be written, borrowed: a groom, or the points of one baked frame.
+/// Borrowed strands to be written: a groom, or the points of one baked frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Strands<'a> {
     /// Positions, strand after strand, root first [m]; shape `[points]`.
     pub points: &'a [Vec3],
     /// Index of each strand's first point, and the number of points at the end; shape `[strands + 1]`.
     pub offsets: &'a [u32],
-    /// Radius at each point [m]; shape `[points]`, or empty: the default radius.
+    /// Radius at each point [m]; shape `[points]`, or empty for the default radius.
     pub radii: &'a [f32],
     /// Linear RGB at each point; shape `[points]`, or empty.
     pub colors: &'a [Vec3],
@@ -45,16 +45,16 @@ impl Strands<'_> {
         self.offsets.windows(2).map(|w| (w[1] - w[0]) as usize)
     }
 
-    /// Whether the arrays agree with each other; the sentence says which does not.
+    /// Checks that the arrays agree with each other. The error says which one does not.
     pub(crate) fn check(&self) -> Result<(), String> {
         let (points, strands) = (self.points.len(), self.strand_count());
         let ordered = self.offsets.first().is_none_or(|o| *o == 0) && self.offsets.is_sorted();
         if !ordered || self.offsets.last().map_or(0, |o| *o as usize) != points {
-            return Err(format!("its offsets do not run in order from 0 to its {points} points"));
+            return Err(format!("its offsets do not increase from 0 to its {points} points"));
         }
         for (name, len, want) in [
             ("radii", self.radii.len(), points),
-            ("colours", self.colors.len(), points),
+            ("colors", self.colors.len(), points),
             ("root texture coordinates", self.root_uvs.len(), strands),
         ] {
             if len != 0 && len != want {
@@ -68,31 +68,32 @@ impl Strands<'_> {
     }
 }
 
-/// A groom as a reader found it, before units.
+/// A groom as a reader returns it, before its units are converted.
 pub(crate) struct Read {
-    /// Everything but the radii, in the file's units and axes.
+    /// Everything except the radii, in the file's units and axes.
     pub groom: Groom,
-    /// Radius of each point [file units], where the file has it.
+    /// Radius of each point [file units], if the file has them.
     pub radii: Option<Vec<f32>>,
-    /// Whether those radii are measures for certain (our own files), not widths for a display.
+    /// Whether the radii are known to be measurements (our own files), not widths for a display.
     pub true_radii: bool,
-    /// What the file says of its units.
+    /// What the file specifies about its units.
     pub units: FileUnits,
     /// Notes so far.
     pub notes: Vec<String>,
 }
 
-/// Radii of hair and fur fibres, with room to spare [m]: vellus hair has 5 µm, a whisker up to 250 µm.
+/// Plausible radii of hair and fur fibers, with some margin [m]: vellus hair has 5 µm, a whisker up to 250
+/// µm.
 const BELIEVABLE_RADIUS: std::ops::RangeInclusive<f32> = 2e-6..=300e-6;
 
 impl Read {
-    /// The groom in the file's own units.
+    /// Returns the groom in the file's own units.
     pub fn in_file_units(mut self) -> Groom {
         self.groom.radii = self.radii.unwrap_or_else(|| vec![DEFAULT_RADIUS; self.groom.points.len()]);
         self.groom
     }
 
-    /// The groom in metres and Y up, metres a unit, and the notes.
+    /// Returns the groom in meters and Y up, the meters per file unit, and the notes.
     pub fn finish(mut self, options: &ReadOptions) -> (Groom, f32, Vec<String>) {
         let extent = extent(self.groom.points.iter().copied());
         let (scale, turn) = settle(options, self.units, Subject::Hair, extent, &mut self.notes);
@@ -112,7 +113,7 @@ impl Read {
                     radii
                 } else {
                     self.notes.push(format!(
-                        "the file's thickness makes fibres of {:.3} mm radius: taken for a display width, {:.3} mm used instead",
+                        "the file's thickness gives fibers a radius of {:.3} mm, which is taken for a display width; {:.3} mm is used instead",
                         median * 1e3,
                         DEFAULT_RADIUS * 1e3
                     ));
@@ -124,7 +125,8 @@ impl Read {
     }
 }
 
-/// Offsets of strands of `counts` points, which must come to `points`. `at`: where the counts stand [bytes].
+/// Returns the offsets of strands with `counts` points, which must sum to `points`. `at` is the position of
+/// the counts [bytes].
 pub(crate) fn gather_offsets(
     counts: impl Iterator<Item = usize>,
     points: usize,

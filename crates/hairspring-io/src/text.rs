@@ -1,4 +1,4 @@
-//! Walking through a text file word by word, with the line at hand for the message.
+//! Reads a text file word by word and keeps the line number for messages.
 
 use crate::Problem;
 use glam::Vec3;
@@ -21,7 +21,7 @@ impl<'a> Words<'a> {
         self.line
     }
 
-    /// The next word; `None` at the end.
+    /// Returns the next word; `None` at the end.
     pub(crate) fn word(&mut self) -> Option<&'a str> {
         loop {
             if let Some(word) = self.words.next() {
@@ -33,12 +33,12 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The rest of the line that the last word stands in.
+    /// Returns the rest of the last word's line.
     pub(crate) fn rest_of_line(&mut self) -> Vec<&'a str> {
         self.words.by_ref().collect()
     }
 
-    /// The next word, which must be `wanted` (upper and lower case alike).
+    /// Reads the next word, which must be `wanted`, ignoring case.
     pub(crate) fn expect(&mut self, wanted: &str) -> Result<(), Problem> {
         match self.word() {
             Some(word) if word.eq_ignore_ascii_case(wanted) => Ok(()),
@@ -46,7 +46,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The next word as a number, which `what` names.
+    /// Reads the next word as a number. `what` names it in error messages.
     pub(crate) fn number<T: FromStr>(&mut self, what: &str) -> Result<T, Problem> {
         match self.word() {
             Some(word) => word.parse().map_err(|_| self.missing(what, Some(word))),
@@ -54,18 +54,18 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The next word as a finite number, which `what` names.
+    /// Reads the next word as a finite number. `what` names it in error messages.
     pub(crate) fn finite(&mut self, what: &str) -> Result<f32, Problem> {
         let word = self.word();
         word.and_then(finite).ok_or_else(|| self.missing(what, word))
     }
 
-    /// The next three words as finite numbers, each of which `what` names.
+    /// Reads the next three words as finite numbers. `what` names each of them in error messages.
     pub(crate) fn vector(&mut self, what: &str) -> Result<Vec3, Problem> {
         Ok(Vec3::new(self.finite(what)?, self.finite(what)?, self.finite(what)?))
     }
 
-    /// The problem that `what` should stand here and `found` does.
+    /// Says that `what` was expected, but `found` was read.
     pub(crate) fn missing(&self, what: &str, found: Option<&str>) -> Problem {
         let found = match found {
             Some(word) => format!("found `{}`", shortened(word)),
@@ -75,7 +75,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// `word` as a finite number.
+/// Parses `word` as a finite number.
 pub(crate) fn finite(word: &str) -> Option<f32> {
     word.parse().ok().filter(|x: &f32| x.is_finite())
 }
@@ -85,7 +85,7 @@ pub(crate) fn shortened(word: &str) -> String {
     if word.chars().count() <= 40 { word.into() } else { word.chars().take(40).chain(['…']).collect() }
 }
 
-/// A file's bytes as text; bytes that are no UTF-8 (names in old encodings) become replacement characters.
+/// A file's bytes as text. Bytes that are not UTF-8 (names in old encodings) become replacement characters.
 pub(crate) fn as_text(data: &[u8]) -> std::borrow::Cow<'_, str> {
     String::from_utf8_lossy(data.strip_prefix(b"\xef\xbb\xbf").unwrap_or(data))
 }

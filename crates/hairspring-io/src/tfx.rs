@@ -1,5 +1,5 @@
-//! TressFX `.tfx` grooms, versions 3.0 and 4.0 (AMD TressFX, `TressFXFileFormat.h` of branches 3.1.1 and 4.1):
-//! a header of offsets, then strands that all have the same number of points.
+//! Reader and writer for TressFX `.tfx` grooms, versions 3.0 and 4.0 (AMD TressFX, `TressFXFileFormat.h` of
+//! branches 3.1.1 and 4.1): a header of offsets, then strands that all have the same number of points.
 
 use crate::{
     Place, Problem,
@@ -12,7 +12,7 @@ use glam::Vec4;
 use hairspring::groom::{DEFAULT_RADIUS, Groom};
 use std::io::{self, Write};
 
-/// First reserved word of our own files: metres, Y up, true radii. ("HSPR")
+/// First reserved word of our own files ("HSPR"): meters, Y up, true radii.
 const MARK: u32 = u32::from_le_bytes(*b"HSPR");
 
 /// Header of version 4.0, 160 bytes. An offset of 0 means that the array is absent.
@@ -22,15 +22,15 @@ struct Header4 {
     version: f32,
     strands: u32,
     points_per_strand: u32,
-    /// float4 a point: position, inverse mass.
+    /// float4 per point: position, inverse mass.
     positions: u32,
-    /// float2 a strand.
+    /// float2 per strand.
     strand_uvs: u32,
-    /// float2 a point.
+    /// float2 per point.
     point_uvs: u32,
-    /// float a strand: diameter.
+    /// float per strand: diameter.
     thickness: u32,
-    /// float4 a point.
+    /// float4 per point.
     colors: u32,
     reserved: [u32; 32],
 }
@@ -45,7 +45,7 @@ struct Header3 {
     follow_per_guide: u32,
     both_ends_fixed: u32,
     reserved_1: [u32; 31],
-    /// float3 a point.
+    /// float3 per point.
     positions: u32,
     thickness: u32,
     strand_uvs: u32,
@@ -55,12 +55,12 @@ struct Header3 {
     reserved_2: [u32; 32],
 }
 
-/// Where the arrays of either version are.
+/// Positions of the arrays, for either version.
 struct Layout {
     strands: usize,
     points_per_strand: usize,
     positions: usize,
-    /// Floats a position: 3 or 4.
+    /// Floats per position: 3 or 4.
     width: usize,
     strand_uvs: u32,
     thickness: u32,
@@ -72,7 +72,7 @@ struct Layout {
 /// Reads a `.tfx` file of version 3 or 4, in its own units.
 ///
 /// # Errors
-/// Another version, offsets outside the file, or a file cut short.
+/// Returns an error for another version, offsets outside the file, or a truncated file.
 pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
     read(data).map(Read::in_file_units)
 }
@@ -105,8 +105,8 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         groom.root_uvs = bytes.array(strands, "the strand texture coordinates")?;
     }
     if layout.colors != 0 {
-        bytes.seek(layout.colors as usize, "the array of colours")?;
-        let colors: Vec<Vec4> = bytes.array(points, "the colours")?;
+        bytes.seek(layout.colors as usize, "the array of colors")?;
+        let colors: Vec<Vec4> = bytes.array(points, "the colors")?;
         groom.colors = colors.iter().map(|c| c.truncate()).collect();
     }
     let radii = if layout.thickness != 0 {
@@ -129,15 +129,15 @@ fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
             let h: Header3 = bytes.value("the header of version 3")?;
             if h.follow_per_guide > 0 {
                 notes.push(format!(
-                    "its authors drew {} follow hairs round each strand; the file holds the guides only",
+                    "it asks for {} follow hairs around each strand; the file holds only the guides",
                     h.follow_per_guide
                 ));
             }
             if h.guides != 0 {
-                notes.push("its table of guides is not used: guides are chosen anew".into());
+                notes.push("its table of guides is not used; guides are selected again".into());
             }
             if h.both_ends_fixed != 0 {
-                notes.push("its tips are marked as fixed; they are free here".into());
+                notes.push("its tips are marked as fixed; they are simulated as free".into());
             }
             Ok(Layout {
                 strands: h.strands as usize,
@@ -166,15 +166,14 @@ fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
             })
         }
         _ => {
-            let text = format!(
-                "version {version} of .tfx is not known: 3 and 4 are; export it again as one of these"
-            );
+            let text = format!(".tfx version {version} is not supported; export the file as version 3 or 4");
             Err(Problem::new(Place::Byte(0), text))
         }
     }
 }
 
-/// Writes strands as a `.tfx` file of version 4 in metres, Y up; all strands must have the same number of points.
+/// Writes strands as a `.tfx` file of version 4 in meters, Y up. All strands must have the same number of
+/// points.
 pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()> {
     let count = strands.strand_count();
     let per_strand = strands.counts().next().unwrap_or(0);
@@ -200,7 +199,7 @@ pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()
     header.reserved[0] = MARK;
     out.write_all(bytes_of(&header))?;
     for w in strands.offsets.windows(2) {
-        // Inverse mass: the first two points are driven by the scalp.
+        // Inverse mass. It is 0 for the first two points, which the scalp moves.
         let run = strands.points[w[0] as usize..w[1] as usize].iter().enumerate();
         let run: Vec<Vec4> = run.map(|(i, p)| p.extend(if i < 2 { 0.0 } else { 1.0 })).collect();
         out.write_all(cast_slice(&run))?;
@@ -213,7 +212,7 @@ pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()
     out.write_all(cast_slice(&colors))
 }
 
-/// Why these strands do not fit into a `.tfx` file, if they do not.
+/// Returns why these strands do not fit into a `.tfx` file, or `None` if they do.
 pub(crate) fn misfit(strands: &Strands<'_>) -> Option<String> {
     let first = strands.counts().next()?;
     let other = strands.counts().position(|n| n != first)?;

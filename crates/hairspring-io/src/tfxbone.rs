@@ -1,5 +1,6 @@
-//! TressFX `.tfxbone`: the bones that each strand's root follows. u32 bones; for each, u32 index, u32 length of its
-//! name with the closing zero, the name; u32 strands; for each, u32 index and four (u32 bone, f32 weight).
+//! Reader for TressFX `.tfxbone`: the bones that each strand's root follows. The layout is: u32 number of
+//! bones; for each bone, u32 index, u32 length of its name with the terminating zero, and the name; u32
+//! number of strands; for each strand, u32 index and four pairs (u32 bone, f32 weight).
 
 use crate::{Place, Problem, bytes::Bytes, skin::normalised};
 
@@ -15,7 +16,7 @@ pub struct RootBones {
 }
 
 impl RootBones {
-    /// The bones of root `s` that weigh more than nothing, by name.
+    /// The names of the bones of root `s` that have a weight above 0.
     pub fn of(&self, s: usize) -> impl Iterator<Item = &str> {
         let pairs = self.bones[s].into_iter().zip(self.weights[s]);
         pairs.filter(|(_, w)| *w > 0.0).map(|(b, _)| self.names[b as usize].as_str())
@@ -25,7 +26,8 @@ impl RootBones {
 /// Reads a `.tfxbone` file.
 ///
 /// # Errors
-/// Counts that the file cannot hold, indices out of order or range, or a file cut short.
+/// Returns an error for counts that the file cannot hold, indices out of order or out of range, or a
+/// truncated file.
 pub fn parse(data: &[u8]) -> Result<RootBones, Problem> {
     let mut bytes = Bytes::new(data);
     let bones = count(&mut bytes, "the bone count", 9, u16::MAX as usize)?;
@@ -61,7 +63,7 @@ pub fn parse(data: &[u8]) -> Result<RootBones, Problem> {
     Ok(read)
 }
 
-/// A count of records of at least `size` bytes each.
+/// Reads a count of records that have at least `size` bytes each.
 fn count(bytes: &mut Bytes<'_>, what: &str, size: usize, limit: usize) -> Result<usize, Problem> {
     let at = bytes.at();
     let n = bytes.value::<u32>(what)? as usize;
@@ -71,7 +73,7 @@ fn count(bytes: &mut Bytes<'_>, what: &str, size: usize, limit: usize) -> Result
     Ok(n)
 }
 
-/// Checks the running index that each record begins with.
+/// Checks the index at the start of a record, which counts up.
 fn in_order(bytes: &mut Bytes<'_>, i: usize, what: &str) -> Result<(), Problem> {
     let at = bytes.at();
     let found: u32 = bytes.value(&format!("the index of a {what}"))?;

@@ -1,7 +1,8 @@
-//! TressFX `.tfxmesh`: a skinned collision mesh as text (written by the TressFX exporter for Maya): `numOfBones`,
-//! index and name of each; `numOfVertices`, each with position, normal, four joints, four weights; `numOfTriangles`.
+//! Reader for TressFX `.tfxmesh`: a skinned collision mesh as text (written by the TressFX exporter for
+//! Maya). It holds `numOfBones` with the index and name of each; `numOfVertices`, each with position, normal,
+//! four joints and four weights; `numOfTriangles`.
 //!
-//! The file has no skeleton: joints are known by name only and stand at the origin in the rest pose.
+//! The file has no skeleton: joints are known by name only and are at the origin in the rest pose.
 
 use crate::{
     Problem,
@@ -15,9 +16,9 @@ use hairspring::body::{Body, Joint, Mesh, Part, Skin, Trs};
 /// Reads a `.tfxmesh` file, in its own units.
 ///
 /// # Errors
-/// Missing sections, indices out of order or out of range, or a file cut short.
+/// Returns an error for missing sections, indices out of order or out of range, or a truncated file.
 pub fn parse(data: &[u8]) -> Result<Body, Problem> {
-    // Comments run to the end of their line; blanking them keeps the line numbers.
+    // Comments run to the end of their line. Replacing them by blanks keeps the line numbers.
     let text: String =
         as_text(data).lines().map(|l| l.split('#').next().unwrap_or("")).collect::<Vec<_>>().join("\n");
     let mut words = Words::new(&text);
@@ -83,7 +84,8 @@ pub fn parse(data: &[u8]) -> Result<Body, Problem> {
     Ok(Body { mesh, joints, skin: Some(skin) })
 }
 
-/// The count after the word `name`; at most `limit`, and no more than the file's text has room for.
+/// Reads the count after the word `name`. It is at most `limit`, and no more than the rest of the file has
+/// room for.
 fn count(words: &mut Words<'_>, name: &str, limit: usize, room: usize) -> Result<usize, Problem> {
     words.expect(name)?;
     let n: usize = words.number("a count")?;
@@ -91,13 +93,13 @@ fn count(words: &mut Words<'_>, name: &str, limit: usize, room: usize) -> Result
         let most = limit.min(room);
         return Err(Problem::line(
             words.line(),
-            format!("{name} is {n}, but a file of this size has room for {most} at most"),
+            format!("{name} is {n}, but a file of this size has room for at most {most}"),
         ));
     }
     Ok(n)
 }
 
-/// Checks the running index that each record begins with.
+/// Checks the index at the start of a record, which counts up.
 fn in_order(words: &mut Words<'_>, i: usize, what: &str) -> Result<(), Problem> {
     let found: usize = words.number(&format!("{what} {i}"))?;
     if found == i {

@@ -1,4 +1,4 @@
-//! From a file's units and axes to metres and Y up.
+//! Conversion from a file's units and axes to meters and Y up.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -11,31 +11,32 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Axis {
-    /// Y up, as inside: nothing is turned.
+    /// Y up, as used internally: nothing is rotated.
     Y,
     /// Z up: +Z becomes +Y and +Y becomes −Z.
     Z,
 }
 
-/// What the caller knows of a file's units; what is `None` is taken from the format, or guessed and noted.
+/// What the caller knows about a file's units. Fields that are `None` are taken from the format, or guessed
+/// with a note.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadOptions {
-    /// Metres in one unit of the file [m], above 0.
+    /// Meters in one unit of the file [m], above 0.
     pub scale: Option<f32>,
     /// The axis that points up.
     pub up: Option<Axis>,
 }
 
-/// What a file (or its format) says of its own units.
+/// What a file or its format specifies about its units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FileUnits {
-    /// Metres in one unit; `None`: it does not say.
+    /// Meters in one unit; `None` if not specified.
     pub scale: Option<f32>,
-    /// The axis that points up, by the file or by the format's custom.
+    /// The axis that points up, by the file or by the convention of the format.
     pub up: Option<Axis>,
 }
 
-/// What is being measured, and so what sizes are believable.
+/// The kind of object, which determines the plausible sizes.
 #[derive(Clone, Copy)]
 pub(crate) enum Subject {
     /// A hairstyle: its box is 0.1 to 1.5 m.
@@ -45,7 +46,7 @@ pub(crate) enum Subject {
 }
 
 impl Subject {
-    /// Believable sizes of the box's longest side [m].
+    /// Plausible sizes of the box's longest side [m].
     fn range(self) -> std::ops::RangeInclusive<f32> {
         match self {
             Self::Hair => 0.1..=1.5,
@@ -53,7 +54,7 @@ impl Subject {
         }
     }
 
-    /// The sizes that the guess is drawn to [m]: hair to the shoulders; a bust, a grown figure.
+    /// Typical sizes, which a guess tries to match [m]: shoulder-length hair; a bust or an adult.
     fn typical(self) -> &'static [f32] {
         match self {
             Self::Hair => &[0.35],
@@ -62,11 +63,12 @@ impl Subject {
     }
 }
 
-/// Units that files are made in.
+/// Common units of files.
 const UNITS: [(f32, &str); 4] =
-    [(1.0, "metres"), (0.1, "decimetres"), (0.01, "centimetres"), (0.001, "millimetres")];
+    [(1.0, "meters"), (0.1, "decimeters"), (0.01, "centimeters"), (0.001, "millimeters")];
 
-/// Scale and turn to apply, with a note on whatever was guessed. `extent`: the box's longest side [file units].
+/// Returns the scale and rotation to apply, and adds a note about whatever was guessed. `extent` is the box's
+/// longest side [file units].
 pub(crate) fn settle(
     options: &ReadOptions,
     file: FileUnits,
@@ -82,7 +84,7 @@ pub(crate) fn settle(
     (scale, turn_of(options.up.or(file.up).unwrap_or(Axis::Y)))
 }
 
-/// The rotation that brings `up` to +Y.
+/// The rotation that maps `up` to +Y.
 pub(crate) fn turn_of(up: Axis) -> Quat {
     match up {
         Axis::Y => Quat::IDENTITY,
@@ -90,15 +92,16 @@ pub(crate) fn turn_of(up: Axis) -> Quat {
     }
 }
 
-/// Metres a unit for something whose box's longest side is `extent` units, and the note that says so:
-/// metres where that is believable, otherwise the unit that brings it nearest to a typical size.
+/// Guesses the meters per unit of an object whose box has a longest side of `extent` units, and returns a
+/// note about it. The unit is meters if that is plausible, otherwise the unit that gives the size nearest to
+/// a typical one.
 fn guess(subject: Subject, extent: f32) -> (f32, Option<String>) {
     if !(extent.is_finite() && extent > 0.0) {
         return (1.0, None);
     }
     if subject.range().contains(&extent) {
         let note = format!(
-            "the file names no unit: read as metres (its longest side is {extent:.3} m); `scale` sets another"
+            "the file has no unit; read as meters (its longest side is {extent:.3} m); set `scale` to change it"
         );
         return (1.0, Some(note));
     }
@@ -111,17 +114,17 @@ fn guess(subject: Subject, extent: f32) -> (f32, Option<String>) {
     let size = extent * scale;
     let note = if subject.range().contains(&size) {
         format!(
-            "the file names no unit: guessed {name} (its longest side is then {size:.3} m); `scale` sets another"
+            "the file has no unit; guessed {name} (its longest side is then {size:.3} m); set `scale` to change it"
         )
     } else {
         format!(
-            "the file names no unit and no usual one fits: read as {name} (its longest side is then {size:.3} m); set `scale`"
+            "the file has no unit, and no usual one fits; read as {name} (its longest side is then {size:.3} m); set `scale`"
         )
     };
     (scale, Some(note))
 }
 
-/// The longest side of the box around the finite ones of `points`; 0 without any.
+/// The longest side of the box around the finite points in `points`; 0 if there are none.
 pub(crate) fn extent(points: impl IntoIterator<Item = Vec3>) -> f32 {
     let mut finite = points.into_iter().filter(|p| p.is_finite());
     let Some(first) = finite.next() else {
@@ -131,17 +134,17 @@ pub(crate) fn extent(points: impl IntoIterator<Item = Vec3>) -> f32 {
     (hi - lo).max_element()
 }
 
-/// Turns `p` by `turn`, exactly where there is nothing to turn, and by ±90° about X without rounding.
+/// Rotates `p` by `turn`: exactly if `turn` is the identity, and without rounding for ±90° about X.
 fn turned(turn: Quat, p: Vec3) -> Vec3 {
     if turn == Quat::IDENTITY { p } else { Vec3::new(p.x, p.z, -p.y) }
 }
 
-/// Brings a groom into metres and Y up.
+/// Converts a groom to meters and Y up.
 pub(crate) fn apply_to_groom(groom: &mut Groom, scale: f32, turn: Quat) {
     groom.points.iter_mut().for_each(|p| *p = turned(turn, *p) * scale);
 }
 
-/// Brings joints' local transforms into metres and Y up; shape `[joints]`.
+/// Converts the local transforms of joints to meters and Y up; shape `[joints]`.
 pub(crate) fn apply_to_locals<'a>(
     locals: impl IntoIterator<Item = (&'a mut Trs, bool)>,
     scale: f32,
@@ -156,7 +159,7 @@ pub(crate) fn apply_to_locals<'a>(
     }
 }
 
-/// Brings a motion's joints and clips into metres and Y up.
+/// Converts a motion's joints and clips to meters and Y up.
 pub(crate) fn apply_to_motion(joints: &mut [Joint], clips: &mut [Clip], scale: f32, turn: Quat) {
     let roots: Vec<bool> = joints.iter().map(|j| j.parent.is_none()).collect();
     apply_to_locals(joints.iter_mut().map(|j| (&mut j.rest, j.parent.is_none())), scale, turn);
@@ -166,7 +169,7 @@ pub(crate) fn apply_to_motion(joints: &mut [Joint], clips: &mut [Clip], scale: f
     }
 }
 
-/// Brings a body and its clips into metres and Y up.
+/// Converts a body and its clips to meters and Y up.
 pub(crate) fn apply_to_body(body: &mut Body, clips: &mut [Clip], scale: f32, turn: Quat) {
     for p in &mut body.mesh.positions {
         *p = turned(turn, *p) * scale;
@@ -175,7 +178,7 @@ pub(crate) fn apply_to_body(body: &mut Body, clips: &mut [Clip], scale: f32, tur
         *n = turned(turn, *n);
     }
     if let Some(skin) = &mut body.skin {
-        // B' = S B (R S)⁻¹: the joint's space is scaled, not turned.
+        // B' = S B (R S)⁻¹: the joint's space is scaled, not rotated.
         let back =
             glam::Affine3A::from_scale_rotation_translation(Vec3::splat(scale), turn, Vec3::ZERO).inverse();
         let scaled = glam::Affine3A::from_scale(Vec3::splat(scale));

@@ -1,5 +1,6 @@
-//! The `.data` format of the USC-HairSalon database (Hu et al. 2015, "Single-View Hair Modeling Using A Hairstyle
-//! Database"): i32 strands; for each, i32 points and as many float3. Metres, Y up.
+//! Reader and writer for the `.data` format of the USC-HairSalon database (Hu et al. 2015, "Single-View Hair
+//! Modeling Using A Hairstyle Database"): i32 number of strands; for each, i32 number of points and that many
+//! float3. Meters, Y up.
 
 use crate::{
     Place, Problem,
@@ -15,7 +16,7 @@ use std::io::{self, Write};
 /// Reads a `.data` file, in its own units.
 ///
 /// # Errors
-/// A negative count, or a file that ends too early or too late.
+/// Returns an error for a negative count, or for a file that ends too early or too late.
 pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
     read(data).map(Read::in_file_units)
 }
@@ -23,7 +24,7 @@ pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
 pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let mut bytes = Bytes::new(data);
     let strands: i32 = bytes.value("the strand count")?;
-    // Four bytes a strand at the least.
+    // A strand takes at least four bytes.
     let strands = usize::try_from(strands).ok().filter(|n| *n <= bytes.remaining() / 4).ok_or_else(|| {
         Problem::new(
             Place::Byte(0),
@@ -44,7 +45,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     }
     if bytes.remaining() > 0 {
         let text = format!(
-            "{} bytes are left after the last strand: this is no .data file of strands",
+            "{} bytes are left after the last strand; this is not a .data file of strands",
             bytes.remaining()
         );
         return Err(Problem::new(Place::Byte(bytes.at()), text));

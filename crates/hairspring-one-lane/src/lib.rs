@@ -1,11 +1,13 @@
-//! `fearless_simd` as far as Hairspring uses it, one lane at a time.
+//! The part of `fearless_simd` that Hairspring uses, with one lane at a time.
 //!
-//! `hairspring-scalar` is Hairspring's library built against this crate: the same files and the same memory, in which a tile has eight strands, but
-//! every operation is on one number, and [`dispatch!`] runs what it is given for one lane after another. fearless_simd's own scalar
-//! fallback spells eight lanes out inside one function, which takes the compiler more than twenty minutes for our kernel.
+//! `hairspring-scalar` is Hairspring's library built against this crate. It has the same source files and the
+//! same memory layout with eight strands per tile, but every operation is on one number, and [`dispatch!`]
+//! runs its code for one lane after another. The scalar fallback of fearless_simd writes out eight lanes
+//! inside one function, which takes the compiler more than twenty minutes for our kernel.
 //!
-//! Products are not fused, and the larger of two numbers is chosen as SSE2 does it: results have the bits of `sse2`. The compiler
-//! may still put neighbouring operations of one strand into one instruction, as it may in any program.
+//! Products are not fused, and the maximum of two numbers is chosen as in SSE2, so results are bit-identical
+//! to those of `sse2`. The compiler may still combine adjacent operations of one strand into one instruction,
+//! as in any program.
 
 use std::{
     marker::PhantomData,
@@ -15,14 +17,14 @@ use std::{
     },
 };
 
-/// What `use fearless_simd::prelude::*` brings.
+/// The items of `use fearless_simd::prelude::*`.
 pub mod prelude {
     pub use crate::Simd;
 }
 
 /// An instruction set: one lane of eight.
 pub trait Simd: Copy {
-    /// Which of the eight lanes.
+    /// Index of the lane, 0 to 7.
     fn lane(self) -> usize;
 
     /// Runs `f` with the instructions of the set.
@@ -32,12 +34,12 @@ pub trait Simd: Copy {
     }
 }
 
-/// The only instruction set that there is.
+/// The only available instruction set.
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar(usize);
 
 impl Scalar {
-    /// For one of the eight lanes.
+    /// Selects one of the eight lanes.
     pub fn of(lane: usize) -> Self {
         Self(lane)
     }
@@ -46,16 +48,16 @@ impl Scalar {
 impl Simd for Scalar {
     #[inline(always)]
     fn lane(self) -> usize {
-        // Always below eight, which saves checks of bounds.
+        // Always below eight, which removes bounds checks.
         self.0 & 7
     }
 }
 
-/// An instruction set that there is not.
+/// An unavailable instruction set.
 #[derive(Clone, Copy, Debug)]
 pub enum Absent {}
 
-/// The instruction sets that may be asked for.
+/// The instruction sets that can be requested.
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "fearless_simd says what they are")]
 pub enum Level {
@@ -102,11 +104,11 @@ macro_rules! dispatch {
 #[derive(Clone, Copy, Debug)]
 pub struct f32x8<S> {
     value: f32,
-    /// Its lane.
+    /// The lane.
     pub simd: S,
 }
 
-/// Four numbers: not of lanes, but as they lie in memory.
+/// Four numbers in memory order, not lanes.
 #[expect(non_camel_case_types, reason = "fearless_simd's name")]
 #[derive(Clone, Copy, Debug)]
 pub struct f32x4<S> {
@@ -114,7 +116,7 @@ pub struct f32x4<S> {
     simd: S,
 }
 
-/// One lane of eight truth values.
+/// One lane of eight booleans.
 #[expect(non_camel_case_types, reason = "fearless_simd's name")]
 #[derive(Clone, Copy, Debug)]
 pub struct mask32x8<S> {
@@ -122,9 +124,9 @@ pub struct mask32x8<S> {
     simd: PhantomData<S>,
 }
 
-/// What stands for one lane of eight numbers: it, or a number that is the same in all.
+/// A value for one lane of eight numbers: the lane itself, or a number that is the same in all lanes.
 pub trait Number<S> {
-    /// The number.
+    /// Returns the number.
     fn number(self) -> f32;
 }
 
@@ -288,7 +290,8 @@ impl<S: Simd> mask32x8<S> {
 impl<S> Index<usize> for f32x8<S> {
     type Output = f32;
 
-    /// The number, whatever the lane: code that spells lanes out writes what it makes of the others where nobody reads it.
+    /// The number, for any lane. Code that writes out all lanes stores this value for the others too, where
+    /// it is not read.
     #[inline(always)]
     fn index(&self, _: usize) -> &f32 {
         &self.value

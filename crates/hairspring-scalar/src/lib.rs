@@ -1,8 +1,10 @@
-//! Hairspring's library and its bench scene once more, from the same files, built without SIMD: what `hairspring bench --table` compares with.
+//! A second build of Hairspring's library and its bench scene without SIMD, from the same source files. `hairspring bench
+//! --table` compares with it.
 //!
-//! In place of `fearless_simd` stands `hairspring-one-lane`, under its name. Its public items are those of `hairspring`, and are described there.
+//! `hairspring-one-lane` replaces `fearless_simd` under its name. The public items are those of `hairspring`
+//! and are documented there.
 
-// Its unit tests are hairspring's, and run there.
+// The unit tests run in `hairspring`.
 #[cfg(not(test))]
 #[path = "../../hairspring/src/lib.rs"]
 mod library;

@@ -1,12 +1,12 @@
-//! Perspective: from metres to pixels, and the camera that frames a scene by itself.
+//! Perspective projection from meters to pixels, and automatic framing of a scene.
 
 use glam::Vec3;
 use hairspring_scene::Camera;
 
-/// Nearest distance drawn [m]: closer than a camera could focus.
+/// Near plane [m]: closer than a camera could focus.
 pub(crate) const NEAR: f32 = 0.01;
 
-/// A camera made ready for one picture size.
+/// A camera prepared for one picture size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub eye: Vec3,
@@ -15,17 +15,17 @@ pub(crate) struct View {
     pub forward: Vec3,
     /// Pixels per unit of slope.
     pub focal: f32,
-    /// Pixel coordinates of the axis.
+    /// Pixel coordinates of the optical axis.
     pub center: [f32; 2],
 }
 
-/// Where a camera stands; the default one if its place is no place.
+/// Position of the camera. If it is not finite, the position of the default camera.
 pub(crate) fn eye(camera: &Camera) -> Vec3 {
     if camera.position.is_finite() { camera.position } else { Camera::default().position }
 }
 
 impl View {
-    /// Broken settings (no distance, not finite) give the default camera's direction rather than no picture.
+    /// Invalid settings (zero distance, not finite) give the direction of the default camera.
     pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let eye = eye(camera);
         let forward = (camera.target - eye).try_normalize().unwrap_or(Vec3::NEG_Z);
@@ -42,7 +42,7 @@ impl View {
         }
     }
 
-    /// `(x, y, depth)`: pixels from the top left corner, and metres along the axis.
+    /// `(x, y, depth)`: pixels from the top left corner, and meters along the optical axis.
     pub fn project(&self, p: Vec3) -> Vec3 {
         let d = p - self.eye;
         let depth = d.dot(self.forward);
@@ -50,15 +50,16 @@ impl View {
         Vec3::new(self.center[0] + scale * d.dot(self.right), self.center[1] - scale * d.dot(self.up), depth)
     }
 
-    /// Direction through a pixel position, with length 1 along the axis.
+    /// Direction through a pixel position. Its component along the optical axis is 1.
     pub fn ray(&self, x: f32, y: f32) -> Vec3 {
         self.forward + self.right * ((x - self.center[0]) / self.focal)
             - self.up * ((y - self.center[1]) / self.focal)
     }
 }
 
-/// A camera that sees all of the box `bounds` (min, max) [m] in a picture `aspect` (width over height) wide:
-/// a 30° portrait lens, a little to the side of the +Z axis and a little above, as in [`Camera::default`].
+/// Returns a camera that shows the whole box `bounds` (min, max) [m] in a picture with aspect ratio `aspect`
+/// (width over height): a 30° portrait lens, slightly to the side of the +Z axis and slightly above, as in
+/// [`Camera::default`].
 pub fn frame_camera(bounds: (Vec3, Vec3), aspect: f32) -> Camera {
     let default = Camera::default();
     let (low, high) = bounds;
@@ -68,7 +69,7 @@ pub fn frame_camera(bounds: (Vec3, Vec3), aspect: f32) -> Camera {
         return default;
     }
     let view = View::new(&Camera { position: target + back, target, fov: default.fov }, 1000, 1000);
-    // The distance from which every corner lies inside the picture, with a margin of 8 %.
+    // The distance from which every corner is inside the picture, with a margin of 8 %.
     let half = (0.5 * default.fov.to_radians()).tan() / 1.08;
     let mut distance = 0.0f32;
     for i in 0..8 {

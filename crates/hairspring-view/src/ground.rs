@@ -1,7 +1,8 @@
-//! The ground: a level plane without end or edge that catches shadow. Where nothing stands between it and the light it is the backdrop, or fades into it, so
-//! that no horizon is seen.
+//! The ground: an infinite level plane that catches shadow. Where nothing blocks the light it has the color
+//! of the backdrop, or fades into it, so that no horizon is visible.
 //!
-//! It is lit by the key lamp and by the sky. Rim and fill are kept off it, as flags keep them off a studio's floor: a body stands in one shadow, not in three.
+//! It is lit by the key lamp and the sky only. Rim and fill are excluded, as they are flagged off the floor
+//! of a studio, so that a body casts one shadow and not three.
 
 use crate::{
     body::{SAMPLES, skin::HAIR_SHADE},
@@ -13,14 +14,15 @@ use fearless_simd::Level;
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use hairspring_scene::Scene;
 
-/// What a frame's bodies and hair stand on.
+/// The ground under a frame's bodies and hair.
 ///
-/// What is below it is hidden by it. A camera below it sees nothing of it, and everything that there is.
+/// The ground hides everything below it. If the camera is below the ground, the ground is invisible and hides
+/// nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
-    /// Where it lies along Y [m].
+    /// Height along Y [m].
     pub height: f32,
-    /// Linear RGB that it reflects, 0 to 1; `None`: where there is no shadow, the backdrop is seen as it is.
+    /// Linear RGB albedo, 0 to 1. With `None`, the backdrop is unchanged where there is no shadow.
     pub color: Option<Vec3>,
 }
 
@@ -37,32 +39,36 @@ impl Ground {
     }
 }
 
-/// Distances from the middle of what stands there, in its own size, between which shadow fades. The key lamp stands 37° high: the shadow of a body ends at 1.3
-/// times its height.
+/// Distances from the center of the objects, relative to their size, between which the shadow fades out. The
+/// key lamp is 37° high, so the shadow of a body ends at 1.3 times its height.
 pub(crate) const FADE: [f32; 2] = [1.5, 4.0];
-/// The same of the ground's own colour: slowly, so that its end is no line even from low above it.
+/// The corresponding distances for the ground's own color. The fade is slow, so that its end is invisible
+/// even from a low camera.
 pub(crate) const POOL: [f32; 2] = [0.0, 4.0];
 
-/// Of the key lamp's light on the ground, what comes back to it from the room on all sides: a shadow on a studio's floor is not black.
+/// Fraction of the key lamp's light that comes back from the surroundings: a shadow on a studio floor is not
+/// black.
 const ROOM: f32 = 0.25;
 
-/// A frame's ground, as a camera above it sees it.
+/// A frame's ground, as seen from a camera above it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Floor {
     pub height: f32,
     pub color: Option<Vec3>,
-    /// What a white card on it reflects of the key lamp, and of sky and room, linear RGB.
+    /// Light of the key lamp that a white card on the ground reflects, and light of sky and surroundings,
+    /// linear RGB.
     pub key: Vec3,
     pub sky: Vec3,
-    /// Middle of bodies and hair, X and Z, and the longest edge of the box that holds them [m].
+    /// Center of bodies and hair, X and Z, and the longest edge of their bounding box [m].
     pub middle: Vec2,
     pub extent: f32,
-    /// The box on the ground, X and Z, that holds all shadow of the key lamp: low and high [m].
+    /// Rectangle on the ground that contains all shadow of the key lamp: minimum and maximum X and Z [m].
     pub shade: [Vec2; 2],
 }
 
 impl Floor {
-    /// `bounds`: the box of the hair, if there is any. `None`: there is no ground, or it is not seen from above.
+    /// `bounds`: the box of the hair, if there is any. Returns `None` if there is no ground, or if the camera
+    /// is not above it.
     pub fn new(frame: &Frame, view: &View, bounds: Option<(Vec3, Vec3)>) -> Option<Self> {
         let Ground { height, color } = frame.ground_seen()?;
         let bodies = place(frame);
@@ -74,11 +80,11 @@ impl Floor {
             .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
         let there = low.cmple(high).all();
         let lamps = &frame.lighting;
-        // What is no number gives no light.
+        // Lights that are not finite are turned off.
         let finite = |light: Vec3| if light.is_finite() { light.max(Vec3::ZERO) } else { Vec3::ZERO };
         let toward = lamps.key.direction.normalize_or(Vec3::Y);
         let key = finite(lamps.key.color) * toward.y.max(0.0);
-        // Around either box lies what softens its shadow: padding of the grid, windows in the map.
+        // Shadows are blurred beyond the boxes, by the padding of the grid and by the filter of the map.
         let Quality { shadow_voxels, shadow_texels, .. } = frame.quality;
         let wider = |(low, high): (Vec3, Vec3), by: f32| {
             let room = (high - low).max_element() * by;
@@ -107,7 +113,7 @@ impl Floor {
         })
     }
 
-    /// What is seen behind everything in a pixel with its middle `at`, where `wall` is the backdrop.
+    /// Color of the background in a pixel with its center at `at`, where `wall` is the backdrop.
     pub fn over(&self, wall: Vec3, view: &View, at: Vec2, shadow: &Shadow, level: Level) -> Vec3 {
         let ray = view.ray(at.x, at.y);
         if ray.y >= 0.0 {
@@ -119,7 +125,8 @@ impl Floor {
             return wall;
         }
         let key = |p: Vec3| shadow.on_skin(level, p) * (-HAIR_SHADE * shadow.key_around(p)).exp();
-        // A pixel that is longer on the ground than shadow is soft has samples, as outlines of bodies have.
+        // If a pixel covers more ground than the softness of the shadow, the shadow is sampled several times,
+        // as for the outlines of bodies.
         let length = p.distance(view.eye) / view.focal * ray.length() / -ray.y;
         let key = if !self.shaded(p, length) {
             1.0
@@ -140,13 +147,13 @@ impl Floor {
         own * (Vec3::ONE - taken * fade(far, FADE))
     }
 
-    /// Whether the key lamp's shadow may reach into a pixel of a length around a place.
+    /// Whether the key lamp's shadow may touch a pixel that covers the given length around a point.
     fn shaded(&self, p: Vec3, length: f32) -> bool {
         let [low, high] = self.shade;
         p.xz().cmpge(low - Vec2::splat(length)).all() && p.xz().cmple(high + Vec2::splat(length)).all()
     }
 
-    /// How far along a ray the ground lies.
+    /// Distance to the ground along a ray.
     fn reach(&self, view: &View, ray: Vec3) -> f32 {
         (self.height - view.eye.y) / ray.y.min(-1e-6)
     }

@@ -3,23 +3,24 @@
 use glam::{Quat, Vec3};
 use hairspring_scene::Camera;
 
-/// A lamp so far away that its light is parallel.
+/// A directional lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// From the scene towards the lamp; any length above 0.
+    /// Direction from the scene toward the lamp; any length above 0.
     pub direction: Vec3,
-    /// Linear RGB, 0 or more: what a white matt card facing the lamp reflects.
+    /// Linear RGB, 0 or more: the light that a white matte card facing the lamp reflects.
     pub color: Vec3,
 }
 
 /// Three lamps, a sky and an exposure. The default is portrait light for a face that looks along +Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lighting {
-    /// The main lamp, the one that casts sharp shadow. Default: front, high, to the camera's left, warm.
+    /// The main lamp, which casts sharp shadows. Default: front, high, to the camera's left, warm.
     pub key: Light,
-    /// Opens the shadow side. Default: front right, low, cool, a fifth of the key.
+    /// Fill light for the shadow side. Default: front right, low, cool, a fifth of the key.
     pub fill: Light,
-    /// Parts the hair from the backdrop and shines through it. Default: behind, high, right, neutral.
+    /// Rim light, which separates the hair from the backdrop and shines through it. Default: behind, high,
+    /// right, neutral.
     pub rim: Light,
     /// Light from straight above, linear RGB.
     pub sky: Vec3,
@@ -43,7 +44,8 @@ impl Default for Lighting {
 }
 
 impl Lighting {
-    /// The default light, turned about the vertical so that it falls on what `camera` sees as it does for a camera on +Z.
+    /// The default light, rotated about the vertical axis, so that it illuminates the target of `camera` as
+    /// it does for a camera on +Z.
     pub fn facing(camera: &Camera) -> Self {
         let back = camera.position - camera.target;
         let turn = Quat::from_rotation_y(back.x.atan2(back.z));
@@ -57,10 +59,10 @@ impl Lighting {
     }
 }
 
-/// What is behind everything: a soft pool of light on a dark wall.
+/// The backdrop: a soft pool of light on a dark wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Background {
-    /// Linear RGB in the middle of the picture, a little above it.
+    /// Linear RGB at the center of the picture, slightly above the middle.
     pub center: Vec3,
     /// Linear RGB in the corners.
     pub edge: Vec3,

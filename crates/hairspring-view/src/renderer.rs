@@ -1,4 +1,4 @@
-//! One picture, from borrowed arrays to pixels.
+//! Draws one picture from borrowed arrays to pixels.
 
 use crate::{
     body::Bodies,
@@ -26,7 +26,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Draws frames of one size; keeps its memory between them.
+/// Draws frames of one size. Memory is kept between frames.
 #[derive(Default)]
 pub struct Renderer {
     image: Image,
@@ -43,19 +43,19 @@ pub struct Renderer {
     work: Work,
 }
 
-/// Where the last frame's time went.
+/// Time of the last frame, by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timings {
     /// Density grid, sweeps, depth map.
     pub shadow: Duration,
-    /// Projection and filing of strands, and projection of bodies.
+    /// Projection and sorting of strands, and projection of bodies.
     pub strands: Duration,
-    /// Sorting, lighting, blending, bodies and development of all tiles.
+    /// Sorting, lighting, blending, bodies and tone mapping of all tiles.
     pub tiles: Duration,
 }
 
 impl Renderer {
-    /// A renderer of `width` × `height` pixels, each 1 to 16,384 (other sizes are brought into that range).
+    /// Creates a renderer for `width` × `height` pixels, each clamped to 1 to 16,384.
     pub fn new(width: u32, height: u32) -> Self {
         let (width, height) = (width.clamp(1, 16_384), height.clamp(1, 16_384));
         let tiles = Tiles::new(width as usize, height as usize);
@@ -67,8 +67,10 @@ impl Renderer {
         self.draw_in(frame, true)
     }
 
-    /// As [`Renderer::draw`], in the shadow of the frame before's hair: for moving pictures in a hurry, where it is a fifteenth of the work. It lags by what has moved
-    /// since, which nobody sees of what is soft, and is of that frame's lamps. Bodies shade by where they are: a lag would be seen as spots on them.
+    /// Like [`Renderer::draw`], but with the hair shadow of the previous frame. It is meant for fast previews
+    /// of moving hair; the hair shadow is a fifteenth of the work. The shadow lags by one frame and uses that
+    /// frame's lamps, which is not visible, because the shadow is soft. Shadows of bodies are up to date: a
+    /// lag would be visible as spots on them.
     pub fn draw_on(&mut self, frame: &Frame) -> &Image {
         self.draw_in(frame, false)
     }
@@ -86,7 +88,7 @@ impl Renderer {
         }
         let shaded = Instant::now();
 
-        // The view depths of the hair's box are the range of sort keys.
+        // The view depths of the hair's box are the range of the sort keys.
         let (low, high) = bounds.unwrap_or_default();
         let middle = (0.5 * (low + high) - view.eye).dot(view.forward);
         let reach = 0.5 * (high - low).dot(view.forward.abs()) + 1e-3;
@@ -159,12 +161,12 @@ impl Renderer {
         &self.image
     }
 
-    /// Where the last frame's time went.
+    /// Time of the last frame, by stage.
     pub fn timings(&self) -> Timings {
         self.timings
     }
 
-    /// How much the last frame took.
+    /// Work of the last frame.
     pub fn work(&self) -> Work {
         self.work
     }

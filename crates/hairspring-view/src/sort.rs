@@ -1,9 +1,9 @@
-//! Depth order, as far as it is needed: entries are thrown into buckets by depth, and a bucket is sorted when its turn comes. Of a full head,
-//! most buckets of a tile lie behind closed hair, and their turn never comes.
+//! Lazy sorting by depth. Entries are distributed into buckets by depth, and a bucket is sorted only when it
+//! is needed. On a full head, most buckets of a tile are behind opaque hair and are never needed.
 
 use crate::hair::ribbon::Entry;
 
-/// Buckets of a tile, at most: a few dozen entries in each.
+/// Maximum number of buckets of a tile: a few dozen entries in each.
 const BUCKETS: usize = 512;
 
 /// One tile's entries.
@@ -12,15 +12,15 @@ pub(crate) struct Buckets {
     entries: Vec<Entry>,
     /// First entry of each bucket, and the end of the last.
     starts: Vec<u32>,
-    /// Buckets handed out.
+    /// Number of buckets that were returned.
     taken: usize,
-    /// Depth at which the first begins, and the logarithm to base 2 of how deep each is.
+    /// Depth at which the first bucket begins, and the base-2 logarithm of the depth of a bucket.
     low: u32,
     shift: u32,
 }
 
 impl Buckets {
-    /// Takes a tile's entries.
+    /// Loads a tile's entries.
     pub fn fill<'a>(&mut self, parts: impl Iterator<Item = &'a [Entry]> + Clone) {
         self.starts.clear();
         self.entries.clear();
@@ -33,11 +33,12 @@ impl Buckets {
         if count == 0 {
             return;
         }
-        // The tile's own range of depth is cut evenly, by a shift.
+        // The depth range of the tile is divided evenly, by a shift.
         let shift = ((high - low) / BUCKETS as u32 + 1).next_power_of_two().ilog2();
         (self.low, self.shift) = (low, shift);
         let bucket = |e: &Entry| ((e.depth() - low) >> shift) as usize;
-        // Room for one more in front: filling walks each start to the end of its bucket, where the next one starts.
+        // One extra element at the front: filling advances each start to the end of its bucket, where the
+        // next one starts.
         self.starts.resize(((high - low) >> shift) as usize + 3, 0);
         parts.clone().flatten().for_each(|e| self.starts[bucket(e) + 2] += 1);
         (2..self.starts.len()).for_each(|i| self.starts[i] += self.starts[i - 1]);
@@ -50,7 +51,8 @@ impl Buckets {
         self.starts.pop();
     }
 
-    /// The next bucket, farther than those before: the least depth that it can hold, and its entries, in no order. `None` after the last.
+    /// Returns the next bucket, in order of depth: the minimum depth that it can hold, and its entries,
+    /// unsorted. `None` after the last one.
     #[inline(always)]
     pub fn next(&mut self) -> Option<(u32, &[Entry])> {
         let ends = self.starts.get(self.taken..self.taken + 2)?;

@@ -1,4 +1,4 @@
-//! A square of the picture, drawn by one thread from start to end while it sits in the first-level cache.
+//! A square of the picture. One thread draws it from start to end, while it stays in the first-level cache.
 
 use crate::{
     body::{Bodies, Lit, Samples, Surface},
@@ -21,12 +21,12 @@ pub(crate) const SIDE: usize = 32;
 /// Pixels in a tile.
 pub(crate) const PIXELS: usize = SIDE * SIDE;
 
-/// Side of a patch, the part of a tile that is closed as one [pixels].
+/// Side of a patch, the part of a tile that is closed as a unit [pixels].
 pub(crate) const PATCH: usize = 8;
-/// Patches in a row of a tile, and rows.
+/// Number of patches per row of a tile, and number of rows.
 pub(crate) const PATCHES: usize = SIDE / PATCH;
 
-/// How the picture is cut into tiles, row by row.
+/// The division of the picture into tiles, row by row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tiles {
     size: [usize; 2],
@@ -42,7 +42,7 @@ impl Tiles {
         self.size
     }
 
-    /// Tiles in a row, and rows.
+    /// Number of tiles per row, and number of rows.
     pub fn grid(&self) -> [usize; 2] {
         self.size.map(|n| n.div_ceil(SIDE).max(1))
     }
@@ -64,9 +64,9 @@ pub(crate) struct Strands<'a> {
     /// Projected points; shape `[slots]`.
     pub dots: &'a [Dot],
     pub colors: &'a Colors,
-    /// Greatest difference in depth between a segment's middle and its ends, as a share of the range.
+    /// Maximum difference in depth between a segment's middle and its ends, as a fraction of the range.
     pub reach: f32,
-    /// Greatest width [pixels].
+    /// Maximum width [pixels].
     pub widest: f32,
 }
 
@@ -90,33 +90,37 @@ impl Default for Brush {
     }
 }
 
-/// Segments fetched from memory together, so that their cache misses overlap.
+/// Number of segments that are fetched from memory together, so that their cache misses overlap.
 const BATCH: usize = 32;
 
-/// Segments drawn before the canvas is surveyed again: what a survey costs is then spread over them.
+/// Number of segments that are drawn between two surveys of the canvas. It spreads the cost of a survey over
+/// them.
 const SURVEY: usize = 24;
 
-/// How much shows through where hair begins to be thinned out (see [`thinned`]).
+/// Transmittance below which hair is thinned out (see [`thinned`]).
 const THIN_FROM: f32 = 0.5;
 
-/// The share of strands that is drawn where at most `through` shows through in any pixel around: each stands for those left out, and is
-/// drawn wider by as much (stochastic simplification, Cook, Halstead, Planck & Ryu 2007). What a strand can add there to a pixel
-/// stays below what the strands before it add; the covering is right on average, and whether a strand is drawn depends on its number, so the
-/// same strands are drawn from frame to frame. None becomes wider than a pixel: `widest` is the greatest width there is [pixels].
+/// Fraction of strands that is drawn if `through` is the maximum transmittance of the pixels nearby. Each
+/// drawn strand stands for those that are left out and is drawn correspondingly wider (stochastic
+/// simplification, Cook, Halstead, Planck & Ryu 2007). The contribution of a strand to a pixel stays below
+/// that of the strands in front of it. The coverage is right on average. Whether a strand is drawn depends on
+/// its index, so the same strands are drawn from frame to frame. No strand becomes wider than a pixel;
+/// `widest` is the maximum width [pixels].
 #[inline(always)]
 fn thinned(through: f32, widest: f32) -> f32 {
     (through * (1.0 / THIN_FROM)).max(widest).min(1.0)
 }
 
-/// Place of a block of points, 0 to 1, in the order in which blocks are left out. Multiples of the golden ratio leave out neighbours evenly.
+/// Rank of a block of points, 0 to 1, in the order in which blocks are left out. Multiples of the golden
+/// ratio thin out neighbors evenly.
 #[inline(always)]
 fn rank(slot: usize) -> f32 {
     const GOLDEN: u32 = 0x9e37_79b9;
     (((slot / LANES) as u32).wrapping_mul(GOLDEN) >> 8) as f32 * (1.0 / (1 << 24) as f32)
 }
 
-/// Draws a tile's segments, nearest first, until nothing shows through any more. Patches that are closed cost nothing: their segments are
-/// neither sorted nor fetched nor lit.
+/// Draws a tile's segments, nearest first, until all pixels are opaque. Closed patches cost nothing: their
+/// segments are not sorted, fetched or lit.
 #[inline(always)]
 fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut Buckets, origin: Vec2) {
     let tolerance = setup.frame.quality.smoothness.clamp(0.02, 4.0);
@@ -180,12 +184,12 @@ fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut
     }
 }
 
-/// What a segment's drawing reads from memory.
+/// The data of a segment that is read from memory for drawing.
 #[derive(Clone, Copy)]
 struct Fetched {
-    /// The point before the segment, its own two, and the one after.
+    /// The point before the segment, its own two points, and the one after.
     dots: [Dot; 4],
-    /// Packed colours of its own two.
+    /// Packed colors of its own two points.
     colors: [u32; 2],
 }
 
@@ -196,7 +200,7 @@ impl Default for Fetched {
 }
 
 impl Fetched {
-    /// The segment whose first point is in `slot`.
+    /// Fetches the segment whose first point is in `slot`.
     #[inline(always)]
     fn new(strands: &Strands, slot: usize) -> Self {
         let (dots, mut out) = (strands.dots, Self::default());
@@ -213,7 +217,8 @@ impl Fetched {
     }
 }
 
-/// For each patch that the body fills, the share of the depth range behind which all of it lies before; infinite elsewhere.
+/// For each patch that the body fills, the maximum depth of the body in it, as a fraction of the depth range;
+/// infinite elsewhere.
 fn walls(canvas: &Canvas) -> [f32; PATCHES * PATCHES] {
     let mut walls = [f32::NEG_INFINITY; PATCHES * PATCHES];
     for pixel in 0..PIXELS {
@@ -224,7 +229,7 @@ fn walls(canvas: &Canvas) -> [f32; PATCHES * PATCHES] {
     walls
 }
 
-/// The nearest of the walls that are not nearer than `depth`; infinite: none.
+/// The nearest wall that is not nearer than `depth`; infinite if there is none.
 #[inline(always)]
 fn nearest_from(walls: &[f32; PATCHES * PATCHES], depth: f32) -> f32 {
     walls.iter().fold(f32::INFINITY, |nearest, wall| if *wall >= depth { wall.min(nearest) } else { nearest })
@@ -284,7 +289,7 @@ impl Brush {
                     canvas.lay_body(i);
                 }
                 let seen = canvas.body_seen[i];
-                // What hair hides needs no light.
+                // Surfaces hidden by hair need no lighting.
                 if seen > CLOSED {
                     let color = bodies.light(&lit, corner, &self.samples, i);
                     canvas.pixels[i] += (color * (self.surfaces[i].cover * seen)).extend(0.0);
@@ -295,13 +300,14 @@ impl Brush {
         Work { filed: strands.chunks.iter().map(|c| c.tile(tile).len() as u64).sum(), ..self.canvas.work }
     }
 
-    /// Ground and backdrop, exposure, tone curve, 8 bits.
+    /// Adds ground and backdrop, and applies exposure, tone curve and conversion to 8 bits.
     #[inline(always)]
     fn develop(&self, setup: &Setup, encoder: &Encoder, corner: [usize; 2], out: &mut [[u8; 3]; PIXELS]) {
         let [w, h] = setup.tiles.size().map(|n| n as f32);
         let backdrop = &setup.frame.background;
         let gain = setup.frame.lighting.exposure.exp2();
-        // A pool of light: falls off smoothly, level in the middle. A factor for each column and row.
+        // The pool of light falls off smoothly and is flat at the center. It is a product of one factor per
+        // column and one per row.
         let pool = |from: f32| (-3.2 * from * from).exp();
         let columns: [f32; SIDE] = std::array::from_fn(|x| pool((corner[0] + x) as f32 / w - 0.5));
         for (y, row) in out.chunks_mut(SIDE).enumerate() {
@@ -309,7 +315,7 @@ impl Brush {
             for (x, out) in row.iter_mut().enumerate() {
                 let pixel: Vec4 = self.canvas.pixels[y * SIDE + x];
                 let mut behind = backdrop.edge.lerp(backdrop.center, columns[x] * down);
-                // What nothing shows through to needs no light.
+                // Opaque pixels need no background.
                 if let Some(floor) = setup.floor.filter(|_| pixel.w > CLOSED) {
                     let at = Vec2::new((corner[0] + x) as f32 + 0.5, (corner[1] + y) as f32 + 0.5);
                     behind = floor.over(behind, &setup.view, at, setup.shadow, setup.level);
@@ -325,8 +331,8 @@ impl Brush {
 mod tests {
     use super::*;
 
-    /// Whatever share is drawn and however many blocks a strand has, those that are drawn, made wider, add up to all: over any thousand
-    /// neighbours, whichever block of each is looked at.
+    /// For any fraction and any number of blocks per strand, the drawn strands with their larger widths add
+    /// up to all strands, over any thousand neighbors and for any block of each.
     #[test]
     fn strands_that_are_drawn_stand_for_all() {
         for (through, widest) in [(1.0, 0.1), (0.4, 0.1), (0.1, 0.1), (0.01, 0.1), (0.01, 0.6), (0.2, 3.0)] {

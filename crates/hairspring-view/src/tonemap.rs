@@ -2,18 +2,18 @@
 
 use glam::{Mat3, Vec3};
 
-/// From linear sRGB to the space of the filmic curve.
+/// From linear sRGB to the color space of the filmic curve.
 pub(crate) const FILM_IN: Mat3 =
     Mat3::from_cols_array(&[0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777]);
-/// And back.
+/// The inverse transform.
 pub(crate) const FILM_OUT: Mat3 = Mat3::from_cols_array(&[
     1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602,
 ]);
 /// The curve: (v (v + a) - b) / (v (c v + d) + e).
 pub(crate) const FILM: [f32; 5] = [0.0245786, 0.000090537, 0.983729, 0.432_951, 0.238081];
 
-/// The filmic curve of the Academy Color Encoding System (reference rendering and sRGB output transforms), as fitted by Stephen Hill in
-/// "BakingLab" (2016): highlights lose their colour on the way to white, as on film.
+/// The filmic curve of the Academy Color Encoding System (reference rendering and sRGB output transforms), as
+/// fitted by Stephen Hill in "BakingLab" (2016). Highlights lose their color toward white, as on film.
 #[inline(always)]
 pub(crate) fn filmic(light: Vec3) -> Vec3 {
     let v = FILM_IN * light;
@@ -27,7 +27,7 @@ pub(crate) struct Encoder {
     table: Vec<f32>,
 }
 
-/// Entries of the table: an error below a twentieth of a code.
+/// Number of entries of the table; the error is below a twentieth of a code.
 const STEPS: usize = 1024;
 
 impl Default for Encoder {
@@ -44,10 +44,12 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// sRGB codes of a linear colour (0 to 1) at a pixel; an ordered dither of one code keeps slow gradients free of bands.
+    /// sRGB codes of a linear color (0 to 1) at a pixel. An ordered dither of one code avoids banding in slow
+    /// gradients.
     #[inline(always)]
     pub fn encode(&self, color: Vec3, x: usize, y: usize) -> [u8; 3] {
-        // Interleaved gradient noise (Jimenez 2014), fixed to the picture: nothing moves in still parts of a clip.
+        // Interleaved gradient noise (Jimenez 2014), fixed to the picture, so that still parts of a clip do
+        // not change.
         let noise = (52.982_92 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract();
         [self.code(color.x, noise), self.code(color.y, noise), self.code(color.z, noise)]
     }

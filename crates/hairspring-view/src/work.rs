@@ -1,21 +1,22 @@
-//! How much a frame took, counted while it is drawn: what a floor of operations and bytes is worked out from.
+//! Counts the work of a frame while it is drawn, as the basis of estimates of operations and bytes.
 
 use std::ops::Add;
 
-/// What was done for the last frame.
+/// The work of the last frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Segments of strands: each is projected and counted into voxels.
+    /// Number of segments of strands. Each is projected and splatted into voxels.
     pub segments: u64,
-    /// Segments filed under tiles, once for each tile that they touch.
+    /// Number of segments in tiles, counted once for each tile that they touch.
     pub filed: u64,
-    /// Of those, the segments that were drawn: not hidden, and not left out where others stand for them.
+    /// Number of these that were drawn: not hidden, and not left out because others stand for them.
     pub drawn: u64,
-    /// Columns (or rows) of pixels that were walked while drawing them; each blends two pixels, or as many as the strand is wide.
+    /// Number of columns (or rows) of pixels that were traversed while drawing. Each blends two pixels, or as
+    /// many as the strand is wide.
     pub columns: u64,
-    /// Points of strands that were lit, in blocks of eight: two tiles that light a block at once are both counted.
+    /// Number of lit points, in blocks of eight. If two tiles light a block at once, both are counted.
     pub lit: u64,
-    /// Pixels of the picture.
+    /// Number of pixels of the picture.
     pub pixels: u64,
 }
 

@@ -1,11 +1,11 @@
-//! Keys that are not a widget's, and the bar at the top: what is asked of the window as a whole.
+//! Keyboard shortcuts, and the menu bar.
 
 use super::App;
 use crate::{panel::files::For, record::Kind, session::Action, view::Hand};
 use eframe::egui::{self, Key, Modifiers, RichText, Ui};
 
 impl App {
-    /// Keys that are not a widget's.
+    /// Handles keys that no widget takes.
     pub(super) fn keys(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         if ctx.egui_wants_keyboard_input() {
             return;
@@ -73,7 +73,7 @@ impl App {
         }
     }
 
-    /// The bar at the top.
+    /// Shows the menu bar.
     pub(super) fn menu(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| {

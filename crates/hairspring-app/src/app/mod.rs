@@ -1,4 +1,4 @@
-//! The window: panels around the picture, keys, files that are dropped, and what a script does.
+//! The window: panels around the picture, keys, dropped files, and scripts.
 
 mod keys;
 mod picture;
@@ -29,7 +29,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How long a message stays [s].
+/// How long a message is shown [s].
 const MESSAGE: Duration = Duration::from_secs(8);
 
 /// Which panels are open.
@@ -43,15 +43,15 @@ struct Open {
 /// How the window opens.
 #[derive(Default)]
 pub struct Options {
-    /// The scene; `None`: the built-in head.
+    /// The scene; `None` opens the built-in head.
     pub document: Option<Document>,
-    /// What is done without a person.
+    /// The script to run.
     pub script: VecDeque<Line>,
-    /// Who draws the hair.
+    /// The renderer for the hair.
     pub drawn: Drawn,
 }
 
-/// The window's state.
+/// The state of the window.
 pub struct App {
     session: Session,
     view: View,
@@ -67,18 +67,19 @@ pub struct App {
     /// The step that the script waits for.
     waits: u64,
     finger: Finger,
-    /// Where the picture was drawn last, both sides of it, and the first.
+    /// Rectangle of the last drawn picture: both sides of a comparison, and the first side.
     whole: egui::Rect,
     rect: egui::Rect,
-    /// A picture of the window that is being made: what writing it came to.
+    /// A picture of the window that is being written; receives the result.
     shot: Option<Receiver<Result<(), AppError>>>,
-    /// Hairs and guides of new scenes: as many as this machine draws.
+    /// Number of hairs and guides of new scenes, matched to the speed of this machine.
     hairs: (u32, u32),
     drawn: Option<Instant>,
 }
 
 impl App {
-    /// The window on a scene: this document's, or the built-in head with as many hairs as the machine draws well.
+    /// Opens the window on a scene: the given document, or the built-in head with as many hairs as the
+    /// machine draws well.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> Result<Self, AppError> {
         memory::keep_little();
         let Options { document, script, drawn } = options;
@@ -92,7 +93,8 @@ impl App {
         let session =
             Session::new(document, painters[0].spared(), painters[0].gpu(), painters[0].wake(&ctx))?;
         ctx.set_theme(egui::Theme::Dark);
-        // The window is cleared in that colour: to fill panels with it once more would take a software driver as long as a picture.
+        // The window is already cleared with that color. Filling the panels again would take a software
+        // driver as long as a picture.
         ctx.all_styles_mut(|style| style.visuals.panel_fill = Color32::TRANSPARENT);
         Ok(Self {
             session,
@@ -116,12 +118,12 @@ impl App {
         })
     }
 
-    /// What it works on.
+    /// The session.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// Whether the script is done, and what it began.
+    /// Whether the script and everything that it started is finished.
     pub fn is_idle(&self) -> bool {
         self.script.is_empty()
             && self.recorder.is_none()
@@ -130,7 +132,7 @@ impl App {
             && self.waits == 0
     }
 
-    /// What was last said, and whether it was an error.
+    /// The last message, and whether it was an error.
     pub fn message(&self) -> Option<(&str, bool)> {
         self.message.as_ref().map(|(text, wrong, _)| (text.as_str(), *wrong))
     }
@@ -225,7 +227,7 @@ impl eframe::App for App {
                 inspect::figures(ui, &self.session, snapshot, &notes.join("; "));
             });
             if snapshot.picked.is_some() {
-                // Under the name of a side.
+                // Below the label of a side.
                 let below = egui::Rect::from_min_max(self.rect.min + egui::vec2(0.0, 22.0), self.rect.max);
                 status_overlay::corner(ctx, below, egui::Align2::LEFT_TOP, |ui| {
                     inspect::picked(ui, snapshot, &mut actions)
@@ -255,7 +257,7 @@ impl eframe::App for App {
             }
         }
         if !self.is_idle() {
-            // What waits for steps alone is woken by them, but for a scene that could not be opened.
+            // New steps wake the tasks that wait for them, except if a scene could not be opened.
             let soon = self.recorder.is_some() || !self.finger.rests() || self.shot.is_some();
             ctx.request_repaint_after(Duration::from_millis(if soon { 15 } else { 200 }));
         }

@@ -1,4 +1,4 @@
-//! The picture, or two side by side, with what is laid over them.
+//! The picture, or two pictures side by side, with their overlays.
 
 use super::{App, status_overlay};
 use crate::{
@@ -12,7 +12,7 @@ use hairspring_scene::stage::Value;
 use std::sync::Arc;
 
 impl App {
-    /// The picture, or two side by side, with what is laid over them.
+    /// Shows the picture, or two pictures side by side, with their overlays.
     pub(super) fn picture(
         &mut self,
         ui: &mut Ui,
@@ -49,7 +49,7 @@ impl App {
             }
             let moment = self.painters[k].moment(ui.ctx(), snapshot);
             let seen = moment.stages.get(k).unwrap_or(scenery);
-            // Handles are the scene's whose parameters are shown.
+            // Handles belong to the scene whose parameters are shown.
             let own = (k == 1) == self.session.on_second() && self.view.overlays.handles;
             let handles = match (self.view.lens(rect), self.view.orbit) {
                 (Some(lens), Some(orbit)) if own => {

@@ -1,4 +1,4 @@
-//! What a script does to the window.
+//! Runs a script in the window.
 
 use super::App;
 use crate::{
@@ -15,7 +15,7 @@ use std::{
 };
 
 impl App {
-    /// Does the next lines of the script that can be done now.
+    /// Executes the next lines of the script, as far as possible now.
     pub(super) fn follow_script(&mut self, ctx: &egui::Context, snapshot: Option<&Arc<Snapshot>>) {
         let Some(snapshot) = snapshot else { return };
         if self.recorder.is_some() || !self.finger.rests() || self.shot.is_some() {
@@ -57,7 +57,7 @@ impl App {
             Line::Show(value) => self.act(Action::Show(value)),
             Line::Switch(name, on) => self.switch(&name, on),
             Line::Record(kind, path, seconds) => self.record(ctx, RecordRequest { kind, path, seconds }),
-            // A moment that stands still is soon drawn in full.
+            // Waits for the full-quality picture of a paused scene, which comes soon.
             Line::Shot(path)
                 if !self.session.playing() && !self.painters.iter().all(|p| p.is_whole(snapshot)) =>
             {
@@ -69,7 +69,7 @@ impl App {
                 self.shot = Some(receive);
                 let wake = ctx.clone();
                 ctx.request_screenshot(move |image| {
-                    // The window may have closed meanwhile.
+                    // The window may have been closed in the meantime.
                     let _ = send.send(write(&path, &picture_of(&image)));
                     wake.request_repaint();
                 });
@@ -86,7 +86,7 @@ impl App {
         ctx.request_repaint_after(Duration::from_millis(1));
     }
 
-    /// Where a place of the picture is in the window.
+    /// Position in the window of a point of the picture.
     fn place(&self, at: glam::Vec2) -> egui::Pos2 {
         self.rect.min + egui::vec2(at.x, at.y) * self.rect.size()
     }
@@ -108,13 +108,13 @@ impl App {
             "frames" => &mut overlays.frames,
             "roots" => &mut overlays.roots,
             "handles" => &mut overlays.handles,
-            // The script's reader knows no other.
+            // The script's parser accepts no other name.
             _ => return,
         };
         *place = on;
     }
 
-    /// Hears of a picture of the window that was asked for.
+    /// Receives the result of writing a picture of the window.
     pub(super) fn hear_of_shot(&mut self) {
         let Some(outcome) = self.shot.as_ref().and_then(|shot| shot.try_recv().ok()) else { return };
         self.shot = None;
@@ -124,7 +124,7 @@ impl App {
     }
 }
 
-/// A picture of the window as a picture.
+/// Converts a screenshot of the window to a picture.
 fn picture_of(image: &egui::ColorImage) -> hairspring_view::Image {
     let mut out = hairspring_view::Image::new(image.size[0] as u32, image.size[1] as u32);
     for (to, from) in out.rgb.chunks_exact_mut(3).zip(&image.pixels) {

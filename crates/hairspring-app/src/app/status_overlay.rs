@@ -1,17 +1,17 @@
-//! What the window says over the picture: progress, messages, figures, what colours stand for.
+//! Overlays on the picture: progress, messages, figures, and the legend of the color ramp.
 
 use super::{App, MESSAGE};
 use crate::{snapshot::StageSnapshot, view::View};
 use eframe::egui::{self, Color32, Ui};
 use hairspring_scene::stage::Value;
 
-/// How far a message stands below the picture's upper edge [points].
+/// Distance of a message from the picture's upper edge [points].
 const MESSAGE_TOP: f32 = 66.0;
-/// Width of what says what colours stand for, and its distance from the edge [points].
+/// Width of the color legend, and its distance from the edge [points].
 const LEGEND: f32 = 190.0;
 
 impl App {
-    /// Progress of a record, and the last message.
+    /// Shows the progress of a recording, and the last message.
     pub(super) fn tell(&mut self, ctx: &egui::Context) {
         if let Some(recorder) = &self.recorder {
             let (done, all) = recorder.progress();
@@ -36,7 +36,8 @@ impl App {
         }
         let color = if *wrong { Color32::LIGHT_RED } else { Color32::LIGHT_GREEN };
         let shown = egui::Area::new(egui::Id::unique("message"))
-            // In the middle of the picture, below what colours stand for and beside what is said of a strand.
+            // At the center of the picture, below the color legend and next to the figures of a picked
+            // strand.
             .pivot(egui::Align2::CENTER_TOP)
             .fixed_pos(self.whole.center_top() + egui::vec2(0.0, MESSAGE_TOP))
             .sense(egui::Sense::click())
@@ -47,7 +48,7 @@ impl App {
                     ui.colored_label(color, text);
                 });
             });
-        // Who has read it may have it away.
+        // A click dismisses the message.
         if shown.response.on_hover_text("Click: away").clicked() {
             self.message = None;
         }
@@ -55,7 +56,7 @@ impl App {
     }
 }
 
-/// Text in a corner of the picture, on the left.
+/// Shows text in a corner of the picture, on the left.
 pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2, show: impl FnOnce(&mut Ui)) {
     let inside = rect.shrink2(egui::vec2(10.0, 10.0));
     egui::Area::new(egui::Id::unique(("figures", align.y() == egui::Align::TOP)))
@@ -63,7 +64,7 @@ pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2,
         .pivot(align)
         .show(ctx, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
-            // A figure stays in the line of its name.
+            // Keeps a figure on the line of its name.
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             egui::Frame::new()
                 .fill(Color32::from_black_alpha(120))
@@ -73,7 +74,7 @@ pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2,
         });
 }
 
-/// What colours stand for.
+/// Shows the legend of the color ramp.
 pub(super) fn legend(
     painter: &egui::Painter,
     rect: egui::Rect,
@@ -111,7 +112,7 @@ pub(super) fn legend(
     text(bar.right_bottom(), egui::Align2::RIGHT_TOP, readable(view.range[1], unit));
 }
 
-/// A number in three digits, with the unit's prefix.
+/// Formats a number with three digits and an SI prefix of the unit.
 fn readable(value: f32, unit: &str) -> String {
     let (scale, prefix) = match value {
         v if unit.is_empty() && v < 0.1 => (1e2, "%"),

@@ -1,4 +1,4 @@
-//! A scene and the files around it: where it is saved, and how the files that it names are named from there; another body, another motion.
+//! The files of a scene: saving, adjusting the paths of named files, and replacing the body or the motion.
 
 use super::{Document, parsed, table};
 use crate::{
@@ -9,16 +9,17 @@ use hairspring_io::atomically;
 use std::path::{Path, PathBuf};
 use toml_edit::{Item, Value};
 
-/// Hair for a body that comes without: to begin from.
+/// Initial hair for a body without any.
 const COAT: &str =
     "\n[[groom]]\nmaterial = \"short-fur\"\nguides = 1000\n\n[groom.grow]\nstrands = 20000\nlength = 0.02\n";
 
 impl Document {
-    /// The text with another body, at rest; what belonged to the old one goes. Where no hair is left then, a short coat grows from it.
+    /// Returns the text with another body, at rest. What belonged to the old body is removed. If no hair is
+    /// left, a short coat grows on the new body.
     pub fn with_body(&self, file: &str) -> Result<String, AppError> {
         let mut edited = parsed(self.text())?;
         if edited.contains_key("builtin") {
-            // It is called after what it is no more.
+            // The old name no longer applies.
             edited.remove("name");
         }
         for gone in ["builtin", "body", "collision", "clip"] {
@@ -28,14 +29,15 @@ impl Document {
         Ok(format!("{}\n\n[body]\nfile = {file}\n{coat}", edited.to_string().trim()).trim_start().to_owned())
     }
 
-    /// The text with another motion, which drives the body by the joints of the same names.
+    /// Returns the text with another motion, which moves the joints of the same names.
     pub fn with_motion(&self, file: &str) -> Result<String, AppError> {
         let mut edited = parsed(self.text())?;
         edited.remove("clip");
         Ok(format!("{}\n\n[clip]\nfile = {file}\n", edited.to_string().trim_end()))
     }
 
-    /// Writes the text to a file, whole or not at all. Saved to another folder, the files that it names are named from there, in earlier texts too.
+    /// Writes the text to a file, atomically. If the folder changes, the paths of named files are adjusted,
+    /// in earlier texts too.
     pub fn save(&mut self, path: &Path) -> Result<(), AppError> {
         let path = destination(path)?;
         let from = settled(&self.path);
@@ -51,7 +53,7 @@ impl Document {
     }
 }
 
-/// A text in which files are named from one folder, with them named from another.
+/// Returns the text with paths relative to one folder rewritten relative to another.
 fn moved(text: &str, [from, to]: [&Path; 2]) -> Result<String, AppError> {
     if from == to {
         return Ok(text.to_owned());

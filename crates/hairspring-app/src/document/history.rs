@@ -1,9 +1,9 @@
-//! Earlier texts of a scene, to go back to, and later ones; and which entry of a list is which in each of them.
+//! The undo history of a scene: earlier and later texts, and the identity of list entries in each of them.
 
 use crate::AppError;
 use std::collections::BTreeMap;
 
-/// Most texts that are kept to go back to: at some kilobytes each, well under a megabyte.
+/// Maximum number of texts in the undo history. At a few kilobytes each, they take less than a megabyte.
 const MOST_STEPS: usize = 200;
 
 /// A text of the scene.
@@ -11,29 +11,31 @@ const MOST_STEPS: usize = 200;
 pub struct Draft {
     /// The text.
     pub text: String,
-    /// By the list, which of the entries that the scene was opened with each is; none of these is one that was added. A list that is not there is as it was.
+    /// For each list, the original index of every entry, or `None` for entries that were added since the
+    /// scene was opened. A list without a record is unchanged.
     entries: BTreeMap<String, Vec<Option<usize>>>,
 }
 
 impl Draft {
-    /// The text that a scene is opened with.
+    /// Creates the draft of a scene that was just opened.
     pub fn new(text: String) -> Self {
         Self { text, entries: BTreeMap::new() }
     }
 
-    /// The same entries in another text.
+    /// Returns a draft with another text and the same entries.
     pub fn with(&self, text: String) -> Self {
         Self { text, entries: self.entries.clone() }
     }
 
-    /// Another text, in which one more entry ends a list that had so many.
+    /// Returns a draft with another text, in which an entry was appended to a list that had `had` entries.
     pub fn added(&self, text: String, list: &str, had: usize) -> Self {
         let mut draft = self.with(text);
         draft.known(list, had).push(None);
         draft
     }
 
-    /// Another text, from which an entry of a list that had so many has gone.
+    /// Returns a draft with another text, in which the entry at `place` was removed from a list that had
+    /// `had` entries.
     pub fn removed(&self, text: String, list: &str, had: usize, place: usize) -> Self {
         let mut draft = self.with(text);
         draft.known(list, had).remove(place);
@@ -44,7 +46,7 @@ impl Draft {
         self.entries.entry(list.into()).or_insert_with(|| (0..had).map(Some).collect())
     }
 
-    /// Which entry of the list the scene was opened with now stands at `place`; `None`: it was added since.
+    /// Returns the original index of the entry that is now at `place`, or `None` if it was added since.
     pub fn first(&self, list: &str, place: usize) -> Option<usize> {
         match self.entries.get(list) {
             Some(known) => known.get(place).copied().flatten(),
@@ -53,16 +55,16 @@ impl Draft {
     }
 }
 
-/// Which way a step leads.
+/// Direction of a step in the history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// To what was before.
+    /// Undo.
     Back,
-    /// To what came after.
+    /// Redo.
     Forth,
 }
 
-/// Texts before and after the one that counts.
+/// The texts before and after the current one.
 #[derive(Default)]
 pub struct History {
     back: Vec<Draft>,
@@ -70,7 +72,8 @@ pub struct History {
 }
 
 impl History {
-    /// After a new text nothing is to go forth to; `old` is to go back to, if it is a step of its own.
+    /// Records a new text. This clears the redo texts. `old` is added to the undo texts, if the change is a
+    /// step of its own.
     pub fn follow(&mut self, old: Option<Draft>) {
         self.back.extend(old);
         let many = self.back.len().saturating_sub(MOST_STEPS);
@@ -78,7 +81,7 @@ impl History {
         self.forth.clear();
     }
 
-    /// The text that a step this way leads to.
+    /// The text that a step in this direction leads to.
     pub fn next(&self, way: Way) -> Option<&Draft> {
         match way {
             Way::Back => self.back.last(),
@@ -86,7 +89,7 @@ impl History {
         }
     }
 
-    /// Takes the step, away from `left`.
+    /// Takes the step; `left` is the text before it.
     pub fn step(&mut self, way: Way, left: Draft) {
         let (from, to) = match way {
             Way::Back => (&mut self.back, &mut self.forth),
@@ -96,12 +99,12 @@ impl History {
         to.push(left);
     }
 
-    /// Whether there is a text to go back to, and one to go forth to.
+    /// Whether undo is possible, and whether redo is.
     pub fn has(&self) -> (bool, bool) {
         (!self.back.is_empty(), !self.forth.is_empty())
     }
 
-    /// Rewrites every text, or none if one cannot be.
+    /// Rewrites every text, or none if one of them fails.
     pub fn rename(&mut self, rename: impl Fn(&str) -> Result<String, AppError>) -> Result<(), AppError> {
         let all = |drafts: &[Draft]| {
             drafts

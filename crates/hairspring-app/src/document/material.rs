@@ -1,12 +1,13 @@
-//! Grooms and materials in the text: where each stands, and a material of its own for a group that has a preset.
+//! Grooms and materials in the text: their keys, and creating a separate material for a group that uses a
+//! preset.
 
 use super::{Document, parsed};
 use crate::{AppError, key::Key};
 use toml_edit::{Item, Table, Value};
 
 impl Document {
-    /// Where to write `field` of a material of its own that group `group` of groom `groom` has. It is made if there is none, and is one step to go back
-    /// with the value that is written to it next.
+    /// Returns the key for `field` of the material of group `group` of groom `groom`. If the group has no
+    /// material of its own, one is created. Its creation and the next written value form one undo step.
     pub fn own_material(&mut self, groom: usize, group: usize, field: &str) -> Result<Key, AppError> {
         let key = |name: &str| Key::top("material").entry(name).field(field);
         let mut edited = parsed(self.text())?;
@@ -20,7 +21,7 @@ impl Document {
             return Ok(key(&name));
         }
         let known = |name: &str| text.get("material").is_some_and(|m| m.get(name).is_some());
-        // A preset, the built-in style's or the default: a material of its own begins from it.
+        // The new material is based on a preset: the current one, that of the built-in style, or the default.
         let style = text
             .get("builtin")
             .filter(|_| groom == 0)
@@ -53,7 +54,7 @@ impl Document {
         Ok(key(&name))
     }
 
-    /// Names of the materials of groom `groom`, as the text says them.
+    /// Names of the materials of groom `groom` as written in the text.
     fn materials_of(&self, groom: usize) -> Vec<String> {
         match self.groom_key(groom).and_then(|key| key.field("material").look_up(&self.said)) {
             Some(toml::Value::String(name)) => vec![name.clone()],
@@ -64,14 +65,16 @@ impl Document {
         }
     }
 
-    /// Name of the material that the text has for group `group` of groom `groom`; `None` where that has a preset, or none.
+    /// Name of the material that the text defines for group `group` of groom `groom`; `None` if the group
+    /// uses a preset or no material.
     pub fn material_of(&self, groom: usize, group: usize) -> Option<String> {
         let mut list = self.materials_of(groom);
         let name = (!list.is_empty()).then(|| list.swap_remove(group.min(list.len() - 1)))?;
         self.said.get("material")?.get(&name).map(|_| name)
     }
 
-    /// Where the text says what groom `groom` is; `None` for the built-in head's brows, of which it says nothing.
+    /// Key of groom `groom` in the text; `None` for the brows of the built-in head, which are not in the
+    /// text.
     pub fn groom_key(&self, groom: usize) -> Option<Key> {
         let made = self.settings.grooms.len().saturating_sub(self.listed_grooms());
         match (groom, groom.checked_sub(made)) {
@@ -81,7 +84,7 @@ impl Document {
         }
     }
 
-    /// Grooms that the text says something of.
+    /// The grooms that are in the text.
     pub fn grooms(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.settings.grooms.len()).filter(|g| self.groom_key(*g).is_some())
     }
@@ -91,7 +94,7 @@ impl Document {
     }
 }
 
-/// A table that is written only by what is in it.
+/// A table that is written without a header of its own.
 fn implicit() -> Table {
     let mut table = Table::new();
     table.set_implicit(true);

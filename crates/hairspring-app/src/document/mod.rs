@@ -1,7 +1,8 @@
-//! The scene that is open: the text of its file, edited in place, with every earlier text to go back to.
+//! The open scene: the text of its file, which is edited in place, with an undo history.
 //!
-//! The text is the only copy: sliders write into it, undo puts an older one back, save writes it out. What it comes to is read by `hairspring-io`, as for every other command, so that the window can
-//! do nothing that a scene file cannot, and a value that the reader refuses is refused here with the same sentence.
+//! The text is the only representation: sliders write into it, undo restores an older one, and save writes it
+//! to the file. `hairspring-io` parses it, as for every other command. The window can therefore do nothing
+//! that a scene file cannot, and an invalid value is rejected with the same message.
 
 mod files;
 mod history;
@@ -16,7 +17,7 @@ use history::{Draft, History};
 use std::path::{Path, PathBuf};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
 
-/// The text of the scene that the window opens with: the built-in head, with so many hairs.
+/// The text of the window's initial scene: the built-in head with the given number of hairs.
 pub fn builtin_text(style: &str, strands: u32, guides: u32) -> String {
     format!(
         "name = \"Built-in head\"\n\n[builtin]\nstyle = \"{style}\"\nstrands = {strands}\nguides = {guides}\n"
@@ -25,27 +26,27 @@ pub fn builtin_text(style: &str, strands: u32, guides: u32) -> String {
 
 /// A scene file being edited.
 pub struct Document {
-    /// Where it is saved; files that it names are relative to its folder.
+    /// The path of the file. Files that the scene names are relative to its folder.
     path: PathBuf,
-    /// Whether there is such a file.
+    /// Whether the file exists.
     on_disk: bool,
     draft: Draft,
     saved: String,
     history: History,
-    /// What is being dragged: its values are one step to go back.
+    /// Keys of the current drag. All values written to them form one undo step.
     dragged: Vec<Key>,
     settings: Scene,
-    /// The text as a table, read once for all who ask what it says.
+    /// The text as a parsed table, shared by everything that reads it.
     said: toml::Table,
     effective: toml::Table,
-    /// What would count had nothing been changed since it was opened, and were nothing said.
+    /// Reference values: at the time of opening, and the defaults.
     opened: Reference,
     defaults: Reference,
-    /// What the text said and what counted when it was opened.
+    /// The text and the effective values at the time of opening.
     first: [toml::Table; 2],
 }
 
-/// A scene's text, and where its files are named from.
+/// A scene's text and its path, for loading it elsewhere.
 pub struct Source {
     path: PathBuf,
     text: String,
@@ -58,19 +59,19 @@ impl Source {
     }
 }
 
-/// What an edit asks of what is playing.
+/// The effect of an edit on the running simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// Nothing.
+    /// No effect.
     None,
-    /// Settings only: it plays on.
+    /// Only settings changed: the simulation continues.
     Settings,
-    /// Other hair, another body or another motion: it begins anew.
+    /// The hair, the body or the motion changed: the simulation restarts.
     Geometry,
 }
 
 impl Document {
-    /// A scene with this text that is not saved yet; what it names is relative to `path`'s folder.
+    /// Creates a document for an unsaved scene. Files are named relative to the folder of `path`.
     pub fn new(path: &Path, text: String) -> Result<Self, AppError> {
         let settings = read_settings(path, &text)?;
         let said = table(&text)?;
@@ -103,27 +104,28 @@ impl Document {
         self.source().load()
     }
 
-    /// What it takes to read the scene elsewhere.
+    /// Returns the data that is needed to read the scene on another thread.
     pub fn source(&self) -> Source {
         Source { path: self.path.clone(), text: self.draft.text.clone() }
     }
 
-    /// Its settings; grooms are without strands.
+    /// The settings of the scene; grooms have no strands.
     pub fn settings(&self) -> &Scene {
         &self.settings
     }
 
-    /// Every value that counts: see [`crate::effective::effective`].
+    /// All effective values: see [`crate::effective::effective`].
     pub fn effective(&self) -> &toml::Table {
         &self.effective
     }
 
-    /// What would count had nothing been changed since it was opened.
+    /// The reference values at the time of opening.
     pub fn opened(&self) -> &Reference {
         &self.opened
     }
 
-    /// What the text said here and what counted when the scene was opened; `None` of what belongs to an entry of a list that was added since.
+    /// The value of the text and the effective value of a key at the time of opening; `None` for list entries
+    /// that were added since.
     pub fn first(&self, key: &Key) -> Option<[Option<&toml::Value>; 2]> {
         let key = match key.listed() {
             Some((list, place)) => key.relisted(self.draft.first(list, place)?),
@@ -132,12 +134,12 @@ impl Document {
         Some(self.first.each_ref().map(|table| key.look_up(table)))
     }
 
-    /// Every value that would count if the text said nothing of it, by the same names.
+    /// All default values, with the same keys.
     pub fn defaults(&self) -> &toml::Table {
         self.defaults.values()
     }
 
-    /// What the text itself says.
+    /// The parsed text.
     pub fn said(&self) -> &toml::Table {
         &self.said
     }
@@ -147,27 +149,28 @@ impl Document {
         &self.draft.text
     }
 
-    /// Where it is saved, if it ever was.
+    /// The path of the file, if it exists.
     pub fn file(&self) -> Option<&Path> {
         self.on_disk.then_some(&*self.path)
     }
 
-    /// Whether the text differs from the file's.
+    /// Whether the text differs from the saved file.
     pub fn is_changed(&self) -> bool {
         self.draft.text != self.saved
     }
 
-    /// Whether there is a text to go back to, and one to go forth to.
+    /// Whether undo is possible, and whether redo is.
     pub fn history(&self) -> (bool, bool) {
         self.history.has()
     }
 
-    /// Writes a value, or takes it away so that its default counts. While a value is dragged, what is written to it is one step to go back: until [`Document::rest`].
+    /// Writes a value, or removes it so that its default applies. While a value is dragged, all writes to it
+    /// form one undo step, until [`Document::rest`] is called.
     pub fn set(&mut self, key: &Key, value: Option<Value>) -> Result<Change, AppError> {
         self.set_all(vec![(key.clone(), value)])
     }
 
-    /// As [`Document::set`], several values at once: one step to go back.
+    /// Like [`Document::set`], for several values in one undo step.
     pub fn set_all(&mut self, values: Vec<(Key, Option<Value>)>) -> Result<Change, AppError> {
         let mut edited = parsed(self.text())?;
         let mut keys = Vec::with_capacity(values.len());
@@ -182,12 +185,12 @@ impl Document {
         Ok(change)
     }
 
-    /// What was dragged is let go of: the next value is a step of its own.
+    /// Ends a drag. The next value is a separate undo step.
     pub fn rest(&mut self) {
         self.dragged.clear();
     }
 
-    /// Adds an entry, given as the text of its fields, to a list such as `collider`.
+    /// Appends an entry to a list such as `collider`. `fields` is the text of its fields.
     pub fn add(&mut self, list: &str, fields: &str) -> Result<Change, AppError> {
         let mut edited = parsed(self.text())?;
         let fields: DocumentMut = fields.parse().map_err(|why| AppError::new(format!("{why}")))?;
@@ -202,7 +205,7 @@ impl Document {
         self.take(self.draft.added(edited.to_string(), list, had), true)
     }
 
-    /// Takes entry `place` out of a list.
+    /// Removes entry `place` from a list.
     pub fn remove(&mut self, list: &str, place: usize) -> Result<Change, AppError> {
         let mut edited = parsed(self.text())?;
         let tables = edited.get_mut(list).and_then(Item::as_array_of_tables_mut);
@@ -215,7 +218,7 @@ impl Document {
         self.take(self.draft.removed(edited.to_string(), list, had, place), true)
     }
 
-    /// Goes one step this way, if there is one and its text can be read.
+    /// Takes one undo or redo step, if there is one and its text can be read.
     pub fn step(&mut self, way: Way) -> Result<Change, AppError> {
         self.rest();
         let Some(draft) = self.history.next(way).cloned() else { return Ok(Change::None) };
@@ -225,7 +228,7 @@ impl Document {
         Ok(change)
     }
 
-    /// Takes up a new text if it can be read; `step`: as a step to go back.
+    /// Adopts a new text if it can be read; `step` adds an undo step.
     fn take(&mut self, draft: Draft, step: bool) -> Result<Change, AppError> {
         if draft.text == self.draft.text {
             return Ok(Change::None);

@@ -1,4 +1,5 @@
-//! The picture by the CPU, on a thread of its own, as fine as there is time for: the window stays quick, and says what it leaves out.
+//! Renders the picture on the CPU, on its own thread, at a quality that fits the available time. The window
+//! stays responsive, and shows what is left out.
 
 use super::{Pace, image, once, pane::Pane, smooth};
 use crate::snapshot::{Snapshot, ViewParameters};
@@ -17,17 +18,18 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Longest that a picture of moving hair should take [s]: 20 a second, of which the window's own work leaves 15.
+/// Target time for a picture of moving hair [s]: 20 per second, of which the window's own work leaves 15.
 const BUDGET: f32 = 0.05;
 
-/// How long nothing must have changed until it is drawn in full, at least.
+/// Minimum time without changes before a picture in full quality is drawn.
 const REST: Duration = Duration::from_millis(300);
 
-/// How much of a picture is drawn.
+/// A quality level.
 struct Level {
-    /// Part of the full size.
+    /// Picture size relative to the full size.
     scale: f32,
-    /// Most hairs that are placed and lit, about, unless each would stand for more than [`THINNEST`].
+    /// Approximate maximum number of hairs that are interpolated and lit, unless each would stand for more
+    /// than [`THINNEST`].
     strands: usize,
     /// Voxels and texels of the shadows.
     shadow: [u32; 2],
@@ -38,21 +40,22 @@ const fn level(scale: f32, strands: usize, shadow: [u32; 2]) -> Level {
 }
 
 impl Level {
-    /// Every how-manieth of so many hairs is placed.
+    /// Stride between the drawn hairs, out of this number of hairs.
     fn every(&self, hairs: usize) -> usize {
         hairs.div_ceil(self.strands).clamp(1, THINNEST)
     }
 }
 
-/// Most hairs that one stands for: where one is left of more, a head of hair is tufts.
+/// Maximum number of hairs that one hair stands for. With more, a head of hair looks like tufts.
 const THINNEST: usize = 16;
 
-/// However many there are.
+/// No limit on the number of hairs.
 const ALL: usize = usize::MAX;
 
-/// From the finest to the coarsest, each quicker than the one before. Of the last, on the built-in head, hairs are a third of the
-/// work: the rest is the body, its shadow, and pixels, so that fewer hairs would spare little. Shadows are blurred by a hair's neighbours anyway: half as fine, they
-/// look alike and take an eighth of the voxels.
+/// From the finest to the coarsest, each faster than the previous one. At the last level, hairs are a third
+/// of the work on the built-in head. The rest is the body, its shadow and pixels, so that fewer hairs would
+/// save little. Shadows are blurred by neighboring hairs anyway: at half the resolution they look the same
+/// and take an eighth of the voxels.
 const LEVELS: [Level; 10] = [
     level(1.0, ALL, [112, 1024]),
     level(0.85, ALL, [80, 768]),
@@ -66,14 +69,16 @@ const LEVELS: [Level; 10] = [
     level(0.35, 900, [32, 256]),
 ];
 
-/// Where a slow machine is quick; a fast one is finer within a second.
+/// Initial level, which is fast on a slow machine. A fast machine reaches a finer one within a second.
 const FIRST: usize = 5;
 
-/// Hairs that one is drawn as where it stands for as many or more. One hair eight times as wide is a ribbon; four beside each other are hair, and are drawn in a
-/// third of the time that it takes to place and light so many. More of them are finer than the pixels of the levels that want them.
+/// Number of hairs that one hair is drawn as, if it stands for that many or more. A single hair eight times
+/// as wide looks like a ribbon; four hairs next to each other look like hair, and are drawn in a third of the
+/// time that interpolating and lighting four would take. More would be finer than the pixels at the levels
+/// that need them.
 const WISP: usize = 4;
 
-/// How far hairs of wisps may stray from their curves [pixels]: they stray farther from each other.
+/// Maximum deviation of the hairs of wisps from their curves [pixels]. They deviate more from each other.
 const SMOOTHNESS: f32 = 0.3;
 
 struct Job {
@@ -90,17 +95,19 @@ struct Done {
     took: f32,
 }
 
-/// What the thread draws with.
+/// The renderer of the thread.
 #[derive(Default)]
 struct Brush {
     renderer: Option<(Renderer, [u32; 2])>,
-    /// Scene, level and lamps of a picture whose hair's shadow was its own, and which no other has been drawn in.
+    /// Scene, level and lamps of the last picture that computed the hair's shadow, if no other picture has
+    /// reused it yet.
     shadows: Option<(u64, usize, Camera)>,
 }
 
 impl Brush {
-    /// A picture; `None` where there is nothing to draw. Of moving hair, every second picture is drawn in the shadow of the hair before: nobody sees that it
-    /// lags by a twentieth of a second, and it is a fifteenth of the work.
+    /// Draws a picture; `None` if there is nothing to draw. Of moving hair, every second picture reuses the
+    /// previous hair shadow. The lag of a twentieth of a second is not visible, and the shadow is a fifteenth
+    /// of the work.
     fn draw(&mut self, job: &Job) -> Option<Image> {
         if self.renderer.as_ref().is_none_or(|(_, size)| *size != job.size) {
             self.renderer = Some((Renderer::new(job.size[0], job.size[1]), job.size));
@@ -118,11 +125,11 @@ impl Brush {
     }
 }
 
-/// How a picture comes into the window.
+/// How a picture is shown in the window.
 enum Shows {
-    /// By a pipeline of its own.
+    /// By a dedicated pipeline.
     Pane(Box<Pane>),
-    /// By the window's library: where nobody knows what it draws with, as in tests.
+    /// As an egui texture, if the window's renderer is unknown, as in tests.
     Texture(Option<TextureHandle>),
 }
 
@@ -132,35 +139,37 @@ impl Shows {
     }
 }
 
-/// Draws one view.
+/// Renders one view on the CPU.
 pub struct CpuPainter {
     jobs: Sender<Job>,
     done: Receiver<Done>,
     /// Whether a picture is being drawn.
     busy: Arc<AtomicBool>,
     shows: Shows,
-    /// What the picture shows: not drawn again while it is the same.
+    /// Key of the last requested picture, which is not drawn again while it is the same.
     shown: Option<(u64, u64, ViewParameters, [u32; 2])>,
-    /// The moment of the picture that is seen.
+    /// The moment shown by the current picture.
     moment: Option<Arc<Snapshot>>,
     level: usize,
-    /// Level of the picture that is seen, and every how-manieth hair it shows.
+    /// Level of the current picture, and the stride of its hairs.
     seen: usize,
     every: usize,
-    /// What a picture of this level takes, over some pictures [s].
+    /// Time of a picture at this level, averaged over some pictures [s].
     took: f32,
     pace: Pace,
     moved: Instant,
 }
 
 impl CpuPainter {
-    /// Starts the thread, which draws on so many others; it wakes the window when a picture is there.
+    /// Starts the thread, which draws with a pool of `threads` threads. It wakes the window when a picture is
+    /// finished.
     pub fn new(ctx: &egui::Context, window: Option<&RenderState>, threads: usize) -> Self {
         let (jobs, todo) = channel::<Job>();
         let (finished, done) = channel();
         let ctx = ctx.clone();
         std::thread::spawn(move || {
-            // Threads of its own: in one pool, a step of the simulation would wait behind a whole picture.
+            // A separate thread pool. In a shared one, a step of the simulation would wait for a whole
+            // picture.
             let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { return };
             let mut brush = Brush::default();
             for job in todo {
@@ -189,7 +198,7 @@ impl CpuPainter {
         }
     }
 
-    /// Another for the same window.
+    /// Creates another painter for the same window.
     pub fn another(&self, ctx: &egui::Context, threads: usize) -> Self {
         let window = match &self.shows {
             Shows::Pane(pane) => Some(pane.state()),
@@ -198,12 +207,12 @@ impl CpuPainter {
         Self::new(ctx, window, threads)
     }
 
-    /// Whether a picture is being drawn, now and later.
+    /// A flag that tells whether a picture is being drawn.
     pub fn busy(&self) -> Arc<AtomicBool> {
         self.busy.clone()
     }
 
-    /// Takes a picture that is done.
+    /// Receives a finished picture.
     pub fn look(&mut self, ctx: &egui::Context) {
         match self.done.try_recv() {
             Ok(done) => self.show(ctx, done),
@@ -212,7 +221,7 @@ impl CpuPainter {
         }
     }
 
-    /// Asks for a picture of `size` pixels where none is being drawn.
+    /// Requests a picture of `size` pixels, unless one is being drawn.
     pub fn ask(
         &mut self,
         ctx: &egui::Context,
@@ -226,7 +235,8 @@ impl CpuPainter {
         if !same {
             self.moved = Instant::now();
         }
-        // What has stood still for a moment is drawn in full; a play whose steps are long moves.
+        // A view that did not change for a moment is drawn in full quality. Steps that take long count as
+        // motion.
         let rest = REST.max(3 * snapshot.took);
         let rested = self.moved.elapsed() > rest;
         let level = if rested { 0 } else { self.level };
@@ -255,17 +265,17 @@ impl CpuPainter {
         }
     }
 
-    /// The moment of the picture that is seen; `None` before the first.
+    /// The moment shown by the current picture; `None` before the first.
     pub fn moment(&self) -> Option<&Arc<Snapshot>> {
         self.moment.as_ref()
     }
 
-    /// Whether the picture that is seen is of this moment and leaves nothing out.
+    /// Whether the current picture shows this moment in full quality.
     pub fn is_whole(&self, now: &Snapshot) -> bool {
         self.seen == 0 && self.moment.as_ref().is_some_and(|m| (m.scene, m.number) == (now.scene, now.number))
     }
 
-    /// The last picture, laid in at `rect`.
+    /// The shape that shows the last picture at `rect`.
     pub fn shape(&self, rect: egui::Rect) -> Option<egui::Shape> {
         match &self.shows {
             Shows::Pane(pane) => pane.shape(rect),
@@ -289,7 +299,8 @@ impl CpuPainter {
         (self.seen, self.every) = (level, sight.every);
         self.moment = Some(snapshot);
         if level == self.level {
-            // Finer only where that would surely fit: it must not go to and fro.
+            // The level is refined only if the picture surely stays within the budget, so that it does not
+            // oscillate.
             if self.took > BUDGET {
                 self.level = (self.level + 1).min(LEVELS.len() - 1);
             } else if self.took < 0.45 * BUDGET {
@@ -298,7 +309,7 @@ impl CpuPainter {
         }
     }
 
-    /// What is left out of the picture that is seen, how long it took, and how many come in a second.
+    /// Describes what is left out of the current picture, its time, and the number of pictures per second.
     pub fn note(&self) -> String {
         let scale = LEVELS[self.seen].scale;
         let part = match (scale, self.every) {

@@ -1,4 +1,5 @@
-//! The picture by the GPU that also draws the window: strands are uploaded, drawn, and shown without coming back.
+//! Renders the picture on the GPU that also draws the window. Strands are uploaded, drawn and shown without a
+//! readback.
 
 use super::Pace;
 use crate::snapshot::{Snapshot, ViewParameters};
@@ -6,7 +7,7 @@ use eframe::{egui::TextureId, egui_wgpu::RenderState, wgpu::FilterMode};
 use hairspring_view::gpu::{Gpu, GpuRenderer};
 use std::sync::Arc;
 
-/// Draws one view.
+/// Renders one view on the GPU.
 pub struct GpuPainter {
     state: RenderState,
     renderer: GpuRenderer,
@@ -14,14 +15,14 @@ pub struct GpuPainter {
     shown: Option<(u64, u64, ViewParameters, [u32; 2])>,
     took: f32,
     pace: Pace,
-    /// Whether colours of the last picture were values.
+    /// Whether the colors of the last picture showed a value.
     valued: bool,
 }
 
 impl GpuPainter {
-    /// On the window's device.
+    /// Creates a painter on the window's device.
     pub fn new(state: &RenderState) -> Self {
-        // Without a handler, what goes wrong on the card would close the window.
+        // Without a handler, an error on the GPU would close the window.
         state
             .device
             .on_uncaptured_error(Arc::new(|error| eprintln!("hairspring: on the graphics card: {error}")));
@@ -37,17 +38,17 @@ impl GpuPainter {
         }
     }
 
-    /// The card.
+    /// The GPU.
     pub fn gpu(&self) -> &Gpu {
         self.renderer.gpu()
     }
 
-    /// Another on the same device.
+    /// Creates another painter on the same device.
     pub fn another(&self) -> Self {
         Self::new(&self.state)
     }
 
-    /// Draws what has changed.
+    /// Draws the picture if it has changed.
     pub fn draw(
         &mut self,
         snapshot: &Snapshot,
@@ -58,7 +59,7 @@ impl GpuPainter {
         let scenery = snapshot.stages.get(stage)?;
         let wanted = (snapshot.scene, snapshot.number, *sight, size);
         if self.shown != Some(wanted) {
-            // Colours of values change in place, and another scene may lie where the last one lay.
+            // Colors of values change in place, and another scene may have its arrays at the same addresses.
             let another = self.shown.is_none_or(|shown| shown.0 != snapshot.scene);
             if another || self.valued || !scenery.values.is_empty() {
                 self.renderer.forget();
@@ -93,7 +94,7 @@ impl GpuPainter {
         self.texture.map(|(id, _)| id)
     }
 
-    /// Who draws, how long handing it over took, and how many pictures come in a second.
+    /// Describes the renderer, the CPU time of the last picture, and the number of pictures per second.
     pub fn note(&self) -> String {
         let name = self.state.adapter.get_info().name;
         format!("GPU: {name}, {:.1} ms to hand over{}", 1e3 * self.took, self.pace.words())

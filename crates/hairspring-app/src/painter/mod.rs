@@ -1,4 +1,4 @@
-//! Who draws the hair: a GPU where there is one, else the CPU rasteriser.
+//! The renderers of the hair: a GPU if there is one, otherwise the CPU rasterizer.
 
 mod cpu;
 mod gpu;
@@ -17,32 +17,32 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Who draws the hair.
+/// The renderer for the hair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Drawn {
-    /// By the GPU, where the window has a real one.
+    /// The GPU, if the window has a hardware one, otherwise the CPU.
     #[default]
     Auto,
-    /// By the window's device, even where that is software.
+    /// The window's device, even if it is a software driver.
     Gpu,
-    /// By the CPU rasteriser.
+    /// The CPU rasterizer.
     Cpu,
 }
 
-/// Draws one view of the window.
+/// Renders one view of the window.
 pub enum Painter {
     /// On the window's device.
     Gpu(Box<GpuPainter>),
-    /// On threads of the processor.
+    /// On CPU threads.
     Cpu(Box<CpuPainter>),
 }
 
 impl Painter {
-    /// For the window that is being made.
+    /// Creates the painter of a new window.
     pub fn new(creation: &eframe::CreationContext<'_>, drawn: Drawn) -> Self {
         let software = |kind: DeviceType| kind == DeviceType::Cpu;
         let state = creation.wgpu_render_state.as_ref().filter(|state| match drawn {
-            // A rasteriser made for hair is ten times as fast as a driver that plays at being a GPU.
+            // A rasterizer made for hair is ten times as fast as a software GPU driver.
             Drawn::Auto => !software(state.adapter.get_info().device_type),
             Drawn::Gpu => true,
             Drawn::Cpu => false,
@@ -56,7 +56,7 @@ impl Painter {
         }
     }
 
-    /// Another of the same kind, for a second view.
+    /// Creates another painter of the same kind, for a second view.
     pub fn another(&self, ctx: &egui::Context) -> Self {
         match self {
             Self::Gpu(painter) => Self::Gpu(Box::new(painter.another())),
@@ -64,7 +64,7 @@ impl Painter {
         }
     }
 
-    /// Threads that are left for the simulation.
+    /// Number of threads that are left for the simulation.
     pub fn spared(&self) -> usize {
         match self {
             Self::Gpu(_) => processors(),
@@ -72,7 +72,7 @@ impl Painter {
         }
     }
 
-    /// The GPU that draws, if one does.
+    /// The GPU, if one draws.
     pub fn gpu(&self) -> Option<Gpu> {
         match self {
             Self::Gpu(painter) => Some(painter.gpu().clone()),
@@ -80,8 +80,9 @@ impl Painter {
         }
     }
 
-    /// What is to be called when there is something new to see. A window that waits for a picture by the CPU is woken by that alone: all that it could
-    /// do before is to draw the last one once more, which takes a software driver as long as the picture.
+    /// Returns a function that is called when there is something new to show. A window that waits for a
+    /// picture of the CPU is woken only by that picture. Before it, the window could only draw the last
+    /// picture again, which takes a software driver as long as a new one.
     pub fn wake(&self, ctx: &egui::Context) -> impl Fn() + Send + 'static {
         let ctx = ctx.clone();
         let busy = match self {
@@ -95,7 +96,8 @@ impl Painter {
         }
     }
 
-    /// The picture of a stage of a snapshot, `size` pixels large and laid in at `rect`, or the last one where that is not ready yet.
+    /// Draws a stage of a snapshot with `size` pixels and shows it at `rect`. While the picture is not
+    /// finished, the last one is shown.
     pub fn draw(
         &mut self,
         ctx: &egui::Context,
@@ -113,7 +115,8 @@ impl Painter {
         }
     }
 
-    /// Takes the picture that is done; the moment of the one that is seen, so that what is laid over it fits: one by the CPU is of a step that has passed.
+    /// Receives a finished picture. Returns the moment of the current picture, so that overlays match it: a
+    /// picture of the CPU shows a past step.
     pub fn moment(&mut self, ctx: &egui::Context, now: &Arc<Snapshot>) -> Arc<Snapshot> {
         match self {
             Self::Gpu(_) => now.clone(),
@@ -124,7 +127,7 @@ impl Painter {
         }
     }
 
-    /// Whether the picture that is seen is of this moment and leaves nothing out.
+    /// Whether the current picture shows this moment in full quality.
     pub fn is_whole(&self, now: &Snapshot) -> bool {
         match self {
             Self::Gpu(_) => true,
@@ -132,7 +135,7 @@ impl Painter {
         }
     }
 
-    /// How it draws, in words.
+    /// Describes how the picture is drawn.
     pub fn note(&self) -> String {
         match self {
             Self::Gpu(painter) => painter.note(),
@@ -141,9 +144,9 @@ impl Painter {
     }
 }
 
-/// How fast pictures of moving hair come.
+/// Measures the rate of pictures of moving hair.
 struct Pace {
-    /// From one to the next, over some pictures [s]; 0 before the second.
+    /// Time between two pictures, averaged over some pictures [s]; 0 before the second.
     mean: f32,
     came: Instant,
 }
@@ -153,15 +156,15 @@ impl Pace {
         Self { mean: 0.0, came: Instant::now() }
     }
 
-    /// A picture is there; `anew`: it is not one of a row.
+    /// Counts a picture. `anew` restarts the measurement, because the picture does not continue a series.
     fn tick(&mut self, anew: bool) {
         let since = self.came.elapsed().as_secs_f32();
         self.came = Instant::now();
-        // What stood still begins anew.
+        // The measurement restarts after a pause.
         self.mean = if anew || since > 1.0 { 0.0 } else { smooth(self.mean, since) };
     }
 
-    /// In words, behind others.
+    /// The rate as text that is appended to other text.
     fn words(&self) -> String {
         match self.mean {
             0.0 => String::new(),
@@ -170,20 +173,20 @@ impl Pace {
     }
 }
 
-/// A mean over some values, of which the last is one; 0: it is the first.
+/// Updates a running mean with the value `last`; a mean of 0 means that it is the first.
 fn smooth(mean: f32, last: f32) -> f32 {
     if mean == 0.0 { last } else { mean + SMOOTH * (last - mean) }
 }
 
-/// How much of the last value counts in a mean.
+/// Weight of the last value in a mean.
 const SMOOTH: f32 = 0.3;
 
-/// Lets the window draw itself. Asked without a delay, egui does so twice.
+/// Requests one repaint of the window. Without a delay, egui would repaint twice.
 fn once(ctx: &egui::Context) {
     ctx.request_repaint_after(Duration::from_millis(1));
 }
 
-/// All of a texture at `rect`.
+/// Shows a whole texture at `rect`.
 fn image(texture: egui::TextureId, rect: egui::Rect) -> egui::Shape {
     let all = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
     egui::Shape::image(texture, rect, all, egui::Color32::WHITE)
@@ -193,7 +196,7 @@ fn processors() -> usize {
     rayon::current_num_threads()
 }
 
-/// Simulation and painter have half of the processors each.
+/// Half of the processors: simulation and painter share them equally.
 fn half() -> usize {
     (processors() / 2).max(1)
 }

@@ -1,7 +1,8 @@
-//! A picture from memory, laid into the window as it is.
+//! Shows a picture from memory in the window without conversion.
 //!
-//! The window's library could do so itself, by the shader that draws its letters. That asks for every pixel whether textures are to be filtered by hand, in whole numbers,
-//! and a software driver works out both answers: 65 ns a pixel, of which a picture has a million. This one looks up one place of one texture.
+//! egui could do so with the shader that draws its text. That shader checks for every pixel whether textures
+//! must be filtered manually, and a software driver computes both variants: 65 ns per pixel, for a million
+//! pixels. The shader here samples one texture once.
 
 use eframe::{
     egui::{self, PaintCallbackInfo},
@@ -10,7 +11,7 @@ use eframe::{
 };
 use hairspring_view::Image;
 
-/// One triangle over all of the viewport, and the picture's place in it.
+/// One triangle that covers the viewport, and the picture's coordinates in it.
 const SHADER: &str = "
 struct Corner { @builtin(position) at: vec4f, @location(0) place: vec2f }
 
@@ -27,7 +28,7 @@ struct Corner { @builtin(position) at: vec4f, @location(0) place: vec2f }
 }
 ";
 
-/// Shows one picture after the other.
+/// Shows one picture after another.
 pub struct Pane {
     state: RenderState,
     pipeline: wgpu::RenderPipeline,
@@ -37,7 +38,7 @@ pub struct Pane {
 }
 
 impl Pane {
-    /// On the window's device.
+    /// Creates the pane on the window's device.
     pub fn new(state: &RenderState) -> Self {
         let device = &state.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -73,12 +74,12 @@ impl Pane {
         Self { state: state.clone(), pipeline, smooth, shown: None, rgba: Vec::new() }
     }
 
-    /// What the window draws with.
+    /// The renderer state of the window.
     pub fn state(&self) -> &RenderState {
         &self.state
     }
 
-    /// Takes a picture.
+    /// Uploads a picture.
     pub fn take(&mut self, image: &Image) {
         let size = wgpu::Extent3d { width: image.width, height: image.height, depth_or_array_layers: 1 };
         if self.shown.as_ref().is_none_or(|(texture, _)| texture.size() != size) {
@@ -95,10 +96,10 @@ impl Pane {
         self.state.queue.write_texture(texture.as_image_copy(), &self.rgba, layout, size);
     }
 
-    /// A texture of that size, and what the pipeline asks for it by.
+    /// Creates a texture of this size and its bind group.
     fn room(&self, size: wgpu::Extent3d) -> (wgpu::Texture, wgpu::BindGroup) {
         let device = &self.state.device;
-        // What the window takes for bytes, or for light, is what comes out of the picture.
+        // The texture format matches the window's, so that the picture's sRGB codes pass through unchanged.
         let light = self.state.target_format.is_srgb();
         let format =
             if light { wgpu::TextureFormat::Rgba8UnormSrgb } else { wgpu::TextureFormat::Rgba8Unorm };
@@ -125,7 +126,7 @@ impl Pane {
         (texture, group)
     }
 
-    /// What lays the last picture into the window at `rect`; `None` before the first.
+    /// The shape that shows the last picture at `rect`; `None` before the first.
     pub fn shape(&self, rect: egui::Rect) -> Option<egui::Shape> {
         let (_, group) = self.shown.as_ref()?;
         let sheet = Sheet { pipeline: self.pipeline.clone(), group: group.clone() };
@@ -133,7 +134,7 @@ impl Pane {
     }
 }
 
-/// What is drawn in a pass of the window.
+/// The draw call in a render pass of the window.
 struct Sheet {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,

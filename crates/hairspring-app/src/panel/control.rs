@@ -1,4 +1,4 @@
-//! The widget of a parameter: a slider, a switch, a choice, a colour, a direction.
+//! The widget of a parameter: a slider, a switch, a choice, a color, a direction.
 
 use super::Labelled;
 use crate::parameter::{Kind, Parameter};
@@ -8,10 +8,11 @@ use toml_edit::Value;
 
 /// Width of a slider's number with its unit [points].
 pub const VALUE: f32 = 90.0;
-/// Of one without a unit [points].
+/// Width of a number without a unit [points].
 const BARE: f32 = 66.0;
 
-/// The widget of a parameter, which calls `edit` with a new value; `listed`: of a groom that the text lists, which may have guides of its own.
+/// The widget of a parameter, which calls `edit` with a new value. `listed` marks a groom in the text, which
+/// may have its own guides.
 pub fn control(
     ui: &mut Ui,
     parameter: &Parameter,
@@ -52,7 +53,7 @@ pub fn control(
                 value
             });
             fit(ui, parameter.unit);
-            // From 0 on, equal ways are equal steps: of factors there is no least.
+            // From 0 on, the slider is linear. Factors have no minimum, so their slider is logarithmic.
             let slider = slider.logarithmic(min > 0.0).max_decimals(4);
             Some(ui.add(written(slider, parameter)).labelled(ui, name))
         }
@@ -127,7 +128,7 @@ pub fn control(
         Kind::Vector { reach } => {
             let mut vector = numbers::<3>(now);
             let mut changed = false;
-            // Three numbers of a hand's breadth and their unit are one line.
+            // Three numbers and their unit fit on one line.
             ui.spacing_mut().item_spacing.x = 4.0;
             for (axis, x) in ["x", "y", "z"].into_iter().zip(&mut vector) {
                 let drag = DragValue::new(x).speed(reach / 200.0).range(-reach..=reach).max_decimals(2);
@@ -170,7 +171,7 @@ pub fn control(
     }
 }
 
-/// A slider of whole numbers.
+/// A slider for whole numbers.
 fn count(
     ui: &mut Ui,
     mut value: f64,
@@ -186,18 +187,18 @@ fn count(
         }
         value
     });
-    // A number that is typed may lie beyond.
+    // Typed numbers may be outside the range.
     let slider = slider.clamping(egui::SliderClamping::Never).logarithmic(max > 1000 * min.max(1));
     ui.add(slider.integer())
 }
 
-/// Makes a slider as wide as fits in what is left of its row.
+/// Makes a slider as wide as fits into the rest of its row.
 fn fit(ui: &mut Ui, unit: &str) {
     let left = ui.available_size_before_wrap().x - if unit.is_empty() { BARE } else { VALUE };
     ui.spacing_mut().slider_width = left.clamp(20.0, 240.0);
 }
 
-/// A slider with its unit; very large and very small numbers as powers of ten.
+/// A slider with its unit. Very large and very small numbers are shown as powers of ten.
 fn written<'a>(slider: Slider<'a>, parameter: &Parameter) -> Slider<'a> {
     let unit = parameter.unit;
     let far = match parameter.kind {
@@ -213,18 +214,18 @@ fn written<'a>(slider: Slider<'a>, parameter: &Parameter) -> Slider<'a> {
     }
 }
 
-/// A very large or very small number as a power of ten; nothing is plain 0.
+/// Formats a very large or very small number as a power of ten, and 0 as plain 0.
 pub fn far_off(x: f64) -> String {
     if x == 0.0 { "0".into() } else { format!("{x:.2e}") }
 }
 
-/// A number in as many digits behind the point as it takes, where what shows as nothing has no sign.
+/// Formats a number with as many decimals as needed. A value that is displayed as 0 has no sign.
 fn plain(x: f64, digits: RangeInclusive<usize>) -> String {
     let half = 0.5 * 0.1_f64.powi(*digits.end() as i32);
     egui::emath::format_with_decimals_in_range(if x.abs() < half { 0.0 } else { x }, digits)
 }
 
-/// A number, whether it is written as a whole one or not.
+/// A number, whether it is written as an integer or as a float.
 pub fn as_number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
 }
@@ -234,7 +235,7 @@ fn numbers<const N: usize>(value: Option<&toml::Value>) -> [f32; N] {
     std::array::from_fn(|_| list.next().unwrap_or(0.0) as f32)
 }
 
-/// A number as a person would write it: four digits that count.
+/// Rounds a number to four significant digits, as a person would write it.
 fn tidy(x: f64) -> Value {
     tidy_f64(x).into()
 }

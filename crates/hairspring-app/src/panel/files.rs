@@ -1,4 +1,4 @@
-//! Opening, saving and recording: the name of a file, typed or chosen in the desktop's dialog.
+//! Opening, saving and recording: the path of a file, typed or chosen in the desktop's dialog.
 
 use crate::{
     record::{Kind, RecordRequest},
@@ -7,22 +7,22 @@ use crate::{
 use eframe::egui::{self, Ui};
 use std::path::{Path, PathBuf};
 
-/// What the dialog is for.
+/// Purpose of the dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum For {
-    /// Reads.
+    /// Opens a file.
     Open,
-    /// Writes the scene.
+    /// Saves the scene.
     Save,
-    /// Writes what is seen.
+    /// Records the view.
     Record(Kind),
 }
 
-/// What a person decided.
+/// The user's decision.
 pub enum Decision {
-    /// About the session.
+    /// An action for the session.
     Do(Action),
-    /// A record.
+    /// A recording.
     Record(RecordRequest),
 }
 
@@ -31,7 +31,7 @@ pub struct Files {
     open: Option<For>,
     path: String,
     seconds: f32,
-    /// Chosen in the desktop's dialog, which runs on a thread of its own.
+    /// Receives the result of the desktop's dialog, which runs on its own thread.
     chosen: Option<std::sync::mpsc::Receiver<Option<PathBuf>>>,
 }
 
@@ -42,7 +42,7 @@ impl Default for Files {
 }
 
 impl Files {
-    /// Opens the dialog, with the file that is meant most likely.
+    /// Opens the dialog with a suggested path.
     pub fn ask(&mut self, what: For, known: Option<&Path>) {
         self.open = Some(what);
         self.path = match what {
@@ -57,7 +57,7 @@ impl Files {
         self.open = None;
     }
 
-    /// Shows it.
+    /// Shows the dialog.
     pub fn show(&mut self, ctx: &egui::Context) -> Option<Decision> {
         if let Some(chosen) = self.chosen.take() {
             match chosen.try_recv() {
@@ -119,11 +119,11 @@ impl Files {
         let (send, receive) = std::sync::mpsc::channel();
         self.chosen = Some(receive);
         let ctx = ui.ctx().clone();
-        // A desktop without a portal answers nothing: the path can be typed.
+        // A desktop without a portal returns nothing. The path can still be typed.
         std::thread::spawn(move || {
             let dialog = rfd::FileDialog::new();
             let path = if what == For::Open { dialog.pick_file() } else { dialog.save_file() };
-            // The window may have closed meanwhile.
+            // The window may have been closed in the meantime.
             let _ = send.send(path);
             ctx.request_repaint();
         });

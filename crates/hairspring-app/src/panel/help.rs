@@ -1,9 +1,9 @@
-//! The keys, on `?`.
+//! The list of keyboard shortcuts, shown with `?`.
 
 use crate::view::Hand;
 use eframe::egui;
 
-/// Keys and what they do.
+/// Keys and their functions.
 const KEYS: [(&str, &str); 15] = [
     ("Space", "play or pause"),
     ("Right", "a step, while paused"),
@@ -22,10 +22,10 @@ const KEYS: [(&str, &str); 15] = [
     ("drag a blue dot", "blow from elsewhere; move, turn, widen what stands in the scene"),
 ];
 
-/// Width of what keys do [points].
+/// Width of the descriptions [points].
 const WIDTH: f32 = 420.0;
 
-/// Shows the page.
+/// Shows the list.
 pub fn show(ctx: &egui::Context, open: &mut bool) {
     let window = egui::Window::new("Keys").open(open).resizable(false).collapsible(false);
     window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ctx, |ui| {

@@ -1,4 +1,5 @@
-//! Numbers: time of each stage, stretch, speed, energy, depth, volume; their last seconds as graphs; the strand that was picked.
+//! Figures: time of each stage, stretch, speed, energy, depth, volume; graphs of the last seconds; the picked
+//! strand.
 
 use crate::{
     session::{Action, Session},
@@ -8,26 +9,26 @@ use eframe::egui::{self, Ui};
 use egui_plot::{Legend, Line, Plot, PlotPoints};
 use std::collections::VecDeque;
 
-/// Moments that graphs go back: ten seconds.
+/// Number of moments in the graphs: ten seconds.
 const MOMENTS: usize = 600;
 
-/// Figures of a moment.
+/// The figures of one moment.
 #[derive(Clone, Copy, Default)]
 struct Moment {
     time: f64,
-    /// Body, simulation, follow hairs, the whole step [ms].
+    /// Time of body, simulation, follow hairs, and the whole step [ms].
     took: [f64; 4],
-    /// Mean and largest stretch [%].
+    /// Mean and maximum stretch [%].
     stretch: [f64; 2],
-    /// Fastest point [m/s].
+    /// Speed of the fastest point [m/s].
     speed: f64,
-    /// Of motion, and of what is bent, twisted and stretched [µJ].
+    /// Kinetic energy, and elastic energy of bending, twist and stretch [µJ].
     energy: [f64; 2],
-    /// Deepest point and segment inside a collider [mm].
+    /// Maximum depth of points and of segments inside a collider [mm].
     depth: [f64; 2],
 }
 
-/// The last seconds.
+/// The figures of the last seconds.
 #[derive(Default)]
 pub struct History {
     moments: VecDeque<Moment>,
@@ -35,7 +36,7 @@ pub struct History {
 }
 
 impl History {
-    /// Keeps a moment, if it is a new one.
+    /// Adds a moment, if it is new.
     pub fn keep(&mut self, snapshot: &Snapshot) {
         if self.last.0 != snapshot.scene {
             self.moments.clear();
@@ -104,7 +105,7 @@ impl History {
     }
 }
 
-/// How much hair there is and how it is.
+/// Shows the amount of hair and its figures.
 pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) {
     let Some(scenery) = snapshot.stages.first() else { return };
     let [guides, strands, points, all] = scenery.still.counts;
@@ -143,7 +144,7 @@ pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) 
     }
 }
 
-/// The strand that was picked.
+/// Shows the figures of the picked strand.
 pub fn picked(ui: &mut Ui, snapshot: &Snapshot, actions: &mut Vec<Action>) {
     let Some((picked, figures)) = &snapshot.picked else { return };
     ui.horizontal(|ui| {

@@ -1,4 +1,5 @@
-//! Lists of keys as rows: a time and what is where then, each number with its unit; rows are added and taken out.
+//! Lists of keys as rows: a time and the values at that time, each with its unit. Rows can be added and
+//! removed.
 
 use crate::{
     field::{Field, Keys, of},
@@ -8,34 +9,34 @@ use crate::{
 use eframe::egui::{DragValue, Response, Ui};
 use toml_edit::{Array, InlineTable, Value};
 
-/// How much later a key is added [s].
+/// Time between the last key and an added one [s].
 const LATER: f64 = 0.5;
-/// Shortest time between two keys [s].
+/// Minimum time between two keys [s].
 const APART: f64 = 1e-3;
 
 impl Keys {
-    /// Numbers of the column named `column`.
+    /// Number of values in the column named `column`.
     fn width(column: &str) -> usize {
         if column == "time" { 1 } else { 3 }
     }
 
-    /// Numbers of a key.
+    /// Number of values of a key.
     fn numbers(&self) -> usize {
         self.columns.iter().map(|c| Self::width(c)).sum()
     }
 
-    /// Each column, and the number of its first number.
+    /// Each column, and the index of its first value.
     fn columns(&self) -> Vec<(&'static str, usize)> {
         let start = |k: usize| self.columns[..k].iter().map(|c| Self::width(c)).sum();
         self.columns.iter().enumerate().map(|(k, column)| (*column, start(k))).collect()
     }
 
-    /// Whether keys follow one another in time.
+    /// Whether the keys have times.
     fn timed(&self) -> bool {
         self.columns.first() == Some(&"time")
     }
 
-    /// The numbers of each key; what a key does not say is 0.
+    /// The values of each key; missing ones are 0.
     fn read(&self, list: Option<&toml::Value>) -> Vec<Vec<f64>> {
         fn flat(value: Option<&toml::Value>, out: &mut Vec<f64>) {
             match value {
@@ -61,7 +62,7 @@ impl Keys {
         list.and_then(toml::Value::as_array).into_iter().flatten().map(row).collect()
     }
 
-    /// A key as the file has it.
+    /// A key in the form of the file.
     fn written(&self, numbers: &[f64]) -> Value {
         if self.plain {
             return numbers.iter().copied().collect::<Array>().into();
@@ -76,7 +77,7 @@ impl Keys {
         table.into()
     }
 
-    /// The row that comes after `k`: between its neighbours, or later than the last.
+    /// The row to insert after `k`: between its neighbors, or later than the last one.
     fn after(&self, rows: &[Vec<f64>], k: usize) -> Vec<f64> {
         let row = rows[k].clone();
         match rows.get(k + 1) {
@@ -94,8 +95,8 @@ fn column_value(numbers: &[f64]) -> Value {
     }
 }
 
-/// Shows the keys that `value` lists at `key`; `first` is what an empty list begins with. Where a change begins the scene anew (`slow`), it is made when
-/// the hand lets go.
+/// Shows the list of keys `value` at `key`. `first` is the first key of an empty list. If a change restarts
+/// the scene (`slow`), it is applied when the drag ends.
 pub fn show(
     ui: &mut Ui,
     (key, field, keys): (&Key, &Field, Keys),
@@ -109,7 +110,7 @@ pub fn show(
         Action::Set(key.clone(), Some(list.into()))
     };
     let columns = keys.columns();
-    // A time stands over what is where then: four numbers and two buttons are wider than the panel.
+    // The time is on a line above the values, because four numbers and two buttons are wider than the panel.
     let (first_line, others) = columns.split_at(1);
     for (k, row) in rows.iter().enumerate() {
         let cell = |ui: &mut Ui, (column, at): (&'static str, usize), actions: &mut Vec<Action>| {
@@ -156,14 +157,14 @@ pub fn show(
     }
 }
 
-/// From when to when key `k` may be [s].
+/// The range of times that key `k` may have [s].
 fn between(rows: &[Vec<f64>], k: usize) -> (f64, f64) {
     let before = k.checked_sub(1).map_or(0.0, |k| rows[k][0] + APART);
     let after = rows.get(k + 1).map_or(f64::MAX, |next| next[0] - APART);
     (before, after.max(before))
 }
 
-/// The numbers of a column; whether they have other values now.
+/// Shows the values of a column. Returns whether they changed.
 fn edited(
     ui: &mut Ui,
     (field, column): (&Field, &str),
@@ -176,7 +177,7 @@ fn edited(
     let mut changed = false;
     for (axis, x) in numbers.iter_mut().enumerate() {
         let id = ui.scope_id().with((column, axis));
-        // What is being dragged and is not yet made is kept by the panel.
+        // The panel keeps a dragged value until it is applied.
         let held: Option<f64> = ui.data(|d| d.get_temp(id));
         let mut shown = held.unwrap_or(*x);
         let speed = match unit {
@@ -203,12 +204,12 @@ fn edited(
     changed
 }
 
-/// Whether a number is neither dragged nor typed.
+/// Whether a number is neither dragged nor being typed.
 fn rests(response: &Response) -> bool {
     !response.dragged() && !response.has_focus()
 }
 
-/// A tenth of a millimetre, of a millisecond, of a thousandth of a degree: no file needs more.
+/// Rounds to four decimals: a tenth of a millimeter or of a millisecond, which is sufficient.
 fn tidy(x: f64) -> f64 {
     (x * 1e4).round() / 1e4
 }

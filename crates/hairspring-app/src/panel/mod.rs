@@ -1,4 +1,5 @@
-//! The panels around the picture: each shows the session as it is and says what a person asks for as actions.
+//! The panels around the picture. Each shows the state of the session and returns the user's input as
+//! actions.
 
 pub mod control;
 pub mod files;
@@ -13,9 +14,9 @@ pub mod wind;
 
 use eframe::egui::{self, Ui};
 
-/// Names a widget for screen readers and scripts.
+/// Labels a widget for screen readers and scripts.
 pub trait Labelled {
-    /// Gives it this name.
+    /// Sets the label.
     fn labelled(self, ui: &Ui, name: &str) -> Self;
 }
 

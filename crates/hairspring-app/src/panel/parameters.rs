@@ -1,4 +1,4 @@
-//! Every parameter as a slider with its unit, range, tooltip and reset, under what an artist thinks of.
+//! All parameters as widgets with unit, range, tooltip and reset button, grouped by artistic purpose.
 
 use super::control::{VALUE, as_number, control};
 use crate::{
@@ -12,12 +12,13 @@ use glam::Vec3;
 use hairspring_scene::Camera;
 use toml_edit::Value;
 
-/// Width of names [points].
+/// Width of labels [points].
 const LABEL: f32 = 106.0;
-/// Width of what brings a parameter back, which has its room whether it is there or not [points].
+/// Width of the reset button, for which space is always reserved [points].
 const RESET: f32 = 42.0;
 
-/// Shows all groups, beside a picture that is seen from `camera`: what is added to the scene stands where that looks.
+/// Shows all groups. `camera` is the camera of the window; entries that are added to the scene are placed at
+/// its target.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -55,7 +56,7 @@ pub fn show(
                 continue;
             }
             none = false;
-            // What a search opens is another header than the one that stands without it, which stays as it was left.
+            // During a search the header has a different id, so that the open state without a search is kept.
             egui::CollapsingHeader::new(RichText::new(group.name()).strong())
                 .id_salt((group.name(), &sought))
                 .default_open(!sought.is_empty() || [Group::Style, Group::Stiffness].contains(&group))
@@ -83,16 +84,16 @@ pub fn show(
     });
 }
 
-/// Name of what makes the window's camera the scene's.
+/// Label of the button that copies the window's camera into the scene.
 const TAKE_VIEW: &str = "Take what is seen here";
 
-/// The scene's camera where the window's is.
+/// Copies the window's camera into the scene.
 fn take_view(ui: &mut Ui, camera: Option<Camera>, actions: &mut Vec<Action>) {
     let Some(camera) = camera else { return };
     let button = ui.small_button(TAKE_VIEW);
     if button.on_hover_text("The scene is opened and rendered from where the window looks now.").clicked() {
         let key = Key::top("camera");
-        // A tenth of a millimetre: no file needs more.
+        // Rounds to a tenth of a millimeter, which is sufficient.
         let tidy = |x: f32| (f64::from(x) * 1e4).round() / 1e4;
         let place = |at: Vec3| Value::from_iter(at.to_array().map(tidy));
         actions.push(Action::SetAll(vec![
@@ -104,7 +105,7 @@ fn take_view(ui: &mut Ui, camera: Option<Camera>, actions: &mut Vec<Action>) {
     }
 }
 
-/// What stands in a group besides its parameters.
+/// The lists that are shown in a group in addition to its parameters.
 fn lists(group: Group) -> &'static [&'static str] {
     match group {
         Group::Motion => &["Keys"],
@@ -115,7 +116,7 @@ fn lists(group: Group) -> &'static [&'static str] {
     }
 }
 
-/// Which groom, and which group of it.
+/// Selects the groom, and the group in it.
 fn choose(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let (groom, group) = session.chosen();
     let document = session.edited();
@@ -147,7 +148,8 @@ fn choose(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     }
 }
 
-/// Whether a scene like this has the parameter: hair that is read from a file is not of a style, and grows nowhere.
+/// Whether the parameter applies to this kind of scene: hair that is read from a file has no style and is not
+/// grown.
 fn has_place(session: &Session, parameter: &Parameter) -> bool {
     let (groom, group) = session.chosen();
     let (key, effective) = (parameter.key(groom, group), session.edited().effective());
@@ -155,13 +157,14 @@ fn has_place(session: &Session, parameter: &Parameter) -> bool {
     key.look_up(effective).is_some() || (maybe && key.parent().look_up(effective).is_some())
 }
 
-/// One parameter.
+/// Shows one parameter.
 fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &mut Vec<Action>) {
     let chosen = session.chosen();
     let document = session.edited();
     let key = parameter.key(chosen.0, chosen.1);
     ui.push_id(parameter.name, |ui| {
-        // A scene that begins anew does so when the hand lets go: until then the value is only shown.
+        // If a change restarts the scene, it is applied when the drag ends. Until then the value is only
+        // displayed.
         let held_id = ui.scope_id().with("held");
         let held: Option<Value> = ui.data(|data| data.get_temp(held_id));
         let shown: Option<toml::Value> =
@@ -217,7 +220,7 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
     });
 }
 
-/// What a parameter does, what it takes and what it is where nothing is said.
+/// The tooltip: description, accepted values and default.
 fn tip(parameter: &Parameter, idle: Option<&str>, default: Option<&toml::Value>) -> String {
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
     let range = match parameter.kind {
@@ -247,7 +250,7 @@ fn tip(parameter: &Parameter, idle: Option<&str>, default: Option<&toml::Value>)
     format!("{first}{}\n\n{range}; default {default}\n{}", parameter.tip, parameter.name)
 }
 
-/// A number in few letters.
+/// Formats a number compactly.
 fn short(x: f64) -> String {
     let far = x != 0.0 && !(1e-3..1e6).contains(&x.abs());
     if far { format!("{x:e}") } else { format!("{x}") }

@@ -1,4 +1,4 @@
-//! Scenes to begin from, each with a small picture of it.
+//! Preset scenes with thumbnails.
 
 use crate::{document::builtin_text, session::Action};
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Ui, vec2};
@@ -6,12 +6,12 @@ use hairspring_scene::stage::Stage;
 use hairspring_view::{Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality, Renderer};
 use std::sync::mpsc::{Receiver, channel};
 
-/// Size of a small picture [pixels].
+/// Size of a thumbnail [pixels].
 const SIZE: [u32; 2] = [132, 132];
-/// Hairs in it.
+/// Number of hairs in a thumbnail.
 const HAIRS: u32 = 3000;
 
-/// What there is: its name and how its text begins; `{}` takes the numbers of hairs.
+/// The presets: label, style, and additional text; `{}` is replaced by the numbers of hairs.
 pub(super) const PRESETS: [(&str, &str, &str); 8] = [
     ("Straight", "straight", ""),
     ("Wavy", "wavy", ""),
@@ -38,7 +38,7 @@ pub(super) fn text(k: usize, hairs: u32, guides: u32) -> String {
     format!("{text}{more}")
 }
 
-/// Shows presets; draws their pictures on a thread when they are first seen.
+/// Shows the presets. Their thumbnails are drawn on a thread when the panel is first shown.
 #[derive(Default)]
 pub struct Presets {
     pictures: Vec<Option<TextureHandle>>,
@@ -46,7 +46,8 @@ pub struct Presets {
 }
 
 impl Presets {
-    /// Shows them; `hairs`: how many this machine draws well, and how many guides of them.
+    /// Shows the presets. `hairs` is the number of hairs that this machine draws well, and the number of
+    /// guides.
     pub fn show(
         &mut self,
         ctx: &egui::Context,
@@ -97,7 +98,7 @@ fn picture(ui: &mut Ui, texture: Option<&TextureHandle>, name: &str) -> bool {
     ui.button(name).clicked() || pressed
 }
 
-/// Draws all of them, one after the other, on a thread.
+/// Draws all thumbnails one after the other on a thread.
 fn draw(ctx: &egui::Context) -> Receiver<(usize, hairspring_view::Image)> {
     let (send, receive) = channel();
     let ctx = ctx.clone();
@@ -106,7 +107,7 @@ fn draw(ctx: &egui::Context) -> Receiver<(usize, hairspring_view::Image)> {
         for (k, (_, _, more)) in PRESETS.iter().enumerate() {
             let scene = hairspring_io::read_scene_text("scene.toml".as_ref(), &text(k, HAIRS, 300));
             let Some(mut stage) = scene.ok().and_then(|s| Stage::new(s.value).ok()) else { continue };
-            // What moves is seen moved.
+            // Presets with motion are simulated for a moment.
             if more.contains("wind") || more.contains("charge") {
                 for _ in 0..45 {
                     stage.step(crate::player::STEP);

@@ -1,4 +1,4 @@
-//! Play, pause, step, reset, slow motion; tools; what colours show.
+//! Playback controls (play, pause, step, reset, slow motion), tools, and the choice of the color ramp.
 
 use crate::{
     session::{Action, Session},
@@ -8,7 +8,7 @@ use crate::{
 use eframe::egui::{self, Ui};
 use hairspring_scene::stage::Value;
 
-/// The bar under the picture.
+/// The bar below the picture.
 pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let playing = session.playing();
@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
         ui.separator();
         if let Some(snapshot) = snapshot {
             let took = snapshot.took.as_secs_f32();
-            // What a step may take and the play keeps its speed.
+            // The time that a step may take at the current playback speed.
             let due = crate::player::STEP / session.speed();
             let share = due / took.max(1e-6);
             ui.monospace(format!("{:6.2} s", snapshot.time));
@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
     });
 }
 
-/// Tools, colours, what is laid over.
+/// Tools, color ramp and overlays.
 pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for (hand, name, _, tip) in Hand::ALL {

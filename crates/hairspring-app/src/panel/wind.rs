@@ -1,12 +1,13 @@
-//! A wind rose to drag: the air seen from above.
+//! A draggable wind rose, which shows the air from above.
 
 use eframe::egui::{self, Color32, Pos2, Sense, Stroke, Ui, Vec2, vec2};
 
 /// Radius of the rose [points].
 const RADIUS: f32 = 34.0;
 
-/// Shows where the wind blows to, x to the right and z towards the viewer, and changes it by dragging; true where it did. The square root of the speed is the
-/// length, so that a breeze can be set as well as a storm.
+/// Shows the wind direction, with x to the right and z toward the viewer, and changes it by dragging. Returns
+/// true if it changed. The length is the square root of the speed, so that both a breeze and a storm can be
+/// set.
 pub fn pad(ui: &mut Ui, wind: &mut [f32; 3], reach: f32) -> bool {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(2.0 * RADIUS), Sense::click_and_drag());
     let middle = rect.center();
@@ -16,7 +17,7 @@ pub fn pad(ui: &mut Ui, wind: &mut [f32; 3], reach: f32) -> bool {
     {
         let way = (at - middle) / RADIUS;
         let length = way.length().min(1.0);
-        // The middle is calm: a hand does not find 0 otherwise.
+        // The center means calm. Otherwise it would be hard to set 0 by hand.
         let speed = if length < 0.12 { 0.0 } else { length * length * reach };
         let unit = if length > 0.0 { way.normalized() } else { Vec2::ZERO };
         (wind[0], wind[2]) = (unit.x * speed, unit.y * speed);

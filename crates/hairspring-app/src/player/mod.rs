@@ -1,4 +1,5 @@
-//! The simulation on a thread of its own, at a fixed step: the picture never waits for it, and what hair does depends on no frame rate.
+//! Runs the simulation on its own thread with a fixed time step. The picture never waits for it, and the
+//! hair's motion does not depend on the frame rate.
 
 mod publish;
 mod work;
@@ -21,59 +22,59 @@ use std::{
 };
 use work::Work;
 
-/// Rate of steps: that of most screens.
+/// Rate of the steps, which is that of most screens.
 pub const RATE: FrameRate = FrameRate::new(60, 1).expect("60 Hz is a rate");
 
 /// Length of a step [s].
 pub const STEP: f32 = 1.0 / 60.0;
 
-/// What the thread is told.
+/// Commands to the thread.
 pub enum Order {
-    /// Opens a scene and, to compare, a second one beside it, at time 0.
+    /// Opens a scene and optionally a second one for comparison, at time 0.
     Open(Box<Scene>, Option<Box<Scene>>),
-    /// Takes up settings in the midst of the play.
+    /// Applies new settings while playing.
     Retune(Box<Scene>, Option<Box<Scene>>),
     /// Plays or pauses.
     Play(bool),
-    /// Steps once.
+    /// Advances by one step.
     Step,
-    /// Back to time 0.
+    /// Returns to time 0.
     Reset,
-    /// Seconds of the scene in a second, above 0.
+    /// Playback speed in scene seconds per second, above 0.
     Speed(f32),
-    /// Begins anew after so many seconds; `None`: plays on.
+    /// Restarts after this time [s]; `None` plays on.
     Loop(Option<f64>),
-    /// Takes a tool, which moves at once with every `Carry`.
+    /// Adds a tool, which follows every `Carry`.
     Take(Manipulator, RigidTransform),
-    /// Moves it.
+    /// Moves the tool.
     Carry(RigidTransform),
-    /// Lets go.
+    /// Removes the tool.
     LetGo,
-    /// What is pushed through hair, and where the pointer has it.
+    /// The object that is pushed through hair, and its target pose.
     Push(Option<Push>),
-    /// Where the body is carried besides its motion.
+    /// Displacement of the body in addition to its motion.
     Body(RigidTransform),
-    /// Which number of each point is wanted.
+    /// The value of each point that is shown as a color.
     Show(Option<Value>),
-    /// Picks the strand on a ray; `None`: none.
+    /// Picks the strand on a ray; `None` clears the selection.
     Pick(Option<(Vec3, Vec3)>),
 }
 
-/// What the window and the thread share.
+/// State shared by the window and the thread.
 #[derive(Default)]
 struct Shared {
     latest: Mutex<Option<Arc<Snapshot>>>,
-    /// Whether the last moment has been seen, and another is wanted.
+    /// Whether the last snapshot has been taken, so that another one is needed.
     seen: AtomicBool,
     error: Mutex<Option<AppError>>,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    // What is behind it is replaced as a whole: a thread that panicked left nothing half done.
+    // The value is always replaced as a whole, so a thread that panicked left nothing inconsistent.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The window's hold on the thread. Dropped, it ends it.
+/// The window's handle to the thread. Dropping it ends the thread.
 pub struct Player {
     orders: Option<Sender<Order>>,
     shared: Arc<Shared>,
@@ -81,9 +82,11 @@ pub struct Player {
 }
 
 impl Player {
-    /// A thread that calls `wake` whenever there is something new to see, and steps on so many threads: fewer than processors where another pool draws,
-    /// for a step would wait at each of its ends for a thread that is not given a processor. Follow hairs are left to who draws
-    /// them: a `card` where it can place them, or else the picture by the CPU, which has no use for all of them.
+    /// Starts a thread that calls `wake` when there is something new to show. `threads` is the number of
+    /// threads of a step. It should be less than the number of processors if another pool draws, because each
+    /// parallel section of a step would otherwise wait for a thread that has no processor. Follow hairs are
+    /// interpolated by the renderer: on the GPU `card` if it supports them, or for the picture of the CPU,
+    /// which does not need all of them.
     pub fn new(threads: usize, card: Option<Gpu>, wake: impl Fn() + Send + 'static) -> Self {
         let (orders, inbox) = channel();
         let shared = Arc::new(Shared::default());
@@ -92,33 +95,33 @@ impl Player {
             let mut work = Work { inbox, shared: own, card, wake: Box::new(wake), ..Work::new() };
             match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => pool.install(|| work.run()),
-                // The pool of all is there in any case.
+                // Falls back to the global thread pool.
                 Err(_) => work.run(),
             }
         });
         Self { orders: Some(orders), shared, thread: thread.ok() }
     }
 
-    /// Tells it something. Nothing where it has ended.
+    /// Sends a command. Has no effect if the thread has ended.
     pub fn tell(&self, order: Order) {
         if let Some(orders) = &self.orders {
-            // It ended by a panic, which was reported.
+            // The thread ended by a panic that was reported.
             let _ = orders.send(order);
         }
     }
 
-    /// The last moment.
+    /// The last snapshot.
     pub fn latest(&self) -> Option<Arc<Snapshot>> {
         self.shared.seen.store(true, Relaxed);
         lock(&self.shared.latest).clone()
     }
 
-    /// Why the last order could not be done, once.
+    /// The error of the last command, returned once.
     pub fn error(&self) -> Option<AppError> {
         lock(&self.shared.error).take()
     }
 
-    /// Whether the thread ended by itself.
+    /// Whether the thread has ended by itself.
     pub fn is_dead(&self) -> bool {
         self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
@@ -128,7 +131,7 @@ impl Drop for Player {
     fn drop(&mut self) {
         self.orders = None;
         if let Some(thread) = self.thread.take() {
-            // Its panic was reported when it happened.
+            // The panic was reported when it happened.
             let _ = thread.join();
         }
     }

@@ -1,4 +1,4 @@
-//! Moments for the window: what is shown of the stages, in memory that is used again.
+//! Publishes snapshots for the window, and reuses their memory.
 
 use super::{lock, work::Work};
 use crate::{
@@ -11,11 +11,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Steps from one measurement of all strands to the next while it plays: figures that change faster cannot be read.
+/// Steps between measurements of all strands while playing. Figures that change faster cannot be read.
 const MEASURED: u64 = 15;
 
 impl Work {
-    /// Brings all strands of the stages up to date.
+    /// Updates the follow hairs of all stages.
     pub(super) fn show(&mut self) {
         if std::mem::take(&mut self.unshown) {
             for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
@@ -27,7 +27,7 @@ impl Work {
         }
     }
 
-    /// Shows the stages as they are.
+    /// Publishes the current state of the stages.
     pub(super) fn publish(&mut self) {
         if self.stages.is_empty() {
             return;
@@ -40,7 +40,7 @@ impl Work {
             self.measures.extend(self.stages.iter().map(|(stage, _)| (stage.measure(), stage.energy())));
         }
         let mut next = self.spare();
-        // Nobody else has it: `spare` saw to that.
+        // `spare` returned a snapshot without other owners.
         let (Some(snapshot), Some((first, _))) = (Arc::get_mut(&mut next), self.stages.first()) else {
             return;
         };
@@ -70,9 +70,9 @@ impl Work {
         (self.wake)();
     }
 
-    /// A snapshot that nobody looks at.
+    /// Returns a snapshot that nobody else uses.
     fn spare(&mut self) -> Arc<Snapshot> {
-        // The window holds one or two: more would be a leak.
+        // The window holds one or two snapshots. The limit prevents a leak.
         self.pool.truncate(8);
         let free = self.pool.iter_mut().position(|s| Arc::get_mut(s).is_some());
         free.map(|k| self.pool.swap_remove(k)).unwrap_or_else(|| {

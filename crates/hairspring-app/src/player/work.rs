@@ -1,4 +1,4 @@
-//! What the thread does: it obeys orders between steps, and steps when one is due.
+//! The loop of the thread: it executes commands between steps, and advances when a step is due.
 
 use super::{Order, RATE, STEP, Shared, lock};
 use crate::{
@@ -22,13 +22,14 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Steps are shown at least so often [s] while nobody asks for them: a window that draws slower than the play finds a moment that is not older.
+/// Maximum time between published snapshots if nobody requests them [s]. A window that draws more slowly than
+/// the simulation then gets a recent state.
 const SHOWN: Duration = Duration::from_millis(33);
 
-/// How long after a scene was opened the one before has left all of the window.
+/// Time after opening a scene until the window has released all of the previous one.
 const LEFT: Duration = Duration::from_secs(1);
 
-/// What the thread works with.
+/// State of the thread.
 pub(super) struct Work {
     pub(super) inbox: Receiver<Order>,
     pub(super) shared: Arc<Shared>,
@@ -39,7 +40,7 @@ pub(super) struct Work {
     pub(super) speed: f32,
     pub(super) end: Option<f64>,
     pub(super) tool: Option<Vec<ManipulatorId>>,
-    /// Where the body is carried, and a tool, and what is pushed, and where the pointer has them.
+    /// Poses of the body and of the tool, which follow the pointer.
     pub(super) body: Pulled,
     pub(super) carried: Pulled,
     pub(super) pushing: Option<Pushing>,
@@ -50,20 +51,20 @@ pub(super) struct Work {
     pub(super) published: u64,
     pub(super) reset_strands: usize,
     pub(super) report: FrameReport,
-    /// Of each stage, at the last measurement, and the scene and step of that.
+    /// The last measurements of each stage, and their scene and step.
     pub(super) measures: Vec<(Measure, Energy)>,
     pub(super) measured: (u64, u64),
-    /// Steps are played whose follow hairs have not been placed.
+    /// Whether steps were played without interpolating the follow hairs.
     pub(super) unshown: bool,
-    /// What a step takes, all that belongs to it included, over some steps.
+    /// Total time of a step, averaged over some steps.
     pub(super) took: Duration,
-    /// When something was shown last.
+    /// Time of the last published snapshot.
     pub(super) shown: Instant,
-    /// When the next step is due.
+    /// Time at which the next step is due.
     pub(super) due: Instant,
-    /// Snapshots whose memory is used again once the window has left them.
+    /// Snapshots whose memory is reused once the window has released them.
     pub(super) pool: Vec<Arc<Snapshot>>,
-    /// When what the last scene left behind is given back to the system.
+    /// Time at which the memory of the last scene is returned to the system.
     pub(super) tidy: Option<Instant>,
 }
 
@@ -112,13 +113,13 @@ impl Work {
                 .map_or(Duration::from_secs(3600), |until| until.saturating_duration_since(Instant::now()));
             match self.inbox.recv_timeout(wait) {
                 Ok(order) => {
-                    // What has come in meanwhile belongs to the same moment.
+                    // Commands that have arrived in the meantime belong to the same moment.
                     let orders: Vec<Order> = std::iter::once(order).chain(self.inbox.try_iter()).collect();
                     let last = orders.iter().rposition(|o| matches!(o, Order::Open(..))).unwrap_or(0);
                     let mut news = false;
                     for (k, order) in orders.into_iter().enumerate() {
                         match order {
-                            // A scene that another one has already taken the place of is none to build.
+                            // A scene that is replaced by a later command is not built.
                             Order::Open(..) if k < last => self.scene += 1,
                             order => news |= self.obey(order),
                         }
@@ -133,11 +134,11 @@ impl Work {
                     if self.shared.seen.load(Relaxed) || self.shown.elapsed() > SHOWN {
                         self.publish();
                     }
-                    // Smooth: steps that are shown take longer than others.
+                    // Averaged, because steps that are shown take longer than others.
                     let took = began.elapsed();
                     self.took = if self.step < 2 { took } else { self.took.mul_f32(0.9) + took.mul_f32(0.1) };
                     let frame = Duration::from_secs_f32(STEP / self.speed);
-                    // A step that took too long is not made up for: time runs slower.
+                    // A step that took too long is not caught up: the scene plays more slowly.
                     self.due = (self.due + frame).max(Instant::now());
                 }
                 Err(RecvTimeoutError::Timeout) => {}
@@ -146,7 +147,7 @@ impl Work {
         }
     }
 
-    /// Does what it is told; whether there is something new to see.
+    /// Executes a command. Returns whether there is something new to show.
     fn obey(&mut self, order: Order) -> bool {
         match order {
             Order::Open(scene, other) => {
@@ -251,7 +252,7 @@ impl Work {
         self.due = Instant::now();
     }
 
-    /// Takes what the pointer pulls along, for a step.
+    /// Moves what follows the pointer, for one step.
     fn pull(&mut self) {
         if self.body.go(FASTEST_HEAD) {
             self.stages.iter_mut().for_each(|(stage, _)| stage.move_body(self.body.now));
@@ -266,7 +267,7 @@ impl Work {
         }
     }
 
-    /// Shows all stages where what is pushed is.
+    /// Updates the user colliders of all stages.
     fn place_pushed(&mut self) {
         let (shapes, pose) = self.pushing.as_ref().map(Pushing::placed).unwrap_or_default();
         self.stages.iter_mut().for_each(|(stage, _)| stage.set_user_colliders(shapes, pose));
@@ -278,7 +279,7 @@ impl Work {
             self.stages.first().is_some_and(|(s, _)| s.time() + 0.5 * f64::from(STEP) > end)
         }) {
             self.reset();
-            // It counts as a step: who waits for so many would else wait for ever.
+            // It counts as a step. Otherwise a script that waits for steps would wait forever.
             self.step += 1;
             return;
         }
@@ -294,7 +295,7 @@ impl Work {
     }
 }
 
-/// The body of the first stage, over which a hand goes.
+/// The body of the first stage, over which a hand moves.
 fn body(stages: &[(Stage, Arc<Still>)]) -> Option<PosedBody<'_>> {
     stages.first()?.0.body()
 }

@@ -1,4 +1,4 @@
-//! Whatever a person, a script or a monkey does.
+//! Actions of a user, a script or a random test.
 
 use crate::{drag_limiter::Push, key::Key, parameter::Parameter};
 use glam::Vec3;
@@ -6,63 +6,63 @@ use hairspring_scene::stage::Value;
 use std::path::PathBuf;
 use toml_edit::Value as Toml;
 
-/// What can be done.
+/// An action.
 #[derive(Clone, Debug)]
 pub enum Action {
     /// Plays or pauses.
     Play(bool),
-    /// Steps once.
+    /// Advances by one step.
     Step,
-    /// Back to time 0.
+    /// Returns to time 0.
     Reset,
-    /// Seconds of the scene in a second.
+    /// Sets the playback speed in scene seconds per second.
     Speed(f32),
-    /// Whether the motion begins anew at its end.
+    /// Sets whether the motion repeats.
     Repeat(bool),
-    /// Writes a parameter; `None`: its default counts.
+    /// Writes a parameter; `None` restores its default.
     Parameter(&'static Parameter, Option<Toml>),
     /// Writes a value by its key.
     Set(Key, Option<Toml>),
-    /// Writes several values by their keys, which are one step to go back.
+    /// Writes several values by their keys as one undo step.
     SetAll(Vec<(Key, Option<Toml>)>),
-    /// What was dragged is let go of.
+    /// Ends a drag.
     Rest,
-    /// Adds an entry to a list, by the text of its fields.
+    /// Adds an entry to a list, given as the text of its fields.
     Add(&'static str, String),
-    /// Takes one out.
+    /// Removes an entry from a list.
     Remove(&'static str, usize),
-    /// A step back.
+    /// Undoes one step.
     Undo,
-    /// A step forth.
+    /// Redoes one step.
     Redo,
-    /// Another groom and group of it are shown and changed.
+    /// Selects another groom and group.
     Choose(usize, usize),
-    /// A scene that is not saved yet.
+    /// Opens an unsaved scene with this text.
     New(String),
-    /// A scene, groom or body file.
+    /// Opens a scene, groom or body file.
     Open(PathBuf),
-    /// Saves the scene; `None`: where it was opened.
+    /// Saves the scene; `None` uses its current path.
     Save(Option<PathBuf>),
-    /// Opens a second scene beside it, which starts out the same, or closes it.
+    /// Opens a second scene for comparison, which starts as a copy, or closes it.
     Compare(bool),
-    /// Whether parameters are those of the second.
+    /// Selects whether parameters are those of the second scene.
     Second(bool),
-    /// What colours show.
+    /// Selects the value that colors show.
     Show(Option<Value>),
     /// Picks the strand on a ray.
     Pick(Vec3, Vec3),
-    /// Forgets what was picked.
+    /// Clears the picked strand.
     Unpick,
-    /// Takes hold of the hair in a ball.
+    /// Grabs the hair in a sphere.
     Grab(Vec3, f32),
-    /// Puts spread fingers in around a place, half of their row [m], and how far they reach [m].
+    /// Inserts a comb: its center, half of its row of tines [m], and its radius [m].
     Comb(Vec3, Vec3, f32),
-    /// Moves what took hold.
+    /// Moves the grab or the comb.
     Carry(Vec3),
-    /// Lets go.
+    /// Releases the grab or the comb.
     LetGo,
-    /// Pushes a ball or a hand through hair; `None`: it is gone.
+    /// Pushes a sphere or a hand through hair; `None` removes it.
     Push(Option<Push>),
-    /// How far the head is carried from where its motion takes it.
+    /// Displacement of the head relative to its motion.
     Head(Vec3),
 }

@@ -1,4 +1,5 @@
-//! What the window works on, without the window: the scene, the one beside it, and the simulation. Whatever a person, a script or a monkey does comes in as an [`Action`].
+//! The model of the window without the window: the scene, the compared scene and the simulation. All input of
+//! a user, a script or a test is an [`Action`].
 
 mod action;
 mod scene;
@@ -26,17 +27,17 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// The scene, the one beside it and the simulation.
+/// The scene, the compared scene and the simulation.
 pub struct Session {
     document: Document,
-    /// Scenes that were open before, as they were left, and after.
+    /// Previously open scenes in the undo history, as they were left, and those for redo.
     before: Vec<Document>,
     after: Vec<Document>,
-    /// How often another scene was gone over to.
+    /// Number of changes to another scene.
     opened: u64,
-    /// What it is compared with.
+    /// The scene that it is compared with.
     second: Option<Document>,
-    /// Whether parameters are those of the second.
+    /// Whether parameters are those of the second scene.
     on_second: bool,
     player: Player,
     playing: bool,
@@ -45,23 +46,23 @@ pub struct Session {
     show: Option<Value>,
     chosen: (usize, usize),
     held: bool,
-    /// What was said of the last scene as it was read.
+    /// Notes from reading the last scene.
     notes: Vec<String>,
     /// Length of the scene's motion [s].
     length: Option<f64>,
     /// Names of the body's joints.
     joints: Vec<String>,
-    /// What the two that are compared differ in.
+    /// Differences between the two compared scenes.
     captions: [String; 2],
-    /// Scenes that were begun: a snapshot of an earlier one is not news.
+    /// Number of started scenes. Snapshots of earlier ones are outdated.
     begun: u64,
-    /// The scene that is being read, after which another begins.
+    /// The scene that is being read and will be started next.
     reading: Option<Reading>,
     threads: usize,
     wake: Wake,
 }
 
-/// What is called whenever there is something new to see, by whoever makes it.
+/// The function that is called when there is something new to show.
 type Wake = Arc<Mutex<dyn Fn() + Send>>;
 
 fn rouse(wake: &Wake) {
@@ -69,7 +70,8 @@ fn rouse(wake: &Wake) {
 }
 
 impl Session {
-    /// Opens a document, to be simulated on so many threads and drawn by this card, if one draws; `wake` is called whenever there is something new to see.
+    /// Opens a document. It is simulated with `threads` threads and drawn by this GPU, if there is one.
+    /// `wake` is called when there is something new to show.
     pub fn new(
         document: Document,
         threads: usize,
@@ -109,7 +111,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Does it.
+    /// Executes an action.
     pub fn act(&mut self, action: Action) -> Result<(), AppError> {
         match action {
             Action::Play(playing) => {
@@ -179,13 +181,13 @@ impl Session {
             Action::Pick(from, way) => self.player.tell(Order::Pick(Some((from, way)))),
             Action::Unpick => self.player.tell(Order::Pick(None)),
             Action::Grab(center, radius) => {
-                // In the tool's own space the ball is where it took hold: it is carried by how far it has gone since.
+                // The sphere is at the origin of the tool's own space, which moves with the grab.
                 let grab = Grab { center: Vec3::ZERO, radius, pull: 60.0, damping: 1.0 };
                 self.player.tell(Order::Take(Manipulator::Grab(grab), at(center)));
                 self.held = true;
             }
             Action::Comb(center, half, radius) => {
-                // Tines that are hard, on hair that slides, as in a scene file.
+                // Stiff tines with low friction, as in a scene file.
                 let comb = Comb { a: -half, b: half, radius, grip: 1000.0, friction: 3.0 };
                 self.player.tell(Order::Take(Manipulator::Comb(comb), at(center)));
                 self.held = true;
@@ -201,7 +203,7 @@ impl Session {
         Ok(())
     }
 
-    /// Finds what the two that are compared differ in.
+    /// Finds the differences between the two compared scenes.
     fn compare(&mut self) {
         self.captions = match &self.second {
             Some(second) => differ::captions(self.document.effective(), second.effective()),
@@ -213,7 +215,7 @@ impl Session {
         self.player.tell(Order::Loop(self.length.filter(|_| self.repeat)));
     }
 
-    /// After a new edit there is no scene to go forth to.
+    /// A new edit clears the scenes for redo.
     fn edited_by(&mut self, change: Change) {
         if change != Change::None {
             self.after.clear();
@@ -221,7 +223,7 @@ impl Session {
         self.follow(change);
     }
 
-    /// Brings the simulation up to an edit.
+    /// Updates the simulation after an edit.
     fn follow(&mut self, change: Change) {
         self.compare();
         match change {
@@ -250,64 +252,64 @@ impl Session {
         &self.document
     }
 
-    /// Whether there is a step to go back, and one to go forth.
+    /// Whether undo is possible, and whether redo is.
     pub fn steps(&self) -> (bool, bool) {
         let (back, forth) = self.edited().history();
         let others = |scenes: &[Document]| !self.on_second && !scenes.is_empty();
         (back || others(&self.before), forth || others(&self.after))
     }
 
-    /// How often another scene was gone over to.
+    /// Number of changes to another scene.
     pub fn opened(&self) -> u64 {
         self.opened
     }
 
-    /// What it is compared with.
+    /// The document that it is compared with.
     pub fn second(&self) -> Option<&Document> {
         self.second.as_ref()
     }
 
-    /// Whether parameters are those of the second.
+    /// Whether parameters are those of the second scene.
     pub fn on_second(&self) -> bool {
         self.on_second
     }
 
-    /// The last moment.
+    /// The last snapshot.
     pub fn latest(&self) -> Option<Arc<Snapshot>> {
         self.player.latest()
     }
 
-    /// Takes up what other threads have done since: a scene that was read begins. Why they could not do what they were told, once.
+    /// Processes results of other threads: a scene that was read is started. Returns their error, once.
     pub fn error(&mut self) -> Option<AppError> {
         self.hear().or_else(|| self.player.error())
     }
 
-    /// Whether a scene is being read, while the one before plays on.
+    /// Whether a scene is being read while the previous one plays on.
     pub fn is_reading(&self) -> bool {
         self.reading.is_some()
     }
 
-    /// Whether the simulation has ended by itself.
+    /// Whether the simulation thread has ended by itself.
     pub fn is_dead(&self) -> bool {
         self.player.is_dead()
     }
 
-    /// Scenes that were begun: the number of the newest snapshot, once it is there.
+    /// Number of started scenes. It is the scene number of the newest snapshot, once that exists.
     pub fn begun(&self) -> u64 {
         self.begun + u64::from(self.reading.is_some())
     }
 
-    /// Whether it plays.
+    /// Whether the scene is playing.
     pub fn playing(&self) -> bool {
         self.playing
     }
 
-    /// Seconds of the scene in a second.
+    /// Playback speed in scene seconds per second.
     pub fn speed(&self) -> f32 {
         self.speed
     }
 
-    /// Whether the motion begins anew at its end.
+    /// Whether the motion repeats.
     pub fn repeats(&self) -> bool {
         self.repeat
     }
@@ -317,7 +319,7 @@ impl Session {
         self.length
     }
 
-    /// What colours show.
+    /// The value that colors show.
     pub fn shown(&self) -> Option<Value> {
         self.show
     }
@@ -332,12 +334,12 @@ impl Session {
         &self.joints
     }
 
-    /// What the two that are compared differ in, left and right; empty where nothing is compared.
+    /// Differences between the two compared scenes, left and right; empty without a comparison.
     pub fn captions(&self) -> &[String; 2] {
         &self.captions
     }
 
-    /// What was said of the scene's files as they were read.
+    /// Notes from reading the scene's files.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

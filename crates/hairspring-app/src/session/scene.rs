@@ -1,4 +1,4 @@
-//! Scenes that come and go: a file is opened, read, and begun at time 0.
+//! Opening, reading and starting scenes.
 
 use super::{Session, rouse};
 use crate::{
@@ -10,14 +10,15 @@ use crate::{
 };
 use std::path::PathBuf;
 
-/// Most scenes that are kept to go back to: texts, not hair.
+/// Maximum number of scenes in the undo history. Only their texts are kept, not their hair.
 const MOST_SCENES: usize = 8;
 
-/// Scenes on one side of the open one.
+/// The scenes before or after the open one.
 type Scenes = fn(&mut Session) -> &mut Vec<Document>;
 
 impl Session {
-    /// Opens a file: a scene; or a groom or a body, which are put in a scene of their own, or in place of the open one's.
+    /// Opens a file: a scene, a groom or a body. A groom or a body gets a scene of its own, or replaces that
+    /// of the open scene.
     pub(super) fn open(&mut self, path: &std::path::Path) -> Result<(), AppError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         let whole = settled(path);
@@ -46,7 +47,7 @@ impl Session {
         self.take(document)
     }
 
-    /// Goes over to another document, if its scene can be read: a step as any other.
+    /// Changes to another document as an undo step, if its scene can be read.
     pub(super) fn take(&mut self, mut document: Document) -> Result<(), AppError> {
         self.change_with(&mut document)?;
         self.before.push(document);
@@ -56,7 +57,7 @@ impl Session {
         Ok(())
     }
 
-    /// Goes over to another document, if its scene can be read, and leaves this one in its place.
+    /// Swaps the open document with another one, if its scene can be read.
     fn change_with(&mut self, other: &mut Document) -> Result<(), AppError> {
         std::mem::swap(&mut self.document, other);
         let second = self.second.take();
@@ -71,7 +72,8 @@ impl Session {
         Ok(())
     }
 
-    /// A step within the scene, and from its first or last to the scene that was open before or after it, as that was left.
+    /// Takes an undo or redo step in the scene. From the first or last one it goes to the scene that was open
+    /// before or after it, in the state in which that was left.
     pub(super) fn step(&mut self, way: Way) -> Result<(), AppError> {
         let (back, forth) = self.edited().history();
         let (within, from, to): (_, Scenes, Scenes) = match way {
@@ -83,7 +85,7 @@ impl Session {
             && let Some(mut document) = from(self).pop()
         {
             let changed = self.change_with(&mut document);
-            // What cannot be read stays where it was: its files may come back.
+            // A scene that cannot be read stays in the history, because its files may come back.
             if changed.is_ok() { to(self) } else { from(self) }.push(document);
             return changed;
         }
@@ -92,12 +94,12 @@ impl Session {
         Ok(())
     }
 
-    /// Where files are named from.
+    /// The path that named files are relative to.
     pub(super) fn base(&self) -> PathBuf {
         self.document.file().map_or_else(|| folder().join("scene.toml"), PathBuf::from)
     }
 
-    /// Reads the scene, and the second, and begins at time 0.
+    /// Reads the scene and the compared one, and starts at time 0.
     pub(super) fn begin(&mut self) -> Result<(), AppError> {
         let read = both(&self.document, self.second.as_ref())?;
         self.reading = None;
@@ -105,10 +107,10 @@ impl Session {
         Ok(())
     }
 
-    /// As [`Session::begin`], but for who waits: what plays goes on until it is read.
+    /// Like [`Session::begin`], but in the background: the current scene plays until the new one is read.
     pub(super) fn begin_soon(&mut self) {
         match &mut self.reading {
-            // One reader at a time: it is begun again when it comes to its end.
+            // Only one read at a time. It is restarted when it has finished.
             Some(reading) => reading.stale = true,
             None => {
                 let wake = self.wake.clone();
@@ -118,7 +120,7 @@ impl Session {
         }
     }
 
-    /// Takes up what has been read meanwhile.
+    /// Receives the result of a background read.
     pub(super) fn hear(&mut self) -> Option<AppError> {
         let outcome = self.reading.as_ref()?.outcome()?;
         if self.reading.take().is_some_and(|reading| reading.stale) {
@@ -126,12 +128,12 @@ impl Session {
             return None;
         }
         let why = outcome.map(|read| self.play(read)).err();
-        // Settings may have changed while it was read.
+        // Settings may have changed during the read.
         self.retune();
         why
     }
 
-    /// Begins what was read at time 0.
+    /// Starts the scenes that were read, at time 0.
     pub(super) fn play(&mut self, (loaded, second): Read) {
         self.length = loaded.value.clip.as_ref().map(|clip| clip.duration()).filter(|d| *d > f64::from(STEP));
         self.notes = loaded.notes;
@@ -145,7 +147,7 @@ impl Session {
     }
 }
 
-/// The folder that scenes without a file are in.
+/// The folder of scenes without a file.
 pub(super) fn folder() -> PathBuf {
     std::env::current_dir().unwrap_or_default()
 }
@@ -174,12 +176,12 @@ mod tests {
         act(&mut session, Action::Redo);
         assert_eq!(now(&session), text("curly"));
         act(&mut session, Action::Undo);
-        // Back in it, its own steps lead further back.
+        // After undo, the scene's own steps continue further back.
         act(&mut session, Action::Undo);
         assert_eq!((now(&session), session.steps()), (text("wavy"), (false, true)));
         act(&mut session, Action::Redo);
         assert_eq!(now(&session), left);
-        // What is changed here leads to no other scene any more.
+        // An edit here clears the later scenes.
         act(&mut session, Action::Set("gravity".parse().unwrap(), None));
         assert_eq!(session.steps(), (true, false));
     }

@@ -1,37 +1,37 @@
-//! What the left button does: the tools, with their keys and what each does.
+//! The tools of the left mouse button, with their keys and descriptions.
 
 use eframe::egui;
 
-/// Half of a hand's width, over the length of its fingers' reach.
+/// Half of a comb's width, relative to the reach of its tines.
 pub const FINGERS: f32 = 2.0;
 
-/// What the left button does.
+/// A tool of the left mouse button.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hand {
-    /// Turns the view.
+    /// Rotates the view.
     #[default]
     Look,
-    /// Takes hold of a lock and pulls.
+    /// Grabs a lock and pulls it.
     Grab,
-    /// Pushes a ball through the hair.
+    /// Pushes a sphere through the hair.
     Ball,
     /// Drags the head.
     Head,
     /// Picks a strand.
     Pick,
-    /// Goes through the hair with spread fingers.
+    /// Combs the hair with spread fingers.
     Comb,
-    /// Strokes it with an open hand.
+    /// Strokes the hair with an open hand.
     Palm,
 }
 
 impl Hand {
-    /// Whether it has a radius.
+    /// Whether the tool has a radius.
     pub fn reaches(self) -> bool {
         matches!(self, Self::Ball | Self::Grab | Self::Comb)
     }
 
-    /// All of them, with their names, keys and what they do.
+    /// All tools, with their names, keys and descriptions.
     pub const ALL: [(Self, &'static str, egui::Key, &'static str); 7] = [
         (
             Self::Look,

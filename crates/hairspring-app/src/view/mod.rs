@@ -1,4 +1,4 @@
-//! What is seen and by which hand it is touched: the camera, what is laid over the picture; the tools are in `hand`, what the pointer does with them in `touch`.
+//! The view: camera, overlays and the current tool. The tools are in `hand`, pointer input is in `touch`.
 
 mod hand;
 mod range;
@@ -18,25 +18,25 @@ use hairspring_view::{Quality, frame_camera};
 use std::path::PathBuf;
 use touch::{Drag, Held};
 
-/// Hairs on a human head.
+/// Number of hairs on a human head.
 const HEAD: f32 = 100_000.0;
-/// Widest that a hair is drawn by default, times its own width.
+/// Largest default factor for the width of a hair.
 const WIDEST: f32 = 10.0;
 
-/// What is laid over the picture.
+/// The overlays of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Overlays {
     /// Outlines of colliders.
     pub colliders: bool,
-    /// A slice through all colliders' distance.
+    /// A slice through the distance to all colliders.
     pub slice: bool,
-    /// Cells of the hair's volume.
+    /// Grid cells of the hair's volume.
     pub volume: bool,
-    /// Frames of the head, of roots, and along the strand that is picked.
+    /// Coordinate frames of the head, of roots, and along the picked strand.
     pub frames: bool,
-    /// Where strands begin.
+    /// Roots of strands.
     pub roots: bool,
-    /// Handles of the wind and of what the scene lists.
+    /// Handles of the wind and of the scene's listed objects.
     pub handles: bool,
     /// Whether hair is drawn.
     pub hair: bool,
@@ -59,39 +59,39 @@ impl Default for Overlays {
     }
 }
 
-/// The view's own state.
+/// State of the view.
 pub struct View {
     /// Camera; `None` until there is something to look at.
     pub orbit: Option<Orbit>,
-    /// Tool.
+    /// The current tool.
     pub hand: Hand,
-    /// Radius of the ball and of a grab [m].
+    /// Radius of the pushed sphere and of a grab [m].
     pub reach: f32,
     /// Length of the hand [m].
     pub length: f32,
-    /// What is laid over.
+    /// The overlays.
     pub overlays: Overlays,
-    /// How much wider than they are hairs are drawn; `None`: by their number.
+    /// Factor for the width of drawn hairs; `None` derives it from their number.
     pub width: Option<f32>,
     /// Brightness [stops].
     pub exposure: f32,
-    /// Height of the slice, over the hair's box [1].
+    /// Height of the slice, relative to the box of the hair [1].
     pub slice: f32,
-    /// Range of colours, and the scene and value that it was found for.
+    /// Range of the color ramp.
     pub range: [f32; 2],
-    /// What is being dragged.
+    /// The current drag.
     drag: Option<Drag>,
     held: Option<Held>,
-    /// The handle that the pointer is on.
+    /// The handle under the pointer.
     over: Option<usize>,
-    /// How far the head is from where it should be, and how fast it goes back [m], [m/s].
+    /// Displacement of the head from its position [m], and its velocity on the way back [m/s].
     head: (Vec3, Vec3),
-    /// Number of the scene that the camera was set for, and its file.
+    /// Number and file of the scene that the camera was set for.
     framed: u64,
     file: Option<PathBuf>,
-    /// What the scene's text said of its camera last, and of which of two scenes: when it says something else, the window looks from there.
+    /// The last camera in the text, and of which of two scenes. If it changes, the view adopts it.
     said: (bool, Option<toml::Value>),
-    /// Whether the next scene is another one, to be looked at anew.
+    /// Whether the next scene is a different one, so that the camera must be set again.
     pub forget: bool,
 }
 
@@ -120,7 +120,7 @@ impl Default for View {
 }
 
 impl View {
-    /// How the scene is looked at in a picture so many times as wide as high.
+    /// The view parameters for a picture with this aspect ratio.
     pub fn sight(&self, scenery: &StageSnapshot, aspect: f32) -> Option<ViewParameters> {
         let orbit = self.orbit?;
         let camera = orbit.seen(aspect);
@@ -138,13 +138,14 @@ impl View {
         })
     }
 
-    /// Sets the camera where a scene has just been opened: as its file says, else where all hair is seen; and where the scene's camera is changed.
+    /// Sets the camera for a newly opened scene, from its file or so that all hair is visible, and when the
+    /// scene's camera is changed.
     pub fn meet(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
-        // A moment of the scene before is not what was opened.
+        // A snapshot of the previous scene does not belong to the opened one.
         if self.framed != snapshot.scene && snapshot.scene >= session.begun() {
             self.framed = snapshot.scene;
             let file = session.document().file().map(Into::into);
-            // An edit that begins the same scene anew leaves the camera where it is.
+            // If an edit restarts the same scene, the camera stays.
             if self.orbit.is_none() || self.file != file || self.forget {
                 self.frame(session, snapshot, aspect);
                 self.said = said_of_camera(session);
@@ -160,7 +161,7 @@ impl View {
         }
     }
 
-    /// Looks at all hair.
+    /// Frames all hair.
     pub fn frame(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
         let own = session.document().settings().camera;
         let bounds =
@@ -171,14 +172,14 @@ impl View {
         self.orbit = Some(Orbit::new(&camera));
     }
 
-    /// The lens through which the picture at `rect` is seen.
+    /// The lens of the picture at `rect`.
     pub fn lens(&self, rect: egui::Rect) -> Option<Lens> {
         let aspect = rect.width() / rect.height().max(1.0);
         Some(Lens::new(&self.orbit?.seen(aspect), aspect))
     }
 }
 
-/// Which of two scenes is changed, and what its text says of its camera.
+/// Which of two scenes is edited, and the camera in its text.
 fn said_of_camera(session: &Session) -> (bool, Option<toml::Value>) {
     (session.on_second(), session.edited().said().get("camera").cloned())
 }
@@ -235,7 +236,7 @@ mod tests {
             moments.find_map(|moment| moment).unwrap()
         };
         let (first, mut view) = (seen(&session, 1), View::default());
-        // Before the window has drawn the first.
+        // Before the window has drawn the first scene.
         session.act(Action::New(head(5.0))).unwrap();
         view.forget = true;
         view.meet(&session, &first, 1.5);

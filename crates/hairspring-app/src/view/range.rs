@@ -1,16 +1,17 @@
-//! From which value to which colours go, found from what is seen.
+//! Finds the range of the color ramp from the visible values.
 
 use super::View;
 use crate::snapshot::StageSnapshot;
 
 impl View {
-    /// Finds the range of the colours that are shown: from 0 to what a fiftieth of points that have any exceeds, followed smoothly.
+    /// Updates the range of the color ramp: from 0 to the value that a fiftieth of the nonzero points exceed,
+    /// smoothed over time.
     pub fn follow_range(&mut self, scenery: &StageSnapshot, guides: bool) {
         if guides || scenery.values.is_empty() {
             self.range = [0.0, 1.0];
             return;
         }
-        // What most points have none of, contact, is of those that have.
+        // Only nonzero values count, because some values, such as contact, are 0 at most points.
         let mut some: Vec<f32> = scattered(&scenery.values).filter(|v| v.is_finite() && *v > 0.0).collect();
         if some.is_empty() {
             return;
@@ -18,15 +19,16 @@ impl View {
         let place = some.len() * 49 / 50;
         let (_, high, _) = some.select_nth_unstable_by(place, f32::total_cmp);
         let high = high.max(1e-12);
-        // A range of another value's size is left at once.
+        // A range of a very different magnitude, from another value, is replaced at once.
         let far = self.range[1] > 20.0 * high || self.range[1] < 0.05 * high;
         self.range = [0.0, if far { high } else { self.range[1] + 0.1 * (high - self.range[1]) }];
     }
 }
 
-/// Some thousand of the values of each groom, however many points its strands have: every so-manieth would be the root of each.
+/// Samples a few thousand values of each groom. A fixed stride could hit the same point of every strand, such
+/// as the root.
 fn scattered(values: &[Vec<f32>]) -> impl Iterator<Item = f32> {
-    // Multiples of the golden ratio are spread evenly over 0 to 1 (Weyl 1916).
+    // Multiples of the golden ratio are evenly distributed in 0 to 1 (Weyl 1916).
     let place = |k: u32| (f64::from(k) * 0.618_033_988_749_894_9).fract();
     values.iter().filter(|v| !v.is_empty()).flat_map(move |v| {
         (0..v.len().min(4096) as u32).map(move |k| v[(place(k) * v.len() as f64) as usize])
@@ -40,7 +42,8 @@ mod tests {
     #[test]
     fn values_are_taken_from_all_along_strands_of_any_number_of_points() {
         for points in 2..200usize {
-            // From root to tip 0 to 1, as many strands as make any stride a multiple of their points.
+            // Values from 0 at the root to 1 at the tip, for enough strands that any stride would be a
+            // multiple of their points.
             let along = |i: usize| (i % points) as f32 / (points - 1) as f32;
             let values = [(0..points * 2048).map(along).collect::<Vec<f32>>(), vec![0.5; 3]];
             let some: Vec<f32> = scattered(&values).collect();

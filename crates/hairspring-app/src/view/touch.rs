@@ -1,4 +1,4 @@
-//! What the pointer does in the picture: it turns the view, takes handles, and moves what the tool moves.
+//! Pointer input in the picture: rotates the view, drags handles, and moves the current tool.
 
 use super::{FINGERS, Hand, View};
 use crate::{
@@ -8,18 +8,18 @@ use crate::{
 use eframe::egui;
 use glam::{Vec2, Vec3};
 
-/// How near the pointer takes a handle [points].
+/// Distance within which the pointer picks a handle [points].
 const TOUCH: f32 = 10.0;
 
-/// A handle that is pulled.
+/// A handle that is being dragged.
 pub(super) struct Held {
     handle: usize,
     depth: f32,
-    /// From the pointer to it: it is not always taken at its middle [m].
+    /// Offset from the pointer to the handle, which is not always picked at its center [m].
     off: Vec3,
 }
 
-/// Something that is dragged across the picture, at its own depth [m].
+/// An object that is dragged across the picture at its own depth [m].
 pub(super) struct Drag {
     depth: f32,
     from: Vec3,
@@ -27,7 +27,7 @@ pub(super) struct Drag {
 }
 
 impl View {
-    /// What the pointer does in the picture that lies at `rect`, where these handles can be taken.
+    /// Handles pointer input in the picture at `rect`, with these handles.
     pub fn touch(
         &mut self,
         ui: &egui::Ui,
@@ -95,7 +95,7 @@ impl View {
                     actions.push(Action::Push(Some(self.push(&lens, at))));
                 }
                 Hand::Head => {
-                    // Farther than an arm, the head would leave the picture.
+                    // Farther than an arm's length, the head would leave the picture.
                     self.head = ((drag.at - drag.from).clamp_length_max(0.5), Vec3::ZERO);
                     actions.push(Action::Head(self.head.0));
                 }
@@ -111,7 +111,7 @@ impl View {
         }
     }
 
-    /// Takes, pulls and lets go of a handle; whether the pointer is on one.
+    /// Picks, drags and releases a handle. Returns whether the pointer is on one.
     fn pull(
         &mut self,
         ui: &egui::Ui,
@@ -156,22 +156,23 @@ impl View {
         if self.over.is_some() {
             ui.set_cursor_icon(egui::CursorIcon::Grab);
         }
-        // Until the drag is one, the press is neither the tool's.
+        // A press on a handle must not reach the tool before it becomes a drag.
         self.over.is_some() && response.is_pointer_button_down_on()
     }
 
-    /// The handle that the pointer is on or holds.
+    /// The handle that the pointer is on or drags.
     pub fn touched(&self) -> Option<usize> {
         self.held.as_ref().map(|held| held.handle).or(self.over)
     }
 
-    /// The head goes back where it was dragged from, as on a spring that does not swing; called once a frame of `dt` [s].
+    /// Moves the head back to where it was dragged from, as on a critically damped spring. Called once per
+    /// frame of `dt` [s].
     pub fn settle(&mut self, dt: f32, actions: &mut Vec<Action>) -> bool {
         let (place, speed) = self.head;
         if self.drag.is_some() || (place == Vec3::ZERO && speed == Vec3::ZERO) {
             return false;
         }
-        // Critically damped, 3 times a second: exact for any dt.
+        // Critically damped, about 3 times per second; exact for any dt.
         let w = 18.0;
         let decay = (-w * dt).exp();
         let slope = speed + place * w;
@@ -183,27 +184,27 @@ impl View {
         true
     }
 
-    /// What a grab or a comb reaches, while it is dragged: its middle and radius [m].
+    /// Center and radius of a dragged grab or comb [m].
     pub fn reached(&self) -> Option<(Vec3, f32)> {
         let drag = self.drag.as_ref()?;
         Some((drag.at, self.reach))
     }
 
-    /// What is pushed where the pointer has it at `at`.
+    /// The pushed object with its target at the pointer position `at`.
     fn push(&self, lens: &Lens, at: Vec3) -> Push {
         let what = if self.hand == Hand::Palm { Pushed::Hand(self.length) } else { Pushed::Ball(self.reach) };
         Push { what, at, axes: [lens.right(), lens.up()] }
     }
 }
 
-/// Depth of the hair that is nearest to a place of the picture [m]; `None` where there is none close by.
+/// Depth of the hair that is nearest to a point of the picture [m]; `None` if there is none nearby.
 fn depth_of_hair(snapshot: &Snapshot, lens: &Lens, at: Vec2) -> Option<f32> {
     let scenery = snapshot.stages.first()?;
     let mut best: Option<(f32, f32)> = None;
     for p in scenery.points().flat_map(|p| p.iter().step_by(1 + p.len() / 200_000)) {
         let Some((place, depth)) = lens.project(*p) else { continue };
         let off = place.distance(at);
-        // Of hair within a hundredth of the picture, that in front.
+        // Of the hair within a hundredth of the picture, the frontmost one.
         if off < 0.01 && best.is_none_or(|(_, d)| depth < d) {
             best = Some((off, depth));
         }

@@ -1,4 +1,4 @@
-//! `hairspring bench --scene`: what the stages of a scene's frames take, and what its hair met.
+//! `hairspring bench --scene`: the time of each stage of a scene's frames, and the contacts of its hair.
 
 use super::{Times, go_on};
 use crate::{
@@ -11,7 +11,7 @@ use hairspring_scene::stage::{FrameRate, FrameReport, Stage};
 use serde_json::{Map, Value, json};
 use std::{path::Path, time::Duration};
 
-/// A stage of a frame: its name, what it does, and what it took of a frame.
+/// A stage of a frame: its name, a description, and its time in a frame.
 type StageOfFrame = (&'static str, &'static str, fn(&FrameReport) -> Duration);
 
 const STAGES: [StageOfFrame; 6] = [
@@ -19,16 +19,16 @@ const STAGES: [StageOfFrame; 6] = [
     ("volume", "density of the hair, once a frame", |r| r.step.times.volume),
     ("forces", "roots, wind, global shapes, charge, hands, once a frame", |r| r.step.times.forces),
     ("solve", "assembly, solve, projection, contact, strain limit, all substeps", |r| r.step.times.solve),
-    ("neighbours", "contacts of strands with each other, all substeps", |r| r.step.times.neighbours),
+    ("neighbours", "contacts between strands, all substeps", |r| r.step.times.neighbours),
     ("follow", "hairs that are not simulated", |r| r.follow),
 ];
 
 const RATE: FrameRate = FrameRate::new(60, 1).expect("a rate");
 
-/// The stage that the figure for a point and substep is of.
+/// Index of the stage that the time per point and substep refers to.
 const SOLVE: usize = 3;
 
-/// Numbers of every frame.
+/// A count for every frame.
 #[derive(Default)]
 struct Counts(Vec<usize>);
 
@@ -40,7 +40,7 @@ impl Counts {
     }
 }
 
-/// Plays the scene in `path` for `frames` of 1/60 s, and prints medians of its frames.
+/// Runs the scene in `path` for `frames` of 1/60 s and prints medians over its frames.
 pub(super) fn run(path: &Path, frames: u32, as_json: bool, console: Console) -> Result<(), Fault> {
     let units = Units { scale: None, up: None };
     let input = Input { path: path.into(), units, guides: None, substeps: None };
@@ -114,7 +114,7 @@ pub(super) fn run(path: &Path, frames: u32, as_json: bool, console: Console) -> 
         solver.substeps
     ));
     say(format_args!(
-        "time     {:.2} ms a frame (median), {:.2} ms (95 %); medians of the stages:",
+        "time     {:.2} ms per frame (median), {:.2} ms (95 %); medians of the stages:",
         whole.rank(0.5),
         whole.rank(0.95)
     ));
@@ -122,14 +122,14 @@ pub(super) fn run(path: &Path, frames: u32, as_json: bool, console: Console) -> 
         say(format_args!("         {:8.2} ms  {name:<11} {what}", times.rank(0.5)));
     }
     say(format_args!(
-        "         {ns:.2} ns a point and substep per core, of the solve alone (wall time x threads)"
+        "         {ns:.2} ns per point and substep, per core, for the solve alone (wall time x threads)"
     ));
     say(format_args!(
-        "met      {} points and {} segments held out by a collider at the end of the median frame",
+        "met      {} points and {} segments pushed out by a collider at the end of the median frame",
         grouped(points),
         grouped(segments)
     ));
-    say(format_args!("         {} points for which a collider's distance is looked up", grouped(looked_up)));
+    say(format_args!("         {} points that need a collider distance", grouped(looked_up)));
     say(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
     Ok(())
 }

@@ -1,7 +1,8 @@
 //! `hairspring bench --table`: every elastic model on every instruction set, side by side.
 //!
-//! Each figure has a scene of its own, and all step the same frames. They do so a few frames in turn, so that whatever else the machine does
-//! slows all alike; what is timed is the step alone, contact included, as in a bench without the table.
+//! Each cell has its own copy of the scene, and all of them step the same frames. They take turns of a few
+//! frames, so that other load on the machine affects all of them alike. Only the step is timed, contact
+//! included, as in a bench without the table.
 
 use super::{Options, Times, go_on, say_scene};
 use crate::{
@@ -12,17 +13,19 @@ use hairspring::{material::Model, settings::Integrator, simulation::Simulation};
 use serde_json::{Value, json};
 use std::time::Instant;
 
-/// The models that a strand can have; `auto` is one of them.
+/// The elastic models of a strand; `auto` selects one of them.
 const MODELS: [Model; 3] = [Model::Curvature, Model::Rod, Model::Springs];
 
-/// Frames that a cell of the table steps in its turn: the first finds the caches full of another's hair, which the median is then free of.
+/// Number of frames that a cell steps in its turn. The first frame of a turn finds the caches filled by
+/// another cell's hair; the median is not affected by it.
 const TURN: u32 = 5;
 
-/// Name of the row of the library that is built without SIMD.
+/// Name of the row for the library built without SIMD.
 #[cfg(feature = "scalar")]
 const SCALAR: &str = "scalar";
 
-/// What the compiler was allowed throughout the program. A scalar row has no more; the others add their instruction set at run time.
+/// Instruction sets that the compiler may use in the whole program. A scalar row has no others; the other
+/// rows add their instruction set at run time.
 const COMPILED_FOR: &[(&str, bool)] = &[
     ("sse2", cfg!(target_feature = "sse2")),
     ("sse4.2", cfg!(target_feature = "sse4.2")),
@@ -33,13 +36,14 @@ const COMPILED_FOR: &[(&str, bool)] = &[
     ("neon", cfg!(target_feature = "neon")),
 ];
 
-/// One figure of the table.
+/// One cell of the table.
 pub(super) struct Cell {
     model: Model,
     simd: String,
 }
 
-/// The figures of the table, a row of models for each instruction set, the best first; with the feature `scalar`, none at all last.
+/// The cells of the table: a row of models for each instruction set, best first. With the feature `scalar`,
+/// the last row has none.
 pub(super) fn cells() -> Vec<Cell> {
     let row = |simd: String| MODELS.map(|model| Cell { model, simd: simd.clone() });
     let sets = Simulation::instruction_sets().into_iter();
@@ -98,12 +102,12 @@ fn baseline(cells: &[Cell]) -> &str {
     cells.last().map_or("", |cell| &cell.simd)
 }
 
-/// Names of what the whole program was compiled for.
+/// Names of the instruction sets that the whole program is compiled for.
 fn compiled_for() -> Vec<&'static str> {
     COMPILED_FOR.iter().filter(|(_, there)| *there).map(|(name, _)| *name).collect()
 }
 
-/// The bench scene as one of the two builds of the library knows it.
+/// The bench scene, for either build of the library.
 macro_rules! bench {
     ($library:ident, $scene:ident, $options:ident, $cell:ident) => {{
         use $library::{
@@ -119,7 +123,7 @@ macro_rules! bench {
     }};
 }
 
-/// What steps a cell's hair by a frame.
+/// Returns a function that steps the hair of a cell by one frame.
 fn stepper(options: &Options, cell: &Cell) -> Box<dyn FnMut()> {
     #[cfg(feature = "scalar")]
     if cell.simd == SCALAR {
@@ -131,8 +135,8 @@ fn stepper(options: &Options, cell: &Cell) -> Box<dyn FnMut()> {
     Box::new(move || _ = bench.step())
 }
 
-/// A figure for machines, under the keys of a bench without `--table`, and what only a table has; `over` is the row that speedups are over, and `last` the
-/// figure of its model there.
+/// A cell as JSON, with the keys of a bench without `--table` and those that only a table has. `over` is the
+/// row that speedups refer to, and `last` is the figure of the same model there.
 fn object(options: &Options, cell: &Cell, times: &Times, (over, last): (&str, f64)) -> Value {
     json!({
         "model": cell.model.name(),
@@ -154,7 +158,7 @@ fn object(options: &Options, cell: &Cell, times: &Times, (over, last): (&str, f6
     })
 }
 
-/// The table for people: each figure, and its speedup over the last row of its column.
+/// Prints the table: each figure, and its speedup over the last row of its column.
 fn print(options: &Options, cells: &[Cell], figures: &[f64]) {
     say_scene(options);
     say(format_args!(
@@ -166,18 +170,18 @@ fn print(options: &Options, cells: &[Cell], figures: &[f64]) {
         options.frames
     ));
     say(format_args!(
-        "figures  ns a point and substep per core (wall time x threads), medians of the {} frames; in brackets the speedup over {}",
+        "figures  ns per point and substep, per core (wall time x threads), medians of the {} frames; in brackets the speedup over {}",
         options.frames,
         baseline(cells)
     ));
-    say("         a step is all of it, contact too; reading positions and measuring are not in it");
+    say("         a step includes everything, contact too; reading positions and measuring are not included");
     if cfg!(feature = "scalar") {
         say(format_args!(
-            "scalar   the same code on one number at a time, compiled like the whole program for: {}",
+            "scalar   the same code without SIMD, compiled like the whole program for: {}",
             compiled_for().join(", ")
         ));
     } else {
-        say("scalar   left out: build with --features scalar to measure the code without SIMD too");
+        say("scalar   left out; build with --features scalar to measure the code without SIMD too");
     }
     let line = |name: &str, cells: [String; MODELS.len()]| {
         let cells: String = cells.iter().map(|cell| format!("{cell:>18}")).collect();

@@ -1,4 +1,4 @@
-//! The scene by one integrator: figures of every frame, and pictures at the same moments.
+//! The scene played by one integrator: figures of every frame, and pictures at the same moments.
 
 use super::BOUND;
 use crate::{
@@ -10,25 +10,25 @@ use crate::{
 use hairspring_scene::stage::Stage;
 use hairspring_view::encode_png;
 
-/// Pictures of each method, at equal distances, the last at the end.
+/// Number of pictures of each method, evenly spaced, the last one at the end.
 pub const MOMENTS: u32 = 4;
 
 /// Width and height of a picture [pixels].
 const SIZE: (u32, u32) = (320, 320);
 
-/// What the scene came to.
+/// The results of playing the scene.
 pub struct Played {
-    /// Strands that turned non-finite and were put back, counted in every frame.
+    /// Strands that became non-finite and were reset, summed over all frames.
     pub reset_strands: usize,
-    /// Mean over segments and frames of |ℓ/L − 1| [1]; infinite where it was in a frame.
+    /// Mean of |ℓ/L − 1| over segments and frames [1]; infinite if it was in any frame.
     pub stretch_mean: f64,
-    /// The worst of any frame [1].
+    /// The maximum over all frames [1].
     pub stretch_max: f64,
-    /// Time [s] and worst stretch [1] of each frame.
+    /// Time [s] and maximum stretch [1] of each frame.
     pub stretch: Vec<[f64; 2]>,
-    /// Wall time × threads over points and substeps, the median frame [ns].
+    /// Wall time × threads / (points × substeps), for the median frame [ns].
     pub ns: f64,
-    /// Pictures that were asked for.
+    /// The pictures, if they were requested.
     pub shots: Vec<Shot>,
 }
 
@@ -36,13 +36,13 @@ pub struct Played {
 pub struct Shot {
     /// Time [s].
     pub time: f64,
-    /// As a PNG file.
+    /// The picture as a PNG file.
     pub png: Vec<u8>,
-    /// Strands that were put back in its frame.
+    /// Strands that were reset in this frame.
     pub reset_strands: usize,
 }
 
-/// Plays so many frames of 1/60 s; with pictures if `draw`.
+/// Plays `frames` frames of 1/60 s; takes pictures if `draw` is set.
 pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) -> Result<Played, Fault> {
     let view = View { size: SIZE, camera: None, target: None, fov: None, hair_width: None, gpu: false };
     let mut studio = if draw { Some(Studio::new(&view, &mut stage)?) } else { None };
@@ -58,7 +58,7 @@ pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) 
         substeps = report.step.substeps;
         reset_strands += report.step.reset_strands;
         let measure = stage.measure();
-        // A strand that was put back was beyond all numbers before.
+        // A strand that was reset had an infinite stretch before.
         let broken = report.step.reset_strands > 0;
         let [mean, most] = match broken {
             true => [f64::INFINITY; 2],

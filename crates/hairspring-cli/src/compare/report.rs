@@ -1,4 +1,5 @@
-//! The report: the table, the curves, each method with its equations, and the scene at the same moments side by side.
+//! The report: the table, the curves, each method with its equations, and the scene at the same moments side
+//! by side.
 
 use super::{HEADS, Setting, Trial, limits, methods, percent, row};
 use crate::report::{
@@ -9,21 +10,21 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use hairspring_validate::Axis;
 use std::fmt::Write;
 
-/// Energy above which a curve leaves the plot, in units of what the swing starts with [1].
+/// Energy above which a curve leaves the plot, relative to the initial energy of the swing [1].
 const MOST_ENERGY: f64 = 2.5;
 
-/// Stretch that the plot ends at, and below which it says nothing: what f32 can tell apart [1].
+/// Range of the plotted stretch [1]. Values below it are not meaningful, because of the precision of f32.
 const STRETCHES: [f64; 2] = [1e-6, 10.0];
 
-/// Points of a curve, at most.
+/// Maximum number of points of a curve.
 const POINTS: usize = 400;
 
-/// The page.
+/// Builds the page.
 pub fn page(setting: &Setting, trials: &[Trial]) -> String {
     let mut body = format!(
-        "<p>Ways to step the same springs in time, on the same hair with the same steps: which of them hold together, what do they cost, and \
-         what do they make of a swing?</p>\n\
-         <p>The scene is <b>{}</b>: {} of its {} strands are simulated, {} points, {} substeps in 1/60 s (h = {}), for {} s. \
+        "<p>Time integrators for the same springs, on the same hair with the same steps: which of them are stable, what do they cost, and \
+         how do they change a free swing?</p>\n\
+         <p>The scene is <b>{}</b>: {} of its {} strands are simulated, {} points, {} substeps per 1/60 s (h = {}), for {} s. \
          <small>hairspring {}, {} threads, {}.</small></p>\n",
         escape(&setting.name),
         setting.simulated_strands,
@@ -45,11 +46,11 @@ pub fn page(setting: &Setting, trials: &[Trial]) -> String {
     body += methods::QUESTION;
     trials.iter().for_each(|t| body += &section(t));
     body += methods::CONTACT;
-    document("Ways to step a strand of hair", &body)
+    document("Time integrators for a strand of hair", &body)
 }
 
 fn table(trials: &[Trial]) -> String {
-    // Numbers stand right.
+    // Numbers are right-aligned.
     let class = |column: usize| if column < 2 { "" } else { " class=\"number\"" };
     let head = |(k, h): (usize, &&str)| format!("<th{}>{h}</th>", class(k));
     let heads: String = HEADS.iter().enumerate().map(head).collect();
@@ -66,7 +67,7 @@ fn table(trials: &[Trial]) -> String {
     format!("<div class=\"wide\"><table><tr>{heads}</tr>\n{rows}</table></div>\n")
 }
 
-/// The same moments, a row for each method.
+/// Pictures at the same moments, one row for each method.
 fn pictures(trials: &[Trial]) -> String {
     let Some(first) = trials.first() else { return String::new() };
     let heads: String = first
@@ -76,8 +77,8 @@ fn pictures(trials: &[Trial]) -> String {
         .map(|s| format!("<th class=\"picture\">{} s</th>", number((s.time * 100.0).round() / 100.0)))
         .collect();
     let mut html = format!(
-        "<h2>The scene</h2>\n<p>The same moments of the same motion. Where strands turned into numbers that are none, they were put back to \
-         rest, and tried again in the next frame.</p>\n<div class=\"wide\"><table><tr><th></th>{heads}</tr>\n"
+        "<h2>The scene</h2>\n<p>The same moments of the same motion. Strands that became non-finite were reset to \
+         rest, and simulated again in the next frame.</p>\n<div class=\"wide\"><table><tr><th></th>{heads}</tr>\n"
     );
     for trial in trials {
         let name = trial.integrator.name();
@@ -85,7 +86,7 @@ fn pictures(trials: &[Trial]) -> String {
         for shot in &trial.played.shots {
             let reset = match shot.reset_strands {
                 0 => String::new(),
-                n => format!("<small>{n} strands put back</small>"),
+                n => format!("<small>{n} strands reset</small>"),
             };
             let _ = write!(
                 html,
@@ -99,7 +100,7 @@ fn pictures(trials: &[Trial]) -> String {
     html + "</table></div>\n"
 }
 
-/// Energy of the swing over time.
+/// Plot of the energy of the swing over time.
 fn energy(setting: &Setting, trials: &[Trial]) -> String {
     let h = 1.0 / (60.0 * f64::from(setting.substeps));
     let curves: Vec<(&str, Vec<[f64; 2]>)> = trials
@@ -110,7 +111,7 @@ fn energy(setting: &Setting, trials: &[Trial]) -> String {
             (t.integrator.name(), thinned(shown))
         })
         .collect();
-    let axes = [("time [s]", false), ("energy [what it starts with]", false)];
+    let axes = [("time [s]", false), ("energy [initial energy]", false)];
     let blown = |t: &Trial| {
         let end = t.swung.energy.last().filter(|_| t.swung.drift.is_none())?;
         Some(format!("{} within {}", t.integrator.name(), super::duration(end[0] + h)))
@@ -118,15 +119,15 @@ fn energy(setting: &Setting, trials: &[Trial]) -> String {
     let blown: Vec<String> = trials.iter().filter_map(blown).collect();
     let blown = if blown.is_empty() { String::new() } else { format!(" Blew up: {}.", blown.join(", ")) };
     format!(
-        "<h2>Energy</h2>\n<p>{} strands, let go where nothing drives, touches or damps them: what an exact method would keep is the sum of motion, \
-         height, bending, twist and stretch. 1 is its start, 0 all that falling can give. A method that loses it makes hair that moves as in \
-         honey; one that gains it makes hair that never comes to rest. Curves end where a swing blew up or left the plot.{blown}</p>\n{}\n",
+        "<h2>Energy</h2>\n<p>{} strands swing freely, without drive, contact or damping. An exact method would keep the sum of the energies of motion, \
+         height, bending, twist and stretch. 1 is the initial energy; at 0, all energy that falling can release is gone. A method that loses energy makes hair that moves as in \
+         honey; one that gains energy makes hair that never comes to rest. Curves end where a swing blew up or left the plot.{blown}</p>\n{}\n",
         setting.swinging.strand_count(),
         plot(axes, &curves, &format!("h = {}", super::duration(h))),
     )
 }
 
-/// Worst stretch in the scene over time.
+/// Plot of the maximum stretch in the scene over time.
 fn stretch(trials: &[Trial]) -> String {
     let [least, most] = STRETCHES;
     let curves: Vec<(&str, Vec<[f64; 2]>)> = trials
@@ -136,11 +137,11 @@ fn stretch(trials: &[Trial]) -> String {
             (t.integrator.name(), thinned(shown))
         })
         .collect();
-    let axes = [("time [s]", false), ("worst |ℓ/L − 1| of a frame", true)];
+    let axes = [("time [s]", false), ("maximum |ℓ/L − 1| of a frame", true)];
     let note = format!("between {} % and {}", number(least * 100.0), percent(most));
     format!(
-        "<h2>Stretch</h2>\n<p>Hair does not visibly stretch: a hundredth is the most that is not seen. The segment that is farthest from its \
-         length, frame by frame of the scene.</p>\n{}\n",
+        "<h2>Stretch</h2>\n<p>Hair does not visibly stretch; the limit of visibility is about 1 %. The curve shows the segment that is farthest from its \
+         rest length in each frame of the scene.</p>\n{}\n",
         plot(axes, &curves, &note)
     )
 }
@@ -151,20 +152,20 @@ fn plot(axes: [(&str, bool); 2], curves: &[(&str, Vec<[f64; 2]>)], note: &str) -
     svg([&x, &y], &series, note)
 }
 
-/// Every so manieth point of a curve, and the last.
+/// Keeps every n-th point of a curve and the last, so that about [`POINTS`] remain.
 fn thinned(curve: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let every = curve.len().div_ceil(POINTS).max(1);
     let last = curve.len().saturating_sub(1);
     curve.into_iter().enumerate().filter(|(k, _)| k % every == 0 || *k == last).map(|(_, p)| p).collect()
 }
 
-/// A method: equations, what they do, and what was found here.
+/// The section of a method: equations, explanation, and results.
 fn section(trial: &Trial) -> String {
     let lesson = methods::lesson(trial.integrator);
     let [name, stable, mean, worst, drift, ns, longest, _] = row(trial).map(|c| escape(&c));
     format!(
         "<section id=\"{name}\"><h3>{}</h3>\n<pre>{}</pre>\n<p>{}</p>\n\
-         <p><small>Here: stable: {stable}; stretch {mean} in the mean, {worst} at worst; energy of the swing {drift}; {ns} ns a point and \
+         <p><small>Here: stable: {stable}; stretch {mean} mean, {worst} maximum; energy of the swing {drift}; {ns} ns per point and \
          substep; longest stable step {longest}. Source: {}.</small></p></section>\n",
         lesson.title,
         escape(lesson.equations),

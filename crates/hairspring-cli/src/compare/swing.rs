@@ -1,4 +1,4 @@
-//! A free swing by one integrator: what becomes of its energy, and how long a step may be.
+//! A free swing with one integrator: how its energy changes, and how long a step may be.
 
 use super::{BOUND, duration};
 use crate::{fault::Fault, interrupt};
@@ -11,28 +11,30 @@ pub const LONGEST: f64 = 0.05;
 /// Shortest step that is tried [s].
 pub const SHORTEST: f64 = 1e-6;
 
-/// How long a step must keep the strands together to be stable [s], and for how many steps at least.
+/// A step is stable if it keeps the strands together for this time [s], and for at least [`STEPS`] steps.
 pub const WATCHED: f64 = 0.25;
 /// See [`WATCHED`].
 pub const STEPS: u64 = 200;
 
-/// How exactly the longest step is found [1].
+/// Relative accuracy of the longest step [1].
 const EXACT: f64 = 0.05;
 
-/// Steps between looks at the strands and at the user's wish to stop, but for long ones.
+/// Time between checks of the strands and of an interrupt [s]. Steps longer than this are checked one by one.
 const LOOK: f64 = 2e-4;
 
 /// A free swing.
 pub struct Swung {
-    /// Time [s] and energy: 1 at the start, 0 when all that it could fall is gone. Ends where the swing blew up.
+    /// Time [s] and energy: 1 at the start, 0 when all energy that falling can release is gone. Ends where
+    /// the swing blew up.
     pub energy: Vec<[f64; 2]>,
-    /// Change of the energy from start to end over what the swing could turn into motion by falling [1]; `None`: it blew up.
+    /// Change of the energy from start to end, relative to the energy that falling can turn into motion [1];
+    /// `None` if the swing blew up.
     pub drift: Option<f64>,
-    /// The worst |ℓ/L − 1| of any step [1]; `None`: it blew up.
+    /// Maximum |ℓ/L − 1| of any step [1]; `None` if the swing blew up.
     pub stretch_max: Option<f64>,
 }
 
-/// Lets the sample swing for so many seconds, in steps of 1/60 s over `substeps`.
+/// Lets the sample swing for `seconds`, in steps of 1/60 s divided by `substeps`.
 pub fn swing(sample: &Sample, integrator: Integrator, substeps: u32, seconds: f64) -> Result<Swung, Fault> {
     let h = 1.0 / (60.0 * f64::from(substeps));
     let mut swing = Swing::new(sample, integrator, h);
@@ -53,19 +55,19 @@ pub fn swing(sample: &Sample, integrator: Integrator, substeps: u32, seconds: f6
     Ok(Swung { energy, drift, stretch_max: Some(stretch_max) })
 }
 
-/// The longest step that is stable.
+/// The longest stable step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LongestStep {
-    /// Even the longest that was tried is.
+    /// Even the longest step that was tried is stable.
     All,
-    /// So long [s].
+    /// The longest stable step [s].
     Found(f64),
-    /// Not even the shortest that was tried is.
+    /// Not even the shortest step that was tried is stable.
     None,
 }
 
 impl LongestStep {
-    /// How long [s].
+    /// Length of the step [s].
     pub fn seconds(self) -> Option<f64> {
         match self {
             Self::All => Some(LONGEST),
@@ -74,7 +76,7 @@ impl LongestStep {
         }
     }
 
-    /// In words.
+    /// Describes the step in words.
     pub fn told(self) -> String {
         match self {
             Self::All => format!("{} or more", duration(LONGEST)),
@@ -84,7 +86,7 @@ impl LongestStep {
     }
 }
 
-/// Finds it by halving the interval of its logarithm.
+/// Finds the longest stable step by bisection of its logarithm.
 pub fn longest_step(sample: &Sample, integrator: Integrator) -> Result<LongestStep, Fault> {
     if is_stable(sample, integrator, LONGEST)? {
         return Ok(LongestStep::All);
@@ -114,7 +116,7 @@ fn is_stable(sample: &Sample, integrator: Integrator, h: f64) -> Result<bool, Fa
             return Ok(false);
         }
         if step % look == 0 || step == steps {
-            // A stretch that is no number is not within the bound.
+            // A stretch that is NaN is not within the bound.
             if !swing.measure().stretch_max.le(&BOUND) {
                 return Ok(false);
             }

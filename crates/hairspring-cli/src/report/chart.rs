@@ -12,7 +12,7 @@ const RIGHT: f64 = 16.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 46.0;
 
-/// One a quantity; told apart by the colour-blind too (Okabe & Ito 2008).
+/// One color per quantity; the palette is safe for color-blind readers (Okabe & Ito 2008).
 const COLORS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#222222"];
 
 /// One quantity of a plot.
@@ -25,7 +25,7 @@ pub struct Series<'a> {
     pub points: &'a [[f64; 2]],
 }
 
-/// An axis with its range and what stands at it.
+/// An axis with its range and ticks.
 struct Scale {
     low: f64,
     high: f64,
@@ -34,7 +34,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// From the values that are to be shown, none of which need be there.
+    /// Creates an axis for the shown values. There may be none.
     fn new(axis: &Axis, values: impl Iterator<Item = f64>, from_zero: bool) -> Self {
         let shown = values.filter(|v| v.is_finite() && (!axis.log || *v > 0.0));
         let (mut low, mut high) =
@@ -54,7 +54,7 @@ impl Scale {
         }
         let margin = if from_zero { 0.04 * (high - low) } else { 0.0 };
         let (low, high) = (if low == 0.0 { 0.0 } else { low - margin }, high + margin);
-        // 1, 2 or 5 times a power of ten, about six of them.
+        // Tick distance: 1, 2 or 5 times a power of ten, about six ticks in total.
         let rough = (high - low) / 6.0;
         let power = 10f64.powf(rough.log10().floor());
         let step =
@@ -65,7 +65,7 @@ impl Scale {
         Self { low, high, log: false, ticks }
     }
 
-    /// Where a value stands, 0 to 1.
+    /// Relative position of a value on the axis, 0 to 1.
     fn at(&self, value: f64) -> f64 {
         let t = if self.log {
             (value / self.low).ln() / (self.high / self.low).ln()
@@ -76,7 +76,7 @@ impl Scale {
     }
 }
 
-/// Ticks of a logarithmic axis: powers of ten, and 2 and 5 of them where there are few.
+/// Ticks of a logarithmic axis: powers of ten, and 2 and 5 times them if there are few.
 fn decades(low: f64, high: f64) -> Vec<f64> {
     let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
     let few = high / low < 1e3;
@@ -85,7 +85,7 @@ fn decades(low: f64, high: f64) -> Vec<f64> {
     all.filter(|t| (low * 0.999..=high * 1.001).contains(t)).collect()
 }
 
-/// The plot as an SVG element with its legend, which ends in `note`.
+/// Returns the plot as an SVG element with its legend, which ends with `note`.
 pub fn svg([x_axis, y_axis]: [&Axis; 2], series: &[Series], note: &str) -> String {
     let all = || series.iter().flat_map(|s| s.line.iter().chain(s.points));
     let x = Scale::new(x_axis, all().map(|p| p[0]), false);
@@ -148,7 +148,7 @@ pub fn svg([x_axis, y_axis]: [&Axis; 2], series: &[Series], note: &str) -> Strin
     s + &legend(series, note)
 }
 
-/// What line and points of each colour are.
+/// Legend: what the line and points of each color are.
 fn legend(series: &[Series], note: &str) -> String {
     let entry = |(k, series): (usize, &Series)| {
         let color = COLORS[k % COLORS.len()];

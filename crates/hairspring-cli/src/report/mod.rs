@@ -1,4 +1,4 @@
-//! What the pages of `validate` and `compare` share: one file of HTML that needs nothing beside itself, and its plots.
+//! Common parts of the pages of `validate` and `compare`: a self-contained HTML file and its plots.
 
 pub mod chart;
 
@@ -18,7 +18,7 @@ svg circle { stroke: #fff; stroke-width: 1 }
 small { color: #666 } nav a { margin-right: 0.8rem; white-space: nowrap }
 ";
 
-/// A page with this title and this HTML under it.
+/// Returns a page with this title and this HTML as its content.
 pub fn document(title: &str, body: &str) -> String {
     let title = escape(title);
     format!(
@@ -28,19 +28,19 @@ pub fn document(title: &str, body: &str) -> String {
     )
 }
 
-/// Text inside an element.
+/// Escapes text for use inside an element.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// A number to five significant digits, without trailing zeros.
+/// Formats a number with five significant digits, without trailing zeros.
 pub fn number(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return x.to_string();
     }
     let digits = 4 - x.abs().log10().floor() as i32;
     if !(0..=9).contains(&digits) {
-        // 123456 keeps its digits; very small numbers get an exponent.
+        // Integers such as 123456 keep their digits; very small numbers get an exponent.
         return if digits < 0 { format!("{x:.0}") } else { format!("{x:.4e}") };
     }
     let text = format!("{x:.*}", digits as usize);

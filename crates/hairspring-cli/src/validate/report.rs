@@ -1,4 +1,4 @@
-//! The report: one page of HTML that needs nothing beside itself.
+//! The report: one self-contained HTML page.
 
 use super::{Job, parameters, row};
 use crate::report::{
@@ -8,7 +8,7 @@ use crate::report::{
 use hairspring_validate::{Case, Outcome, Plot};
 use rayon::prelude::*;
 
-/// The page of what `jobs` came to; simulates more for the plots, in parallel.
+/// Builds the page for the results of `jobs`. It simulates more runs for the plots, in parallel.
 pub fn page(jobs: &[Job], outcomes: &[Outcome]) -> String {
     let mut cases: Vec<&Job> = Vec::new();
     for job in jobs {
@@ -29,7 +29,7 @@ pub fn page(jobs: &[Job], outcomes: &[Outcome]) -> String {
         outcomes.len(),
         env!("CARGO_PKG_VERSION"),
     );
-    document("Hairspring against closed forms", &body)
+    document("Hairspring compared with closed-form solutions", &body)
 }
 
 fn section(case: &Case, plot: &Plot, outcomes: &[Outcome]) -> String {

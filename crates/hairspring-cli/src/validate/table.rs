@@ -1,4 +1,5 @@
-//! `hairspring validate --table`: every case with every model at 32 to 1,024 points, as the Markdown table of docs/validation.md.
+//! `hairspring validate --table`: every case with every model at 32 to 1,024 points, as the Markdown table of
+//! docs/validation.md.
 
 use crate::{
     console::{Console, say},
@@ -13,20 +14,20 @@ use std::{
     time::Instant,
 };
 
-/// The models that a strand can have; `auto` is one of them.
+/// The elastic models of a strand; `auto` selects one of them.
 const MODELS: [Model; 3] = [Model::Curvature, Model::Rod, Model::Springs];
 
-/// The points of a strand.
+/// Numbers of points per strand.
 const POINTS: [u32; 6] = [32, 64, 128, 256, 512, 1024];
 
-/// All that is measured for one cell of the table.
+/// All measurements for one cell of the table.
 struct Cell {
     case: &'static Case,
     method: Method,
 }
 
 impl Cell {
-    /// The outcomes at all default parameters; none of a case that is about other strands.
+    /// The outcomes with all default parameters; empty if the case does not apply to this number of points.
     fn run(&self) -> Vec<Outcome> {
         if self.case.points_fixed && self.method.points != POINTS[0] {
             return Vec::new();
@@ -39,12 +40,12 @@ impl Cell {
     }
 }
 
-/// Runs `cases` and prints the table, of what was measured when the user asked to stop.
+/// Runs `cases` and prints the table of everything that was measured before an interrupt.
 pub(super) fn run(cases: &[&'static Case], console: Console) -> Result<(), Fault> {
     let began = Instant::now();
     let rows: Vec<(&'static Case, Model)> =
         cases.iter().flat_map(|case| MODELS.map(|model| (*case, model))).collect();
-    // What takes longest comes first, so that no thread is left with it alone.
+    // The slowest cells come first, so that no thread is left alone with one at the end.
     let cells: Vec<Cell> = POINTS
         .iter()
         .rev()
@@ -55,7 +56,7 @@ pub(super) fn run(cases: &[&'static Case], console: Console) -> Result<(), Fault
         .collect();
     let progress = std::sync::Mutex::new(console.progress_in("measuring", cells.len() as u32, "cells"));
     let done = AtomicU32::new(0);
-    // None of a cell that was not begun when the user asked to stop.
+    // `None` for cells that had not started when the user interrupted the run.
     let found: Vec<Option<Vec<Outcome>>> = cells
         .par_iter()
         .with_max_len(1)
@@ -100,7 +101,7 @@ pub(super) fn run(cases: &[&'static Case], console: Console) -> Result<(), Fault
     match found.iter().filter(|found| found.is_none()).count() {
         0 => Ok(()),
         left => Err(Fault::Interrupted(format!(
-            "interrupted: {left} of {} cells were not measured; they say so in the table",
+            "interrupted: {left} of {} cells were not measured and are marked in the table",
             cells.len()
         ))),
     }
@@ -121,12 +122,12 @@ fn bound(outcomes: &[Outcome]) -> String {
     all.join(", ")
 }
 
-/// What stands in a cell: the outcome that is farthest out of its tolerance, and why where it is out.
+/// Text of a cell: the outcome that is farthest outside its tolerance, and the reason if it is outside.
 fn cell(case: &Case, outcomes: &[Outcome], notes: &mut Vec<String>) -> String {
     let Some(worst) = outcomes.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else {
         return note(
             notes,
-            format!("{} is about a strand of {} points alone", case.name, case.method.points),
+            format!("{} applies to a strand of {} points only", case.name, case.method.points),
         );
     };
     let value = match (&worst.measured, worst.relative_error()) {
@@ -140,12 +141,14 @@ fn cell(case: &Case, outcomes: &[Outcome], notes: &mut Vec<String>) -> String {
     let why = match (worst.reason(), &worst.measured, &worst.reference) {
         (Some(reason), ..) => reason.to_string(),
         (None, Err(why), _) | (None, _, Err(why)) => why.to_string(),
-        (None, Ok(_), Ok(_)) => format!("{} is out of its tolerance at so many points", worst.quantity),
+        (None, Ok(_), Ok(_)) => {
+            format!("{} is outside its tolerance at this number of points", worst.quantity)
+        }
     };
     format!("**{value}** {}", note(notes, format!("{}: {why}", case.name)))
 }
 
-/// The error over the tolerance; what could not be measured is farthest.
+/// The error relative to the tolerance. An outcome that could not be measured counts as the largest.
 fn share(outcome: &Outcome) -> f64 {
     match (&outcome.measured, outcome.relative_error()) {
         (Ok(_), Some(error)) => error / outcome.tolerance,
@@ -154,7 +157,7 @@ fn share(outcome: &Outcome) -> f64 {
     }
 }
 
-/// The number of a note in brackets; each is there once.
+/// The number of a note in brackets. Each note is listed once.
 fn note(notes: &mut Vec<String>, text: String) -> String {
     let k = notes.iter().position(|note| *note == text).unwrap_or_else(|| {
         notes.push(text);

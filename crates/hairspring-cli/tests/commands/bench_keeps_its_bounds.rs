@@ -210,5 +210,5 @@ fn a_scene_says_what_its_stages_take_and_what_it_met() {
     assert!(number("points_looked_up") > 0.0, "{found}");
     assert!(number("ns_per_point_substep") > 0.0);
     let output = succeed(folder.path(), &arguments);
-    assert!(stages.iter().all(|name| output.contains(name)) && output.contains("held out"), "{output}");
+    assert!(stages.iter().all(|name| output.contains(name)) && output.contains("pushed out"), "{output}");
 }

@@ -38,7 +38,7 @@ fn what_does_not_agree_is_exit_code_1() {
         run(Path::new("."), &["validate", "heavy-cantilever", "--gamma", "1", "--integrator", "ftl"]);
     let told = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{told}");
-    assert_eq!(told.trim(), "error: 3 of 3 measured values are out of tolerance");
+    assert_eq!(told.trim(), "error: 3 of 3 measured values are outside their tolerance");
     assert!(String::from_utf8(output.stdout).unwrap().contains("FAIL"));
 }
 
@@ -56,7 +56,7 @@ fn a_table_has_a_value_or_a_reason_in_each_cell() {
         assert!(cells[4..].iter().all(|cell| *cell == "(1)"), "{row}");
     }
     assert!(found.contains("\n2. pendulum: a truss is braked more"), "{found}");
-    assert!(found.contains("\n1. pendulum is about a strand of 3 points alone\n"), "{found}");
+    assert!(found.contains("\n1. pendulum applies to a strand of 3 points only\n"), "{found}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Reading a glTF accessor with every bound checked.
+//! Reads a glTF accessor and checks every bound.
 
 use crate::Problem;
 use gltf::{Accessor, accessor::DataType};
@@ -6,7 +6,8 @@ use gltf::{Accessor, accessor::DataType};
 /// The bytes of each buffer of a file.
 pub(super) struct Buffers(pub(super) Vec<Vec<u8>>);
 
-/// The elements of an accessor of `N` components, normalised integers as fractions. `what` names them.
+/// Reads the elements of an accessor of `N` components, with normalized integers as fractions. `what` names
+/// them in error messages.
 pub(super) fn components<const N: usize>(
     accessor: &Accessor<'_>,
     buffers: &Buffers,
@@ -14,7 +15,7 @@ pub(super) fn components<const N: usize>(
 ) -> Result<Vec<[f64; N]>, Problem> {
     let wrong = |why: &str| Problem::whole(format!("the {what} (accessor {}) {why}", accessor.index()));
     if accessor.sparse().is_some() {
-        return Err(wrong("are stored sparsely, which is not read; export without sparse accessors"));
+        return Err(wrong("use sparse storage, which is not supported; export without sparse accessors"));
     }
     if accessor.dimensions().multiplicity() != N {
         return Err(wrong(&format!("should have {N} components each")));
@@ -41,7 +42,7 @@ pub(super) fn components<const N: usize>(
         .collect())
 }
 
-/// One number. Normalised integers become fractions as glTF 2.0 §3.11 says.
+/// Reads one number. Normalized integers become fractions as specified in glTF 2.0 §3.11.
 fn component(bytes: &[u8], kind: DataType, normalized: bool) -> f64 {
     let (value, most) = match kind {
         DataType::I8 => (bytes[0] as i8 as f64, 127.0),

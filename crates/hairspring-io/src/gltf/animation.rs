@@ -9,7 +9,8 @@ use glam::{Quat, Vec3, Vec4};
 use gltf::animation::{Interpolation, Property};
 use hairspring::body::{Clip, Trs};
 
-/// Frames a second that animations are resampled at [Hz]: that of a display, above what hands and capture give.
+/// Rate at which animations are resampled [Hz]: that of a display, and higher than hand-made or captured
+/// motion needs.
 const RATE: f32 = 60.0;
 
 /// Keys of one property of one joint.
@@ -18,11 +19,12 @@ struct Track {
     property: Property,
     interpolation: Interpolation,
     times: Vec<f32>,
-    /// Vectors of three or four; for cubic splines three a key: in-tangent, value, out-tangent.
+    /// Vectors of three or four components. For cubic splines there are three per key: in-tangent, value,
+    /// out-tangent.
     values: Vec<Vec4>,
 }
 
-/// Every animation as a clip of the skeleton's joints.
+/// Converts every animation to a clip of the skeleton's joints.
 pub(super) fn clips(
     document: &gltf::Document,
     buffers: &Buffers,
@@ -98,7 +100,7 @@ impl Track {
         }
         if !times.iter().all(|t| t.is_finite()) || !times.is_sorted() || !values.iter().all(|v| v.is_finite())
         {
-            return Err(Problem::whole("the keys of an animation are not finite or not in order of time"));
+            return Err(Problem::whole("the keys of an animation are not finite, or not in order of time"));
         }
         Ok(Self { joint, property, interpolation, times, values })
     }

@@ -1,4 +1,4 @@
-//! The outer shape of a glTF file: GLB chunks or bare JSON, and the bytes of its buffers.
+//! The container of a glTF file: GLB chunks or plain JSON, and the bytes of its buffers.
 
 use super::accessor::Buffers;
 use crate::{Place, Problem, bytes::Bytes};
@@ -9,14 +9,14 @@ use gltf::{
     json::{Path, validation::Validate},
 };
 
-/// Opens a `.glb` or `.gltf` and gathers its buffers. `sibling` gives the bytes of a file beside it.
+/// Opens a `.glb` or `.gltf` file and loads its buffers. `sibling` returns the bytes of a file next to it.
 pub(super) fn open(
     data: &[u8],
     sibling: &dyn Fn(&str) -> Option<Vec<u8>>,
 ) -> Result<(Document, Buffers), Problem> {
     let (json, mut blob) = if data.starts_with(b"glTF") { chunks(data)? } else { (data, None) };
     let invalid = |e: &dyn std::fmt::Display| {
-        Problem::whole(format!("this is no valid glTF: {}", first_line(&e.to_string())))
+        Problem::whole(format!("not a valid glTF file: {}", first_line(&e.to_string())))
     };
     let root = gltf::json::Root::from_slice(json).map_err(|e| invalid(&e))?;
     trusted_indices(&root)?;
@@ -32,7 +32,7 @@ pub(super) fn open(
         if bytes.len() < buffer.length() {
             let (have, want) = (bytes.len(), buffer.length());
             return Err(Problem::whole(format!(
-                "buffer {} has {have} bytes of the {want} that are promised",
+                "buffer {} has {have} bytes, but {want} are declared",
                 buffer.index()
             )));
         }
@@ -41,17 +41,17 @@ pub(super) fn open(
     Ok((document, Buffers(buffers)))
 }
 
-/// Checks the indices that the crate's own validation and iterators follow without a look.
+/// Checks the indices that the `gltf` crate's own validation and iterators use without checking.
 fn trusted_indices(root: &gltf::json::Root) -> Result<(), Problem> {
     for animation in &root.animations {
-        // Samplers are validated by the crate, channels are not.
+        // The crate validates samplers, but not channels.
         let mut lost = animation.channels.iter().any(|c| c.sampler.value() >= animation.samplers.len());
         for channel in &animation.channels {
             channel.target.validate(root, Path::new, &mut |_, _| lost = true);
         }
         if lost {
             return Err(Problem::whole(
-                "a channel of an animation names what the file does not have, or no known property",
+                "an animation channel refers to a missing object or to an unknown property",
             ));
         }
     }
@@ -63,14 +63,13 @@ fn trusted_indices(root: &gltf::json::Root) -> Result<(), Problem> {
     Ok(())
 }
 
-/// JSON and binary chunk of a GLB.
+/// Returns the JSON and the binary chunk of a GLB.
 fn chunks(data: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     let mut bytes = Bytes::new(data);
     bytes.take(4, "the magic")?;
     let version: u32 = bytes.value("the version")?;
     if version != 2 {
-        let text =
-            format!("version {version} of GLB is not known: version 2 is; export it again as glTF 2.0");
+        let text = format!("GLB version {version} is not supported; export the file as glTF 2.0");
         return Err(Problem::new(Place::Byte(4), text));
     }
     let _length: u32 = bytes.value("the file's length")?;
@@ -78,7 +77,10 @@ fn chunks(data: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
         let length: u32 = bytes.value("a chunk's length")?;
         let at = bytes.at();
         if bytes.take(4, "a chunk's kind")? != kind {
-            return Err(Problem::new(Place::Byte(at), "expected the JSON chunk and after it the binary one"));
+            return Err(Problem::new(
+                Place::Byte(at),
+                "expected the JSON chunk, followed by the binary chunk",
+            ));
         }
         bytes.take(length as usize, "a chunk")
     };
@@ -88,7 +90,7 @@ fn chunks(data: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     Ok((json, blob))
 }
 
-/// The bytes of a buffer named by a URI: inside it, or in a file beside.
+/// Returns the bytes of a buffer that is named by a URI: embedded in the URI, or in a file next to this one.
 fn resolve(uri: &str, sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Vec<u8>, Problem> {
     if let Some(data) = uri.strip_prefix("data:") {
         let encoded = data.split_once(";base64,").map(|(_, e)| e);
@@ -97,10 +99,10 @@ fn resolve(uri: &str, sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Vec<u
     }
     if uri.contains("://") {
         return Err(Problem::whole(format!(
-            "the buffer {uri:?} is on a network; put the file beside this one"
+            "the buffer {uri:?} is on a network; put the file next to this one"
         )));
     }
-    sibling(uri).ok_or_else(|| Problem::whole(format!("its buffer {uri:?} is not beside it")))
+    sibling(uri).ok_or_else(|| Problem::whole(format!("its buffer {uri:?} was not found next to it")))
 }
 
 /// The first line of a message, cut at 300 characters.

@@ -1,7 +1,8 @@
-//! glTF 2.0 (Khronos, ISO/IEC 12113): `.glb`, and `.gltf` with its buffers inside or beside it.
+//! Reader for glTF 2.0 (Khronos, ISO/IEC 12113): `.glb`, and `.gltf` with its buffers embedded or in separate
+//! files.
 //!
-//! Every mesh follows its joints: skinned ones by their weights, others rigidly with the node that carries them.
-//! Animations are resampled at 60 Hz. Textures, morph targets, cameras and lights are not read.
+//! Every mesh follows its joints: skinned meshes by their weights, others rigidly with the node that holds
+//! them. Animations are resampled at 60 Hz. Textures, morph targets, cameras and lights are not read.
 
 mod accessor;
 mod animation;
@@ -15,7 +16,7 @@ use gltf::mesh::{Mode, Semantic};
 use hairspring::body::{Body, Clip, Mesh, Part, Skin};
 use skeleton::Skeleton;
 
-/// A body and the motions that came with it.
+/// A body and the motions from the same file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Character {
     /// Mesh, joints and weights.
@@ -24,14 +25,14 @@ pub struct Character {
     pub clips: Vec<Clip>,
 }
 
-/// Most vertices, and most triangles, of all meshes together; files may use one array many times over.
+/// Maximum number of vertices, and of triangles, of all meshes together. A file may use one array many times.
 const MAX_ELEMENTS: usize = 8_000_000;
 
-/// Reads a glTF file, in metres and Y up as the format demands. `sibling` gives the bytes of a file beside it.
+/// Reads a glTF file. The format is in meters, Y up. `sibling` returns the bytes of a file next to it.
 ///
 /// # Errors
-/// JSON that breaks the format, an extension that must be understood and is not, accessors outside their buffers,
-/// a node that is its own ancestor, or more than eight million vertices.
+/// Returns an error for JSON that violates the format, a required extension that is not supported, accessors
+/// outside their buffers, a node that is its own ancestor, or more than eight million vertices.
 pub fn parse(
     data: &[u8],
     sibling: &dyn Fn(&str) -> Option<Vec<u8>>,
@@ -68,7 +69,7 @@ pub fn parse(
     Ok((Character { body: Body { mesh, joints: skeleton.joints, skin: Some(skin) }, clips }, notes))
 }
 
-/// The mesh as it grows, primitive by primitive.
+/// The mesh under construction; primitives are appended one by one.
 struct Build<'a> {
     skeleton: &'a Skeleton,
     mesh: Mesh,
@@ -112,7 +113,7 @@ impl Build<'_> {
             let text = format!("a mesh has {count} positions but {given} {what}");
             if given == count { Ok(()) } else { Err(Problem::whole(text)) }
         };
-        // Into the rest pose: by the skin's bind space, or by the node that carries the mesh.
+        // Transform into the rest pose: by the skin's bind space, or by the node that holds the mesh.
         let (placed, own_joint) = match node.skin() {
             Some(skin) => (self.skeleton.skins[skin.index()].placed, 0),
             None => self.skeleton.rigid(node.index()),
@@ -164,7 +165,7 @@ impl Build<'_> {
         Ok(())
     }
 
-    /// Joints and weights of a skinned primitive's vertices: the four heaviest of all its sets.
+    /// Joints and weights of a skinned primitive's vertices: the four largest weights of all its sets.
     fn weigh(
         &mut self,
         primitive: &gltf::Primitive<'_>,
@@ -173,7 +174,7 @@ impl Build<'_> {
         buffers: &Buffers,
     ) -> Result<(), Problem> {
         let mut sets = Vec::new();
-        // Four sets are sixteen weights a vertex: more than any program writes.
+        // Four sets are sixteen weights per vertex, more than any program writes.
         for set in 0..4 {
             let pair = primitive.get(&Semantic::Joints(set)).zip(primitive.get(&Semantic::Weights(set)));
             let Some((joints, weights)) = pair else { break };
@@ -204,7 +205,7 @@ impl Build<'_> {
         Ok(())
     }
 
-    /// Closes the part that began at `first_triangle`.
+    /// Ends the part that began at `first_triangle`.
     fn part(&mut self, mesh: &gltf::Mesh<'_>, primitive: &gltf::Primitive<'_>, first_triangle: usize) {
         let material = primitive.material();
         let pbr = material.pbr_metallic_roughness();
@@ -224,7 +225,7 @@ impl Build<'_> {
     }
 }
 
-/// The transform without what can not be undone: `None` if it is singular or not finite.
+/// Returns the transform, or `None` if it is singular or not finite.
 fn invertible(m: Affine3A) -> Option<Affine3A> {
     let determinant = m.matrix3.determinant();
     (m.is_finite() && determinant.is_finite() && determinant.abs() > 1e-20 && m.inverse().is_finite())

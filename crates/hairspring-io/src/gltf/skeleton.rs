@@ -1,9 +1,9 @@
-//! Which nodes of a glTF file are joints, and where they stand in the rest pose.
+//! Selects which nodes of a glTF file are joints, and computes their rest pose.
 //!
-//! A node is a joint if a skin, an animation or a rigid mesh needs it, or if one of its children is. The rest pose
-//! is the bind pose: where a skin's joints stand when its mesh is undeformed, moved into the scene by the place M of
-//! the skin's first root joint: vertices become M v, inverse bind matrices B become B M⁻¹, so that every pose comes
-//! out exactly as the file means it.
+//! A node is a joint if a skin, an animation or a rigid mesh uses it, or if one of its children is a joint.
+//! The rest pose is the bind pose: the transforms of a skin's joints when its mesh is undeformed. It is moved
+//! into the scene by M, the transform of the skin's first root joint: vertices v become M v, and inverse bind
+//! matrices B become B M⁻¹. Every pose is then exactly the one that the file describes.
 
 use super::{
     accessor::{Buffers, components},
@@ -13,11 +13,11 @@ use crate::{Place, Problem};
 use glam::{Affine3A, Mat4, Quat, Vec3};
 use hairspring::body::{Joint, Trs};
 
-/// A skin's part in the skeleton.
+/// The joints of one skin, and the transform of its meshes.
 pub(super) struct SkinPlace {
-    /// Joint of each of the skin's own.
+    /// Index in the skeleton of each of the skin's joints.
     pub joints: Vec<u16>,
-    /// Takes a vertex of its meshes into the rest pose.
+    /// Transforms a vertex of the skin's meshes into the rest pose.
     pub placed: Affine3A,
 }
 
@@ -25,17 +25,18 @@ pub(super) struct SkinPlace {
 pub(super) struct Skeleton {
     /// Parents before children.
     pub joints: Vec<Joint>,
-    /// Takes a rest-pose vertex into each joint's space; shape `[joints]`.
+    /// Transforms a rest-pose vertex into each joint's space; shape `[joints]`.
     pub inverse_bind: Vec<Affine3A>,
-    /// Local transforms of nodes as the file has them, which stand where an animation has no channel; shape `[joints]`.
+    /// Local transforms of the nodes as the file has them, used if an animation has no channel; shape
+    /// `[joints]`.
     pub defaults: Vec<Trs>,
     /// Shape `[skins]`.
     pub skins: Vec<SkinPlace>,
-    /// Joint of each node; `None`: not a joint.
+    /// Joint of each node; `None` if the node is not a joint.
     joint_of: Vec<Option<u16>>,
-    /// Whether the scene holds the node; shape `[nodes]`.
+    /// Whether the node is part of the scene; shape `[nodes]`.
     reached: Vec<bool>,
-    /// Rest place of each joint.
+    /// Rest transform of each joint in world space.
     world: Vec<Affine3A>,
 }
 
@@ -68,17 +69,17 @@ impl Skeleton {
         Ok(skeleton)
     }
 
-    /// Whether the scene holds `node`.
+    /// Whether `node` is part of the scene.
     pub(super) fn reached(&self, node: usize) -> bool {
         self.reached[node]
     }
 
-    /// The joint that is `node`.
+    /// Returns the joint that belongs to `node`.
     pub(super) fn joint_of(&self, node: usize) -> Option<u16> {
         self.joint_of[node]
     }
 
-    /// Rest place and joint of a node that carries a mesh rigidly.
+    /// Returns the rest transform and the joint of a node that holds a rigid mesh.
     pub(super) fn rigid(&self, node: usize) -> (Affine3A, u16) {
         let joint = self.joint_of[node].unwrap_or(0);
         (self.world[joint as usize], joint)
@@ -106,11 +107,11 @@ impl Skeleton {
                     skin.index()
                 )));
             }
-            // The root: the joint that stands first, since parents come before children.
+            // The root is the joint with the lowest index, since parents come before children.
             let root = joints.iter().zip(&binds).min_by_key(|(j, _)| **j);
             let placed = root.map_or(Affine3A::IDENTITY, |(j, b)| node_world[*j as usize] * *b);
             let singular =
-                || Problem::whole(format!("skin {} has a matrix that can not be inverted", skin.index()));
+                || Problem::whole(format!("skin {} has a matrix that cannot be inverted", skin.index()));
             let placed = invertible(placed).ok_or_else(singular)?;
             for (j, bind) in joints.iter().zip(&binds) {
                 let bind = invertible(*bind * placed.inverse()).ok_or_else(singular)?;
@@ -125,7 +126,8 @@ impl Skeleton {
                 let (scale, rotation, translation) =
                     (parent.inverse() * bind.inverse()).to_scale_rotation_translation();
                 let trs = Trs { translation, rotation, scale };
-                // A sheared or degenerate bind pose keeps the node's own transform; skinning stays exact either way.
+                // If the bind pose is sheared or degenerate, the node keeps its own transform. Skinning is
+                // exact either way.
                 if translation.is_finite() && rotation.is_finite() && scale.is_finite() {
                     joint.rest = trs;
                 }
@@ -142,7 +144,7 @@ impl Skeleton {
     }
 }
 
-/// Nodes of the scene, parents first; the parent of each node; and which are reached.
+/// Lists the nodes of the scene with parents first, the parent of each node, and which nodes are reached.
 #[allow(clippy::type_complexity)]
 fn walk(document: &gltf::Document) -> Result<(Vec<usize>, Vec<Option<usize>>, Vec<bool>), Problem> {
     let count = document.nodes().len();
@@ -163,7 +165,7 @@ fn walk(document: &gltf::Document) -> Result<(Vec<usize>, Vec<Option<usize>>, Ve
     while let Some(n) = stack.pop() {
         if std::mem::replace(&mut reached[n], true) {
             return Err(Problem::whole(format!(
-                "node {n} stands in two places of the scene, or is its own ancestor"
+                "node {n} appears twice in the scene, or is its own ancestor"
             )));
         }
         order.push(n);
@@ -175,7 +177,8 @@ fn walk(document: &gltf::Document) -> Result<(Vec<usize>, Vec<Option<usize>>, Ve
     Ok((order, parents, reached))
 }
 
-/// Which nodes must be joints: those that skins, animations and rigid meshes name, and all their ancestors.
+/// Marks the nodes that must be joints: those that skins, animations and rigid meshes use, and all their
+/// ancestors.
 fn needed(document: &gltf::Document, parents: &[Option<usize>], reached: &[bool]) -> Vec<bool> {
     let mut needed = vec![false; parents.len()];
     let skins = document.skins().flat_map(|s| s.joints().map(|n| n.index()).collect::<Vec<_>>());
@@ -200,14 +203,14 @@ fn local(node: &gltf::Node<'_>) -> Result<Trs, Problem> {
     let length = trs.rotation.length();
     if !(trs.translation.is_finite() && trs.scale.is_finite() && length.is_finite() && length > 1e-6) {
         return Err(Problem::whole(format!(
-            "the transform of node {} is not finite or turns by nothing",
+            "the transform of node {} is not finite, or its rotation is zero",
             node.index()
         )));
     }
     Ok(Trs { rotation: trs.rotation.normalize(), ..trs })
 }
 
-/// Places of all joints from their local transforms.
+/// World transforms of all joints from their local transforms.
 fn world(joints: &[Joint], local: impl Fn(usize) -> Affine3A) -> Vec<Affine3A> {
     let mut world: Vec<Affine3A> = Vec::with_capacity(joints.len());
     for (j, joint) in joints.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Values of wind and charge that a scene file may not have.
+//! Range checks for the wind and charge settings of a scene file.
 
 use super::{
     check::{Check, above_0, finite, first_failure, from_0},
@@ -43,7 +43,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             (
                 goes_on(charged),
                 "path",
-                "finite places [m] at times above 0 [s], each later than the one before",
+                "finite positions [m] at times above 0 [s], each later than the one before",
             ),
         ];
         first_failure(text, line, &balls)?;
@@ -51,7 +51,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Whether a source's flow is finite and comes from somewhere.
+/// Checks that a source's flow is finite and has a valid radius, axis and spread.
 fn flow(flow: &Flow) -> Check {
     let sound =
         |center: Vec3, radius: f32, speed: f32| finite(center) && above_0(Some(radius)) && speed.is_finite();
@@ -70,7 +70,7 @@ fn flow(flow: &Flow) -> Check {
     )
 }
 
-/// Whether a charged body's way is finite and goes forward in time.
+/// Whether a charged body's path is finite and its times increase.
 fn goes_on(charged: &Charged) -> bool {
     let times = || charged.path.iter().map(|p| p.time);
     let before = std::iter::once(0.0).chain(times());
@@ -78,12 +78,12 @@ fn goes_on(charged: &Charged) -> bool {
         && times().zip(before).all(|(time, before)| time > before)
 }
 
-/// Lines of the tables with this header; the first line for those that are written otherwise.
+/// Lines of the tables with this header. Tables that are written in another way get the first line.
 pub(super) fn lines<'a>(text: &'a str, header: &'a str) -> impl Iterator<Item = usize> + 'a {
     text.match_indices(header).map(|(at, _)| line_at(text, at)).chain(std::iter::repeat(1))
 }
 
-/// The line of the table with this header, or the first.
+/// The line of the table with this header, or the first line.
 fn first_line(text: &str, header: &str) -> usize {
     text.find(header).map_or(1, |at| line_at(text, at))
 }

@@ -1,4 +1,4 @@
-//! `[body]` and `[collision]`: which meshes, and what moves them.
+//! `[body]` and `[collision]`: the meshes, and the joints that move them.
 
 use super::{
     Reader,
@@ -10,7 +10,7 @@ use glam::Affine3A;
 use hairspring::body::{Body, Joint, Part, Skin};
 
 impl Reader<'_> {
-    /// A `[body]` or `[collision]`, which `what` names, with its further files.
+    /// Reads a `[body]` or `[collision]` with its additional files. `what` names it in error messages.
     pub(super) fn body(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
         let mut character = self.piece(named, what)?;
         for file in &named.more {
@@ -22,7 +22,7 @@ impl Reader<'_> {
         Ok(character)
     }
 
-    /// One file of a body.
+    /// Reads one file of a body.
     fn piece(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
         let path = self.resolve(&named.file);
         let options = ReadOptions { scale: named.scale, up: named.up };
@@ -47,7 +47,7 @@ impl Reader<'_> {
             }
             body.keep_parts(|name| parts.iter().any(|p| p == name));
         }
-        // Every file of a body has a part at least, so that each keeps its own colour.
+        // Every file of a body gets at least one part, so that each keeps its own color.
         if body.mesh.parts.is_empty() {
             body.mesh.parts.push(Part {
                 name: what.into(),
@@ -63,7 +63,7 @@ impl Reader<'_> {
         Ok(character)
     }
 
-    /// A MakeHuman mesh with its rig.
+    /// Reads a MakeHuman mesh with its rig.
     fn rigged(
         &self,
         named: &BodyFile,
@@ -82,7 +82,7 @@ impl Reader<'_> {
         Ok(character)
     }
 
-    /// The joint of `body` that `named` names.
+    /// Finds the joint `name` of `body`, which the table `named` refers to.
     fn joint(&self, body: &Body, name: &str, named: &BodyFile) -> Result<u16> {
         body.joint(name).map(|j| j as u16).ok_or_else(|| {
             let text = format!("the joint {}", unknown(name, body.joints.iter().map(|j| j.name.as_str())));
@@ -90,13 +90,13 @@ impl Reader<'_> {
         })
     }
 
-    /// The collision mesh with the body's joints, so that one pose moves both.
+    /// Binds the collision mesh to the body's joints, so that one pose moves both.
     pub(super) fn carried(&self, mut collision: Body, body: &Body, named: &BodyFile) -> Result<Body> {
         let rest: Vec<Affine3A> = body.world(&body.rest_pose());
         let inverse_bind: Vec<Affine3A> = rest.iter().map(|w| w.inverse()).collect();
         let of = |name: &str| self.joint(body, name, named);
         collision.skin = match (&collision.skin, &named.joint) {
-            // Skinned over joints of its own: the body's of the same names.
+            // A mesh that is skinned to its own joints uses the body's joints of the same names.
             (Some(skin), None) => {
                 let map: Vec<u16> = collision.joints.iter().map(|j| of(&j.name)).collect::<Result<_>>()?;
                 let joints = skin.joints.iter().map(|four| four.map(|j| map[j as usize])).collect();
@@ -119,8 +119,8 @@ impl Reader<'_> {
     }
 }
 
-/// Adds a piece to a body: its joints are the body's of the same names, and new ones where there is none; a piece without
-/// a skin, or with a named `carrier`, follows that joint as a whole.
+/// Adds a piece to a body. Its joints are matched with the body's joints by name; joints without a match are
+/// added. A piece without a skin, or with a given `carrier`, follows that joint rigidly.
 pub(super) fn join(body: &mut Body, piece: Body, carrier: Option<u16>) {
     let vertices = piece.mesh.positions.len();
     let follow = |joint: u16, vertices: usize| {
@@ -155,7 +155,7 @@ pub(super) fn join(body: &mut Body, piece: Body, carrier: Option<u16>) {
     body.mesh.append(piece.mesh);
 }
 
-/// A body as one rigid piece that a clip of one joint moves.
+/// Turns a body into one rigid piece that a clip of one joint moves.
 pub(super) fn rigid(body: Body) -> Body {
     if body.skin.is_none() && body.joints.len() == 1 { body } else { Body::rigid(body.mesh) }
 }

@@ -1,4 +1,4 @@
-//! `[builtin]`: the scene that is made by code.
+//! `[builtin]`: the procedural scene.
 
 use super::{
     Reader, check,
@@ -13,7 +13,7 @@ use hairspring_scene::{
     builtin::{self, BuiltinOptions, Style},
 };
 
-/// What is to be built.
+/// Returns the options of the built-in scene.
 pub(super) fn options(text: &str, file: &BuiltinFile) -> Result<BuiltinOptions, Problem> {
     let style = match &file.style {
         None => Style::default(),
@@ -29,7 +29,7 @@ pub(super) fn options(text: &str, file: &BuiltinFile) -> Result<BuiltinOptions, 
     Ok(BuiltinOptions { strands, guides, ..base })
 }
 
-/// Its settings: those of the style, with what `file` says over them.
+/// Returns the settings of the style, overridden by those in `file`.
 pub(super) fn settings(text: &str, scene: &SceneFile, file: &BuiltinFile) -> Result<Scene, Problem> {
     let mut made = builtin::settings(&options(text, file)?);
     let start = text.find("[builtin]").unwrap_or(0);
@@ -49,7 +49,7 @@ pub(super) fn settings(text: &str, scene: &SceneFile, file: &BuiltinFile) -> Res
 }
 
 impl Reader<'_> {
-    /// The scene as it is built.
+    /// Builds the scene.
     pub(super) fn builtin(&self, file: &BuiltinFile) -> crate::Result<Scene> {
         let mut made = builtin::scene(&options(self.text, file).map_err(|p| p.in_file(self.path))?);
         if file.motion == Some(false) {

@@ -1,4 +1,4 @@
-//! Values that a scene file may not have: not finite, or outside the range that the field's description gives.
+//! Range checks for the values of a scene file: not finite, or outside the documented range of the field.
 
 use super::{
     air,
@@ -16,36 +16,36 @@ use hairspring::{
 };
 use hairspring_scene::{Guides, HairLook, Hand, Shape};
 
-/// One check: whether it holds, the key it is about, what is expected.
+/// One check: whether it holds, the key that it is about, and what is expected.
 pub(super) type Check = (bool, &'static str, &'static str);
 
 pub(super) fn finite(v: Vec3) -> bool {
     v.is_finite()
 }
 
-/// Finite and above 0, or absent.
+/// Whether a value is finite and above 0, or absent.
 pub(super) fn above_0(x: Option<f32>) -> bool {
     x.is_none_or(|x| x.is_finite() && x > 0.0)
 }
 
-/// Finite, and 0 or more.
+/// Whether a value is finite, and 0 or more.
 pub(super) fn from_0(x: f32) -> bool {
     x.is_finite() && x >= 0.0
 }
 
-/// Weights of a material's mass profile.
+/// Whether the weights of a material's mass profile are valid.
 fn profile(weights: &[f32]) -> bool {
     let least = weights.iter().copied().fold(f32::INFINITY, f32::min);
     let holds = |w: &f32| w.is_finite() && *w > 0.0 && *w <= least * 100.0;
     (1..=64).contains(&weights.len()) && weights.iter().all(holds)
 }
 
-/// A colour's channels: 0 to 1.
+/// Whether a color's channels are 0 to 1.
 fn color(c: Vec3) -> bool {
     c.is_finite() && c.min_element() >= 0.0 && c.max_element() <= 1.0
 }
 
-/// The first check that fails, placed at its key's line from line `from` on.
+/// Reports the first check that fails, at the line of its key from line `from` on.
 pub(super) fn first_failure(text: &str, from: usize, checks: &[Check]) -> Result<(), Problem> {
     match checks.iter().find(|(holds, ..)| !holds) {
         None => Ok(()),
@@ -56,7 +56,7 @@ pub(super) fn first_failure(text: &str, from: usize, checks: &[Check]) -> Result
     }
 }
 
-/// Checks all settings but the materials.
+/// Checks all settings except the materials.
 pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     let section = |name: &str| text.find(name).map_or(1, |at| line_at(text, at));
     if scene.groom.is_empty() && scene.builtin.is_none() {
@@ -65,7 +65,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     first_failure(text, 1, &[(finite(scene.gravity), "gravity", "three finite numbers [m/s²]")])?;
     for body in scene.body.iter().chain(&scene.collision) {
         body_ranges(text, body)?;
-        let bare = (body.thickness.is_none(), "thickness", "left out of all but [[sheet]]");
+        let bare = (body.thickness.is_none(), "thickness", "omitted except in [[sheet]]");
         first_failure(text, line_at(text, body.file.span().start), &[bare])?;
     }
     for sheet in &scene.sheet {
@@ -83,7 +83,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         if scene.body.is_some() || scene.collision.is_some() {
             return Err(Problem::line(
                 section("[builtin]"),
-                "`[builtin]` has a body of its own: leave out [body] and [collision]",
+                "`[builtin]` has its own body; remove [body] and [collision]",
             ));
         }
     }
@@ -91,28 +91,24 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         let keys = &clip.keys;
         let [ordered, of_numbers] = way(keys);
         let checks = [
-            (keys.is_empty() || clip.file.is_none(), "keys", "left out where there is a `file`"),
+            (keys.is_empty() || clip.file.is_none(), "keys", "omitted if there is a `file`"),
             ordered,
             of_numbers,
-            (above_0(clip.scale), "scale", "above 0 [m a unit]"),
+            (above_0(clip.scale), "scale", "above 0 [m per unit]"),
             (clip.pivot.is_none_or(finite), "pivot", "three finite numbers [m]"),
             (clip.facing.is_none_or(f32::is_finite), "facing", "a finite number [degrees]"),
             (
                 clip.pivot.is_none() || clip.joint.is_some() || !keys.is_empty(),
                 "pivot",
-                "left out where there is no `joint` and no `keys`",
+                "omitted without `joint` or `keys`",
             ),
-            (
-                clip.rest_frame.is_none() || clip.joint.is_some(),
-                "rest_frame",
-                "left out where there is no `joint`",
-            ),
-            (clip.travel.is_none() || clip.joint.is_some(), "travel", "left out where there is no `joint`"),
-            (clip.facing.is_none() || clip.joint.is_some(), "facing", "left out where there is no `joint`"),
+            (clip.rest_frame.is_none() || clip.joint.is_some(), "rest_frame", "omitted without `joint`"),
+            (clip.travel.is_none() || clip.joint.is_some(), "travel", "omitted without `joint`"),
+            (clip.facing.is_none() || clip.joint.is_some(), "facing", "omitted without `joint`"),
             (
                 clip.joint.is_none() || clip.file.is_some(),
                 "joint",
-                "with a `file`: the motion that the joint is from",
+                "given with a `file`, the motion that has the joint",
             ),
         ];
         first_failure(text, section("[clip]"), &checks)?;
@@ -121,7 +117,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     for groom in &scene.groom {
         let t = &groom.transform;
         let checks = [
-            (above_0(groom.scale), "scale", "above 0 [m a unit]"),
+            (above_0(groom.scale), "scale", "above 0 [m per unit]"),
             (finite(t.position), "position", "three finite numbers [m]"),
             (finite(t.rotation), "rotation", "three finite numbers [degrees]"),
             (finite(t.scale) && t.scale.abs().min_element() > 0.0, "scale", "finite and not 0"),
@@ -189,7 +185,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             (
                 finite(camera.target) && camera.target != camera.position,
                 "target",
-                "finite, and not where the camera stands",
+                "finite, and different from the camera's position",
             ),
             ((1.0..=170.0).contains(&camera.fov), "fov", "1 to 170 [degrees]"),
         ];
@@ -208,7 +204,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     Ok(())
 }
 
-/// The checks of a way by keys.
+/// Checks a motion by keys.
 pub(super) fn way(keys: &[KeyFile]) -> [Check; 2] {
     let ordered = keys.windows(2).all(|w| w[0].time < w[1].time);
     let inside = |key: &KeyFile| (0.0..=3600.0).contains(&key.time);
@@ -218,10 +214,10 @@ pub(super) fn way(keys: &[KeyFile]) -> [Check; 2] {
     ]
 }
 
-/// What is expected of a shape.
+/// Describes a valid shape, for error messages.
 const SOUND: &str = "finite, with a radius or edges above 0 [m], a normal that is not 0, or `points` that span a volume or a `file` of them";
 
-/// Whether a shape is finite (its own extent, not the half of space that a plane bounds) and has an inside.
+/// Whether a shape is finite and has an inside. For a plane only its own extent counts, not its half-space.
 fn sound(shape: &Shape) -> bool {
     match *shape {
         Shape::Hull { ref points, ref file, scale } => {
@@ -239,7 +235,7 @@ fn sound(shape: &Shape) -> bool {
 
 pub(super) fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
     let checks = [
-        (above_0(body.scale), "scale", "above 0 [m a unit]"),
+        (above_0(body.scale), "scale", "above 0 [m per unit]"),
         (body.color.is_none_or(color), "color", "three numbers from 0 to 1"),
         (body.roughness.is_none_or(|r| (0.0..=1.0).contains(&r)), "roughness", "0 to 1"),
     ];
@@ -251,7 +247,11 @@ pub(super) fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
 fn hand_ranges(text: &str, from: usize, hand: &Hand) -> Result<(), Problem> {
     let keys = hand.path.iter().flatten().all(|x| x.is_finite());
     let checks = [
-        (keys && hand.path.windows(2).all(|w| w[0][0] < w[1][0]), "path", "finite, at rising times [s]"),
+        (
+            keys && hand.path.windows(2).all(|w| w[0][0] < w[1][0]),
+            "path",
+            "finite, with increasing times [s]",
+        ),
         (from_0(hand.from), "from", "0 or more [s]"),
         (hand.until.is_none_or(|t| t.is_finite() && t > hand.from), "until", "after `from` [s]"),
     ];
@@ -259,7 +259,7 @@ fn hand_ranges(text: &str, from: usize, hand: &Hand) -> Result<(), Problem> {
     first_failure(text, from, &tool_checks(&hand.tool))
 }
 
-/// The checks of a tool, all said of the line that it stands in.
+/// The checks of a tool. All of them are reported at the tool's own line.
 fn tool_checks(tool: &Manipulator) -> Vec<Check> {
     let place = |ok: bool| (ok, "tool", "at three finite numbers [m]");
     let radius = |r: f32| (above_0(Some(r)), "tool", "given a `radius` above 0 [m]");
@@ -287,9 +287,9 @@ fn tool_checks(tool: &Manipulator) -> Vec<Check> {
     }
 }
 
-/// Checks that no look says its colour twice.
+/// Checks that no look sets both melanin and explicit colors.
 fn colored_once(text: &str, scene: &SceneFile) -> Result<(), Problem> {
-    // What is left out has its default once it is read: only the text knows.
+    // A key that is left out already has its default in `scene`; only the text shows which keys are present.
     let Some(Ok(all)) = text.contains("melanin").then(|| text.parse::<toml::Table>()) else { return Ok(()) };
     let grooms = all.get("groom").and_then(toml::Value::as_array).into_iter().flatten();
     let starts = scene.groom.iter().map(|groom| line_at(text, groom.start()));
@@ -298,7 +298,8 @@ fn colored_once(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         let says = |key: &str| table.get("look").is_some_and(|look| look.get(key).is_some());
         if says("melanin") && (says("root_color") || says("tip_color")) {
             let line = line_of_key(text, from, "melanin").or(line_of_key(text, from, "look")).unwrap_or(from);
-            let why = "a look has `melanin` or colours (`root_color`, `tip_color`), and not both: leave one of them out";
+            let why =
+                "a look takes `melanin` or colors (`root_color`, `tip_color`), not both; remove one of them";
             return Err(Problem::line(line, why));
         }
     }
@@ -324,7 +325,7 @@ pub(super) fn look(text: &str, from: usize, look: &HairLook) -> Result<(), Probl
     first_failure(text, from, &checks)
 }
 
-/// Checks what is laid over follow hairs, from line `from` on.
+/// Checks the styling effects of follow hairs, from line `from` on.
 pub(super) fn effects(text: &str, from: usize, effects: &Effects) -> Result<(), Problem> {
     let checks = [
         ((0.0..=1.0).contains(&effects.clump), "clump", "0 to 1"),
@@ -365,7 +366,7 @@ pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Prob
     first_failure(text, from, &checks)
 }
 
-/// Whether a global shape's numbers are in their ranges.
+/// Whether the values of a global shape are in their ranges.
 fn global_shape_in_range(shape: &GlobalShape) -> bool {
     (0.0..=60.0).contains(&shape.pull) && from_0(shape.tip) && (0.0..=10.0).contains(&shape.damping)
 }

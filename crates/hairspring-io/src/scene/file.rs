@@ -1,4 +1,4 @@
-//! The fields of a scene file. Every field that is not said to be needed may be left out.
+//! The fields of a scene file. Every field is optional unless it is marked as required.
 
 use glam::{EulerRot, Quat, Vec3};
 use hairspring::{
@@ -15,21 +15,21 @@ use toml::Spanned;
 
 use crate::Axis;
 
-/// A file named in a scene, relative to the scene's folder, with its place for messages.
+/// A file named in a scene, relative to the scene's folder, with its position in the text for messages.
 pub(super) type FileName = Spanned<PathBuf>;
 
 /// A whole scene file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneFile {
-    /// Shown in reports. Default: the file's name.
+    /// Name in reports. Default: the file's name.
     pub name: Option<String>,
-    /// The scene that is made by code, in place of `body`.
+    /// The procedural scene, used instead of `body`.
     pub builtin: Option<BuiltinFile>,
     /// Gravity [m/s²]. Default (0, −9.81, 0).
     #[serde(default = "earth")]
     pub gravity: Vec3,
-    /// What is drawn and what hair grows on.
+    /// The mesh that is drawn and that hair grows on.
     pub body: Option<BodyFile>,
     /// A closed mesh that hair collides with instead of the body's own.
     pub collision: Option<BodyFile>,
@@ -41,22 +41,22 @@ pub(super) struct SceneFile {
     pub collider: Vec<Collider>,
     /// Motion of the body.
     pub clip: Option<ClipFile>,
-    /// Things beside the body that move by themselves.
+    /// Objects that move independently of the body.
     #[serde(default)]
     pub prop: Vec<PropFile>,
-    /// The hairstyles; one is needed, or `builtin`.
+    /// The hairstyles. At least one is required, unless `builtin` is given.
     #[serde(default)]
     pub groom: Vec<GroomFile>,
-    /// Materials by name: `preset`, then any field of a material over it.
+    /// Materials by name: `preset`, then any fields of a material that override it.
     #[serde(default)]
     pub material: BTreeMap<String, Spanned<toml::Table>>,
-    /// The wind of all points.
+    /// The uniform wind.
     #[serde(default)]
     pub wind: Wind,
-    /// What blows besides.
+    /// Local wind sources.
     #[serde(default)]
     pub wind_source: Vec<WindSource>,
-    /// Eddies in the air.
+    /// Turbulence.
     #[serde(default)]
     pub turbulence: Turbulence,
     /// Wind occlusion by bodies and by hair.
@@ -68,23 +68,23 @@ pub(super) struct SceneFile {
     /// Time steps and contact.
     #[serde(default)]
     pub solver: Solver,
-    /// How hair meets hair.
+    /// Contact between hairs.
     #[serde(default)]
     pub volume: Volume,
-    /// How strands meet their neighbours, one by one.
+    /// Contact between neighboring strands, one by one.
     #[serde(default)]
     pub neighbours: Neighbours,
-    /// Where the scene is seen from. Default: framed automatically.
+    /// The camera. Default: framed automatically.
     pub camera: Option<Camera>,
-    /// What it stands on in the picture.
+    /// The ground in the picture.
     #[serde(default)]
     pub ground: Ground,
-    /// What hands hold to the hair.
+    /// Tools that act on the hair.
     #[serde(default)]
     pub hand: Vec<Hand>,
 }
 
-/// `[builtin]`: a bust with a head of hair, and further grooms, colliders and settings over it.
+/// `[builtin]`: a bust with a head of hair. Other grooms, colliders and settings can be added.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BuiltinFile {
@@ -97,11 +97,11 @@ pub(super) struct BuiltinFile {
     pub guides: Option<Guides>,
     /// Name of a `[material.NAME]` or a preset. Default: the style's.
     pub material: Option<OneOrMore>,
-    /// Whether it nods, turns and shakes where there is no `[clip]`. Default true.
+    /// Whether the head nods, turns and shakes if there is no `[clip]`. Default true.
     pub motion: Option<bool>,
-    /// How the head of hair is drawn: any field of a look. Default: the style's.
+    /// How the hair is drawn: any fields of a look. Default: the style's.
     pub look: Option<Spanned<toml::Table>>,
-    /// What is laid over its follow hairs.
+    /// Styling effects of its follow hairs.
     #[serde(default)]
     pub effects: Effects,
 }
@@ -110,9 +110,9 @@ pub(super) struct BuiltinFile {
 #[derive(PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyFile {
-    /// `.glb`, `.gltf`, `.obj` or `.tfxmesh`; needed.
+    /// `.glb`, `.gltf`, `.obj` or `.tfxmesh`. Required.
     pub file: FileName,
-    /// Metres in one unit of the file [m]. Default: by the format, or guessed and said.
+    /// Meters in one unit of the file [m]. Default: by the format, or guessed with a note.
     pub scale: Option<f32>,
     /// The axis that points up, "y" or "z". Default y.
     pub up: Option<Axis>,
@@ -122,16 +122,18 @@ pub(super) struct BodyFile {
     pub rig: Option<FileName>,
     /// MakeHuman skin weights (JSON) of an `.obj`; needs `rig`.
     pub weights: Option<FileName>,
-    /// Linear RGB colour of the whole surface, 0 to 1. Default: the file's.
+    /// Linear RGB color of the whole surface, 0 to 1. Default: the file's.
     pub color: Option<Vec3>,
-    /// 0 (glossy) to 1 (matt), of the whole surface. Default: the file's.
+    /// Roughness of the whole surface, 0 (glossy) to 1 (matte). Default: the file's.
     pub roughness: Option<f32>,
-    /// `[collision]`, `[[sheet]]` and `more` only: the body's joint that carries a mesh without joints of its own. Default: the body's first.
+    /// `[collision]`, `[[sheet]]` and `more` only: the body's joint that moves a mesh without joints of its
+    /// own. Default: the body's first joint.
     pub joint: Option<String>,
-    /// Further files of the same body: eyes, clothes, hands. They move with it, by the joints of the same names or `joint`.
+    /// Additional files of the same body: eyes, clothes, hands. They move with it, by the joints of the same
+    /// names or by `joint`.
     #[serde(default)]
     pub more: Vec<BodyFile>,
-    /// `[[sheet]]` only: how far hair stays from the mesh, on both sides [m]. Default 0.002.
+    /// `[[sheet]]` only: distance that hair keeps from the mesh, on both sides [m]. Default 0.002.
     pub thickness: Option<f32>,
 }
 
@@ -143,40 +145,44 @@ pub(super) struct ClipFile {
     pub file: Option<FileName>,
     /// Name of the motion in a `.glb`. Default: the first.
     pub name: Option<String>,
-    /// Metres in one unit of the file [m]. Default: by the format, or guessed and said.
+    /// Meters in one unit of the file [m]. Default: by the format, or guessed with a note.
     pub scale: Option<f32>,
-    /// The axis that points up, "y" or "z". Default: by the format, or guessed and said.
+    /// The axis that points up, "y" or "z". Default: by the format, or guessed with a note.
     pub up: Option<Axis>,
     /// First frame that is used, counted from 0. Default 0.
     #[serde(default)]
     pub start: usize,
-    /// A joint of the motion, such as "Head", that drives the whole body as one rigid piece. Default: joints move the body's joints of the same names.
+    /// A joint of the motion, such as "Head", that drives the whole body as one rigid piece. Default: the
+    /// joints of the motion move the body's joints of the same names.
     pub joint: Option<String>,
-    /// With `joint`, needed: the point of the body that it turns about [m].
+    /// Required with `joint`: the point of the body that it rotates around [m].
     pub pivot: Option<Vec3>,
-    /// With `joint`: the frame in which the joint counts as being at rest, counted from 0. Default: `start`.
+    /// With `joint`: the frame in which the joint is at rest, counted from 0. Default: `start`.
     pub rest_frame: Option<usize>,
-    /// With `joint`: what is kept of the way through the world: "keep", "in-place" (bobbing only) or "none". Default "in-place".
+    /// With `joint`: how much of the motion through the world is kept: "keep", "in-place" (vertical only) or
+    /// "none". Default "in-place".
     pub travel: Option<TravelName>,
-    /// In place of `file`: the body is one rigid piece that goes from key to key, and is at rest at each.
+    /// Used instead of `file`: the body is one rigid piece that moves from key to key, and is at rest at each
+    /// key.
     #[serde(default)]
     pub keys: Vec<KeyFile>,
-    /// With `joint`: direction that the body faces, about +Y from +Z [degrees]. Default 0.
+    /// With `joint`: direction that the body faces, as an angle around +Y from +Z [degrees]. Default 0.
     pub facing: Option<f32>,
 }
 
-/// One `[[prop]]`: a thing beside the body that moves by itself.
+/// One `[[prop]]`: an object that moves independently of the body.
 #[derive(PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PropFile {
-    /// The joint that it adds to the body's: what colliders, hands and the like name to go with it; needed.
+    /// Name of the joint that the prop adds to the body. Colliders, tools and the like use it to follow the
+    /// prop. Required.
     pub name: String,
-    /// How it looks, where it is before it moves: any field of `body`. Default: nothing is seen of it.
+    /// The prop's mesh, at its position before it moves: any field of `body`. Default: the prop is invisible.
     pub mesh: Option<BodyFile>,
-    /// Its way, as that of `clip`. Default: it rests.
+    /// The keys of its motion, as in `clip`. Default: it does not move.
     #[serde(default)]
     pub keys: Vec<KeyFile>,
-    /// The point of it that it turns about [m]. Default 0.
+    /// The point of the prop that it rotates around [m]. Default 0.
     #[serde(default)]
     pub pivot: Vec3,
 }
@@ -185,30 +191,30 @@ pub(super) struct PropFile {
 #[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct KeyFile {
-    /// When [s]; needed, and after that of the key before.
+    /// Time of the key [s]. Required, and later than that of the previous key.
     pub time: f32,
-    /// How far from its rest it is [m]. Default 0.
+    /// Translation from the rest position [m]. Default 0.
     #[serde(default)]
     pub position: Vec3,
-    /// How it is turned about `pivot`: about X, then Y, then Z [degrees]. Default 0.
+    /// Rotation around `pivot`: about X, then Y, then Z [degrees]. Default 0.
     #[serde(default)]
     pub rotation: Vec3,
 }
 
 impl KeyFile {
-    /// The key.
+    /// Converts the entry to a key.
     pub(super) fn key(&self) -> Key {
         Key { time: self.time, position: self.position, rotation: turn(self.rotation) }
     }
 }
 
-/// A turn about X, then Y, then Z [degrees].
+/// A rotation about X, then Y, then Z [degrees].
 pub(super) fn turn(degrees: Vec3) -> Quat {
     let [x, y, z] = degrees.to_array().map(f32::to_radians);
     Quat::from_euler(EulerRot::ZYX, z, y, x)
 }
 
-/// [`Travel`] as a scene file names it.
+/// [`Travel`] with the names used in a scene file.
 #[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum TravelName {
@@ -221,21 +227,22 @@ pub(super) enum TravelName {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GroomFile {
-    /// `.hair`, `.tfx` or `.data`; needed, or `grow`.
+    /// `.hair`, `.tfx` or `.data`. Required, unless `grow` is given.
     pub file: Option<FileName>,
-    /// Hair grown from the body, in place of a file.
+    /// Hair grown from the body, used instead of a file.
     pub grow: Option<Spanned<GrowFile>>,
     /// Follow hairs added around each strand.
     #[serde(default)]
     pub thicken: Thicken,
-    /// Metres in one unit of the file [m]. Default: by the format, or guessed and said.
+    /// Meters in one unit of the file [m]. Default: by the format, or guessed with a note.
     pub scale: Option<f32>,
     /// The axis that points up, "y" or "z". Default: z for `.hair`, y otherwise.
     pub up: Option<Axis>,
-    /// Where the hairstyle stands, after `scale` and `up`.
+    /// Placement of the hairstyle, applied after `scale` and `up`.
     #[serde(default)]
     pub transform: Placement,
-    /// Name of a `[material.NAME]` or a preset, or a list of them, one a group. Default: a lone fibre of human hair.
+    /// Name of a `[material.NAME]` or a preset, or a list of them, one per group. Default: a single fiber of
+    /// human hair.
     pub material: Option<OneOrMore>,
     /// Which strands are simulated: a number, "all", or "file". Default "file".
     #[serde(default, deserialize_with = "guides")]
@@ -243,14 +250,14 @@ pub(super) struct GroomFile {
     /// How it is drawn.
     #[serde(default)]
     pub look: HairLook,
-    /// What is laid over follow hairs.
+    /// Styling effects of follow hairs.
     #[serde(default)]
     pub effects: Effects,
-    /// `.tfxbone`: each root binds to skin that follows one of its bones; needs a skinned body.
+    /// `.tfxbone`: each root binds to skin that follows one of its bones. Needs a skinned body.
     pub bones: Option<FileName>,
 }
 
-/// What a groom's strands are made from.
+/// The inputs that determine a groom's strands.
 #[derive(PartialEq)]
 pub(super) struct GroomGeometry<'a> {
     files: [&'a Option<FileName>; 2],
@@ -262,7 +269,7 @@ pub(super) struct GroomGeometry<'a> {
 }
 
 impl GroomFile {
-    /// What its strands are made from.
+    /// Returns the inputs that determine the groom's strands.
     pub(super) fn geometry(&self) -> GroomGeometry<'_> {
         GroomGeometry {
             files: [&self.file, &self.bones],
@@ -274,7 +281,7 @@ impl GroomFile {
         }
     }
 
-    /// The byte where the groom says what it is, for messages.
+    /// The byte where the groom's source is named, for messages.
     pub(super) fn start(&self) -> usize {
         let grow = self.grow.as_ref().map(|g| g.span().start);
         self.file.as_ref().map(|f| f.span().start).or(grow).unwrap_or(0)
@@ -285,21 +292,21 @@ impl GroomFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GrowFile {
-    /// Names of the parts of the body that it grows on. Default: all.
+    /// Names of the body parts that hair grows on. Default: all.
     pub parts: Option<Vec<String>>,
-    /// The joint that the skin must follow more than any other. Default: any.
+    /// The joint that the skin must follow most. Default: any.
     pub joint: Option<String>,
-    /// A shape in the space of the body's rest pose: hair grows on skin inside it. Default: everywhere.
+    /// A shape in the space of the body's rest pose. Hair grows only on skin inside it. Default: everywhere.
     pub inside: Option<Shape>,
-    /// Strands. Default 1,000.
+    /// Number of strands. Default 1,000.
     pub strands: Option<u32>,
-    /// Points of a strand. Default 16.
+    /// Points per strand. Default 16.
     pub points: Option<u32>,
-    /// Longest strand [m]. Default 0.1.
+    /// Length of the longest strand [m]. Default 0.1.
     pub length: Option<f32>,
-    /// How much shorter the shortest strand is, 0 to 1. Default 0.2.
+    /// How much shorter the shortest strand is, as a fraction from 0 to 1. Default 0.2.
     pub spread: Option<f32>,
-    /// How far strands bend over, 0 (not) to 1 (tips point down). Default 0.5.
+    /// How far strands bend down, 0 (not at all) to 1 (tips point down). Default 0.5.
     pub fall: Option<f32>,
 }
 
@@ -307,12 +314,12 @@ pub(super) struct GrowFile {
 type Grown<'a> = (&'a Option<Vec<String>>, &'a Option<String>, &'a Option<Shape>, Growth);
 
 impl GrowFile {
-    /// All that it says.
+    /// Returns all its fields.
     fn geometry(&self) -> Grown<'_> {
         (&self.parts, &self.joint, &self.inside, self.growth())
     }
 
-    /// Its settings with the defaults for what is left out.
+    /// Returns the settings, with defaults for the fields that are left out.
     pub(super) fn growth(&self) -> Growth {
         let base = Growth::default();
         Growth {
@@ -325,15 +332,15 @@ impl GrowFile {
     }
 }
 
-/// `transform` of a groom: scaled, then turned about X, Y and Z in this order, then moved.
+/// `transform` of a groom: scale, then rotation about X, Y and Z in this order, then translation.
 #[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct Placement {
-    /// Where its origin goes [m]. Default 0.
+    /// Translation of the origin [m]. Default 0.
     pub position: Vec3,
-    /// Turns about X, then Y, then Z [degrees]. Default 0.
+    /// Rotation about X, then Y, then Z [degrees]. Default 0.
     pub rotation: Vec3,
-    /// Factor, or one each along x, y, z; below 0 mirrors. Default 1.
+    /// One factor, or one for each of x, y and z. A negative factor mirrors. Default 1.
     #[serde(deserialize_with = "factors")]
     pub scale: Vec3,
 }
@@ -372,7 +379,7 @@ fn guides<'de, D: Deserializer<'de>>(from: D) -> Result<Guides, D::Error> {
     }
 }
 
-/// The same, where the table may be there without it.
+/// Like [`guides`], for a table that may omit the field.
 fn guides_or_default<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Guides>, D::Error> {
     guides(from).map(Some)
 }

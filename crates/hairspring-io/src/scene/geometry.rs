@@ -1,4 +1,4 @@
-//! What hair, body and motion are made of: all that `Stage::update_settings` leaves as it is.
+//! The geometry of hair, body and motion: everything that `Stage::update_settings` does not change.
 
 use super::{
     Reader, body, builtin,
@@ -11,10 +11,10 @@ use crate::{Character, Problem, Result};
 use hairspring::material::Material;
 use hairspring_scene::{Scene, SceneSheet, builtin::BuiltinOptions};
 
-/// What a scene file asks for of geometry.
+/// The geometry that a scene file describes.
 #[derive(PartialEq)]
 pub(super) struct Asked<'a> {
-    /// The built-in scene, and whether it moves by itself.
+    /// The built-in scene, and whether it uses its own motion.
     builtin: Option<(BuiltinOptions, bool)>,
     body: &'a Option<BodyFile>,
     collision: &'a Option<BodyFile>,
@@ -28,7 +28,7 @@ pub(super) struct Asked<'a> {
     radii: Vec<Vec<Option<f32>>>,
 }
 
-/// What `file`, read from `text`, asks for.
+/// Returns the geometry that `file`, parsed from `text`, describes.
 pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<Asked<'a>, Problem> {
     let mut radii = Vec::new();
     let mut made = None;
@@ -54,7 +54,7 @@ pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<
     })
 }
 
-/// The radii that these materials set; a group past the end has the last.
+/// The radii that these materials set. A group past the end uses the last.
 fn radii_of(materials: &[Material]) -> Vec<Option<f32>> {
     let mut radii: Vec<_> = materials.iter().map(|m| m.radius).collect();
     while radii.len() > 1 && radii[radii.len() - 2] == radii[radii.len() - 1] {
@@ -64,7 +64,7 @@ fn radii_of(materials: &[Material]) -> Vec<Option<f32>> {
 }
 
 impl Reader<'_> {
-    /// Adds strands, body, motion and what hair collides with as a mesh to a scene with its settings.
+    /// Adds strands, body, motion and collision meshes to a scene that has its settings.
     pub(super) fn geometry(&mut self, file: &SceneFile, scene: &mut Scene) -> Result<()> {
         let mut made = match &file.builtin {
             Some(named) => self.builtin(named)?,
@@ -82,13 +82,14 @@ impl Reader<'_> {
             groom.groom = made.groom;
         }
         let props = self.props(&file.prop, character.as_ref().map(|c| &c.body))?;
-        // Hair grows on the body's own joints, which a motion of one joint does away with, and on props.
+        // Hair grows on the body's own joints and on props. A rigid motion later replaces the joints by a
+        // single one.
         let whole = character.as_ref().map(|c| with_props(c.body.clone(), &props));
         for (groom, named) in scene.grooms[grown..].iter_mut().zip(&file.groom) {
             groom.groom = self.groom(named, &groom.materials, whole.as_ref())?;
         }
         let (body, clip) = self.motion(file.clip.as_ref(), character, file.builtin.is_some())?;
-        // The built-in collision mesh has the joints of the built-in body, as long as that has them.
+        // The built-in collision mesh has the joints of the built-in body, unless the body is now one piece.
         let one_piece = body.as_ref().is_some_and(|b| b.joints.len() == 1);
         let made = made.collision.map(|c| if one_piece { body::rigid(c) } else { c });
         let collision = collision.map(|c| c.body).or(made);
@@ -108,7 +109,7 @@ impl Reader<'_> {
         self.joints(scene)
     }
 
-    /// Checks that the joints that things follow are there.
+    /// Checks that the joints which objects follow exist.
     fn joints(&self, scene: &Scene) -> Result<()> {
         let joints = scene.body.as_ref().map_or(&[][..], |b| &b.joints);
         let known = |name: &str| joints.iter().any(|j| j.name.eq_ignore_ascii_case(name));

@@ -1,4 +1,4 @@
-//! The strands of a `[[groom]]`: read or grown, placed, thickened, bound.
+//! The strands of a `[[groom]]`: read or grown, placed, thickened, and bound to the skin.
 
 use super::{
     Reader,
@@ -13,7 +13,7 @@ use hairspring::{
 };
 
 impl Reader<'_> {
-    /// The strands of a `[[groom]]`, as they stand on the `body`.
+    /// Returns the strands of a `[[groom]]`, placed on the `body`.
     pub(super) fn groom(
         &mut self,
         named: &GroomFile,
@@ -23,7 +23,7 @@ impl Reader<'_> {
         let mut groom = match (&named.file, &named.grow) {
             (Some(file), _) => self.read_strands(named, file)?,
             (None, Some(grow)) => self.grown(grow, body)?,
-            // Refused when the text was checked.
+            // The check of the text has rejected this case already.
             (None, None) => Groom::default(),
         };
         let t = named.transform;
@@ -43,7 +43,8 @@ impl Reader<'_> {
             self.bind_by_bones(&mut groom, &read, body, named.thicken.copies)
                 .map_err(|text| self.wrong(bones.span().start, "bones", text))?;
         }
-        // A material's radius is the groom's from here on: hair is drawn as thick as it is simulated.
+        // A material's radius replaces the groom's from here on, so that hair is drawn as thick as it is
+        // simulated.
         for s in 0..groom.strand_count() {
             let material = materials.get(groom.group(s) as usize).or(materials.last());
             if let Some(radius) = material.and_then(|m| m.radius) {
@@ -54,7 +55,7 @@ impl Reader<'_> {
         Ok(groom)
     }
 
-    /// The strands of a groom's file.
+    /// Reads the strands of a groom's file.
     fn read_strands(&mut self, named: &GroomFile, file: &FileName) -> Result<Groom> {
         let path = self.resolve(file);
         let options = ReadOptions { scale: named.scale, up: named.up };
@@ -69,7 +70,8 @@ impl Reader<'_> {
         Ok(loaded.value)
     }
 
-    /// Binds each root to skin that follows one of its bones. Copies of strands have the bones of the strand that they follow.
+    /// Binds each root to skin that follows one of its bones. Copies of a strand use the bones of that
+    /// strand.
     fn bind_by_bones(
         &self,
         groom: &mut Groom,
@@ -78,7 +80,7 @@ impl Reader<'_> {
         copies: u32,
     ) -> std::result::Result<(), String> {
         let Some((body, skin)) = body.and_then(|b| b.skin.as_ref().map(|s| (b, s))) else {
-            return Err("bones of roots need a [body] that is skinned".into());
+            return Err("`bones` needs a skinned [body]".into());
         };
         let copies = 1 + copies as usize;
         if bones.bones.len() * copies != groom.strand_count() {

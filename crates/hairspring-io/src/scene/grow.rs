@@ -1,4 +1,4 @@
-//! `grow` of a `[[groom]]`: on which skin of the body hair grows.
+//! `grow` of a `[[groom]]`: the skin of the body that hair grows on.
 
 use super::{Reader, file::GrowFile, sentence::unknown};
 use crate::Result;
@@ -10,7 +10,7 @@ use hairspring::{
 use toml::Spanned;
 
 impl Reader<'_> {
-    /// The hair that `named` describes.
+    /// Grows the hair that `named` describes.
     pub(super) fn grown(&mut self, named: &Spanned<GrowFile>, body: Option<&Body>) -> Result<Groom> {
         let near = named.span().start;
         let file = named.get_ref();
@@ -49,14 +49,14 @@ impl Reader<'_> {
             return Err(self.wrong(
                 near,
                 "grow",
-                "no skin of the body is where `grow` says: widen it".into(),
+                "`grow` selects no skin of the body; widen its parts, joint or shape".into(),
             ));
         }
         Ok(groom)
     }
 }
 
-/// The joint that a vertex follows more than any other; the first for a rigid body.
+/// The joint with the largest weight of a vertex; the first for a rigid body.
 fn strongest(body: &Body, vertex: usize) -> usize {
     body.skin.as_ref().map_or(0, |skin| {
         let pairs = skin.joints[vertex].into_iter().zip(skin.weights[vertex]);

@@ -1,4 +1,4 @@
-//! Materials by their names, and tables that say what differs from a base.
+//! Looks up materials by name, and applies tables that override a base.
 
 use super::{
     check,
@@ -10,12 +10,12 @@ use hairspring::material::{self, Material};
 use serde::{Serialize, de::DeserializeOwned};
 use toml::Spanned;
 
-/// The materials of a groom, one a group.
+/// Returns the materials of a groom, one per group.
 pub(super) fn of_groom(text: &str, scene: &SceneFile, groom: &GroomFile) -> Result<Vec<Material>, Problem> {
     named(text, scene, groom.material.as_ref(), groom.start())
 }
 
-/// The materials of these names, which the table that begins at byte `start` gives.
+/// Returns the materials of these names. `start` is the first byte of the table that refers to them.
 pub(super) fn named(
     text: &str,
     scene: &SceneFile,
@@ -41,7 +41,7 @@ pub(super) fn named(
         .collect()
 }
 
-/// A `[material.NAME]`: its preset with the given fields over it.
+/// Returns a `[material.NAME]`: its preset, overridden by the given fields.
 fn overlaid(text: &str, table: &Spanned<toml::Table>) -> Result<Material, Problem> {
     let start = table.span().start;
     let mut fields = table.get_ref().clone();
@@ -58,7 +58,7 @@ fn overlaid(text: &str, table: &Spanned<toml::Table>) -> Result<Material, Proble
     Ok(material)
 }
 
-/// `base` with the given fields of the table that begins at byte `start` over its own.
+/// Returns `base`, overridden by the given fields of the table that begins at byte `start`.
 pub(super) fn over<T: Serialize + DeserializeOwned>(
     text: &str,
     start: usize,

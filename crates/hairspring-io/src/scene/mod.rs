@@ -1,4 +1,5 @@
-//! Scene files: TOML that names grooms, a body, its motion and settings (`docs/scene.md` shows every field).
+//! Scene files: TOML that describes grooms, a body, its motion and settings. `docs/scene.md` documents every
+//! field.
 
 mod air;
 mod body;
@@ -24,21 +25,23 @@ use std::path::{Path, PathBuf};
 /// Reads a scene file and all files that it names, relative to its own folder.
 ///
 /// # Errors
-/// A field that is not known (with its line and the nearest right name), a value out of range, a named file that is
-/// missing or broken, or parts that do not fit together (a joint or motion that is not there).
+/// Returns an error for an unknown field (with its line and the most similar valid name), a value out of
+/// range, a named file that is missing or malformed, or parts that do not fit together (a missing joint or
+/// motion).
 pub fn read_scene(path: &Path) -> Result<Loaded<Scene>> {
     if Format::of(path) != Some(Format::Scene) {
-        let reason = "a scene is read from .toml, told by the extension".into();
+        let reason = "unknown extension; a scene file ends in .toml".into();
         return Err(Error::Unsupported { path: path.to_owned(), reason });
     }
     let data = load::bytes_of(path)?;
     read_scene_text(path, &as_text(&data))
 }
 
-/// Reads the text of a scene file that need not be saved, as if it were in `path`: files are named relative to its folder.
+/// Reads the text of a scene file that does not need to be saved, as if it were in `path`. Files are named
+/// relative to the folder of `path`.
 ///
 /// # Errors
-/// As [`read_scene`].
+/// See [`read_scene`].
 pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
     let file = parse(text).map_err(|p| p.in_file(path))?;
     let mut reader = Reader::new(path, text);
@@ -48,22 +51,23 @@ pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
     Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs, notes })
 }
 
-/// Reads the settings of such a text, at once: the scene of [`read_scene_text`] without its geometry, for `Stage::update_settings`. Grooms are there, with their
-/// materials, guides, effects and look, and have no strands; there is no body, collision mesh, sheet or clip. No file is opened but those of
-/// colliders' hulls.
+/// Reads only the settings of such a text, for `Stage::update_settings`. This is fast. The scene is that of
+/// [`read_scene_text`] without its geometry: grooms have their materials, guides, effects and look, but no
+/// strands, and there is no body, collision mesh, sheet or clip. The only files that are opened are those of
+/// convex hulls of colliders.
 ///
 /// # Errors
-/// As [`read_scene`], but for what concerns other files and the body's joints.
+/// See [`read_scene`], except for errors about other files and the body's joints.
 pub fn read_settings(path: &Path, text: &str) -> Result<Scene> {
     let file = parse(text).map_err(|p| p.in_file(path))?;
     Reader::new(path, text).settings(&file)
 }
 
-/// Whether two texts of scene files that can both be read differ in nothing but what `Stage::update_settings` takes up: the hair, the body and its motion are the
-/// same. False where one is no scene file.
+/// Whether two texts of scene files differ only in what `Stage::update_settings` can apply, so that the hair,
+/// the body and its motion are the same. Returns false if either text is not a valid scene file.
 ///
-/// Beside the files, a material's `radius` is geometry, because hair is drawn by it, and so are `guides`, `solver.collide_body` and `solver.preroll`. A hull's file is a
-/// setting.
+/// Geometry is more than the files: it includes a material's `radius`, because hair is drawn with it, as well
+/// as `guides`, `solver.collide_body` and `solver.preroll`. The file of a hull is a setting.
 pub fn same_geometry(a: &str, b: &str) -> bool {
     let (Ok(a_file), Ok(b_file)) = (parse(a), parse(b)) else { return false };
     match (geometry::asked(a, &a_file), geometry::asked(b, &b_file)) {
@@ -72,10 +76,11 @@ pub fn same_geometry(a: &str, b: &str) -> bool {
     }
 }
 
-/// Reads the text of a scene file without the files that it names: whether all fields are known and in range.
+/// Checks the text of a scene file without reading the files that it names: whether all fields are known and
+/// in range.
 ///
 /// # Errors
-/// As [`read_scene`], but for what concerns other files.
+/// See [`read_scene`], except for errors about other files.
 pub fn check_text(text: &str) -> std::result::Result<(), Problem> {
     parse(text).map(|_| ())
 }
@@ -92,7 +97,7 @@ fn parse(text: &str) -> std::result::Result<SceneFile, Problem> {
     Ok(file)
 }
 
-/// Follows a scene file's names to their files.
+/// Reads the files that a scene file names.
 struct Reader<'a> {
     path: &'a Path,
     text: &'a str,
@@ -105,17 +110,18 @@ impl<'a> Reader<'a> {
         Self { path, text, notes: Vec::new(), repairs: Repairs::default() }
     }
 
-    /// The path of a file that the scene names.
+    /// Returns the path of a file that the scene names.
     fn resolve(&self, name: &FileName) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(name.get_ref())
     }
 
-    /// What a reader returned for the file `name`, with who asked for it if it is not there.
+    /// Returns a reader's result for the file `name`. If the file is missing, the error says what refers to
+    /// it.
     fn named<T>(&self, result: Result<T>, name: &FileName, what: &str) -> Result<T> {
         result.map_err(|error| match error {
             Error::NotFound { path, .. } => {
                 let line = line_at(self.text, name.span().start);
-                let why = format!(": it is the {what} that {}, line {line}, names", self.path.display());
+                let why = format!(": the {what} named in {}, line {line}", self.path.display());
                 Error::NotFound { path, why }
             }
             other => other,
@@ -127,13 +133,13 @@ impl<'a> Reader<'a> {
         self.notes.extend(notes.into_iter().map(|n| format!("{name}: {n}")));
     }
 
-    /// The error that the value of the key nearest after `near` is wrong.
+    /// Creates an error about the value of the first `key` after `near`.
     fn wrong(&self, near: usize, key: &str, text: String) -> Error {
         let from = line_at(self.text, near);
         Problem::line(line_of_key(self.text, from, key).unwrap_or(from), text).in_file(self.path)
     }
 
-    /// A shape that is named near byte `near`, with the points of a hull from its file.
+    /// Returns a shape that is named near byte `near`, with the points of a hull read from its file.
     fn shape(&mut self, named: &Shape, near: usize) -> Result<Shape> {
         let Shape::Hull { file: Some(file), scale, .. } = named else { return Ok(named.clone()) };
         let file = toml::Spanned::new(near..near, file.clone());

@@ -1,4 +1,4 @@
-//! `[clip]`: which motion, and how it moves the body.
+//! `[clip]`: the motion of the body.
 
 use super::{
     Reader,
@@ -10,7 +10,7 @@ use crate::{Character, ReadOptions, Result, load::pick_clip, read_motion};
 use hairspring::body::{Body, Clip, HeadMotion, Key, Travel, head_motion, keyed, retarget};
 
 impl Reader<'_> {
-    /// The body as it is simulated, and its motion.
+    /// Returns the body as it is simulated, and its motion.
     pub(super) fn motion(
         &mut self,
         named: Option<&ClipFile>,
@@ -18,7 +18,8 @@ impl Reader<'_> {
         builtin: bool,
     ) -> Result<(Option<Body>, Option<Clip>)> {
         let Some(named) = named else {
-            // Motions of a body's file are for a [clip] to choose from; the built-in body has one and goes by it.
+            // A body file's motions are used only if a [clip] selects one. The built-in body uses its own
+            // motion.
             return Ok(match character {
                 Some(c) if builtin => (Some(c.body), c.clips.into_iter().next()),
                 other => (other.map(|c| c.body), None),
@@ -76,7 +77,7 @@ impl Reader<'_> {
         Ok((Some(rigid(character.body)), Some(self.cut(driven, named, near)?)))
     }
 
-    /// The clip from its first used frame on.
+    /// Returns the clip from the first used frame on.
     fn cut(&self, clip: Clip, named: &ClipFile, near: usize) -> Result<Clip> {
         if named.start >= clip.frame_count() {
             let text = format!(

@@ -1,5 +1,5 @@
-//! `[[prop]]`: things beside the body that move by themselves. Each is a joint that comes after the body's, and goes by keys of its own; its mesh is part of the
-//! body's.
+//! `[[prop]]`: objects that move independently of the body. Each adds a joint after the body's joints, which
+//! moves by its own keys. Its mesh becomes part of the body's mesh.
 
 use super::{
     Reader,
@@ -14,20 +14,20 @@ use hairspring::body::{Body, Clip, Joint, Trs, beside, keyed};
 /// Header of a prop's table.
 const HEADER: &str = "[[prop]]";
 
-/// A prop as it is read.
+/// A prop as read from the file.
 pub(super) struct Prop {
     name: String,
     mesh: Option<Body>,
     clip: Clip,
 }
 
-/// Checks all `[[prop]]`.
+/// Checks all `[[prop]]` tables.
 pub(super) fn ranges(text: &str, scene: &SceneFile) -> std::result::Result<(), Problem> {
     for (k, (prop, line)) in scene.prop.iter().zip(lines(text, HEADER)).enumerate() {
         let alone = scene.prop[..k].iter().all(|other| !other.name.eq_ignore_ascii_case(&prop.name));
         let [ordered, of_numbers] = way(&prop.keys);
         let checks = [
-            (alone && !prop.name.is_empty(), "name", "not empty, and of no other prop"),
+            (alone && !prop.name.is_empty(), "name", "non-empty and unique"),
             ordered,
             of_numbers,
             (finite(prop.pivot), "pivot", "three finite numbers [m]"),
@@ -36,8 +36,8 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> std::result::Result<(), P
         if let Some(mesh) = &prop.mesh {
             body_ranges(text, mesh)?;
             let bare = [
-                (mesh.thickness.is_none(), "thickness", "left out of all but [[sheet]]"),
-                (mesh.joint.is_none(), "joint", "left out: it goes with its prop"),
+                (mesh.thickness.is_none(), "thickness", "omitted except in [[sheet]]"),
+                (mesh.joint.is_none(), "joint", "omitted: the mesh follows its prop"),
             ];
             first_failure(text, line, &bare)?;
         }
@@ -46,18 +46,18 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> std::result::Result<(), P
 }
 
 impl Reader<'_> {
-    /// The props that are named, to go beside `body`.
+    /// Reads the props of the scene, which are added to `body`.
     pub(super) fn props(&mut self, named: &[PropFile], body: Option<&Body>) -> Result<Vec<Prop>> {
         let near = self.text.find(HEADER).unwrap_or(0);
         let mut props = Vec::with_capacity(named.len());
         for prop in named {
             let Some(body) = body else {
-                let text = "[[prop]] goes beside a body, but there is no [body]".into();
+                let text = "[[prop]] needs a body, but there is no [body]".into();
                 return Err(self.wrong(near, "name", text));
             };
             if body.joint(&prop.name).is_some() {
                 let text =
-                    format!("the body has a joint {:?} of its own: name the prop otherwise", prop.name);
+                    format!("the body has a joint {:?} already; choose another name for the prop", prop.name);
                 return Err(self.wrong(near, "name", text));
             }
             let mesh = prop.mesh.as_ref().map(|mesh| self.body(mesh, "prop")).transpose()?.map(|c| c.body);
@@ -68,7 +68,7 @@ impl Reader<'_> {
     }
 }
 
-/// The body with the meshes and the joints of `props` after its own.
+/// Returns the body with the meshes and joints of `props` appended.
 pub(super) fn with_props(mut body: Body, props: &[Prop]) -> Body {
     for prop in props {
         let joint = body.joints.len() as u16;
@@ -83,7 +83,7 @@ pub(super) fn with_props(mut body: Body, props: &[Prop]) -> Body {
     body
 }
 
-/// The motion of `body` with the ways of `props` beside it.
+/// Returns the motion of `body` combined with the motions of `props`.
 pub(super) fn beside_props(clip: Option<Clip>, body: Option<&Body>, props: &[Prop]) -> Option<Clip> {
     match body {
         Some(body) if !props.is_empty() => {

@@ -1,4 +1,5 @@
-//! What TOML and serde say of a scene file, as a sentence with the line and the nearest right name.
+//! Turns errors of TOML and serde about a scene file into a sentence with the line and the most similar valid
+//! name.
 
 use crate::Problem;
 
@@ -7,7 +8,7 @@ pub(super) fn line_at(text: &str, byte: usize) -> usize {
     text.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count() + 1
 }
 
-/// The problem that a TOML error tells of.
+/// Converts a TOML error.
 pub(super) fn problem(text: &str, error: &toml::de::Error) -> Problem {
     let message = reworded(error.message());
     match error.span() {
@@ -16,8 +17,8 @@ pub(super) fn problem(text: &str, error: &toml::de::Error) -> Problem {
     }
 }
 
-/// The problem that an error in a table that begins at byte `start` tells of: the line of the key that it names, if
-/// there is one below `start`.
+/// Converts an error in a table that begins at byte `start`. The line is that of the key that the error
+/// names, if there is one after `start`.
 pub(super) fn problem_in_table(text: &str, start: usize, error: &toml::de::Error) -> Problem {
     let key = error.message().strip_prefix("unknown field ").and_then(|m| m.split('`').nth(1));
     let from = line_at(text, start);
@@ -33,16 +34,16 @@ pub(super) fn line_of_key(text: &str, from: usize, key: &str) -> Option<usize> {
     text.lines().enumerate().skip(from - 1).find(|(_, line)| sets(line)).map(|(i, _)| i + 1)
 }
 
-/// The one of `names` that `wrong` was probably meant to be.
+/// Returns the name in `names` that `wrong` was probably meant to be.
 pub(super) fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let far = |name: &str| strsim::damerau_levenshtein(&wrong.to_lowercase(), &name.to_lowercase());
-    // More than half of the letters wrong is another word.
+    // A name with more than half of its letters wrong is a different word.
     let near =
         |(distance, name): &(usize, &str)| *distance * 2 <= name.chars().count().max(wrong.chars().count());
     names.into_iter().map(|n| (far(n), n)).filter(near).min().map(|(_, n)| n)
 }
 
-/// ``unknown field `x`, expected one of `a`, `b` `` with the nearest name put first.
+/// Rewords ``unknown field `x`, expected one of `a`, `b` `` so that the most similar name comes first.
 fn reworded(message: &str) -> String {
     let Some(rest) = message.strip_prefix("unknown field ").or(message.strip_prefix("unknown variant "))
     else {
@@ -55,13 +56,13 @@ fn reworded(message: &str) -> String {
     unknown(wrong, known.iter().copied())
 }
 
-/// The sentence that `wrong` is none of `names`.
+/// Says that `wrong` is not one of `names`.
 pub(super) fn unknown<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.into_iter().collect();
     let hint =
         nearest(wrong, names.iter().copied()).map_or(String::new(), |n| format!("did you mean `{n}`? "));
     match names.is_empty() {
-        true => format!("`{wrong}` is not known here; there are none"),
-        false => format!("`{wrong}` is not known here; {hint}known are: {}", names.join(", ")),
+        true => format!("`{wrong}` is unknown; there are none"),
+        false => format!("`{wrong}` is unknown; {hint}expected one of: {}", names.join(", ")),
     }
 }

@@ -1,4 +1,4 @@
-//! What `Stage::update_settings` takes up: a scene without its geometry.
+//! The settings that `Stage::update_settings` applies: a scene without its geometry.
 
 use super::{Reader, builtin, file::SceneFile, material};
 use crate::Result;
@@ -6,7 +6,7 @@ use hairspring_scene::{Collider, Scene, SceneGroom};
 use std::path::Path;
 
 impl Reader<'_> {
-    /// All settings; grooms have no strands. The built-in scene's come first.
+    /// Returns all settings; grooms have no strands. The built-in groom comes first.
     pub(super) fn settings(&mut self, file: &SceneFile) -> Result<Scene> {
         let base = match &file.builtin {
             None => Scene::default(),
@@ -43,7 +43,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The colliders, with the points of hulls from their files.
+    /// Returns the colliders, with the points of hulls read from their files.
     fn colliders(&mut self, named: &[Collider]) -> Result<Vec<Collider>> {
         let near = self.text.find("[[collider]]").unwrap_or(0);
         let mut colliders = Vec::with_capacity(named.len());

@@ -115,7 +115,7 @@ fn what_does_not_fit_is_refused_or_said() {
     let mut grouped = uneven.clone();
     grouped.groups = vec![0, 1];
     let lost = write_groom(&path("b.data"), &grouped).unwrap();
-    assert_eq!(lost, ["a .data file has no place for groups, radii: left out"]);
+    assert_eq!(lost, ["a .data file cannot hold groups, radii; left out"]);
     // Nothing is left of those that were refused.
     let names: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name()).collect();
     assert_eq!(names, ["b.data"]);

@@ -80,11 +80,11 @@ fn what_cannot_be_is_said() {
     for (prop, part) in [
         ("name = \"\"", "line 5: `name` must be not empty"),
         ("name = \"root\"", "line 5: the body has a joint \"root\" of its own"),
-        ("name = \"a\"\n[[prop]]\nname = \"A\"", "line 7: `name` must be not empty, and of no other prop"),
+        ("name = \"a\"\n[[prop]]\nname = \"A\"", "line 7: `name` must be non-empty and unique"),
         ("name = \"a\"\nkeys = [{ time = 1 }, { time = 1 }]", "line 6: `keys` must be in order of `time`"),
         ("name = \"a\"\npivot = [nan, 0, 0]", "line 6: `pivot` must be three finite numbers"),
-        ("name = \"a\"\nmesh = { file = \"head.obj\", joint = \"b\" }", "`joint` must be left out"),
-        ("name = \"a\"\nmesh = { file = \"hed.obj\" }", "it is the prop that"),
+        ("name = \"a\"\nmesh = { file = \"head.obj\", joint = \"b\" }", "`joint` must be omitted"),
+        ("name = \"a\"\nmesh = { file = \"hed.obj\" }", ": the prop named in"),
         ("nmae = \"a\"", "did you mean `name`?"),
     ] {
         assert!(wrong(prop).contains(part), "{prop}: {}", wrong(prop));
@@ -93,5 +93,5 @@ fn what_cannot_be_is_said() {
     let lost = format!(
         "{body}{groom}[[collider]]\njoint = \"b\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"
     );
-    assert!(message(&lost).contains("the joint `b` is not known here"), "{}", message(&lost));
+    assert!(message(&lost).contains("the joint `b` is unknown"), "{}", message(&lost));
 }

@@ -37,11 +37,11 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
         (format!("{GROOM}look = {{ root_colour = [0, 0, 0] }}\n"), &["line 3", "did you mean `root_color`?"]),
         (
             format!("{GROOM}look = {{ melanin = 0.5, tip_color = [0, 0, 0] }}\n"),
-            &["line 3", "`melanin` or colours", "not both"],
+            &["line 3", "`melanin` or colors", "not both"],
         ),
         (
             format!("{GROOM}[groom.look]\nroot_color = [0, 0, 0]\nmelanin = 0.5\n"),
-            &["line 5", "`melanin` or colours", "not both"],
+            &["line 5", "`melanin` or colors", "not both"],
         ),
         (format!("{GROOM}[groom.look]\nmelanin = 1.5\n"), &["line 4", "`melanin` must be 0 to 1"]),
         (format!("{GROOM}[groom.look]\ndye = [0, 0, 2]\n"), &["line 4", "`dye` must be three numbers"]),
@@ -117,10 +117,10 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
             format!("{GROOM}[[hand]]\ntool.grab = {{ center = [0, 0, 0], radius = 0 }}\n"),
             &["line 4", "`tool` must be given a `radius` above 0 [m]"],
         ),
-        (format!("{GROOM}{GRAB}{GRAB}joint = \"x\"\n"), &["line 7", "`x` is not known here"]),
+        (format!("{GROOM}{GRAB}{GRAB}joint = \"x\"\n"), &["line 7", "`x` is unknown"]),
         (
             format!("{GROOM}{GRAB}{GRAB}path = [[1, 0, 0, 0], [1, 0, 0, 1]]\n"),
-            &["line 7", "`path` must be finite, at rising times [s]"],
+            &["line 7", "`path` must be finite, with increasing times [s]"],
         ),
         (format!("{GROOM}{GRAB}from = 2\nuntil = 1\n"), &["line 6", "`until` must be after `from` [s]"]),
         (

@@ -150,7 +150,7 @@ fn bodies_of_several_files_and_hair_grown_on_them() {
     let wrong = |grow: &str| message(&format!("[body]\nfile = \"head.obj\"\nscale = 1\n[[groom]]\n{grow}\n"));
     assert!(
         wrong("grow = { parts = [\"sclap\"] }")
-            .contains("line 5: the part `sclap` is not known here; did you mean `scalp`?")
+            .contains("line 5: the part `sclap` is unknown; did you mean `scalp`?")
     );
     assert!(wrong("grow = { points = 2 }").contains("line 5: `points` must be 3 to 256"));
     assert!(
@@ -184,21 +184,19 @@ fn a_scene_may_be_laid_over_the_one_made_by_code() {
 
     let wrong = |text: &str| message(&format!("[builtin]\n{text}\n"));
     assert!(
-        wrong("style = \"wavvy\"")
-            .contains("line 2: the style `wavvy` is not known here; did you mean `wavy`?")
+        wrong("style = \"wavvy\"").contains("line 2: the style `wavvy` is unknown; did you mean `wavy`?")
     );
     assert!(wrong("strands = 0").contains("line 2: `strands` must be 1 to 10000000"));
     assert!(wrong("guides = \"file\"").contains("line 2: `guides` must be a number above 0 or \"all\""));
     assert!(wrong("material = \"wavvy\"").contains("line 2: the material `wavvy`"));
-    assert!(wrong("[body]\nfile = \"head.obj\"").contains("has a body of its own"));
+    assert!(wrong("[body]\nfile = \"head.obj\"").contains("has its own body"));
     let keys = |keys: &str| wrong(&format!("strands = 50\n[clip]\nkeys = {keys}"));
     assert!(keys("[{ time = 1 }, { time = 0.5 }]").contains("line 4: `keys` must be in order of `time`"));
     assert!(
         keys("[{ time = -1 }]").contains("line 4: `keys` must be in order of `time`, from 0 to 3600 [s]")
     );
     assert!(
-        keys("[{ time = 1 }]\nfile = \"nod.bvh\"")
-            .contains("`keys` must be left out where there is a `file`")
+        keys("[{ time = 1 }]\nfile = \"nod.bvh\"").contains("`keys` must be omitted if there is a `file`")
     );
     assert!(
         keys("[{ time = 1, rotation = [inf, 0, 0] }]").contains("line 4: `keys` must be of finite numbers")
@@ -325,17 +323,14 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
         ("[[collider]]\nshape.hull = {}", "line 7: `shape` must be"),
         ("[[collider]]\nshape.hull = { file = \"head.obj\", scale = 1 }", "head.obj span no volume"),
         ("[[collider]]\nshape.hull = { file = \"head.obj\", scale = 0 }", "line 7: `shape` must be"),
-        (
-            "[[collider]]\nshape.hull = { file = \"none.obj\" }",
-            "it is the hull that scene.toml, line 6, names",
-        ),
+        ("[[collider]]\nshape.hull = { file = \"none.obj\" }", "the hull named in scene.toml, line 6"),
         ("[[collider]]\nshape.hull = { point = [[0, 0, 0]] }", "available keys: points, file, scale"),
         ("[[sheet]]\nfile = \"head.obj\"\nthickness = 0", "line 8: `thickness` must be above 0 [m]"),
         (
             "[collision]\nfile = \"head.obj\"\nthickness = 0.1",
-            "line 8: `thickness` must be left out of all but [[sheet]]",
+            "line 8: `thickness` must be omitted except in [[sheet]]",
         ),
-        ("[[sheet]]\nfile = \"none.obj\"", "it is the sheet that scene.toml, line 7, names"),
+        ("[[sheet]]\nfile = \"none.obj\"", "the sheet named in scene.toml, line 7"),
     ] {
         let message = wrong(more);
         assert!(message.contains(says), "{more}: {message}");

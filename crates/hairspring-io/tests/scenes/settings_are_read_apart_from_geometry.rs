@@ -106,10 +106,10 @@ fn the_builtin_hair_takes_a_look_and_effects() {
         ("[builtin]\n[builtin.look]\nvariation = 2", "scene.toml, line 3: `variation` must be 0 to 1"),
         (
             "[builtin]\n[builtin.look]\nvarition = 0",
-            "line 3: `varition` is not known here; did you mean `variation`?",
+            "line 3: `varition` is unknown; did you mean `variation`?",
         ),
         ("[builtin]\n[builtin.effects]\nclump = -1", "line 3: `clump` must be 0 to 1"),
-        ("[builtin]\nstyle = \"wvy\"", "line 2: the style `wvy` is not known here; did you mean `wavy`?"),
+        ("[builtin]\nstyle = \"wvy\"", "line 2: the style `wvy` is unknown; did you mean `wavy`?"),
     ] {
         assert!(message(text).contains(said), "{}", message(text));
         assert!(read_settings(Path::new("x.toml"), text).is_err());

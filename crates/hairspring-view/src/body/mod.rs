@@ -1,4 +1,4 @@
-//! Bodies: which surface each pixel sees, and its colour.
+//! Bodies: the visible surface at each pixel, and its color.
 
 pub(crate) mod raster;
 pub(crate) mod skin;
@@ -14,22 +14,23 @@ use glam::{Vec2, Vec3};
 use raster::{Bins, ScreenTriangle};
 use rayon::prelude::*;
 
-/// Samples of a pixel for the outlines of bodies, and of shadow where it is as sharp: one in each of eight columns and rows. Shape `[axis][sample]`.
+/// Sample positions in a pixel, for the outlines of bodies and for sharp shadows: one in each of eight
+/// columns and rows. Shape `[axis][sample]`.
 pub(crate) const SAMPLES: [[f32; 8]; 2] = [
     [0.5625, 0.4375, 0.8125, 0.3125, 0.1875, 0.0625, 0.6875, 0.9375],
     [0.3125, 0.6875, 0.5625, 0.1875, 0.8125, 0.4375, 0.9375, 0.0625],
 ];
 
-/// What a pixel sees of the bodies.
+/// The bodies as seen by a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
-    /// Share of the pixel that bodies fill, 0 to 1.
+    /// Fraction of the pixel that bodies cover, 0 to 1.
     pub cover: f32,
     /// Distance along the camera's axis [m].
     pub depth: f32,
 }
 
-/// What the light on bodies depends on.
+/// What the lighting of bodies depends on.
 #[derive(Clone, Copy)]
 pub(crate) struct Lit<'a> {
     pub frame: &'a Frame<'a>,
@@ -38,14 +39,14 @@ pub(crate) struct Lit<'a> {
     pub level: Level,
 }
 
-/// The frame's triangles on the screen, kept between frames for their memory.
+/// The frame's triangles on the screen. The memory is kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct Bodies {
-    /// Vertices of one body: pixels and depth.
+    /// Vertices of one body in screen space: pixels and depth.
     vertices: Vec<Vec3>,
     screen: Vec<ScreenTriangle>,
     bins: Bins,
-    /// First triangle number of each body.
+    /// Index of the first triangle of each body.
     first: Vec<u32>,
 }
 
@@ -55,7 +56,7 @@ pub(crate) struct Samples {
     triangle: [[u32; 8]; PIXELS],
 }
 
-/// No triangle.
+/// Marks a sample without a triangle.
 const NONE: u32 = u32::MAX;
 
 impl Default for Samples {
@@ -65,7 +66,7 @@ impl Default for Samples {
 }
 
 impl Bodies {
-    /// Projects the frame's triangles, as far as they lie above a height [m].
+    /// Projects the frame's triangles. Parts below the height `low` [m] are cut off.
     pub fn project(&mut self, frame: &Frame, view: &View, [width, height]: [usize; 2], low: f32) {
         self.screen.clear();
         self.first.clear();
@@ -90,7 +91,7 @@ impl Bodies {
         self.bins.fill(&self.screen, [width, height], [SIDE; 2]);
     }
 
-    /// Draws a tile, whose corner is at `corner`, into `out`; false where no body is.
+    /// Draws a tile with its corner at `corner` into `out`. Returns false if no body is visible in it.
     pub fn draw(
         &self,
         level: Level,
@@ -138,7 +139,8 @@ impl Bodies {
         }
     }
 
-    /// Linear RGB of the bodies in a pixel of the tile drawn last: each surface seen in it is lit once and weighed by its samples.
+    /// Linear RGB of the bodies in a pixel of the last drawn tile. Each surface in the pixel is lit once and
+    /// weighted by its number of samples.
     pub fn light(&self, lit: &Lit, corner: [usize; 2], samples: &Samples, pixel: usize) -> Vec3 {
         let at = Vec2::new((corner[0] + pixel % SIDE) as f32 + 0.5, (corner[1] + pixel / SIDE) as f32 + 0.5);
         let mut left = samples.triangle[pixel];
@@ -164,8 +166,8 @@ impl Bodies {
     }
 }
 
-/// Whether triangles `t` and `other` of `body` are so much one surface that light on one is light on the other: they share a
-/// corner, their colour and smooth normals.
+/// Whether triangles `t` and `other` of `body` belong to one smooth surface, so that the light on one can be
+/// used for the other: they share a corner, their color and smooth normals.
 fn neighbours(body: &MeshDraw, t: usize, other: u32) -> bool {
     let Some(far) = body.triangles.get(other as usize).filter(|_| body.smooth()) else { return false };
     let near = &body.triangles[t];
@@ -178,7 +180,8 @@ pub(crate) fn corners(vertices: &[Vec3], t: &[u32; 3]) -> Option<[Vec3; 3]> {
     Some([at(t[0])?, at(t[1])?, at(t[2])?])
 }
 
-/// A triangle cut at the near plane and at a height, in pixels and depth: a fan of up to three triangles.
+/// Clips a triangle at the near plane and at a height. Returns a fan of up to three triangles in pixels and
+/// depth.
 fn cut(body: &MeshDraw, t: &[u32; 3], view: &View, low: f32) -> [Option<[Vec3; 3]>; 3] {
     let Some(corner) = corners(body.positions, t) else { return [None; 3] };
     let (above, n) = clip(&corner, |p| p.y - low);
@@ -186,7 +189,8 @@ fn cut(body: &MeshDraw, t: &[u32; 3], view: &View, low: f32) -> [Option<[Vec3; 3
     [3, 4, 5].map(|k| (k <= n).then(|| [0, k - 2, k - 1].map(|i| view.project(polygon[i]))))
 }
 
-/// The part of a triangle, or of one that was cut once, where `side` is above 0, as a polygon (Sutherland & Hodgman 1974), and its corner count.
+/// Clips a triangle, or a triangle that was clipped once, to the side where `side` is above 0 (Sutherland &
+/// Hodgman 1974). Returns the polygon and its number of corners.
 fn clip(corner: &[Vec3], side: impl Fn(Vec3) -> f32) -> ([Vec3; 5], usize) {
     let mut out = [Vec3::ZERO; 5];
     let mut n = 0;

@@ -1,25 +1,28 @@
-//! Triangles to samples: edge functions (Pineda 1988), for the camera and for the shadow map alike.
+//! Rasterizes triangles with edge functions (Pineda 1988), both for the camera and for the shadow map.
 
 use fearless_simd::{f32x8, mask32x8, prelude::*};
 use glam::{Vec2, Vec3};
 
-/// How far outside a triangle a sample still counts, as a share of it: neighbours round differently, and must not leave a gap.
+/// How far outside a triangle a sample still counts, as a fraction of the triangle. Adjacent triangles round
+/// differently, and must not leave a gap.
 const EDGE: f32 = 1e-5;
 
-/// A triangle on the screen, set up for testing sample positions.
+/// A triangle on the screen, prepared for testing sample positions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScreenTriangle {
-    /// First and past-last column and row of pixels that it may touch.
+    /// First and past-the-end column and row of pixels that the triangle may touch.
     pub columns: [u32; 2],
     pub rows: [u32; 2],
-    /// The first corner. Samples are measured from it: edge functions in picture coordinates are small differences of products
-    /// near a million, and for triangles smaller than a pixel nothing of them would be left.
+    /// The first corner. Sample positions are relative to it. In picture coordinates, edge functions are
+    /// small differences of products near a million, which would lose all precision for triangles smaller
+    /// than a pixel.
     first: Vec2,
-    /// Weight of the second and of the third corner: their dot products with the way from the first. The first has the rest.
+    /// Weights of the second and the third corner, as dot products with the offset from the first. The first
+    /// corner has the rest.
     weights: [Vec2; 2],
-    /// The nearness that is interpolated, at the first corner, and how it grows along the way; greater is nearer.
+    /// The interpolated nearness at the first corner, and its gradient. Greater is nearer.
     nearness: (f32, Vec2),
-    /// Index of the triangle it came from.
+    /// Index of the source triangle.
     pub source: u32,
 }
 
@@ -46,8 +49,8 @@ impl ScreenTriangle {
         Some(Self { columns, rows, first: a.truncate(), weights, nearness: (a.z, slope), source })
     }
 
-    /// Calls `hit(column, row, nearness)` for each pixel of the window (`corner`, `size`) whose middle lies inside; columns and rows count from
-    /// the window's corner.
+    /// Calls `hit(column, row, nearness)` for each pixel of the rectangle (`corner`, `size`) whose center is
+    /// inside the triangle. Columns and rows count from the corner of the rectangle.
     #[inline]
     pub fn cover(&self, corner: [usize; 2], size: [usize; 2], mut hit: impl FnMut(usize, usize, f32)) {
         let [columns, rows] = self.within(corner, size);
@@ -62,8 +65,9 @@ impl ScreenTriangle {
         }
     }
 
-    /// As [`ScreenTriangle::cover`], for eight samples of each pixel, at `offset` (columns, rows) in it: `hit` is given which of them lie inside,
-    /// and their nearness. Call it inside a `dispatch!`.
+    /// Like [`ScreenTriangle::cover`], but for eight samples of each pixel, at `offset` (columns, rows) in
+    /// the pixel. `hit` receives a mask of the samples inside and their nearness. Must be called inside a
+    /// `dispatch!`.
     #[inline(always)]
     pub fn cover_samples<S: Simd>(
         &self,
@@ -86,7 +90,7 @@ impl ScreenTriangle {
         }
     }
 
-    /// Columns and rows that lie in a window.
+    /// Columns and rows of the triangle's bounds that are inside a rectangle.
     #[inline(always)]
     fn within(&self, corner: [usize; 2], size: [usize; 2]) -> [std::ops::Range<usize>; 2] {
         [(self.columns, 0), (self.rows, 1)].map(|(range, axis)| {
@@ -96,7 +100,7 @@ impl ScreenTriangle {
     }
 }
 
-/// Which triangles touch each cell of a picture, row by row.
+/// The triangles that touch each cell of a picture, row by row.
 #[derive(Debug, Default)]
 pub(crate) struct Bins {
     starts: Vec<u32>,
@@ -127,7 +131,7 @@ impl Bins {
         }
     }
 
-    /// Triangles of one cell, in their order.
+    /// The triangles of one cell, in their original order.
     pub fn cell(&self, cell: usize) -> &[u32] {
         if cell + 1 >= self.starts.len() {
             return &[];
@@ -141,7 +145,8 @@ mod tests {
     use super::*;
     use fearless_simd::{Level, dispatch};
 
-    /// A slanted surface cut into triangles far smaller than a pixel, far from the picture's corner: every sample lies on it, at its own height.
+    /// A slanted surface of triangles far smaller than a pixel, far from the picture's corner: every sample
+    /// hits it, at the correct depth.
     #[test]
     fn tiny_triangles_neither_gape_nor_jump() {
         let side = 4000;

@@ -1,31 +1,34 @@
-//! The colour of a body's surface under the three lamps and the sky.
+//! The color of a body's surface under the three lamps and the sky.
 
 use super::Lit;
 use crate::frame::MeshDraw;
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
-/// Sky light that reaches skin under hair on its way between hair, neck and shoulders [1]: without it the throat is a hole.
+/// Sky light that reaches skin under hair by reflection between hair, neck and shoulders [1]. Without it the
+/// throat would be black.
 pub(crate) const BOUNCE: f32 = 0.3;
-/// The same of the key lamp's light, from the lit skin and cloth around [1].
+/// The corresponding fraction of the key lamp's light, reflected from lit skin and cloth nearby [1].
 pub(crate) const KEY_BOUNCE: f32 = 0.03;
 
-/// Base colour and roughness of triangles that belong to no part: light skin.
+/// Base color and roughness of triangles that belong to no part: light skin.
 pub(crate) const SKIN: (Vec3, f32) = (Vec3::new(0.62, 0.38, 0.28), 0.5);
-/// Light bleeds into the shadow side of skin, red farthest: how far the lit half is wrapped past the terminator
-/// (d'Eon & Luebke 2007 give the scattering distances 3.7, 1.4, 0.7 mm for red, green, blue; the ratio is kept).
+/// Subsurface scattering into the shadow side of skin, strongest for red: how far the lit half is wrapped
+/// past the terminator (d'Eon & Luebke 2007 give the scattering distances 3.7, 1.4, 0.7 mm for red, green,
+/// blue; the ratio is kept).
 pub(crate) const WRAP: Vec3 = Vec3::new(0.32, 0.16, 0.10);
-/// How fast hair takes the key lamp's light from skin: strands pass on part of it.
+/// How strongly hair attenuates the key lamp's light on skin, per optical depth. It is below 1, because
+/// strands transmit part of the light.
 pub(crate) const HAIR_SHADE: f32 = 0.75;
 
-/// Reflectance of skin at right angles (d'Eon & Luebke 2007).
+/// Reflectance of skin at normal incidence (d'Eon & Luebke 2007).
 pub(crate) const REFLECTANCE: f32 = 0.028;
-/// Of the two lobes of its gloss, the share of the wide one, and how much sharper the other is.
+/// The two specular lobes: the weight of the wide one, and the roughness of the narrow one relative to it.
 pub(crate) const LOBES: (f32, f32) = (0.75, 0.6);
 /// Strength of the sheen at grazing angles.
 pub(crate) const SHEEN: f32 = 0.25;
 
-/// Light leaving triangle `t` of `body` towards the camera, at the pixel position `at`.
+/// Light leaving triangle `t` of `body` toward the camera, at the pixel position `at`.
 pub(super) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
     let Lit { frame, view, shadow, level } = *lit;
     let [ia, ib, ic] = body.triangles[t].map(|i| i as usize);
@@ -38,14 +41,15 @@ pub(super) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
         false => flat,
     };
     let eye = -ray.normalize();
-    // Open meshes are seen from both sides.
+    // Open meshes are visible from both sides.
     let facing = if flat.dot(eye) < 0.0 && smooth.dot(eye) < 0.0 { -1.0 } else { 1.0 };
     let n = smooth.try_normalize().unwrap_or(flat) * facing;
     let part = part(body, t).map(|part| &body.parts[part]);
     let (base, roughness) = part.map_or(SKIN, |p| (p.color, p.roughness.clamp(0.15, 1.0)));
     let lamps = &frame.lighting;
 
-    // Shadow is looked up a little off the surface, where the surface's own voxels do not count.
+    // The hair shadow is sampled slightly off the surface, so that the voxels of the surface itself do not
+    // count.
     let depth = shadow.around(p + n * (2.5 * shadow.voxel()));
     let key_open = shadow.on_skin(level, p + n * 5e-4) * (-HAIR_SHADE * depth.x).exp();
     let open = [key_open, (-HAIR_SHADE * depth.y).exp(), (-HAIR_SHADE * depth.z).exp()];
@@ -55,9 +59,9 @@ pub(super) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
     for (light, open) in [&lamps.key, &lamps.fill, &lamps.rim].into_iter().zip([open[0], open[2], open[1]]) {
         let l = light.direction.normalize_or(Vec3::Y);
         let nl = n.dot(l);
-        // Wrapped Lambert, normalised so that the total stays the same.
+        // Wrapped Lambert, normalized so that the total stays the same.
         let wrapped = ((Vec3::splat(nl) + WRAP) / (Vec3::ONE + WRAP)).max(Vec3::ZERO) / (Vec3::ONE + WRAP);
-        // Red light leaks round the edge of a shadow as it does round the terminator.
+        // Red light leaks past the edge of a shadow, as it does past the terminator.
         let root = open.sqrt();
         let tinted = Vec3::new(root * root.sqrt(), open, open.powf(1.1));
         diffuse += light.color * wrapped * tinted;
@@ -65,18 +69,19 @@ pub(super) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
     }
     let open_sky = BOUNCE + (1.0 - BOUNCE) * depth.w;
     let sky = lamps.ground.lerp(lamps.sky, 0.5 + 0.5 * n.y) * open_sky + lamps.key.color * KEY_BOUNCE;
-    // A grazing sheen, from peach fuzz and the oil on skin.
+    // Sheen at grazing angles, from vellus hair and the oil on skin.
     let sheen = SHEEN * (1.0 - nv).powi(4) * depth.w;
     let lit = base * (diffuse + sky) + gloss + lamps.sky * sheen;
     if lit.is_finite() { lit } else { Vec3::ZERO }
 }
 
-/// The part of `body` that triangle `t` belongs to, as an index; `None`: to none.
+/// Index of the part of `body` that triangle `t` belongs to; `None` if it belongs to no part.
 pub(crate) fn part(body: &MeshDraw, t: usize) -> Option<usize> {
     body.parts.iter().position(|p| p.triangles.contains(&(t as u32)))
 }
 
-/// Two GGX lobes, as skin has (d'Eon & Luebke 2007), Fresnel by Schlick at the skin's reflectance of 2.8 %.
+/// Two GGX lobes, as for skin (d'Eon & Luebke 2007), with Schlick's Fresnel term at the skin's reflectance of
+/// 2.8 %.
 fn specular(n: Vec3, v: Vec3, l: Vec3, roughness: f32, nv: f32) -> f32 {
     let h = (v + l).normalize_or(n);
     let (nh, nl) = (n.dot(h).max(0.0), n.dot(l).max(1e-3));
@@ -85,14 +90,15 @@ fn specular(n: Vec3, v: Vec3, l: Vec3, roughness: f32, nv: f32) -> f32 {
         let d = nh * nh * (a2 - 1.0) + 1.0;
         let k = 0.5 * roughness * roughness;
         let visible = (nl * (1.0 - k) + k) * (nv * (1.0 - k) + k);
-        // Lamps are in units of a white card: π leaves the lobe's 1/π.
+        // Lamps are in units of a white card, so the factor π cancels the 1/π of the lobe.
         a2 / (d * d) / (4.0 * visible)
     };
     let fresnel = REFLECTANCE + (1.0 - REFLECTANCE) * (1.0 - v.dot(h).max(0.0)).powi(5);
     fresnel * (LOBES.0 * lobe(roughness) + (1.0 - LOBES.0) * lobe(LOBES.1 * roughness)).min(4.0 * PI)
 }
 
-/// Where the ray meets the triangle's plane, and the corners' weights there, kept inside the triangle.
+/// Intersection of the ray with the triangle's plane, and the corners' weights there, clamped to the
+/// triangle.
 fn meet(eye: Vec3, ray: Vec3, a: Vec3, b: Vec3, c: Vec3) -> (Vec3, Vec3) {
     let (e1, e2) = (b - a, c - a);
     let q = ray.cross(e2);

@@ -1,5 +1,5 @@
-//! The shaders' sources, and the numbers that they share with the CPU renderer: each has one home, in Rust, and is written into every
-//! shader as a constant.
+//! The shaders' sources, and the numbers that they share with the CPU renderer. Each number is defined once,
+//! in Rust, and is written into every shader as a constant.
 
 use super::{Gpu, follow};
 use crate::{
@@ -12,16 +12,16 @@ use crate::{
 use glam::{Mat3, Vec3};
 use std::fmt::Write;
 
-/// Pieces that one instance of the indexed draw holds: its 4 × BATCH vertices are numbered in 16 bits.
+/// Pieces per instance of the indexed draw. Its 4 × BATCH vertices have 16-bit indices.
 pub(super) const BATCH: u32 = 1024;
-/// Most pieces of one depth that are brought into order.
+/// Maximum number of pieces of equal depth that are put into a fixed order.
 const TIDY: u32 = 1024;
-/// Samples of a pixel for the outlines of bodies.
+/// Samples per pixel for the outlines of bodies.
 pub(super) const SAMPLES: u32 = 4;
-/// Directions that light is swept from: three lamps and the parts of the sky.
+/// Number of directions for the light sweeps: three lamps and the parts of the sky.
 pub(super) const DIRECTIONS: usize = 3 + shadow::SKY.len();
 
-/// One shader: the files it is made of.
+/// One shader: the files that it is assembled from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source {
     name: &'static str,
@@ -46,12 +46,12 @@ pub(super) const RIBBON: Source = source!("ribbon": "frame", "fibre", "curve", "
 pub(super) const DEVELOP: Source = source!("develop": "frame", "light", "ground", "develop");
 
 impl Source {
-    /// The whole text.
+    /// The complete source text.
     fn text(self) -> String {
         self.parts.iter().fold(constants(), |all, part| all + part)
     }
 
-    /// Compiles it.
+    /// Compiles the shader.
     pub fn module(self, gpu: &Gpu) -> wgpu::ShaderModule {
         gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(self.name),
@@ -118,7 +118,7 @@ fn constants() -> String {
         ("FILM_E", tonemap::FILM[4]),
     ];
     for (name, value) in numbers {
-        // Digits enough for the very same number, and never a form that another language would read otherwise.
+        // The format has enough digits to give exactly the same number, and is read alike by both languages.
         let _ = writeln!(out, "const {name}: f32 = {value:e}f;");
     }
     for (name, value) in [
@@ -161,7 +161,8 @@ fn matrix(m: &Mat3) -> String {
     format!("mat3x3f({})", columns.join(", "))
 }
 
-/// Most pieces of one segment (see [`segment::MAX_PIECES`]): four bits of a piece hold its number.
+/// Maximum number of pieces of one segment (see [`segment::MAX_PIECES`]). Four bits of a piece hold its
+/// number.
 pub(super) const MAX_PIECES: f32 = segment::MAX_PIECES;
 
 #[cfg(test)]
@@ -169,7 +170,8 @@ mod tests {
     use super::*;
     use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-    /// Without a card, by the compiler alone; nothing is asked for but what every WebGPU device can do.
+    /// Validates the shaders with the compiler alone, without a GPU, and with only the capabilities of every
+    /// WebGPU device.
     #[test]
     fn every_shader_is_valid() {
         for source in [FOLLOW, DENSITY, WALLS, SWEEP, BODY, SETTLE, POINTS, SORT, RIBBON, DEVELOP] {

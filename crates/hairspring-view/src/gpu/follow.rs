@@ -1,7 +1,8 @@
-//! Follow hairs placed on the card, from how guides carry them: `wgsl/follow.wgsl`.
+//! Interpolates follow hairs on the GPU from the transforms of their guides: `wgsl/follow.wgsl`.
 //!
-//! Once: points of the rest pose and where each rides on its guides (24 bytes a point), weights (64 bytes a strand). Every frame: 48 bytes a guide point,
-//! 112 a collider, and of distance fields what changed.
+//! Sent once: points of the rest pose with their guide coordinates (24 bytes per point), and weights (64
+//! bytes per strand). Sent every frame: 48 bytes per guide point, 112 per collider, and the changed parts of
+//! distance fields.
 
 use super::{
     Gpu,
@@ -22,19 +23,20 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use wgpu::BufferUsages;
 
-/// `kind` of the shader's colliders.
+/// Values of `kind` of the shader's colliders.
 pub(super) const CAPSULE: u32 = 0;
 pub(super) const CUBOID: u32 = 1;
 pub(super) const PLANES: u32 = 2;
 pub(super) const FIELD: u32 = 3;
 
-/// Numbers of shapes that are compared, and sent, together.
+/// Number of shape values that are compared, and sent, together.
 const BLOCK: usize = 1 << 14;
 
-/// Bit of a strand's count: it is a guide.
+/// Bit in a strand's point count that marks a guide.
 const GUIDE: u32 = 1 << 31;
 
-/// Most that curls and flyaways move a point, in their radius and their amplitude: a chord of the circle's, and both waves across each other.
+/// Maximum displacement of a point by curls and by flyaways, relative to the curl radius and to the flyaway
+/// amplitude: the diameter of the circle, and two perpendicular waves.
 const SWAY: [f32; 2] = [2.0, std::f32::consts::SQRT_2];
 
 /// `Groom` of the shader.
@@ -76,7 +78,7 @@ struct Collider {
     unused: [u32; 3],
 }
 
-/// The hairs of one style that follow.
+/// The follow hairs of one style.
 struct Groom {
     layout: Arc<FollowLayout>,
     followers: Store,
@@ -86,32 +88,34 @@ struct Groom {
     carriers: Store,
     settings: Store,
     bound: Bound,
-    /// The box of what every guide point carries, from where it is, in the rest pose [m].
+    /// Bounding box, for every guide point, of the points that it transforms, relative to the guide point in
+    /// the rest pose [m].
     boxes: Vec<(Vec3, Vec3)>,
-    /// Corners of boxes that hold all its points now [m].
+    /// Corners of boxes that contain all points of the style in the current frame [m].
     corners: Vec<Vec3>,
-    /// Whose colliders are its own.
+    /// Index of the world with this groom's colliders.
     world: usize,
 }
 
-/// What some grooms are kept out of.
+/// The colliders of some of the grooms.
 struct World {
     colliders: Store,
     shapes: Store,
-    /// What is there of shapes.
+    /// The shape values that the GPU has.
     sent: Vec<f32>,
 }
 
 /// All follow hairs of a frame.
 pub(super) struct Followers {
     pipeline: wgpu::ComputePipeline,
-    /// By the number of the style; `None`: its points are sent as they are.
+    /// One entry per style; `None` if its points are sent directly.
     grooms: Vec<Option<Groom>>,
     worlds: Vec<World>,
 }
 
 impl Gpu {
-    /// Whether follow hairs among these colliders can be placed on the card: not among open sheets, and not where fields are too large for it.
+    /// Whether the GPU can interpolate follow hairs among these colliders. It does not support open sheets,
+    /// or distance fields that are too large for it.
     pub fn can_place_among(&self, obstacles: &[MovingCollider]) -> bool {
         let numbers: usize = obstacles.iter().map(|o| Shape::of(o).map_or(0, |s| s.numbers.len())).sum();
         let sheet = |o: &MovingCollider| matches!(o.shape, ColliderShape::Sheet(_));
@@ -120,14 +124,14 @@ impl Gpu {
     }
 }
 
-/// A collider and its numbers.
+/// A collider and the values of its shape.
 struct Shape<'a> {
     collider: Collider,
     numbers: std::borrow::Cow<'a, [f32]>,
 }
 
 impl<'a> Shape<'a> {
-    /// `None`: it holds nothing out, or only the CPU knows how.
+    /// `None` if the obstacle is not a collider, or if only the CPU supports it.
     fn of(obstacle: &'a MovingCollider) -> Option<Self> {
         let (turn, at) = obstacle.end.matrix();
         let placed = |turn: Mat3, at: Vec3, kind: u32| {
@@ -149,7 +153,7 @@ impl<'a> Shape<'a> {
             ColliderShape::Sphere { center, radius } => alone(capsule(*center, *center, *radius)),
             ColliderShape::Capsule { a, b, radius } => alone(capsule(*a, *b, *radius)),
             ColliderShape::Cuboid { center, half, axes } => {
-                // In a space of its own it lies along the axes.
+                // In its own space the box is aligned to the axes.
                 let placed = placed(turn * *axes, turn * *center + at, CUBOID);
                 alone(Collider { a: half.extend(0.0), ..placed })
             }
@@ -174,7 +178,7 @@ impl World {
         Self { colliders: store("colliders"), shapes: store("shapes"), sent: Vec::new() }
     }
 
-    /// Sends colliders, and of their shapes what changed. Returns how many they are.
+    /// Sends the colliders, and the changed parts of their shapes. Returns the number of colliders.
     fn send(&mut self, gpu: &Gpu, obstacles: &[MovingCollider], generation: &mut Generation) -> u32 {
         let mut shapes: Vec<Shape> = obstacles.iter().filter_map(Shape::of).collect();
         let mut first = 0;
@@ -187,7 +191,7 @@ impl World {
         if *generation != then {
             self.sent.clear();
         }
-        // What is no number is no other's equal, and is sent.
+        // NaN is not equal to any number, so these values are sent.
         self.sent.resize(first, f32::NAN);
         for shape in &shapes {
             let first = shape.collider.first as usize;
@@ -236,7 +240,7 @@ impl Groom {
         groom
     }
 
-    /// Sends how guides carry, and finds the boxes around what they carry.
+    /// Sends the transforms of the guides, and computes the bounding boxes of the points that they transform.
     fn send(
         &mut self,
         gpu: &Gpu,
@@ -276,7 +280,7 @@ impl Groom {
     }
 }
 
-/// What the card knows of strand `s`.
+/// The data of strand `s` for the GPU.
 fn follower(layout: &FollowLayout, s: usize) -> Follower {
     let range = layout.groom.range(s);
     let (guides, weights, bit) = match layout.guide(s) {
@@ -294,7 +298,8 @@ fn follower(layout: &FollowLayout, s: usize) -> Follower {
     }
 }
 
-/// The box around the points that each guide point carries, from where it is, in the rest pose [m].
+/// For each guide point, the bounding box of the points that it transforms, relative to it in the rest pose
+/// [m].
 fn boxes(layout: &FollowLayout) -> Vec<(Vec3, Vec3)> {
     let rest: Vec<Vec3> =
         layout.guides.iter().flat_map(|g| layout.groom.strand(*g as usize)).copied().collect();
@@ -322,7 +327,7 @@ impl Followers {
         Self { pipeline, grooms: Vec::new(), worlds: Vec::new() }
     }
 
-    /// Sends what changed of a frame's follow hairs.
+    /// Sends the changed data of a frame's follow hairs.
     pub fn send(&mut self, gpu: &Gpu, hair: &[HairDraw], generation: &mut Generation) {
         let mut worlds: Vec<(&[MovingCollider], u32)> = Vec::new();
         self.grooms.resize_with(hair.len(), || None);
@@ -354,12 +359,12 @@ impl Followers {
         }
     }
 
-    /// Corners of boxes that hold all points of a style [m]; `None` where its points are sent as they are.
+    /// Corners of boxes that contain all points of a style [m]; `None` if its points are sent directly.
     pub fn corners(&self, style: usize) -> Option<&[Vec3]> {
         Some(&self.grooms.get(style)?.as_ref()?.corners)
     }
 
-    /// Places them.
+    /// Records the interpolation.
     pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
         if self.grooms.iter().all(Option::is_none) {
             return;

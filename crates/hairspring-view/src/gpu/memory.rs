@@ -1,11 +1,11 @@
-//! Memory of the card: buffers that grow, and what binds them to a shader.
+//! GPU memory: growing buffers, and their bindings to shaders.
 
 use super::{Gpu, GpuError};
 use bytemuck::Pod;
 use std::sync::atomic::Ordering::Relaxed;
 use wgpu::{BindGroup, BindGroupLayout, BindingResource, Buffer, BufferUsages};
 
-/// Counts how often anything was allocated: what is bound must then be bound anew.
+/// Counts allocations. After an allocation, bind groups must be created again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Generation(u64);
 
@@ -15,7 +15,7 @@ impl Generation {
     }
 }
 
-/// A buffer that grows to what it must hold, and never shrinks.
+/// A buffer that grows as needed and never shrinks.
 pub(super) struct Store {
     label: &'static str,
     usage: BufferUsages,
@@ -23,16 +23,17 @@ pub(super) struct Store {
 }
 
 impl Store {
-    /// A small one.
+    /// Creates a small buffer.
     pub fn new(gpu: &Gpu, label: &'static str, usage: BufferUsages) -> Self {
         let usage = usage | BufferUsages::COPY_DST;
         Self { label, usage, buffer: buffer(gpu, label, 256, usage) }
     }
 
-    /// Makes room for some bytes; what it held is lost if it grew.
+    /// Makes room for a number of bytes. If the buffer grows, its content is lost.
     pub fn fit(&mut self, gpu: &Gpu, bytes: usize, generation: &mut Generation) {
         if bytes as u64 > self.buffer.size() {
-            // A quarter more, so that hair that is cut and grows again does not allocate every time; but never more than can be bound.
+            // Allocates a quarter more, so that hair that is cut and grows again does not allocate every
+            // time, but never more than can be bound.
             let most = gpu.device.limits().max_storage_buffer_binding_size;
             let size = (bytes as u64 + bytes as u64 / 4).min(most).max(bytes as u64).next_multiple_of(256);
             self.buffer = buffer(gpu, self.label, size, self.usage);
@@ -40,7 +41,7 @@ impl Store {
         }
     }
 
-    /// Writes values at an offset [bytes]; there must be room.
+    /// Writes values at an offset [bytes]. The buffer must be large enough.
     pub fn write<T: Pod>(&self, gpu: &Gpu, offset: usize, values: &[T]) {
         if !values.is_empty() {
             gpu.sent.fetch_add(size_of_val(values) as u64, Relaxed);
@@ -48,13 +49,13 @@ impl Store {
         }
     }
 
-    /// Makes room for values and writes them.
+    /// Makes room for the values and writes them.
     pub fn fill<T: Pod>(&mut self, gpu: &Gpu, values: &[T], generation: &mut Generation) {
         self.fit(gpu, size_of_val(values), generation);
         self.write(gpu, 0, values);
     }
 
-    /// Waits for the first `count` values; it must have been made to be copied from.
+    /// Waits for the first `count` values and reads them. The buffer must have been created as a copy source.
     pub fn read<T: Pod>(&self, gpu: &Gpu, count: usize) -> Result<Vec<T>, GpuError> {
         let size = (count * size_of::<T>()) as u64;
         let copy = buffer(gpu, self.label, size.max(4), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
@@ -83,12 +84,12 @@ fn buffer(gpu: &Gpu, label: &str, size: u64, usage: BufferUsages) -> Buffer {
     })
 }
 
-/// Waits for what is being copied to a buffer.
+/// Waits for the data that is being copied to a buffer.
 pub(super) fn mapped(gpu: &Gpu, buffer: &Buffer) -> Result<wgpu::BufferView, GpuError> {
     let failed = |e: String| GpuError::Failed(e);
     let (tell, told) = std::sync::mpsc::channel();
     buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-        // Nobody listens any more only where waiting has failed already.
+        // The receiver is only gone if waiting has failed already.
         let _ = tell.send(result);
     });
     gpu.wait()?;
@@ -96,7 +97,7 @@ pub(super) fn mapped(gpu: &Gpu, buffer: &Buffer) -> Result<wgpu::BufferView, Gpu
     buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))
 }
 
-/// What a pipeline is given to read and write; bound anew when memory was allocated.
+/// The resources of a pipeline. The bind group is created again after memory was allocated.
 #[derive(Default)]
 pub(super) struct Bound {
     group: Option<(Generation, BindGroup)>,
@@ -117,7 +118,7 @@ impl Bound {
     }
 }
 
-/// Binds resources to the numbers of a shader.
+/// Creates a bind group from resources and their binding numbers.
 pub(super) fn bind(gpu: &Gpu, layout: &BindGroupLayout, entries: &[(u32, BindingResource)]) -> BindGroup {
     let entries: Vec<_> = entries
         .iter()
@@ -126,7 +127,7 @@ pub(super) fn bind(gpu: &Gpu, layout: &BindGroupLayout, entries: &[(u32, Binding
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }
 
-/// The compute shader that `module`'s function `entry` is.
+/// Creates a compute pipeline from the function `entry` of `module`.
 pub(super) fn compute(gpu: &Gpu, module: &wgpu::ShaderModule, entry: &str) -> wgpu::ComputePipeline {
     gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(entry),
@@ -138,19 +139,19 @@ pub(super) fn compute(gpu: &Gpu, module: &wgpu::ShaderModule, entry: &str) -> wg
     })
 }
 
-/// A compute shader and what it works on.
+/// A compute pipeline and its resources.
 pub(super) struct Kernel {
     pub pipeline: wgpu::ComputePipeline,
     bound: Bound,
 }
 
 impl Kernel {
-    /// `module`'s function `entry`.
+    /// Creates a kernel from the function `entry` of `module`.
     pub fn new(gpu: &Gpu, module: &wgpu::ShaderModule, entry: &str) -> Self {
         Self { pipeline: compute(gpu, module, entry), bound: Bound::default() }
     }
 
-    /// Runs over groups of invocations.
+    /// Dispatches the kernel over workgroups.
     pub fn run(
         &mut self,
         gpu: &Gpu,
@@ -166,7 +167,8 @@ impl Kernel {
     }
 }
 
-/// Groups of `size` invocations for `n`, in rows where one row would have more than WebGPU allows.
+/// Workgroups of `size` invocations for `n` items. They are split into rows if one row would exceed WebGPU's
+/// limit.
 pub(super) fn groups(n: usize, size: usize) -> [u32; 3] {
     const ROW: usize = 65_535;
     let groups = n.div_ceil(size).max(1);

@@ -1,4 +1,4 @@
-//! The frame's bodies on the card.
+//! The frame's bodies on the GPU.
 
 use super::{
     Gpu,
@@ -8,7 +8,7 @@ use super::{
 use crate::{body::skin, frame::MeshDraw};
 use wgpu::BufferUsages;
 
-/// Bit of a triangle's last number: its body has smooth normals.
+/// Bit in a triangle's last index that marks a body with smooth normals.
 const SMOOTH: u32 = 1 << 31;
 
 /// The bodies of a frame.
@@ -16,11 +16,11 @@ pub(super) struct Meshes {
     pub positions: Store,
     pub normals: Store,
     pub triangles: Store,
-    /// Linear RGB and roughness; the first is skin.
+    /// Linear RGB and roughness of each part; the first entry is skin.
     pub cloths: Store,
     /// Number of triangles.
     pub count: u32,
-    /// What was sent last: triangles, vertices, whether they are smooth, and parts.
+    /// What was sent last, per body: triangles, number of vertices, whether normals are smooth, and parts.
     sent: Vec<(Print, usize, bool, Vec<[u32; 2]>)>,
 }
 
@@ -37,7 +37,7 @@ impl Meshes {
         }
     }
 
-    /// Forgets what was sent, so that all is sent again.
+    /// Marks everything as not sent, so that it is sent again.
     pub fn forget(&mut self) {
         self.sent.clear();
     }

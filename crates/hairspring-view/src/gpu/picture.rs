@@ -1,4 +1,4 @@
-//! The textures that a picture of one size is drawn in, its development, and the way back to the CPU.
+//! The textures for a picture of one size, the final composition, and the readback to the CPU.
 
 use super::{
     Gpu, GpuError,
@@ -11,27 +11,27 @@ use super::{
 use crate::{frame::Frame, image::Image, shadow::contact::Contact};
 use wgpu::{BindingResource, BufferUsages, Extent3d, TextureFormat, TextureUsages, TextureView};
 
-/// Linear light, and covering.
+/// Linear light, and coverage.
 pub(super) const LIGHT: TextureFormat = TextureFormat::Rgba16Float;
-/// Share of the depth range, and covering.
+/// Relative depth, and coverage.
 pub(super) const PLACE: TextureFormat = TextureFormat::Rg32Float;
-/// The finished picture: sRGB codes, as they are.
+/// The finished picture, as sRGB codes.
 const CODES: TextureFormat = TextureFormat::Rgba8Unorm;
-/// Bytes that rows of a buffer must be a multiple of to take a texture.
+/// Required alignment of buffer rows for texture copies [bytes].
 const ROW: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 
-/// The textures.
+/// The render targets.
 pub(super) struct Targets {
     pub size: [u32; 2],
-    /// Hair before the body, and behind it: linear RGB times covering, covering.
+    /// Hair in front of the body, and behind it: linear RGB times coverage, coverage.
     pub before: TextureView,
     pub behind: TextureView,
-    /// The body's light, by samples and settled, times covering; covering.
+    /// The body's light, multisampled and resolved: light times coverage, coverage.
     pub samples: TextureView,
     pub body: TextureView,
-    /// Nearness of the body, by samples; greater is nearer.
+    /// Nearness of the body, multisampled. Greater is nearer.
     pub nearness: TextureView,
-    /// Where the body lies.
+    /// Relative depth of the body.
     pub place: TextureView,
     finished: wgpu::Texture,
     pub picture: TextureView,
@@ -70,7 +70,7 @@ impl Targets {
     }
 }
 
-/// A pass over every pixel, or the drawing of triangles: what most pipelines here have in common.
+/// Creates a pipeline: a full-screen pass, or triangles. This is the common part of most pipelines here.
 pub(super) fn pipeline(
     gpu: &Gpu,
     module: &wgpu::ShaderModule,
@@ -91,7 +91,7 @@ pub(super) fn pipeline(
         primitive: Default::default(),
         depth_stencil: depth,
         multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
-        // A pass that only wants depth has no fragments to shade.
+        // A depth-only pass has no fragment shader.
         fragment: (!targets.is_empty()).then_some(wgpu::FragmentState {
             module,
             entry_point: Some(fragment),
@@ -103,7 +103,7 @@ pub(super) fn pipeline(
     })
 }
 
-/// A target that is cleared, and kept.
+/// A color attachment that is cleared and stored.
 pub(super) fn clear(view: &TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     Some(wgpu::RenderPassColorAttachment {
         view,
@@ -116,7 +116,7 @@ pub(super) fn clear(view: &TextureView) -> Option<wgpu::RenderPassColorAttachmen
     })
 }
 
-/// Puts the parts of a picture together.
+/// Composes the parts of a picture.
 pub(super) struct Develop {
     pipeline: wgpu::RenderPipeline,
     bound: Bound,
@@ -133,14 +133,14 @@ impl Develop {
         Self { pipeline, bound: Bound::default(), contact: Contact::default(), sky }
     }
 
-    /// Sends what a frame's bodies leave of the sky to the ground.
+    /// Sends the fraction of the sky that bodies leave visible from the ground.
     pub fn send(&mut self, gpu: &Gpu, frame: &Frame, generation: &mut Generation) -> &Contact {
         self.contact.fill(frame);
         self.sky.fill(gpu, &self.contact.sky, generation);
         &self.contact
     }
 
-    /// Draws the finished picture.
+    /// Records the final composition.
     pub fn record(
         &mut self,
         job: &Job,
@@ -171,14 +171,14 @@ impl Develop {
     }
 }
 
-/// Brings pictures back to the CPU.
+/// Reads pictures back to the CPU.
 #[derive(Default)]
 pub(super) struct Reader {
     buffer: Option<wgpu::Buffer>,
 }
 
 impl Reader {
-    /// Waits for the picture.
+    /// Waits for the picture and returns it.
     pub fn read(&mut self, gpu: &Gpu, targets: &Targets) -> Result<Image, GpuError> {
         let [width, height] = targets.size;
         let row = (4 * width).next_multiple_of(ROW);

@@ -1,4 +1,4 @@
-//! One picture, from borrowed arrays to a texture.
+//! Draws one picture from borrowed arrays to a texture.
 
 use super::{
     Gpu, GpuError,
@@ -25,11 +25,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Draws frames on a graphics card; keeps its memory between them, and allocates none for a frame that is no larger than those before.
+/// Draws frames on the GPU. It keeps its memory between frames, and allocates none for a frame that is no
+/// larger than the previous ones.
 ///
-/// The picture is that of the CPU [`Renderer`](crate::Renderer), up to rounding. Radii, colours, offsets and triangles are sent to the card when
-/// they change; that is seen by where an array lies, its length, and 512 of its values. Call [`GpuRenderer::forget`] after changing some in
-/// place.
+/// The picture equals that of the CPU [`Renderer`](crate::Renderer), up to rounding. Radii, colors, offsets
+/// and triangles are sent to the GPU only when they change. A change is detected from the address of an
+/// array, its length, and 512 of its values. Call [`GpuRenderer::forget`] after changing an array in place.
 pub struct GpuRenderer {
     gpu: Gpu,
     generation: Generation,
@@ -46,7 +47,7 @@ pub struct GpuRenderer {
     timings: GpuTimings,
 }
 
-/// What every step of a frame is given.
+/// The input of every step of a frame.
 #[derive(Clone, Copy)]
 pub(super) struct Job<'a> {
     pub gpu: &'a Gpu,
@@ -58,19 +59,19 @@ pub(super) struct Job<'a> {
     pub targets: &'a Targets,
 }
 
-/// Where the CPU's part of the last frame went; the card works on after it.
+/// CPU time of the last frame. The GPU continues to work after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpuTimings {
-    /// The hair's bounds, and copying arrays to where the card takes them from.
+    /// Computing the hair's bounds, and copying arrays for upload.
     pub send: Duration,
-    /// Recording what the card shall do.
+    /// Recording the GPU's commands.
     pub record: Duration,
-    /// Bytes that the card was sent.
+    /// Bytes that were sent to the GPU.
     pub bytes: u64,
 }
 
 impl GpuRenderer {
-    /// A renderer on a card. Compiling its shaders takes a moment.
+    /// Creates a renderer. Compiling the shaders takes a moment.
     pub fn new(gpu: &Gpu) -> Self {
         let mut uniforms = Store::new(gpu, "frame", wgpu::BufferUsages::UNIFORM);
         uniforms.fit(gpu, size_of::<Uniforms>(), &mut Generation::default());
@@ -91,10 +92,11 @@ impl GpuRenderer {
         }
     }
 
-    /// Draws a frame of `width` × `height` pixels, each 1 to the card's greatest texture, 8192 by WebGPU's default (other sizes are brought into
-    /// that range), and returns it: RGBA, 8 bits, sRGB codes as they are, ready to be shown by egui. It does not wait for the card.
+    /// Draws a frame of `width` × `height` pixels and returns it as RGBA with 8 bits per channel, as plain
+    /// sRGB codes that egui can show. Width and height are clamped to 1 and the GPU's maximum texture size,
+    /// 8192 by WebGPU's default. The function does not wait for the GPU.
     ///
-    /// The same frame gives the same picture. Whatever the arrays hold, a picture comes out.
+    /// The same frame gives the same picture. Invalid values in the arrays never cause a failure.
     pub fn draw<'a>(&mut self, frame: &Frame<'a>, width: u32, height: u32) -> &wgpu::TextureView {
         let start = Instant::now();
         let gpu = &self.gpu;
@@ -162,18 +164,19 @@ impl GpuRenderer {
         &self.targets.picture
     }
 
-    /// Waits for the last picture and brings it back; one black pixel before the first.
+    /// Waits for the last picture and reads it back. Before the first frame it is one black pixel.
     ///
     /// # Errors
-    /// [`GpuError::Failed`] if the card refused something or was lost.
+    /// Returns [`GpuError::Failed`] if the GPU rejected a command or was lost.
     pub fn read(&mut self) -> Result<Image, GpuError> {
         self.reader.read(&self.gpu, &self.targets)
     }
 
-    /// Waits for the points of all styles, one after the other, as the card has them: those of follow hairs as it placed them [m].
+    /// Waits for the points of all styles, one after the other, as the GPU has them. Those of follow hairs
+    /// are the ones that it interpolated [m].
     ///
     /// # Errors
-    /// As [`GpuRenderer::read`].
+    /// See [`GpuRenderer::read`].
     pub fn read_points(&self) -> Result<Vec<Vec3>, GpuError> {
         self.strands.points.read(&self.gpu, self.strands.count)
     }
@@ -183,23 +186,23 @@ impl GpuRenderer {
         &self.targets.picture
     }
 
-    /// The card it draws on.
+    /// The GPU that is used.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Forgets what was sent to the card: call it after changing radii, colours, offsets or triangles in place.
+    /// Marks all data as not sent. Call it after changing radii, colors, offsets or triangles in place.
     pub fn forget(&mut self) {
         self.strands.forget();
         self.meshes.forget();
     }
 
-    /// Strands that the last frame has more than fit the card.
+    /// Number of strands of the last frame that did not fit into GPU memory.
     pub fn left_out(&self) -> usize {
         self.strands.left_out
     }
 
-    /// Where the CPU's part of the last frame went.
+    /// CPU time of the last frame.
     pub fn timings(&self) -> GpuTimings {
         self.timings
     }

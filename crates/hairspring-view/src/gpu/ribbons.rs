@@ -1,4 +1,4 @@
-//! Hair on the card: points are placed and lit, pieces sorted and drawn.
+//! Hair on the GPU: places and lights points, and sorts and draws pieces.
 
 use super::{
     Gpu,
@@ -12,12 +12,12 @@ use super::{
 use crate::hair::ribbon::DEPTHS;
 use wgpu::{BindingResource, BlendComponent, BlendFactor, BlendOperation, BlendState, BufferUsages};
 
-/// Most pieces of a frame: 64 MiB of them, and what the numbers of slots leave room for.
+/// Maximum number of pieces of a frame. They take 64 MiB, and their indices must leave room for other bits.
 const MOST: usize = 1 << 24;
-/// Depths that pieces are sorted by.
+/// Number of sort keys for the depth of pieces.
 const KEYS: usize = DEPTHS as usize + 1;
 
-/// The shaders of hair, and what they work out.
+/// The shaders of hair and their buffers.
 pub(super) struct Ribbons {
     place: Kernel,
     count: Kernel,
@@ -36,7 +36,7 @@ pub(super) struct Ribbons {
     corners: Store,
 }
 
-/// Most pieces that each of a frame's segments may be drawn as.
+/// Maximum number of pieces for each segment of a frame.
 pub(super) fn most_pieces(slots: usize) -> f32 {
     ((MOST / slots.max(1)) as f32).clamp(1.0, MAX_PIECES)
 }
@@ -45,11 +45,11 @@ impl Ribbons {
     pub fn new(gpu: &Gpu) -> Self {
         let (points, sort, ribbon) = (POINTS.module(gpu), SORT.module(gpu), RIBBON.module(gpu));
         let store = |label, usage| Store::new(gpu, label, usage);
-        // Two triangles a piece.
+        // Two triangles per piece.
         let mut corners = store("corners", BufferUsages::INDEX);
         let quads = (0..BATCH as u16).flat_map(|k| [0, 1, 2, 2, 1, 3].map(|i| 4 * k + i));
         corners.fill(gpu, &quads.collect::<Vec<u16>>(), &mut Generation::default());
-        // Over what lies there.
+        // The "over" operator.
         let over = BlendComponent {
             src_factor: BlendFactor::One,
             dst_factor: BlendFactor::OneMinusSrcAlpha,
@@ -92,7 +92,7 @@ impl Ribbons {
         self.pieces.fit(gpu, 4 * slots * most_pieces(slots) as usize, generation);
     }
 
-    /// Places, lights and sorts.
+    /// Records placing, lighting and sorting.
     pub fn record_sort(
         &mut self,
         job: &Job,
@@ -129,7 +129,7 @@ impl Ribbons {
         self.tidy.run(gpu, generation, &mut pass, &[starts, pieces], groups(KEYS, 256));
     }
 
-    /// Draws.
+    /// Records drawing.
     pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
         let Job { gpu, generation, uniforms, targets, .. } = *job;
         let entries = [
@@ -152,7 +152,7 @@ impl Ribbons {
         pass.draw_indexed_indirect(self.drawing.buffer(), 0);
     }
 
-    /// Leaves the picture without hair.
+    /// Clears the hair targets of a picture without hair.
     pub fn record_none(job: &Job, encoder: &mut wgpu::CommandEncoder) {
         let targets = job.targets;
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

@@ -1,4 +1,4 @@
-//! The frame's strands on the card: what moves is sent every frame, what does not when it changed.
+//! The frame's strands on the GPU. Moving data is sent every frame, static data only when it has changed.
 
 use super::{
     Gpu,
@@ -21,7 +21,7 @@ struct Strand {
     colored: u32,
 }
 
-/// Which array something came from: where it lies, how long it is, and some of what is in it.
+/// A fingerprint of an array: its address, its length, and a hash of some of its values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Print {
     place: usize,
@@ -30,7 +30,8 @@ pub(super) struct Print {
 }
 
 impl Print {
-    /// Looks at 512 values, evenly spread: enough to tell another array in the same place, not to find one value that changed.
+    /// Hashes 512 evenly spaced values. This detects another array at the same address, but not a change of a
+    /// single value.
     pub fn of<T: Pod>(values: &[T]) -> Self {
         let mut some = 0xcbf2_9ce4_8422_2325u64;
         for value in values.iter().step_by(values.len() / 512 + 1).chain(values.last()) {
@@ -42,7 +43,7 @@ impl Print {
     }
 }
 
-/// The styles whose points all find room, and the number of each one's first point among all.
+/// The styles whose points all fit, with the index of each style's first point.
 pub(super) fn fitting<'a>(
     gpu: &Gpu,
     hair: &'a [HairDraw<'a>],
@@ -58,18 +59,18 @@ pub(super) fn fitting<'a>(
 /// The strands of a frame.
 pub(super) struct Strands {
     pub strands: Store,
-    /// Strand of each slot. Every strand has a slot for each of its points.
+    /// Strand of each slot. Every strand has one slot for each of its points.
     pub owners: Store,
     pub points: Store,
     pub radii: Store,
     pub colors: Store,
     pub styles: Store,
-    /// Number of slots, and of points.
+    /// Number of slots, and number of points.
     pub slots: usize,
     pub count: usize,
-    /// Strands that found no room.
+    /// Number of strands that did not fit.
     pub left_out: usize,
-    /// What was sent last: offsets, radii and colours of each style, and its number of points.
+    /// What was sent last: offsets, radii and colors of each style, and its number of points.
     sent: Vec<(Print, Print, Print, usize)>,
 }
 
@@ -90,12 +91,12 @@ impl Strands {
         }
     }
 
-    /// Forgets what was sent, so that all is sent again.
+    /// Marks everything as not sent, so that it is sent again.
     pub fn forget(&mut self) {
         self.sent.clear();
     }
 
-    /// What `wgsl/strands.wgsl` asks for.
+    /// The bindings of `wgsl/strands.wgsl`.
     pub fn bindings(&self) -> [(u32, BindingResource<'_>); 5] {
         let Self { strands, owners, points, radii, styles, .. } = self;
         [(1, strands.all()), (2, owners.all()), (3, points.all()), (4, radii.all()), (5, styles.all())]

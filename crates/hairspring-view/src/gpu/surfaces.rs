@@ -1,4 +1,4 @@
-//! Bodies on the card: their shadow, what is seen of them, and their light.
+//! Bodies on the GPU: their shadow map, visibility and lighting.
 
 use super::{
     Gpu,
@@ -17,12 +17,12 @@ pub(super) struct Surfaces {
     settle: wgpu::RenderPipeline,
     bound: [Bound; 3],
     side: u32,
-    /// The bodies as the key lamp sees them.
+    /// The depth map of the bodies as seen from the key lamp.
     pub heights: TextureView,
     pub sampler: wgpu::Sampler,
 }
 
-/// Depth that is greater where it is nearer.
+/// Depth test for reversed depth: greater is nearer.
 const NEARER: wgpu::CompareFunction = wgpu::CompareFunction::Greater;
 
 impl Surfaces {
@@ -53,7 +53,7 @@ impl Surfaces {
         }
     }
 
-    /// Makes room for a depth map of some side [texels].
+    /// Allocates a depth map with sides of `side` texels.
     pub fn fit(&mut self, gpu: &Gpu, side: u32, generation: &mut Generation) {
         if side > 0 && self.side != side {
             (self.heights, self.side) = (map(gpu, side), side);
@@ -61,7 +61,7 @@ impl Surfaces {
         }
     }
 
-    /// Draws the depth map.
+    /// Records the depth map.
     pub fn record_map(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
         let Job { gpu, generation, uniforms, meshes, .. } = *job;
         let entries = [(0, uniforms.all()), (1, meshes.positions.all()), (3, meshes.triangles.all())];
@@ -77,7 +77,8 @@ impl Surfaces {
         pass.draw(0..3 * meshes.count, 0..1);
     }
 
-    /// Draws what the camera sees, in the shadow of `volume`; `cut`: as far as it lies above the ground.
+    /// Records the camera's view of the bodies, in the shadow of `volume`. With `cut`, only the part above
+    /// the ground is drawn.
     pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder, volume: &Volume, cut: bool) {
         let Job { gpu, generation, uniforms, meshes, targets, .. } = *job;
         let entries = [
@@ -122,7 +123,7 @@ impl Surfaces {
     }
 }
 
-/// A depth buffer that begins with nothing near.
+/// A depth attachment that is cleared to the farthest depth.
 fn nothing(view: &TextureView) -> Option<wgpu::RenderPassDepthStencilAttachment<'_>> {
     Some(wgpu::RenderPassDepthStencilAttachment {
         view,

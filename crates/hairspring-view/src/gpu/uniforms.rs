@@ -1,4 +1,5 @@
-//! What every shader of a frame knows; the layouts are those of `wgsl/frame.wgsl`, `wgsl/fibre.wgsl` and `wgsl/sweep.wgsl`.
+//! The uniforms of a frame. Their layouts are those of `wgsl/frame.wgsl`, `wgsl/fibre.wgsl` and
+//! `wgsl/sweep.wgsl`.
 
 use super::{constants::DIRECTIONS, ribbons::most_pieces};
 use crate::{
@@ -23,7 +24,7 @@ struct Lamp {
     color: [f32; 4],
 }
 
-/// `Frame` of the shaders; see there what each field is.
+/// `Frame` of the shaders, where the fields are documented.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Uniforms {
@@ -71,10 +72,10 @@ pub(super) struct Uniforms {
     shade_high: [f32; 2],
 }
 
-/// The bodies' depth map: how it lies, as in `DepthMap::fill`.
+/// The transform of the bodies' depth map, as in `DepthMap::fill`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Map {
-    /// Side [texels]; 0: there are no bodies.
+    /// Side [texels]; 0 if there are no bodies.
     pub side: u32,
     right: Vec3,
     up: Vec3,
@@ -86,7 +87,7 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// The map of a frame's bodies, no side of it above `most` texels.
+    /// Creates the map of a frame's bodies, with at most `most` texels per side.
     pub fn new(frame: &Frame, most: u32) -> Self {
         let toward = frame.lighting.key.direction.try_normalize().unwrap_or(Vec3::Y);
         let right = toward.any_orthonormal_vector();
@@ -102,7 +103,7 @@ impl Map {
         };
         let border = depth_map::border(frame);
         let scale = if side > 0 { (side as f32 - 2.0 * border) / extent } else { 0.0 };
-        // Depth 0 is where nothing is: the lowest place lies a little above.
+        // Depth 0 marks empty texels, so the lowest point of a body is slightly above 0.
         let room = 1e-3 + 0.01 * (high.z - low.z);
         let (low_z, range) = if side > 0 { (low.z - room, high.z - low.z + 2.0 * room) } else { (0.0, 1.0) };
         let origin = if side > 0 { Vec2::splat(border) - low.truncate() * scale } else { Vec2::ZERO };
@@ -111,8 +112,9 @@ impl Map {
 }
 
 impl Uniforms {
-    /// `depths`: nearest and farthest depth of hair [m]; `grid`: of its shadow, if there is hair; `floor`: the ground that is seen, and what bodies leave it of
-    /// the sky; `slots`: points of strands; `triangles`: of bodies.
+    /// `depths`: nearest and farthest depth of hair [m]; `grid`: the grid of its shadow, if there is hair;
+    /// `floor`: the visible ground, and the fraction of the sky that bodies leave it; `slots`: points of
+    /// strands; `triangles`: triangles of bodies.
     pub fn new(
         frame: &Frame,
         view: &View,
@@ -122,7 +124,7 @@ impl Uniforms {
         (floor, contact): (Option<&Floor>, &Contact),
         [slots, triangles]: [usize; 2],
     ) -> Self {
-        // What is no number gives no light, and not a picture of none.
+        // Lights that are not finite are turned off, so that they do not spoil the picture.
         let finite = |v: Vec3| if v.is_finite() { v.to_array() } else { [0.0; 3] };
         let lamp = |l: &Light| Lamp {
             direction: l.direction.normalize_or(Vec3::Y).extend(0.0).to_array(),
@@ -178,7 +180,7 @@ impl Uniforms {
     }
 }
 
-/// `Style` of the shaders: what all strands of a [`HairDraw`] share.
+/// `Style` of the shaders: the values that all strands of a [`HairDraw`] share.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Style {
@@ -232,8 +234,8 @@ pub(super) struct Sweep {
     bodies: u32,
 }
 
-/// All directions that light is swept from, in the order of `Shadow::fill`: key, rim and fill, and the parts of the sky. In the way of
-/// the key lamp, bodies are seen by their depth map and not by the voxels.
+/// All directions of the light sweeps, in the order of `Shadow::fill`: key, rim, fill, and the parts of the
+/// sky. For the key lamp, bodies are in the depth map and not in the voxels.
 pub(super) fn sweeps(frame: &Frame, grid: &Grid) -> [Sweep; DIRECTIONS] {
     let lamps = &frame.lighting;
     let directions = [lamps.key.direction, lamps.rim.direction, lamps.fill.direction];

@@ -1,4 +1,4 @@
-//! The hair's shadow on the card: `shadow/density.rs` and the sweeps of `shadow/mod.rs`.
+//! The hair's shadow on the GPU: `shadow/density.rs` and the sweeps of `shadow/mod.rs`.
 
 use super::{
     Gpu,
@@ -11,14 +11,15 @@ use crate::{frame::Frame, shadow::density::Grid};
 use glam::Vec3;
 use wgpu::{BindingResource, BufferUsages, Extent3d, TextureFormat, TextureUsages, TextureView};
 
-/// Most voxels: the swept depths of eight directions then fit WebGPU's default binding of 128 MiB.
+/// Maximum number of voxels. The optical depths of eight directions then fit into WebGPU's default binding of
+/// 128 MiB.
 const MOST: usize = 1 << 22;
-/// Where in a buffer the number of each slice stands [bytes]: what WebGPU asks of offsets.
+/// Distance between the numbers of the slices in their buffer [bytes], as WebGPU requires for offsets.
 const STEP: usize = 256;
-/// Most slices of a grid: 256 voxels, their padding, and some to spare.
+/// Maximum number of slices of a grid: 256 voxels, their padding, and some reserve.
 const SLICES: usize = 300;
 
-/// The shadow's memory and shaders.
+/// The buffers and shaders of the shadow.
 pub(super) struct Volume {
     splat: Kernel,
     wall: Kernel,
@@ -33,13 +34,13 @@ pub(super) struct Volume {
     sweeps: Store,
     numbers: Store,
     size: [usize; 3],
-    /// Optical depth towards key, rim and fill, and the share of the sky seen.
+    /// Optical depth toward key, rim and fill, and the visible fraction of the sky.
     pub light: TextureView,
-    /// Of the slanting parts of the sky, the share that is seen.
+    /// Visible fraction of each slanted part of the sky.
     pub slants: TextureView,
 }
 
-/// The grid around a frame's hair: as the CPU's, coarser where that has more voxels than fit.
+/// The grid around a frame's hair. It is that of the CPU, or a coarser one if that has too many voxels.
 pub(super) fn grid(frame: &Frame, bounds: (Vec3, Vec3)) -> Grid {
     let mut voxels = frame.quality.shadow_voxels;
     loop {
@@ -81,7 +82,7 @@ impl Volume {
         }
     }
 
-    /// Makes room for a grid.
+    /// Allocates the buffers of a grid.
     pub fn fit(&mut self, gpu: &Gpu, frame: &Frame, grid: &Grid, generation: &mut Generation) {
         let n = grid.len();
         self.sums.fit(gpu, 4 * n, generation);
@@ -96,7 +97,7 @@ impl Volume {
         }
     }
 
-    /// Works out the shadow.
+    /// Records the shadow computation.
     pub fn record(&mut self, job: &Job, encoder: &mut wgpu::CommandEncoder) {
         let Job { gpu, generation, uniforms, strands, meshes, .. } = *job;
         for store in [&self.sums, &self.walls, &self.depths] {

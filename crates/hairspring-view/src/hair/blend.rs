@@ -1,12 +1,14 @@
-//! Pieces into pixels: how much of each pixel a ribbon covers, and what that adds.
+//! Draws pieces into pixels: computes how much of each pixel a ribbon covers, and blends it.
 //!
-//! A pixel holds (red, green, blue, what still shows through). Pieces come nearest first, so a covering `a` of colour `c` adds
-//! `through · a · (c, −1)`: one multiply and add of four lanes, and nothing behind a closed pixel counts.
+//! A pixel holds (red, green, blue, transmittance). Pieces are drawn nearest first, so a coverage `a` of
+//! color `c` adds `transmittance · a · (c, −1)`. This is one multiply-add of four lanes, and nothing behind
+//! an opaque pixel has an effect.
 //!
-//! The ribbon is walked along its longer axis, one column (or row) of pixels a step. In a column it is an interval as long as its width over
-//! the cosine of its slope, and a pixel's covering is the interval's length in it: exact area, for any width. An interval shorter than a pixel
-//! is drawn a pixel long and fainter by the same factor, so it always lies on two pixels in proportion to its place: as the hair
-//! moves, light moves from pixel to pixel without a jump, and its sum stays.
+//! The ribbon is traversed along its longer axis, one column (or row) of pixels per step. In each column it
+//! is an interval with a length of the ribbon's width over the cosine of its slope. The coverage of a pixel
+//! is the length of the interval in it: exact area, for any width. An interval shorter than a pixel is drawn
+//! one pixel long and fainter by the same factor, so it always covers two pixels in proportion to its
+//! position. When the hair moves, light moves smoothly from pixel to pixel, and its sum is constant.
 
 use super::segment::Piece;
 use crate::{
@@ -15,24 +17,25 @@ use crate::{
 };
 use glam::{Vec2, Vec4};
 
-/// Light that still passes where a pixel counts as closed: under half a step of 8 bits.
+/// Transmittance below which a pixel counts as opaque: less than half a step of 8 bits.
 pub(crate) const CLOSED: f32 = 0.002;
 
 /// One tile while it is being drawn.
 pub(crate) struct Canvas {
-    /// (red, green, blue, what still shows through).
+    /// (red, green, blue, transmittance).
     pub pixels: [Vec4; PIXELS],
-    /// Share of the frame's depth range at which the body lies; infinite: none, or already laid in.
+    /// Depth of the body as a fraction of the frame's depth range; infinite if there is none or if it was
+    /// already blended.
     pub body_depth: [f32; PIXELS],
-    /// Share of the pixel that the body covers.
+    /// Fraction of the pixel that the body covers.
     pub body_cover: [f32; PIXELS],
-    /// What showed through before the body, once that is laid in.
+    /// Transmittance in front of the body, set once the body is blended.
     pub body_seen: [f32; PIXELS],
-    /// Which patches have a pixel that was not closed when last surveyed.
+    /// Patches that had a pixel which was not opaque at the last survey.
     pub open: u16,
-    /// The most that showed through in a pixel of each patch when last surveyed.
+    /// Maximum transmittance of each patch at the last survey.
     pub through: [f32; PATCHES * PATCHES],
-    /// What was done so far.
+    /// Work done so far.
     pub work: Work,
 }
 
@@ -51,7 +54,7 @@ impl Default for Canvas {
 }
 
 impl Canvas {
-    /// Lays the body into a pixel: it hides what comes after. Its light is added later.
+    /// Blends the body into a pixel, so that it hides what comes after. Its light is added later.
     #[inline]
     pub fn lay_body(&mut self, pixel: usize) {
         let before = self.pixels[pixel].w;
@@ -60,7 +63,7 @@ impl Canvas {
         self.pixels[pixel].w = before * (1.0 - self.body_cover[pixel]);
     }
 
-    /// Looks at what shows through the open patches, and closes those where nothing does.
+    /// Updates the transmittance of the open patches, and closes those that are opaque.
     #[inline(always)]
     pub fn survey(&mut self) {
         for patch in 0..PATCHES * PATCHES {
@@ -79,7 +82,7 @@ impl Canvas {
         }
     }
 
-    /// The most that showed through in a pixel of any of `patches` when last surveyed.
+    /// Maximum transmittance in any of `patches` at the last survey.
     #[inline(always)]
     pub fn through_any(&self, patches: u16) -> f32 {
         let mut left = patches & self.open;
@@ -94,7 +97,8 @@ impl Canvas {
     /// Whether a piece may touch an open patch.
     #[inline(always)]
     pub fn is_open_to(&self, piece: &Piece) -> bool {
-        // A thin piece lies on two pixels, a wide one on half of its width over the cosine of its slope.
+        // A thin piece covers two pixels; a wide one extends by half of its width over the cosine of its
+        // slope.
         let reach = piece.width[0].max(piece.width[1]) + 1.0;
         let (low, high) = (piece.a.min(piece.b) - reach, piece.a.max(piece.b) + reach);
         let side = SIDE as f32;
@@ -110,7 +114,7 @@ impl Canvas {
 
     #[inline(always)]
     fn add(&mut self, pixel: usize, cover: f32, color: Vec4, depth: f32) {
-        // It is less already; said so that it need not be asked for each array.
+        // The index is already in range; the modulo only removes the bounds checks.
         let pixel = pixel % PIXELS;
         if depth > self.body_depth[pixel] {
             self.lay_body(pixel);
@@ -119,7 +123,8 @@ impl Canvas {
         *at += color * (at.w * cover);
     }
 
-    /// Draws a piece whose coordinates count from the tile's corner. Call it inside a `dispatch!`.
+    /// Draws a piece whose coordinates are relative to the tile's corner. Must be called inside a
+    /// `dispatch!`.
     #[inline(always)]
     pub fn draw(&mut self, piece: &Piece) {
         let d = piece.b - piece.a;
@@ -130,7 +135,7 @@ impl Canvas {
         }
     }
 
-    /// Walks along x; a step along x moves `ALONG` pixels in memory, along y `ACROSS`.
+    /// Traverses along x. A step along x moves `ALONG` pixels in memory, and a step along y moves `ACROSS`.
     #[inline(always)]
     fn walk<const ALONG: usize, const ACROSS: usize>(&mut self, piece: &Piece, a: Vec2, b: Vec2) {
         // From left to right.
@@ -140,11 +145,12 @@ impl Canvas {
             return;
         }
         let inverse = 1.0 / d.x;
-        // Interval across the walk: width / cosine of the slope, halved.
+        // Half of the interval across the direction of traversal: width over the cosine of the slope.
         let lean = 0.5 * (1.0 + (d.y * inverse).powi(2)).sqrt();
         let (half0, half1) = (piece.width[from] * lean, piece.width[to] * lean);
-        // A joint belongs to the piece in whose span the column's middle lies, so joints neither gape nor double. At
-        // the strand's own ends the last column counts by the share of it that is reached.
+        // A column at a joint belongs to the piece whose span contains the column's center, so joints have
+        // neither gaps nor overlaps. At the ends of the strand, the last column counts by the fraction that
+        // is covered.
         let first = if piece.cap[from] { a.x.floor() } else { (a.x - 0.5).ceil() };
         let last = if piece.cap[to] { b.x.ceil() } else { (b.x - 0.5).ceil() };
         let (first, last) = (first.max(0.0) as i32, (last.min(SIDE as f32)) as i32);

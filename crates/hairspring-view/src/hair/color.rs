@@ -1,15 +1,18 @@
-//! The colour of a look, and of every point that is seen, worked out when the first tile asks.
+//! The color of a look, and of every visible point. The color of a point is computed when the first tile
+//! needs it.
 //!
-//! A look says its pigment by what a lock looks like, or by melanin. Between the two stands absorption in the fibre, by the fit of Chiang et al. 2016
-//! ("A Practical and Controllable Hair and Fur Model for Production Path Tracing", equation 9): C is what many strands together look like, σ what a
-//! strand absorbs,
+//! A look specifies its pigment by the color of a lock, or by melanin. Both are related to the absorption in
+//! the fiber by the fit of Chiang et al. 2016 ("A Practical and Controllable Hair and Fur Model for
+//! Production Path Tracing", equation 9). C is the color of many strands together, and σ is the absorption of
+//! one strand:
 //!
 //! ```text
 //! √σ = −ln C / (5.969 − 0.215 β + 2.532 β² − 10.73 β³ + 5.574 β⁴ + 0.245 β⁵)
 //! ```
 //!
-//! Most hair lies under other hair: of a full head, a quarter is seen. A point's colour depends on nothing that happens while the picture is drawn,
-//! so it does not matter which thread works it out, or whether two do at once.
+//! Most hair is hidden under other hair: of a full head, a quarter is visible. A point's color does not
+//! depend on anything that happens while the picture is drawn. So it does not matter which thread computes
+//! it, or whether two threads do so at once.
 
 use super::{
     ribbon::Setup,
@@ -20,42 +23,45 @@ use glam::{Vec3, Vec4};
 use hairspring_scene::HairLook;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
-/// Greatest light stored, linear; the tone curve has long been white there.
+/// Maximum stored light, linear. The tone curve is white well below it.
 pub(crate) const MAX_LIGHT: f32 = 8.0;
-/// Greatest code and lowest bit of red, green and blue: 11, 11 and 10 bits of the colour's square root.
+/// Maximum code and lowest bit of red, green and blue: 11, 11 and 10 bits of the square root of the color.
 pub(crate) const CHANNELS: [(f32, u32); 3] = [(2047.0, 0), (2047.0, 11), (1023.0, 22)];
 
-/// What eumelanin and pheomelanin absorb of red, green and blue at an amount of 1, over the fibre's radius (after d'Eon et al. 2011, "An Energy-Conserving Hair
-/// Reflectance Model", by the numbers that Blender's and Unreal's hair shaders share).
+/// Absorption of red, green and blue by eumelanin and pheomelanin at an amount of 1, relative to the fiber's
+/// radius (after d'Eon et al. 2011, "An Energy-Conserving Hair Reflectance Model", with the values that the
+/// hair shaders of Blender and Unreal share).
 const MELANIN: [Vec3; 2] = [Vec3::new(0.506, 0.841, 1.653), Vec3::new(0.343, 0.733, 1.924)];
 
-/// Azimuthal roughness β that colours are told for: this renderer's lobes have none that could be set, and those shaders begin at this one.
+/// Azimuthal roughness β for which colors are specified. It is the default of those shaders; the lobes of
+/// this renderer have no such parameter.
 const AZIMUTHAL: f32 = 0.3;
 
-/// The fit's denominator.
+/// The denominator of the fit.
 fn fit(b: f32) -> f32 {
     ((((0.245 * b + 5.574) * b - 10.73) * b + 2.532) * b - 0.215) * b + 5.969
 }
 
-/// What a fibre absorbs whose locks have this colour.
+/// Absorption of a fiber whose locks have this color.
 fn absorption(color: Vec3) -> Vec3 {
     let root = color.max(Vec3::splat(1e-4)).map(f32::ln) / fit(AZIMUTHAL);
     root * root
 }
 
-/// What locks look like whose fibre absorbs this.
+/// Color of locks whose fiber has this absorption.
 fn seen(absorption: Vec3) -> Vec3 {
     absorption.map(|s| (-s.max(0.0).sqrt() * fit(AZIMUTHAL)).exp())
 }
 
-/// What a fibre with this much pigment absorbs, of which a share is the reddish one; both 0 to 1.
+/// Absorption of a fiber with this amount of pigment, of which the fraction `redness` is pheomelanin; both 0
+/// to 1.
 fn melanin(amount: f32, redness: f32) -> Vec3 {
-    // Even steps of it look even; 1 is black enough.
+    // A logarithmic scale, so that even steps look even; at 1 the hair is practically black.
     let amount = -(1.0 - amount.clamp(0.0, 1.0)).max(1e-4).ln();
     (MELANIN[0].lerp(MELANIN[1], redness.clamp(0.0, 1.0))) * amount
 }
 
-/// Colours of a look at root and tip: as they are given, or by its melanin, under its dye.
+/// Colors of a look at root and tip: as they are given, or from its melanin, with its dye applied.
 pub(crate) fn ends(look: &HairLook) -> [Vec3; 2] {
     let dyed = look.dye != Vec3::ONE && look.dye.is_finite();
     let under_dye = |bare: Vec3| seen(bare + absorption(look.dye));
@@ -64,12 +70,12 @@ pub(crate) fn ends(look: &HairLook) -> [Vec3; 2] {
             let bare = melanin(amount, look.melanin_redness);
             [if dyed { under_dye(bare) } else { seen(bare) }; 2]
         }
-        // A colour that nothing is laid over is left as it is, to the bit.
+        // Without dye a color is returned unchanged, bit for bit.
         None => [look.root_color, look.tip_color].map(|c| if dyed { under_dye(absorption(c)) } else { c }),
     }
 }
 
-/// Packed colours of all slots; 0: not worked out yet.
+/// Packed colors of all slots; 0 if not computed yet.
 #[derive(Debug, Default)]
 pub(crate) struct Colors {
     slots: Vec<AtomicU32>,
@@ -77,33 +83,33 @@ pub(crate) struct Colors {
 }
 
 impl Colors {
-    /// Forgets all colours; `slots` is their number from now on.
+    /// Clears all colors and sets the number of slots.
     pub fn clear(&mut self, slots: usize) {
         self.slots.clear();
         self.slots.resize_with(slots, AtomicU32::default);
         *self.lit.get_mut() = 0;
     }
 
-    /// Blocks lit since all were forgotten.
+    /// Number of blocks lit since the last clear.
     pub fn lit(&self) -> u64 {
         self.lit.load(Ordering::Relaxed)
     }
 
-    /// What is known of a slot, packed.
+    /// The packed color of a slot, or 0.
     #[inline(always)]
     pub fn peek(&self, slot: usize) -> u32 {
         self.slots[slot].load(Ordering::Relaxed)
     }
 
-    /// Linear RGB and −1 (what a covering adds to (red, green, blue, what still shows through)) of a slot and the next, of which `known` was
-    /// known a moment ago.
+    /// Linear RGB and −1 of a slot and of the next one. This is what a coverage adds to (red, green, blue,
+    /// transmittance). `known` are the packed colors that were read before.
     #[inline(always)]
     pub fn open(&self, setup: &Setup, slot: usize, known: [u32; 2]) -> [Vec4; 2] {
         let bits = |slot: usize, bits: u32| if bits == 0 { self.light(setup, slot) } else { bits };
         [open(bits(slot, known[0])).extend(-1.0), open(bits(slot + 1, known[1])).extend(-1.0)]
     }
 
-    /// The packed colour of a slot that was not known a moment ago.
+    /// The packed color of a slot that had no color a moment ago.
     #[cold]
     fn light(&self, setup: &Setup, slot: usize) -> u32 {
         match self.peek(slot) {
@@ -112,7 +118,7 @@ impl Colors {
         }
     }
 
-    /// Lights the block around a slot.
+    /// Lights the block that contains a slot.
     #[inline(never)]
     fn shade(&self, setup: &Setup, slot: usize) -> u32 {
         let block = slot / LANES;
@@ -122,7 +128,7 @@ impl Colors {
             setup.shader.shade(simd, &fibre, &mut block);
             block.color
         });
-        // Black is stored as the darkest red there is.
+        // Black is stored as the darkest red, because 0 means "not computed".
         let colors = colors.map(|c| c.max(1));
         for (to, from) in self.slots[block * LANES..].iter().zip(colors) {
             to.store(from, Ordering::Relaxed);
@@ -131,7 +137,8 @@ impl Colors {
     }
 }
 
-/// What the shader needs to know of a block's points. Lanes past the strand's last point repeat it.
+/// Gathers the shader's input for the points of a block. Lanes past the strand's last point repeat that
+/// point.
 #[inline(always)]
 fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
     let owner = setup.order.owners[block];
@@ -140,7 +147,7 @@ fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
     let range = hair.range(owner.strand as usize);
     let points = &hair.points[range.clone()];
     let (n, first) = (points.len(), owner.first as usize);
-    // With the point before and the one after.
+    // Includes the previous and the next point.
     let mut rows = [[0.0; LANES + 2]; 3];
     for lane in 0..LANES + 2 {
         let [x, y, z] = points[(first + lane).saturating_sub(1).min(n - 1)].to_array();
@@ -154,14 +161,14 @@ fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
         *along = f32x8::from_slice(simd, &row[2..]) - f32x8::from_slice(simd, &row[..LANES]);
         length2 += *along * *along;
     }
-    // Points that lie on one another, or are no numbers, get the direction up.
+    // Points that coincide or are not finite get the direction up.
     let known = length2.simd_gt(1e-30) & length2.simd_lt(1e30);
     let inverse = f32x8::splat(simd, 1.0) / length2.sqrt();
     for ((t, along), up) in block.t.iter_mut().zip(along).zip(Vec3::Y.to_array()) {
         known.select(along * inverse, f32x8::splat(simd, up)).store_slice(t);
     }
 
-    // More or less of the same pigment: lighter strands are also less saturated.
+    // More or less of the same pigment, so that lighter strands are also less saturated.
     let amount = 1.0 + look.variation.clamp(0.0, 1.0) * shade::random(owner.strand) * shade::VARIES;
     if hair.colors.len() < range.end {
         let [root, tip] = setup.pigments[owner.hair as usize].map(|p| p.to_array());
@@ -184,7 +191,7 @@ fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
     (Fibre::new(look, shade::random(!owner.strand)), block)
 }
 
-/// Linear RGB of a packed colour.
+/// Linear RGB of a packed color.
 #[inline(always)]
 pub(super) fn open(bits: u32) -> Vec3 {
     let root = Vec3::new((bits & 2047) as f32, (bits >> 11 & 2047) as f32, (bits >> 22) as f32);
@@ -196,10 +203,11 @@ pub(super) fn open(bits: u32) -> Vec3 {
 mod tests {
     use super::*;
 
-    /// Colours of the published absorption, worked out by themselves: (melanin, redness, colour).
+    /// Colors of the published absorption, computed independently: (melanin, redness, color).
     #[test]
     fn melanin_absorbs_what_was_published() {
-        // Half of the scale is an amount of ln 2; what is absorbed is that many times the published coefficients.
+        // Half of the scale is an amount of ln 2, so the absorption is that multiple of the published
+        // coefficients.
         let close = |a: Vec3, b: Vec3| (a - b).abs().max_element() < 1e-5;
         assert!(close(melanin(0.5, 0.0), Vec3::new(0.506, 0.841, 1.653) * std::f32::consts::LN_2));
         assert!(close(melanin(0.5, 1.0), Vec3::new(0.343, 0.733, 1.924) * std::f32::consts::LN_2));
@@ -222,7 +230,8 @@ mod tests {
         assert_eq!(ends(&look), [look.root_color, look.tip_color]);
     }
 
-    /// More pigment is darker in every channel, redder pigment redder; white hair takes on its dye, and dye makes nothing lighter.
+    /// More pigment is darker in every channel, and redder pigment is redder. White hair takes on its dye,
+    /// and dye makes nothing lighter.
     #[test]
     fn pigment_and_dye_darken() {
         let of = |melanin: f32, redness: f32, dye: Vec3| {
@@ -242,7 +251,7 @@ mod tests {
         assert!(of(0.3, 0.3, blue).cmplt(of(0.3, 0.3, Vec3::ONE)).all());
         let dyed = ends(&HairLook { dye: blue, ..HairLook::default() });
         assert!(dyed[1].cmplt(HairLook::default().tip_color).all());
-        // Out of range is at its end.
+        // Values out of range are clamped.
         assert_eq!(of(-1.0, 7.0, blue), of(0.0, 1.0, blue));
         assert_eq!(of(f32::INFINITY, 0.0, blue), of(1.0, 0.0, blue));
     }

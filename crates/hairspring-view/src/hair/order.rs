@@ -1,9 +1,11 @@
-//! The order in which strands are worked on: neighbours together.
+//! The order in which strands are processed: neighbors together.
 //!
-//! Files keep strands in any order. Strands that lie side by side read the same voxels and fall on the same tiles, so taking them along a space-filling
-//! curve turns most reads from memory into reads from cache. It changes no result but which of two pieces at exactly the same depth comes first.
+//! Files store strands in any order. Strands next to each other read the same voxels and touch the same
+//! tiles. Processing them along a space-filling curve turns most reads from memory into reads from cache. The
+//! only effect on the result is which of two pieces at exactly the same depth comes first.
 //!
-//! Each strand gets slots in what is worked out for its points, in that order: a whole number of blocks of [`LANES`], so that lanes never mix strands.
+//! The per-point results of each strand are stored in slots, in this order. A strand takes a whole number of
+//! blocks of [`LANES`], so that lanes never mix strands.
 
 use super::shade::LANES;
 use crate::frame::Frame;
@@ -12,35 +14,36 @@ use hairspring::groom::Curve;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Points of a run, about: its pieces stay in the second-level cache while they are filed.
+/// Approximate number of points of a run. Its pieces stay in the second-level cache while they are sorted
+/// into tiles.
 const RUN_POINTS: usize = 8192;
 
-/// A run of neighbouring strands of one style.
+/// A run of neighboring strands of one style.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
     /// Index of the style.
     pub hair: usize,
-    /// Which of the ordered strands.
+    /// Range in the ordered list of strands.
     range: Range<usize>,
     /// The slots of their points.
     pub slots: Range<usize>,
 }
 
-/// Whose points a block of slots holds.
+/// The strand whose points a block of slots holds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Owner {
     /// Index of the style.
     pub hair: u32,
-    /// Number of the strand in it.
+    /// Index of the strand in the style.
     pub strand: u32,
-    /// First of the points, counted from the strand's root.
+    /// Index of the first point, counted from the strand's root.
     pub first: u32,
 }
 
 /// All strands of a frame, cut into runs.
 #[derive(Debug, Default)]
 pub(crate) struct Order {
-    /// Place on the curve and strand number, style after style.
+    /// Position on the curve and strand index, style after style.
     strands: Vec<(u32, u32)>,
     pub runs: Vec<Run>,
     /// Shape `[slots / LANES]`.
@@ -48,7 +51,7 @@ pub(crate) struct Order {
 }
 
 impl Order {
-    /// Orders the frame's strands, whose hair lies in `bounds`. The result depends on the strands alone.
+    /// Orders the frame's strands, whose hair is inside `bounds`. The result depends only on the strands.
     pub fn fill(&mut self, frame: &Frame, bounds: (Vec3, Vec3)) {
         self.strands.clear();
         self.runs.clear();
@@ -56,7 +59,7 @@ impl Order {
         let curve = Curve::through(bounds.0, bounds.1);
         for (hair, h) in frame.hair.iter().enumerate() {
             let first = self.strands.len();
-            // Strands are told apart by their middles: roots alone lie close together.
+            // Strands are sorted by their middle points, because their roots are close together.
             self.strands.par_extend((0..h.strand_count()).into_par_iter().map(|s| {
                 let range = h.range(s);
                 let middle = h.points.get(range.start + range.len() / 2).copied().unwrap_or_default();
@@ -82,13 +85,13 @@ impl Order {
         self.owners.len() * LANES
     }
 
-    /// What is worked out for all slots, cut into the parts of the runs.
+    /// Splits an array over all slots into the parts of the runs.
     pub fn split<'a, T>(&self, mut slots: &'a mut [T]) -> Vec<&'a mut [T]> {
         let part = |run: &Run| slots.split_off_mut(..run.slots.len()).unwrap_or_default();
         self.runs.iter().map(part).collect()
     }
 
-    /// Strand numbers of a run.
+    /// Strand indices of a run.
     pub fn strands(&self, run: &Run) -> impl Iterator<Item = usize> {
         self.strands[run.range.clone()].iter().map(|s| s.1 as usize)
     }

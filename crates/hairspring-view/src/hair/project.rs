@@ -1,26 +1,27 @@
-//! Strands to the screen, eight points at a time.
+//! Projects strands to the screen, eight points at a time.
 
 use super::{segment::Dot, shade::LANES};
 use crate::camera::{NEAR, View};
 use fearless_simd::{f32x8, prelude::*};
 use glam::{Vec2, Vec3};
 
-/// Greatest width of a strand on the screen [pixels].
+/// Maximum width of a strand on the screen [pixels].
 pub(crate) const MAX_WIDTH: f32 = 512.0;
-/// Distance that hair is moved towards the camera against bodies [m]: roots lie on the skin, and must not flicker in it.
+/// Offset of hair toward the camera relative to bodies [m], so that roots on the skin do not flicker.
 pub(crate) const ROOT_BIAS: f32 = 1e-3;
-/// Farthest place from the picture's corner at which a point is drawn [pixels].
+/// Maximum distance of a drawn point from the picture's corner [pixels].
 pub(crate) const MAX_PLACE: f32 = 1e6;
 
-/// The points of one strand on the screen, a row for each of their numbers. Point `i` has place `i + 1`: one place before the strand's first point
-/// and some after its last hold points that are not there, so that a row can be read from any point and its neighbours.
+/// The points of one strand on the screen, as one array for each component. Point `i` has index `i + 1`. The
+/// entry before the strand's first point and some entries after its last one are marked as missing, so that
+/// rows can be read from any point and its neighbors.
 #[derive(Debug, Default)]
 pub(crate) struct Track {
     x: Vec<f32>,
     y: Vec<f32>,
-    /// Share of the frame's depth range, 0 to 1.
+    /// Fraction of the frame's depth range, 0 to 1.
     depth: Vec<f32>,
-    /// Width [pixels]; below 0: there is no such point.
+    /// Width [pixels]; below 0 if the point is missing.
     width: Vec<f32>,
 }
 
@@ -30,28 +31,29 @@ pub(crate) struct Points<S: Simd> {
     pub x: f32x8<S>,
     pub y: f32x8<S>,
     pub depth: f32x8<S>,
-    /// Below 0: there is no such point.
+    /// Below 0 if the point is missing.
     pub width: f32x8<S>,
 }
 
-/// How points become places.
+/// Parameters of the projection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection {
     pub view: View,
     /// Nearest and farthest depth of hair [m].
     pub depths: [f32; 2],
-    /// Pixels at a distance of 1 m that a radius of 1 m takes.
+    /// Size [pixels] of a radius of 1 m at a distance of 1 m.
     pub scale: f32,
-    /// Height below which a strand has no width, so that it ends in the ground [m].
+    /// Height below which a strand has no width, so that it ends at the ground [m].
     pub low: f32,
 }
 
 impl Track {
-    /// Projects a strand. Points that are not finite, behind the camera or far out of the picture are not there.
+    /// Projects a strand. Points that are not finite, behind the camera or far outside the picture are marked
+    /// as missing.
     #[inline(always)]
     pub fn project<S: Simd>(&mut self, simd: S, by: &Projection, points: &[Vec3], radii: &[f32]) {
         let n = points.len();
-        // Up to three places after the last whole row are read.
+        // Up to three entries after the last whole row are read.
         let places = n.next_multiple_of(LANES) + LANES + 3;
         if self.width.len() < places {
             for row in [&mut self.x, &mut self.y, &mut self.depth, &mut self.width] {
@@ -82,7 +84,7 @@ impl Track {
             let at_x = dot(from, right) * closeness * focal + center[0];
             let at_y = dot(from, up) * closeness * -focal + center[1];
             let width = f32x8::simd_from(simd, radius) * closeness * by.scale;
-            // Comparisons with what is no number are false.
+            // Comparisons with NaN are false.
             let there = z.simd_gt(NEAR)
                 & at_x.abs().simd_lt(MAX_PLACE)
                 & at_y.abs().simd_lt(MAX_PLACE)
@@ -97,7 +99,7 @@ impl Track {
         }
     }
 
-    /// The eight points from number `first` − 1 on.
+    /// The eight points from index `first` − 1 on.
     #[inline(always)]
     pub fn before<S: Simd>(&self, simd: S, first: usize) -> Points<S> {
         let range = first..first + LANES;
@@ -109,13 +111,13 @@ impl Track {
         }
     }
 
-    /// Place of a point [pixels].
+    /// Position of a point [pixels].
     #[inline(always)]
     pub fn at(&self, i: usize) -> Vec2 {
         Vec2::new(self.x[i + 1], self.y[i + 1])
     }
 
-    /// Writes the strand's points; slots that no point fills lead nowhere.
+    /// Writes the strand's points. Slots without a point are marked as ends.
     #[inline(always)]
     pub fn store(&self, dots: &mut [Dot]) {
         for (i, dot) in dots.iter_mut().enumerate() {
@@ -126,7 +128,8 @@ impl Track {
     }
 }
 
-// Helpers are functions that are always inlined, not closures: only then are they compiled for the instruction set that was chosen.
+// Helpers are functions with `inline(always)` and not closures, so that they are compiled for the selected
+// instruction set.
 #[inline(always)]
 fn dot<S: Simd>([x, y, z]: [f32x8<S>; 3], d: Vec3) -> f32x8<S> {
     x * d.x + y * d.y + z * d.z

@@ -1,4 +1,5 @@
-//! Strands to the screen: a run of strands is projected, and its segments are filed by picture tile. Light and smoothing wait until a tile sees them.
+//! Strands to the screen: projects a run of strands and sorts its segments into picture tiles. Lighting and
+//! smoothing are deferred until a tile needs them.
 
 use super::{
     order::{Order, Run},
@@ -17,7 +18,7 @@ use crate::{
 use fearless_simd::{dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use glam::Vec3;
 
-/// What every run and every tile of a frame needs.
+/// Data that every run and every tile of a frame needs.
 pub(crate) struct Setup<'a> {
     pub frame: &'a Frame<'a>,
     pub view: View,
@@ -36,21 +37,21 @@ pub(crate) struct Setup<'a> {
 }
 
 impl Setup<'_> {
-    /// The height below which the ground hides everything [m]; −∞ where none is seen.
+    /// The height below which the ground hides everything [m]; −∞ if no ground is visible.
     pub fn low(&self) -> f32 {
         self.floor.map_or(f32::NEG_INFINITY, |floor| floor.height)
     }
 }
 
-/// A segment in a tile, packed so that order by number is order by depth: 16 bits of depth at its middle, 32 of the slot of its first point,
-/// and 16 that say which patches of the tile it may touch.
+/// A segment in a tile, packed so that sorting by value sorts by depth: 16 bits for the depth at its middle,
+/// 32 for the slot of its first point, and 16 for the patches of the tile that it may touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Entry(pub u64);
 
-/// What a number of patches is shifted by to give tiles.
+/// Shift that converts a number of patches to a number of tiles.
 const TILE: u32 = PATCHES.ilog2();
 
-/// Steps of an entry's depth.
+/// Number of depth steps of an entry.
 pub(crate) const DEPTHS: f32 = 65535.0;
 
 impl Entry {
@@ -71,19 +72,19 @@ impl Entry {
     }
 }
 
-/// One run's results and memory.
+/// The results and the working memory of one run.
 #[derive(Debug, Default)]
 pub(crate) struct Chunk {
-    /// Tile after tile.
+    /// Entries, sorted by tile.
     entries: Vec<Entry>,
     /// First entry of each tile; shape `[tiles + 1]`.
     starts: Vec<u32>,
     unsorted: Vec<(u32, Entry)>,
-    /// The strand in hand.
+    /// The current strand.
     track: Track,
-    /// Greatest difference in depth between a segment's middle and its ends, as a share of the range.
+    /// Maximum difference in depth between a segment's middle and its ends, as a fraction of the range.
     pub reach: f32,
-    /// Greatest width [pixels].
+    /// Maximum width [pixels].
     pub widest: f32,
 }
 
@@ -93,7 +94,7 @@ impl Chunk {
         &self.entries[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }
 
-    /// Projects a run of strands into `dots`, its slots, and files them.
+    /// Projects a run of strands into `dots`, its slots, and sorts its segments into tiles.
     pub fn fill(&mut self, setup: &Setup, run: &Run, dots: &mut [Dot]) {
         dispatch!(setup.level, simd => self.fill_in_lanes(simd, setup, run, dots));
     }
@@ -119,16 +120,17 @@ impl Chunk {
         self.sort(setup.tiles.count());
     }
 
-    /// Files the eight segments of the strand in `track` that begin at point `first` under every tile that they touch; `slot` is that of the
-    /// strand's first point.
+    /// Adds the eight segments of the strand in `track` that begin at point `first` to every tile that they
+    /// touch. `slot` is the slot of the strand's first point.
     #[inline(always)]
     fn file<S: Simd>(&mut self, simd: S, setup: &Setup, slot: usize, first: usize) {
         let (z, a) = (self.track.before(simd, first), self.track.before(simd, first + 1));
         let (b, c) = (self.track.before(simd, first + 2), self.track.before(simd, first + 3));
         let zero = f32x8::splat(simd, 0.0);
         let (here, length) = way(simd, &a, &b);
-        // How far the curve may leave the chord. A tangent that leaves it by an angle takes the cubic 4/27 of the chord times its sine away; an
-        // angle's sine is at most half the difference of the two unit directions that it halves.
+        // Bound on the distance between curve and chord. A tangent at an angle to the chord moves the cubic
+        // by at most 4/27 of the chord times the sine of the angle. The tangent bisects the angle between two
+        // unit directions, and the sine of its half is at most half of their difference.
         let turns = turn(zero, way(simd, &z, &a).0, here) + turn(zero, way(simd, &b, &c).0, here);
         let bulge = length * (2.0 / 27.0) * turns;
         let widest = a.width.max(b.width);
@@ -147,12 +149,12 @@ impl Chunk {
 
         let middle = ((a.depth + b.depth) * (0.5 * DEPTHS) + 0.5).to_int::<i32x8<S>>();
         let depths = seen.select(middle, i32x8::splat(simd, -1));
-        // In patches: columns and rows, first and last.
+        // In patches: first and last column and row.
         let [nx, ny] = setup.tiles.grid();
         let (end_x, end_y) = ((nx * PATCHES - 1) as f32, (ny * PATCHES - 1) as f32);
         let (left, right) = (patch(low_x, end_x), patch(high_x, end_x));
         let (top, bottom) = (patch(low_y, end_y), patch(high_y, end_y));
-        // Most segments lie in one tile.
+        // Most segments are inside one tile.
         let same_column = (left >> TILE).simd_eq(right >> TILE);
         let alone = same_column & (top >> TILE).simd_eq(bottom >> TILE);
         let alone = alone.select((top >> TILE) * nx as i32 + (left >> TILE), i32x8::splat(simd, -1));
@@ -176,7 +178,8 @@ impl Chunk {
         }
     }
 
-    /// Files the segment from point `i`, which lies in some patches, both ends included, of more than one tile.
+    /// Adds the segment from point `i` to the tiles that it touches. Its patches, given by inclusive ranges,
+    /// are in more than one tile.
     #[inline(always)]
     fn push(&mut self, setup: &Setup, key: u64, i: usize, reach: f32, columns: [usize; 2], rows: [usize; 2]) {
         let across = setup.tiles.grid()[0];
@@ -197,7 +200,8 @@ impl Chunk {
         }
     }
 
-    /// Which of some columns of patches the segment from point `i` crosses in a row of tiles: a long segment must not claim a whole rectangle.
+    /// The columns of patches that the segment from point `i` crosses in a row of tiles. A long segment would
+    /// otherwise occupy a whole rectangle.
     #[inline(never)]
     fn crossed(
         &self,
@@ -219,7 +223,7 @@ impl Chunk {
         [first.max(patch(x0.min(x1) - reach)), last.min(patch(x0.max(x1) + reach))]
     }
 
-    /// Brings the entries into the order of the tiles.
+    /// Sorts the entries by tile.
     #[inline(always)]
     fn sort(&mut self, tiles: usize) {
         self.starts.clear();
@@ -228,7 +232,7 @@ impl Chunk {
         (0..tiles).for_each(|t| self.starts[t + 1] += self.starts[t]);
         self.entries.clear();
         self.entries.resize(self.unsorted.len(), Entry::default());
-        // `starts` walks to the end of each tile while filling, and is shifted back after.
+        // `starts` advances to the end of each tile while filling, and is shifted back afterwards.
         for (tile, entry) in &self.unsorted {
             let place = &mut self.starts[*tile as usize];
             self.entries[*place as usize] = *entry;
@@ -239,15 +243,16 @@ impl Chunk {
     }
 }
 
-// Helpers are functions that are always inlined, not closures: only then are they compiled for the instruction set that was chosen.
+// Helpers are functions with `inline(always)` and not closures, so that they are compiled for the selected
+// instruction set.
 
-/// Whether points are there at both ends.
+/// Whether both points exist.
 #[inline(always)]
 fn linked<S: Simd>(a: &Points<S>, b: &Points<S>) -> mask32x8<S> {
     a.width.simd_ge(0.0) & b.width.simd_ge(0.0)
 }
 
-/// Unit direction, zero where the strand has a gap, and length [pixels].
+/// Unit direction, or zero if the strand has a gap, and length [pixels].
 #[inline(always)]
 fn way<S: Simd>(simd: S, a: &Points<S>, b: &Points<S>) -> ([f32x8<S>; 2], f32x8<S>) {
     let (x, y) = (b.x - a.x, b.y - a.y);
@@ -257,20 +262,20 @@ fn way<S: Simd>(simd: S, a: &Points<S>, b: &Points<S>) -> ([f32x8<S>; 2], f32x8<
     ([x * inverse, y * inverse], length)
 }
 
-/// Difference of two directions; zero where there is no other.
+/// Length of the difference of two directions; zero if either is missing.
 #[inline(always)]
 fn turn<S: Simd>(zero: f32x8<S>, [x, y]: [f32x8<S>; 2], here: [f32x8<S>; 2]) -> f32x8<S> {
     let none = x.simd_eq(0.0) & y.simd_eq(0.0);
     none.select(zero, (x - here[0]).abs() + (y - here[1]).abs())
 }
 
-/// Column or row of patches of a place, `end` being the last.
+/// Column or row of patches that contains a position; `end` is the last one.
 #[inline(always)]
 fn patch<S: Simd>(x: f32x8<S>, end: f32) -> i32x8<S> {
     (x.max(0.0) * (1.0 / PATCH as f32)).min(end).to_int()
 }
 
-/// Within a tile, the bits from patch `first` to `last`, each patch having `step` of them.
+/// In a tile, the bits from patch `first` to `last`, with `step` bits per patch.
 #[inline(always)]
 fn bits<S: Simd>(simd: S, first: i32x8<S>, last: i32x8<S>, step: i32) -> i32x8<S> {
     let (one, inner) = (i32x8::splat(simd, 1), PATCHES as i32 - 1);
@@ -284,7 +289,7 @@ fn store<S: Simd>(lanes: i32x8<S>) -> [i32; LANES] {
     out
 }
 
-/// Which of the tile's patches in a row lie in `range`, both ends included; `tile` is its first.
+/// The tile's patches in a row that are in `range` (inclusive); `tile` is the tile's first patch.
 #[inline(always)]
 fn patches(range: [usize; 2], tile: usize) -> u32 {
     let first = range[0].max(tile) - tile;

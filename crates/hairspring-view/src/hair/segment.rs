@@ -1,32 +1,33 @@
-//! One segment of a strand on the screen: four points of a smooth curve, and the straight pieces it is drawn as.
+//! One segment of a strand on the screen: four points of a smooth curve, and the straight pieces that it is
+//! drawn with.
 
 use glam::{Vec2, Vec4};
 
-/// Most pieces that one segment is smoothed into.
+/// Maximum number of pieces per segment.
 pub(crate) const MAX_PIECES: f32 = 16.0;
 
 /// A point of a strand on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dot {
-    /// Place [pixels].
+    /// Position [pixels].
     pub at: Vec2,
-    /// Share of the frame's depth range, 0 to 1.
+    /// Fraction of the frame's depth range, 0 to 1.
     pub depth: f32,
-    /// Width [pixels]; with a minus sign where the strand does not go on to the next point.
+    /// Width [pixels], with a minus sign if the strand does not continue to the next point.
     width: f32,
 }
 
 impl Dot {
-    /// A point that leads nowhere.
+    /// A point without a successor.
     pub const END: Self = Self { at: Vec2::ZERO, depth: 0.0, width: -0.0 };
 
-    /// A point; `linked`: the strand goes on to the next.
+    /// Creates a point; `linked` says whether the strand continues to the next point.
     #[inline(always)]
     pub fn new(at: Vec2, depth: f32, width: f32, linked: bool) -> Self {
         Self { at, depth, width: if linked { width } else { -width } }
     }
 
-    /// Whether the strand goes on to the next point.
+    /// Whether the strand continues to the next point.
     #[inline(always)]
     pub fn linked(&self) -> bool {
         self.width.is_sign_positive()
@@ -51,22 +52,22 @@ pub(crate) struct Piece {
     /// Ends [pixels].
     pub a: Vec2,
     pub b: Vec2,
-    /// Share of the frame's depth range, 0 to 1, at both ends.
+    /// Fraction of the frame's depth range, 0 to 1, at both ends.
     pub depth: [f32; 2],
     /// Width at both ends [pixels].
     pub width: [f32; 2],
-    /// Linear RGB and −1 at both ends: what a covering adds to (red, green, blue, what still shows through).
+    /// Linear RGB and −1 at both ends: what a coverage adds to (red, green, blue, transmittance).
     pub color: [Vec4; 2],
-    /// Whether the strand begins at `a`, ends at `b`.
+    /// Whether the strand begins at `a`, and whether it ends at `b`.
     pub cap: [bool; 2],
 }
 
-/// The way from a strand's point to the next, and how it comes and goes on.
+/// The part of a strand between two points, with the directions of its neighbors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
     pub a: Dot,
     pub b: Dot,
-    /// Unit directions of the segment before, of this one and of the next; zero where there is none.
+    /// Unit directions of the previous segment, of this one and of the next one; zero if there is none.
     before: Vec2,
     here: Vec2,
     next: Vec2,
@@ -75,8 +76,8 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// The segment from the second to the third of four points in a row, in coordinates that count from `origin`. Points that no link leads
-    /// to do not count.
+    /// Creates the segment from the second to the third of four consecutive points, in coordinates relative
+    /// to `origin`. Points without a link are ignored.
     #[inline(always)]
     pub fn new([z, a, b, c]: &[Dot; 4], origin: Vec2) -> Self {
         let d = b.at - a.at;
@@ -90,23 +91,23 @@ impl Segment {
         }
     }
 
-    /// Unit directions across the curve at both ends, alike on both sides of a joint.
+    /// Unit normals of the curve at both ends, equal for both segments at a joint.
     #[inline(always)]
     pub fn across(&self) -> [Vec2; 2] {
         [self.before, self.next].map(|other| (other + self.here).normalize_or(self.here).perp())
     }
 
-    /// The straight pieces of the curve, which stray no farther than `tolerance` [pixels] from it.
+    /// The straight pieces of the curve, which deviate from it by at most `tolerance` [pixels].
     ///
-    /// Tangents at the joints halve the angle there: a Catmull-Rom curve by chord length, which has no loops or overshoot where points
-    /// are spaced unevenly.
+    /// Tangents at the joints bisect the angle there. This is a Catmull-Rom curve with chord-length
+    /// parameterization, which has no loops or overshoot if points are spaced unevenly.
     #[inline(always)]
     pub fn pieces(&self, tolerance: f32, color: [Vec4; 2]) -> Pieces<'_> {
         let (before, here, next) = (self.before, self.here, self.next);
         let turn = |other: Vec2| if other == Vec2::ZERO { 0.0 } else { (other - here).length() };
         let bend = self.length * 0.0625 * (turn(before) + turn(next));
         let count = (bend / tolerance).sqrt().ceil().clamp(1.0, MAX_PIECES);
-        // A tolerance that is no number gives one piece.
+        // A NaN tolerance gives one piece.
         let count = if count.is_nan() { 1.0 } else { count };
         let tangents = match count > 1.0 {
             true => [
@@ -119,19 +120,19 @@ impl Segment {
     }
 }
 
-/// Pieces of a segment, from its beginning to its end.
+/// Pieces of a segment, from its start to its end.
 pub(crate) struct Pieces<'a> {
     segment: &'a Segment,
     color: [Vec4; 2],
     count: f32,
     tangents: [Vec2; 2],
     done: f32,
-    /// Where the last piece ended, and its colour there.
+    /// End of the last piece, and the color there.
     last: (Dot, Vec4),
 }
 
 impl Pieces<'_> {
-    /// From where to where the last piece goes, as shares of the segment.
+    /// Start and end of the last piece, as fractions of the segment.
     #[inline(always)]
     pub fn along(&self) -> [f32; 2] {
         [self.done - 1.0, self.done].map(|done| done / self.count)

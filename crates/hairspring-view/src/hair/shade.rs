@@ -1,9 +1,10 @@
-//! Light from a strand towards the camera, at every point, eight points at once.
+//! Light from a strand toward the camera, for eight points at once.
 //!
-//! The fibre model of Marschner et al. 2003 ("Light Scattering from Human Hair Fibers") in the cheap form of Karis 2016
-//! ("Physically Based Hair Shading in Unreal"): R, the white highlight off the cuticle; TT, light that passes through; TRT, the coloured
-//! highlight that has been in and out again; and light that went from strand to strand before it reached the eye. Pigment is kept
-//! as the logarithm of colour, so that paths through the fibre, mixtures and shadow are sums and products.
+//! This is the fiber model of Marschner et al. 2003 ("Light Scattering from Human Hair Fibers") in the cheap
+//! form of Karis 2016 ("Physically Based Hair Shading in Unreal"). It has the lobes R, the white highlight of
+//! the cuticle; TT, transmitted light; TRT, the colored highlight after one internal reflection; and light
+//! scattered from strand to strand. Pigment is stored as the logarithm of the color, so that paths through
+//! the fiber, mixtures and shadow are sums and products.
 
 use super::color;
 use crate::{body::skin, lighting::Lighting};
@@ -11,47 +12,47 @@ use fearless_simd::{f32x8, prelude::*};
 use glam::Vec3;
 use hairspring_scene::HairLook;
 
-/// Points shaded at once.
+/// Number of points shaded at once.
 pub(crate) const LANES: usize = 8;
-/// A value of each.
+/// One value per point.
 pub(crate) type Row = [f32; LANES];
 
 /// Eight points of a strand.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(32))]
 pub(crate) struct Block {
-    /// Place [m].
+    /// Position [m].
     pub p: [Row; 3],
     /// Unit direction, root to tip.
     pub t: [Row; 3],
-    /// Logarithm to base 2 of the colour.
+    /// Base-2 logarithm of the color.
     pub pigment: [Row; 3],
-    /// Optical depth towards key, rim, fill; share of the sky seen.
+    /// Optical depth toward key, rim and fill; visible fraction of the sky.
     pub light: [Row; 4],
-    /// Share of the key lamp that bodies let through.
+    /// Fraction of the key lamp's light that bodies let through.
     pub body: Row,
     /// Result, packed as in [`super::color`].
     pub color: [u32; LANES],
 }
 
-/// What all strands of a frame share.
+/// Values that all strands of a frame share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader {
     eye: Vec3,
-    /// Unit directions and colours of key, rim and fill: the order of the optical depths.
+    /// Unit directions and colors of key, rim and fill, in the order of the optical depths.
     lamps: [(Vec3, Vec3); 3],
     sky: Vec3,
     ground: Vec3,
-    /// The key lamp's light, off skin.
+    /// The key lamp's light reflected from skin.
     bounce: Vec3,
 }
 
-/// What the points of one strand share.
+/// Values that the points of one strand share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fibre {
-    /// Shift of the highlights [rad], this strand's own part included.
+    /// Shift of the highlights [rad], including this strand's own variation.
     pub tilt: f32,
-    /// Spread of R, TT and TRT [rad].
+    /// Longitudinal width of R, TT and TRT [rad].
     pub spread: [f32; 3],
     pub specular: f32,
     pub backlight: f32,
@@ -59,7 +60,7 @@ pub(crate) struct Fibre {
 }
 
 impl Fibre {
-    /// `random` is this strand's number from −1 to 1.
+    /// `random` is this strand's random number from −1 to 1.
     pub fn new(look: &HairLook, random: f32) -> Self {
         let rough = look.roughness.clamp(0.1, 1.0).powi(2);
         Self {
@@ -73,36 +74,41 @@ impl Fibre {
     }
 }
 
-// What the model is made of. The shaders of the `gpu` room are given the same numbers.
+// Constants of the model. The shaders of the `gpu` module use the same values.
 
-/// How far strands differ in the tilt of their cuticles [degrees].
+/// Variation of the cuticle tilt between strands [degrees].
 pub(crate) const TILTS: f32 = 1.2;
-/// How much pigment differs from strand to strand, at a look's variation of 1.
+/// Variation of the pigment from strand to strand, at a look's variation of 1.
 pub(crate) const VARIES: f32 = 0.6;
-/// Light lost by the straight beam per optical depth. Below 1: much of what hits a strand goes on forward.
+/// Attenuation of direct light per optical depth. It is below 1, because much of the light that hits a strand
+/// continues forward.
 pub(crate) const BEAM: f32 = 0.62;
-/// Light lost per optical depth by what went on from strand to strand, per channel: a floor, and a part that grows
+/// Attenuation of forward-scattered light per optical depth and channel: a constant, and a part that grows
 /// with pigment (the forward attenuation of dual scattering, Zinke et al. 2008).
 pub(crate) const SCATTERED: (f32, f32) = (0.07, 0.075);
-/// Optical depth that a body in the key lamp's way counts as, for light that comes from strand to strand.
+/// Optical depth of a body that blocks the key lamp, for light scattered from strand to strand.
 pub(crate) const BEHIND_BODY: f32 = 12.0;
-/// Reflectance at right angles of keratin, whose index is 1.55.
+/// Reflectance at normal incidence of keratin, whose refractive index is 1.55.
 pub(crate) const REFLECTANCE: f32 = 0.0465;
-/// Strengths of R and TRT against TT, and the least spread of R [rad].
+/// Strengths of R and TRT relative to TT, and the minimum width of R [rad].
 pub(crate) const R: (f32, f32) = (0.45, 0.03);
-/// Of TT: slope and offset of the exponent over the cosine of the azimuth (Karis 2016, slide 24).
+/// For TT: slope and offset of the exponent over the cosine of the azimuth (Karis 2016, slide 24).
 pub(crate) const TT: (f32, f32) = (-3.65, -3.98);
-/// How refraction bends TT's way: over and times the half angle's cosine (slide 24), and the slope and offset of where it enters.
+/// Refraction of the TT path: coefficients of the reciprocal and of the cosine of the half angle (slide 24),
+/// and slope and offset of the entry position.
 pub(crate) const BENT: ([f32; 2], [f32; 2]) = ([1.19, 0.36], [-0.8, 0.6]);
-/// Of TRT: slope and offset of the exponent (slide 29), strength, and length of the way through pigment.
+/// For TRT: slope and offset of the exponent (slide 29), strength, and path length through pigment.
 pub(crate) const TRT: ([f32; 2], f32, f32) = ([17.0, -16.78], 1.5, 0.8);
-/// Light from strand to strand: the share that faces the lamp, and the share from all round.
+/// Light from strand to strand: weight of the part that depends on facing the lamp, and of the part from all
+/// directions.
 pub(crate) const MULTIPLE: (f32, f32) = (0.7, 0.35);
-/// Light that is hidden from hair is not lost: it comes back from what hides it, in the colour of that (so has it ambient occlusion with bounces: Jiménez
-/// et al. 2016, "Practical Real-Time Strategies for Accurate Indirect Occlusion"). Of the light around, as much as reaches skin ([`skin::BOUNCE`]); of
-/// the key lamp's, what lit skin in a tenth of all directions sends on [1].
+/// Light that is blocked from hair is not lost. It is reflected by the blocker, in its color (similar to
+/// ambient occlusion with multiple bounces: Jiménez et al. 2016, "Practical Real-Time Strategies for Accurate
+/// Indirect Occlusion"). The ambient part is the same as for skin ([`skin::BOUNCE`]). This constant is the
+/// key lamp's part: light from lit skin in a tenth of all directions [1].
 pub(crate) const KEY_BOUNCE: f32 = 0.1;
-/// What the cuticle reflects of light from all round: Schlick's Fresnel, averaged over the width of a cylinder. It is what shows black hair its shape.
+/// Reflectance of the cuticle for ambient light: Schlick's Fresnel term, averaged over the width of a
+/// cylinder. It makes the shape of black hair visible.
 pub(crate) const SHEEN: f32 = 0.07;
 
 impl Shader {
@@ -117,15 +123,16 @@ impl Shader {
         }
     }
 
-    /// Fills the block's `color`. Call it inside a `dispatch!`.
-    // Loops are written out and helpers are inlined always: only then does all of it compile for the chosen instruction set.
+    /// Computes the block's `color`. Must be called inside a `dispatch!`.
+    // Loops are unrolled by hand and helpers are always inlined, so that everything is compiled for the
+    // selected instruction set.
     #[inline(always)]
     pub fn shade<S: Simd>(&self, simd: S, fibre: &Fibre, block: &mut Block) {
         shade(simd, self, fibre, block);
     }
 }
 
-/// A vector of each of eight points.
+/// One vector for each of eight points.
 #[derive(Clone, Copy)]
 struct V<S: Simd>([f32x8<S>; 3]);
 
@@ -148,26 +155,26 @@ impl<S: Simd> V<S> {
     }
 }
 
-/// 2^x; 3e-5 relative error, x kept within ±100.
+/// 2^x, with a relative error of 3e-5; x is clamped to ±100.
 #[inline(always)]
 fn exp2<S: Simd>(x: f32x8<S>) -> f32x8<S> {
     let x = x.max(-100.0).min(100.0);
     let whole = x.floor();
     let f = x - whole;
-    // Minimax on [0, 1].
+    // Minimax polynomial on [0, 1].
     let p = (((f * 0.013_676_6 + 0.051_690_4) * f + 0.241_638_4) * f + 0.692_983_6) * f + 1.000_002_6;
     let power: f32x8<S> = ((whole.to_int::<fearless_simd::i32x8<S>>() + 127) << 23u32).bitcast();
     p * power
 }
 
-/// e^(−x² / 2b²) / (b √2π): how the fibre spreads light along itself.
+/// e^(−x² / 2b²) / (b √2π): longitudinal distribution of light by the fiber.
 #[inline(always)]
 fn gauss<S: Simd>(x: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
     let u = x / b;
     exp2(u * u * -0.721_347_5) * 0.398_942_3 / b
 }
 
-/// Schlick's Fresnel.
+/// Schlick's Fresnel term.
 #[inline(always)]
 fn fresnel<S: Simd>(cos: f32x8<S>) -> f32x8<S> {
     let m = (-cos + 1.0).max(0.0);
@@ -191,16 +198,16 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
     let scale = f32x8::splat(simd, 1.0) / to_eye.dot(to_eye).max(1e-12).sqrt();
     let v = to_eye.scale(scale);
 
-    // Angles from the plane across the fibre, as sines.
+    // Sines of the angles to the plane perpendicular to the fiber.
     let sin_v = t.dot(v).max(-1.0).min(1.0);
     let cos2_v = (-(sin_v * sin_v) + 1.0).max(1e-4);
     let cos_v = cos2_v.sqrt();
-    // The direction across the fibre that looks at the camera.
+    // The direction perpendicular to the fiber that faces the camera.
     let inverse = f32x8::splat(simd, 1.0) / cos_v;
     let [vx, vy, vz] = v.0;
     let [tx, ty, tz] = t.0;
     let across = V([vx - tx * sin_v, vy - ty * sin_v, vz - tz * sin_v]).scale(inverse);
-    // What scattering between strands multiplies by: √colour (Karis 2016, slide 33).
+    // Factor of scattering between strands: √color (Karis 2016, slide 33).
     let [c0, c1, c2] = pigment.0;
     let soft = [exp2(c0 * 0.5), exp2(c1 * 0.5), exp2(c2 * 0.5)];
     let mut sum = [zero; 3];
@@ -220,14 +227,15 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let cos_d = ((cos_l * cos_v + sin_l * sin_v) * 0.5 + 0.5).max(1e-3).sqrt();
         let sines = sin_l + sin_v;
 
-        // R: white, towards the root. The lobes lie at −α, α/2 and 3α/2 (Marschner et al. 2003, table 1); sines add up both angles.
+        // R: white, toward the root. The lobes are at −α, α/2 and 3α/2 (Marschner et al. 2003, table 1). The
+        // sum of the sines accounts for both angles.
         let m = gauss(
             sines + cos_half * cos_v * (2.0 * fibre.tilt),
             cos_half * (std::f32::consts::SQRT_2 * fibre.spread[0]) + R.1,
         );
         let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (R.0 * fibre.specular);
 
-        // TT: through the fibre, once.
+        // TT: once through the fiber.
         let m = gauss(sines - fibre.tilt, zero + fibre.spread[1]);
         let a = f32x8::splat(simd, 1.0) / (f32x8::splat(simd, BENT.0[0]) / cos_d + cos_d * BENT.0[1]);
         let h = saturate(cos_half * (a * (cos_phi * BENT.1[0] + BENT.1[1]) + 1.0));
@@ -237,7 +245,7 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let ha = h * a;
         let tt_path = (-(ha * ha) + 1.0).max(0.0).sqrt() * 0.5 / cos_d;
 
-        // TRT: coloured, towards the tip.
+        // TRT: colored, toward the tip.
         let m = gauss(sines - 3.0 * fibre.tilt, zero + fibre.spread[2]);
         let f = fresnel(cos_d * 0.5);
         let pass = -f + 1.0;
@@ -245,7 +253,8 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let trt = m * n * pass * pass * f * (TRT.1 * fibre.specular);
         let trt_path = f32x8::splat(simd, TRT.2) / cos_d;
 
-        // Strand to strand: as from a matt surface across the fibre, wrapped all round, its colour deepening with the way through the hair.
+        // Strand to strand: as from a matte surface perpendicular to the fiber, fully wrapped. Its color
+        // deepens with the distance through the hair.
         let facing = ((across.dot3(l) + 1.0) * 0.25).max(0.0) * fibre.scatter;
         let flat = cos_l * MULTIPLE.1 * fibre.scatter;
         let color = lamp.to_array();
@@ -268,11 +277,13 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         let near = (around * skin::BOUNCE + shader.bounce.to_array()[i]) * (-open + 1.0);
         let c = pigment.0[i];
         let far = around * open;
-        // What came through hair is dyed on its way; what came between hair and body, once, as a lock is.
+        // Light through hair is colored along its path; light between hair and body is colored once, like a
+        // lock.
         let scattered = far * exp2(c * (-open * 0.5 + 1.5)) + near * exp2(c);
         *sum += scattered * fibre.scatter + (far + near) * (SHEEN * fibre.specular);
     }
-    // Packed here, once a point and in lanes. A broken point darkens a strand; it does not spread over the picture.
+    // Colors are packed here, once per point and in lanes. An invalid point darkens its strand, but does not
+    // spread over the picture.
     let mut bits = fearless_simd::u32x8::splat(simd, 0);
     for (sum, (top, shift)) in sum.into_iter().zip(color::CHANNELS) {
         let finite = sum.simd_ge(0.0);
@@ -283,7 +294,8 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
     bits.store_slice(&mut block.color);
 }
 
-/// A number from −1 to 1 for strand `s`, spread evenly and unlike its neighbours' (the finaliser of MurmurHash3).
+/// A pseudorandom number from −1 to 1 for strand `s`, evenly distributed and different for neighboring
+/// strands (the finalizer of MurmurHash3).
 pub(crate) fn random(s: u32) -> f32 {
     let mut h = s.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995;
     h = (h ^ h >> 16).wrapping_mul(0x85eb_ca6b);
@@ -292,7 +304,7 @@ pub(crate) fn random(s: u32) -> f32 {
     (h >> 8) as f32 / (1 << 23) as f32 - 1.0
 }
 
-/// Base-2 logarithm of a colour; black keeps a trace of light, white a trace of pigment.
+/// Base-2 logarithm of a color. Black keeps a trace of light, and white a trace of pigment.
 pub(crate) fn pigment(color: Vec3) -> Vec3 {
     let c = if color.is_finite() { color } else { Vec3::splat(0.2) };
     let c = c.clamp(Vec3::splat(0.002), Vec3::splat(0.98));
@@ -316,7 +328,8 @@ mod tests {
         }
     }
 
-    /// Where neither lamps nor sky reach, hair is dark, and dyed as much as in the open or more; it is not a hole in the picture, be it black.
+    /// Where neither lamps nor sky reach, hair is dark, and at least as saturated as in the open. It is not a
+    /// black hole in the picture, unless the hair itself is black.
     #[test]
     fn hair_in_deep_shade_is_dark_and_not_black() {
         let shader = Shader::new(&Lighting::default(), Vec3::Z);

@@ -1,27 +1,32 @@
-//! Hairs of which one strand stands for many, drawn as many: side by side, each with a way and a brightness of its own.
+//! Draws a strand that stands for several hairs as several hairs next to each other, each with its own path
+//! and brightness.
 //!
-//! A strand that stands for eight may be drawn eight times as wide, and is a ribbon. As a wisp (Watanabe & Suenaga 1992, "A Trigonal Prism-Based Method for Hair Image
-//! Generation") of hairs an eighth of that wide it covers as much, reads as hair, and is placed, shaded, filed and sorted once: what is left to do for each hair
-//! is to blend it. All of it happens on the screen, so that hairs of a wisp do not part in depth.
+//! A strand that stands for eight could be drawn eight times as wide, but would then look like a ribbon. A
+//! wisp (Watanabe & Suenaga 1992, "A Trigonal Prism-Based Method for Hair Image Generation") of thinner hairs
+//! covers the same area and looks like hair. Projection, shading and sorting are done once per strand; only
+//! blending is done for each hair. Everything happens in screen space, so the hairs of a wisp have the same
+//! depth.
 
 use super::segment::{Piece, Segment};
 use glam::{Vec2, Vec3};
 
-/// Most hairs of a wisp.
+/// Maximum number of hairs of a wisp.
 const MOST: usize = 4;
-/// How far from the strand its outermost hairs lie, over its width: they fill the room of those that are left out.
+/// Distance of the outermost hairs from the strand, relative to its width. They fill the space of the hairs
+/// that are not drawn.
 const SPREAD: f32 = 0.9;
-/// How far a hair strays from its place in the wisp, over the strand's width, so that hairs cross.
+/// Amplitude of the deviation of a hair from its position in the wisp, relative to the strand's width. It
+/// makes hairs cross.
 const STRAY: f32 = 0.45;
-/// In how many points of the strand it goes to and fro.
+/// Period of the deviation, in points of the strand.
 const WAVE: f32 = 11.0;
-/// How much of that is gone at the tip: locks end in a point.
+/// Fraction of the spread that is lost toward the tip, so that locks are pointed.
 const POINTED: f32 = 0.75;
-/// How much brighter or darker than the strand a hair is.
+/// Brightness variation of a hair relative to the strand.
 const TINT: f32 = 0.3;
 const GOLDEN: f32 = 0.618_034;
 
-/// How many hairs a strand is drawn as.
+/// The number of hairs that a strand is drawn as.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wisp {
     count: u32,
@@ -37,13 +42,13 @@ impl Wisp {
         self.count == 1
     }
 
-    /// How far from its middle a strand is drawn, over its width.
+    /// Maximum distance from the center of a strand at which it is drawn, relative to its width.
     pub fn reach(self) -> f32 {
         let share = 1.0 / self.count as f32;
         if self.is_one() { 0.5 } else { SPREAD * (1.0 - share) + STRAY + 0.5 * share }
     }
 
-    /// The hairs of a segment from point `i` on, of `points`, of this strand.
+    /// The hairs of the segment from point `i` on, of a strand with `points` points.
     #[inline(always)]
     pub fn hairs(self, segment: &Segment, strand: u32, i: usize, points: usize) -> Hairs {
         let share = 1.0 / self.count as f32;
@@ -54,11 +59,11 @@ impl Wisp {
         let across = [a * (segment.a.width() * room(point)), b * (segment.b.width() * room(point + 1.0))];
         let mut hairs =
             Hairs { count: self.count as usize, share, across, ways: [[0.0; 2]; _], tints: [0.0; _] };
-        // A strand's own number, small enough for what follows to keep its digits.
+        // A number for the strand, kept small so that later operations do not lose precision.
         let strand = (strand % 4096 * MOST as u32) as f32;
-        // All that there may be, so that they lie in lanes.
+        // All possible hairs are computed, so that they fit into lanes.
         for k in 0..MOST {
-            // Multiples of the golden ratio: unlike its neighbours in the wisp and in the groom.
+            // Multiples of the golden ratio differ from those of neighbors in the wisp and in the groom.
             let phase = (strand + k as f32) * GOLDEN;
             let place = SPREAD * ((2 * k + 1) as f32 * share - 1.0);
             let way = |point: f32| place + STRAY * wave(point * (1.0 / WAVE) + phase);
@@ -72,29 +77,30 @@ impl Wisp {
 /// The hairs of a segment.
 pub(crate) struct Hairs {
     count: usize,
-    /// Part of the strand's width that each has.
+    /// Fraction of the strand's width for each hair.
     share: f32,
-    /// Across the strand, as far as the wisp's unit is long [pixels], at both ends.
+    /// Unit of displacement across the strand at both ends [pixels].
     across: [Vec2; 2],
-    /// How many of that each hair lies aside at both ends.
+    /// Displacement of each hair at both ends, in that unit.
     ways: [[f32; 2]; MOST],
-    /// How bright each is, over the strand.
+    /// Brightness of each hair relative to the strand.
     tints: [f32; MOST],
 }
 
 impl Hairs {
-    /// How many there are.
+    /// Number of hairs.
     #[inline(always)]
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// One hair of a piece of the segment, which goes `along` from one share of it to another.
+    /// One hair of a piece of the segment. `along` is the start and end of the piece as fractions of the
+    /// segment.
     #[inline(always)]
     pub fn piece(&self, hair: usize, piece: &Piece, along: [f32; 2]) -> Piece {
         let [from, to] = [0, 1].map(|end| self.across[end] * self.ways[hair][end]);
         let way = |u: f32| from + (to - from) * u;
-        // What a hair hides stays.
+        // The alpha component stays unchanged.
         let light = Vec3::splat(self.tints[hair]).extend(1.0);
         Piece {
             a: piece.a + way(along[0]),
@@ -106,7 +112,7 @@ impl Hairs {
     }
 }
 
-/// A wave from −1 to 1 of period 1, of parabolas.
+/// A wave from −1 to 1 with period 1, composed of parabolas.
 #[inline(always)]
 fn wave(x: f32) -> f32 {
     let x = x - x.floor() - 0.5;

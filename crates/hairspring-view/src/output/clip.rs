@@ -1,4 +1,5 @@
-//! A clip that browsers play: H.264 in MP4, its index in front so that playing starts while it loads.
+//! A clip that browsers can play: H.264 in MP4, with the index at the front so that playback starts while it
+//! loads.
 
 use super::{OutputError, beside, keep, yuv::Planes};
 use crate::image::Image;
@@ -16,13 +17,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// H.264's quantiser, 0 to 51, from where hair at 1280 × 720 looks like the still to where blocks begin to show.
+/// Range of H.264's quantizer (0 to 51). At the lower value, hair at 1280 × 720 looks like the still; at the
+/// upper one, blocks become visible.
 const QUANTISER: (u8, u8) = (16, 24);
-/// Bits a second for one pixel a second, which the encoder aims for between those: 8 Mbit/s at 1280 × 720 and 30 frames/s.
+/// Target bit rate within this range, in bits per pixel: 8 Mbit/s at 1280 × 720 and 30 frames/s.
 const BITS_PER_PIXEL: f64 = 0.3;
 
-/// Writes a clip frame by frame. The file appears under its name when [`ClipWriter::finish`] returns; a writer
-/// that is dropped before leaves nothing behind. Compressed frames are held in memory until then.
+/// Writes a clip frame by frame. The file appears under its name when [`ClipWriter::finish`] returns. A
+/// writer that is dropped before that leaves nothing behind. Compressed frames are kept in memory until then.
 pub struct ClipWriter {
     path: PathBuf,
     temporary: tempfile::NamedTempFile,
@@ -36,21 +38,23 @@ pub struct ClipWriter {
 }
 
 impl ClipWriter {
-    /// Starts a clip of `width` × `height` pixels (up to 3840 × 2160 or 2160 × 3840; an odd size gets one more
-    /// column or row) at `fps` frames a second (above 0, up to 240).
+    /// Starts a clip of `width` × `height` pixels at `fps` frames per second. The size is at most 3840 × 2160
+    /// or 2160 × 3840; an odd size is extended by one column or row. `fps` is above 0 and at most 240.
     ///
     /// # Errors
-    /// If size or rate are out of range, or the file cannot be made.
+    /// Returns an error if the size or the rate is out of range, or if the file cannot be created.
     pub fn create(path: &Path, width: u32, height: u32, fps: f64) -> Result<Self, OutputError> {
         let wrong = |why: String| OutputError::Clip { path: path.into(), why };
         let (long, short) = (width.max(height), width.min(height));
         if short < 16 || long > 3840 || short > 2160 {
             return Err(wrong(format!(
-                "{width}×{height} pixels; H.264 here takes 16×16 to 3840×2160, choose such a size"
+                "the size is {width}×{height} pixels; choose one from 16×16 to 3840×2160"
             )));
         }
         if !(fps > 0.0 && fps <= 240.0) {
-            return Err(wrong(format!("{fps} frames a second; choose a rate above 0 and up to 240")));
+            return Err(wrong(format!(
+                "the rate is {fps} frames per second; choose one above 0 and up to 240"
+            )));
         }
         let bits = (width as f64 * height as f64 * fps * BITS_PER_PIXEL).clamp(2e5, 1e8) as u32;
         let config = EncoderConfig::new()
@@ -58,7 +62,7 @@ impl ClipWriter {
             .rate_control_mode(RateControlMode::Bufferbased)
             .qp(QpRange::new(QUANTISER.0, QUANTISER.1))
             .bitrate(BitRate::from_bps(bits))
-            // Every frame is there, and players can jump to any second.
+            // No frame is dropped, and players can seek to any second.
             .skip_frames(false)
             .intra_frame_period(IntraFramePeriod::from_num_frames((fps.round() as u32).max(1)))
             .background_detection(false)
@@ -89,7 +93,7 @@ impl ClipWriter {
     /// Adds the next frame.
     ///
     /// # Errors
-    /// If the picture has another size than the clip, or the disk is full.
+    /// Returns an error if the picture has a different size than the clip, or if the disk is full.
     pub fn push(&mut self, image: &Image) -> Result<(), OutputError> {
         let wrong = |why: String| OutputError::Clip { path: self.path.clone(), why };
         if (image.width, image.height) != self.size {
@@ -110,10 +114,10 @@ impl ClipWriter {
         Ok(())
     }
 
-    /// Completes the file and gives it its name.
+    /// Completes the file and renames it to its final name.
     ///
     /// # Errors
-    /// If there is no frame, or the disk is full.
+    /// Returns an error if there is no frame, or if the disk is full.
     pub fn finish(mut self) -> Result<(), OutputError> {
         let wrong = |why: String| OutputError::Clip { path: self.path.clone(), why };
         if self.frames == 0 {

@@ -1,4 +1,4 @@
-//! Stills that are small enough for a page.
+//! Stills that are small enough for a web page.
 
 use super::{OutputError, beside, keep};
 use crate::image::Image;
@@ -8,13 +8,14 @@ use std::{
     path::Path,
 };
 
-/// 0 to 100: hair keeps its single strands, in a fifth of a PNG's bytes.
+/// JPEG quality, 0 to 100. At this value single strands stay visible, in a fifth of the bytes of a PNG.
 const QUALITY: u8 = 85;
 
-/// Writes a JPEG; the file appears only when it is complete.
+/// Writes a JPEG. The file appears only when it is complete.
 ///
 /// # Errors
-/// If the folder is missing or not writable, or the disk is full; or a picture of more than 65,535 pixels along a side, or of none.
+/// Returns an error if the folder is missing or not writable, if the disk is full, or if a side of the
+/// picture is 0 or more than 65,535 pixels.
 pub fn write_jpeg(path: &Path, image: &Image) -> Result<(), OutputError> {
     let mut file = beside(path)?;
     let mut out = BufWriter::new(file.as_file_mut());

@@ -1,4 +1,5 @@
-//! Pictures and clips as files. Every file is written beside its place under a temporary name and renamed when complete.
+//! Writes pictures and clips to files. Every file is written under a temporary name in the same folder and
+//! renamed when it is complete.
 
 mod clip;
 mod jpeg;
@@ -14,37 +15,38 @@ use std::path::{Path, PathBuf};
 /// Why a picture or clip could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    /// The file system said no.
+    /// The file system reported an error.
     #[error("{path}: {source}; check that the folder exists, can be written to and has room", path = path.display())]
     File {
-        /// The file that was meant.
+        /// The path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// A clip cannot be made as asked.
+    /// A clip with the requested settings is not possible.
     #[error("{path}: {why}", path = path.display())]
     Clip {
-        /// The file that was meant.
+        /// The path of the file.
         path: PathBuf,
-        /// What is wrong, what was expected, what to do.
+        /// What is wrong, what was expected, and what to do.
         why: String,
     },
-    /// A file that is read is not what it should be.
+    /// A file that was read is not a valid picture.
     #[error("{path}: not a picture that can be read ({why}); an 8-bit RGB PNG was expected", path = path.display())]
     Picture {
-        /// The file.
+        /// The path of the file.
         path: PathBuf,
-        /// What the decoder said.
+        /// The error of the decoder.
         why: String,
     },
 }
 
-/// A temporary file in the folder of `path`.
+/// Creates a temporary file in the folder of `path`.
 fn beside(path: &Path) -> Result<tempfile::NamedTempFile, OutputError> {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
-    // What a program creates is readable as the user's mask says, not private as temporary files are.
+    // Temporary files are private by default. The finished file gets the usual permissions, limited by the
+    // umask.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
@@ -53,7 +55,7 @@ fn beside(path: &Path) -> Result<tempfile::NamedTempFile, OutputError> {
         .map_err(|source| OutputError::File { path: path.into(), source })
 }
 
-/// Gives a finished temporary file its name.
+/// Renames a finished temporary file to its final name.
 fn keep(file: tempfile::NamedTempFile, path: &Path) -> Result<(), OutputError> {
     file.persist(path).map(drop).map_err(|e| OutputError::File { path: path.into(), source: e.error })
 }

@@ -7,10 +7,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes an 8-bit sRGB PNG; the file appears only when it is complete.
+/// Writes an 8-bit sRGB PNG. The file appears only when it is complete.
 ///
 /// # Errors
-/// If the folder is missing or not writable, or the disk is full.
+/// Returns an error if the folder is missing or not writable, or if the disk is full.
 pub fn write_png(path: &Path, image: &Image) -> Result<(), OutputError> {
     let mut file = beside(path)?;
     let mut out = BufWriter::new(file.as_file_mut());
@@ -21,10 +21,10 @@ pub fn write_png(path: &Path, image: &Image) -> Result<(), OutputError> {
     keep(file, path)
 }
 
-/// Writes an 8-bit sRGB PNG to anything that takes bytes, such as a `Vec`.
+/// Writes an 8-bit sRGB PNG to any writer, such as a `Vec`.
 ///
 /// # Errors
-/// What `out` ends with; or a picture of no width or height.
+/// Returns the error of `out`, or an error if the width or height is 0.
 pub fn encode_png(out: impl Write, image: &Image) -> std::io::Result<()> {
     let mut encoder = png::Encoder::new(out, image.width, image.height);
     encoder.set_color(png::ColorType::Rgb);
@@ -44,11 +44,11 @@ pub fn encode_png(out: impl Write, image: &Image) -> std::io::Result<()> {
 /// Reads an 8-bit RGB PNG.
 ///
 /// # Errors
-/// If the file cannot be read, or is another kind of picture.
+/// Returns an error if the file cannot be read, or is another kind of picture.
 pub fn read_png(path: &Path) -> Result<Image, OutputError> {
     let file = std::fs::File::open(path).map_err(|source| OutputError::File { path: path.into(), source })?;
     let wrong = |why: String| OutputError::Picture { path: path.into(), why };
-    // The decoder's own limit of 64 MiB holds for any picture of ours.
+    // The decoder's own limit of 64 MiB is enough for any picture of ours.
     let mut reader =
         png::Decoder::new(std::io::BufReader::new(file)).read_info().map_err(|e| wrong(e.to_string()))?;
     let size = reader.output_buffer_size().ok_or_else(|| wrong("too large".into()))?;
@@ -61,8 +61,9 @@ pub fn read_png(path: &Path) -> Result<Image, OutputError> {
     Ok(Image { width: info.width, height: info.height, rgb })
 }
 
-/// The path of frame `number` of a sequence: the last run of `#` in the file's name becomes the number, with as many digits at least
-/// (`frame.####.png` → `frame.0001.png`). `None` if the name has no `#`: it names a single file.
+/// Returns the path of frame `number` of a sequence. The last run of `#` in the file name is replaced by the
+/// number, with at least as many digits (`frame.####.png` → `frame.0001.png`). Returns `None` if the name has
+/// no `#` and so names a single file.
 pub fn sequence_path(pattern: &Path, number: u32) -> Option<PathBuf> {
     let name = pattern.file_name()?.to_str()?;
     let end = name.rfind('#')? + 1;

@@ -1,4 +1,4 @@
-//! RGB to the colour space of video: BT.709, limited range, one colour sample for four pixels.
+//! Converts RGB to the color space of video: BT.709, limited range, one color sample per four pixels.
 
 use crate::image::Image;
 use openh264::formats::YUVSlices;
@@ -14,7 +14,7 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// Converts a picture; an odd last column or row is doubled.
+    /// Converts a picture. An odd last column or row is duplicated.
     pub fn fill(&mut self, image: &Image) {
         let (w, h) = (image.width as usize, image.height as usize);
         let (ew, eh) = (w.next_multiple_of(2), h.next_multiple_of(2));
@@ -41,7 +41,7 @@ impl Planes {
                         ((11966 * r + 40254 * g + 4064 * b + 32768) >> 16) as u8 + 16;
                     sum = [sum[0] + r, sum[1] + g, sum[2] + b];
                 }
-                // Colour differences of the four pixels' sum, 224 steps around 128.
+                // Color differences of the sum of four pixels, 224 steps around 128.
                 let [r, g, b] = sum;
                 u[x] = (128 + ((-6596 * r - 22189 * g + 28785 * b + 131072) >> 18)) as u8;
                 v[x] = (128 + ((28785 * r - 26145 * g - 2640 * b + 131072) >> 18)) as u8;

@@ -1,9 +1,10 @@
-//! How much of the sky the ground sees where bodies stand on it.
+//! Fraction of the sky that is visible from the ground near bodies.
 //!
-//! From straight below, bodies are a map of heights. A patch of area A at a height h takes A h² / (π (h² + d²)²) of the sky from a place at a distance d (the
-//! form factor of two level patches, all of which add up to 1 in the plane). In its place stands a bump of the same volume that ends at a distance in
-//! proportion to h, so that a low patch is as cheap as it is dark; and what is higher than a seventh of the bodies counts for nothing, so that few are looked at.
-//! It is worked out by the CPU for both renderers.
+//! Seen from straight below, bodies are a height map. A patch of area A at height h covers A h² / (π (h² +
+//! d²)²) of the sky for a point at horizontal distance d. This is the form factor of two level patches; all
+//! of them add up to 1 in the plane. The implementation replaces it by a bump of the same volume with a
+//! finite radius in proportion to h, so that a low patch is cheap to compute. Surfaces higher than a seventh
+//! of the bodies' size are ignored, so that few patches remain. The CPU computes this for both renderers.
 
 use crate::{
     body::{corners, raster::ScreenTriangle},
@@ -13,34 +14,35 @@ use crate::{
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use std::f32::consts::PI;
 
-/// How high above the ground something may lie to count, over the longest edge of the bodies' box.
+/// Height above the ground up to which surfaces count, relative to the longest edge of the bodies' box.
 const REACH: f32 = 0.15;
-/// Texels in that height, about.
+/// Approximate number of texels in that height.
 const FINE: f32 = 12.0;
-/// How far a patch at the ground's height is felt, over that height: the sides of a foot, which no view from below shows, stand in the way of about as much.
+/// Radius of influence of a patch at the height of the ground, relative to the maximum height. The sides of a
+/// foot, which a view from below does not show, block about as much light.
 const LEAST: f32 = 0.5;
-/// How many times its height farther a higher patch is felt.
+/// Growth of the radius of influence with the height of a patch.
 const WIDER: f32 = 2.0;
-/// Most texels of a side.
+/// Maximum number of texels per side.
 const MOST: usize = 1024;
 
-/// The map.
+/// The map of sky visibility.
 #[derive(Debug, Default)]
 pub(crate) struct Contact {
     /// Corner of the first texel, X and Z [m].
     pub low: Vec2,
     /// Side of a texel [m].
     pub texel: f32,
-    /// Texels along X and along Z; 0: nothing is near the ground.
+    /// Number of texels along X and along Z; 0 if nothing is near the ground.
     pub size: [usize; 2],
-    /// Share of the sky that is seen from the middle of each texel; X runs fastest.
+    /// Fraction of the sky that is visible from the center of each texel. X is the fastest index.
     pub sky: Vec<f32>,
-    /// Height of the lowest surface over each [m].
+    /// Height of the lowest surface above each texel [m].
     lowest: Vec<f32>,
 }
 
 impl Contact {
-    /// Works it out for a frame's bodies and ground.
+    /// Computes the map for a frame's bodies and ground.
     pub fn fill(&mut self, frame: &Frame) {
         self.size = [0; 2];
         self.sky.clear();
@@ -55,7 +57,8 @@ impl Contact {
         if !(reach > 0.0 && low.is_finite() && high.is_finite()) {
             return;
         }
-        // As of `Grid::around`: sizes in steps and a lattice that stays, so that what moves is not sampled otherwise in each frame.
+        // As in `Grid::around`: quantized sizes and a fixed lattice, so that moving bodies are sampled the
+        // same way in each frame.
         self.texel = ((reach / FINE).log2() * 4.0).ceil().mul_add(0.25, 0.0).exp2();
         let margin = ((LEAST + WIDER) * reach / self.texel).ceil() + 2.0;
         let first = (low / self.texel).floor() - Vec2::splat(margin);
@@ -77,7 +80,7 @@ impl Contact {
         for at in 0..w * h {
             let over = self.lowest[at].max(0.0);
             if over < reach {
-                // To nothing at the greatest height, smoothly.
+                // Fades smoothly to zero at the maximum height.
                 let share = (1.0 - over / reach).powi(2);
                 self.hide([at % w, at / w], (LEAST * reach + WIDER * over) / self.texel, share);
             }
@@ -85,7 +88,7 @@ impl Contact {
         self.sky.iter_mut().for_each(|sky| *sky = sky.max(0.0));
     }
 
-    /// Takes a bump of a volume of `share` texels and a radius of some from the sky around a texel.
+    /// Subtracts a bump with a volume of `share` texels and the given radius from the sky around a texel.
     fn hide(&mut self, [x, y]: [usize; 2], radius: f32, share: f32) {
         let [w, h] = self.size;
         let n = radius as usize;
@@ -100,11 +103,11 @@ impl Contact {
         }
     }
 
-    /// Share of the sky that is seen from a place of the ground, between the middles of texels.
+    /// Fraction of the sky that is visible from a point of the ground, interpolated between texel centers.
     pub fn open(&self, p: Vec3) -> f32 {
         let [w, h] = self.size;
         let at = (p.xz() - self.low) / self.texel - Vec2::splat(0.5);
-        // Comparisons with what is no number are false; a map of no size has no place.
+        // Comparisons with NaN are false, and a map of size 0 contains no point.
         if !(at.x >= 0.0 && at.y >= 0.0 && at.x < w as f32 - 1.0 && at.y < h as f32 - 1.0) {
             return 1.0;
         }
@@ -125,7 +128,7 @@ mod tests {
     };
     use hairspring_scene::Camera;
 
-    /// The sky from places of the ground under and beside a plate of 2 m at a height [m].
+    /// Sky visibility at points of the ground under and next to a plate of 2 m at a height [m].
     fn under(height: f32, places: [f32; 3]) -> [f32; 3] {
         let corner = |x: f32, z: f32| Vec3::new(x, height, z);
         let positions = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
@@ -151,9 +154,9 @@ mod tests {
             assert!(found.iter().zip(right).all(|(a, b)| (a - b).abs() < 0.03), "{found:?} for {right:?}");
         };
         close(under(0.0, [0.0, 1.0, 1.01 + LEAST * reach]), [0.0, 0.5, 1.0]);
-        // Through the ground, as on it.
+        // Below the ground as on it.
         close(under(-0.5, [0.0, 1.0, 1.01 + LEAST * reach]), [0.0, 0.5, 1.0]);
-        // Half way up, a quarter counts, and is felt farther.
+        // At half the height, a quarter counts, over a larger radius.
         close(under(0.5 * reach, [0.0, 1.0, 1.0 + 0.5 * LEAST * reach]), [0.75, 0.875, 0.916]);
         close(under(reach, [0.0, 1.0, 1.1]), [1.0; 3]);
     }

@@ -1,7 +1,8 @@
-//! How much hair is where: a grid of optical density, filled anew each frame.
+//! The density of hair: a grid of optical density, filled again in each frame.
 //!
-//! A voxel's density is the share of light that a beam along the grid loses in it for small amounts: the strands' length × diameter in it
-//! over the area of its face. Sums are fixed-point integers, so that any split over threads gives the same bits.
+//! A voxel's density is the fraction of light that a beam along the grid loses in it, for small densities:
+//! length × diameter of the strands in it over the area of its face. Sums are fixed-point integers, so that
+//! the result is bit-identical for any distribution over threads.
 
 use super::splat::{self, UNIT};
 use crate::{
@@ -13,7 +14,7 @@ use fearless_simd::{Level, dispatch};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Where a grid lies: voxel (0, 0, 0) has its middle at `origin`; x runs fastest.
+/// Position and size of a grid. The center of voxel (0, 0, 0) is at `origin`; x is the fastest index.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Grid {
     pub origin: Vec3,
@@ -22,20 +23,20 @@ pub(crate) struct Grid {
     pub size: [usize; 3],
 }
 
-/// A place between eight voxels.
+/// A position between eight voxels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cell {
-    /// Number of the voxel of lowest coordinates.
+    /// Index of the voxel with the lowest coordinates.
     pub first: usize,
-    /// Steps to the next voxel along y and along z.
+    /// Steps in memory to the next voxel along y and along z.
     pub strides: [usize; 2],
-    /// Place between them, 0 to 1 along each axis.
+    /// Relative position between them, 0 to 1 along each axis.
     pub share: Vec3,
 }
 
-/// Voxels around the hair that blur and lookups may touch.
+/// Voxels of padding around the hair, for the blur and for lookups.
 const PAD: usize = 4;
-/// Optical depth of a closed body's wall: nothing passes.
+/// Optical depth of a closed body's wall, which is opaque.
 pub(crate) const WALL: f32 = 8.0;
 
 impl Grid {
@@ -43,11 +44,13 @@ impl Grid {
         self.size.iter().product()
     }
 
-    /// A grid around the hair, its voxels snapped to a fixed lattice so that small motion does not shift them.
+    /// Creates a grid around the hair. Its voxels are snapped to a fixed lattice, so that small motion does
+    /// not shift them.
     pub fn around(bounds: (Vec3, Vec3), voxels: u32) -> Self {
         let extent = (bounds.1 - bounds.0).max_element().max(1e-4);
         let inner = voxels.clamp(16, 256) as f32;
-        // Sizes in steps of 2^(1/4): a style that swings keeps its voxel size for whole shots.
+        // Voxel sizes are quantized to steps of 2^(1/4), so that swinging hair keeps its voxel size for a
+        // whole shot.
         let voxel = ((extent / inner).log2() * 4.0).ceil().mul_add(0.25, 0.0).exp2();
         let first = (bounds.0 / voxel).floor() - Vec3::splat(PAD as f32);
         let last = (bounds.1 / voxel).ceil() + Vec3::splat(PAD as f32);
@@ -55,7 +58,7 @@ impl Grid {
         Self { origin: first * voxel, voxel, size }
     }
 
-    /// The cell between eight voxels' middles that holds `p`; `None` outside.
+    /// The cell between eight voxel centers that contains `p`; `None` outside.
     #[inline(always)]
     pub fn cell(&self, p: Vec3) -> Option<Cell> {
         let q = (p - self.origin) / self.voxel;
@@ -69,7 +72,7 @@ impl Grid {
         Some(Cell { first: (z * ny + y) * nx + x, strides: [nx, nx * ny], share })
     }
 
-    /// Nearest voxel, or `None` outside.
+    /// The nearest voxel; `None` outside.
     fn nearest(&self, p: Vec3) -> Option<usize> {
         let q = (p - self.origin) / self.voxel + Vec3::splat(0.5);
         let [x, y, z] = [q.x as usize, q.y as usize, q.z as usize];
@@ -78,12 +81,13 @@ impl Grid {
     }
 }
 
-/// The box that holds the hair [m], without strands that have flown off; `None` where there is no finite point.
+/// The box that contains the hair [m], without strands that have flown off; `None` if there is no finite
+/// point.
 ///
-/// Points farther from the middle than 12 times the mean distance (per axis) are left out: one stray strand would
-/// otherwise take all the voxels.
+/// Points farther from the center than 12 times the mean distance (per axis) are ignored. A single stray
+/// strand would otherwise take all the voxels.
 pub(crate) fn bounds(styles: &[&[Vec3]]) -> Option<(Vec3, Vec3)> {
-    // Some thousand points of every style tell where it is.
+    // A few thousand points of every style are enough to find the box.
     let some = |points: &[Vec3]| points.len() / 8192 + 1;
     let sample =
         || styles.iter().flat_map(|points| points.iter().step_by(some(points))).filter(|p| p.is_finite());
@@ -105,7 +109,7 @@ pub(crate) fn bounds(styles: &[&[Vec3]]) -> Option<(Vec3, Vec3)> {
         };
         join(found, points.par_chunks(1 << 16).map(of).reduce(|| none, join))
     });
-    // The shadow reaches no farther than a building, whatever the input.
+    // Limits the extent of the shadow to that of a building, for any input.
     (found.0.is_finite() && found.1.is_finite() && (found.1 - found.0).max_element() < 1e4).then_some(found)
 }
 
@@ -116,10 +120,10 @@ pub(crate) struct Density {
     partial: Vec<Vec<u32>>,
     /// Voxels that a surface of a body passes through.
     walls: Vec<bool>,
-    /// Voxel that each vertex of one body is in.
+    /// Voxel of each vertex of one body.
     nearest: Vec<Option<usize>>,
     scratch: Vec<f32>,
-    /// Hair alone, in optical depth per voxel.
+    /// Hair only, in optical depth per voxel.
     pub hair: Vec<f32>,
     /// Hair and the walls of bodies.
     pub all: Vec<f32>,
@@ -131,7 +135,7 @@ impl Density {
         self.grid = Grid::around(bounds, frame.quality.shadow_voxels);
         let (grid, len) = (self.grid, self.grid.len());
         let level = Level::new();
-        // One grid a thread; more than eight would cost more to add up than they save.
+        // One grid per thread. More than eight would cost more to add up than they save.
         let parts = rayon::current_num_threads().clamp(1, 8);
         self.partial.resize_with(parts, Vec::new);
         let (partial, walls, nearest) = (&mut self.partial, &mut self.walls, &mut self.nearest);
@@ -170,7 +174,8 @@ impl Density {
     }
 }
 
-/// Marks the voxels that a body's triangles pass through: rows of samples on them, less than a voxel apart.
+/// Marks the voxels that a body's triangles pass through, by rows of samples on them, less than a voxel
+/// apart.
 fn wall_in(grid: &Grid, body: &MeshDraw, nearest: &mut Vec<Option<usize>>, walls: &mut [bool]) {
     body.positions.par_iter().map(|p| grid.nearest(*p)).collect_into_vec(nearest);
     let most = (grid.voxel / FINER).powi(2);
@@ -178,7 +183,7 @@ fn wall_in(grid: &Grid, body: &MeshDraw, nearest: &mut Vec<Option<usize>>, walls
         let Some([a, b, c]) = corners(body.positions, t) else { continue };
         let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
         if longest <= most {
-            // Most of a fine mesh: the corners are all the samples.
+            // Small triangles, the majority in a fine mesh: the corners are sufficient as samples.
             t.iter().filter_map(|i| nearest[*i as usize]).for_each(|at| walls[at] = true);
         } else if longest.is_finite() {
             wall_across(grid, [a, b, c], longest.sqrt(), walls);
@@ -186,7 +191,7 @@ fn wall_in(grid: &Grid, body: &MeshDraw, nearest: &mut Vec<Option<usize>>, walls
     }
 }
 
-/// Samples of a triangle for each voxel along its longest edge.
+/// Samples of a triangle per voxel along its longest edge.
 const FINER: f32 = 1.5;
 
 /// Marks the voxels that a large triangle passes through.
@@ -197,7 +202,7 @@ fn wall_across(grid: &Grid, [a, b, c]: [Vec3; 3], longest: f32, walls: &mut [boo
     if !(low.cmple(end).all() && high.cmpge(grid.origin).all()) {
         return;
     }
-    // A triangle many times the grid's size is sampled no finer than 512.
+    // The number of samples is limited to 512 for triangles much larger than the grid.
     let n = (longest / grid.voxel * FINER).ceil().clamp(1.0, 512.0) as usize;
     for i in 0..=n {
         for j in 0..=n - i {
@@ -209,14 +214,14 @@ fn wall_across(grid: &Grid, [a, b, c]: [Vec3; 3], longest: f32, walls: &mut [boo
     }
 }
 
-/// Tent filter of ±1 voxel along each axis: nearest-voxel sums become as smooth as trilinear splats.
+/// Tent filter of ±1 voxel along each axis. It makes nearest-voxel sums as smooth as trilinear splats.
 fn blur(grid: &Grid, values: &mut Vec<f32>, scratch: &mut Vec<f32>) {
     let [nx, ny, _] = grid.size;
     let slice = nx * ny;
     for stride in [1, nx, slice] {
         scratch.resize(values.len(), 0.0);
         let from = &values[..];
-        // The padding is empty, so wrapping at the faces mixes only zeros.
+        // The padding is empty, so wrapping around at the faces mixes only zeros.
         scratch.par_chunks_mut(slice).enumerate().for_each(|(z, out)| {
             let base = z * slice;
             for (i, value) in out.iter_mut().enumerate() {

@@ -1,4 +1,5 @@
-//! The bodies as the key lamp sees them: sharp shadow of a nose on a cheek, softened at the edge.
+//! The depth map of the bodies from the key lamp. It gives sharp shadows, such as that of a nose on a cheek,
+//! with softened edges.
 
 use crate::{
     body::raster::{Bins, ScreenTriangle},
@@ -9,28 +10,28 @@ use fearless_simd::{Level, dispatch, f32x8, i32x8, prelude::*};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Texels to each side over which shadow on skin is softened.
+/// Radius of the filter that softens shadows on skin [texels].
 pub(crate) const RADIUS: usize = 4;
-/// Rows that are drawn by one thread.
+/// Number of rows that one thread draws.
 const BAND: usize = SIDE;
 
-/// Texels that are left free around the bodies. Light on the ground beside their shadow is softened over some of them: no window of it that touches a body
-/// may reach over the map's edge. On bodies none does.
+/// Empty texels around the bodies. Light on the ground next to their shadow is filtered over some of them,
+/// and a filter window that touches a body must not extend over the map's edge. On bodies no window does.
 pub(crate) fn border(frame: &Frame) -> f32 {
     if frame.ground_seen().is_some() { 2.0 * RADIUS as f32 + 1.0 } else { 4.0 }
 }
 
-/// Depth along the light's rays, as an orthographic picture. Nearer the lamp is greater.
+/// Depth along the light's rays, as an orthographic picture. Greater is nearer to the lamp.
 #[derive(Debug, Default)]
 pub(crate) struct DepthMap {
     side: usize,
     right: Vec3,
     up: Vec3,
     toward: Vec3,
-    /// Texels per metre, and the texel of the world's origin.
+    /// Texels per meter, and the texel of the world's origin.
     scale: f32,
     origin: Vec2,
-    /// Greatest height above the plane through the origin that faces the lamp [m]; −∞ where nothing is.
+    /// Maximum height above the plane through the origin that faces the lamp [m]; −∞ for empty texels.
     heights: Vec<f32>,
     /// Vertices of one body: texels and height.
     vertices: Vec<Vec3>,
@@ -84,19 +85,20 @@ impl DepthMap {
         });
     }
 
-    /// Texels in a metre; 0 without bodies.
+    /// Texels per meter; 0 without bodies.
     pub fn scale(&self) -> f32 {
         if self.side > 0 { self.scale } else { 0.0 }
     }
 
-    /// Texel coordinates and height of a place.
+    /// Texel coordinates and height of a point.
     fn texel(&self, p: Vec3) -> Vec3 {
         let xy = Vec2::new(p.dot(self.right), p.dot(self.up)) * self.scale + self.origin;
         xy.extend(p.dot(self.toward))
     }
 
-    /// Share of the key lamp's light that bodies let through to eight places, 0 to 1: percentage-closer filtering (Reeves et al. 1987) of the
-    /// four texels around each. `bias` [m] keeps a surface from shading itself. Call it inside a `dispatch!`.
+    /// Fraction of the key lamp's light that bodies let through to eight points, 0 to 1: percentage-closer
+    /// filtering (Reeves et al. 1987) of the four texels around each. `bias` [m] keeps a surface from
+    /// shadowing itself. Must be called inside a `dispatch!`.
     #[inline(always)]
     pub fn light<S: Simd>(&self, simd: S, p: [f32x8<S>; 3], bias: f32) -> f32x8<S> {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
@@ -104,7 +106,7 @@ impl DepthMap {
         let y = dot(p, self.up) * self.scale + (self.origin.y - 0.5);
         let height = dot(p, self.toward) + bias;
         let edge = self.side as f32 - 2.5;
-        // Comparisons with what is no number are false; so they are for a map of no size.
+        // Comparisons with NaN are false. For a map of size 0 they are false too.
         let inside = x.simd_gt(1.0) & y.simd_gt(1.0) & x.simd_lt(edge) & y.simd_lt(edge);
         let (x, y) = (inside.select(x, zero), inside.select(y, zero));
         let (column, row) = (x.floor(), y.floor());
@@ -130,7 +132,7 @@ impl DepthMap {
         above + (below - above) * down
     }
 
-    /// As [`DepthMap::light`], under a tent of [`RADIUS`] texels to each side, for one place.
+    /// Like [`DepthMap::light`], with a tent filter of radius [`RADIUS`] texels, for one point.
     pub fn soft_light(&self, level: Level, p: Vec3, bias: f32) -> f32 {
         dispatch!(level, simd => self.soft_light_in_lanes(simd, p, bias))
     }
@@ -138,7 +140,8 @@ impl DepthMap {
     #[inline(always)]
     fn soft_light_in_lanes<S: Simd>(&self, simd: S, p: Vec3, bias: f32) -> f32 {
         let Some((corner, share, height)) = self.window(p) else { return 1.0 };
-        // A tent over the sample's place: its weights change smoothly as `p` moves, and add up to the radius squared.
+        // A tent centered on the sample. Its weights change smoothly as `p` moves, and their sum is the
+        // radius squared.
         let places = f32x8::simd_from(simd, [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
         let across = -((places - share.x).abs() * (1.0 / RADIUS as f32)) + 1.0;
         let mut down = [0.0; 2 * RADIUS];
@@ -152,8 +155,8 @@ impl DepthMap {
         (lit * across).reduce_sum() * (1.0 / (RADIUS * RADIUS) as f32)
     }
 
-    /// The square of 2 · [`RADIUS`] texels around `p`: the first of them, the place of `p` between the middle ones, and its height; `None` if it
-    /// reaches over the map's edge.
+    /// The square of 2 · [`RADIUS`] texels around `p`: its first texel, the position of `p` between the
+    /// middle texels, and its height; `None` if the square extends over the map's edge.
     #[inline(always)]
     fn window(&self, p: Vec3) -> Option<(usize, Vec2, f32)> {
         let t = self.texel(p);
@@ -168,7 +171,8 @@ impl DepthMap {
     }
 }
 
-/// How fast light is lost under what lies above [1/m]: over half a millimetre, not at once, or slopes would show stair steps.
+/// Rate at which light fades under an occluder [1/m]: over half a millimeter and not abruptly, which would
+/// show stair steps on slopes.
 pub(crate) const SLOPE: f32 = 2e3;
 
 #[inline(always)]

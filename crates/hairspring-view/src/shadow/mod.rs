@@ -1,4 +1,4 @@
-//! Shadow: how much of each lamp reaches a place.
+//! Shadow: how much light of each lamp reaches a point.
 
 pub(crate) mod contact;
 pub(crate) mod density;
@@ -22,21 +22,22 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 use std::ops::{Add, Mul};
 
-/// Everything between the lamps and the hair, worked out once a frame.
+/// All occlusion between the lamps and the hair, computed once per frame.
 #[derive(Debug, Default)]
 pub(crate) struct Shadow {
     density: Density,
     depths: Vec<Vec<f32>>,
-    /// Optical depth towards key, rim and fill, and the share of the sky that is seen.
+    /// Optical depth toward key, rim and fill, and the visible fraction of the sky.
     light: Vec<Vec4>,
     grid: Grid,
     map: DepthMap,
     contact: Contact,
-    /// Unit directions towards key, rim and fill.
+    /// Unit directions toward key, rim and fill.
     lamps: [Vec3; 3],
 }
 
-/// Directions over which the sky is averaged: up, and four slanting ones, none of them most along x: those sweeps take longest.
+/// Directions for averaging the sky: up and four slanted ones. None of them is mainly along x, because those
+/// sweeps take longest.
 pub(crate) const SKY: [Vec3; 5] = [
     Vec3::Y,
     Vec3::new(0.55, 0.45, 0.65),
@@ -45,10 +46,10 @@ pub(crate) const SKY: [Vec3; 5] = [
     Vec3::new(-0.55, 0.45, -0.65),
 ];
 
-/// What is found where nothing stands in the way.
+/// The value where nothing blocks the light.
 const CLEAR: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
 
-/// The box of a frame's bodies [m]; `None` where there are none, or where one reaches farther than a building.
+/// The box of a frame's bodies [m]; `None` if there are none, or if one is larger than a building.
 pub(crate) fn place(frame: &Frame) -> Option<(Vec3, Vec3)> {
     let points = frame.bodies.iter().flat_map(|b| b.positions).filter(|p| p.is_finite());
     let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -56,31 +57,32 @@ pub(crate) fn place(frame: &Frame) -> Option<(Vec3, Vec3)> {
     (found.0.cmple(found.1).all() && (found.1 - found.0).max_element() < 1e4).then_some(found)
 }
 
-/// Over what length the sharpest shadow has an edge [m], by the texels of the bodies' map in a metre and the side of a voxel of hair [m]; either is 0 where there
-/// are none.
+/// Width of the edge of the sharpest shadow [m]. `scale` is the resolution of the bodies' map in texels per
+/// meter, and `voxel` is the side of a hair voxel [m]; either is 0 if there are none.
 pub(crate) fn softness(scale: f32, voxel: f32) -> f32 {
     let bodies = if scale > 0.0 { RADIUS as f32 / scale } else { f32::INFINITY };
     let hair = if voxel > 0.0 { voxel } else { f32::INFINITY };
     bodies.min(hair).min(1e9)
 }
 
-/// How many of the swept depths belong to lamps; those of [`SKY`] follow.
+/// Number of swept depths that belong to lamps; those of [`SKY`] follow.
 const LAMPS: usize = 3;
 
-/// How deep hair may lie under bodies before it is in their shadow [m]: roots stand in the skin.
+/// Depth under the surface of bodies up to which hair is not in their shadow [m]: roots are inside the skin.
 pub(crate) const HAIR_BIAS: f32 = 3e-3;
-/// The same of bodies, whose map is not exact.
+/// The corresponding depth for bodies, whose map is not exact.
 pub(crate) const SKIN_BIAS: f32 = 8e-4;
 
-/// How fast the sky's light is lost (see [`sky_open`]).
+/// Attenuation of sky light (see [`sky_open`]).
 pub(crate) const SKY_LAW: f32 = 0.8;
 
-/// Share of light from one part of the sky that passes an optical depth. It comes around strands: a gentler law than the straight beam's.
+/// Fraction of the light from one part of the sky that passes an optical depth. The light comes around
+/// strands, so it is attenuated less than a direct beam.
 fn sky_open(depth: f32) -> f32 {
     1.0 / (1.0 + SKY_LAW * depth)
 }
 
-/// Mixes the values of a cell's eight corners.
+/// Interpolates the values of a cell's eight corners.
 #[inline(always)]
 fn trilinear<T>(cell: Cell, value: impl Fn(usize) -> T) -> T
 where
@@ -96,7 +98,7 @@ fn holds((low, high): (Vec3, Vec3), p: Vec3) -> bool {
     p.cmpge(low).all() && p.cmple(high).all()
 }
 
-/// Where a ray enters a box; `None`: nowhere.
+/// The point where a ray enters a box; `None` if it does not.
 fn entry((low, high): (Vec3, Vec3), p: Vec3, toward: Vec3) -> Option<Vec3> {
     let (a, b) = ((low - p) / toward, (high - p) / toward);
     let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
@@ -104,7 +106,7 @@ fn entry((low, high): (Vec3, Vec3), p: Vec3, toward: Vec3) -> Option<Vec3> {
 }
 
 impl Shadow {
-    /// Works out the shadow of a frame whose hair lies in `bounds`; `None`: no hair.
+    /// Computes the shadow of a frame whose hair is inside `bounds`; `None` if there is no hair.
     pub fn fill(&mut self, frame: &Frame, bounds: Option<(Vec3, Vec3)>, order: &Order) {
         self.light.clear();
         let (map, contact, density) = (&mut self.map, &mut self.contact, &mut self.density);
@@ -142,17 +144,18 @@ impl Shadow {
         });
     }
 
-    /// Works out the sharp shadow of bodies alone; that of hair stays as it was.
+    /// Computes only the sharp shadow of bodies; the hair shadow is not changed.
     pub fn fill_bodies(&mut self, frame: &Frame) {
         self.map.fill(frame);
     }
 
-    /// Whether there is no shadow of hair.
+    /// Whether there is no hair shadow.
     pub fn is_empty(&self) -> bool {
         self.light.is_empty()
     }
 
-    /// Optical depth of hair and far bodies towards key, rim and fill, and the share of sky seen; trilinear.
+    /// Optical depth of hair and far bodies toward key, rim and fill, and the visible fraction of the sky;
+    /// trilinear.
     #[inline(always)]
     pub fn light(&self, p: Vec3) -> Vec4 {
         match self.grid.cell(p) {
@@ -161,8 +164,9 @@ impl Shadow {
         }
     }
 
-    /// As [`Shadow::light`], for places that may lie outside the hair's grid: there, what stands between a place and a lamp, or a part of
-    /// the sky, is met where the way to it enters the grid. So nothing changes at once where a surface leaves the grid.
+    /// Like [`Shadow::light`], but for points that may be outside the hair's grid. For these, the value for
+    /// each lamp and each part of the sky is taken where the ray toward it enters the grid. Shadows are
+    /// therefore continuous where a surface leaves the grid.
     pub fn around(&self, p: Vec3) -> Vec4 {
         if self.light.is_empty() {
             return self.light(p);
@@ -184,7 +188,7 @@ impl Shadow {
         found
     }
 
-    /// Of [`Shadow::around`], the depth towards the key lamp alone.
+    /// The depth toward the key lamp of [`Shadow::around`].
     pub fn key_around(&self, p: Vec3) -> f32 {
         if self.light.is_empty() {
             return 0.0;
@@ -194,14 +198,15 @@ impl Shadow {
         place.map_or(0.0, |q| self.light(q).x)
     }
 
-    /// The grid's box without the outermost voxels: they are padding, which the sweeps leave clear.
+    /// The grid's box without the outermost voxels, which are padding that the sweeps leave clear.
     fn within(&self) -> (Vec3, Vec3) {
         let margin = Vec3::splat(2.0 * self.grid.voxel);
         let size = Vec3::from_array(self.grid.size.map(|n| (n - 1) as f32)) * self.grid.voxel;
         (self.grid.origin + margin, self.grid.origin + size - margin)
     }
 
-    /// For eight points of hair: [`Shadow::light`], and the share of the key lamp that bodies let through. Call it inside a `dispatch!`.
+    /// For eight points of hair: [`Shadow::light`], and the fraction of the key lamp's light that bodies let
+    /// through. Must be called inside a `dispatch!`.
     #[inline(always)]
     pub fn on_hair<S: Simd>(&self, simd: S, p: &[Row; 3], light: &mut [Row; 4], body: &mut Row) {
         let p = [f32x8::simd_from(simd, p[0]), f32x8::simd_from(simd, p[1]), f32x8::simd_from(simd, p[2])];
@@ -236,17 +241,17 @@ impl Shadow {
         }
     }
 
-    /// Share of the key lamp that bodies let through to a place on their surface.
+    /// Fraction of the key lamp's light that bodies let through to a point on their surface.
     pub fn on_skin(&self, level: Level, p: Vec3) -> f32 {
         self.map.soft_light(level, p, SKIN_BIAS)
     }
 
-    /// Over what length the sharpest shadow has an edge [m]; infinite where there is none.
+    /// Width of the edge of the sharpest shadow [m]; infinite if there is no shadow.
     pub fn softness(&self) -> f32 {
         softness(self.map.scale(), self.voxel())
     }
 
-    /// What bodies leave of the sky to the ground.
+    /// The sky visibility of the ground near bodies.
     pub fn contact(&self) -> &Contact {
         &self.contact
     }

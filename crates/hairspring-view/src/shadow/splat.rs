@@ -1,18 +1,20 @@
-//! Strands into the density grid, eight segments at a time.
+//! Splats strands into the density grid, eight segments at a time.
 
 use super::density::Grid;
 use crate::{frame::HairDraw, hair::shade::LANES};
 use fearless_simd::{f32x8, i32x8, prelude::*, u32x8};
 use glam::Vec3;
 
-/// Fixed-point units of one optical depth.
+/// Fixed-point units per optical depth.
 pub(crate) const UNIT: f32 = 65536.0;
-/// Greatest distance between two places at which a segment is counted [voxels]. The blur that follows spreads each over two voxels.
+/// Maximum distance between two samples of a segment [voxels]. The blur that follows spreads each over two
+/// voxels.
 pub(crate) const SPACING: f32 = 1.5;
-/// Longest segment that is counted [voxels]; longer ones have come apart.
+/// Maximum length of a segment [voxels]; longer ones belong to a broken strand and are ignored.
 pub(crate) const LONGEST: f32 = 64.0;
 
-/// Adds strands to `sum` at evenly spaced places, in units of 1 / [`UNIT`]. Call it inside a `dispatch!`.
+/// Adds strands to `sum` at evenly spaced samples, in units of 1 / [`UNIT`]. Must be called inside a
+/// `dispatch!`.
 #[inline(always)]
 pub(super) fn splat<S: Simd>(
     simd: S,
@@ -21,7 +23,7 @@ pub(super) fn splat<S: Simd>(
     strands: impl Iterator<Item = usize>,
     sum: &mut [u32],
 ) {
-    // Length [voxels] times the sum of two radii, times this: the share of a voxel's face that is covered.
+    // Length [voxels] times the sum of two radii times this factor is the covered fraction of a voxel's face.
     let scale = hair.width_scale * hair.look.shadow * UNIT / grid.voxel;
     for s in strands {
         let range = hair.range(s);
@@ -35,7 +37,7 @@ pub(super) fn splat<S: Simd>(
 /// Adds the first eight segments, or as many as there are.
 #[inline(always)]
 fn segments<S: Simd>(simd: S, grid: &Grid, points: &[Vec3], radii: &[f32], scale: f32, sum: &mut [u32]) {
-    // Lanes past the strand's end repeat its last point: they have no length.
+    // Lanes past the strand's end repeat its last point, so their length is zero.
     let last = points.len() - 1;
     let (mut p, mut radius) = ([[0.0; LANES + 1]; 3], [0.0; LANES + 1]);
     for lane in 0..=LANES {
@@ -44,7 +46,7 @@ fn segments<S: Simd>(simd: S, grid: &Grid, points: &[Vec3], radii: &[f32], scale
         (p[0][lane], p[1][lane], p[2][lane]) = (x, y, z);
         radius[lane] = radii[i];
     }
-    // In voxels from the grid's corner; `from` 0..1 is inside the first voxel.
+    // In voxels from the grid's corner; a coordinate in 0..1 is inside the first voxel.
     let per_voxel = 1.0 / grid.voxel;
     let corner = (grid.origin * per_voxel - Vec3::splat(0.5)).to_array();
     let mut from = [f32x8::splat(simd, 0.0); 3];
@@ -58,7 +60,7 @@ fn segments<S: Simd>(simd: S, grid: &Grid, points: &[Vec3], radii: &[f32], scale
     let [r0, r1] = pair(simd, &radius);
     let amount = length * (r0 + r1) * scale;
     let zero = f32x8::splat(simd, 0.0);
-    // Comparisons with what is no number are false.
+    // Comparisons with NaN are false.
     let counted = amount.simd_gt(0.0) & length.simd_lt(LONGEST);
     let places = counted.select((length * (1.0 / SPACING)).ceil().max(1.0), zero);
     let share = f32x8::splat(simd, 1.0) / places.max(1.0);
@@ -86,7 +88,7 @@ fn segments<S: Simd>(simd: S, grid: &Grid, points: &[Vec3], radii: &[f32], scale
     }
 }
 
-/// Both ends of eight segments in a row.
+/// Both ends of eight consecutive segments.
 #[inline(always)]
 fn pair<S: Simd>(simd: S, row: &[f32; LANES + 1]) -> [f32x8<S>; 2] {
     [f32x8::from_slice(simd, &row[..LANES]), f32x8::from_slice(simd, &row[1..])]
@@ -98,7 +100,8 @@ mod tests {
     use fearless_simd::{Level, dispatch};
     use hairspring_scene::HairLook;
 
-    /// A strand's length times its width is found again in the voxels that it passes, wherever it ends and whatever part of it is broken.
+    /// The voxels that a strand passes contain its length times its width, wherever it ends and whatever part
+    /// of it is broken.
     #[test]
     fn what_a_strand_covers_is_in_its_voxels() {
         let (grid, look) =
@@ -107,7 +110,7 @@ mod tests {
             for broken in [false, true] {
                 let at = |i: usize| Vec3::new(0.004 * i as f32 - 0.06, 0.03, 0.001 * i as f32);
                 let mut points: Vec<Vec3> = (0..n).map(at).collect();
-                // One point out of place takes two segments away.
+                // One misplaced point removes two segments.
                 let lost = if broken && n > 4 { 2 } else { 0 };
                 if lost > 0 {
                     points[2].x = f32::NAN;

@@ -1,9 +1,10 @@
-//! Optical depth towards a lamp for every voxel at once.
+//! Optical depth toward a lamp, for every voxel at once.
 //!
-//! Yuksel & Keyser 2008 ("Deep Opacity Maps") store how much hair lies before each depth along the light's rays. Here the same sum runs through the
-//! density grid slice by slice, away from the lamp: a voxel adds its own density to what the slice before holds, read bilinearly at the place where
-//! its ray crosses. There are no layers to see, the cost is one pass over the grid for a lamp of any direction, and the slight widening of
-//! the shadow from slice to slice is a penumbra.
+//! Yuksel & Keyser 2008 ("Deep Opacity Maps") store the amount of hair in front of each depth along the
+//! light's rays. Here the same sum is propagated through the density grid slice by slice, away from the lamp.
+//! Each voxel adds its own density to the value of the previous slice, interpolated bilinearly where its ray
+//! crosses that slice. There are no visible layers, and the cost is one pass over the grid for a lamp of any
+//! direction. The slight widening of the shadow from slice to slice acts as a penumbra.
 
 use super::density::Grid;
 use fearless_simd::{f32x8, prelude::*};
@@ -12,26 +13,28 @@ use glam::Vec3;
 /// How one direction is swept through a grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep {
-    /// Of the four voxels before: the first, the next in the row, in the next row, and in both.
+    /// Weights of four voxels of the previous slice: the first, the next in the row, the one in the next row,
+    /// and the diagonal one.
     pub weights: [f32; 4],
-    /// Way to the first of them, in voxels of memory.
+    /// Offset in memory to the first of them, in voxels.
     pub offset: isize,
-    /// Steps in memory: along a row, to the next row, to the next slice.
+    /// Strides in memory: along a row, to the next row, to the next slice.
     pub side: usize,
     pub across: usize,
     pub along: usize,
-    /// First and past-last voxel of a row, and row of a slice: those whose four neighbours lie in the grid. The rest is padding and stays clear.
+    /// First and past-the-end voxel of a row, and row of a slice, whose four neighbors are in the grid. The
+    /// rest is padding and stays clear.
     pub row: [usize; 2],
     pub rows: [usize; 2],
-    /// Slices, and whether they are walked from the last.
+    /// Number of slices, and whether they are traversed from the last one.
     pub slices: usize,
     pub down: bool,
-    /// Way of a ray from slice to slice [voxels].
+    /// Length of a ray from slice to slice [voxels].
     pub length: f32,
 }
 
 impl Sweep {
-    /// Towards `direction`, which has no length where the lamp has none: then there is nothing to sweep.
+    /// A sweep toward `direction`; `None` if the direction has no length, so that there is nothing to sweep.
     pub fn new(grid: &Grid, direction: Vec3) -> Option<Self> {
         let unit = direction.try_normalize()?;
         let strides = [1, grid.size[0], grid.size[0] * grid.size[1]];
@@ -44,7 +47,7 @@ impl Sweep {
         } else {
             (0, 1)
         };
-        // One slice towards the lamp, the ray moves by (du, dv) voxels and covers `length` voxels.
+        // Per slice toward the lamp, the ray moves by (du, dv) voxels and covers `length` voxels.
         let length = 1.0 / d[axis].abs();
         let (du, dv) = (d[u] * length, d[v] * length);
         let (iu, iv) = (du.floor(), dv.floor());
@@ -69,7 +72,8 @@ impl Sweep {
     }
 }
 
-/// Fills `depth` with the optical depth from each voxel's middle towards `direction`. Call it inside a `dispatch!`.
+/// Fills `depth` with the optical depth from each voxel's center toward `direction`. Must be called inside a
+/// `dispatch!`.
 #[inline(always)]
 pub(crate) fn sweep<S: Simd>(simd: S, grid: &Grid, density: &[f32], direction: Vec3, depth: &mut Vec<f32>) {
     depth.clear();
@@ -84,7 +88,8 @@ pub(crate) fn sweep<S: Simd>(simd: S, grid: &Grid, density: &[f32], direction: V
         for j in v0..v1 {
             let row = slice * sweep.along + j * across;
             let mut i = u0;
-            // Voxels that lie side by side in memory, unless the light falls along x: eight at a time. The row they read is another.
+            // Eight adjacent voxels at a time, unless the light falls along x. The row that they read is a
+            // different one.
             while side == 1 && i + 8 <= u1 {
                 let at = row + i;
                 let from = (at as isize + offset) as usize;

@@ -1,5 +1,6 @@
-//! Entries of lists: colliders, hands, sources of wind, charged bodies; and the keys of a motion made by hand. Each is shown with all that its text or its defaults say of it, every
-//! number with its unit, what it does and, where it was changed, a reset.
+//! List entries: colliders, tools, wind sources, charged bodies, and the keys of a manual motion. Each entry
+//! shows all fields from its text and its defaults. Every number has its unit, a tooltip and, if it was
+//! changed, a reset button.
 
 mod rows;
 
@@ -12,7 +13,7 @@ use glam::Vec3;
 use rows::Rows;
 use toml_edit::{DocumentMut, TableLike, Value};
 
-/// Fields that an entry may have though neither its text nor its defaults say so, by the list.
+/// Optional fields of entries, by list. They are shown even if neither the text nor the defaults have them.
 const MORE: [(&str, &[&str]); 5] = [
     ("collider", &["joint"]),
     ("sheet", &["joint"]),
@@ -21,17 +22,17 @@ const MORE: [(&str, &[&str]); 5] = [
     ("hand", &["joint", "until"]),
 ];
 
-/// A list of the scene file, and what can be added to it.
+/// A list of the scene file, and the entries that can be added to it.
 pub struct List {
     name: &'static str,
     label: &'static str,
-    /// What one of its entries is called.
+    /// Label of one entry.
     one: &'static str,
-    /// Name of each kind of entry and the text of its fields.
+    /// Name of each kind of entry, and the text of its fields.
     kinds: &'static [(&'static str, &'static str)],
 }
 
-/// What blows and charges.
+/// Wind sources and charged bodies.
 pub const AIR: [List; 2] = [
     List {
         name: "wind_source",
@@ -57,7 +58,7 @@ pub const AIR: [List; 2] = [
     },
 ];
 
-/// What hair meets and what holds it.
+/// Colliders, sheets and tools.
 pub const COLLISION: [List; 3] = [
     List {
         name: "collider",
@@ -70,7 +71,7 @@ pub const COLLISION: [List; 3] = [
             ("Floor", "shape.plane = { point = [0.0, 1.32, 0.0], normal = [0.0, 1.0, 0.0] }"),
         ],
     },
-    // Each is a file of its own: there is nothing to add it from.
+    // A sheet is a file, so it cannot be added here.
     List { name: "sheet", label: "Sheets", one: "Sheet", kinds: &[] },
     List {
         name: "hand",
@@ -87,10 +88,11 @@ pub const COLLISION: [List; 3] = [
     },
 ];
 
-/// What is looked at where the places of what can be added are as they stand above [m].
+/// The camera target that the positions of the templates above refer to [m].
 const LOOK: Vec3 = Vec3::new(0.0, 1.5, 0.0);
 
-/// The text of an entry's fields with its places moved by `by` [m]: what is added is where one looks.
+/// The text of an entry's fields with its positions moved by `by` [m], so that a new entry appears in the
+/// view.
 fn placed(fields: &str, by: Vec3) -> String {
     fn shift(table: &mut dyn TableLike, by: Vec3) {
         for (name, item) in table.iter_mut() {
@@ -117,7 +119,7 @@ fn placed(fields: &str, by: Vec3) -> String {
     document.to_string()
 }
 
-/// Shows these lists; what is added stands about `at` [m].
+/// Shows these lists. New entries are placed around `at` [m].
 pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], at: Vec3, actions: &mut Vec<Action>) {
     let effective = session.edited().effective();
     for list in lists {
@@ -160,7 +162,7 @@ pub fn show(ui: &mut Ui, session: &Session, lists: &'static [List], at: Vec3, ac
     }
 }
 
-/// Shows the motion: its keys, if it is made of keys, or where it is from.
+/// Shows the motion: its keys, or the file that it comes from.
 pub fn motion(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let clip = session.edited().effective().get("clip");
     let key = Key::top("clip");
@@ -182,7 +184,7 @@ pub fn motion(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.weak("Keys take the place of the scene's own motion, and each change begins the scene anew.");
 }
 
-/// What kind of collider or tool an entry is, if there are kinds of it.
+/// The kind of a collider or tool, if the entry has one.
 fn kind(entry: &toml::Value) -> Option<&str> {
     let shape = entry.get("shape").or_else(|| entry.get("tool"))?;
     shape.as_table()?.keys().next().map(String::as_str)
@@ -198,7 +200,7 @@ mod tests {
     const SCENE: &str = "[builtin]\nstrands = 10\nguides = 5\n\n[[hand]]\ntool.grab = { center = [0.1, 1.3, 0.1], radius = 0.02 }\n\n\
         [[charged]]\ncenter = [0.3, 1.8, 0.0]\nradius = 0.13\ncharge = -2e-7\n";
 
-    /// The lists of a scene, and what has been done to it.
+    /// The lists of a scene, and the session that records the actions.
     fn panel(text: &str) -> (Harness<'static>, Rc<RefCell<Session>>) {
         let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
         let session = Rc::new(RefCell::new(Session::new(document, 1, None, || ()).unwrap()));
@@ -225,7 +227,7 @@ mod tests {
     fn keys_are_added_and_taken_out_by_buttons_and_undo_leads_back() {
         let (mut harness, session) = panel(SCENE);
         let says = |text: &str| session.borrow().document().text().contains(text);
-        // In the order of the panel: the charged body's, the hand's, the motion's.
+        // In the order of the panel: those of the charged body, of the tool and of the motion.
         press(&mut harness, "Add a key", 0);
         assert!(
             says("path = [{ time = 1.0, center = [0.3, 1.8, 0.0] }]"),
@@ -284,7 +286,7 @@ mod tests {
         act(Action::Set("charged[1].radius".parse().unwrap(), Some(0.2.into())));
         harness.run_steps(3);
         assert_eq!(resets(&harness), 1);
-        // The entry before it goes, and one is added behind.
+        // The entry before it is removed, and one is appended.
         act(Action::Remove("charged", 0));
         act(Action::Add("charged", "center = [0.0, 2.0, 0.0]\nradius = 0.3\ncharge = 1e-7\n".into()));
         harness.run_steps(3);
@@ -296,7 +298,7 @@ mod tests {
             act(Action::Undo);
         }
         assert_eq!(text(), scene);
-        // What is written as it counts anyway is no change.
+        // Writing the value that already applies is not a change.
         act(Action::Set("charged[0].solid".parse().unwrap(), Some(true.into())));
         harness.run_steps(3);
         assert_eq!(resets(&harness), 0);

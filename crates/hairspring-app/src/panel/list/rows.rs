@@ -1,4 +1,5 @@
-//! An entry's fields as rows, every number with its unit, what it does and, where it was changed, a reset.
+//! The fields of an entry as rows. Every number has its unit, a tooltip and, if it was changed, a reset
+//! button.
 
 use super::super::{Labelled, keys};
 use crate::{
@@ -10,10 +11,10 @@ use crate::{
 use eframe::egui::{self, DragValue, RichText, Ui};
 use toml_edit::Value;
 
-/// Width of names [points].
+/// Width of labels [points].
 const LABEL: f32 = 86.0;
 
-/// Rows of the fields of an entry of a list.
+/// Rows for the fields of a list entry.
 pub(super) struct Rows<'a> {
     pub(super) session: &'a Session,
     pub(super) list: &'static str,
@@ -21,7 +22,8 @@ pub(super) struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// The fields of a table: those of a table in it first, then its own in the order in which they are told of.
+    /// Shows the fields of a table: first those of a nested table, then its own in the order of their
+    /// definitions.
     pub(super) fn fields(&mut self, ui: &mut Ui, key: &Key, value: &toml::Value) {
         let Some(table) = value.as_table() else { return };
         for (name, inner) in table.iter().filter(|(_, value)| value.is_table()) {
@@ -34,16 +36,16 @@ impl Rows<'_> {
         }
     }
 
-    /// One field.
+    /// Shows one field.
     pub(super) fn field(&mut self, ui: &mut Ui, key: &Key, name: &str, value: Option<&toml::Value>) {
         let Some(field) = of(self.list, name) else { return };
         let document = self.session.edited();
         let said = key.look_up(document.said()).is_some();
-        // Of what was added there is no other value to go back to than that before the last step.
+        // An added entry has no original value; only undo reverts its changes.
         let before = document.first(key).filter(|[_, counted]| *counted != key.look_up(document.effective()));
         let back = before.map(|[said, _]| said.and_then(edit::written));
         if let Kind::Keys(keys) = field.kind {
-            // The corners of a hull may be a file's: the text says none then.
+            // If the corners of a hull come from a file, the text has none.
             if name == "points" && !said {
                 return;
             }
@@ -58,7 +60,7 @@ impl Rows<'_> {
             return;
         }
         ui.push_id(name, |ui| {
-            // What is too long for the panel goes on below: it does not grow.
+            // Fields that are too long for the panel wrap, so that it does not grow.
             ui.horizontal_wrapped(|ui| {
                 let left = egui::Layout::left_to_right(egui::Align::Center);
                 ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
@@ -73,7 +75,7 @@ impl Rows<'_> {
         });
     }
 
-    /// What brings a field back, where it was changed since the scene was opened.
+    /// Shows the reset button of a field that was changed since the scene was opened.
     fn reset(&mut self, ui: &mut Ui, key: &Key, back: Option<Option<Value>>) {
         let Some(back) = back else { return };
         if ui.small_button("reset").on_hover_text("Back to how the scene was opened").clicked() {
@@ -81,7 +83,7 @@ impl Rows<'_> {
         }
     }
 
-    /// What the first key says: where a charged body is, a second later; elsewhere 0.
+    /// The first key of a new list: for a charged body its current position, one second later; otherwise 0.
     fn first_key(&self, key: &Key, name: &str) -> Vec<f64> {
         let effective = self.session.edited().effective();
         let center = key.sibling("center").look_up(effective).and_then(toml::Value::as_array);
@@ -94,7 +96,8 @@ impl Rows<'_> {
         }
     }
 
-    /// The widget of a field: `Some(None)` takes it away. What lies in range is known to the reader of the file, which refuses the rest.
+    /// The widget of a field. `Some(None)` removes the field. The file's reader checks ranges and rejects
+    /// invalid values.
     fn control(&self, ui: &mut Ui, field: &Field, value: Option<&toml::Value>) -> Option<Option<Value>> {
         match (field.kind, value) {
             (Kind::Joint, value) => {
@@ -150,7 +153,7 @@ impl Rows<'_> {
     }
 }
 
-/// Its name, which stands out where it was changed.
+/// The label of a field, emphasized if the field was changed.
 fn name_of(field: &Field, back: &Option<Option<Value>>) -> RichText {
     let name = RichText::new(field.label);
     if back.is_some() { name.strong() } else { name }
@@ -169,7 +172,7 @@ fn as_number(value: &toml::Value) -> Option<f64> {
 
 fn number(ui: &mut Ui, x: f64, unit: &str, tip: &str) -> Option<f64> {
     let mut new = x;
-    // A hundredth of the number a point, or a centimetre's hundredth near 0.
+    // A hundredth of the number per point of drag, with a minimum of 0.001 except for very small numbers.
     let speed = (x.abs() * 0.01).max(if x == 0.0 || x.abs() > 1e-4 { 1e-3 } else { 0.0 });
     let drag = DragValue::new(&mut new).speed(speed);
     let drag = if unit.is_empty() { drag } else { drag.suffix(format!(" {unit}")) };

@@ -1,4 +1,4 @@
-//! The panel has every field of the scene file, or it is said why not, and each has a value and a default.
+//! The panel has every field of the scene file, or a reason why not, and each has a value and a default.
 
 use super::*;
 use crate::field;
@@ -23,7 +23,7 @@ fn every_parameter_has_a_value_and_a_default() {
     }
 }
 
-/// Fields of the scene file that the panel does not have, and why.
+/// Fields of the scene file that are not in the panel, and why.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("name", "what the scene is called, and nothing that is seen"),
     ("builtin.material", "a name of a table: the panel chooses its preset, and has all its fields"),
@@ -58,7 +58,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("groom.grow.inside", "where hair grows is said with its parts"),
 ];
 
-/// The book has a page for every field of the scene file: `book_is_complete` sees to that.
+/// `book_is_complete` checks that the book has a page for every field of the scene file.
 #[test]
 fn every_field_of_the_scene_file_is_in_the_panel_or_is_said_why_not() {
     let known: Vec<String> = parameter::ALL

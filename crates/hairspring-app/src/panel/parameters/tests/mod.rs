@@ -1,4 +1,5 @@
-//! The panel has every parameter of the scene file, says what each takes and which were changed, and writes what was meant.
+//! The panel has every parameter of the scene file, shows which values each accepts and which were changed,
+//! and writes the intended text.
 
 mod complete;
 
@@ -7,7 +8,7 @@ use crate::document::{Change, Document, Way};
 use egui_kittest::{Harness, kittest::Queryable};
 use std::{cell::RefCell, path::Path, rc::Rc};
 
-/// Has all that a scene may have once.
+/// A scene with every table that a scene may have once.
 const WHOLE: &str = "[body]\nfile = \"b.obj\"\n[clip]\nfile = \"m.bvh\"\njoint = \"Head\"\npivot = [0.0, 0.0, 0.0]\n\
     [camera]\nfov = 20.0\n[[groom]]\nmaterial = \"curly\"\n[groom.grow]\nstrands = 10\n";
 const HEAD: &str = "[builtin]\nstyle = \"wavy\"\nstrands = 10\nguides = 5\n";
@@ -20,7 +21,7 @@ fn parameter(name: &str) -> &'static Parameter {
     parameter::ALL.iter().find(|p| p.name == name).unwrap()
 }
 
-/// The panel of a scene, with a search, and what has been done to it.
+/// The panel of a scene with a search, and the recorded actions.
 struct Panel {
     harness: Harness<'static>,
     session: Rc<RefCell<Session>>,
@@ -109,7 +110,7 @@ fn what_was_changed_goes_back_to_what_was_opened() {
     panel.harness.get_by_label("reset").click();
     panel.harness.run_steps(3);
     assert_eq!(panel.text(), text);
-    // A material of its own begins from the style's, and goes back to it.
+    // A new material is based on the style's, and can be reset to it.
     act(&panel, "preset", "coily".into());
     assert!(panel.text().contains("preset = \"coily\""));
     let back = edit::reset(panel.session.borrow().edited(), parameter("preset"), (0, 0));
@@ -196,7 +197,7 @@ fn equal_ways_of_a_slider_from_0_are_equal_steps() {
         key.look_up(session.document().effective()).and_then(toml::Value::as_float).unwrap()
     });
     let [first, second] = [values[1] - values[0], values[2] - values[1]];
-    // A slider rounds to what a pixel tells apart.
+    // A slider rounds to the resolution of a pixel.
     assert!(first > 0.05 && (first - second).abs() < 0.06, "{values:?}");
 }
 
@@ -294,7 +295,7 @@ fn the_colour_picker_opens_and_its_letters_are_known() {
     let mut panel = panel(HEAD, "root");
     let button = panel.harness.query_all_by_role(egui::accesskit::Role::ColorWell).next().unwrap();
     button.click();
-    // A letter that no font has ends the test.
+    // A glyph that no font has fails the test.
     panel.harness.run_steps(3);
     assert!(panel.harness.query_by_label("📋").is_some());
 }
