@@ -156,11 +156,12 @@ impl Totals {
         }
         let contact = stage.measure();
         say(format_args!(
-            "contact  {} points inside at the end, at most {:.3} mm deep; {} segments deeper than 1 mm, at most {:.3} mm deep",
+            "contact  {} points inside at the end, at most {:.3} mm deep; {} segments deeper than 1 mm, at most {:.3} mm deep ({:.3} mm in the meshes)",
             grouped(contact.inside_points),
             contact.max_depth * 1e3,
             grouped(contact.deep_segments),
-            contact.segment_depth * 1e3
+            contact.segment_depth * 1e3,
+            contact.surface_depth * 1e3
         ));
         if contact.held_segments > 0 {
             say(format_args!(
@@ -203,6 +204,7 @@ impl Totals {
             "inside_segments": contact.inside_segments,
             "deep_segments": contact.deep_segments,
             "segment_depth_m": contact.segment_depth,
+            "surface_depth_m": contact.surface_depth,
             "held_segments": contact.held_segments,
             "held_depth_m": contact.held_depth,
             "ms_per_frame": stages,

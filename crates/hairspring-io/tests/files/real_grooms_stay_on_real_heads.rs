@@ -84,16 +84,18 @@ fn moves(scene: Scene, bounds: &Bounds) {
         );
         worst.stretch_max = worst.stretch_max.max(measure.stretch_max);
         worst.max_depth = worst.max_depth.max(measure.max_depth);
+        worst.surface_depth = worst.surface_depth.max(measure.surface_depth);
         inside = inside.max(measure.inside_points);
         let off = root_error(&stage);
         assert!(off < 1e-4, "at {} s a root is {off} m from where the body carries it", stage.time());
     }
     let share = inside as f64 / points;
     println!(
-        "in motion: stretch {:.3} %, {inside} points ({:.4} %) inside, at most {:.3} mm deep",
+        "in motion: stretch {:.3} %, {inside} points ({:.4} %) inside, at most {:.3} mm deep, segments {:.3} mm in the mesh",
         worst.stretch_max * 100.0,
         share * 100.0,
-        worst.max_depth * 1e3
+        worst.max_depth * 1e3,
+        worst.surface_depth * 1e3
     );
     assert!(worst.stretch_max < 0.011, "a segment is {} of its length off it", worst.stretch_max);
     assert!(share <= bounds.inside, "{inside} points, a share of {share}, are inside");

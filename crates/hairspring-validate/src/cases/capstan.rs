@@ -78,7 +78,7 @@ fn slides(mu: f64, ratio: f64, method: Method) -> Result<bool, Failure> {
     path.extend((0..=wrapped).map(|k| at(PI * k as f64 / wrapped as f64)));
     path.extend((1..=hanging).map(|k| at(PI) - DVec3::Y * (k as f64 * l)));
 
-    let mut setup = Setup::chain(path.iter().map(|p| p.as_vec3()).collect());
+    let mut setup = Setup::limp(path.iter().map(|p| p.as_vec3()).collect());
     setup.gravity = DVec3::ZERO;
     setup.material.drag = 0.8;
     setup.material.friction = mu as f32;

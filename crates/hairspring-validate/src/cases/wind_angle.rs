@@ -24,7 +24,7 @@ pub const CASE: Case = Case {
 };
 
 fn measure(speed: f64, method: Method) -> Result<Vec<f64>, Failure> {
-    let mut setup = Setup::chain(pinned(method.points, LENGTH, DVec3::NEG_Y, DVec3::NEG_Y));
+    let mut setup = Setup::limp(pinned(method.points, LENGTH, DVec3::NEG_Y, DVec3::NEG_Y));
     setup.material.drag = 1.0;
     setup.wind = DVec3::X * speed;
     let rest = Specimen::new(setup, method).settle()?;

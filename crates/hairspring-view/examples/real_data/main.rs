@@ -142,18 +142,20 @@ impl Played {
             inside_segments,
             deep_segments,
             segment_depth,
+            surface_depth,
             held_segments,
             held_depth,
             ..
         } = self.worst;
         format!(
-            "{} | {} | {} | {inside_points} | {:.3} | {inside_segments} | {deep_segments} | {} | {:.3} | {held_segments} | {:.3} | {:.1}",
+            "{} | {} | {} | {inside_points} | {:.3} | {inside_segments} | {deep_segments} | {} | {:.3} | {:.3} | {held_segments} | {:.3} | {:.1}",
             stage.scene().solver.substeps,
             self.frames.len(),
             stage.simulated_points().0,
             max_depth * 1e3,
             self.deep_frames,
             segment_depth * 1e3,
+            surface_depth * 1e3,
             held_depth * 1e3,
             self.median(|f| f[1]),
         )
@@ -195,6 +197,7 @@ fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
             max_depth: worst.max_depth.max(measure.max_depth),
             inside_segments: worst.inside_segments.max(measure.inside_segments),
             deep_segments: worst.deep_segments.max(measure.deep_segments),
+            surface_depth: worst.surface_depth.max(measure.surface_depth),
             segment_depth: worst.segment_depth.max(measure.segment_depth),
             held_segments: worst.held_segments.max(measure.held_segments),
             held_depth: worst.held_depth.max(measure.held_depth),

@@ -6,6 +6,7 @@ mod frame_colliders;
 mod holes;
 mod hull;
 mod lattice;
+mod mesh_distance;
 mod moving_collider;
 mod pose;
 mod sdf;

@@ -22,9 +22,9 @@ pub struct SignedDistanceField {
     /// Index of the nearest triangle for each node of the band; unspecified for other nodes. One for each
     /// node.
     pub(super) nearest: Vec<u32>,
-    /// Corners of the triangles and their displacement during the last interval, in the field's space [m].
-    /// Empty: the surface is rigid.
-    triangles: Vec<[Vec3; 3]>,
+    /// Corners of the triangles, in the field's space [m]. Empty: the field was not made from a mesh.
+    pub(super) triangles: Vec<[Vec3; 3]>,
+    /// Displacement of those corners during the last interval [m]. Empty: the surface is rigid.
     moved: Vec<[Vec3; 3]>,
     /// The field at the end of each equal time slice of the last frame, except the last slice. Empty if
     /// the surface did not move far in that frame.
@@ -73,10 +73,10 @@ impl SignedDistanceField {
         self.distances[lattice.nodes()..].fill(f32::MAX);
         self.nearest.resize(lattice.nodes(), 0);
         self.triangles.clear();
+        self.triangles.extend(triangles.iter().map(|t| t.map(|i| positions[i as usize])));
         self.moved.clear();
         self.previous_slices.clear();
         if let Some(before) = before {
-            self.triangles.extend(triangles.iter().map(|t| t.map(|i| positions[i as usize])));
             let moved = |i: u32| positions[i as usize] - before[i as usize];
             self.moved.extend(triangles.iter().map(|t| t.map(moved)));
         }

@@ -20,14 +20,24 @@ impl ColliderShape {
     /// the collider's own space; negative inside. If the middle is far enough outside, only the middle is
     /// sampled.
     pub fn least_distance(&self, a: Vec3, b: Vec3) -> f32 {
-        let middle = self.distance(a.midpoint(b));
-        // The gradient of a field is not exactly of unit length, so the margin is doubled.
-        if middle > a.distance(b) {
-            return middle;
-        }
-        let places = (1..=PLACES).map(|k| a.lerp(b, k as f32 / PLACES as f32));
-        places.map(|p| self.distance(p)).fold(middle, f32::min)
+        least(a, b, |p| self.distance(p))
     }
+
+    /// Like [`ColliderShape::least_distance`], to the exact surface:
+    /// [`ColliderShape::distance_to_surface`].
+    pub fn least_distance_to_surface(&self, a: Vec3, b: Vec3) -> f32 {
+        least(a, b, |p| self.distance_to_surface(p))
+    }
+}
+
+fn least(a: Vec3, b: Vec3, distance: impl Fn(Vec3) -> f32) -> f32 {
+    let middle = distance(a.midpoint(b));
+    // The gradient of a field is not exactly of unit length, so the margin is doubled.
+    if middle > a.distance(b) {
+        return middle;
+    }
+    let places = (1..=PLACES).map(|k| a.lerp(b, k as f32 / PLACES as f32));
+    places.map(distance).fold(middle, f32::min)
 }
 
 impl ColliderPose {
