@@ -235,6 +235,10 @@ fn collider(
             let some = all.iter().step_by(1 + all.len() / TRIANGLES);
             some.for_each(|t| triangle(pen, t.map(|p| pose.point(p)), stroke));
         }
+        ColliderShape::Custom(custom) => {
+            let (center, radius) = custom.bounds();
+            pen.ball(pose.point(center), radius, stroke);
+        }
         ColliderShape::Field(_) => skin(pen, scenery, stroke.color),
     }
 }

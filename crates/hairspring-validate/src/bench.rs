@@ -139,15 +139,13 @@ impl Bench {
         // The hair falls from standing out. No fiber could hold that shape in balance, so the sag-free start
         // is off.
         let solver = Solver { sag_free: false, ..solver };
-        let simulation = Simulation::new(
-            groom,
-            &all,
-            &[material],
-            solver,
-            Vec3::new(0.0, -9.81, 0.0),
-            RigidTransform::default(),
-            &[pose],
-        );
+        let simulation = Simulation::builder(groom)
+            .strands(&all)
+            .materials(&[material])
+            .solver(solver)
+            .colliders_at_rest(&[pose])
+            .build()
+            .unwrap();
         Self {
             simulation,
             wind: Wind::default(),

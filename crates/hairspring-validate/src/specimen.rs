@@ -208,8 +208,14 @@ impl Specimen {
         let poses: Vec<ColliderPose> =
             obstacles.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();
         let gravity = setup.gravity.as_vec3();
-        let simulation =
-            Simulation::new(groom, &[0], &[material], solver, gravity, RigidTransform::default(), &poses);
+        let simulation = Simulation::builder(groom)
+            .strands(&[0])
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .colliders_at_rest(&poses)
+            .build()
+            .unwrap();
         debug_assert_eq!(simulation.point_count(), count);
         let (wind, substep) = (setup.wind.as_vec3(), FRAME / method.substeps as f64);
         Self { simulation, root, obstacles, wind, substep, at }

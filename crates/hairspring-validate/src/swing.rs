@@ -149,15 +149,13 @@ impl Swing {
         let roots = (0..sample.strand_count())
             .map(|s| RigidTransform { translation: sample.groom.strand(s)[0], ..RigidTransform::default() })
             .collect();
-        let simulation = Simulation::new(
-            sample.groom.clone(),
-            &all,
-            &materials,
-            Solver { substeps: 1, integrator, ..sample.solver },
-            sample.gravity * p2,
-            RigidTransform::default(),
-            &[],
-        );
+        let simulation = Simulation::builder(sample.groom.clone())
+            .strands(&all)
+            .materials(&materials)
+            .solver(Solver { substeps: 1, integrator, ..sample.solver })
+            .gravity(sample.gravity * p2)
+            .build()
+            .unwrap();
         Self { simulation, roots, step: (h / pace) as f32, pace }
     }
 

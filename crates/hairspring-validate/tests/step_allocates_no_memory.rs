@@ -130,15 +130,13 @@ fn wind_and_charge_allocate_nothing() {
             .collect();
         let material = Material { charge: 1e-9, ..Material::default() };
         let gravity = Vec3::NEG_Y * 9.81;
-        let mut simulation = Simulation::new(
-            groom,
-            &strands,
-            &[material],
-            Solver::default(),
-            gravity,
-            RigidTransform::default(),
-            &[],
-        );
+        let mut simulation = Simulation::builder(groom)
+            .strands(&strands)
+            .materials(&[material])
+            .solver(Solver::default())
+            .gravity(gravity)
+            .build()
+            .unwrap();
         simulation.set_wind_occlusion(&WindOcclusion { hair: 50.0, ..WindOcclusion::default() });
         let flow = Flow::Point { center: Vec3::ZERO, radius: 0.1, speed: 1.0 };
         let sources = [Source { flow, pose: RigidTransform::default(), factor: 1.0 }];

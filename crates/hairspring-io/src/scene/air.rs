@@ -1,13 +1,17 @@
 //! Range checks for the wind and charge settings of a scene file.
 
 use super::{
-    check::{Check, above_0, finite, first_failure, from_0},
+    check::{Check, finite, first_failure},
     file::SceneFile,
     sentence::line_at,
 };
 use crate::Problem;
 use glam::Vec3;
-use hairspring::{air::Flow, forces::charge::Charged};
+use hairspring::{
+    air::Flow,
+    forces::charge::Charged,
+    settings::{above_0, from_0},
+};
 
 /// Checks `[wind]`, `[[wind_source]]`, `[turbulence]`, `[wind_occlusion]` and `[[charged]]`.
 pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {

@@ -44,7 +44,7 @@ pub(super) fn settings(text: &str, scene: &SceneFile, file: &BuiltinFile) -> Res
         check::look(text, line_at(text, start), &hair.look)?;
     }
     hair.effects = file.effects;
-    check::effects(text, line_at(text, start), &hair.effects)?;
+    check::in_range(text, line_at(text, start), &hair.effects)?;
     Ok(made)
 }
 

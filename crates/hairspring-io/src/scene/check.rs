@@ -10,34 +10,15 @@ use crate::Problem;
 use glam::Vec3;
 use hairspring::{
     forces::Manipulator,
-    groom::MAX_COORDINATE,
-    material::{GlobalShape, Material},
-    settings::Effects,
+    settings::{Validate, above_0, from_0},
 };
 use hairspring_scene::{Guides, HairLook, Hand, Shape};
 
-/// One check: whether it holds, the key that it is about, and what is expected.
+/// A rule of this reader: whether it holds, the key that it is about, and what is expected.
 pub(super) type Check = (bool, &'static str, &'static str);
 
 pub(super) fn finite(v: Vec3) -> bool {
     v.is_finite()
-}
-
-/// Whether a value is finite and above 0, or absent.
-pub(super) fn above_0(x: Option<f32>) -> bool {
-    x.is_none_or(|x| x.is_finite() && x > 0.0)
-}
-
-/// Whether a value is finite, and 0 or more.
-pub(super) fn from_0(x: f32) -> bool {
-    x.is_finite() && x >= 0.0
-}
-
-/// Whether the weights of a material's mass profile are valid.
-fn profile(weights: &[f32]) -> bool {
-    let least = weights.iter().copied().fold(f32::INFINITY, f32::min);
-    let holds = |w: &f32| w.is_finite() && *w > 0.0 && *w <= least * 100.0;
-    (1..=64).contains(&weights.len()) && weights.iter().all(holds)
 }
 
 /// Whether a color's channels are 0 to 1.
@@ -54,6 +35,12 @@ pub(super) fn first_failure(text: &str, from: usize, checks: &[Check]) -> Result
             Err(Problem::line(line, format!("`{key}` must be {expected}")))
         }
     }
+}
+
+/// Reports the first value of `settings` outside of its range, at the line of its key from line `from` on.
+pub(super) fn in_range(text: &str, from: usize, settings: &impl Validate) -> Result<(), Problem> {
+    let checks: Vec<Check> = settings.checks().iter().map(|c| (c.holds, c.key, c.expected)).collect();
+    first_failure(text, from, &checks)
 }
 
 /// Checks all settings except the materials.
@@ -125,7 +112,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         let from = line_at(text, groom.start());
         first_failure(text, from, &checks)?;
         look(text, from, &groom.look)?;
-        effects(text, from, &groom.effects)?;
+        in_range(text, from, &groom.effects)?;
         let thicken = &groom.thicken;
         let thickened = [
             (thicken.copies <= 1_000, "copies", "0 to 1000"),
@@ -155,30 +142,9 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         first_failure(text, section("[[collider]]"), &[(sound(&collider.shape), "shape", SOUND)])?;
     }
     air::ranges(text, scene)?;
-    let solver = &scene.solver;
-    let solvers = [
-        ((1..=64).contains(&solver.substeps), "substeps", "1 to 64"),
-        ((0..=20).contains(&solver.projection_iterations), "projection_iterations", "0 to 20"),
-        ((0.0..=60.0).contains(&solver.preroll), "preroll", "0 to 60 [s]"),
-        ((0.0..=1.0).contains(&solver.inertia), "inertia", "0 to 1"),
-        (above_0(Some(solver.teleport_distance)), "teleport_distance", "above 0 [m]"),
-    ];
-    first_failure(text, section("[solver]"), &solvers)?;
-    let volume = &scene.volume;
-    let volumes = [
-        (above_0(volume.cell), "cell", "above 0 [m]"),
-        (from_0(volume.friction), "friction", "0 or more [1/s]"),
-        (from_0(volume.pressure), "pressure", "0 or more [m/s]"),
-        (from_0(volume.recovery_rate), "recovery_rate", "0 or more [1/s]"),
-    ];
-    first_failure(text, section("[volume]"), &volumes)?;
-    let neighbours = &scene.neighbours;
-    let neighbours = [
-        (above_0(neighbours.radius), "radius", "above 0 [m]"),
-        (from_0(neighbours.friction), "friction", "0 or more"),
-        (from_0(neighbours.stiction), "stiction", "0 or more [N]"),
-    ];
-    first_failure(text, section("[neighbours]"), &neighbours)?;
+    in_range(text, section("[solver]"), &scene.solver)?;
+    in_range(text, section("[volume]"), &scene.volume)?;
+    in_range(text, section("[neighbours]"), &scene.neighbours)?;
     if let Some(camera) = &scene.camera {
         let cameras = [
             (finite(camera.position), "position", "three finite numbers [m]"),
@@ -323,50 +289,4 @@ pub(super) fn look(text: &str, from: usize, look: &HairLook) -> Result<(), Probl
         ((0.0..=4.0).contains(&look.shadow), "shadow", "0 to 4"),
     ];
     first_failure(text, from, &checks)
-}
-
-/// Checks the styling effects of follow hairs, from line `from` on.
-pub(super) fn effects(text: &str, from: usize, effects: &Effects) -> Result<(), Problem> {
-    let checks = [
-        ((0.0..=1.0).contains(&effects.clump), "clump", "0 to 1"),
-        ((0.0..=MAX_COORDINATE).contains(&effects.curl_radius), "curl_radius", "0 to 1000000 [m]"),
-        (above_0(Some(effects.curl_length)), "curl_length", "above 0 [m]"),
-        ((0.0..=MAX_COORDINATE).contains(&effects.noise), "noise", "0 to 1000000 [m]"),
-    ];
-    first_failure(text, from, &checks)
-}
-
-/// Checks a material whose table begins in line `from`.
-pub(super) fn material(text: &str, from: usize, m: &Material) -> Result<(), Problem> {
-    let checks = [
-        (above_0(m.radius), "radius", "above 0 [m]"),
-        (above_0(Some(m.density)), "density", "above 0 [kg/m³]"),
-        (
-            profile(&m.mass_profile),
-            "mass_profile",
-            "1 to 64 numbers above 0, the largest at most 100 times the smallest",
-        ),
-        (above_0(Some(m.young)), "young", "above 0 [Pa]"),
-        (above_0(Some(m.shear)), "shear", "above 0 [Pa]"),
-        (from_0(m.bend), "bend", "0 or more"),
-        (from_0(m.bend_tip), "bend_tip", "0 or more"),
-        ((0.05..=1.0).contains(&m.flatness), "flatness", "0.05 to 1"),
-        (from_0(m.damping), "damping", "0 or more [s]"),
-        (from_0(m.drag), "drag", "0 or more"),
-        ((0.0..=1.0).contains(&m.friction), "friction", "0 to 1"),
-        ((0.0..=1.0).contains(&m.friction_kinetic), "friction_kinetic", "0 to 1"),
-        (
-            global_shape_in_range(&m.global_shape),
-            "global_shape",
-            "`pull` 0 to 60 [Hz], `tip` 0 or more, `damping` 0 to 10",
-        ),
-        (m.tether == 0.0 || (1.0..=10.0).contains(&m.tether), "tether", "0 (none), or 1 to 10"),
-        ((-1e-6..=1e-6).contains(&m.charge), "charge", "-1e-6 to 1e-6 [C/m]"),
-    ];
-    first_failure(text, from, &checks)
-}
-
-/// Whether the values of a global shape are in their ranges.
-fn global_shape_in_range(shape: &GlobalShape) -> bool {
-    (0.0..=60.0).contains(&shape.pull) && from_0(shape.tip) && (0.0..=10.0).contains(&shape.damping)
 }

@@ -54,7 +54,7 @@ fn overlaid(text: &str, table: &Spanned<toml::Table>) -> Result<Material, Proble
         })?,
     };
     let material: Material = over(text, start, &base, fields)?;
-    check::material(text, line_at(text, start), &material)?;
+    check::in_range(text, line_at(text, start), &material)?;
     Ok(material)
 }
 

@@ -19,8 +19,15 @@ pub(super) fn simulation(
 ) -> Simulation {
     let (groom, materials) = join(hair);
     let strands: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let mut simulation =
-        Simulation::new(Arc::new(groom), &strands, &materials, solver, scene.gravity, anchor, obstacles);
+    let mut simulation = Simulation::builder(Arc::new(groom))
+        .strands(&strands)
+        .materials(&materials)
+        .solver(solver)
+        .gravity(scene.gravity)
+        .anchor(anchor)
+        .colliders_at_rest(obstacles)
+        .build()
+        .unwrap();
     simulation.set_hair_multiplicity(hair.iter().flat_map(StagedHair::hairs).collect());
     simulation.set_self_occlusion(obstacles);
     simulation.set_volume(&scene.volume);

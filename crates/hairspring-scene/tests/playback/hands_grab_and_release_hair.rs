@@ -41,15 +41,13 @@ impl Lock {
             |s: &u32| RigidTransform { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY };
         let roots = all.iter().map(root).collect();
         let gravity = Vec3::NEG_Y * GRAVITY;
-        let simulation = Simulation::new(
-            groom.clone(),
-            &all,
-            &[material],
-            solver,
-            gravity,
-            RigidTransform::default(),
-            &[],
-        );
+        let simulation = Simulation::builder(groom.clone())
+            .strands(&all)
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .build()
+            .unwrap();
         Self { simulation, roots, points: groom.points.clone() }
     }
 

@@ -131,7 +131,14 @@ fn falling(groom: &Arc<Groom>, model: Model, integrator: Integrator) -> Simulati
     let solver = Solver { integrator, substeps, sag_free: false, ..Solver::default() };
     let material = Material { model, drag: 0.1, ..Material::default() };
     let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    Simulation::new(groom.clone(), &all, &[material], solver, GRAVITY, ROOT, &[])
+    Simulation::builder(groom.clone())
+        .strands(&all)
+        .materials(&[material])
+        .solver(solver)
+        .gravity(GRAVITY)
+        .anchor(ROOT)
+        .build()
+        .unwrap()
 }
 
 /// A frame; how many strands were put back because they were not finite.

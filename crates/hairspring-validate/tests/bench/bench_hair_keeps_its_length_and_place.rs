@@ -57,15 +57,13 @@ fn limp_hair_hangs_as_long_as_it_was_drawn() {
         let material = Material { model, bend: 0.0, ..Material::default() };
         let solver = Solver { sag_free: false, ..Solver::default() };
         let gravity = Vec3::NEG_Y * 9.81;
-        let mut simulation = Simulation::new(
-            groom.clone(),
-            &[0],
-            &[material],
-            solver,
-            gravity,
-            RigidTransform::default(),
-            &[],
-        );
+        let mut simulation = Simulation::builder(groom.clone())
+            .strands(&[0])
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .build()
+            .unwrap();
         let drive = StepInput {
             dt: 1.0 / 60.0,
             anchor: RigidTransform::default(),
@@ -132,16 +130,17 @@ fn shaken(
     let at_rest = RigidTransform { translation: root, ..RigidTransform::default() };
     let alone = method == VolumeMethod::Off;
     let rest = ColliderPose::new(head.clone(), at_rest.matrix(), at_rest.matrix(), 1.0);
-    let mut simulation = Simulation::new(
-        groom,
-        &(0..count as u32).collect::<Vec<_>>(),
-        materials,
-        // The solver bears a jump by itself.
-        Solver { teleport_distance: f32::MAX, ..Solver::default() },
-        gravity,
-        RigidTransform::default(),
-        if alone { &[] } else { std::slice::from_ref(&rest) },
-    );
+    let mut simulation = Simulation::builder(groom)
+        .strands(&(0..count as u32).collect::<Vec<_>>())
+        .materials(materials)
+        .solver(
+            // The solver bears a jump by itself.
+            Solver { teleport_distance: f32::MAX, ..Solver::default() },
+        )
+        .gravity(gravity)
+        .colliders_at_rest(if alone { &[] } else { std::slice::from_ref(&rest) })
+        .build()
+        .unwrap();
     simulation.set_volume(&Volume { method, ..Volume::default() });
     let mut before = at_rest;
     let (mut time, mut frame) = (0.0, 0);
@@ -222,15 +221,11 @@ fn a_strand_that_turns_non_finite_is_put_back_and_counted_and_the_others_do_not_
     let strand = |x: f32| (0..16).map(|i| Vec3::new(x, 0.0, 0.01 * i as f32)).collect::<Vec<_>>();
     let groom = Arc::new(Groom::from_strands([strand(0.0), strand(0.1)], 35e-6));
     let start = || {
-        Simulation::new(
-            groom.clone(),
-            &[0, 1],
-            &[],
-            Solver { sag_free: false, ..Solver::default() },
-            Vec3::new(0.0, -9.81, 0.0),
-            RigidTransform::default(),
-            &[],
-        )
+        Simulation::builder(groom.clone())
+            .strands(&[0, 1])
+            .solver(Solver { sag_free: false, ..Solver::default() })
+            .build()
+            .unwrap()
     };
     let pose = |x: f32| RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() };
     let run = |poisoned: Option<u32>| {

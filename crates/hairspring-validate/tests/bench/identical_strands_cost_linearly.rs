@@ -26,8 +26,13 @@ fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursRepor
     let solver = Solver { sag_free: false, ..Solver::default() };
     let material = Material { bend: 0.01, drag: 1.0, model: Model::Curvature, ..Material::default() };
     let gravity = Vec3::NEG_Y * 9.81;
-    let mut simulation =
-        Simulation::new(groom.clone(), &all, &[material], solver, gravity, RigidTransform::default(), &[]);
+    let mut simulation = Simulation::builder(groom.clone())
+        .strands(&all)
+        .materials(&[material])
+        .solver(solver)
+        .gravity(gravity)
+        .build()
+        .unwrap();
     let radius = Some(0.001);
     simulation.set_neighbours(&Neighbours { on: true, radius, friction: 0.0, ..Neighbours::default() });
     let hold = |strand: usize, point: usize| Hold {

@@ -74,15 +74,12 @@ fn neighbours_do_not_show_in_contact() {
         end: RigidTransform::default(),
     };
     let fall = |strands: &[u32]| {
-        let mut simulation = Simulation::new(
-            groom.clone(),
-            strands,
-            &[Material { bend: 0.01, ..Material::default() }],
-            Solver { sag_free: false, ..Solver::default() },
-            Vec3::new(0.0, -9.81, 0.0),
-            RigidTransform::default(),
-            &[],
-        );
+        let mut simulation = Simulation::builder(groom.clone())
+            .strands(strands)
+            .materials(&[Material { bend: 0.01, ..Material::default() }])
+            .solver(Solver { sag_free: false, ..Solver::default() })
+            .build()
+            .unwrap();
         let roots: Vec<RigidTransform> = strands
             .iter()
             .map(|s| RigidTransform {
@@ -138,15 +135,13 @@ fn neighbours_do_not_show_in(groom: Arc<Groom>) {
             let material = Material { model, ..Material::default() };
             let solver = Solver { sag_free: false, ..Solver::default() };
             let gravity = Vec3::NEG_Y * 9.81;
-            let mut simulation = Simulation::new(
-                groom.clone(),
-                strands,
-                &[material],
-                solver,
-                gravity,
-                RigidTransform::default(),
-                &[],
-            );
+            let mut simulation = Simulation::builder(groom.clone())
+                .strands(strands)
+                .materials(&[material])
+                .solver(solver)
+                .gravity(gravity)
+                .build()
+                .unwrap();
             let root = |s: &u32| RigidTransform {
                 translation: groom.strand(*s as usize)[0],
                 ..RigidTransform::default()

@@ -73,8 +73,13 @@ fn a_hair_meets_less_drag_along_itself() {
         let groom = Arc::new(Groom::from_strands([points], radius as f32));
         let material = Material { bend: 0.0, damping: 0.0, drag: 1.0, ..Material::default() };
         let solver = Solver { sag_free: false, ..Solver::default() };
-        let mut simulation =
-            Simulation::new(groom, &[0], &[material], solver, Vec3::ZERO, RigidTransform::default(), &[]);
+        let mut simulation = Simulation::builder(groom)
+            .strands(&[0])
+            .materials(&[material])
+            .solver(solver)
+            .gravity(Vec3::ZERO)
+            .build()
+            .unwrap();
         let wind = Wind { velocity: Vec3::X, ..Wind::default() };
         for _ in 0..60 {
             simulation.step(&StepInput {

@@ -78,15 +78,13 @@ fn opened(volume: Volume, pinch: f32) -> f32 {
     let all: Vec<u32> = (0..(side * side) as u32).collect();
     let solver = Solver { collide_body: false, ..Solver::default() };
     let gravity = Vec3::NEG_Y * 9.81;
-    let mut simulation = Simulation::new(
-        groom.clone(),
-        &all,
-        &[Material::default()],
-        solver,
-        gravity,
-        RigidTransform::default(),
-        &[],
-    );
+    let mut simulation = Simulation::builder(groom.clone())
+        .strands(&all)
+        .materials(&[Material::default()])
+        .solver(solver)
+        .gravity(gravity)
+        .build()
+        .unwrap();
     simulation.set_volume(&volume);
     let pinched = Vec3::new(pinch, 1.0, pinch);
     let roots: Vec<RigidTransform> = (0..side * side)

@@ -22,7 +22,13 @@ const MODELS: [Model; 3] = [Model::Curvature, Model::Rod, Model::Springs];
 
 fn strand(points: Vec<Vec3>, material: Material, solver: Solver, gravity: Vec3) -> Simulation {
     let groom = Groom::from_strands([points], RADIUS as f32);
-    Simulation::new(Arc::new(groom), &[0], &[material], solver, gravity, RigidTransform::default(), &[])
+    Simulation::builder(Arc::new(groom))
+        .strands(&[0])
+        .materials(&[material])
+        .solver(solver)
+        .gravity(gravity)
+        .build()
+        .unwrap()
 }
 
 /// Steps a strand with its root at the origin.

@@ -33,15 +33,13 @@ impl Strands {
         let groom = Arc::new(Groom::from_strands(strands, 4e-5));
         let all: Vec<u32> = (0..strands.len() as u32).collect();
         let solver = Solver { sag_free: false, ..Solver::default() };
-        let mut simulation = Simulation::new(
-            groom.clone(),
-            &all,
-            &[material],
-            solver,
-            gravity,
-            RigidTransform::default(),
-            &[],
-        );
+        let mut simulation = Simulation::builder(groom.clone())
+            .strands(&all)
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .build()
+            .unwrap();
         simulation.set_neighbours(&neighbours);
         let roots = strands
             .iter()
@@ -264,15 +262,13 @@ fn at_rest_nothing_moves() {
         let roots: Vec<RigidTransform> =
             all.iter().map(|s| RigidTransform { translation: s[0], ..RigidTransform::default() }).collect();
         let played = |neighbours: Neighbours| {
-            let mut simulation = Simulation::new(
-                groom.clone(),
-                &names,
-                &[Material::default()],
-                Solver::default(),
-                GRAVITY,
-                RigidTransform::default(),
-                &[],
-            );
+            let mut simulation = Simulation::builder(groom.clone())
+                .strands(&names)
+                .materials(&[Material::default()])
+                .solver(Solver::default())
+                .gravity(GRAVITY)
+                .build()
+                .unwrap();
             simulation.set_neighbours(&neighbours);
             let mut step = || {
                 let air = Air::default();

@@ -118,8 +118,9 @@ impl Gpu {
     /// or distance fields that are too large for it.
     pub fn can_place_among(&self, obstacles: &[MovingCollider]) -> bool {
         let numbers: usize = obstacles.iter().map(|o| Shape::of(o).map_or(0, |s| s.numbers.len())).sum();
-        let sheet = |o: &MovingCollider| matches!(o.shape, ColliderShape::Sheet(_));
-        !obstacles.iter().any(sheet)
+        let of_cpu =
+            |o: &MovingCollider| matches!(o.shape, ColliderShape::Sheet(_) | ColliderShape::Custom(_));
+        !obstacles.iter().any(of_cpu)
             && numbers as u64 * 4 <= self.device.limits().max_storage_buffer_binding_size
     }
 }
@@ -167,7 +168,7 @@ impl<'a> Shape<'a> {
                 },
                 numbers: grid.distances().into(),
             },
-            ColliderShape::Field(_) | ColliderShape::Sheet(_) => return None,
+            ColliderShape::Field(_) | ColliderShape::Sheet(_) | ColliderShape::Custom(_) => return None,
         })
     }
 }

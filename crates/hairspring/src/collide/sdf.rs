@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Padding after the nodes' distances, so that four values can be loaded starting at the last node but one.
-const BEYOND: usize = 2;
+pub(super) const BEYOND: usize = 2;
 
 /// Signed distances at the nodes of a regular grid, negative inside, with trilinear interpolation.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -393,8 +393,14 @@ pub(super) mod tests {
             let gravity = Vec3::new(0.0, -9.81, 0.0);
             let (material, solver) = (Material::default(), Solver { sag_free: false, ..Solver::default() });
             let anchor = RigidTransform::default();
-            let mut simulation =
-                Simulation::new(groom.clone(), &all, &[material], solver, gravity, anchor, &[]);
+            let mut simulation = Simulation::builder(groom.clone())
+                .strands(&all)
+                .materials(&[material])
+                .solver(solver)
+                .gravity(gravity)
+                .anchor(anchor)
+                .build()
+                .unwrap();
             let mut points = vec![Vec3::ZERO; simulation.point_count()];
             let mut touched = 0;
             for frame in 0..40 {

@@ -1,6 +1,6 @@
 //! Collider shapes: the distance and normal in a shape's own space, for one point and for eight.
 
-use super::{Hull, SignedDistanceField, ThinShell};
+use super::{Collider, Hull, SignedDistanceField, ThinShell, custom};
 use crate::simd::lanes::{F, Simd, V3, transform};
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
@@ -46,6 +46,8 @@ pub enum ColliderShape {
     Hull(Arc<Hull>),
     /// All points nearer to an open mesh than its thickness.
     Sheet(Arc<ThinShell>),
+    /// A shape of the user's own.
+    Custom(Arc<dyn Collider>),
 }
 
 impl ColliderShape {
@@ -62,7 +64,13 @@ impl ColliderShape {
     /// searched for exactly. Hulls are sampled instead, because the springs model jitters on their edges
     /// otherwise.
     pub(crate) fn is_convex_formula(&self) -> bool {
-        !matches!(self, ColliderShape::Field(_) | ColliderShape::Sheet(_) | ColliderShape::Hull(_))
+        matches!(
+            self,
+            ColliderShape::Sphere { .. }
+                | ColliderShape::Capsule { .. }
+                | ColliderShape::Cuboid { .. }
+                | ColliderShape::Plane { .. }
+        )
     }
 
     /// Returns the distance from `p` [m] in the collider's own space, negative inside.
@@ -99,6 +107,7 @@ impl ColliderShape {
             ColliderShape::Field(grid) => grid.distance_and_normal(p),
             ColliderShape::Hull(hull) => hull.distance_and_normal(p),
             ColliderShape::Sheet(sheet) => sheet.distance_and_normal(p),
+            ColliderShape::Custom(custom) => custom.distance_and_normal(p),
         }
     }
 
@@ -156,6 +165,7 @@ impl ColliderShape {
             ColliderShape::Field(grid) => -grid.distances.iter().copied().fold(0.0, f32::min),
             ColliderShape::Hull(hull) => -hull.distance_and_normal(hull.bounds().0).0,
             ColliderShape::Sheet(sheet) => sheet.thickness(),
+            ColliderShape::Custom(custom) => custom.half_thickness(),
         }
     }
 
@@ -179,6 +189,7 @@ impl ColliderShape {
             ColliderShape::Field(grid) => grid.bounds(),
             ColliderShape::Hull(hull) => hull.bounds(),
             ColliderShape::Sheet(sheet) => sheet.bounds(),
+            ColliderShape::Custom(custom) => custom.bounds(),
         }
     }
 
@@ -206,6 +217,7 @@ impl ColliderShape {
             ColliderShape::Field(grid) => grid.distance_lanes(simd, p),
             ColliderShape::Hull(hull) => hull.distance_lanes(simd, p),
             ColliderShape::Sheet(sheet) => sheet.distance_lanes(simd, p),
+            ColliderShape::Custom(collider) => custom::distance_lanes(&**collider, simd, p),
         }
     }
 

@@ -17,6 +17,7 @@
 pub(crate) mod bond;
 pub mod charge;
 pub mod comb;
+mod force_field;
 pub mod global_shape;
 pub mod grab;
 mod hair_field;
@@ -26,10 +27,11 @@ pub mod tie;
 mod wind;
 
 pub(crate) use charge::Charges;
+pub use force_field::ForceField;
 pub(crate) use hair_field::HairField;
 pub(crate) use manipulator::ActiveManipulator;
 pub use manipulator::Manipulator;
-pub(crate) use strand_view::StrandView;
+pub use strand_view::StrandView;
 pub(crate) use wind::WindSampler;
 
 use crate::{

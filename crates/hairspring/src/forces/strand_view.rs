@@ -11,11 +11,10 @@ use glam::{Quat, Vec3};
 
 /// One strand in a frame. Points are numbered as in the groom. The extra particles of the springs model are
 /// skipped.
-pub(crate) struct StrandView<'a> {
+pub struct StrandView<'a> {
     /// Index of the strand in the groom.
-    pub strand: usize,
-    /// The frame.
-    pub frame: &'a FrameMotion,
+    pub(crate) strand: usize,
+    pub(crate) frame: &'a FrameMotion,
     pub(super) lane: usize,
     pub(super) stride: usize,
     pub(super) rows: &'a StrandRows,
@@ -28,6 +27,21 @@ pub(crate) struct StrandView<'a> {
 }
 
 impl<'a> StrandView<'a> {
+    /// Returns the index of the strand in the groom.
+    pub fn index(&self) -> usize {
+        self.strand
+    }
+
+    /// Returns the number of points. The root drives the first two.
+    pub fn point_count(&self) -> usize {
+        self.rows[strand::POINTS].0[self.lane] as usize
+    }
+
+    /// Returns the length of the frame [s].
+    pub fn dt(&self) -> f32 {
+        self.frame.dt
+    }
+
     /// Returns the root's world transform since rest, at the start and at the end of the frame.
     pub fn roots(&self) -> [RigidTransform; 2] {
         let number = |row: usize| self.rows[row].0[self.lane];

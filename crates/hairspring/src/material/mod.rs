@@ -4,6 +4,7 @@ mod global_shape;
 
 pub use global_shape::GlobalShape;
 
+use crate::settings::{Check, Validate, above_0, check, from_0};
 use serde::{Deserialize, Serialize};
 
 /// The fiber of one group of strands: physical constants, and dimensionless multipliers for artists.
@@ -96,6 +97,43 @@ impl Model {
             Self::Rod => "rod",
         }
     }
+}
+
+impl Validate for Material {
+    fn checks(&self) -> Vec<Check> {
+        let shape = &self.global_shape;
+        let shape_in_range =
+            (0.0..=60.0).contains(&shape.pull) && from_0(shape.tip) && (0.0..=10.0).contains(&shape.damping);
+        let tether = self.tether == 0.0 || (1.0..=10.0).contains(&self.tether);
+        vec![
+            check(above_0(self.radius), "radius", "above 0 [m]"),
+            check(above_0(Some(self.density)), "density", "above 0 [kg/m³]"),
+            check(
+                is_mass_profile(&self.mass_profile),
+                "mass_profile",
+                "1 to 64 numbers above 0, the largest at most 100 times the smallest",
+            ),
+            check(above_0(Some(self.young)), "young", "above 0 [Pa]"),
+            check(above_0(Some(self.shear)), "shear", "above 0 [Pa]"),
+            check(from_0(self.bend), "bend", "0 or more"),
+            check(from_0(self.bend_tip), "bend_tip", "0 or more"),
+            check((0.05..=1.0).contains(&self.flatness), "flatness", "0.05 to 1"),
+            check(from_0(self.damping), "damping", "0 or more [s]"),
+            check(from_0(self.drag), "drag", "0 or more"),
+            check((0.0..=1.0).contains(&self.friction), "friction", "0 to 1"),
+            check((0.0..=1.0).contains(&self.friction_kinetic), "friction_kinetic", "0 to 1"),
+            check(shape_in_range, "global_shape", "`pull` 0 to 60 [Hz], `tip` 0 or more, `damping` 0 to 10"),
+            check(tether, "tether", "0 (none), or 1 to 10"),
+            check((-1e-6..=1e-6).contains(&self.charge), "charge", "-1e-6 to 1e-6 [C/m]"),
+        ]
+    }
+}
+
+/// Returns whether the weights of a mass profile are valid.
+fn is_mass_profile(weights: &[f32]) -> bool {
+    let least = weights.iter().copied().fold(f32::INFINITY, f32::min);
+    let holds = |w: &f32| w.is_finite() && *w > 0.0 && *w <= least * 100.0;
+    (1..=64).contains(&weights.len()) && weights.iter().all(holds)
 }
 
 impl Default for Material {

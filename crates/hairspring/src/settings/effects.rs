@@ -1,6 +1,10 @@
 //! Settings of the styling of follow hairs.
 
+use super::check::{Check, Validate, above_0, check};
 use serde::{Deserialize, Serialize};
+
+/// Largest radius or amplitude [m].
+const MAX_LENGTH: f32 = 1e6;
 
 /// Styling of follow hairs, applied after interpolation from the guides. All off by default.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,5 +23,16 @@ pub struct Effects {
 impl Default for Effects {
     fn default() -> Self {
         Self { clump: 0.0, curl_radius: 0.0, curl_length: 0.03, noise: 0.0 }
+    }
+}
+
+impl Validate for Effects {
+    fn checks(&self) -> Vec<Check> {
+        vec![
+            check((0.0..=1.0).contains(&self.clump), "clump", "0 to 1"),
+            check((0.0..=MAX_LENGTH).contains(&self.curl_radius), "curl_radius", "0 to 1000000 [m]"),
+            check(above_0(Some(self.curl_length)), "curl_length", "above 0 [m]"),
+            check((0.0..=MAX_LENGTH).contains(&self.noise), "noise", "0 to 1000000 [m]"),
+        ]
     }
 }

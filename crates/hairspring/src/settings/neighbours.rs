@@ -1,5 +1,6 @@
 //! Settings of contact between strands, one by one.
 
+use super::check::{Check, Validate, above_0, check, from_0};
 use serde::{Deserialize, Serialize};
 
 /// Settings of contact between individual strands, for guides and small scenes. It is the reference for the
@@ -24,5 +25,15 @@ pub struct Neighbours {
 impl Default for Neighbours {
     fn default() -> Self {
         Self { on: false, radius: None, friction: 0.3, stiction: 0.0 }
+    }
+}
+
+impl Validate for Neighbours {
+    fn checks(&self) -> Vec<Check> {
+        vec![
+            check(above_0(self.radius), "radius", "above 0 [m]"),
+            check(from_0(self.friction), "friction", "0 or more"),
+            check(from_0(self.stiction), "stiction", "0 or more [N]"),
+        ]
     }
 }

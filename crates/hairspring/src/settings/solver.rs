@@ -1,5 +1,6 @@
 //! Settings of the solver: time steps, integrator, contact.
 
+use super::check::{Check, Validate, above_0, check};
 use serde::{Deserialize, Serialize};
 
 /// Settings of time steps and contact.
@@ -145,5 +146,17 @@ impl Default for Solver {
             teleport_distance: 1.0,
             global_shape: true,
         }
+    }
+}
+
+impl Validate for Solver {
+    fn checks(&self) -> Vec<Check> {
+        vec![
+            check((1..=64).contains(&self.substeps), "substeps", "1 to 64"),
+            check((0..=20).contains(&self.projection_iterations), "projection_iterations", "0 to 20"),
+            check((0.0..=60.0).contains(&self.preroll), "preroll", "0 to 60 [s]"),
+            check((0.0..=1.0).contains(&self.inertia), "inertia", "0 to 1"),
+            check(above_0(Some(self.teleport_distance)), "teleport_distance", "above 0 [m]"),
+        ]
     }
 }

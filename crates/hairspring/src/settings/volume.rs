@@ -1,5 +1,6 @@
 //! Settings of contact between hairs as a volume.
 
+use super::check::{Check, Validate, above_0, check, from_0};
 use serde::{Deserialize, Serialize};
 
 /// Settings of the hair volume, which acts between the simulated strands of all grooms. Each strand has the
@@ -59,5 +60,16 @@ impl VolumeMethod {
             Self::Density => "density",
             Self::Incompressible => "incompressible",
         }
+    }
+}
+
+impl Validate for Volume {
+    fn checks(&self) -> Vec<Check> {
+        vec![
+            check(above_0(self.cell), "cell", "above 0 [m]"),
+            check(from_0(self.friction), "friction", "0 or more [1/s]"),
+            check(from_0(self.pressure), "pressure", "0 or more [m/s]"),
+            check(from_0(self.recovery_rate), "recovery_rate", "0 or more [1/s]"),
+        ]
     }
 }

@@ -15,13 +15,13 @@ impl Simulation {
         if materials.iter().all(|m| m.tether == 0.0) {
             return Vec::new();
         }
-        let mut reach = vec![Row([f32::INFINITY; LANES]); self.state.len()];
-        for (place, s) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+        let mut reach = vec![Row([f32::INFINITY; LANES]); self.state.points.len()];
+        for (place, s) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let s = *s as usize;
-            let material = materials.get(self.groom.group(s) as usize).or(materials.last());
+            let material = materials.get(self.model.groom.group(s) as usize).or(materials.last());
             let Some(tether) = material.map(|m| m.tether).filter(|t| *t > 0.0) else { continue };
-            let tile = self.tiles[place / LANES];
-            let points = self.groom.strand(s);
+            let tile = self.model.tiles[place / LANES];
+            let points = self.model.groom.strand(s);
             let mut before = 0.0f32;
             for (k, p) in points.iter().enumerate() {
                 // Where a coil turns back toward its root, at least the distance that the length of hair
@@ -37,13 +37,14 @@ impl Simulation {
     /// Returns the depth of the segment that ends at each point at rest, see `Tile::rest_penetration`.
     pub(super) fn authored_depths(&self, obstacles: &[ColliderPose]) -> Vec<Row> {
         let tiles: Vec<Vec<Row>> = self
+            .model
             .tiles
             .par_iter()
-            .zip(self.lanes.par_chunks(LANES))
+            .zip(self.model.lanes.par_chunks(LANES))
             .map(|(tile, lanes)| {
                 let mut sunk = vec![Row::default(); tile.points as usize];
                 for (lane, s) in lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
-                    let points = simulated_points(tile.model, self.groom.strand(*s as usize));
+                    let points = simulated_points(tile.model, self.model.groom.strand(*s as usize));
                     let stride = tile.model.stride();
                     for i in (2 * stride..points.len()).step_by(stride) {
                         let [a, b] = [points[i - stride], points[i]];

@@ -32,7 +32,7 @@ impl Simulation {
         let poses: Vec<_> = obstacles.iter().map(|o| (&o.shape, o.end)).collect();
         // Summed in a fixed order, so that the force is bitwise independent of the number of threads.
         let of_strands: Vec<Contacts> =
-            self.places.par_iter().map(|&place| self.strand_contacts(place as usize, &poses)).collect();
+            self.model.places.par_iter().map(|&place| self.strand_contacts(place as usize, &poses)).collect();
         of_strands.into_iter().fold(Contacts::default(), |a, b| Contacts {
             points: a.points + b.points,
             segments: a.segments + b.segments,
@@ -43,14 +43,15 @@ impl Simulation {
 
     fn strand_contacts(&self, place: usize, poses: &[(&ColliderShape, RigidTransform)]) -> Contacts {
         let (tile, lane) = (place / LANES, place % LANES);
-        let (first, stride) = (self.tiles[tile].first as usize, self.tiles[tile].model.stride());
+        let (first, stride) = (self.model.tiles[tile].first as usize, self.model.tiles[tile].model.stride());
         let root = self.root_position(place);
         let mut out = Contacts::default();
         // The first two points are driven by the root.
         for (i, x) in self.particles(place).enumerate().step_by(stride).skip(2) {
             let at = first + i;
-            let point = f64::from(self.state[at][state::NORMAL_FORCE].0[lane]);
+            let point = f64::from(self.state.points[at][state::NORMAL_FORCE].0[lane]);
             let segment = self
+                .state
                 .segment_contacts
                 .get(at)
                 .map_or(0.0, |rows| f64::from(rows[segment_contact::FORCE].0[lane]));

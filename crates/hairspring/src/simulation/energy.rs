@@ -74,6 +74,7 @@ impl Simulation {
     pub fn energy(&self) -> Energy {
         // Summed in a fixed order: bitwise independent of the number of threads.
         let strands: Vec<Energy> = self
+            .model
             .places
             .par_iter()
             .with_min_len(64)
@@ -85,10 +86,10 @@ impl Simulation {
     /// The energy that the free points would gain by falling until every strand hangs straight down from its
     /// driven segment [J]: the most that a swing under gravity alone can convert to motion.
     pub fn energy_to_fall(&self) -> f64 {
-        let gravity = self.settings.gravity.as_dvec3();
+        let gravity = self.model.gravity.as_dvec3();
         let down = gravity.normalize_or_zero();
         let fall = |place: usize| {
-            let stride = self.tiles[place / LANES].model.stride();
+            let stride = self.model.tiles[place / LANES].model.stride();
             let mut particles = self.particles(place).enumerate().skip(stride);
             let mut at = particles.next().unwrap_or_default().1.as_dvec3();
             let mut energy = 0.0;
@@ -102,25 +103,25 @@ impl Simulation {
             }
             energy
         };
-        self.places.iter().map(|place| fall(*place as usize)).sum()
+        self.model.places.iter().map(|place| fall(*place as usize)).sum()
     }
 
     /// Number of points of the strand in lane `place`.
     pub(super) fn points(&self, place: usize) -> usize {
-        self.groom.range(self.lanes[place] as usize).len()
+        self.model.groom.range(self.model.lanes[place] as usize).len()
     }
 
     /// Tension of the segment that begins at point `i` [N].
     pub(super) fn tension(&self, place: usize, i: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
-        self.state[self.tiles[tile].first as usize + i][state::TENSION].0[lane]
+        self.state.points[self.model.tiles[tile].first as usize + i][state::TENSION].0[lane]
     }
 
     fn strand_energy(&self, place: usize) -> Energy {
-        let gravity = self.settings.gravity.as_dvec3();
+        let gravity = self.model.gravity.as_dvec3();
         let root = self.root_position(place).as_dvec3();
         let (tile, n) = (place / LANES, self.simulated_points(place));
-        let stride = self.tiles[tile].model.stride();
+        let stride = self.model.tiles[tile].model.stride();
         let mut energy = Energy::default();
         for (i, x) in self.particles(place).enumerate().skip(stride + 1) {
             let mass = self.rest(place, i, rest::MASS) as f64;
@@ -128,14 +129,15 @@ impl Simulation {
             energy.kinetic += 0.5 * mass * v.length_squared();
             energy.gravitational -= mass * gravity.dot(root + x.as_dvec3());
         }
-        let integrator = self.settings.solver.integrator;
-        let per_mass = if self.last_h > 0.0 { STRETCH as f64 / (self.last_h as f64).powi(2) } else { 0.0 };
+        let integrator = self.model.solver.integrator;
+        let per_mass =
+            if self.state.last_h > 0.0 { STRETCH as f64 / (self.state.last_h as f64).powi(2) } else { 0.0 };
         let spring = match integrator {
             Integrator::ExplicitEuler | Integrator::Verlet => Spring::Fibre,
             Integrator::Ftl | Integrator::Dftl => Spring::None,
-            Integrator::BackwardEuler | Integrator::Bdf2 => {
-                Spring::PerMass(per_mass * self.strand[tile][strand::STIFFENING].0[place % LANES] as f64)
-            }
+            Integrator::BackwardEuler | Integrator::Bdf2 => Spring::PerMass(
+                per_mass * self.state.strand[tile][strand::STIFFENING].0[place % LANES] as f64,
+            ),
             Integrator::LocalGlobal => Spring::PerMass(per_mass),
         };
         if matches!(spring, Spring::None) {
@@ -144,7 +146,7 @@ impl Simulation {
         // In these integrators, tension is a force. In the direct solver it is a multiplier, which does no
         // work on a segment of constant length.
         let pulls = !matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2);
-        let axial = self.strand[tile][strand::AXIAL].0[place % LANES] as f64;
+        let axial = self.state.strand[tile][strand::AXIAL].0[place % LANES] as f64;
         let way = |i: usize, j: usize| -> DVec3 {
             (i + 1..=j).map(|k| self.vector(place, k, state::EDGE).as_dvec3()).sum()
         };
@@ -159,7 +161,7 @@ impl Simulation {
             let tension = if pulls { self.tension(place, i) as f64 } else { 0.0 };
             energy.stretching += longer * (tension + 0.5 * k * longer);
         }
-        match self.tiles[tile].model {
+        match self.model.tiles[tile].model {
             Elastic::Springs => self.add_springs(place, &way, &mut energy),
             model => self.add_joints(place, model, &|i| way(i, i + 1), &mut energy),
         }
@@ -186,11 +188,11 @@ impl Simulation {
     /// Adds bending and twisting of the joints between segments `e`. Frames are transported as in the kernel.
     fn add_joints(&self, place: usize, model: Elastic, e: &dyn Fn(usize) -> DVec3, energy: &mut Energy) {
         let (tile, lane) = (place / LANES, place % LANES);
-        let rows = &self.strand[tile];
+        let rows = &self.state.strand[tile];
         let row = |at: usize| rows[at].0[lane];
         let turn = Quat::from_array([0, 1, 2, 3].map(|k| row(strand::TURN_END + k)));
         let normal = glam::Vec3::from_array([0, 1, 2].map(|k| row(strand::NORMAL + k)));
-        let mut m0 = (self.settings.anchor.rotation * turn * normal).as_dvec3();
+        let mut m0 = (self.state.anchor.rotation * turn * normal).as_dvec3();
         let (ratio, flat) = (row(strand::TWIST_RATIO) as f64, row(strand::FLAT) as f64);
         let mut u0 = e(0).normalize_or_zero();
         for j in 1..self.points(place) - 1 {

@@ -28,7 +28,7 @@ use crate::{
     },
 };
 use glam::Vec3;
-use std::{cmp::Reverse, collections::BinaryHeap};
+use std::{cmp::Reverse, collections::BinaryHeap, sync::Arc};
 
 /// Edge length of a cell [m]. Cells are larger if the hair needs more than [`MOST_CELLS`], or if guides are
 /// so far apart that they leave gaps between cells.
@@ -53,7 +53,7 @@ impl Simulation {
     /// Enables self-occlusion, from the density of the groom at rest and `obstacles` at rest. Without it,
     /// every strand has the drag of a lone hair.
     pub fn set_self_occlusion(&mut self, obstacles: &[ColliderPose]) {
-        let points = || self.strands().flat_map(|s| self.groom.strand(s as usize).iter().copied());
+        let points = || self.strands().flat_map(|s| self.model.groom.strand(s as usize).iter().copied());
         let low = points().fold(Vec3::INFINITY, Vec3::min);
         let high = points().fold(Vec3::NEG_INFINITY, Vec3::max);
         let mut grid = self.dense_grid(low, high, CELL);
@@ -61,29 +61,34 @@ impl Simulation {
             grid = self.dense_grid(low, high, 2.0 * grid.edge);
         }
         let depth = grid.depths(obstacles);
-        for (place, s) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
-            let tile = self.tiles[place / LANES];
-            let reynolds = self.strand[place / LANES][strand::REYNOLDS].0[place % LANES];
+        let mut found = Vec::with_capacity(self.point_count());
+        for (place, s) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+            let tile = self.model.tiles[place / LANES];
+            let reynolds = self.state.strand[place / LANES][strand::REYNOLDS].0[place % LANES];
             let own = 0.5 * COEFFICIENT * reynolds * AIR_KINEMATIC_VISCOSITY / grid.edge;
-            for (i, point) in self.groom.strand(*s as usize).iter().enumerate() {
+            for (i, point) in self.model.groom.strand(*s as usize).iter().enumerate() {
                 let cell = grid.cell(*point);
                 // A hair does not occlude itself.
                 let others = (grid.cost[cell] - own).max(1e-6);
                 let mean = (1.0 - (-others).exp()) / others;
                 let exposure = (mean * (-depth[cell]).exp()).max(LEAST);
                 let at = tile.first as usize + i * tile.model.stride();
-                self.rest[at][rest::EXPOSURE].0[place % LANES] = exposure;
+                found.push((at, place % LANES, exposure));
             }
+        }
+        let rows = &mut Arc::make_mut(&mut self.model).rest;
+        for (at, lane, exposure) in found {
+            rows[at][rest::EXPOSURE].0[lane] = exposure;
         }
     }
 
     /// Builds the density grid between `low` and `high`, with cells whose edge is at least `edge` [m].
     fn dense_grid(&self, low: Vec3, high: Vec3, edge: f32) -> Grid {
         let mut grid = Grid::new(low, high, edge);
-        for (place, s) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
-            let reynolds = self.strand[place / LANES][strand::REYNOLDS].0[place % LANES];
-            let width = self.multiplicity[*s as usize] * reynolds * AIR_KINEMATIC_VISCOSITY;
-            for w in self.groom.strand(*s as usize).windows(2) {
+        for (place, s) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+            let reynolds = self.state.strand[place / LANES][strand::REYNOLDS].0[place % LANES];
+            let width = self.model.multiplicity[*s as usize] * reynolds * AIR_KINEMATIC_VISCOSITY;
+            for w in self.model.groom.strand(*s as usize).windows(2) {
                 grid.add(w[0], w[1], width);
             }
         }

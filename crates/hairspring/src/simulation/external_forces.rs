@@ -20,29 +20,30 @@ impl Simulation {
         carried: Option<&RigidTransform>,
         interval: &FrameContext,
     ) -> Duration {
-        let global_shapes = self.settings.solver.global_shape
-            && self.global_shapes.iter().any(|global_shape| global_shape.is_on());
-        let charged = self.charges.iter().any(|charge| *charge != 0.0);
+        let global_shapes = self.model.solver.global_shape
+            && self.model.global_shapes.iter().any(|global_shape| global_shape.is_on());
+        let charged = self.model.charges.iter().any(|charge| *charge != 0.0);
         let pressed = self.is_pressed();
         let occluded = self.wind_occlusion.is_on() && drive.air.moves();
-        let gripped = global_shapes || charged || !self.tools.used.is_empty();
-        let tines = self.tools.used.iter().any(|used| !used.tool.binds());
+        let custom = !self.force_fields.is_empty();
+        let gripped = global_shapes || charged || custom || !self.state.tools.used.is_empty();
+        let tines = custom || self.state.tools.used.iter().any(|used| !used.tool.binds());
         let blown = occluded || drive.air.varies();
         let kinds = ForceMask {
             external_acceleration: pressed,
             position_spring: gripped,
             anisotropic_drag: tines,
-            wind_delta: blown,
+            wind_delta: blown || custom,
         };
-        self.forces.prepare(self.state.len(), kinds);
-        let anchor = self.settings.anchor;
+        self.forces.prepare(self.state.points.len(), kinds);
+        let anchor = self.state.anchor;
         let bodies = FrameColliders::new((drive.obstacles, carried));
         let began = Instant::now();
         if let Some(volume) = self.volume.as_mut().filter(|_| pressed || occluded) {
             volume.begin_frame();
             // Roots are moved below.
             let now = Now { anchor, gone: 1.0 };
-            let hair = (&self.strand[..], &self.state[..]);
+            let hair = (&self.state.strand[..], &self.state.points[..]);
             volume.measure(hair, &now);
             if pressed {
                 let first = (&interval.substeps[0].obstacles[..], interval.h);
@@ -57,23 +58,23 @@ impl Simulation {
         }
         let frame = FrameMotion { anchor: [anchor, drive.anchor], dt: drive.dt };
         let mut strands = StrandBatch {
-            tiles: &self.tiles,
-            lanes: &self.lanes,
-            strand: &self.strand,
-            rest: &self.rest,
-            state: &self.state,
+            tiles: &self.model.tiles,
+            lanes: &self.model.lanes,
+            strand: &self.state.strand,
+            rest: &self.model.rest,
+            state: &self.state.points,
             external_acceleration: &mut self.forces.external_acceleration,
             position_spring: &mut self.forces.position_spring,
             anisotropic_drag: &mut self.forces.anisotropic_drag,
             wind_delta: &mut self.forces.wind_delta,
         };
         let charge_of = |strand: usize| {
-            of_group(&self.charges, self.groom.group(strand) as usize).copied().unwrap_or(0.0)
+            of_group(&self.model.charges, self.model.groom.group(strand) as usize).copied().unwrap_or(0.0)
         };
         if charged {
-            self.charged.iter_mut().for_each(|ball| ball.carry(carried));
+            self.state.charged.iter_mut().for_each(|ball| ball.carry(carried));
             // Follow hairs have the charge of their guides.
-            let of_all = |strand: usize| charge_of(strand) * self.multiplicity[strand];
+            let of_all = |strand: usize| charge_of(strand) * self.model.multiplicity[strand];
             self.hair_field.find(&mut strands, &frame, of_all);
         }
         let air = drive.air.moment(drive.dt, &mut self.noise);
@@ -84,9 +85,10 @@ impl Simulation {
             (&self.shade, hair)
         });
         let blow = WindSampler { air, shade };
-        let charges = Charges { balls: &self.charged, hair: &self.hair_field };
-        let (groom, shape_of) = (&self.groom, &self.global_shapes);
-        let tools = &self.tools.used;
+        let charges = Charges { balls: &self.state.charged, hair: &self.hair_field };
+        let (groom, shape_of) = (&self.model.groom, &self.model.global_shapes);
+        let tools = &self.state.tools.used;
+        let force_fields = &self.force_fields;
         let act = |strand: &mut StrandView| {
             let s = strand.strand;
             let group = groom.group(s) as usize;
@@ -102,6 +104,9 @@ impl Simulation {
             if blown {
                 blow.add(strand);
             }
+            for (_, force) in force_fields {
+                force.apply(strand);
+            }
         };
         strands.each(&frame, &act);
         volume_took
@@ -114,7 +119,7 @@ impl Simulation {
     pub(super) fn exchange_again(&mut self, anchor: RigidTransform, interval: &FrameContext) {
         let Some(volume) = &mut self.volume else { return };
         let now = Now { anchor, gone: interval.begun().0 };
-        let hair = (&self.strand[..], &self.state[..]);
+        let hair = (&self.state.strand[..], &self.state.points[..]);
         volume.measure(hair, &now);
         let first = (&interval.substeps[interval.now.start].obstacles[..], interval.h);
         volume.exchange(

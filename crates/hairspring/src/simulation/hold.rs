@@ -10,7 +10,7 @@ use glam::Vec3;
 /// A hold on one point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hold {
-    /// The strand, as an index into those given to [`Simulation::new`].
+    /// The strand, as an index into those given to [`Simulation::builder`].
     pub strand: u32,
     /// The point of the strand; 2 or more, because the root drives the first two.
     pub point: u32,
@@ -34,16 +34,17 @@ impl Simulation {
     /// # Panics
     /// If a strand or a point does not exist, or the root drives the point.
     pub fn set_holds(&mut self, holds: &[Hold]) {
-        self.holds = if holds.is_empty() { Vec::new() } else { vec![Vec::new(); self.tiles.len()] };
+        self.state.holds =
+            if holds.is_empty() { Vec::new() } else { vec![Vec::new(); self.model.tiles.len()] };
         for held in holds {
-            let place = self.places[held.strand as usize] as usize;
-            let points = self.groom.range(self.lanes[place] as usize).len();
+            let place = self.model.places[held.strand as usize] as usize;
+            let points = self.model.groom.range(self.model.lanes[place] as usize).len();
             assert!(
                 (2..points).contains(&(held.point as usize)),
                 "a held point must exist and must not be driven"
             );
-            let point = held.point * self.tiles[place / LANES].model.stride() as u32;
-            let (tile, lane) = (&mut self.holds[place / LANES], place % LANES);
+            let point = held.point * self.model.tiles[place / LANES].model.stride() as u32;
+            let (tile, lane) = (&mut self.state.holds[place / LANES], place % LANES);
             let at = tile.iter().position(|h| h.point == point).unwrap_or_else(|| {
                 tile.push(HoldRows { point, rows: [Row::default(); hold::ROWS] });
                 tile.len() - 1
@@ -62,17 +63,17 @@ impl Simulation {
             let next = |h: &&Hold| h.strand == held.strand && h.point == held.point + 1;
             let end = holds.iter().find(next).and_then(|h| h.target);
             if let (Elastic::Springs, true, Some(start), Some(end)) =
-                (self.tiles[place / LANES].model, held.clamped, held.target, end)
+                (self.model.tiles[place / LANES].model, held.clamped, held.target, end)
             {
                 self.hold_extra(place, point, [start, end]);
             }
         }
-        self.holds.iter_mut().for_each(|tile| tile.sort_by_key(|h| h.point));
+        self.state.holds.iter_mut().for_each(|tile| tile.sort_by_key(|h| h.point));
     }
 
     /// Puts the targets at rest after they have reached their positions.
     pub(super) fn rest_holds(&mut self) {
-        for held in self.holds.iter_mut().flatten() {
+        for held in self.state.holds.iter_mut().flatten() {
             held.rows[hold::WAY..hold::WAY + 3].fill(Row::default());
         }
     }
@@ -92,8 +93,8 @@ impl Simulation {
         }
         rows[hold::PINNED].0[lane] = 1.0;
         let extra = point + 1;
-        match self.holds[tile].iter_mut().find(|h| h.point == extra) {
-            None => self.holds[tile].push(HoldRows { point: extra, rows }),
+        match self.state.holds[tile].iter_mut().find(|h| h.point == extra) {
+            None => self.state.holds[tile].push(HoldRows { point: extra, rows }),
             Some(held) => {
                 for (row, new) in held.rows.iter_mut().zip(rows) {
                     row.0[lane] = new.0[lane];

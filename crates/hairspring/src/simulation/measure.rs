@@ -49,7 +49,7 @@ impl Simulation {
     pub fn measure(&self, obstacles: &[MovingCollider]) -> Measure {
         let poses: Vec<_> = obstacles.iter().map(|o| (o, o.end)).collect();
         let (sum, segments, figures) =
-            self.places.par_iter().map(|&place| self.measure_strand(place as usize, &poses)).reduce(
+            self.model.places.par_iter().map(|&place| self.measure_strand(place as usize, &poses)).reduce(
                 || (0.0, 0, Measure::default()),
                 |(s1, n1, a), (s2, n2, b)| {
                     let merged = Measure {
@@ -81,7 +81,7 @@ impl Simulation {
         let (mut sum, mut segments) = (0.0, 0);
         let root = self.root_position(place);
         let n = self.simulated_points(place);
-        let stride = self.tiles[place / LANES].model.stride();
+        let stride = self.model.tiles[place / LANES].model.stride();
         let mut before = Vec3::ZERO;
         for (i, x) in self.particles(place).enumerate() {
             let v = self.vector(place, i, state::V);

@@ -2,19 +2,24 @@
 
 mod authored;
 mod build;
+mod builder;
 mod contacts;
 mod energy;
 mod exposure;
 mod external_forces;
+mod force_fields;
 mod hold;
 mod layout;
 mod manipulators;
 mod measure;
 mod place;
+mod points;
 mod reset;
 mod step;
 mod strand_contacts;
+mod strand_model;
 mod strand_parts;
+mod strand_state;
 mod substeps;
 mod take_over;
 mod teleport;
@@ -24,26 +29,24 @@ mod volume;
 pub use crate::strand::rest_shape::Start;
 pub use crate::strand_contact::NeighboursReport;
 pub use crate::volume::VolumeReport;
+pub use builder::{BuildError, SimulationBuilder};
 pub use contacts::Contacts;
 pub use energy::Energy;
+pub use force_fields::ForceId;
 pub use hold::Hold;
 pub use manipulators::ManipulatorId;
 pub use measure::Measure;
 pub use step::{StepInput, StepReport, StepTimes};
+pub use strand_state::{Snapshot, SnapshotMismatch};
 pub use substeps::MAX_TRAVEL;
 
 use crate::{
     air::{Noise, OcclusionSampler, WindOcclusion},
-    forces::{ForceBuffers, HairField, charge::ChargedBall},
-    groom::Groom,
-    material::GlobalShape,
-    simd::lanes::{LANES, Row},
+    forces::{ForceBuffers, ForceField, HairField, charge::ChargedBall},
+    simd::lanes::LANES,
     strand::{
         frame_context::FrameContext,
-        tile::{
-            HistoryRows, HoldRows, RestRows, SegmentContactRows, StateRows, StrandRows, TilePlace, state,
-            strand,
-        },
+        tile::{TilePlace, state, strand},
     },
     strand_contact::Neighbours,
     volume::Volume,
@@ -52,10 +55,12 @@ use fearless_simd::Level;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::{ops::Range, sync::Arc};
+use strand_model::StrandModel;
+use strand_state::StrandState;
 
 /// Simulated strands, integrated by default with backward Euler and a direct banded solver.
 ///
-/// Settings are given to [`Simulation::new`] and never change; the state is positions, velocities and
+/// Settings are given to [`Simulation::builder`] and never change; the state is positions, velocities and
 /// tensions. A step gives bitwise the same result for any number of threads. Strands interact with bodies,
 /// with the air, and with each other: either as a volume (see [`Simulation::set_volume`]) or strand by strand
 /// (see [`Simulation::set_neighbours`]).
@@ -63,104 +68,65 @@ use std::{ops::Range, sync::Arc};
 /// # Limitations
 /// Cutting and wetting are not supported.
 pub struct Simulation {
-    groom: Arc<Groom>,
-    /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
-    lanes: Vec<u32>,
-    /// Index into the caller's strands for each lane; `u32::MAX` in lanes without one.
-    asked: Vec<u32>,
-    tiles: Vec<TilePlace>,
-    strand: Vec<StrandRows>,
-    rest: Vec<RestRows>,
-    state: Vec<StateRows>,
-    /// Authored depth of the segment that ends at each point, 0 or less [m]; as long as `state`, or empty if
-    /// no segment was authored inside a collider.
-    rest_penetration: Vec<Row>,
-    /// Remaining time for which each strand still counts as touching [s]; one row for each tile.
-    contact_age: Vec<Row>,
-    /// Contacts of the segment that ends at each point; empty if segments are not tested.
-    segment_contacts: Vec<SegmentContactRows>,
-    /// Largest distance of each point from its root [m]; empty if no material has a tether.
-    tethers: Vec<Row>,
-    /// Length of the longest strand [m].
-    longest: f32,
-    /// Length of the longest segment [m].
-    longest_segment: f32,
-    /// Number of hairs that each strand of the groom represents; shape `[strands of the groom]`.
-    multiplicity: Vec<f32>,
-    /// As long as `state` for the second-order integrator, else empty.
-    history: Vec<HistoryRows>,
-    /// Holds on points, for each tile; empty if there are none.
-    holds: Vec<Vec<HoldRows>>,
+    model: Arc<StrandModel>,
+    state: StrandState,
+    /// External forces that the caller added.
+    force_fields: Vec<(ForceId, Arc<dyn ForceField>)>,
     /// External forces on points in the last frame.
     forces: ForceBuffers,
-    /// Global shape of each material; a group past the end uses the last one.
-    global_shapes: Vec<GlobalShape>,
-    /// Active manipulators.
-    tools: manipulators::Tools,
-    /// Charge of each material's hair [C/m]; a group past the end uses the last one.
-    charges: Vec<f32>,
-    charged: Vec<ChargedBall>,
     hair_field: HairField,
     /// The hair volume: density, and forces between hair; `None` if strands pass through each other and
     /// nothing needs the density.
     volume: Option<Box<Volume>>,
     /// Strand contact; `None` if disabled.
     neighbours: Option<Box<Neighbours>>,
-    /// Tensions of the rest shape: of segments and, in the springs model, of the triangles' sides. Shapes as
-    /// `state`; the second is empty without springs.
-    tensions: [Vec<Row>; 2],
-    /// How the anchor moved in the last frame.
-    motion: teleport::Motion,
     /// Turbulence of the air in the last frame.
     noise: Noise,
     /// Wind occlusion by bodies and hair, and its result in the last frame.
     wind_occlusion: WindOcclusion,
     shade: OcclusionSampler,
-    /// Length of the last substep [s].
-    last_h: f32,
-    settings: build::Settings,
     /// Context of the last frame, kept to reuse its memory.
     interval: FrameContext,
     level: Level,
-    /// Lane of each simulated strand, in the order that the caller named them.
-    places: Vec<u32>,
-    start: Start,
 }
 
 impl Simulation {
     /// Number of simulated strands.
     pub fn strand_count(&self) -> usize {
-        self.places.len()
+        self.model.places.len()
     }
 
     /// Number of simulated points, without padding.
     pub fn point_count(&self) -> usize {
-        self.strands().map(|s| self.groom.range(s as usize).len()).sum()
+        self.strands().map(|s| self.model.groom.range(s as usize).len()).sum()
     }
 
     /// Returns the number of joints that the sag-free start had to stiffen, and of those that are softer than
     /// they should be.
     pub fn start(&self) -> Start {
-        self.start
+        self.model.start
     }
 
     /// Size of state, rest shape and strand data in memory, with padding [bytes].
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.strand[..])
-            + size_of_val(&self.rest[..])
-            + size_of_val(&self.state[..])
-            + size_of_val(&self.rest_penetration[..])
-            + size_of_val(&self.contact_age[..])
-            + size_of_val(&self.segment_contacts[..])
-            + size_of_val(&self.tethers[..])
-            + size_of_val(&self.history[..])
+        size_of_val(&self.state.strand[..])
+            + size_of_val(&self.model.rest[..])
+            + size_of_val(&self.state.points[..])
+            + size_of_val(&self.model.rest_penetration[..])
+            + size_of_val(&self.state.contact_age[..])
+            + size_of_val(&self.state.segment_contacts[..])
+            + size_of_val(&self.model.tethers[..])
+            + size_of_val(&self.state.history[..])
             + self.forces.bytes()
-            + self.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
+            + self.model.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
             + self.volume.as_ref().map_or(0, |volume| volume.bytes())
             + self.neighbours.as_ref().map_or(0, |neighbours| neighbours.bytes())
-            + (self.lanes.len() + self.asked.len() + self.places.len() + self.multiplicity.len())
+            + (self.model.lanes.len()
+                + self.model.asked.len()
+                + self.model.places.len()
+                + self.model.multiplicity.len())
                 * size_of::<u32>()
-            + self.tiles.len() * size_of::<TilePlace>()
+            + self.model.tiles.len() * size_of::<TilePlace>()
     }
 
     /// Name of the instruction set in use.
@@ -189,25 +155,25 @@ impl Simulation {
     /// # Panics
     /// If there is not one number for each strand of the groom.
     pub fn set_hair_multiplicity(&mut self, hairs: Vec<f32>) {
-        assert_eq!(hairs.len(), self.groom.strand_count(), "one number for each strand of the groom");
-        self.multiplicity = hairs;
+        assert_eq!(hairs.len(), self.model.groom.strand_count(), "one number for each strand of the groom");
+        Arc::make_mut(&mut self.model).multiplicity = hairs;
     }
 
     /// Sets the charged bodies that act on charged hair in the next frame.
     pub fn set_charged(&mut self, balls: impl IntoIterator<Item = ChargedBall>) {
-        self.charged.clear();
-        self.charged.extend(balls);
+        self.state.charged.clear();
+        self.state.charged.extend(balls);
     }
 
-    /// The simulated strands, as indices of the groom, in the order given to [`Simulation::new`].
+    /// The simulated strands, as indices of the groom, in the order given to [`Simulation::builder`].
     pub fn strands(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
-        self.places.iter().map(|p| self.lanes[*p as usize])
+        self.model.places.iter().map(|p| self.model.lanes[*p as usize])
     }
 
     /// Writes the points of every simulated strand [m], one after the other, in the order given to
-    /// [`Simulation::new`]. `out` has the shape `[point_count]`.
+    /// [`Simulation::builder`]. `out` has the shape `[point_count]`.
     pub fn write_points(&self, out: &mut [Vec3]) {
-        self.write_points_of(0..self.places.len(), out);
+        self.write_points_of(0..self.model.places.len(), out);
     }
 
     /// The same for some of the strands, by their indices in that order.
@@ -217,15 +183,15 @@ impl Simulation {
     pub fn write_points_of(&self, strands: Range<usize>, out: &mut [Vec3]) {
         let mut rest = out;
         let mut pieces = Vec::with_capacity(strands.len());
-        for &place in &self.places[strands] {
+        for &place in &self.model.places[strands] {
             let (piece, more) =
-                rest.split_at_mut(self.groom.range(self.lanes[place as usize] as usize).len());
+                rest.split_at_mut(self.model.groom.range(self.model.lanes[place as usize] as usize).len());
             pieces.push((place as usize, piece));
             rest = more;
         }
         pieces.into_par_iter().with_min_len(256).for_each(|(place, piece)| {
             let root = self.root_position(place);
-            let stride = self.tiles[place / LANES].model.stride();
+            let stride = self.model.tiles[place / LANES].model.stride();
             for (p, x) in piece.iter_mut().zip(self.particles(place).step_by(stride)) {
                 *p = root + x;
             }
@@ -234,7 +200,8 @@ impl Simulation {
 
     /// Number of particles of the strand in lane `place`.
     fn simulated_points(&self, place: usize) -> usize {
-        (self.groom.range(self.lanes[place] as usize).len() - 1) * self.tiles[place / LANES].model.stride()
+        (self.model.groom.range(self.model.lanes[place] as usize).len() - 1)
+            * self.model.tiles[place / LANES].model.stride()
             + 1
     }
 
@@ -249,28 +216,31 @@ impl Simulation {
     /// A vector of the state at point `i` of the strand in lane `place`.
     fn vector(&self, place: usize, i: usize, component: usize) -> Vec3 {
         let (tile, lane) = (place / LANES, place % LANES);
-        let rows = &self.state[self.tiles[tile].first as usize + i][component..];
+        let rows = &self.state.points[self.model.tiles[tile].first as usize + i][component..];
         Vec3::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane])
     }
 
     /// A value of the rest shape.
     fn rest(&self, place: usize, i: usize, component: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
-        self.rest[self.tiles[tile].first as usize + i][component].0[lane]
+        self.model.rest[self.model.tiles[tile].first as usize + i][component].0[lane]
     }
 
     /// Authored depth of the segment that ends at point `i`, 0 or less [m].
     fn sunk(&self, place: usize, i: usize) -> f32 {
         let (tile, lane) = (place / LANES, place % LANES);
-        self.rest_penetration.get(self.tiles[tile].first as usize + i).map_or(0.0, |row| row.0[lane])
+        self.model
+            .rest_penetration
+            .get(self.model.tiles[tile].first as usize + i)
+            .map_or(0.0, |row| row.0[lane])
     }
 
     /// World position of a root at the end of the last step [m].
     fn root_position(&self, place: usize) -> Vec3 {
         let (tile, lane) = (place / LANES, place % LANES);
-        let rows = &self.strand[tile][strand::ROOT_END..];
+        let rows = &self.state.strand[tile][strand::ROOT_END..];
         let local = Vec3::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane]);
-        let (m, t) = self.settings.anchor.matrix();
+        let (m, t) = self.state.anchor.matrix();
         // The same arithmetic as in the kernel, so that a body at rest gives bitwise the same position.
         m.x_axis * local.x + m.y_axis * local.y + m.z_axis * local.z + t
     }

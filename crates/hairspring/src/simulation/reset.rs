@@ -38,18 +38,18 @@ impl Simulation {
     /// how many were reset.
     pub(super) fn reset_non_finite(&mut self) -> usize {
         let mut count = 0;
-        for place in 0..self.lanes.len() {
+        for place in 0..self.model.lanes.len() {
             let (tile, lane) = (place / LANES, place % LANES);
-            let first = self.tiles[tile].first as usize;
-            let rows = first..first + self.tiles[tile].points as usize;
-            if self.lanes[place] != u32::MAX
-                && self.state[rows.clone()].iter().flatten().any(|r| !r.0[lane].is_finite())
+            let first = self.model.tiles[tile].first as usize;
+            let rows = first..first + self.model.tiles[tile].points as usize;
+            if self.model.lanes[place] != u32::MAX
+                && self.state.points[rows.clone()].iter().flatten().any(|r| !r.0[lane].is_finite())
             {
                 self.reset_strand(place);
                 count += 1;
-            } else if self.lanes[place] == u32::MAX {
-                self.state[rows.clone()].iter_mut().flatten().for_each(|r| r.0[lane] = 0.0);
-                if let Some(history) = self.history.get_mut(rows) {
+            } else if self.model.lanes[place] == u32::MAX {
+                self.state.points[rows.clone()].iter_mut().flatten().for_each(|r| r.0[lane] = 0.0);
+                if let Some(history) = self.state.history.get_mut(rows) {
                     history.iter_mut().flatten().for_each(|r| r.0[lane] = 0.0);
                 }
             }
@@ -59,42 +59,45 @@ impl Simulation {
 
     /// Resets every strand to its rest shape at the current pose of its root, without motion.
     pub fn reset(&mut self) {
-        for k in 0..self.places.len() {
-            self.reset_strand(self.places[k] as usize);
+        for k in 0..self.model.places.len() {
+            self.reset_strand(self.model.places[k] as usize);
         }
         if let Some(neighbours) = &mut self.neighbours {
             neighbours.forget();
         }
-        self.motion = super::teleport::Motion::default();
-        self.last_h = 0.0;
+        self.state.motion = super::teleport::Motion::default();
+        self.state.last_h = 0.0;
     }
 
     pub(super) fn reset_strand(&mut self, place: usize) {
         let (tile, lane) = (place / LANES, place % LANES);
-        let rows = &self.strand[tile];
+        let rows = &self.state.strand[tile];
         let local = Quat::from_array([0, 1, 2, 3].map(|k| rows[strand::TURN_END + k].0[lane]));
-        let turn = self.settings.anchor.rotation * local;
+        let turn = self.state.anchor.rotation * local;
         let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
-        let points = simulated_points(self.tiles[tile].model, self.groom.strand(self.lanes[place] as usize))
-            .into_owned();
-        self.contact_age[tile].0[lane] = 0.0;
-        let springs = self.tiles[tile].model == Elastic::Springs;
-        for i in 0..self.tiles[tile].points as usize {
+        let points = simulated_points(
+            self.model.tiles[tile].model,
+            self.model.groom.strand(self.model.lanes[place] as usize),
+        )
+        .into_owned();
+        self.state.contact_age[tile].0[lane] = 0.0;
+        let springs = self.model.tiles[tile].model == Elastic::Springs;
+        for i in 0..self.model.tiles[tile].points as usize {
             let at = |i: usize| points[i.min(points.len() - 1)];
             let edge: Vec3 = turn * (at(i) - at(i.saturating_sub(1)));
-            let at = self.tiles[tile].first as usize + i;
-            if let Some(history) = self.history.get_mut(at) {
+            let at = self.model.tiles[tile].first as usize + i;
+            if let Some(history) = self.state.history.get_mut(at) {
                 history.iter_mut().for_each(|r| r.0[lane] = 0.0);
             }
-            if let Some(span) = self.segment_contacts.get_mut(at) {
+            if let Some(span) = self.state.segment_contacts.get_mut(at) {
                 span.iter_mut().for_each(|r| r.0[lane] = 0.0);
             }
-            let rows = &mut self.state[at];
+            let rows = &mut self.state.points[at];
             rows.iter_mut().for_each(|row| row.0[lane] = 0.0);
             // The tension that balances the rest shape.
-            rows[state::TENSION].0[lane] = self.tensions[0][at].0[lane];
+            rows[state::TENSION].0[lane] = self.model.tensions[0][at].0[lane];
             if springs {
-                rows[springs::SIDE].0[lane] = self.tensions[1][at].0[lane];
+                rows[springs::SIDE].0[lane] = self.model.tensions[1][at].0[lane];
             }
             for (row, x) in rows[state::EDGE..].iter_mut().zip(edge.to_array()) {
                 row.0[lane] = x;

@@ -29,7 +29,7 @@ pub struct StepInput<'a> {
     /// Pose of the frame that roots move with (the head). Within the frame, roots follow the arc of its
     /// motion.
     pub anchor: RigidTransform,
-    /// World pose of each simulated root, in the order given to [`Simulation::new`]: position [m] and
+    /// World pose of each simulated root, in the order given to [`Simulation::builder`]: position [m] and
     /// rotation since rest.
     pub roots: &'a [RigidTransform],
     /// Colliders.
@@ -102,9 +102,9 @@ impl Simulation {
     /// # Panics
     /// If `drive.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
     pub fn step(&mut self, drive: &StepInput) -> StepReport {
-        assert_eq!(drive.roots.len(), self.places.len(), "one root pose for each simulated strand");
+        assert_eq!(drive.roots.len(), self.model.places.len(), "one root pose for each simulated strand");
         assert!(drive.dt > 0.0, "`dt` must be positive");
-        let solver = self.settings.solver;
+        let solver = self.model.solver;
         let carried = self.carry_along(drive);
         // For bodies with several time slices, each slice has the same number of substeps.
         let parts = drive.obstacles.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
@@ -117,13 +117,13 @@ impl Simulation {
         self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
         if looked_at && !interval.segments {
             // Discard the segment contacts: nothing would update them until segments are tested again.
-            self.segment_contacts.fill([Row::default(); segment_contact::ROWS]);
+            self.state.segment_contacts.fill([Row::default(); segment_contact::ROWS]);
         }
         self.begin_tools(&FrameColliders::new((drive.obstacles, carried.as_ref())));
         let (reset_strands, times) = self.run_in_parts(drive, carried.as_ref(), &mut interval);
         self.rest_holds();
         self.rest_tools(drive.dt);
-        self.last_h = interval.h;
+        self.state.last_h = interval.h;
         // Release the colliders' shapes to the caller.
         interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
         self.interval = interval;
@@ -137,20 +137,20 @@ impl Simulation {
             self.level,
             interval,
             TileRange {
-                tiles: &self.tiles,
-                strand: &self.strand,
-                rest: &self.rest,
-                state: &mut self.state,
-                history: &mut self.history,
+                tiles: &self.model.tiles,
+                strand: &self.state.strand,
+                rest: &self.model.rest,
+                state: &mut self.state.points,
+                history: &mut self.state.history,
                 external_acceleration: &self.forces.external_acceleration,
                 position_spring: &self.forces.position_spring,
                 anisotropic_drag: &self.forces.anisotropic_drag,
                 wind_delta: &self.forces.wind_delta,
-                rest_penetration: &self.rest_penetration,
-                contact_age: &mut self.contact_age,
-                segment_contacts: if interval.segments { &mut self.segment_contacts } else { &mut [] },
-                tether_lengths: &self.tethers,
-                holds: &self.holds,
+                rest_penetration: &self.model.rest_penetration,
+                contact_age: &mut self.state.contact_age,
+                segment_contacts: if interval.segments { &mut self.state.segment_contacts } else { &mut [] },
+                tether_lengths: &self.model.tethers,
+                holds: &self.state.holds,
             },
         );
         if reset { self.reset_non_finite() } else { 0 }
@@ -164,9 +164,9 @@ impl Simulation {
         count: u32,
         interval: &mut FrameContext,
     ) {
-        let from = self.settings.anchor;
+        let from = self.state.anchor;
         interval.h = drive.dt / count as f32;
-        let solver = self.settings.solver;
+        let solver = self.model.solver;
         interval.integrator = solver.integrator;
         interval.iterations = match (solver.integrator, solver.quality) {
             (Integrator::LocalGlobal, Quality::Normal) => LOCAL_GLOBAL,
@@ -174,16 +174,16 @@ impl Simulation {
             (_, Quality::Normal) => 1,
             (_, Quality::High) => NEWTON,
         };
-        interval.continues = (interval.h / self.last_h - 1.0).abs() < 1e-3;
+        interval.continues = (interval.h / self.state.last_h - 1.0).abs() < 1e-3;
         interval.response = solver.contact;
         // For the largest length that a segment can have. Without a strain limit, segments are always tested.
         let may_cut = |o: &MovingCollider| {
             !(solver.integrator.limits_strain()
-                && segment_contact_unneeded(self.longest_segment, o.shape.roundness()))
+                && segment_contact_unneeded(self.model.longest_segment, o.shape.roundness()))
         };
         interval.segments = solver.segment_contacts && drive.obstacles.iter().any(may_cut);
         interval.projection_iterations = solver.projection_iterations;
-        interval.gravity = self.settings.gravity;
+        interval.gravity = self.model.gravity;
         interval.anchor = from.matrix();
         interval.substeps.resize_with(count as usize, Substep::default);
         interval.now = 0..count as usize;
@@ -208,7 +208,7 @@ impl Simulation {
     /// anchor.
     pub(super) fn move_roots(&mut self, drive: &StepInput) {
         let turn = drive.anchor.rotation.inverse();
-        let tiles = self.strand.par_iter_mut().zip(self.asked.par_chunks(LANES));
+        let tiles = self.state.strand.par_iter_mut().zip(self.model.asked.par_chunks(LANES));
         tiles.with_min_len(8 * TILES_PER_TASK).for_each(|(rows, asked)| {
             for k in 0..strand::ROOT_END {
                 rows[strand::ROOT_START + k] = rows[strand::ROOT_END + k];

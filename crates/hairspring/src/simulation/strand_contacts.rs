@@ -20,17 +20,17 @@ impl Simulation {
         let mut hair = Hair::default();
         if settings.on {
             let mut known = HashMap::new();
-            for place in &self.places {
-                let strand = self.lanes[*place as usize] as usize;
-                let points = self.groom.strand(strand);
+            for place in &self.model.places {
+                let strand = self.model.lanes[*place as usize] as usize;
+                let points = self.model.groom.strand(strand);
                 let next = hair.strand_count() as u32;
                 let bits: &[u32] = bytemuck::cast_slice(points);
-                match *known.entry((self.groom.group(strand), bits)).or_insert(next) {
+                match *known.entry((self.model.groom.group(strand), bits)).or_insert(next) {
                     same if same != next => hair.add_same(same),
                     _ => hair.add_strand(points.len()),
                 }
             }
-            self.show_neighbours((1.0, self.settings.anchor.matrix()), f32::INFINITY, &mut hair);
+            self.show_neighbours((1.0, self.state.anchor.matrix()), f32::INFINITY, &mut hair);
         }
         self.neighbours = Neighbours::new(settings, hair).map(Box::new);
     }
@@ -74,22 +74,26 @@ impl Simulation {
     /// `h` [s]. The pair holds the fraction of the frame and the anchor's pose at that time.
     fn show_neighbours(&self, (fraction, (m, t)): (f32, (Mat3, Vec3)), h: f32, hair: &mut Hair) {
         let mut i = 0;
-        for (k, place) in self.places.iter().map(|p| *p as usize).enumerate() {
+        for (k, place) in self.model.places.iter().map(|p| *p as usize).enumerate() {
             let Some(alike) = hair.shown_first(k) else { continue };
             let (tile, lane) = (place / LANES, place % LANES);
-            let (stride, first) = (self.tiles[tile].model.stride(), self.tiles[tile].first as usize);
-            let damped = 1.0 + self.strand[tile][strand::DAMPING].0[lane] / h;
-            let root = |at: usize| Vec3::from([0, 1, 2].map(|k| self.strand[tile][at + k].0[lane]));
+            let (stride, first) =
+                (self.model.tiles[tile].model.stride(), self.model.tiles[tile].first as usize);
+            let damped = 1.0 + self.state.strand[tile][strand::DAMPING].0[lane] / h;
+            let root = |at: usize| Vec3::from([0, 1, 2].map(|k| self.state.strand[tile][at + k].0[lane]));
             let mut x = m * root(strand::ROOT_START).lerp(root(strand::ROOT_END), fraction) + t;
             for j in 0..self.simulated_points(place) {
                 x += self.vector(place, j, state::EDGE);
                 if j.is_multiple_of(stride) {
                     hair.x[i] = x;
                     hair.v[i] = self.vector(place, j, state::V);
-                    let free = j >= self.tiles[tile].model.driven();
-                    hair.inverse_mass[i] =
-                        if free { (alike * self.rest[first + j][rest::MASS].0[lane]).recip() } else { 0.0 };
-                    let rest = |row: usize| self.rest[first + j][row].0[lane];
+                    let free = j >= self.model.tiles[tile].model.driven();
+                    hair.inverse_mass[i] = if free {
+                        (alike * self.model.rest[first + j][rest::MASS].0[lane]).recip()
+                    } else {
+                        0.0
+                    };
+                    let rest = |row: usize| self.model.rest[first + j][row].0[lane];
                     hair.inverse_length[i] =
                         if rest(rest::LENGTH) > 0.0 { rest(rest::LENGTH).recip() } else { 0.0 };
                     // The bending springs of the springs model do not act at its points, and their effect
@@ -99,7 +103,7 @@ impl Simulation {
                 }
             }
             let start = i - self.points(place);
-            for held in self.holds.get(tile).into_iter().flatten() {
+            for held in self.state.holds.get(tile).into_iter().flatten() {
                 if held.rows[hold::PINNED].0[lane] > 0.0 {
                     hair.inverse_mass[start + held.point as usize / stride] = 0.0;
                 }
@@ -108,14 +112,14 @@ impl Simulation {
     }
 
     /// Calls `see` with the velocity of every point, strand by strand in the order given to
-    /// [`Simulation::new`]: the index of the point in `hair`, and whether its strand is the first of its
+    /// [`Simulation::builder`]: the index of the point in `hair`, and whether its strand is the first of its
     /// merged strands.
     fn each_velocity(&mut self, hair: &Hair, mut see: impl FnMut(usize, bool, [&mut f32; 3])) {
-        for (k, place) in self.places.iter().map(|p| *p as usize).enumerate() {
-            let (tile, lane) = (self.tiles[place / LANES], place % LANES);
+        for (k, place) in self.model.places.iter().map(|p| *p as usize).enumerate() {
+            let (tile, lane) = (self.model.tiles[place / LANES], place % LANES);
             let first = hair.shown_first(k).is_some();
             for (j, i) in hair.strand(hair.shown(k)).enumerate() {
-                let rows = &mut self.state[tile.first as usize + j * tile.model.stride()];
+                let rows = &mut self.state.points[tile.first as usize + j * tile.model.stride()];
                 let [x, y, z] = &mut rows[state::V..state::V + 3] else { unreachable!() };
                 see(i, first, [&mut x.0[lane], &mut y.0[lane], &mut z.0[lane]]);
             }

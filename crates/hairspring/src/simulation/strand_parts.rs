@@ -37,7 +37,7 @@ impl Simulation {
         let began = Instant::now();
         times.volume = self.exchange(drive, carried, interval);
         times.forces = began.elapsed() - times.volume;
-        let start = std::mem::replace(&mut self.settings.anchor, drive.anchor);
+        let start = std::mem::replace(&mut self.state.anchor, drive.anchor);
         let mut reset_strands = 0;
         for number in (0..substeps).step_by(alone) {
             if number > 0 && number.is_multiple_of(frozen) {

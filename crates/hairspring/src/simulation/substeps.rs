@@ -54,7 +54,7 @@ impl Simulation {
         for obstacle in drive.obstacles {
             asked = asked.max(self.substeps_of_hair(drive, carried, obstacle));
             // Relative to the anchor, because hair moves with it.
-            let start = self.settings.anchor.inverse().after(&obstacle.start(carried));
+            let start = self.state.anchor.inverse().after(&obstacle.start(carried));
             let end = drive.anchor.inverse().after(&obstacle.end);
             let (center, radius) = obstacle.shape.bounds();
             let [a, b] = [start, end].map(|pose| pose.point(center));
@@ -73,7 +73,7 @@ impl Simulation {
             let near = drive.roots.iter().any(|root| {
                 let root = drive.anchor.inverse_point(root.translation);
                 let along = ((root - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
-                root.distance(a.lerp(b, along)) < radius + turn * radius + self.longest
+                root.distance(a.lerp(b, along)) < radius + turn * radius + self.model.longest
             });
             if near {
                 asked = asked.max(count as u32);
@@ -98,11 +98,11 @@ impl Simulation {
         let (center, radius) = shape.bounds();
         let center = start.point(center);
         let part = (MAX_TRAVEL * shape.half_thickness()).max(1e-12);
-        let slow = part * drive.dt / substep_length(&self.settings.solver) as f32;
+        let slow = part * drive.dt / substep_length(&self.model.solver) as f32;
         let way_of_strand = |place: usize| {
             let mut x = self.root_position(place);
             let n = self.simulated_points(place);
-            if x.distance(center) > radius + 2.0 * self.longest {
+            if x.distance(center) > radius + 2.0 * self.model.longest {
                 return 0.0;
             }
             let mut most = 0.0f32;
@@ -112,7 +112,7 @@ impl Simulation {
                 let own = start.inverse_point(x);
                 // Hair at rest follows the head and the body when they move away together.
                 let slip = self.vector(place, i, state::V) * drive.dt + x - end.point(own);
-                let with_head = drive.anchor.point(self.settings.anchor.inverse_point(x)) - x;
+                let with_head = drive.anchor.point(self.state.anchor.inverse_point(x)) - x;
                 let way = slip.length().min((slip + with_head).length());
                 if way > most.max(slow) && shape.distance(own) < way + edge.length() {
                     most = way;
@@ -120,7 +120,8 @@ impl Simulation {
             }
             most
         };
-        let way = self.places.par_iter().map(|&place| way_of_strand(place as usize)).reduce(|| 0.0, f32::max);
+        let way =
+            self.model.places.par_iter().map(|&place| way_of_strand(place as usize)).reduce(|| 0.0, f32::max);
         (way / part).ceil().min(MOST) as u32
     }
 }

@@ -35,9 +35,9 @@ impl Simulation {
     /// way.
     pub fn teleport(&mut self, by: RigidTransform) {
         let turn = Mat3::from_quat(by.rotation);
-        for tile in &self.tiles {
+        for tile in &self.model.tiles {
             let points = tile.first as usize..(tile.first + tile.points) as usize;
-            let state = &mut self.state[points.clone()];
+            let state = &mut self.state.points[points.clone()];
             // In the springs model the rows of a normal hold tensions.
             let normals = if tile.model == Elastic::Springs { None } else { Some(state::NORMAL) };
             state.par_iter_mut().with_min_len(1024).for_each(|rows| {
@@ -46,7 +46,7 @@ impl Simulation {
                     .flatten()
                     .for_each(|at| rotate(&turn, &mut rows[at..at + 3]));
             });
-            if let Some(history) = self.history.get_mut(points) {
+            if let Some(history) = self.state.history.get_mut(points) {
                 for rows in history {
                     rotate(&turn, &mut rows[history::V..history::V + 3]);
                     rotate(&turn, &mut rows[history::WAY..history::WAY + 3]);
@@ -57,20 +57,20 @@ impl Simulation {
             neighbours.turn(by.rotation);
         }
         self.carry_tools(&by);
-        self.settings.anchor = by.after(&self.settings.anchor);
-        self.motion.velocity = turn * self.motion.velocity;
-        self.motion.spin = turn * self.motion.spin;
+        self.state.anchor = by.after(&self.state.anchor);
+        self.state.motion.velocity = turn * self.state.motion.velocity;
+        self.state.motion.spin = turn * self.state.motion.spin;
     }
 
     /// Moves the hair rigidly before a frame: by the part that `inertia` leaves, or completely if the anchor
     /// teleports. Returns the applied motion.
     pub(super) fn carry_along(&mut self, drive: &StepInput) -> Option<RigidTransform> {
-        let solver = self.settings.solver;
-        let way = drive.anchor.after(&self.settings.anchor.inverse());
-        let moved = drive.anchor.translation - self.settings.anchor.translation;
+        let solver = self.model.solver;
+        let way = drive.anchor.after(&self.state.anchor.inverse());
+        let moved = drive.anchor.translation - self.state.anchor.translation;
         let turned = way.rotation.to_scaled_axis();
-        let expected = Quat::from_scaled_axis(self.motion.spin * drive.dt);
-        let off = (moved - self.motion.velocity * drive.dt).length();
+        let expected = Quat::from_scaled_axis(self.state.motion.spin * drive.dt);
+        let off = (moved - self.state.motion.velocity * drive.dt).length();
         let turned_off = way.rotation.angle_between(expected);
         let jumped = is_teleport(off, turned_off, solver.teleport_distance, f64::from(drive.dt));
         // The next frame is compared with the motion of a teleport, too. After a single jump, hair is thus
@@ -80,16 +80,13 @@ impl Simulation {
         let by = if jumped {
             way
         } else if solver.inertia < 1.0 {
-            self.settings
-                .anchor
-                .lerp(&drive.anchor, 1.0 - solver.inertia)
-                .after(&self.settings.anchor.inverse())
+            self.state.anchor.lerp(&drive.anchor, 1.0 - solver.inertia).after(&self.state.anchor.inverse())
         } else {
-            self.motion = now;
+            self.state.motion = now;
             return None;
         };
         self.teleport(by);
-        self.motion = now;
+        self.state.motion = now;
         Some(by)
     }
 }

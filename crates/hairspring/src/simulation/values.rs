@@ -1,4 +1,4 @@
-//! State of single points, by strand (an index into those given to [`Simulation::new`]) and index in the
+//! State of single points, by strand (an index into those given to [`Simulation::builder`]) and index in the
 //! strand.
 
 use super::Simulation;
@@ -27,30 +27,30 @@ impl Simulation {
 
     /// Speed of point `i` [m/s].
     pub fn speed_at(&self, strand: usize, i: usize) -> f32 {
-        let place = self.places[strand] as usize;
+        let place = self.model.places[strand] as usize;
         self.vector(place, i * self.stride(place), state::V).length()
     }
 
     /// Contact force of a collider on point `i`, from the last substep; 0 without contact [N].
     pub fn contact_at(&self, strand: usize, i: usize) -> f32 {
-        let place = self.places[strand] as usize;
-        let at = self.tiles[place / LANES].first as usize + i * self.stride(place);
-        self.state[at][state::NORMAL_FORCE].0[place % LANES]
+        let place = self.model.places[strand] as usize;
+        let at = self.model.tiles[place / LANES].first as usize + i * self.stride(place);
+        self.state.points[at][state::NORMAL_FORCE].0[place % LANES]
     }
 
     /// Fill ratio at the world position `place`: hair when the volume was last measured, relative to rest
     /// [1]; 0 if there is no hair volume.
     pub fn density_at(&self, place: Vec3) -> f32 {
-        self.volume.as_ref().map_or(0.0, |volume| volume.density(self.settings.anchor).fill(place))
+        self.volume.as_ref().map_or(0.0, |volume| volume.density(self.state.anchor).fill(place))
     }
 
     /// Lane of a strand, and the segment that begins at point `i`, or the last one.
     fn segment(&self, strand: usize, i: usize) -> (usize, usize) {
-        let place = self.places[strand] as usize;
+        let place = self.model.places[strand] as usize;
         (place, i.min(self.points(place) - 2))
     }
 
     fn stride(&self, place: usize) -> usize {
-        self.tiles[place / LANES].model.stride()
+        self.model.tiles[place / LANES].model.stride()
     }
 }

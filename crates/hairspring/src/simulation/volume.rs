@@ -18,29 +18,29 @@ impl Simulation {
     /// Enables or disables the hair volume. The current pose counts as the rest pose: it defines the rest
     /// density and each point's share of the volume.
     pub fn set_volume(&mut self, settings: &settings::Volume) {
-        let mut mass = vec![Row::default(); self.rest.len()];
+        let mut mass = vec![Row::default(); self.model.rest.len()];
         let (mut segments, mut sum, mut longest) = (0_usize, 0.0_f64, 0.0_f32);
         // A strand has the mass of the hairs that it represents. Only ratios between strands matter.
-        let most = self.strands().map(|s| self.multiplicity[s as usize]).fold(0.0, f32::max);
-        for (place, strand) in self.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
-            let (tile, lane) = (self.tiles[place / LANES], place % LANES);
-            let points = self.groom.range(*strand as usize).len();
+        let most = self.strands().map(|s| self.model.multiplicity[s as usize]).fold(0.0, f32::max);
+        for (place, strand) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+            let (tile, lane) = (self.model.tiles[place / LANES], place % LANES);
+            let points = self.model.groom.range(*strand as usize).len();
             let mut length = 0.0;
-            let share = self.multiplicity[*strand as usize] / most;
+            let share = self.model.multiplicity[*strand as usize] / most;
             for i in (0..points).map(|i| i * tile.model.stride()) {
                 let at = tile.first as usize + i;
-                mass[at].0[lane] = share * self.rest[at][rest::MASS].0[lane];
-                length += self.rest[at][rest::LENGTH].0[lane];
+                mass[at].0[lane] = share * self.model.rest[at][rest::MASS].0[lane];
+                length += self.model.rest[at][rest::LENGTH].0[lane];
             }
             (segments, sum, longest) = (segments + points - 1, sum + f64::from(length), longest.max(length));
         }
-        let points = self.rest.len() as u32;
+        let points = self.model.rest.len() as u32;
         let at_rest = AtRest {
-            firsts: self.tiles.iter().map(|tile| tile.first).chain([points]).collect(),
+            firsts: self.model.tiles.iter().map(|tile| tile.first).chain([points]).collect(),
             mass,
-            strand: &self.strand,
-            state: &self.state,
-            anchor: self.settings.anchor,
+            strand: &self.state.strand,
+            state: &self.state.points,
+            anchor: self.state.anchor,
             segment: (sum / segments.max(1) as f64) as f32,
             length: longest,
         };

@@ -52,11 +52,12 @@ mod rest;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use contact::Contact;
 pub(crate) use hair::Hair;
 
 use crate::settings;
 use along::Along;
-use contact::{Contact, ContactResponse, SolverParams};
+use contact::{ContactResponse, SolverParams};
 use glam::{Mat3, Quat, Vec3};
 use grid::Grid;
 
@@ -170,9 +171,15 @@ impl Neighbours {
         self.contacts.iter_mut().for_each(|contact| contact.turn(&turn));
     }
 
-    /// Takes over the contacts of `old`, which has the same strands.
-    pub fn take_over(&mut self, old: &Neighbours) {
-        self.contacts.extend_from_slice(&old.contacts[..old.contacts.len().min(self.contacts.capacity())]);
+    /// Returns the contacts, sorted by pair of segments.
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// Replaces the contacts by those of a state of the same strands.
+    pub fn set_contacts(&mut self, contacts: &[Contact]) {
+        self.contacts.clear();
+        self.contacts.extend_from_slice(&contacts[..contacts.len().min(self.contacts.capacity())]);
     }
 
     /// Returns whether any strand touches another.

@@ -76,15 +76,12 @@ fn a_shape_goes_through_a_curtain() {
     for ((name, shape), model) in
         shapes().into_iter().flat_map(|s| Model::ALL.map(|model| (s.clone(), model)))
     {
-        let mut simulation = Simulation::new(
-            groom.clone(),
-            &all,
-            &[Material { model, ..Material::default() }],
-            Solver::default(),
-            Vec3::new(0.0, -9.81, 0.0),
-            RigidTransform::default(),
-            &[],
-        );
+        let mut simulation = Simulation::builder(groom.clone())
+            .strands(&all)
+            .materials(&[Material { model, ..Material::default() }])
+            .solver(Solver::default())
+            .build()
+            .unwrap();
         // In at 1 m/s, a second in the hair, and away to where no strand reaches.
         let at = |frame: u32| {
             let t = frame as f32 * FRAME;
@@ -145,7 +142,15 @@ fn play(
     let (anchor, materials) = (RigidTransform::default(), [Material::default()]);
     let solver = Solver { sag_free: false, ..Solver::default() };
     let rest = ColliderPose::new(shape.clone(), anchor.matrix(), anchor.matrix(), 1.0);
-    let mut simulation = Simulation::new(groom.clone(), &all, &materials, solver, gravity, anchor, &[rest]);
+    let mut simulation = Simulation::builder(groom.clone())
+        .strands(&all)
+        .materials(&materials)
+        .solver(solver)
+        .gravity(gravity)
+        .anchor(anchor)
+        .colliders_at_rest(&[rest])
+        .build()
+        .unwrap();
     let obstacles = [MovingCollider { shape: shape.clone(), start: anchor, end: anchor }];
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
     for _ in 0..frames {

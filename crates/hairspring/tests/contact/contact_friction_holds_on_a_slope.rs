@@ -50,8 +50,13 @@ impl Slope {
         let solver = Solver { sag_free: false, contact: response, ..Solver::default() };
         let angle = SLOPE.to_radians();
         let gravity = Vec3::new(0.0, -angle.cos(), angle.sin()) * GRAVITY;
-        let simulation =
-            Simulation::new(groom, &all, &[material], solver, gravity, RigidTransform::default(), &[]);
+        let simulation = Simulation::builder(groom)
+            .strands(&all)
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .build()
+            .unwrap();
         Self { simulation, roots }
     }
 

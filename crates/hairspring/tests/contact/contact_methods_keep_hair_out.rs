@@ -33,7 +33,14 @@ fn land(model: Model, contact: Response) -> [f32; 3] {
     let solver = Solver { contact, sag_free: false, ..Solver::default() };
     let materials = [Material { model, ..Material::default() }];
     let anchor = RigidTransform::default();
-    let mut simulation = Simulation::new(groom, &all, &materials, solver, Vec3::NEG_Y * 9.81, anchor, &[]);
+    let mut simulation = Simulation::builder(groom)
+        .strands(&all)
+        .materials(&materials)
+        .solver(solver)
+        .gravity(Vec3::NEG_Y * 9.81)
+        .anchor(anchor)
+        .build()
+        .unwrap();
     let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };
     let obstacles = [MovingCollider::at_rest(shape, RigidTransform::default())];
     let mut deepest = 0.0f32;

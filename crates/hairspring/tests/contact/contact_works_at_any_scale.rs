@@ -62,7 +62,14 @@ fn fall(shape: &ColliderShape, s: f32) -> (Vec<Vec3>, f32) {
     let solver = Solver { sag_free: false, ..Solver::default() };
     let gravity = Vec3::Y * -9.81 * s;
     let anchor = RigidTransform::default();
-    let mut simulation = Simulation::new(groom, &all, &[material], solver, gravity, anchor, &[]);
+    let mut simulation = Simulation::builder(groom)
+        .strands(&all)
+        .materials(&[material])
+        .solver(solver)
+        .gravity(gravity)
+        .anchor(anchor)
+        .build()
+        .unwrap();
     let mut deepest = 0.0f32;
     for frame in 0..60 {
         let at = |frame: u32| {

@@ -33,8 +33,13 @@ fn curtain(model: Model) -> (Simulation, Vec<RigidTransform>) {
         .collect();
     let materials = [Material { model, ..Material::default() }];
     let gravity = Vec3::NEG_Y * 9.81;
-    let simulation =
-        Simulation::new(groom, &all, &materials, Solver::default(), gravity, RigidTransform::default(), &[]);
+    let simulation = Simulation::builder(groom)
+        .strands(&all)
+        .materials(&materials)
+        .solver(Solver::default())
+        .gravity(gravity)
+        .build()
+        .unwrap();
     (simulation, roots)
 }
 

@@ -26,15 +26,15 @@ fn measure(model: Model, shape: &ColliderShape, told: bool) -> Measure {
     let groom = Arc::new(Groom::from_strands([points.collect::<Vec<_>>()], 40e-6));
     let still = RigidTransform::default();
     let rest = ColliderPose::new(shape.clone(), still.matrix(), still.matrix(), 1.0);
-    let simulation = Simulation::new(
-        groom,
-        &[0],
-        &[Material { model, ..Material::default() }],
-        Solver::default(),
-        Vec3::NEG_Y * 9.81,
-        still,
-        if told { std::slice::from_ref(&rest) } else { &[] },
-    );
+    let simulation = Simulation::builder(groom)
+        .strands(&[0])
+        .materials(&[Material { model, ..Material::default() }])
+        .solver(Solver::default())
+        .gravity(Vec3::NEG_Y * 9.81)
+        .anchor(still)
+        .colliders_at_rest(if told { std::slice::from_ref(&rest) } else { &[] })
+        .build()
+        .unwrap();
     simulation.measure(&[MovingCollider { shape: shape.clone(), start: still, end: still }])
 }
 

@@ -40,15 +40,14 @@ fn hair_of(material: &Material, solver: Solver, rest: &[ColliderPose]) -> (Simul
         .iter()
         .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
         .collect();
-    let simulation = Simulation::new(
-        groom,
-        &all,
-        std::slice::from_ref(material),
-        Solver { sag_free: false, ..solver },
-        Vec3::NEG_Y * 9.81,
-        RigidTransform::default(),
-        rest,
-    );
+    let simulation = Simulation::builder(groom)
+        .strands(&all)
+        .materials(std::slice::from_ref(material))
+        .solver(Solver { sag_free: false, ..solver })
+        .gravity(Vec3::NEG_Y * 9.81)
+        .colliders_at_rest(rest)
+        .build()
+        .unwrap();
     (simulation, roots)
 }
 

@@ -30,8 +30,13 @@ fn hair(roots: impl Iterator<Item = Vec3>, along: Vec3, sag_free: bool) -> (Simu
         .collect();
     let solver = Solver { sag_free, ..Solver::default() };
     let gravity = Vec3::NEG_Y * 9.81;
-    let simulation =
-        Simulation::new(groom, &all, &[Material::default()], solver, gravity, RigidTransform::default(), &[]);
+    let simulation = Simulation::builder(groom)
+        .strands(&all)
+        .materials(&[Material::default()])
+        .solver(solver)
+        .gravity(gravity)
+        .build()
+        .unwrap();
     (simulation, roots)
 }
 

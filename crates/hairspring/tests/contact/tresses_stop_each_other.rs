@@ -60,7 +60,13 @@ fn simulation(strands: &[Vec<Vec3>], material: Material, sag_free: bool) -> Simu
     let groom = Arc::new(Groom::from_strands(strands, 35e-6));
     let all: Vec<u32> = (0..strands.len() as u32).collect();
     let solver = Solver { sag_free, ..Solver::default() };
-    Simulation::new(groom, &all, &[material], solver, Vec3::NEG_Y * 9.81, RigidTransform::default(), &[])
+    Simulation::builder(groom)
+        .strands(&all)
+        .materials(&[material])
+        .solver(solver)
+        .gravity(Vec3::NEG_Y * 9.81)
+        .build()
+        .unwrap()
 }
 
 fn points(simulation: &Simulation) -> Vec<Vec3> {

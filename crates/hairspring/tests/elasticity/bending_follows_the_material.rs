@@ -42,8 +42,13 @@ fn cantilever_toward(
     let material = Material { model, young, drag: 0.5, ..base };
     let solver = Solver { sag_free: false, substeps, ..Solver::default() };
     let gravity = down * 9.81;
-    let mut simulation =
-        Simulation::new(Arc::new(groom), &[0], &[material], solver, gravity, RigidTransform::default(), &[]);
+    let mut simulation = Simulation::builder(Arc::new(groom))
+        .strands(&[0])
+        .materials(&[material])
+        .solver(solver)
+        .gravity(gravity)
+        .build()
+        .unwrap();
     for _ in 0..(8.0 * rate) as u32 {
         simulation.step(&StepInput {
             dt: 1.0 / rate,

@@ -55,15 +55,13 @@ impl Scene {
         let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
         let points = groom.points.clone();
         let gravity = Vec3::NEG_Y * 9.81;
-        let simulation = Simulation::new(
-            groom.clone(),
-            &all,
-            &[material],
-            solver,
-            gravity,
-            RigidTransform::default(),
-            &[],
-        );
+        let simulation = Simulation::builder(groom.clone())
+            .strands(&all)
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .build()
+            .unwrap();
         Self { simulation, points, groom, fastest: Vec::new(), resets: 0 }
     }
 

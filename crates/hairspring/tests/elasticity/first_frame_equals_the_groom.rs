@@ -68,15 +68,12 @@ fn stays_where_it_was_authored(mass_profile: &[f32]) {
         .collect();
     for (name, model) in PRESETS.iter().flat_map(|name| Model::ALL.map(|model| (*name, model))) {
         let planar = model == Model::Curvature;
-        let mut simulation = Simulation::new(
-            groom.clone(),
-            &all,
-            &[Material { model, mass_profile: mass_profile.to_vec(), ..preset(name).unwrap() }],
-            Solver::default(),
-            Vec3::new(0.0, -9.81, 0.0),
-            RigidTransform::default(),
-            &[],
-        );
+        let mut simulation = Simulation::builder(groom.clone())
+            .strands(&all)
+            .materials(&[Material { model, mass_profile: mass_profile.to_vec(), ..preset(name).unwrap() }])
+            .solver(Solver::default())
+            .build()
+            .unwrap();
         let mut out = vec![Vec3::ZERO; simulation.point_count()];
         simulation.write_points(&mut out);
         let error = |out: &[Vec3]| {
@@ -120,15 +117,12 @@ fn what_the_start_changed_is_reported() {
     let start = |points: usize, young: f32, substeps: u32, model: Model| {
         let step = Vec3::new(1.0, 0.2, 0.0).normalize() * (1.0 / (points - 1) as f32);
         let strand: Vec<Vec3> = (0..points).map(|i| step * i as f32).collect();
-        let simulation = Simulation::new(
-            Arc::new(Groom::from_strands([strand], 35e-6)),
-            &[0],
-            &[Material { model, young, ..Material::default() }],
-            Solver { substeps, ..Solver::default() },
-            Vec3::new(0.0, -9.81, 0.0),
-            RigidTransform::default(),
-            &[],
-        );
+        let simulation = Simulation::builder(Arc::new(Groom::from_strands([strand], 35e-6)))
+            .strands(&[0])
+            .materials(&[Material { model, young, ..Material::default() }])
+            .solver(Solver { substeps, ..Solver::default() })
+            .build()
+            .unwrap();
         simulation.start()
     };
     for model in [Model::Curvature, Model::Rod, Model::Springs] {

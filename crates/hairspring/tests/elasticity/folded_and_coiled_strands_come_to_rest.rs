@@ -45,8 +45,13 @@ fn speeds(strands: &[Vec<Vec3>], material: Material, gravity: Vec3) -> ([f32; 2]
     let all: Vec<u32> = (0..strands.len() as u32).collect();
     let mut points = groom.points.clone();
     let solver = Solver::default();
-    let mut simulation =
-        Simulation::new(groom, &all, &[material], solver, gravity, RigidTransform::default(), &[]);
+    let mut simulation = Simulation::builder(groom)
+        .strands(&all)
+        .materials(&[material])
+        .solver(solver)
+        .gravity(gravity)
+        .build()
+        .unwrap();
     let mut resets = 0;
     let mut frame = |x: f32| {
         let pose = RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() };

@@ -35,15 +35,13 @@ fn with_every_model_and_quality() {
                 let solver = Solver { integrator, quality, substeps, ..Solver::default() };
                 let material = Material { model, ..Material::default() };
                 let gravity = Vec3::NEG_Y * 9.81;
-                let mut simulation = Simulation::new(
-                    groom.clone(),
-                    &[0, 1],
-                    &[material],
-                    solver,
-                    gravity,
-                    RigidTransform::default(),
-                    &[],
-                );
+                let mut simulation = Simulation::builder(groom.clone())
+                    .strands(&[0, 1])
+                    .materials(&[material])
+                    .solver(solver)
+                    .gravity(gravity)
+                    .build()
+                    .unwrap();
                 for frame in 0..30 {
                     let x = 0.02 * (std::f32::consts::TAU * 2.0 * frame as f32 / 60.0).sin();
                     let pose = RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() };

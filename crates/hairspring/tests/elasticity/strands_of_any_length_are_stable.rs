@@ -65,15 +65,13 @@ fn from_three_points_to_a_thousand_and_from_a_millimetre_to_two_metres() {
     let all: Vec<u32> = (0..count as u32).collect();
     for model in Model::ALL {
         let material = Material { model, bend: 4.0, ..Material::default() };
-        let mut simulation = Simulation::new(
-            groom.clone(),
-            &all,
-            &[material],
-            Solver::default(),
-            Vec3::NEG_Y * 9.81,
-            RigidTransform::default(),
-            &[],
-        );
+        let mut simulation = Simulation::builder(groom.clone())
+            .strands(&all)
+            .materials(&[material])
+            .solver(Solver::default())
+            .gravity(Vec3::NEG_Y * 9.81)
+            .build()
+            .unwrap();
         assert_eq!(simulation.point_count(), groom.points.len(), "no point is left out");
         let mut points = vec![Vec3::ZERO; groom.points.len()];
         (0..120).for_each(|_| step(&mut simulation, count, RigidTransform::default()));
@@ -117,15 +115,13 @@ fn long_strands_come_to_rest() {
             let material = Material { model, bend: 4.0, ..Material::default() };
             let solver = Solver { substeps, ..Solver::default() };
             let gravity = Vec3::NEG_Y * 9.81;
-            let mut simulation = Simulation::new(
-                groom.clone(),
-                &all,
-                &[material],
-                solver,
-                gravity,
-                RigidTransform::default(),
-                &[],
-            );
+            let mut simulation = Simulation::builder(groom.clone())
+                .strands(&all)
+                .materials(&[material])
+                .solver(solver)
+                .gravity(gravity)
+                .build()
+                .unwrap();
             // The fastest strand's mean speed [m/s].
             let speed = |simulation: &mut Simulation| {
                 let [mut before, mut after] = [(); 2].map(|()| vec![Vec3::ZERO; groom.points.len()]);
@@ -186,15 +182,13 @@ fn the_root_carries_place_direction_and_twist() {
         for pose in [twist, tilt] {
             let material = Material { model, bend: 20.0, ..Material::default() };
             // Without gravity the strand rests in its own shape, wherever its root is turned.
-            let mut simulation = Simulation::new(
-                groom.clone(),
-                &[0],
-                &[material],
-                Solver::default(),
-                Vec3::ZERO,
-                RigidTransform::default(),
-                &[],
-            );
+            let mut simulation = Simulation::builder(groom.clone())
+                .strands(&[0])
+                .materials(&[material])
+                .solver(Solver::default())
+                .gravity(Vec3::ZERO)
+                .build()
+                .unwrap();
             for frame in 1..=120 {
                 let share = (frame as f32 / 60.0).min(1.0);
                 let on_the_way = RigidTransform {

@@ -64,8 +64,13 @@ impl Swing {
         let groom = Arc::new(Groom::from_strands([strand.clone()], 40e-6));
         let solver = Solver { integrator, sag_free: false, ..Solver::default() };
         let gravity = Vec3::NEG_Y * 9.81;
-        let simulation =
-            Simulation::new(groom, &[0], &[material], solver, gravity, RigidTransform::default(), &[]);
+        let simulation = Simulation::builder(groom)
+            .strands(&[0])
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .build()
+            .unwrap();
         Self { simulation, points: strand }
     }
 

@@ -52,8 +52,15 @@ impl Head {
         let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
         let material = Material { model, drag: 0.1, ..Material::default() };
         let gravity = Vec3::new(0.0, -9.81, 0.0);
-        let mut simulation =
-            Simulation::new(groom.clone(), &all, &[material], solver, gravity, rest, &[obstacle]);
+        let mut simulation = Simulation::builder(groom.clone())
+            .strands(&all)
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .anchor(rest)
+            .colliders_at_rest(&[obstacle])
+            .build()
+            .unwrap();
         simulation.set_volume(&Volume { method: volume, ..Volume::default() });
         Self { groom, simulation, pose: rest }
     }

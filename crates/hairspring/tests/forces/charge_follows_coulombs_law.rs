@@ -35,8 +35,13 @@ fn charged(
     let all: Vec<u32> = (0..strands.len() as u32).collect();
     let material = Material { bend: 0.01, drag: 4.0, charge, ..Material::default() };
     let solver = Solver { sag_free: false, ..Solver::default() };
-    let mut simulation =
-        Simulation::new(groom, &all, &[material], solver, gravity, RigidTransform::default(), &[]);
+    let mut simulation = Simulation::builder(groom)
+        .strands(&all)
+        .materials(&[material])
+        .solver(solver)
+        .gravity(gravity)
+        .build()
+        .unwrap();
     let roots: Vec<RigidTransform> =
         strands.iter().map(|s| RigidTransform { translation: s[0], rotation: Quat::IDENTITY }).collect();
     simulation.set_charged(balls.iter().copied());

@@ -40,15 +40,13 @@ impl Curtain {
         let roots = all.iter().map(root).collect();
         let (material, gravity) = (Material { model, drag: 0.1, ..Material::default() }, Vec3::NEG_Y * 9.81);
         let solver = Solver::default();
-        let simulation = Simulation::new(
-            groom.clone(),
-            &all,
-            &[material],
-            solver,
-            gravity,
-            RigidTransform::default(),
-            &[],
-        );
+        let simulation = Simulation::builder(groom.clone())
+            .strands(&all)
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .build()
+            .unwrap();
         Self { simulation, roots, points: groom.points.clone(), before: groom.points.clone() }
     }
 

@@ -27,8 +27,13 @@ fn blown(side: usize, spacing: f32, hairs: f32, sheltered: bool) -> [f32; 2] {
         .collect();
     let gravity = Vec3::NEG_Y * 9.81;
     let (solver, material) = (Solver::default(), Material::default());
-    let mut simulation =
-        Simulation::new(groom.clone(), &all, &[material], solver, gravity, RigidTransform::default(), &[]);
+    let mut simulation = Simulation::builder(groom.clone())
+        .strands(&all)
+        .materials(&[material])
+        .solver(solver)
+        .gravity(gravity)
+        .build()
+        .unwrap();
     simulation.set_hair_multiplicity(vec![hairs; groom.strand_count()]);
     if sheltered {
         simulation.set_self_occlusion(&[]);

@@ -36,15 +36,13 @@ impl Brush {
         let groom = Arc::new(groom);
         let solver = Solver { sag_free: false, ..solver };
         let gravity = Vec3::NEG_Y * GRAVITY;
-        let simulation = Simulation::new(
-            groom.clone(),
-            &[0, 1, 2, 3],
-            &[material],
-            solver,
-            gravity,
-            RigidTransform::default(),
-            &[],
-        );
+        let simulation = Simulation::builder(groom.clone())
+            .strands(&[0, 1, 2, 3])
+            .materials(&[material])
+            .solver(solver)
+            .gravity(gravity)
+            .build()
+            .unwrap();
         Self { simulation, points: groom.points.clone(), groom }
     }
 

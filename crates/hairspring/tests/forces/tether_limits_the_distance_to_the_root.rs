@@ -51,7 +51,14 @@ fn fall(model: Model, tether: f32, g: f32, seconds: usize) -> Fall {
     let solver = Solver { sag_free: g == 1.0, ..Solver::default() };
     let gravity = Vec3::NEG_Y * 9.81 * g;
     let anchor = RigidTransform::default();
-    let mut simulation = Simulation::new(groom.clone(), &all, &materials, solver, gravity, anchor, &[]);
+    let mut simulation = Simulation::builder(groom.clone())
+        .strands(&all)
+        .materials(&materials)
+        .solver(solver)
+        .gravity(gravity)
+        .anchor(anchor)
+        .build()
+        .unwrap();
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
     let (mut most, mut speed) = (0.0f32, 0.0);
     for _ in 0..60 * seconds {

@@ -52,15 +52,13 @@ impl Curtain {
         let points = groom.points.clone();
         let all: Vec<u32> = (0..STRANDS as u32).collect();
         let (material, gravity) = (Material { model, ..Material::default() }, Vec3::NEG_Y * 9.81);
-        let simulation = Simulation::new(
-            Arc::new(groom),
-            &all,
-            &[material],
-            Solver::default(),
-            gravity,
-            RigidTransform::default(),
-            &[],
-        );
+        let simulation = Simulation::builder(Arc::new(groom))
+            .strands(&all)
+            .materials(&[material])
+            .solver(Solver::default())
+            .gravity(gravity)
+            .build()
+            .unwrap();
         Self { simulation, roots, points, obstacles: Vec::new() }
     }
 

@@ -87,15 +87,14 @@ fn blown(
     let rest = (Mat3::IDENTITY, Vec3::ZERO);
     let poses: Vec<_> =
         obstacles.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();
-    let mut simulation = Simulation::new(
-        groom.clone(),
-        &strands,
-        &[Material::default()],
-        Solver::default(),
-        Vec3::NEG_Y * 9.81,
-        RigidTransform::default(),
-        &poses,
-    );
+    let mut simulation = Simulation::builder(groom.clone())
+        .strands(&strands)
+        .materials(&[Material::default()])
+        .solver(Solver::default())
+        .gravity(Vec3::NEG_Y * 9.81)
+        .colliders_at_rest(&poses)
+        .build()
+        .unwrap();
     simulation.set_wind_occlusion(occlusion);
     let roots: Vec<RigidTransform> = strands
         .iter()

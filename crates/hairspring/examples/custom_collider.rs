@@ -1,0 +1,61 @@
+//! A collider of one's own: a torus, given by its signed distance.
+
+use glam::Vec3;
+use hairspring::{
+    air::Air,
+    collide::{Collider, ColliderShape, MovingCollider},
+    groom::Groom,
+    math::RigidTransform,
+    simulation::{Simulation, StepInput},
+};
+
+/// A torus around Y.
+#[derive(Debug)]
+struct Torus {
+    major: f32,
+    minor: f32,
+}
+
+impl Collider for Torus {
+    fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
+        let ring = Vec3::new(p.x, 0.0, p.z).normalize_or(Vec3::X) * self.major;
+        ((p - ring).length() - self.minor, (p - ring).normalize_or(Vec3::Y))
+    }
+
+    fn bounds(&self) -> (Vec3, f32) {
+        (Vec3::ZERO, self.major + self.minor)
+    }
+
+    fn half_thickness(&self) -> f32 {
+        self.minor
+    }
+}
+
+/// Runs the example.
+pub fn main() {
+    // Strands that stand off to the side, above the ring, and fall on it.
+    let strand = |s: i32| {
+        let root = Vec3::new(-0.02, 0.08, 0.01 * s as f32);
+        (0..20).map(|i| root + Vec3::X * (0.01 * i as f32)).collect::<Vec<_>>()
+    };
+    let groom = Groom::from_strands((-3..=3).map(strand), 40e-6);
+    let roots: Vec<_> =
+        (0..7).map(|s| RigidTransform { translation: groom.strand(s)[0], ..Default::default() }).collect();
+    let solver = hairspring::settings::Solver { sag_free: false, ..Default::default() };
+    let mut simulation = Simulation::builder(groom).solver(solver).build().expect("the groom is valid");
+    let torus = ColliderShape::custom(Torus { major: 0.1, minor: 0.02 });
+    let obstacles = [MovingCollider::at_rest(torus, RigidTransform::default())];
+    let anchor = RigidTransform::default();
+    for _ in 0..120 {
+        simulation.step(&StepInput {
+            dt: 1.0 / 60.0,
+            anchor,
+            roots: &roots,
+            obstacles: &obstacles,
+            air: Air::default(),
+        });
+    }
+    let (contacts, measure) = (simulation.contacts(&obstacles), simulation.measure(&obstacles));
+    println!("{} points touch the torus, {:.3} mm deep at most", contacts.points, 1e3 * measure.max_depth);
+    assert!(contacts.points > 0 && measure.max_depth < 1e-4);
+}

@@ -1,0 +1,49 @@
+//! A distance field from an array, as a game engine or a physics library has it.
+
+use glam::{UVec3, Vec3};
+use hairspring::{
+    air::Air,
+    collide::{ColliderShape, MovingCollider, SignedDistanceField},
+    groom::Groom,
+    math::RigidTransform,
+    settings::Solver,
+    simulation::{Simulation, StepInput},
+};
+use std::sync::Arc;
+
+/// Runs the example.
+pub fn main() {
+    // Samples of a rounded box, 4 mm apart.
+    let (origin, cell, size) = (Vec3::new(-0.1, -0.12, -0.1), 0.004, UVec3::new(51, 31, 51));
+    let mut samples = Vec::new();
+    for z in 0..size.z {
+        for y in 0..size.y {
+            for x in 0..size.x {
+                let p = origin + UVec3::new(x, y, z).as_vec3() * cell - Vec3::Y * -0.06;
+                let q = p.abs() - Vec3::new(0.06, 0.02, 0.06);
+                samples.push(q.max(Vec3::ZERO).length() + q.max_element().min(0.0) - 0.01);
+            }
+        }
+    }
+    let field = SignedDistanceField::from_samples(origin, cell, size, samples).expect("a sample a node");
+
+    let strand = |s: i32| {
+        let root = Vec3::new(-0.08, 0.03, 0.01 * s as f32);
+        (0..20).map(|i| root + Vec3::X * (0.01 * i as f32)).collect::<Vec<_>>()
+    };
+    let groom = Groom::from_strands((-3..=3).map(strand), 40e-6);
+    let roots: Vec<_> =
+        (0..7).map(|s| RigidTransform { translation: groom.strand(s)[0], ..Default::default() }).collect();
+    let solver = Solver { sag_free: false, ..Solver::default() };
+    let mut simulation = Simulation::builder(groom).solver(solver).build().expect("the groom is valid");
+    let shape = ColliderShape::Field(Arc::new(field));
+    let obstacles = [MovingCollider::at_rest(shape, RigidTransform::default())];
+    let anchor = RigidTransform::default();
+    for _ in 0..120 {
+        let air = Air::default();
+        simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &obstacles, air });
+    }
+    let (contacts, measure) = (simulation.contacts(&obstacles), simulation.measure(&obstacles));
+    println!("{} points lie on the box, {:.3} mm deep at most", contacts.points, 1e3 * measure.max_depth);
+    assert!(contacts.points > 0 && measure.max_depth < 1e-4);
+}

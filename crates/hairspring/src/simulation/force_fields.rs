@@ -1,0 +1,25 @@
+//! External forces that the caller adds and removes between steps.
+
+use super::Simulation;
+use crate::forces::ForceField;
+use std::sync::Arc;
+
+/// Identifies a force field of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ForceId(u32);
+
+impl Simulation {
+    /// Adds an external force, which acts in every step until it is removed. Forces act in the order in which
+    /// they were added, after the built-in ones.
+    pub fn add_force(&mut self, force: Arc<dyn ForceField>) -> ForceId {
+        let id = ForceId(self.force_fields.last().map_or(0, |(last, _)| last.0 + 1));
+        self.force_fields.push((id, force));
+        id
+    }
+
+    /// Removes a force. Returns it, or `None` if it was already removed.
+    pub fn remove_force(&mut self, id: ForceId) -> Option<Arc<dyn ForceField>> {
+        let at = self.force_fields.iter().position(|(own, _)| *own == id)?;
+        Some(self.force_fields.remove(at).1)
+    }
+}

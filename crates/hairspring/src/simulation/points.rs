@@ -1,0 +1,80 @@
+//! Positions and velocities of the simulated points as plain arrays.
+
+use super::Simulation;
+use crate::{
+    simd::lanes::LANES,
+    strand::{
+        model::bend::transport_normal,
+        tile::{Elastic, state},
+    },
+};
+use glam::{DVec3, Vec3};
+
+impl Simulation {
+    /// Writes the velocity of every simulated point [m/s], in the order of [`Simulation::write_points`]; `out`
+    /// has the shape `[point_count]`.
+    ///
+    /// # Panics
+    /// If `out` is too short.
+    pub fn write_velocities(&self, out: &mut [Vec3]) {
+        let mut out = out.iter_mut();
+        for place in self.model.places.iter().map(|p| *p as usize) {
+            let stride = self.model.tiles[place / LANES].model.stride();
+            for i in 0..self.points(place) {
+                *out.next().expect("one velocity for each point") = self.vector(place, i * stride, state::V);
+            }
+        }
+    }
+
+    /// Moves all points to `points` [m] with `velocities` [m/s], both in the order of
+    /// [`Simulation::write_points`], of shape `[point_count]`. Frames rotate with their segments by the
+    /// smallest rotation. Tensions and contact forces stay. A strand whose first point is not at its root is
+    /// translated there, since roots are driven.
+    ///
+    /// # Panics
+    /// If an array has another length, or a number is not finite.
+    pub fn set_points(&mut self, points: &[Vec3], velocities: &[Vec3]) {
+        let count = self.point_count();
+        assert_eq!((points.len(), velocities.len()), (count, count), "one entry for each simulated point");
+        assert!(
+            points.iter().chain(velocities).all(|v| v.is_finite()),
+            "positions and velocities are finite"
+        );
+        let mut first = 0;
+        for k in 0..self.model.places.len() {
+            let place = self.model.places[k] as usize;
+            let own = first..first + self.points(place);
+            first = own.end;
+            self.set_strand(place, &points[own.clone()], &velocities[own]);
+        }
+    }
+
+    fn set_strand(&mut self, place: usize, points: &[Vec3], velocities: &[Vec3]) {
+        let model = self.model.tiles[place / LANES].model;
+        let stride = model.stride();
+        for (i, w) in points.windows(2).enumerate() {
+            let (first, new) = (i * stride, w[1] - w[0]);
+            let old: Vec3 = (1..=stride).map(|k| self.vector(place, first + k, state::EDGE)).sum();
+            let turn = |v: Vec3| {
+                let [from, to] = [old, new].map(|e| e.as_dvec3().normalize_or(DVec3::Y));
+                transport_normal(v.as_dvec3(), from, to).as_vec3()
+            };
+            if model == Elastic::Springs {
+                // The extra particle keeps its place beside the segment.
+                let aside = self.vector(place, first + 1, state::EDGE) - 0.5 * old;
+                let aside = turn(aside).normalize_or_zero() * aside.length();
+                self.set_vector(place, first + 1, state::EDGE, 0.5 * new + aside);
+                self.set_vector(place, first + 2, state::EDGE, 0.5 * new - aside);
+                self.set_vector(place, first + 1, state::V, velocities[i].midpoint(velocities[i + 1]));
+            } else {
+                let normal = self.vector(place, first, state::NORMAL);
+                self.set_vector(place, first, state::NORMAL, turn(normal));
+                self.set_vector(place, first + 1, state::EDGE, new);
+            }
+        }
+        for (i, v) in velocities.iter().enumerate() {
+            self.set_vector(place, i * stride, state::V, *v);
+        }
+        self.begin_history(place);
+    }
+}

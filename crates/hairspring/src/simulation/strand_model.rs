@@ -1,0 +1,55 @@
+//! The model of the simulated strands: everything about them that a step does not change.
+
+use crate::{
+    groom::Groom,
+    material::GlobalShape,
+    settings::Solver,
+    simd::lanes::Row,
+    strand::{
+        rest_shape::Start,
+        tile::{RestRows, TilePlace},
+    },
+};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// Rest shapes, masses, stiffness, materials and memory layout of the simulated strands.
+///
+/// Several simulations can share one model: see [`Simulation::instance`](super::Simulation::instance). It changes
+/// only by [`Simulation::take_over`](super::Simulation::take_over) and by the setters that are called before the
+/// first step, which copy it if it is shared.
+#[derive(Clone)]
+pub(crate) struct StrandModel {
+    pub(super) groom: Arc<Groom>,
+    /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
+    pub(super) lanes: Vec<u32>,
+    /// Index into the caller's strands for each lane; `u32::MAX` in lanes without one.
+    pub(super) asked: Vec<u32>,
+    /// Lane of each simulated strand, in the order that the caller named them.
+    pub(super) places: Vec<u32>,
+    pub(super) tiles: Vec<TilePlace>,
+    /// Rest shapes; shape `[points]` of all tiles.
+    pub(super) rest: Vec<RestRows>,
+    /// Authored depth of the segment that ends at each point, 0 or less [m]; as long as `rest`, or empty if no
+    /// segment was authored inside a collider.
+    pub(super) rest_penetration: Vec<Row>,
+    /// Largest distance of each point from its root [m]; empty if no material has a tether.
+    pub(super) tethers: Vec<Row>,
+    /// Tensions of the rest shape: of segments and, in the springs model, of the triangles' sides. Shapes as
+    /// `rest`; the second is empty without springs.
+    pub(super) tensions: [Vec<Row>; 2],
+    /// Length of the longest strand [m].
+    pub(super) longest: f32,
+    /// Length of the longest segment [m].
+    pub(super) longest_segment: f32,
+    /// Number of hairs that each strand of the groom represents; shape `[strands of the groom]`.
+    pub(super) multiplicity: Vec<f32>,
+    /// Global shape of each material; a group past the end uses the last one.
+    pub(super) global_shapes: Vec<GlobalShape>,
+    /// Charge of each material's hair [C/m]; a group past the end uses the last one.
+    pub(super) charges: Vec<f32>,
+    pub(super) solver: Solver,
+    /// Gravity [m/s²].
+    pub(super) gravity: Vec3,
+    pub(super) start: Start,
+}

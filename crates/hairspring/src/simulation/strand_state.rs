@@ -1,0 +1,85 @@
+//! The state of the simulated strands: everything that a step changes, and copies of it.
+
+use super::{Simulation, manipulators::Tools, teleport::Motion};
+use crate::{
+    forces::charge::ChargedBall,
+    math::RigidTransform,
+    simd::lanes::Row,
+    strand::tile::{HistoryRows, HoldRows, SegmentContactRows, StateRows, StrandRows},
+    strand_contact::Contact,
+};
+
+/// Positions, velocities, tensions and contact forces of the simulated strands, and the motion of their roots.
+#[derive(Clone)]
+pub(crate) struct StrandState {
+    /// Pose of the anchor at the end of the last step.
+    pub(super) anchor: RigidTransform,
+    /// Motion of the roots, and the constants of whole strands; shape `[tiles]`.
+    pub(super) strand: Vec<StrandRows>,
+    /// Shape `[points]` of all tiles.
+    pub(super) points: Vec<StateRows>,
+    /// As long as `points` for the second-order integrator, else empty.
+    pub(super) history: Vec<HistoryRows>,
+    /// Remaining time for which each strand still counts as touching [s]; one row for each tile.
+    pub(super) contact_age: Vec<Row>,
+    /// Contacts of the segment that ends at each point; empty if segments are not tested.
+    pub(super) segment_contacts: Vec<SegmentContactRows>,
+    /// Holds on points, for each tile; empty if there are none.
+    pub(super) holds: Vec<Vec<HoldRows>>,
+    /// Active manipulators.
+    pub(super) tools: Tools,
+    pub(super) charged: Vec<ChargedBall>,
+    /// How the anchor moved in the last frame.
+    pub(super) motion: Motion,
+    /// Length of the last substep [s]; 0 before the first.
+    pub(super) last_h: f32,
+}
+
+/// A copy of the state of a [`Simulation`], from [`Simulation::snapshot`].
+#[derive(Clone)]
+pub struct Snapshot {
+    state: StrandState,
+    /// Contacts between strands.
+    contacts: Vec<Contact>,
+    /// Whether segments were tested in the last frame.
+    segments: bool,
+}
+
+/// The reason that a [`Snapshot`] cannot be restored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the snapshot is of other strands, or of another elastic model or integrator")]
+pub struct SnapshotMismatch;
+
+impl Simulation {
+    /// Copies everything that a step changes: positions, velocities, tensions, contacts, manipulators, holds
+    /// and the pose of the anchor. After [`Simulation::restore`], the same inputs give the same bits again.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            state: self.state.clone(),
+            contacts: self.neighbours.as_ref().map(|n| n.contacts().to_vec()).unwrap_or_default(),
+            segments: self.interval.segments,
+        }
+    }
+
+    /// Returns to the state of `snapshot`, which may be from another simulation of the same strands with the
+    /// same model and integrator. It allocates no memory unless the number of manipulators or holds changed.
+    ///
+    /// # Errors
+    /// If the layout of the snapshot differs; the state is then unchanged.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SnapshotMismatch> {
+        let (own, other) = (&self.state, &snapshot.state);
+        let alike = own.strand.len() == other.strand.len()
+            && own.points.len() == other.points.len()
+            && own.history.len() == other.history.len()
+            && own.segment_contacts.len() == other.segment_contacts.len();
+        if !alike {
+            return Err(SnapshotMismatch);
+        }
+        self.state.clone_from(other);
+        self.interval.segments = snapshot.segments;
+        if let Some(neighbours) = &mut self.neighbours {
+            neighbours.set_contacts(&snapshot.contacts);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,46 @@
+//! Promise: a simulation that cannot be built is refused with a sentence that names the place, and never panics.
+
+use crate::support::groom;
+use glam::Vec3;
+use hairspring::{
+    groom::Groom,
+    material::Material,
+    settings::Solver,
+    simulation::{BuildError, Simulation},
+};
+
+#[test]
+fn grooms() {
+    let error = Simulation::builder(groom(3)).strands(&[0, 7]).build().err().unwrap();
+    assert_eq!(error.to_string(), "strand 7 was requested, but the groom has only 3");
+    let short = Groom::from_strands([vec![Vec3::ZERO, Vec3::Y]], 40e-6);
+    let error = Simulation::builder(short).build().err().unwrap();
+    assert_eq!(error, BuildError::TooFewPoints { strand: 0, points: 2 });
+    let mut broken = groom(3);
+    broken.points[20].x = f32::NAN;
+    assert_eq!(Simulation::builder(broken).build().err(), Some(BuildError::NotFinite { strand: 1 }));
+    let mut broken = groom(3);
+    broken.radii.pop();
+    let error = Simulation::builder(broken).build().err().unwrap();
+    assert_eq!(error, BuildError::GroomArray { array: "radii", length: 47, expected: 48 });
+    let mut broken = groom(3);
+    broken.offsets[1] = 40;
+    assert!(matches!(
+        Simulation::builder(broken).build().err(),
+        Some(BuildError::GroomArray { array: "offsets", .. })
+    ));
+    let nothing = Simulation::builder(groom(3)).strands(&[]).build().unwrap();
+    assert_eq!((nothing.strand_count(), nothing.point_count()), (0, 0));
+}
+
+#[test]
+fn settings() {
+    let solver = Solver { substeps: 0, ..Solver::default() };
+    let error = Simulation::builder(groom(3)).solver(solver).build().err().unwrap();
+    assert_eq!(error.to_string(), "solver: `substeps` must be 1 to 64");
+    let materials = [Material::default(), Material { young: f32::NAN, ..Material::default() }];
+    let error = Simulation::builder(groom(3)).materials(&materials).build().err().unwrap();
+    assert_eq!(error.to_string(), "material 1: `young` must be above 0 [Pa]");
+    let error = Simulation::builder(groom(3)).gravity(Vec3::NAN).build().err().unwrap();
+    assert_eq!(error, BuildError::Gravity);
+}

@@ -1,0 +1,88 @@
+//! Promise: a force of a user's own gives the same bits as its built-in counterpart: a global shape, and wind.
+
+use crate::support::{FRAME, groom, points, shake, simulation};
+use glam::Vec3;
+use hairspring::{
+    air::Air,
+    forces::{ForceField, StrandView},
+    groom::Groom,
+    material::{GlobalShape, Material},
+    math::RigidTransform,
+    settings::{Solver, Wind},
+    simulation::StepInput,
+};
+use std::{f32::consts::TAU, sync::Arc};
+
+/// The global shape, written outside of the library.
+struct Pull {
+    groom: Groom,
+    shape: GlobalShape,
+}
+
+impl ForceField for Pull {
+    fn apply(&self, strand: &mut StrandView) {
+        let authored = self.groom.strand(strand.index());
+        let [start, end] = strand.roots();
+        let way = end.translation - start.translation;
+        let rate = 1.0 / strand.dt();
+        let last = (authored.len() - 1) as f32;
+        for (i, p) in authored.iter().enumerate().skip(2) {
+            let omega = TAU * self.shape.pull * 1.0 * (1.0 + (self.shape.tip - 1.0) * (i as f32 / last));
+            let [from, to] = [start, end].map(|root| root.rotation * (*p - authored[0]));
+            strand.add_position_spring(i, [from, to], omega * omega);
+            strand.add_velocity_drag(i, (way + (to - from)) * rate, 2.0 * self.shape.damping * omega);
+        }
+    }
+}
+
+#[test]
+fn a_pull_to_the_rest_shape() {
+    let shape = GlobalShape { pull: 2.0, tip: 0.5, damping: 0.7 };
+    let material = Material { global_shape: shape, ..Material::default() };
+    let mut built_in = simulation(10, material, Solver::default());
+    let mut custom = simulation(10, Material::default(), Solver::default());
+    let id = custom.add_force(Arc::new(Pull { groom: groom(10), shape }));
+    for frame in 0..30 {
+        shake(&mut built_in, frame, &[]);
+        shake(&mut custom, frame, &[]);
+    }
+    assert_eq!(points(&custom), points(&built_in));
+    let without = simulation(10, Material::default(), Solver::default());
+    assert!(custom.remove_force(id).is_some() && custom.remove_force(id).is_none());
+    (0..30).for_each(|frame| shake(&mut custom, frame, &[]));
+    drop(without);
+    assert_ne!(points(&custom), points(&built_in), "the force was removed");
+}
+
+/// Wind as a velocity of the air at each point.
+struct Breeze(Vec3);
+
+impl ForceField for Breeze {
+    fn apply(&self, strand: &mut StrandView) {
+        (2..strand.point_count()).for_each(|i| strand.add_wind(i, self.0));
+    }
+}
+
+#[test]
+fn a_wind() {
+    let velocity = Vec3::new(1.0, 0.0, 0.5);
+    let step = |hair: &mut hairspring::simulation::Simulation, wind: Wind| {
+        let groom = groom(10);
+        let roots: Vec<_> = (0..10)
+            .map(|s| RigidTransform { translation: groom.strand(s)[0], ..RigidTransform::default() })
+            .collect();
+        let air = Air { wind, ..Air::default() };
+        let anchor = RigidTransform::default();
+        hair.step(&StepInput { dt: FRAME, anchor, roots: &roots, obstacles: &[], air });
+    };
+    let mut built_in = simulation(10, Material::default(), Solver::default());
+    let mut custom = simulation(10, Material::default(), Solver::default());
+    custom.add_force(Arc::new(Breeze(velocity)));
+    for _ in 0..60 {
+        step(&mut built_in, Wind { velocity, ..Wind::default() });
+        step(&mut custom, Wind::default());
+    }
+    let [a, b] = [&custom, &built_in].map(points);
+    let off = a.iter().zip(&b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    assert!(off < 1e-6, "{off} m apart");
+}

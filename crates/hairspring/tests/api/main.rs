@@ -1,0 +1,10 @@
+//! Promises of the library's interface. Each file is one promise.
+
+mod builder_refuses_what_cannot_be_simulated;
+mod custom_colliders_match_built_in_ones;
+mod custom_forces_match_built_in_ones;
+mod examples_run;
+mod sampled_fields_match_voxelized_ones;
+mod snapshots_restore_exactly;
+mod states_can_be_read_and_set;
+mod support;

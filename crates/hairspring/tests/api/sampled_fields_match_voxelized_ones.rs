@@ -1,0 +1,62 @@
+//! Promise: a distance field from an array of samples is met as one that was made from a mesh, to the bit; arrays that are no field are
+//! refused with a sentence.
+
+use crate::support::{points, shake, simulation};
+use glam::{UVec3, Vec3};
+use hairspring::{
+    collide::{ColliderShape, FieldError, MovingCollider, SignedDistanceField, voxelize},
+    material::Material,
+    math::RigidTransform,
+    settings::Solver,
+};
+use std::sync::Arc;
+
+/// An octahedron below the strands.
+fn mesh() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let (center, size) = (Vec3::new(0.03, -0.07, 0.04), 0.04);
+    let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    let corner = |x: u32, y: u32, z: u32| if (x + y + z).is_multiple_of(2) { [x, y, z] } else { [y, x, z] };
+    let faces = (0..8).map(|k| corner(k & 1, 2 + (k >> 1 & 1), 4 + (k >> 2)));
+    (axes.map(|a| center + a * size).to_vec(), faces.collect())
+}
+
+#[test]
+fn the_same_samples_give_the_same_bits() {
+    let (positions, triangles) = mesh();
+    let made = voxelize(&positions, &triangles, 0.004);
+    let given =
+        SignedDistanceField::from_samples(made.origin(), made.cell(), made.size(), made.distances().to_vec());
+    let [made, given] = [made, given.unwrap()].map(|field| {
+        let shape = ColliderShape::Field(Arc::new(field));
+        let colliders = [MovingCollider::at_rest(shape, RigidTransform::default())];
+        let mut hair = simulation(10, Material::default(), Solver::default());
+        let mut touched = 0;
+        for frame in 0..60 {
+            shake(&mut hair, frame, &colliders);
+            touched += hair.contacts(&colliders).points;
+        }
+        assert!(touched > 100, "{touched} contacts");
+        points(&hair)
+    });
+    assert_eq!(made, given);
+}
+
+#[test]
+fn what_is_no_field_is_refused() {
+    let of =
+        |cell, size, samples: Vec<f32>| SignedDistanceField::from_samples(Vec3::ZERO, cell, size, samples);
+    let two = UVec3::splat(2);
+    assert_eq!(of(0.0, two, vec![0.0; 8]), Err(FieldError::Cell(0.0)));
+    assert_eq!(
+        of(0.1, UVec3::new(1, 2, 2), vec![0.0; 4]).unwrap_err(),
+        FieldError::Size(UVec3::new(1, 2, 2))
+    );
+    assert!(matches!(of(0.1, UVec3::splat(u32::MAX), vec![]), Err(FieldError::Size(_))));
+    assert_eq!(of(0.1, two, vec![0.0; 7]), Err(FieldError::Count { nodes: 8, samples: 7 }));
+    let mut samples = vec![0.0; 8];
+    samples[5] = f32::NAN;
+    let error = of(0.1, two, samples).unwrap_err();
+    assert_eq!((error, error.to_string().as_str()), (FieldError::NotFinite(5), "sample 5 is not finite"));
+    let origin = Vec3::new(f32::INFINITY, 0.0, 0.0);
+    assert_eq!(SignedDistanceField::from_samples(origin, 0.1, two, vec![0.0; 8]), Err(FieldError::Origin));
+}

@@ -1,0 +1,84 @@
+//! Promise: after a snapshot is restored, the same inputs give the same bits again, with every elastic model, with either implicit
+//! integrator, with contact, with hair volume and strand contact, and with manipulators. Simulations that share one model give the bits of
+//! simulations with a model each.
+
+use crate::support::{groom, points, shake, simulation, velocities};
+use glam::Vec3;
+use hairspring::{
+    collide::{ColliderShape, MovingCollider},
+    forces::{Manipulator, grab::Grab},
+    material::{Material, Model},
+    math::RigidTransform,
+    settings::{Integrator, Neighbours, Solver, Volume, VolumeMethod},
+    simulation::{Simulation, SnapshotMismatch},
+};
+
+fn ball() -> [MovingCollider; 1] {
+    let shape = ColliderShape::Sphere { center: Vec3::new(0.03, -0.06, 0.04), radius: 0.03 };
+    [MovingCollider::at_rest(shape, RigidTransform::default())]
+}
+
+fn assert_repeats(what: &str, mut simulation: Simulation) {
+    (0..20).for_each(|frame| shake(&mut simulation, frame, &ball()));
+    let snapshot = simulation.snapshot();
+    let mut play = || {
+        (20..50).for_each(|frame| shake(&mut simulation, frame, &ball()));
+        let out = (points(&simulation), velocities(&simulation));
+        simulation.restore(&snapshot).unwrap();
+        out
+    };
+    let (first, again) = (play(), play());
+    assert_eq!(first, again, "{what}");
+    let mut other = simulation.instance();
+    if simulation.volume().is_none() && simulation.neighbours().is_none() {
+        (20..50).for_each(|frame| shake(&mut other, frame, &ball()));
+        assert_eq!((points(&other), velocities(&other)), first, "{what}: another instance");
+    }
+}
+
+#[test]
+fn with_every_model_and_integrator() {
+    for model in Model::ALL {
+        for integrator in [Integrator::BackwardEuler, Integrator::Bdf2] {
+            let material = Material { model, ..Material::default() };
+            let solver = Solver { integrator, ..Solver::default() };
+            assert_repeats(&format!("{model:?}, {integrator:?}"), simulation(10, material, solver));
+        }
+    }
+}
+
+#[test]
+fn with_hair_on_hair() {
+    for method in [VolumeMethod::Density, VolumeMethod::Incompressible] {
+        let mut hair = simulation(20, Material::default(), Solver::default());
+        hair.set_volume(&Volume { method, ..Volume::default() });
+        assert_repeats(&format!("{method:?}"), hair);
+    }
+    let mut hair = simulation(20, Material::default(), Solver::default());
+    hair.set_neighbours(&Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
+    assert_repeats("strand contact", hair);
+}
+
+#[test]
+fn with_a_hand() {
+    let mut hair = simulation(10, Material::default(), Solver::default());
+    let grab = Grab { center: Vec3::new(0.0, -0.1, 0.03), radius: 0.05, pull: 60.0, damping: 1.0 };
+    hair.add_manipulator(Manipulator::Grab(grab), RigidTransform::default());
+    assert_repeats("a grab", hair);
+}
+
+#[test]
+fn of_other_hair_is_refused() {
+    let mut hair = simulation(10, Material::default(), Solver::default());
+    let before = points(&hair);
+    let others = [
+        simulation(20, Material::default(), Solver::default()),
+        simulation(10, Material { model: Model::Springs, ..Material::default() }, Solver::default()),
+        simulation(10, Material::default(), Solver { integrator: Integrator::Bdf2, ..Solver::default() }),
+    ];
+    for other in others {
+        assert_eq!(hair.restore(&other.snapshot()), Err(SnapshotMismatch));
+    }
+    assert_eq!(points(&hair), before);
+    assert_eq!(before.len(), groom(10).point_count());
+}

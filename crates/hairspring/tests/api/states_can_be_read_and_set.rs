@@ -1,0 +1,47 @@
+//! Promise: positions and velocities can be read and set as plain arrays, with every elastic model, and hair goes on from them.
+
+use crate::support::{points, shake, simulation, velocities};
+use hairspring::{
+    material::{Material, Model},
+    settings::Solver,
+};
+
+#[test]
+fn what_is_set_is_read_back() {
+    for model in Model::ALL {
+        let material = Material { model, ..Material::default() };
+        let mut source = simulation(10, material.clone(), Solver::default());
+        (0..25).for_each(|frame| shake(&mut source, frame, &[]));
+        let (at, moving) = (points(&source), velocities(&source));
+        let mut hair = simulation(10, material, Solver::default());
+        // Roots are driven, so the strands must stand where the source's do.
+        hair.teleport(hairspring::math::RigidTransform {
+            translation: at[0] - points(&hair)[0],
+            ..Default::default()
+        });
+        hair.set_points(&at, &moving);
+        let off = points(&hair).iter().zip(&at).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(off < 1e-6, "{model:?}: {off} m off");
+        assert_eq!(velocities(&hair), moving, "{model:?}");
+    }
+}
+
+#[test]
+fn hair_goes_on_from_there() {
+    let mut source = simulation(10, Material::default(), Solver::default());
+    (0..25).for_each(|frame| shake(&mut source, frame, &[]));
+    let mut hair = source.instance();
+    hair.set_points(&points(&source), &velocities(&source));
+    (25..35).for_each(|frame| {
+        shake(&mut source, frame, &[]);
+        shake(&mut hair, frame, &[]);
+    });
+    let off = points(&hair).iter().zip(points(&source)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
+    assert!(off < 1e-4, "{off} m apart after ten frames");
+}
+
+#[test]
+#[should_panic(expected = "one entry for each simulated point")]
+fn arrays_of_another_length_are_refused() {
+    simulation(3, Material::default(), Solver::default()).set_points(&[], &[]);
+}
