@@ -1,5 +1,6 @@
 //! All developer commands: `cargo xtask NAME`. CI runs the same ones.
 
+mod consumer;
 mod fuzz;
 mod layers;
 mod pictures;
@@ -27,6 +28,7 @@ fn main() {
         ["test"] => test::all(),
         ["lint"] => lint(),
         ["layers"] => layers::check(),
+        ["consumer"] => consumer::run(),
         ["fuzz"] => fuzz::all(60, None),
         ["fuzz", seconds] => match seconds.parse() {
             Ok(seconds) => fuzz::all(seconds, None),

@@ -33,7 +33,7 @@ fn a_case_at_any_parameter() {
 
 #[test]
 fn what_does_not_agree_is_exit_code_1() {
-    // Follow the leader knows no bending.
+    // Follow the leader has no bending.
     let output =
         run(Path::new("."), &["validate", "heavy-cantilever", "--gamma", "1", "--integrator", "ftl"]);
     let told = String::from_utf8(output.stderr).unwrap();
@@ -50,12 +50,12 @@ fn a_table_has_a_value_or_a_reason_in_each_cell() {
     for row in rows {
         let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
         assert_eq!(cells.len(), 3 + 6, "case, model, tolerance, and 32 to 1,024 points: {row}");
-        // A truss is braked by more than the case grants, which its cell says.
+        // The springs model is damped by more than the tolerance, and its cell says so.
         let wanted = if cells[1] == "springs" { "%** (2)" } else { "%" };
         assert!(cells[3].ends_with(wanted), "{row}");
         assert!(cells[4..].iter().all(|cell| *cell == "(1)"), "{row}");
     }
-    assert!(found.contains("\n2. pendulum: a truss is braked more"), "{found}");
+    assert!(found.contains("\n2. pendulum: the springs model is damped more"), "{found}");
     assert!(found.contains("\n1. pendulum applies to a strand of 3 points only\n"), "{found}");
 }
 

@@ -26,11 +26,10 @@ pub const CASE: Case = Case {
     out_of_reach: |method| match method {
         Method { model: Model::Curvature, .. } => Some(NO_TWIST),
         Method { model: Model::Springs, .. } => Some(
-            "where a joint turns far, 0.13 to 0.24 rad at 64 points, its springs resist twist more than the fibre does; \
-             at 192 points it passes",
+            "at joints with large turns (0.13 to 0.24 rad at 64 points) the springs resist twist more than the fiber does; it passes at 192 points",
         ),
         Method { points: ..48, .. } => {
-            Some("at κL = 15 a turn of the curl has 13 segments at 32 points, too few")
+            Some("at 32 points and κL = 15, a turn of the curl has only 13 segments")
         }
         _ => None,
     },

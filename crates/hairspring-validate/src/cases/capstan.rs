@@ -19,9 +19,8 @@ pub const CASE: Case = Case {
     method: USUAL,
     points_fixed: false,
     out_of_reach: |method| {
-        (method.points < 48).then_some(
-            "friction that creeps is slow to slip, and the more so the fewer points lie on the cylinder",
-        )
+        (method.points < 48)
+            .then_some("friction creeps before it slips, and more so with few points on the cylinder")
     },
     reference: |values| Ok(vec![(values[0] * PI).exp()]),
     measure: |values, method| {

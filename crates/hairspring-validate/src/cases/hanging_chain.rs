@@ -26,9 +26,9 @@ pub const CASE: Case = Case {
     points_fixed: false,
     out_of_reach: |method| match method {
         Method { model: Model::Springs, .. } => Some(SPRINGS_ARE_BRAKED),
-        Method { points: ..48, .. } => {
-            Some("the error of the third mode goes as the length of a segment: at 64 points it is 1.2 %")
-        }
+        Method { points: ..48, .. } => Some(
+            "the error of the third mode is proportional to the segment length; it passes from 64 points on",
+        ),
         _ => None,
     },
     reference: |_| Ok(chain::modes(3).into_iter().map(f64::sqrt).collect()),

@@ -41,4 +41,4 @@ pub const CASE: Case = Case {
 
 /// Why the springs model does not pass with few points.
 const BENT_FAR: &str =
-    "at Γ = 100 the joint at the clamp of 32 points turns by 0.6 rad, where its springs are too soft";
+    "at 32 points and Γ = 100, the joint at the clamp turns by 0.6 rad, where its springs are too soft";

@@ -29,7 +29,7 @@ pub const CASE: Case = Case {
     out_of_reach: |method| match method {
         Method { model: Model::Curvature, .. } => Some(NO_TWIST),
         Method { model: Model::Springs, points: ..48, .. } => {
-            Some("a truss of 8 segments a turn is stiffer than the curve that it stands for")
+            Some("a truss with 8 segments per turn is stiffer than the curve that it represents")
         }
         _ => None,
     },

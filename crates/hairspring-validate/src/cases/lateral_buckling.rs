@@ -28,7 +28,7 @@ pub const CASE: Case = Case {
         Method { model: Model::Curvature, .. } => Some(NO_TWIST),
         Method { model: Model::Springs, points: 80.., .. } => Some(HELD_BACK),
         Method { points: ..48, .. } => {
-            Some("the error goes as the length of a segment: at 64 points it is 2.4 %")
+            Some("the error is proportional to the segment length: 2.4 % at 64 points")
         }
         _ => None,
     },

@@ -24,14 +24,13 @@ pub const CASE: Case = Case {
         match method.model {
         Model::Curvature => Some(NO_TWIST),
         Model::Springs => Some(
-            "a ring of round fibre may turn about its clamped tangent at no cost; a truss has joints with sides, and turns to \
-             where they are best bent",
+            "a ring of round fiber rotates about its clamped tangent without energy; the joints of a truss have preferred bending directions, and the ring rotates to them",
         ),
         Model::Auto => Some(
-            "auto takes the curvature model for a strand that is straight at rest, and that knows no twist",
+            "for a strand that is straight at rest, auto selects the curvature model, which has no twist",
         ),
         Model::Rod => (method.points < 48).then_some(
-            "at 32 points each joint of the ring turns by 0.2 rad and twists by 0.8, too far for the measure of its twist",
+            "at 32 points each joint of the ring turns by 0.2 rad and twists by 0.8 rad, too much for the twist measure",
         ),
     }
     },

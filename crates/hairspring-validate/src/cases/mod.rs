@@ -47,11 +47,10 @@ const FRICTION: f64 = 0.03;
 const AIR: f64 = 0.03;
 
 /// Why the springs model does not pass where joints are stiff and short.
-pub(super) const HELD_BACK: &str = "springs are solved in single precision, which cannot hold joints as stiff as the fiber's in a strand of so many points";
+pub(super) const HELD_BACK: &str = "the springs model is solved in single precision, which cannot represent the fiber's joint stiffness at this number of points";
 
 /// Why the springs model swings with a smaller amplitude and a lower frequency.
-const SPRINGS_ARE_BRAKED: &str =
-    "a truss is braked more than the other models, or its swing would leave its plane";
+const SPRINGS_ARE_BRAKED: &str = "the springs model is damped more than the other models, because its swing would otherwise leave its plane";
 
 /// Why the curvature model does not pass where a strand twists.
-const NO_TWIST: &str = "the model knows no twist";
+const NO_TWIST: &str = "the model has no twist";

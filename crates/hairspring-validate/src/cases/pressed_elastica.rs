@@ -24,7 +24,7 @@ pub const CASE: Case = Case {
     points_fixed: false,
     out_of_reach: |method| {
         (method.model == Model::Springs)
-            .then_some("a bent truss has sides that it would rather have inward, and turns about its axis to them for minutes")
+            .then_some("the joints of a truss have preferred bending directions, and the bent strand rotates about its axis to them for minutes")
     },
     reference: |values| {
         let shape = column(values[0]);

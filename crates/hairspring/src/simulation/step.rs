@@ -355,7 +355,7 @@ impl<'a> TileRange<'a> {
 
 /// Runs the tiles on all threads, by recursive halving down to small tasks. Returns true if any point became
 /// non-finite.
-fn run(level: Level, interval: &FrameContext, mut piece: TileRange) -> bool {
+fn run(level: Level, interval: &FrameContext, piece: TileRange) -> bool {
     let count = piece.tiles.len();
     if count > TILES_PER_TASK {
         let half = (count / 2).next_multiple_of(TILES_PER_TASK).min(count - 1);
@@ -363,9 +363,14 @@ fn run(level: Level, interval: &FrameContext, mut piece: TileRange) -> bool {
         let (a, b) = rayon::join(|| run(level, interval, a), || run(level, interval, b));
         return a | b;
     }
+    on_large_stack(|| run_task(level, interval, piece))
+}
+
+/// Runs a task's tiles one after the other; see [`run`].
+fn run_task(level: Level, interval: &FrameContext, mut piece: TileRange) -> bool {
     MEMORY.with_borrow_mut(|memory| {
         let mut broken = false;
-        for k in 0..count {
+        for k in 0..piece.tiles.len() {
             let mut tile = piece.tile(k);
             let run = match tile.model {
                 Elastic::Straight => straight::run,
@@ -377,5 +382,24 @@ fn run(level: Level, interval: &FrameContext, mut piece: TileRange) -> bool {
             broken |= !reset::all_finite(level, tile.state);
         }
         broken
+    })
+}
+
+/// Stack of a task in a build without optimization [bytes].
+const UNOPTIMIZED_STACK: usize = 64 << 20;
+
+/// Runs `task`. A kernel that is compiled without optimization keeps the whole window of the matrix in memory several
+/// times over, which takes more than the 2 MiB of a thread's stack. Such builds run it on a thread of its own.
+fn on_large_stack<T: Send>(task: impl FnOnce() -> T + Send) -> T {
+    if !cfg!(debug_assertions) {
+        return task();
+    }
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(UNOPTIMIZED_STACK).spawn_scoped(scope, task);
+        match thread.map(|thread| thread.join()) {
+            Ok(Ok(done)) => done,
+            Ok(Err(panic)) => std::panic::resume_unwind(panic),
+            Err(why) => panic!("no thread with a stack of {UNOPTIMIZED_STACK} bytes: {why}"),
+        }
     })
 }

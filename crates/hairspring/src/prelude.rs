@@ -1,0 +1,13 @@
+//! The types that most programs need: `use hairspring::prelude::*;`.
+
+pub use crate::{
+    air::Air,
+    collide::{Collider, ColliderPose, ColliderShape, MovingCollider, SignedDistanceField},
+    forces::{ForceField, Manipulator, StrandView},
+    groom::Groom,
+    material::{Material, Model},
+    math::RigidTransform,
+    settings::{Integrator, Neighbours, Quality, Response, Solver, Volume, VolumeMethod, Wind},
+    simulation::{ForceId, ManipulatorId, Simulation, Snapshot, StepInput, StepReport},
+};
+pub use glam::{Quat, Vec3};
