@@ -1,17 +1,17 @@
-//! The posed body, and the colliders.
+//! The colliders of a scene, and the body that moves them.
 
 use super::{
-    PosedBody,
+    body_pose::BodyPose,
     charged::StagedCharged,
     joints::Joints,
+    reach::Reach,
     rigid_parts,
     surface::{Surface, SurfaceKind},
     thickness::ThinMesh,
 };
 use crate::{Collider, Scene};
-use glam::{Affine3A, Vec3};
 use hairspring::{
-    body::{self, Body, Cuts, Trs},
+    body::Body,
     collide::{ColliderPose, ColliderShape, MovingCollider},
     forces::charge::ChargedBall,
     math::RigidTransform,
@@ -25,21 +25,9 @@ const CELLS: f32 = 128.0;
 /// all of it, wherever the hair is.
 const PIECE: f32 = 2.0 * CELLS;
 
-/// Current pose and colliders of the scene's body.
+/// The posed body of a scene, and its colliders.
 pub(super) struct StagedBody {
-    /// Model-space matrix of each joint, at rest and currently.
-    rest: Vec<Affine3A>,
-    world: Vec<Affine3A>,
-    /// Whether separate props are at a different pose initially than at rest.
-    apart: bool,
-    /// Rigid motion of the whole body in addition to its clip.
-    moved: RigidTransform,
-    /// The joint that most of the head moves with. Hair and fields are stored in its space.
-    anchor: usize,
-    /// Cuts of the clip.
-    cuts: Cuts,
-    positions: Vec<Vec3>,
-    normals: Vec<Vec3>,
+    pose: BodyPose,
     /// Colliders in this order: those made of meshes, the scene's colliders, its charged bodies, the user's
     /// colliders.
     obstacles: Vec<MovingCollider>,
@@ -102,59 +90,12 @@ impl Mesh {
     }
 }
 
-/// The region that hair can reach: points no farther from a root than the longest strand.
-struct Reach {
-    /// Vertices of the skin around the roots.
-    vertices: Vec<u32>,
-    /// Distance from those to the farthest tip, with a margin for the strain limit [m].
-    length: f32,
-}
-
-impl Reach {
-    fn new(scene: &Scene) -> Self {
-        let mut reach = Self { vertices: Vec::new(), length: 0.0 };
-        let Some(mesh) = scene.body.as_ref().map(|b| &b.mesh) else { return reach };
-        for groom in scene.grooms.iter().map(|g| &g.groom) {
-            for (s, root) in groom.roots.iter().enumerate() {
-                reach.vertices.extend(mesh.triangles[root.triangle as usize]);
-                reach.length = reach.length.max(1.02 * groom.strand_length(s) + root.offset.length());
-            }
-            if groom.roots.is_empty() && groom.strand_count() > 0 {
-                // Roots that are not bound to the skin may be anywhere.
-                return Self { vertices: Vec::new(), length: 0.0 };
-            }
-        }
-        reach.vertices.sort_unstable();
-        reach.vertices.dedup();
-        reach
-    }
-
-    /// Returns the bounding box (min, max) of the hair, in the space that `to` maps the skin's `positions`
-    /// to; `None` if there is no bound.
-    fn bounds(&self, positions: &[Vec3], to: impl Fn(Vec3) -> Vec3) -> Option<(Vec3, Vec3)> {
-        let mut roots = self.vertices.iter().map(|v| to(positions[*v as usize]));
-        let first = roots.next()?;
-        let (lo, hi) = roots.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)));
-        Some((lo - self.length, hi + self.length))
-    }
-}
-
 impl StagedBody {
-    /// Creates the body in the pose in which hair is built on it: at rest, with separate props where they are
-    /// initially. Attaches colliders and charged bodies to the joints in `joints`.
+    /// Creates the body in the pose in which hair is built on it. Attaches colliders and charged bodies to the
+    /// joints in `joints`.
     pub(super) fn new(scene: &Scene, joints: &Joints) -> Self {
-        let rest = scene.body.as_ref().map(|b| b.world(&b.rest_pose())).unwrap_or_default();
-        let anchor = scene.body.as_ref().map_or(0, |b| anchor_joint(b, scene));
-        let world = scene.body.as_ref().map(|b| first_pose(b, anchor, scene)).unwrap_or_default();
         let mut staged = Self {
-            apart: world != rest,
-            world,
-            rest,
-            moved: RigidTransform::default(),
-            anchor,
-            cuts: Cuts::default(),
-            positions: Vec::new(),
-            normals: Vec::new(),
+            pose: BodyPose::new(scene),
             obstacles: Vec::new(),
             carriers: Vec::new(),
             meshes: 0,
@@ -164,10 +105,6 @@ impl StagedBody {
             charged: StagedCharged::default(),
             pushed: (0, RigidTransform::default()),
         };
-        if let Some(body) = &scene.body {
-            body.skinned(&staged.world, &mut staged.positions, &mut staged.normals);
-        }
-        staged.find_cuts(scene);
         staged.add_surface(scene);
         for (k, sheet) in scene.sheets.iter().enumerate() {
             staged.add_mesh(scene, Mesh::Sheet(k), SurfaceKind::Sheet(sheet.thickness));
@@ -179,13 +116,6 @@ impl StagedBody {
         staged.repose(scene, 0.0);
         staged.stand_still();
         staged
-    }
-
-    /// Finds the cuts of the scene's clip with the current settings.
-    pub(super) fn find_cuts(&mut self, scene: &Scene) {
-        if let (Some(body), Some(clip)) = (&scene.body, &scene.clip) {
-            self.cuts = Cuts::new(body, clip, self.anchor, scene.solver.teleport_distance);
-        }
     }
 
     /// Sets the start pose of all colliders to their end pose, so that they have no velocity.
@@ -202,7 +132,7 @@ impl StagedBody {
     /// Adds the scene's colliders. Must be called after the mesh colliders have been added.
     fn add_colliders(&mut self, colliders: &[Collider], joints: &Joints) {
         for (collider, joint) in colliders.iter().zip(&joints.colliders) {
-            let carrier = joint.map_or(self.carrier(self.anchor), Carrier::Joint);
+            let carrier = joint.map_or(self.carrier(self.pose.anchor_joint()), Carrier::Joint);
             // A hull whose points span no volume is ignored.
             if let Some(shape) = collider.shape.obstacle() {
                 self.add(shape, carrier);
@@ -233,11 +163,6 @@ impl StagedBody {
         self.obstacles.extend(pushed);
     }
 
-    /// See [`super::Stage::move_body`].
-    pub(super) fn move_to(&mut self, by: RigidTransform) {
-        self.moved = by;
-    }
-
     /// See [`super::Stage::set_user_colliders`].
     pub(super) fn set_user_colliders<'a>(
         &mut self,
@@ -257,7 +182,7 @@ impl StagedBody {
 
     /// Returns a joint of the body as a carrier, if the body has joints.
     fn carrier(&self, joint: usize) -> Carrier {
-        if self.rest.is_empty() { Carrier::Fixed } else { Carrier::Joint(joint) }
+        if self.pose.is_empty() { Carrier::Fixed } else { Carrier::Joint(joint) }
     }
 
     fn add_surface(&mut self, scene: &Scene) {
@@ -286,7 +211,7 @@ impl StagedBody {
         }
         let mut rest = body.clone();
         let pieces = match making {
-            SurfaceKind::Field(cell) => rigid_parts::take(&mut rest, self.anchor, PIECE * cell),
+            SurfaceKind::Field(cell) => rigid_parts::take(&mut rest, self.pose.anchor_joint(), PIECE * cell),
             SurfaceKind::Sheet(_) => Vec::new(),
         };
         let surface = Surface::new(making, &rest);
@@ -302,15 +227,15 @@ impl StagedBody {
     /// Rebuilds the colliders of skinned meshes, in the anchor's space. `since` is the time [s] of the pose
     /// that they moved from and the current time, or `None` if they did not move.
     fn rebuild_surfaces(&mut self, scene: &Scene, since: Option<(f64, f64)>) {
-        let anchor = self.anchor();
-        let within = self.reach.bounds(&self.positions, |p| anchor.inverse_point(p));
+        let anchor = self.pose.anchor();
+        let within = self.reach.bounds(self.pose.positions(), |p| anchor.inverse_point(p));
         let parts = |Deforming { surface, mesh, rest, .. }: &Deforming| {
             let body = Deforming::body(rest, *mesh, scene);
-            body.map_or(1, |body| surface.parts(body, (&self.world, anchor), within))
+            body.map_or(1, |body| surface.parts(body, (self.pose.world(), anchor), within))
         };
         let mut poses = Vec::new();
         let mut shares = vec![1; self.surfaces.len()];
-        if let (Some((from, to)), Some(body), Some(clip)) = (since, &scene.body, &scene.clip) {
+        if let (Some((from, to)), Some(_)) = (since, &scene.clip) {
             shares = self.surfaces.iter().map(parts).collect();
             let most = shares.iter().copied().max().unwrap_or(1);
             if shares.iter().any(|share| *share != 1 && *share != most) {
@@ -320,14 +245,12 @@ impl StagedBody {
             let parts = shares.iter().copied().max().unwrap_or(1);
             // The motion of the whole body has no effect here, because the colliders are in the anchor's
             // space.
-            poses.extend((1..parts).map(|part| {
+            poses.extend((1..parts).filter_map(|part| {
                 let time = from + (to - from) * (part as f64 / parts as f64);
-                let world = body.world(&self.cuts.sample(clip, time));
-                let anchor = RigidTransform::from_affine(&world[self.anchor]);
-                (world, anchor)
+                self.pose.at(scene, time)
             }));
         }
-        poses.push((self.world.clone(), anchor));
+        poses.push((self.pose.world().to_vec(), anchor));
         for (Deforming { surface, mesh, rest, obstacle }, share) in self.surfaces.iter_mut().zip(shares) {
             let Some(body) = Deforming::body(rest, *mesh, scene) else { continue };
             let every = poses.len() / share;
@@ -342,68 +265,48 @@ impl StagedBody {
     pub(super) fn advance(&mut self, scene: &Scene, (from, to): (f64, f64)) -> Option<RigidTransform> {
         self.stand_still();
         let cut = self.cut(scene, (from, to));
-        self.pose(scene, to);
+        self.pose.set(scene, to);
         // A surface that was cut has no motion in this frame.
         self.rebuild_surfaces(scene, cut.is_none().then_some((from, to)));
         self.repose(scene, to);
         cut
     }
 
-    /// Moves colliders on joints that have a cut between the times `from` and `to` [s] across the cut.
-    /// Returns the rigid motion of the anchor.
+    /// Moves colliders on joints that have a cut between two times [s] across the cut. Returns the rigid motion
+    /// of the anchor.
     fn cut(&mut self, scene: &Scene, times: (f64, f64)) -> Option<RigidTransform> {
-        let (Some(body), Some(clip)) = (&scene.body, &scene.clip) else { return None };
-        let cut = self.cuts.between(body, clip, times);
-        let moved = self.moved;
-        let by = |joint: usize| {
-            let by = cut.get(joint).copied().flatten()?;
-            Some(moved.after(&by.after(&moved.inverse())))
-        };
+        let cut = self.pose.cut(scene, times);
+        let by = |joint: usize| cut.get(joint).copied().flatten();
+        let anchor = self.pose.anchor_joint();
         for (obstacle, carrier) in self.obstacles.iter_mut().zip(&self.carriers) {
             let joint = match *carrier {
                 Carrier::Fixed => None,
                 Carrier::Joint(joint) => Some(joint),
-                Carrier::Anchor => Some(self.anchor),
+                Carrier::Anchor => Some(anchor),
             };
             if let Some(by) = joint.and_then(by) {
                 obstacle.start = by.after(&obstacle.start);
             }
         }
         self.charged.cut(&scene.charged, by, &mut self.obstacles[self.carriers.len()..]);
-        by(self.anchor)
+        by(anchor)
     }
 
     /// Poses the body for time `time` [s] without velocity.
     pub(super) fn place(&mut self, scene: &Scene, time: f64) {
-        self.moved = RigidTransform::default();
-        self.pose(scene, time);
+        self.pose.move_to(RigidTransform::default());
+        self.pose.set(scene, time);
         self.rebuild_surfaces(scene, None);
         self.repose(scene, time);
         self.stand_still();
     }
 
-    fn pose(&mut self, scene: &Scene, time: f64) {
-        if let (Some(body), Some(clip)) = (&scene.body, &scene.clip) {
-            let pose: Vec<Trs> = self.cuts.sample(clip, time);
-            self.world = body.world(&pose);
-        } else {
-            self.world.clone_from(&self.rest);
-        }
-        if self.moved != RigidTransform::default() {
-            let moved = Affine3A::from_rotation_translation(self.moved.rotation, self.moved.translation);
-            self.world.iter_mut().for_each(|joint| *joint = moved * *joint);
-        }
-        if let Some(body) = &scene.body {
-            body.skinned(&self.world, &mut self.positions, &mut self.normals);
-        }
-    }
-
     /// Updates the poses of colliders and charged bodies from the current body pose, at `time` [s], and that
     /// of the user colliders.
     fn repose(&mut self, scene: &Scene, time: f64) {
-        let anchor = self.anchor();
-        let Self { world, rest, obstacles, carriers, charged, pushed: (count, pose), .. } = self;
-        let carried = |joint: Option<usize>| carried(world, rest, joint);
+        let anchor = self.pose.anchor();
+        let Self { pose: body, obstacles, carriers, charged, pushed: (count, pose), .. } = self;
+        let carried = |joint: Option<usize>| body.carried(joint);
         for (obstacle, carrier) in obstacles.iter_mut().zip(&*carriers) {
             obstacle.end = match *carrier {
                 Carrier::Fixed => RigidTransform::default(),
@@ -415,11 +318,6 @@ impl StagedBody {
         obstacles.iter_mut().rev().take(*count).for_each(|pushed| pushed.end = *pose);
     }
 
-    /// Returns the motion since rest of what `joint` carries; the identity without a joint.
-    pub(super) fn carried(&self, joint: Option<usize>) -> RigidTransform {
-        carried(&self.world, &self.rest, joint)
-    }
-
     /// Returns a report if parts of the collision mesh are too thin for its field.
     pub(super) fn thin(&self) -> Option<ThinMesh> {
         self.thin
@@ -428,30 +326,6 @@ impl StagedBody {
     /// Returns the charged bodies in the last frame.
     pub(super) fn charged(&self) -> &[ChargedBall] {
         self.charged.balls()
-    }
-
-    /// Returns whether separate props are at a different pose initially than at rest.
-    pub(super) fn stands_apart(&self) -> bool {
-        self.apart
-    }
-
-    /// Returns the corners of a triangle of the skin in the initial pose. Must be called before the body
-    /// moves.
-    pub(super) fn first_corners(&self, mesh: &body::Mesh, triangle: usize) -> [Vec3; 3] {
-        match self.apart {
-            true => mesh.triangles[triangle].map(|i| self.positions[i as usize]),
-            false => mesh.corners(triangle),
-        }
-    }
-
-    /// Returns the frame that roots move with.
-    pub(super) fn anchor(&self) -> RigidTransform {
-        self.world.get(self.anchor).map_or(RigidTransform::default(), RigidTransform::from_affine)
-    }
-
-    /// Returns the anchor at rest.
-    pub(super) fn rest_anchor(&self) -> RigidTransform {
-        self.rest.get(self.anchor).map_or(RigidTransform::default(), RigidTransform::from_affine)
     }
 
     /// Returns the colliders with their motion in the last frame.
@@ -469,54 +343,13 @@ impl StagedBody {
         self.obstacles.iter().map(MovingCollider::now).collect()
     }
 
-    /// Returns the current vertex positions [m]; empty without a body.
-    pub(super) fn positions(&self) -> &[Vec3] {
-        &self.positions
+    /// Returns the posed body.
+    pub(super) fn pose(&self) -> &BodyPose {
+        &self.pose
     }
 
-    pub(super) fn posed<'a>(&'a self, scene: &'a Scene) -> Option<PosedBody<'a>> {
-        let mesh = &scene.body.as_ref()?.mesh;
-        Some(PosedBody { mesh, positions: &self.positions, normals: &self.normals })
+    /// Returns the posed body, to move it or to find its cuts again.
+    pub(super) fn pose_mut(&mut self) -> &mut BodyPose {
+        &mut self.pose
     }
-}
-
-/// Returns the motion since `rest` of what `joint` carries, with joints currently at `world`; the identity
-/// without a joint.
-fn carried(world: &[Affine3A], rest: &[Affine3A], joint: Option<usize>) -> RigidTransform {
-    joint.map_or(RigidTransform::default(), |j| RigidTransform::from_affine(&(world[j] * rest[j].inverse())))
-}
-
-/// Returns the model-space matrix of each joint in the initial pose. Joints connected with `anchor` are at
-/// rest. All others are separate props, which are placed where the clip begins, because at rest they may
-/// intersect.
-fn first_pose(body: &Body, anchor: usize, scene: &Scene) -> Vec<Affine3A> {
-    let mut pose = body.rest_pose();
-    let top = |mut joint: usize| {
-        while let Some(parent) = body.joints[joint].parent {
-            joint = parent as usize;
-        }
-        joint
-    };
-    if let Some(clip) = &scene.clip {
-        let begin = clip.sample(0.0);
-        let others = (0..pose.len()).filter(|joint| top(*joint) != top(anchor));
-        others.for_each(|joint| pose[joint] = begin[joint]);
-    }
-    body.world(&pose)
-}
-
-/// Returns the joint that carries most of the vertices near the roots; joint 0 for a rigid body.
-fn anchor_joint(body: &Body, scene: &Scene) -> usize {
-    let Some(skin) = &body.skin else { return 0 };
-    let mut weight = vec![0.0; body.joints.len()];
-    for groom in &scene.grooms {
-        for root in &groom.groom.roots {
-            for v in body.mesh.triangles[root.triangle as usize] {
-                for (j, w) in skin.joints[v as usize].iter().zip(skin.weights[v as usize]) {
-                    weight[*j as usize] += w;
-                }
-            }
-        }
-    }
-    (0..weight.len()).max_by(|a, b| weight[*a].total_cmp(&weight[*b]).then(b.cmp(a))).unwrap_or(0)
 }

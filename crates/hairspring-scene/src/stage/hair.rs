@@ -48,15 +48,16 @@ impl StagedHair {
         let SceneGroom { groom, materials, guides, effects, look } = groom;
         let mesh = scene.body.as_ref().map(|b| &b.mesh).filter(|_| !groom.roots.is_empty());
         let groom = Arc::new(match mesh {
-            Some(mesh) if body.stands_apart() => stand(groom, body, mesh),
+            Some(mesh) if body.pose().stands_apart() => stand(groom, body, mesh),
             _ => groom,
         });
         let (strands, weights) = roles(&groom, guides);
         let follow = weights.map(|w| Follow::new(groom.clone(), &strands, &w, effects, &body.poses()));
         let triangle = |s: &u32| groom.roots[*s as usize].triangle as usize;
         let rest_frames = mesh.map_or(Vec::new(), |mesh| {
-            let frame =
-                |s: &u32| groom.roots[*s as usize].frame(body.first_corners(mesh, triangle(s))).inverse();
+            let frame = |s: &u32| {
+                groom.roots[*s as usize].frame(body.pose().first_corners(mesh, triangle(s))).inverse()
+            };
             strands.iter().map(frame).collect()
         });
         let triangles =
@@ -107,7 +108,7 @@ impl StagedHair {
         }
         for (k, s) in self.strands.iter().enumerate() {
             let root = &self.groom.roots[*s as usize];
-            let corners = self.triangles[k].map(|i| body.positions()[i as usize]);
+            let corners = self.triangles[k].map(|i| body.pose().positions()[i as usize]);
             self.roots[k] = RigidTransform {
                 translation: root.position(corners),
                 rotation: (root.frame(corners) * self.rest_frames[k]).normalize(),
@@ -273,7 +274,7 @@ fn stand(groom: Groom, body: &StagedBody, mesh: &Mesh) -> Groom {
     let mut points = groom.points.clone();
     for (s, root) in groom.roots.iter().enumerate() {
         let triangle = root.triangle as usize;
-        let (rest, now) = (mesh.corners(triangle), body.first_corners(mesh, triangle));
+        let (rest, now) = (mesh.corners(triangle), body.pose().first_corners(mesh, triangle));
         let turn = root.frame(now) * root.frame(rest).inverse();
         let (from, to) = (root.position(rest), root.position(now));
         points[groom.range(s)].iter_mut().for_each(|p| *p = to + turn * (*p - from));

@@ -86,7 +86,7 @@ impl StagedHands {
     }
 
     fn pose(&self, k: usize, hand: &Hand, time: f64, body: &StagedBody) -> RigidTransform {
-        let joint = body.carried(self.joints[k]);
+        let joint = body.pose().carried(self.joints[k]);
         RigidTransform { translation: joint.point(hand.moved(time)), ..joint }
     }
 }

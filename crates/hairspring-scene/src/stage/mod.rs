@@ -2,6 +2,7 @@
 //! placed.
 
 mod body;
+mod body_pose;
 mod charged;
 mod clock;
 mod fast_surface;
@@ -10,6 +11,7 @@ mod join_grooms;
 mod joints;
 mod manipulators;
 mod preroll;
+mod reach;
 mod rigid_parts;
 mod surface;
 mod thickness;
@@ -180,7 +182,8 @@ impl Stage {
         if scene.solver.preroll > 0.0 {
             preroll::settle(&mut hair, &scene, &body);
         }
-        let simulation = join_grooms::simulation(&hair, &scene, scene.solver, body.anchor(), &body.poses());
+        let simulation =
+            join_grooms::simulation(&hair, &scene, scene.solver, body.pose().anchor(), &body.poses());
         let (wind, hands) = (StagedWind::new(joints.wind), StagedHands::new(joints.hands));
         let mut stage =
             Self { body, wind, hair, simulation, roots: Vec::new(), hands, clock: Clock::ZERO, scene };
@@ -196,7 +199,7 @@ impl Stage {
         self.hands.reset();
         self.simulation.remove_all_manipulators();
         self.pose_roots();
-        self.simulation.place(self.body.anchor(), &self.roots);
+        self.simulation.place(self.body.pose().anchor(), &self.roots);
         self.update_render_points();
     }
 
@@ -231,7 +234,7 @@ impl Stage {
     /// exceeds `Solver::teleport_distance` in a step, the hair is moved rigidly with it. Hair without a body
     /// does not move.
     pub fn move_body(&mut self, by: RigidTransform) {
-        self.body.move_to(by);
+        self.body.pose_mut().move_to(by);
     }
 
     /// Sets the user colliders: a body that the app moves, such as a ball or a hand, made of closed shapes in
@@ -269,13 +272,13 @@ impl Stage {
     /// such joint.
     pub fn carried(&self, joint: Option<&str>) -> RigidTransform {
         let joint = joint.and_then(|name| self.scene.body.as_ref()?.joint(name));
-        self.body.carried(joint)
+        self.body.pose().carried(joint)
     }
 
     /// Returns the current transform of the anchor, which roots and fields move with. It is the joint that
     /// carries most of the skin around the roots (the head), or the identity without a body.
     pub fn body_anchor(&self) -> RigidTransform {
-        self.body.anchor()
+        self.body.pose().anchor()
     }
 
     /// Advances the scene by `dt` [s] (above 0). For frames at a fixed rate, [`Stage::step_frame`] keeps
@@ -325,7 +328,7 @@ impl Stage {
         self.simulation.set_charged(self.body.charged().iter().copied());
         report.step = self.simulation.step(&StepInput {
             dt,
-            anchor: self.body.anchor(),
+            anchor: self.body.pose().anchor(),
             roots: &self.roots,
             obstacles: self.body.obstacles(),
             air,
@@ -371,7 +374,7 @@ impl Stage {
 
     /// Returns the body in its current pose; `None` for a scene without one.
     pub fn body(&self) -> Option<PosedBody<'_>> {
-        self.body.posed(&self.scene)
+        self.body.pose().posed(&self.scene)
     }
 
     /// Returns the number of simulated strands and the total number.

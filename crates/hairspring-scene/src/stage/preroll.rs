@@ -23,14 +23,14 @@ pub(super) fn settle(hair: &mut [StagedHair], scene: &Scene, body: &StagedBody) 
     // Other integrators may be unstable on purpose.
     let solver = Solver { sag_free: false, integrator: Integrator::BackwardEuler, ..scene.solver };
     let poses = body.poses();
-    let mut simulation = join_grooms::simulation(hair, scene, solver, body.anchor(), &poses);
+    let mut simulation = join_grooms::simulation(hair, scene, solver, body.pose().anchor(), &poses);
     // Volume and strand contact would preserve the volume of hair that stands out.
     simulation.set_volume(&Volume::default());
     simulation.set_neighbours(&Neighbours::default());
     let roots: Vec<RigidTransform> = hair.iter().flat_map(|hair| hair.roots()).copied().collect();
     let drive = StepInput {
         dt: 1.0 / RATE,
-        anchor: body.anchor(),
+        anchor: body.pose().anchor(),
         roots: &roots,
         obstacles: body.obstacles(),
         air: Air::default(),

@@ -48,7 +48,7 @@ impl Stage {
             self.body.update_settings(scene, &joints, self.clock.time());
         }
         if before.solver.teleport_distance != scene.solver.teleport_distance {
-            self.body.find_cuts(scene);
+            self.body.pose_mut().find_cuts(scene);
         }
         if before.wind_sources != scene.wind_sources {
             self.wind = StagedWind::new(joints.wind);
@@ -68,7 +68,7 @@ impl Stage {
         }
         if made {
             let mut new =
-                join_grooms::simulation(&self.hair, scene, scene.solver, self.body.rest_anchor(), &[]);
+                join_grooms::simulation(&self.hair, scene, scene.solver, self.body.pose().rest_anchor(), &[]);
             new.take_over(&self.simulation);
             self.simulation = new;
         }
