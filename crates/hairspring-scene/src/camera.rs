@@ -1,6 +1,7 @@
 //! The camera of a scene.
 
 use glam::Vec3;
+use hairspring::settings::{Check, Validate, check};
 use serde::{Deserialize, Serialize};
 
 /// A perspective camera.
@@ -18,5 +19,16 @@ pub struct Camera {
 impl Default for Camera {
     fn default() -> Self {
         Self { position: Vec3::new(0.35, 0.1, 1.1), target: Vec3::ZERO, fov: 30.0 }
+    }
+}
+
+impl Validate for Camera {
+    fn checks(&self) -> Vec<Check> {
+        let target = self.target.is_finite() && self.target != self.position;
+        vec![
+            check(self.position.is_finite(), "position", "three finite numbers [m]"),
+            check(target, "target", "finite, and different from the camera's position"),
+            check((1.0..=170.0).contains(&self.fov), "fov", "1 to 170 [degrees]"),
+        ]
     }
 }

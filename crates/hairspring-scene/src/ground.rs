@@ -1,6 +1,7 @@
 //! Settings of the ground plane. Drawing is implemented in `hairspring-view`.
 
 use glam::Vec3;
+use hairspring::settings::{Check, Validate, check};
 use serde::{Deserialize, Serialize};
 
 /// A level plane that receives the shadow of body and hair. It only affects the image; hair collides with a
@@ -16,4 +17,13 @@ pub struct Ground {
     /// Linear RGB color, 0 to 1, of a floor lit by the key light and the sky. `None`, the default: the floor
     /// matches the backdrop and is only visible by its shadow.
     pub color: Option<Vec3>,
+}
+
+impl Validate for Ground {
+    fn checks(&self) -> Vec<Check> {
+        vec![
+            check(self.height.is_none_or(f32::is_finite), "height", "a finite number [m]"),
+            check(self.color.is_none_or(crate::is_color), "color", "three numbers from 0 to 1"),
+        ]
+    }
 }

@@ -1,6 +1,7 @@
 //! Hands of a scene: a manipulator with its motion and the time during which it acts.
 
 use glam::Vec3;
+use hairspring::settings::{Check, Validate, check, from_0};
 use hairspring::{forces::Manipulator, math::between};
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +37,20 @@ impl Hand {
         let place = |k: usize| Vec3::from_slice(&self.path[k][1..]);
         let way = between(self.path.len(), |k| self.path[k][0], time);
         way.map_or(Vec3::ZERO, |(a, b, share)| place(a).lerp(place(b), share))
+    }
+}
+
+impl Validate for Hand {
+    fn checks(&self) -> Vec<Check> {
+        let finite = self.path.iter().flatten().all(|x| x.is_finite());
+        let path = finite && self.path.windows(2).all(|w| w[0][0] < w[1][0]);
+        let mut checks = vec![
+            check(path, "path", "finite, with increasing times [s]"),
+            check(from_0(self.from), "from", "0 or more [s]"),
+            check(self.until.is_none_or(|t| t.is_finite() && t > self.from), "until", "after `from` [s]"),
+        ];
+        checks.extend(self.tool.checks());
+        checks
     }
 }
 

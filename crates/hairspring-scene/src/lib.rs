@@ -22,7 +22,7 @@ use hairspring::{
     forces::charge::Charged,
     groom::Groom,
     material::Material,
-    settings::{Effects, Neighbours, Solver, Volume, Wind},
+    settings::{Effects, Neighbours, OutOfRange, Solver, Validate, Volume, Wind},
 };
 
 /// One hairstyle of a scene, with its settings for simulation and rendering.
@@ -98,6 +98,68 @@ pub struct Scene {
     pub ground: Ground,
     /// Hands that act on the hair with a manipulator.
     pub hands: Vec<Hand>,
+}
+
+/// Returns whether the channels of a color are 0 to 1.
+pub fn is_color(c: Vec3) -> bool {
+    c.is_finite() && c.min_element() >= 0.0 && c.max_element() <= 1.0
+}
+
+/// The error for a setting of a scene that is out of range.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{place}: {error}")]
+pub struct SceneError {
+    /// The part of the scene, such as `solver` or `groom 2, material 1`.
+    pub place: String,
+    /// The setting.
+    pub error: OutOfRange,
+}
+
+impl Scene {
+    /// Checks all settings of the scene by the rules that hold for scene files.
+    ///
+    /// # Errors
+    /// The first setting that is out of range, and its place. Grooms, colliders and hands are counted from 0.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        let mut parts: Vec<(String, &dyn Validate)> = vec![
+            ("wind".into(), &self.wind),
+            ("turbulence".into(), &self.turbulence),
+            ("wind_occlusion".into(), &self.wind_occlusion),
+            ("solver".into(), &self.solver),
+            ("volume".into(), &self.volume),
+            ("neighbours".into(), &self.neighbours),
+            ("ground".into(), &self.ground),
+        ];
+        for (k, groom) in self.grooms.iter().enumerate() {
+            parts.push((format!("groom {k}, look"), &groom.look));
+            parts.push((format!("groom {k}, effects"), &groom.effects));
+            for (m, material) in groom.materials.iter().enumerate() {
+                parts.push((format!("groom {k}, material {m}"), material));
+            }
+        }
+        parts.extend(self.camera.iter().map(|camera| ("camera".into(), camera as &dyn Validate)));
+        let numbered = |name: &str, k: usize| format!("{name} {k}");
+        for (k, source) in self.wind_sources.iter().enumerate() {
+            parts.push((numbered("wind_source", k), source));
+        }
+        for (k, charged) in self.charged.iter().enumerate() {
+            parts.push((numbered("charged", k), charged));
+        }
+        for (k, collider) in self.colliders.iter().enumerate() {
+            parts.push((numbered("collider", k), &collider.shape));
+        }
+        for (k, hand) in self.hands.iter().enumerate() {
+            parts.push((numbered("hand", k), hand));
+        }
+        for (place, part) in parts {
+            part.validate().map_err(|error| SceneError { place, error })?;
+        }
+        if !self.gravity.is_finite() {
+            let error = OutOfRange { key: "gravity", expected: "three finite numbers [m/s²]" };
+            return Err(SceneError { place: "scene".into(), error });
+        }
+        Ok(())
+    }
 }
 
 // The README's example is a test.

@@ -1,6 +1,7 @@
 //! Hair color and shading settings. Rendering is implemented in `hairspring-view`.
 
 use glam::Vec3;
+use hairspring::settings::{Check, Validate, check};
 use serde::{Deserialize, Serialize};
 
 /// Color and gloss of one groom.
@@ -99,5 +100,25 @@ impl From<HairColor> for HairLook {
             HairColor::Grey => ([0.36, 0.355, 0.36], [0.46, 0.455, 0.45], 0.6),
         };
         Self { root_color: Vec3::from(root), tip_color: Vec3::from(tip), variation, ..Self::default() }
+    }
+}
+
+impl Validate for HairLook {
+    fn checks(&self) -> Vec<Check> {
+        let color = crate::is_color;
+        vec![
+            check(color(self.root_color), "root_color", "three numbers from 0 to 1"),
+            check(color(self.tip_color), "tip_color", "three numbers from 0 to 1"),
+            check(self.melanin.is_none_or(|m| (0.0..=1.0).contains(&m)), "melanin", "0 to 1"),
+            check((0.0..=1.0).contains(&self.melanin_redness), "melanin_redness", "0 to 1"),
+            check(color(self.dye), "dye", "three numbers from 0 to 1"),
+            check((0.0..=1.0).contains(&self.variation), "variation", "0 to 1"),
+            check((0.1..=1.0).contains(&self.roughness), "roughness", "0.1 to 1"),
+            check((0.0..=10.0).contains(&self.cuticle), "cuticle", "0 to 10 [degrees]"),
+            check((0.0..=4.0).contains(&self.specular), "specular", "0 to 4"),
+            check((0.0..=4.0).contains(&self.backlight), "backlight", "0 to 4"),
+            check((0.0..=4.0).contains(&self.scatter), "scatter", "0 to 4"),
+            check((0.0..=4.0).contains(&self.shadow), "shadow", "0 to 4"),
+        ]
     }
 }

@@ -1,7 +1,10 @@
 //! Colliders of a scene, and the choice of its guides. A field's default applies if a file omits it.
 
 use glam::{Mat3, Vec3};
-use hairspring::collide::{ColliderShape, Hull};
+use hairspring::{
+    collide::{ColliderShape, Hull},
+    settings::{Check, Validate, above_0, check},
+};
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, sync::Arc};
 
@@ -95,5 +98,27 @@ impl Shape {
             }
             Self::Hull { ref points, .. } => ColliderShape::Hull(Arc::new(Hull::new(points)?)),
         })
+    }
+}
+
+/// Describes a valid shape, for error messages.
+const SOUND: &str = "finite, with a radius or edges above 0 [m], a normal that is not 0, or `points` that span a volume or a `file` of them";
+
+impl Validate for Shape {
+    /// The shape is finite and has an inside. For a plane only its own extent counts, not its half-space.
+    fn checks(&self) -> Vec<Check> {
+        let sound = match *self {
+            Shape::Hull { ref points, ref file, scale } => {
+                let given = if file.is_some() { points.is_empty() } else { self.obstacle().is_some() };
+                given && points.iter().all(|p| p.is_finite()) && above_0(scale)
+            }
+            Shape::Sphere { center, radius } => center.is_finite() && above_0(Some(radius)),
+            Shape::Capsule { a, b, radius } => a.is_finite() && b.is_finite() && above_0(Some(radius)),
+            Shape::Box { center, size, rotation } => {
+                center.is_finite() && size.is_finite() && size.min_element() > 0.0 && rotation.is_finite()
+            }
+            Shape::Plane { point, normal } => point.is_finite() && normal.try_normalize().is_some(),
+        };
+        vec![check(sound, "shape", SOUND)]
     }
 }

@@ -8,22 +8,14 @@ use super::{
 };
 use crate::Problem;
 use glam::Vec3;
-use hairspring::{
-    forces::Manipulator,
-    settings::{Validate, above_0, from_0},
-};
-use hairspring_scene::{Guides, HairLook, Hand, Shape};
+use hairspring::settings::{Validate, above_0, from_0};
+use hairspring_scene::{Guides, is_color};
 
 /// A rule of this reader: whether it holds, the key that it is about, and what is expected.
 pub(super) type Check = (bool, &'static str, &'static str);
 
 pub(super) fn finite(v: Vec3) -> bool {
     v.is_finite()
-}
-
-/// Whether a color's channels are 0 to 1.
-fn color(c: Vec3) -> bool {
-    c.is_finite() && c.min_element() >= 0.0 && c.max_element() <= 1.0
 }
 
 /// Reports the first check that fails, at the line of its key from line `from` on.
@@ -111,7 +103,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         ];
         let from = line_at(text, groom.start());
         first_failure(text, from, &checks)?;
-        look(text, from, &groom.look)?;
+        in_range(text, from, &groom.look)?;
         in_range(text, from, &groom.effects)?;
         let thicken = &groom.thicken;
         let thickened = [
@@ -128,9 +120,12 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
                 (above_0(Some(growth.length)), "length", "above 0 [m]"),
                 ((0.0..=1.0).contains(&growth.spread), "spread", "0 to 1"),
                 ((0.0..=1.0).contains(&growth.fall), "fall", "0 to 1"),
-                (grow.get_ref().inside.as_ref().is_none_or(sound), "inside", SOUND),
             ];
-            first_failure(text, line_at(text, grow.span().start), &grown)?;
+            let from = line_at(text, grow.span().start);
+            first_failure(text, from, &grown)?;
+            if let Some(Err(error)) = grow.get_ref().inside.as_ref().map(Validate::validate) {
+                first_failure(text, from, &[(false, "inside", error.expected)])?;
+            }
         }
         if groom.file.is_some() == groom.grow.is_some() {
             let line = text.find("[[groom]]").map_or(1, |at| line_at(text, at));
@@ -139,33 +134,19 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     }
     colored_once(text, scene)?;
     for collider in &scene.collider {
-        first_failure(text, section("[[collider]]"), &[(sound(&collider.shape), "shape", SOUND)])?;
+        in_range(text, section("[[collider]]"), &collider.shape)?;
     }
     air::ranges(text, scene)?;
     in_range(text, section("[solver]"), &scene.solver)?;
     in_range(text, section("[volume]"), &scene.volume)?;
     in_range(text, section("[neighbours]"), &scene.neighbours)?;
     if let Some(camera) = &scene.camera {
-        let cameras = [
-            (finite(camera.position), "position", "three finite numbers [m]"),
-            (
-                finite(camera.target) && camera.target != camera.position,
-                "target",
-                "finite, and different from the camera's position",
-            ),
-            ((1.0..=170.0).contains(&camera.fov), "fov", "1 to 170 [degrees]"),
-        ];
-        first_failure(text, section("[camera]"), &cameras)?;
+        in_range(text, section("[camera]"), camera)?;
     }
-    let ground = &scene.ground;
-    let grounds = [
-        (ground.height.is_none_or(f32::is_finite), "height", "a finite number [m]"),
-        (ground.color.is_none_or(color), "color", "three numbers from 0 to 1"),
-    ];
-    first_failure(text, section("[ground]"), &grounds)?;
+    in_range(text, section("[ground]"), &scene.ground)?;
     let starts = text.match_indices("[[hand]]").map(|(at, _)| line_at(text, at));
     for (hand, from) in scene.hand.iter().zip(starts.chain(std::iter::repeat(1))) {
-        hand_ranges(text, from, hand)?;
+        in_range(text, from, hand)?;
     }
     Ok(())
 }
@@ -180,77 +161,14 @@ pub(super) fn way(keys: &[KeyFile]) -> [Check; 2] {
     ]
 }
 
-/// Describes a valid shape, for error messages.
-const SOUND: &str = "finite, with a radius or edges above 0 [m], a normal that is not 0, or `points` that span a volume or a `file` of them";
-
-/// Whether a shape is finite and has an inside. For a plane only its own extent counts, not its half-space.
-fn sound(shape: &Shape) -> bool {
-    match *shape {
-        Shape::Hull { ref points, ref file, scale } => {
-            let given = if file.is_some() { points.is_empty() } else { shape.obstacle().is_some() };
-            given && points.iter().copied().all(finite) && above_0(scale)
-        }
-        Shape::Sphere { center, radius } => finite(center) && above_0(Some(radius)),
-        Shape::Capsule { a, b, radius } => finite(a) && finite(b) && above_0(Some(radius)),
-        Shape::Box { center, size, rotation } => {
-            finite(center) && finite(size) && size.min_element() > 0.0 && finite(rotation)
-        }
-        Shape::Plane { point, normal } => finite(point) && normal.try_normalize().is_some(),
-    }
-}
-
 pub(super) fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
     let checks = [
         (above_0(body.scale), "scale", "above 0 [m per unit]"),
-        (body.color.is_none_or(color), "color", "three numbers from 0 to 1"),
+        (body.color.is_none_or(is_color), "color", "three numbers from 0 to 1"),
         (body.roughness.is_none_or(|r| (0.0..=1.0).contains(&r)), "roughness", "0 to 1"),
     ];
     first_failure(text, line_at(text, body.file.span().start), &checks)?;
     body.more.iter().try_for_each(|file| body_ranges(text, file))
-}
-
-/// Checks a hand whose table begins in line `from`.
-fn hand_ranges(text: &str, from: usize, hand: &Hand) -> Result<(), Problem> {
-    let keys = hand.path.iter().flatten().all(|x| x.is_finite());
-    let checks = [
-        (
-            keys && hand.path.windows(2).all(|w| w[0][0] < w[1][0]),
-            "path",
-            "finite, with increasing times [s]",
-        ),
-        (from_0(hand.from), "from", "0 or more [s]"),
-        (hand.until.is_none_or(|t| t.is_finite() && t > hand.from), "until", "after `from` [s]"),
-    ];
-    first_failure(text, from, &checks)?;
-    first_failure(text, from, &tool_checks(&hand.tool))
-}
-
-/// The checks of a tool. All of them are reported at the tool's own line.
-fn tool_checks(tool: &Manipulator) -> Vec<Check> {
-    let place = |ok: bool| (ok, "tool", "at three finite numbers [m]");
-    let radius = |r: f32| (above_0(Some(r)), "tool", "given a `radius` above 0 [m]");
-    let pull = |f: f32| ((0.0..=1e3).contains(&f), "tool", "given a `pull` from 0 to 1000 [Hz]");
-    let damping = |d: f32| ((0.0..=10.0).contains(&d), "tool", "given a `damping` from 0 to 10");
-    match *tool {
-        Manipulator::Grab(g) => {
-            vec![place(finite(g.center)), radius(g.radius), pull(g.pull), damping(g.damping)]
-        }
-        Manipulator::Comb(c) => vec![
-            place(finite(c.a) && finite(c.b)),
-            radius(c.radius),
-            ((0.0..=1e4).contains(&c.grip), "tool", "given a `grip` from 0 to 10000 [1/s]"),
-            ((0.0..=c.grip).contains(&c.friction), "tool", "given a `friction` from 0 to its `grip` [1/s]"),
-        ],
-        Manipulator::Tie(t) => vec![
-            place(finite(t.center)),
-            radius(t.radius),
-            (t.axis.try_normalize().is_some(), "tool", "given an `axis` that is finite and not 0"),
-            (above_0(Some(t.reach)), "tool", "given a `reach` above 0 [m]"),
-            (from_0(t.gather), "tool", "given a `gather` of 0 or more [s]"),
-            pull(t.pull),
-            damping(t.damping),
-        ],
-    }
 }
 
 /// Checks that no look sets both melanin and explicit colors.
@@ -270,23 +188,4 @@ fn colored_once(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         }
     }
     Ok(())
-}
-
-/// Checks how a groom is drawn, from line `from` on.
-pub(super) fn look(text: &str, from: usize, look: &HairLook) -> Result<(), Problem> {
-    let checks = [
-        (color(look.root_color), "root_color", "three numbers from 0 to 1"),
-        (color(look.tip_color), "tip_color", "three numbers from 0 to 1"),
-        (look.melanin.is_none_or(|m| (0.0..=1.0).contains(&m)), "melanin", "0 to 1"),
-        ((0.0..=1.0).contains(&look.melanin_redness), "melanin_redness", "0 to 1"),
-        (color(look.dye), "dye", "three numbers from 0 to 1"),
-        ((0.0..=1.0).contains(&look.variation), "variation", "0 to 1"),
-        ((0.1..=1.0).contains(&look.roughness), "roughness", "0.1 to 1"),
-        ((0.0..=10.0).contains(&look.cuticle), "cuticle", "0 to 10 [degrees]"),
-        ((0.0..=4.0).contains(&look.specular), "specular", "0 to 4"),
-        ((0.0..=4.0).contains(&look.backlight), "backlight", "0 to 4"),
-        ((0.0..=4.0).contains(&look.scatter), "scatter", "0 to 4"),
-        ((0.0..=4.0).contains(&look.shadow), "shadow", "0 to 4"),
-    ];
-    first_failure(text, from, &checks)
 }

@@ -23,7 +23,7 @@ pub use clock::FrameRate;
 pub use thickness::ThinMesh;
 pub use values::{Picked, StrandFigures, Value};
 
-use crate::{HairLook, Scene};
+use crate::{HairLook, Scene, SceneError};
 use body::StagedBody;
 use clock::Clock;
 use glam::Vec3;
@@ -85,6 +85,9 @@ pub enum StageError {
         /// Number of grooms on the stage.
         grooms: usize,
     },
+    /// A setting is out of range.
+    #[error(transparent)]
+    Settings(#[from] SceneError),
     /// A strand is too far from the origin for single precision.
     #[error("groom {groom}: {why}")]
     TooFar {
@@ -441,7 +444,7 @@ fn check(scene: &Scene) -> Result<(), StageError> {
         }
         in_range(&format!("a point of groom {g}"), &groom.points)?;
     }
-    check_effects(scene)?;
+    scene.validate()?;
     if let Some(body) = &scene.body {
         in_range("a vertex of the body", &body.mesh.positions)?;
     }
@@ -457,15 +460,6 @@ fn check(scene: &Scene) -> Result<(), StageError> {
             clip_joints: clip.joint_count,
             body_joints: body.joints.len(),
         });
-    }
-    Ok(())
-}
-
-/// Rejects effects that would displace follow hairs beyond what is simulated.
-fn check_effects(scene: &Scene) -> Result<(), StageError> {
-    for (g, effects) in scene.grooms.iter().map(|groom| groom.effects).enumerate() {
-        let lengths = Vec3::new(effects.curl_radius, effects.curl_length, effects.noise);
-        in_range(&format!("an effect of groom {g}"), [&lengths])?;
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Changes the settings of a running scene.
 
-use super::{Stage, StageError, check_effects, join_grooms, joints::Joints, wind::StagedWind};
+use super::{Stage, StageError, join_grooms, joints::Joints, wind::StagedWind};
 use crate::Scene;
 use hairspring::settings::Solver;
 
@@ -22,12 +22,12 @@ impl Stage {
     ///
     /// # Errors
     /// [`StageError::GroomCount`] if the number of grooms differs, [`StageError::NoSuchJoint`],
-    /// [`StageError::OutOfRange`] for effects that are too large. In case of an error, nothing changes.
+    /// [`StageError::Settings`] for a setting out of range. In case of an error, nothing changes.
     pub fn update_settings(&mut self, settings: Scene) -> Result<(), StageError> {
         if settings.grooms.len() != self.hair.len() {
             return Err(StageError::GroomCount { settings: settings.grooms.len(), grooms: self.hair.len() });
         }
-        check_effects(&settings)?;
+        settings.validate()?;
         let joints = Joints::new(&settings, self.scene.body.as_ref())?;
         let before = std::mem::take(&mut self.scene);
         self.scene = Scene {

@@ -38,7 +38,9 @@ fn scene(grooms: Vec<SceneGroom>) -> Scene {
 fn refused(scene: Scene) -> String {
     match Stage::new(scene) {
         Ok(_) => panic!("the scene is accepted"),
-        Err(error @ (StageError::TooFar { .. } | StageError::OutOfRange { .. })) => error.to_string(),
+        Err(
+            error @ (StageError::TooFar { .. } | StageError::OutOfRange { .. } | StageError::Settings(_)),
+        ) => error.to_string(),
         Err(other) => panic!("{other}"),
     }
 }
@@ -80,11 +82,11 @@ fn lengths_that_overflow_are_refused() {
         Effects { noise: f32::NAN, ..Effects::default() },
     ] {
         let curled = SceneGroom { effects, guides: Guides::Count(4), ..groom(Vec3::ZERO, 0.01) };
-        assert!(refused(scene(vec![curled.clone()])).contains("an effect of groom 0"));
+        assert!(refused(scene(vec![curled.clone()])).contains("groom 0, effects: "));
         // So are settings that come later.
         let plain = SceneGroom { effects: Effects::default(), ..curled.clone() };
         let mut stage = Stage::new(scene(vec![plain])).unwrap();
-        assert!(matches!(stage.update_settings(scene(vec![curled])), Err(StageError::OutOfRange { .. })));
+        assert!(matches!(stage.update_settings(scene(vec![curled])), Err(StageError::Settings(_))));
     }
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
     let mesh = Mesh {

@@ -10,5 +10,6 @@ mod live_body_and_collider_move_hair;
 mod points_and_strands_report_their_values;
 mod preroll_ends_at_rest;
 mod props_and_limbs_collide_with_hair;
+mod scenes_made_by_code_are_checked_like_files;
 mod settings_change_during_playback;
 mod time_counts_frames;

@@ -17,6 +17,7 @@
 //! occluded as their guides are.
 
 use super::AirSample;
+use crate::settings::{Check, Validate, above_0, check, from_0};
 use crate::{collide::FrameColliders, volume::Density};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -133,4 +134,14 @@ fn depth(
         way += step;
     }
     depth
+}
+
+impl Validate for WindOcclusion {
+    fn checks(&self) -> Vec<Check> {
+        vec![
+            check(from_0(self.body), "body", "0 or more [1/m]"),
+            check(from_0(self.hair), "hair", "0 or more [1/m]"),
+            check(above_0(Some(self.reach)), "reach", "above 0 [m]"),
+        ]
+    }
 }

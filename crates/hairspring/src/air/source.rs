@@ -14,6 +14,7 @@
 
 use super::gust::Gust;
 use crate::math::RigidTransform;
+use crate::settings::{Check, Validate, above_0, check, gusts};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -140,5 +141,35 @@ impl Source {
     /// Returns the velocity of the air at `place` in world space [m/s].
     pub fn velocity(&self, place: Vec3) -> Vec3 {
         self.pose.rotation * (self.flow.velocity(self.pose.inverse_point(place)) * self.factor)
+    }
+}
+
+impl Validate for WindSource {
+    fn checks(&self) -> Vec<Check> {
+        let mut checks = gusts(self.gust, self.gust_rate).to_vec();
+        checks.push(self.shape.check());
+        checks
+    }
+}
+
+impl Flow {
+    /// Returns the rule of a flow: it is finite and has a valid radius, axis and spread.
+    fn check(&self) -> Check {
+        let sound = |center: Vec3, radius: f32, speed: f32| {
+            center.is_finite() && above_0(Some(radius)) && speed.is_finite()
+        };
+        let points = |axis: Vec3| axis.try_normalize().is_some();
+        let holds = match *self {
+            Flow::Point { center, radius, speed } => sound(center, radius, speed),
+            Flow::Vortex { center, axis, radius, speed } => sound(center, radius, speed) && points(axis),
+            Flow::Fan { center, axis, radius, speed, spread } => {
+                sound(center, radius, speed) && points(axis) && (0.0..=80.0).contains(&spread)
+            }
+        };
+        check(
+            holds,
+            "shape",
+            "finite, with a radius above 0 [m], an axis that is not 0 and a spread of 0 to 80 [degrees]",
+        )
     }
 }

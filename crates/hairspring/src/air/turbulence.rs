@@ -16,6 +16,7 @@
 //! Wind sources do not carry the noise along, and bodies do not stop it (Bridson 2007, §2.4: ψ ramped to 0 at
 //! a wall).
 
+use crate::settings::{Check, Validate, above_0, check, from_0};
 use glam::{DVec3, IVec3, Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -155,6 +156,16 @@ fn corner(n: u32, turned: f64) -> Corner {
     let a = matrix(0) * cos + matrix(9) * sin;
     let [x, y, z] = [a.x_axis, a.y_axis, a.z_axis];
     Corner { a, curl: Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x) }
+}
+
+impl Validate for Turbulence {
+    fn checks(&self) -> Vec<Check> {
+        vec![
+            check(from_0(self.strength), "strength", "0 or more [m/s]"),
+            check(above_0(Some(self.size)), "size", "above 0 [m]"),
+            check((1..=6).contains(&self.octaves), "octaves", "1 to 6"),
+        ]
+    }
 }
 
 #[cfg(test)]

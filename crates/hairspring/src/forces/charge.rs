@@ -20,6 +20,7 @@
 
 use super::{HairField, StrandView};
 use crate::math::{RigidTransform, between};
+use crate::settings::{Check, Validate, above_0, check};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -136,5 +137,20 @@ impl Charges<'_> {
             }
             strand.accelerate(i, self.hair.field(start + x) * per_field);
         }
+    }
+}
+
+impl Validate for Charged {
+    fn checks(&self) -> Vec<Check> {
+        let times = || self.path.iter().map(|p| p.time);
+        let before = std::iter::once(0.0).chain(times());
+        let finite = self.path.iter().all(|p| p.center.is_finite() && p.time.is_finite());
+        let path = finite && times().zip(before).all(|(time, before)| time > before);
+        vec![
+            check(self.center.is_finite(), "center", "three finite numbers [m]"),
+            check(above_0(Some(self.radius)), "radius", "above 0 [m]"),
+            check((-1e-3..=1e-3).contains(&self.charge), "charge", "-1e-3 to 1e-3 [C]"),
+            check(path, "path", "finite positions [m] at times above 0 [s], each later than the one before"),
+        ]
     }
 }

@@ -31,7 +31,11 @@ impl Validate for Effects {
         vec![
             check((0.0..=1.0).contains(&self.clump), "clump", "0 to 1"),
             check((0.0..=MAX_LENGTH).contains(&self.curl_radius), "curl_radius", "0 to 1000000 [m]"),
-            check(above_0(Some(self.curl_length)), "curl_length", "above 0 [m]"),
+            check(
+                above_0(Some(self.curl_length)) && self.curl_length <= MAX_LENGTH,
+                "curl_length",
+                "above 0, at most 1000000 [m]",
+            ),
             check((0.0..=MAX_LENGTH).contains(&self.noise), "noise", "0 to 1000000 [m]"),
         ]
     }

@@ -13,3 +13,4 @@ pub use neighbours::Neighbours;
 pub use solver::{Integrator, Quality, Response, Solver};
 pub use volume::{Volume, VolumeMethod};
 pub use wind::Wind;
+pub(crate) use wind::gusts;

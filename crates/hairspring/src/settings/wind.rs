@@ -1,5 +1,6 @@
 //! Settings of the wind that is the same everywhere.
 
+use super::check::{Check, Validate, check, from_0};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -13,4 +14,17 @@ pub struct Wind {
     pub gust: f32,
     /// Gust frequency [Hz]. 0: no gusts.
     pub gust_rate: f32,
+}
+
+impl Validate for Wind {
+    fn checks(&self) -> Vec<Check> {
+        let mut checks = vec![check(self.velocity.is_finite(), "velocity", "three finite numbers [m/s]")];
+        checks.extend(gusts(self.gust, self.gust_rate));
+        checks
+    }
+}
+
+/// Returns the rules of gusts.
+pub(crate) fn gusts(gust: f32, rate: f32) -> [Check; 2] {
+    [check((0.0..=1.0).contains(&gust), "gust", "0 to 1"), check(from_0(rate), "gust_rate", "0 or more [Hz]")]
 }

@@ -1,0 +1,50 @@
+//! Promise: a scene made by code is checked by the rules that hold for scene files: the error names the place, the setting and its range.
+
+use glam::Vec3;
+use hairspring::{material::Material, settings::Solver};
+use hairspring_scene::{
+    Collider, Scene, Shape,
+    builtin::{BuiltinOptions, scene},
+    stage::{Stage, StageError},
+};
+
+/// A change of a scene, and what is said of it.
+type Fault = (fn(&mut Scene), &'static str);
+
+#[test]
+fn every_part() {
+    let faults: [Fault; 8] = [
+        (|s| s.solver.substeps = 65, "solver: `substeps` must be 1 to 64"),
+        (|s| s.wind.gust = -0.1, "wind: `gust` must be 0 to 1"),
+        (|s| s.volume.cell = Some(0.0), "volume: `cell` must be above 0 [m]"),
+        (|s| s.gravity = Vec3::NAN, "scene: `gravity` must be three finite numbers [m/s²]"),
+        (|s| s.grooms[1].look.shadow = 5.0, "groom 1, look: `shadow` must be 0 to 4"),
+        (
+            |s| {
+                s.grooms[0].materials =
+                    vec![Material::default(), Material { friction: 2.0, ..Material::default() }]
+            },
+            "groom 0, material 1: `friction` must be 0 to 1",
+        ),
+        (|s| s.wind_occlusion.reach = 0.0, "wind_occlusion: `reach` must be above 0 [m]"),
+        (
+            |s| {
+                let shape = Shape::Sphere { center: Vec3::ZERO, radius: -1.0 };
+                s.colliders = vec![Collider { joint: None, shape }];
+            },
+            "collider 0: `shape` must be finite, with a radius",
+        ),
+    ];
+    let good = scene(&BuiltinOptions { strands: 50, ..Default::default() });
+    assert!(good.validate().is_ok());
+    for (change, said) in faults {
+        let mut bad = good.clone();
+        change(&mut bad);
+        let error = Stage::new(bad).err().expect(said);
+        assert!(matches!(error, StageError::Settings(_)) && error.to_string().starts_with(said), "{error}");
+    }
+    let mut stage = Stage::new(good.clone()).unwrap();
+    let bad = Scene { solver: Solver { inertia: 2.0, ..good.solver }, ..good };
+    let error = stage.update_settings(bad).unwrap_err();
+    assert_eq!(error.to_string(), "solver: `inertia` must be 0 to 1");
+}
