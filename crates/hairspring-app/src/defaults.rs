@@ -140,7 +140,7 @@ mod tests {
         document.set(&"builtin.style".parse().unwrap(), Some("straight".into())).unwrap();
         for table in [document.defaults(), document.opened().values()] {
             let key = "groom[0].look.root_color";
-            assert_ne!(looked_up(table, key), root, "a style's own colour");
+            assert_ne!(looked_up(table, key), root, "a style's own color");
             assert_eq!(looked_up(table, key), looked_up(document.effective(), key));
         }
         assert_eq!(looked_up(document.defaults(), "groom[0].look.roughness").as_float(), Some(0.32));

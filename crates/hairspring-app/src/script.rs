@@ -164,7 +164,7 @@ fn read(line: &str) -> Result<Line, String> {
         "show" if rest == "natural" => Line::Show(None),
         "show" => {
             let known = Value::ALL.into_iter().find(|v| v.name().eq_ignore_ascii_case(rest));
-            Line::Show(Some(known.ok_or_else(|| format!("'{rest}' is nothing that colours show"))?))
+            Line::Show(Some(known.ok_or_else(|| format!("'{rest}' is nothing that colors show"))?))
         }
         "find" => Line::Find(rest.to_owned()),
         "overlay" => {

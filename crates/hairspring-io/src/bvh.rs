@@ -92,7 +92,7 @@ const TYPICAL: f32 = 1.6;
 
 /// Reads a `.bvh` file and converts it to meters and Y up. The unit and the up axis are guessed from the
 /// person's height in the frames; the notes say what was guessed.
-pub(crate) fn read_in_metres(
+pub(crate) fn read_in_meters(
     data: &[u8],
     options: &ReadOptions,
 ) -> Result<(Motion, f32, Vec<String>), Problem> {
@@ -105,9 +105,9 @@ pub(crate) fn read_in_metres(
     }
     let height = if up == Axis::Z { size.z } else { size.y };
     let scale = options.scale.unwrap_or_else(|| {
-        let unit = UNITS.iter().find(|(metres, _)| PERSON.contains(&(height * metres)));
+        let unit = UNITS.iter().find(|(meters, _)| PERSON.contains(&(height * meters)));
         let (scale, name) = match unit {
-            Some((metres, name)) => (*metres, (*name).to_owned()),
+            Some((meters, name)) => (*meters, (*name).to_owned()),
             None if height > 0.0 => (TYPICAL / height, format!("units of {:.5} m", TYPICAL / height)),
             None => (1.0, "meters".into()),
         };

@@ -152,7 +152,7 @@ pub fn read_motion(path: &Path, name: Option<&str>, options: &ReadOptions) -> Re
     if format == Format::Bvh {
         check_scale(path, options)?;
         let data = bytes_of(path)?;
-        let (mut motion, scale, notes) = bvh::read_in_metres(&data, options).map_err(|p| p.in_file(path))?;
+        let (mut motion, scale, notes) = bvh::read_in_meters(&data, options).map_err(|p| p.in_file(path))?;
         motion.clip.name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         return Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes });
     }

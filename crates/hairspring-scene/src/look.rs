@@ -80,13 +80,13 @@ pub enum HairColor {
     /// Little pigment, bright by scattering.
     Blonde,
     /// Strands without pigment among dark ones.
-    Grey,
+    Gray,
 }
 
 impl HairColor {
     /// All colors, from dark to light.
     pub const ALL: [Self; 6] =
-        [Self::Black, Self::DarkBrown, Self::Brown, Self::Red, Self::Blonde, Self::Grey];
+        [Self::Black, Self::DarkBrown, Self::Brown, Self::Red, Self::Blonde, Self::Gray];
 }
 
 impl From<HairColor> for HairLook {
@@ -97,7 +97,7 @@ impl From<HairColor> for HairLook {
             HairColor::Brown => ([0.115, 0.058, 0.028], [0.21, 0.115, 0.058], 0.25),
             HairColor::Red => ([0.22, 0.058, 0.018], [0.36, 0.115, 0.038], 0.22),
             HairColor::Blonde => ([0.42, 0.27, 0.13], [0.66, 0.49, 0.29], 0.22),
-            HairColor::Grey => ([0.36, 0.355, 0.36], [0.46, 0.455, 0.45], 0.6),
+            HairColor::Gray => ([0.36, 0.355, 0.36], [0.46, 0.455, 0.45], 0.6),
         };
         Self { root_color: Vec3::from(root), tip_color: Vec3::from(tip), variation, ..Self::default() }
     }

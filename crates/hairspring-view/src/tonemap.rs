@@ -70,9 +70,9 @@ mod tests {
     fn the_curve_rises_from_black_to_white() {
         let mut last = -1.0;
         for i in 0..=800 {
-            let grey = filmic(Vec3::splat(i as f32 / 50.0));
-            assert!(grey.x >= last && grey.max_element() - grey.min_element() < 0.01);
-            last = grey.x;
+            let gray = filmic(Vec3::splat(i as f32 / 50.0));
+            assert!(gray.x >= last && gray.max_element() - gray.min_element() < 0.01);
+            last = gray.x;
         }
         assert_eq!(filmic(Vec3::ZERO), Vec3::ZERO);
         assert!(last > 0.97);

@@ -11,7 +11,7 @@ use std::{fs::File, io::BufReader, path::Path};
 
 const SIZE: [&str; 2] = ["--size", "160x96"];
 
-/// How many colours differ from those of the row's first pixel by more than the backdrop's soft light does.
+/// How many colors differ from those of the row's first pixel by more than the backdrop's soft light does.
 fn drawn_pixels(image: &Image) -> usize {
     let rows = image.rgb.chunks(3 * image.width as usize);
     rows.map(|row| {

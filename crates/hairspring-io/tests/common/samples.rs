@@ -9,7 +9,7 @@ use hairspring_io::{
 /// A format's name, a small file of it, and its reader.
 pub type Sample = (&'static str, Vec<u8>, fn(&[u8]) -> Result<(), Problem>);
 
-/// Three strands of `points` points, with colours and texture coordinates.
+/// Three strands of `points` points, with colors and texture coordinates.
 pub fn groom(points: usize) -> Groom {
     let strands =
         (0..3).map(|s| (0..points).map(|i| Vec3::new(s as f32, 0.1 * i as f32, 0.5)).collect::<Vec<_>>());

@@ -16,7 +16,7 @@ struct Obj {
 impl Obj {
     /// Adds a vertex; its number, from 1.
     fn vertex(&mut self, p: Vec3) -> usize {
-        // A tenth of a millimetre is enough; adding 0 takes the sign off a zero.
+        // A tenth of a millimeter is enough; adding 0 takes the sign off a zero.
         let [x, y, z] = p.to_array().map(|c| (f64::from(c) * 1e4).round() / 1e4 + 0.0);
         self.vertices.push(format!("v {x:.4} {y:.4} {z:.4}"));
         self.vertices.len()
@@ -111,7 +111,7 @@ impl Obj {
 
     /// The file is this mesh.
     fn is(self, file: &str, what: &str) {
-        let lines = [format!("# {what}; in metres. Made by `cargo xtask meshes`.")];
+        let lines = [format!("# {what}; in meters. Made by `cargo xtask meshes`.")];
         let text = [&lines[..], &self.vertices, &self.faces].concat().join("\n") + "\n";
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes").join(file);
         if std::env::var("HAIRSPRING_MESHES").is_ok_and(|v| v == "write") {

@@ -1,6 +1,6 @@
 //! Promise: what is written is read back, to the last bit where the format has room for it.
 //!
-//! A baked frame is only as good as its file: positions, radii and colours must come back exactly, in metres and Y up
+//! A baked frame is only as good as its file: positions, radii and colors must come back exactly, in meters and Y up
 //! with nothing guessed from `.hair` and `.tfx`; a file is whole or not there; and what a format can not hold is said.
 
 use glam::{Vec2, Vec3};
@@ -17,7 +17,7 @@ fn point() -> impl Strategy<Value = Vec3> {
     (x(), x(), x()).prop_map(Vec3::from)
 }
 
-/// A groom of strands of 1 to 9 points, of any radii and colours. `even`: all of as many points, one radius a strand.
+/// A groom of strands of 1 to 9 points, of any radii and colors. `even`: all of as many points, one radius a strand.
 fn groom(even: bool) -> impl Strategy<Value = Groom> {
     let strands = (1usize..9).prop_flat_map(move |n| {
         let counts = if even { n..n + 1 } else { 1..10 };
@@ -49,12 +49,12 @@ fn bytes(groom: &Groom, extension: &str) -> Vec<u8> {
 
 proptest! {
     #[test]
-    fn hair_files_hold_points_radii_and_colours(groom in groom(false)) {
+    fn hair_files_hold_points_radii_and_colors(groom in groom(false)) {
         prop_assert_eq!(hair::parse(&bytes(&groom, "hair")).unwrap(), groom);
     }
 
     #[test]
-    fn tfx_files_hold_points_colours_uvs_and_a_radius_a_strand(groom in groom(true)) {
+    fn tfx_files_hold_points_colors_uvs_and_a_radius_a_strand(groom in groom(true)) {
         prop_assert_eq!(tfx::parse(&bytes(&groom, "tfx")).unwrap(), groom);
     }
 
@@ -67,7 +67,7 @@ proptest! {
 }
 
 #[test]
-fn our_own_files_come_back_in_metres_with_nothing_guessed() {
+fn our_own_files_come_back_in_meters_with_nothing_guessed() {
     let folder = tempfile::tempdir().unwrap();
     // A hundredth of the size of a head: a guess would go wrong.
     let strand =

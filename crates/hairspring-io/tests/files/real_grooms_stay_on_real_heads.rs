@@ -1,6 +1,6 @@
 //! Promise: hair that others made stays on the heads that others made, whatever they do.
 //!
-//! Real grooms begin inside their colliders, have segments of no length, roots off the skin and fibres thicker or thinner than
+//! Real grooms begin inside their colliders, have segments of no length, roots off the skin and fibers thicker or thinner than
 //! hair; real bodies are open, overlap themselves and jump from pose to pose. Each scene file of `examples/scenes` plays here for a
 //! few seconds with few guides and must keep what the simulation promises: the first frame is the file, nothing explodes, segments
 //! keep their length, roots stay on the skin, hair stays out of the head but for the little that was measured (with margin),
@@ -144,7 +144,7 @@ fn the_ponytail_swings() {
     plays("ponytail.toml", "grooms/tressfx_ponytail/tail.tfx", bounds);
 }
 
-/// 4.5 m tall: a millimetre of a human head is 12 of his. His dome and body are open shells that overlap.
+/// 4.5 m tall: a millimeter of a human head is 12 of his. His dome and body are open shells that overlap.
 #[test]
 fn the_robot_dances() {
     let bounds = Bounds { seconds: 2.0, inside: 2e-2, depth: 40e-3 };

@@ -1,5 +1,5 @@
 //! A viewer may place follow hairs by itself, on a graphics card, and the stage then does not do it as well. What is asked of the stage meanwhile is
-//! answered as if it did: which strand a ray finds, figures of a strand, values to colour by; and the points are there, to the bit, as soon as they are
+//! answered as if it did: which strand a ray finds, figures of a strand, values to color by; and the points are there, to the bit, as soon as they are
 //! asked for.
 
 use glam::Vec3;

@@ -1,7 +1,7 @@
 //! Promise: a thing beside the body, and a limb of it, meets hair as it goes.
 //!
 //! A prop is a part of the body's mesh with a joint of its own. Hair must meet it as it meets a collider that was written as one: on its way through the frame and
-//! not where the frame ends, where a bar thrown at 10 m/s has jumped seventeen centimetres. So it takes with it what hangs in its way, and nothing is
+//! not where the frame ends, where a bar thrown at 10 m/s has jumped seventeen centimeters. So it takes with it what hangs in its way, and nothing is
 //! left inside of it or behind. A limb is one surface with the body, which deforms: the same bar as an arm of the board must do the same. So must a sheet
 //! of 2 mm that the arm waves at 5 m/s.
 

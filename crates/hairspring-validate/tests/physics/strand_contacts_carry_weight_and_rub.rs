@@ -321,7 +321,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn folded_strands_in_a_heap_stay_finite_and_keep_their_lengths() {
-    // Random walks in a box of five centimetres, let fall and shaken by their roots for ten seconds.
+    // Random walks in a box of five centimeters, let fall and shaken by their roots for ten seconds.
     let mut seed = 7_u32;
     let mut random = || {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -35,14 +35,14 @@ macro_rules! source {
 }
 
 pub(super) const FOLLOW: Source = source!("follow": "follow");
-pub(super) const DENSITY: Source = source!("density": "frame", "fibre", "strands", "density");
+pub(super) const DENSITY: Source = source!("density": "frame", "fiber", "strands", "density");
 pub(super) const WALLS: Source = source!("walls": "frame", "walls");
 pub(super) const SWEEP: Source = source!("sweep": "frame", "sweep");
 pub(super) const BODY: Source = source!("body": "frame", "light", "body");
 pub(super) const SETTLE: Source = source!("settle": "frame", "settle");
-pub(super) const POINTS: Source = source!("points": "frame", "light", "fibre", "strands", "points");
+pub(super) const POINTS: Source = source!("points": "frame", "light", "fiber", "strands", "points");
 pub(super) const SORT: Source = source!("sort": "frame", "curve", "sort");
-pub(super) const RIBBON: Source = source!("ribbon": "frame", "fibre", "curve", "ribbon");
+pub(super) const RIBBON: Source = source!("ribbon": "frame", "fiber", "curve", "ribbon");
 pub(super) const DEVELOP: Source = source!("develop": "frame", "light", "ground", "develop");
 
 impl Source {

@@ -9,7 +9,7 @@
 //! | interpolate follow hairs, if the GPU does it | `follow` |
 //! | splat hair into voxels, mark bodies in them, and sweep light through | `density`, `walls`, `sweep` |
 //! | draw bodies from the key lamp, then from the camera with four samples per pixel | `body`, `settle` |
-//! | project and light every point of every strand | `points`, `fibre`, `light` |
+//! | project and light every point of every strand | `points`, `fiber`, `light` |
 //! | smooth segments, cut them into pieces, and sort these by depth | `curve`, `sort` |
 //! | blend the pieces, farthest first | `ribbon` |
 //! | compose hair in front of the body, body, hair behind it, ground and backdrop; apply the tone curve | `ground`, `develop` |

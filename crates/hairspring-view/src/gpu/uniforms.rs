@@ -1,4 +1,4 @@
-//! The uniforms of a frame. Their layouts are those of `wgsl/frame.wgsl`, `wgsl/fibre.wgsl` and
+//! The uniforms of a frame. Their layouts are those of `wgsl/frame.wgsl`, `wgsl/fiber.wgsl` and
 //! `wgsl/sweep.wgsl`.
 
 use super::{constants::DIRECTIONS, ribbons::most_pieces};
@@ -8,7 +8,7 @@ use crate::{
     ground::Floor,
     hair::{
         color,
-        shade::{Fibre, VARIES, pigment},
+        shade::{Fiber, VARIES, pigment},
     },
     lighting::Light,
     shadow::{self, contact::Contact, density::Grid, depth_map, splat::UNIT, sweep},
@@ -200,18 +200,18 @@ impl Style {
     /// `focal`: pixels per unit of slope; `voxel`: side of the shadow's voxels [m].
     pub fn new(hair: &HairDraw, focal: f32, voxel: f32) -> Self {
         let look = hair.look;
-        let fibre = Fibre::new(look, 0.0);
+        let fiber = Fiber::new(look, 0.0);
         let [root, tip] = color::ends(look).map(|color| pigment(color).to_array());
         Self {
             root,
             variation: look.variation.clamp(0.0, 1.0) * VARIES,
             tip,
             width: 2.0 * hair.width_scale * focal,
-            spread: fibre.spread,
-            tilt: fibre.tilt,
-            specular: fibre.specular,
-            backlight: fibre.backlight,
-            scatter: fibre.scatter,
+            spread: fiber.spread,
+            tilt: fiber.tilt,
+            specular: fiber.specular,
+            backlight: fiber.backlight,
+            scatter: fiber.scatter,
             density: hair.width_scale * look.shadow * UNIT / voxel.max(1e-9),
         }
     }

@@ -16,7 +16,7 @@
 
 use super::{
     ribbon::Setup,
-    shade::{self, Block, Fibre, LANES},
+    shade::{self, Block, Fiber, LANES},
 };
 use fearless_simd::{dispatch, f32x8, prelude::*};
 use glam::{Vec3, Vec4};
@@ -124,8 +124,8 @@ impl Colors {
         let block = slot / LANES;
         self.lit.fetch_add(1, Ordering::Relaxed);
         let colors = dispatch!(setup.level, simd => {
-            let (fibre, mut block) = gather(simd, setup, block);
-            setup.shader.shade(simd, &fibre, &mut block);
+            let (fiber, mut block) = gather(simd, setup, block);
+            setup.shader.shade(simd, &fiber, &mut block);
             block.color
         });
         // Black is stored as the darkest red, because 0 means "not computed".
@@ -140,7 +140,7 @@ impl Colors {
 /// Gathers the shader's input for the points of a block. Lanes past the strand's last point repeat that
 /// point.
 #[inline(always)]
-fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
+fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fiber, Block) {
     let owner = setup.order.owners[block];
     let hair = &setup.frame.hair[owner.hair as usize];
     let look = hair.look;
@@ -188,7 +188,7 @@ fn gather<S: Simd>(simd: S, setup: &Setup, block: usize) -> (Fibre, Block) {
         }
     }
     setup.shadow.on_hair(simd, &block.p, &mut block.light, &mut block.body);
-    (Fibre::new(look, shade::random(!owner.strand)), block)
+    (Fiber::new(look, shade::random(!owner.strand)), block)
 }
 
 /// Linear RGB of a packed color.
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_colour_is_what_it_absorbs() {
+    fn a_color_is_what_it_absorbs() {
         for color in [Vec3::new(0.42, 0.27, 0.13), Vec3::new(0.011, 0.009, 0.008), Vec3::ONE] {
             assert!((seen(absorption(color)) - color).abs().max_element() < 1e-5);
         }

@@ -49,7 +49,7 @@ pub(crate) struct Shader {
 
 /// Values that the points of one strand share.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fibre {
+pub(crate) struct Fiber {
     /// Shift of the highlights [rad], including this strand's own variation.
     pub tilt: f32,
     /// Longitudinal width of R, TT and TRT [rad].
@@ -59,7 +59,7 @@ pub(crate) struct Fibre {
     pub scatter: f32,
 }
 
-impl Fibre {
+impl Fiber {
     /// `random` is this strand's random number from −1 to 1.
     pub fn new(look: &HairLook, random: f32) -> Self {
         let rough = look.roughness.clamp(0.1, 1.0).powi(2);
@@ -127,8 +127,8 @@ impl Shader {
     // Loops are unrolled by hand and helpers are always inlined, so that everything is compiled for the
     // selected instruction set.
     #[inline(always)]
-    pub fn shade<S: Simd>(&self, simd: S, fibre: &Fibre, block: &mut Block) {
-        shade(simd, self, fibre, block);
+    pub fn shade<S: Simd>(&self, simd: S, fiber: &Fiber, block: &mut Block) {
+        shade(simd, self, fiber, block);
     }
 }
 
@@ -188,7 +188,7 @@ fn saturate<S: Simd>(x: f32x8<S>) -> f32x8<S> {
 }
 
 #[inline(always)]
-fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
+fn shade<S: Simd>(simd: S, shader: &Shader, fiber: &Fiber, block: &mut Block) {
     let zero = f32x8::splat(simd, 0.0);
     let t = V::load(simd, &block.t);
     let p = V::load(simd, &block.p);
@@ -230,33 +230,33 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         // R: white, toward the root. The lobes are at −α, α/2 and 3α/2 (Marschner et al. 2003, table 1). The
         // sum of the sines accounts for both angles.
         let m = gauss(
-            sines + cos_half * cos_v * (2.0 * fibre.tilt),
-            cos_half * (std::f32::consts::SQRT_2 * fibre.spread[0]) + R.1,
+            sines + cos_half * cos_v * (2.0 * fiber.tilt),
+            cos_half * (std::f32::consts::SQRT_2 * fiber.spread[0]) + R.1,
         );
-        let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (R.0 * fibre.specular);
+        let r = m * cos_half * fresnel((vl * 0.5 + 0.5).max(0.0).sqrt()) * (R.0 * fiber.specular);
 
         // TT: once through the fiber.
-        let m = gauss(sines - fibre.tilt, zero + fibre.spread[1]);
+        let m = gauss(sines - fiber.tilt, zero + fiber.spread[1]);
         let a = f32x8::splat(simd, 1.0) / (f32x8::splat(simd, BENT.0[0]) / cos_d + cos_d * BENT.0[1]);
         let h = saturate(cos_half * (a * (cos_phi * BENT.1[0] + BENT.1[1]) + 1.0));
         let pass = -fresnel(cos_d * (-(h * h) + 1.0).max(0.0).sqrt()) + 1.0;
         let n = exp2((cos_phi * TT.0 + TT.1) * std::f32::consts::LOG2_E);
-        let tt = m * n * pass * pass * fibre.backlight;
+        let tt = m * n * pass * pass * fiber.backlight;
         let ha = h * a;
         let tt_path = (-(ha * ha) + 1.0).max(0.0).sqrt() * 0.5 / cos_d;
 
         // TRT: colored, toward the tip.
-        let m = gauss(sines - 3.0 * fibre.tilt, zero + fibre.spread[2]);
+        let m = gauss(sines - 3.0 * fiber.tilt, zero + fiber.spread[2]);
         let f = fresnel(cos_d * 0.5);
         let pass = -f + 1.0;
         let n = exp2((cos_phi * TRT.0[0] + TRT.0[1]) * std::f32::consts::LOG2_E);
-        let trt = m * n * pass * pass * f * (TRT.1 * fibre.specular);
+        let trt = m * n * pass * pass * f * (TRT.1 * fiber.specular);
         let trt_path = f32x8::splat(simd, TRT.2) / cos_d;
 
         // Strand to strand: as from a matte surface perpendicular to the fiber, fully wrapped. Its color
         // deepens with the distance through the hair.
-        let facing = ((across.dot3(l) + 1.0) * 0.25).max(0.0) * fibre.scatter;
-        let flat = cos_l * MULTIPLE.1 * fibre.scatter;
+        let facing = ((across.dot3(l) + 1.0) * 0.25).max(0.0) * fiber.scatter;
+        let flat = cos_l * MULTIPLE.1 * fiber.scatter;
         let color = lamp.to_array();
         for i in 0..3 {
             let c = pigment.0[i];
@@ -280,7 +280,7 @@ fn shade<S: Simd>(simd: S, shader: &Shader, fibre: &Fibre, block: &mut Block) {
         // Light through hair is colored along its path; light between hair and body is colored once, like a
         // lock.
         let scattered = far * exp2(c * (-open * 0.5 + 1.5)) + near * exp2(c);
-        *sum += scattered * fibre.scatter + (far + near) * (SHEEN * fibre.specular);
+        *sum += scattered * fiber.scatter + (far + near) * (SHEEN * fiber.specular);
     }
     // Colors are packed here, once per point and in lanes. An invalid point darkens its strand, but does not
     // spread over the picture.
@@ -333,12 +333,12 @@ mod tests {
     #[test]
     fn hair_in_deep_shade_is_dark_and_not_black() {
         let shader = Shader::new(&Lighting::default(), Vec3::Z);
-        let fibre = Fibre::new(&HairLook::default(), 0.0);
+        let fiber = Fiber::new(&HairLook::default(), 0.0);
         let lit = |color: Vec3, depth: f32, open: f32| {
             let mut block = Block { t: [[0.0; LANES], [1.0; LANES], [0.0; LANES]], ..Block::default() };
             block.pigment = pigment(color).to_array().map(|c| [c; LANES]);
             block.light = [depth, depth, depth, open].map(|l| [l; LANES]);
-            dispatch!(Level::new(), simd => shader.shade(simd, &fibre, &mut block));
+            dispatch!(Level::new(), simd => shader.shade(simd, &fiber, &mut block));
             color::open(block.color[0])
         };
         for color in [Vec3::new(0.55, 0.36, 0.16), Vec3::new(0.12, 0.05, 0.02), Vec3::splat(0.004)] {

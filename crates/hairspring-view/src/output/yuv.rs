@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn known_colours() {
+    fn known_colors() {
         // BT.709 limited range: black, white, red, green, blue.
         let cases = [
             ([0, 0, 0], [16, 128, 128]),

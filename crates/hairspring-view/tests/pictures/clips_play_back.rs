@@ -11,7 +11,7 @@ use std::io::Cursor;
 const FPS: f64 = 24.0;
 const FRAMES: u32 = 50;
 
-/// A soft coloured pattern that drifts.
+/// A soft colored pattern that drifts.
 fn picture(width: u32, height: u32, frame: u32) -> Image {
     let mut image = Image::new(width, height);
     for (i, p) in image.rgb.chunks_mut(3).enumerate() {
@@ -86,8 +86,8 @@ fn frames_size_rate_and_pictures_come_back() {
             let (mut got, mut luma) = (Vec::new(), Vec::new());
             for (i, p) in want.rgb.chunks(3).enumerate() {
                 let (x, y) = (i % w as usize, i / w as usize);
-                let grey = 0.2126 * p[0] as f64 + 0.7152 * p[1] as f64 + 0.0722 * p[2] as f64;
-                luma.push((16.0 + grey * 219.0 / 255.0).round() as u8);
+                let gray = 0.2126 * p[0] as f64 + 0.7152 * p[1] as f64 + 0.0722 * p[2] as f64;
+                luma.push((16.0 + gray * 219.0 / 255.0).round() as u8);
                 got.push(yuv.y()[y * yuv.strides().0 + x]);
             }
             assert!(psnr(&luma, &got) > 34.0, "frame {f}: {:.1} dB", psnr(&luma, &got));

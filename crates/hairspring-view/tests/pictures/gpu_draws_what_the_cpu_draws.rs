@@ -105,11 +105,11 @@ fn what_is_nearer_hides_what_is_farther() {
 }
 
 #[test]
-fn points_have_their_own_colours() {
+fn points_have_their_own_colors() {
     let Some(mut gpu) = crate::support::card() else { return };
     let mut few = Few::new(&[strand(Vec3::NEG_X * 0.1, Vec3::X * 0.1, 0.03)], 4e-3);
     few.colors = (0..12).map(|i| [Vec3::X, Vec3::Y, Vec3::Z][i / 4] * 0.7 + 0.05).collect();
-    compare(&mut gpu, "coloured", &close(&[leak(few).draw()]), 160, 120);
+    compare(&mut gpu, "colored", &close(&[leak(few).draw()]), 160, 120);
 }
 
 #[test]
@@ -128,8 +128,8 @@ fn hair_on_a_body_is_lit_and_shaded_alike() {
     }
 }
 
-/// A place on a surface may not move off it at the triangles' edges: a millimetre farther in, it is in the surface's own shadow. Pleats of slivers seen at a
-/// slant have many edges; and they lie far from the origin, so that a place that is a thousandth too small is millimetres off.
+/// A place on a surface may not move off it at the triangles' edges: a millimeter farther in, it is in the surface's own shadow. Pleats of slivers seen at a
+/// slant have many edges; and they lie far from the origin, so that a place that is a thousandth too small is millimeters off.
 #[test]
 fn slivers_have_no_speckles() {
     let Some(mut gpu) = crate::support::card() else { return };
@@ -161,7 +161,7 @@ fn slivers_have_no_speckles() {
     }
 }
 
-/// On the backdrop and on a colour, cut by the ground and above it: pixel by pixel where there are bodies alone, and hair as everywhere.
+/// On the backdrop and on a color, cut by the ground and above it: pixel by pixel where there are bodies alone, and hair as everywhere.
 #[test]
 fn the_ground_is_alike() {
     let Some(mut gpu) = crate::support::card() else { return };

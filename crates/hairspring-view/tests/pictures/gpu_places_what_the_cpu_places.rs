@@ -2,7 +2,7 @@
 //! within 2 µm of the CPU's, in motion, with clumps, curls and flyaways, pushed by every collider that the card knows.
 //!
 //! What may differ is rounding, and where a curl's frame is carried around a fold of nearly a right angle, little is left of its normal and rounding grows
-//! with what is lost: such strands, one in 500 at most, are within a tenth of a millimetre. Where there is no card, nor a driver that draws in software, the tests
+//! with what is lost: such strands, one in 500 at most, are within a tenth of a millimeter. Where there is no card, nor a driver that draws in software, the tests
 //! say so and pass.
 
 use glam::Vec3;

@@ -1,5 +1,5 @@
 //! The ground takes the shadow of what stands on it, and is nothing else: where there is no shadow it is the backdrop, bit for bit; far away it is the backdrop whatever
-//! its colour; from below it is not there; and what lies under it is hidden. The graphics card draws the same ground (`gpu_draws_what_the_cpu_draws.rs`).
+//! its color; from below it is not there; and what lies under it is hidden. The graphics card draws the same ground (`gpu_draws_what_the_cpu_draws.rs`).
 
 use glam::Vec3;
 use hairspring::{
@@ -118,7 +118,7 @@ fn a_shadow_has_a_soft_edge_on_all_sides() {
 }
 
 #[test]
-fn far_away_it_is_the_backdrop_whatever_its_colour() {
+fn far_away_it_is_the_backdrop_whatever_its_color() {
     let roof = plate(0.4, 3.0);
     let bodies = [crate::support::body(&roof)];
     // Low above the ground, the horizon in the middle of the picture.
@@ -135,7 +135,7 @@ fn far_away_it_is_the_backdrop_whatever_its_colour() {
     // No row differs from the next by more than a soft edge does.
     let mean = |y: u32| row(&with, y).iter().take(60).map(|c| f32::from(*c)).sum::<f32>() / 60.0;
     let steepest = (1..SIZE[1]).map(|y| (mean(y) - mean(y - 1)).abs()).fold(0.0, f32::max);
-    assert!(mean(SIZE[1] - 1) > mean(0) + 60.0, "near, it has its colour");
+    assert!(mean(SIZE[1] - 1) > mean(0) + 60.0, "near, it has its color");
     assert!(steepest < 25.0, "a step of {steepest} codes from row to row");
 }
 

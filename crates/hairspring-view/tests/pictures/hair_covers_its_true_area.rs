@@ -1,7 +1,7 @@
 //! A strand covers as much of the picture as it is wide and long, wherever it lies between the pixels.
 //!
 //! This is what keeps a head of hair from shimmering: 100,000 strands a tenth of a pixel wide are right on average only if each of them is right.
-//! Black strands are drawn on an even grey wall; what they take from it, brought back to linear light through the picture's own
+//! Black strands are drawn on an even gray wall; what they take from it, brought back to linear light through the picture's own
 //! tone curve (measured here, not assumed), is the area that they cover.
 
 use glam::Vec3;
@@ -11,7 +11,7 @@ use hairspring_view::{Background, Frame, HairDraw, Image, Light, Lighting, Quali
 const SIDE: u32 = 96;
 const WALL: f32 = 0.2;
 
-/// A camera that sees one pixel a millimetre at the origin's depth.
+/// A camera that sees one pixel a millimeter at the origin's depth.
 fn camera() -> Camera {
     let distance: f32 = 3.0;
     Camera {
@@ -61,7 +61,7 @@ fn draw_as(wisp: u32, points: &[Vec3], width: f32, wall: f32) -> Image {
     renderer.image().clone()
 }
 
-/// Linear grey of each 8-bit code: the wall is drawn at many greys, and codes (averaged over the dither) are read off.
+/// Linear gray of each 8-bit code: the wall is drawn at many grays, and codes (averaged over the dither) are read off.
 struct Curve(Vec<(f32, f32)>);
 
 impl Curve {
@@ -69,7 +69,7 @@ impl Curve {
         Self(
             (0..=60)
                 .map(|i| WALL * i as f32 / 60.0)
-                .map(|grey| (mean(&draw(&[], 1.0, grey)), grey))
+                .map(|gray| (mean(&draw(&[], 1.0, gray)), gray))
                 .collect(),
         )
     }

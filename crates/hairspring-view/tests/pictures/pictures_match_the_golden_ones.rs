@@ -56,7 +56,7 @@ fn the_measure_sees_a_change_of_look() {
 #[test]
 fn a_picture_comes_back_from_its_file() {
     let folder = tempfile::tempdir().unwrap();
-    let image = draw(crate::support::WAVY, HairColor::Grey);
+    let image = draw(crate::support::WAVY, HairColor::Gray);
     let path = hairspring_view::sequence_path(&folder.path().join("frame.####.png"), 12).unwrap();
     assert!(path.ends_with("frame.0012.png"));
     write_png(&path, &image).unwrap();

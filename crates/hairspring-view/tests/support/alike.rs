@@ -13,9 +13,9 @@ const BRIGHTNESS_HERE: i32 = 4;
 
 /// Luminance (Rec. 709).
 fn luma(image: &Image) -> image_compare::prelude::GrayImage {
-    let grey = |p: &[u8]| (0.2126 * p[0] as f32 + 0.7152 * p[1] as f32 + 0.0722 * p[2] as f32).round() as u8;
-    let grey = image.rgb.chunks(3).map(grey).collect();
-    image_compare::prelude::GrayImage::from_raw(image.width, image.height, grey).unwrap()
+    let gray = |p: &[u8]| (0.2126 * p[0] as f32 + 0.7152 * p[1] as f32 + 0.0722 * p[2] as f32).round() as u8;
+    let gray = image.rgb.chunks(3).map(gray).collect();
+    image_compare::prelude::GrayImage::from_raw(image.width, image.height, gray).unwrap()
 }
 
 /// Similarity of structure; 1 is equal.

@@ -3,7 +3,7 @@
 //! The kernels are generic over a [`Simd`] token. [`Single`] holds the eight strands of a tile in one
 //! `f32x8`. [`Double`] holds one half of the tile in one `f64x4`, and the tile is run once for each half.
 //! State and rest shape stay in single precision in memory; the scratch memory of the solve has the precision
-//! of the token. Stiff strands need `Double`: see [`Fibre::stiffest`](super::rest_shape::Fibre::stiffest).
+//! of the token. Stiff strands need `Double`: see [`Fiber::stiffest`](super::rest_shape::Fiber::stiffest).
 
 use crate::simd::lanes::{Row, Work};
 use fearless_simd::{f32x8, mask32x8};

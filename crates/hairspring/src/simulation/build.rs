@@ -18,7 +18,7 @@ use crate::{
         drag::{AIR_KINEMATIC_VISCOSITY, AIR_VISCOSITY},
         frame_context::FrameContext,
         model::stretch::stiffening,
-        rest_shape::{Fibre, RestShape, Start, rest_shape},
+        rest_shape::{Fiber, RestShape, Start, rest_shape},
         tile::{
             Elastic, RestRows, SegmentContactRows, StateRows, StrandRows, history, rest, springs, state,
             strand,
@@ -46,8 +46,8 @@ impl Simulation {
                 let (s, material) = (*s as usize, material(*s as usize));
                 let model = elastic(material, groom.strand(s), &solver);
                 let radii = radii(material, &groom, s);
-                let fibre = fibre(material, groom.scale(s), model, &solver, &radii);
-                (model, needs_double(model, &simulated_points(model, groom.strand(s)), &fibre, balanced))
+                let fiber = fiber(material, groom.scale(s), model, &solver, &radii);
+                (model, needs_double(model, &simulated_points(model, groom.strand(s)), &fiber, balanced))
             })
             .collect();
         let coils = elastic.iter().zip(strands).filter(|((model, _), s)| {
@@ -187,9 +187,9 @@ impl Simulation {
                     let points = simulated_points(model, groom.strand(s));
                     let radii = radii(material, groom, s);
                     let section = Section::new(material);
-                    let fibre =
-                        Fibre { double: tile.double, ..fibre(material, scale, model, &solver, &radii) };
-                    let shape = shape(model, &points, &fibre, gravity);
+                    let fiber =
+                        Fiber { double: tile.double, ..fiber(material, scale, model, &solver, &radii) };
+                    let shape = shape(model, &points, &fiber, gravity);
                     start = start + shape.start;
                     into.write_strand(&points, &shape, anchor, obstacles);
                     let radius = radii.iter().sum::<f32>() / radii.len() as f32;
@@ -290,15 +290,15 @@ fn radii(material: &Material, groom: &Groom, s: usize) -> Vec<f32> {
 }
 
 /// The fiber of a strand that is solved in single precision.
-fn fibre<'a>(
+fn fiber<'a>(
     material: &'a Material,
     scale: StrandScale,
     model: Elastic,
     solver: &Solver,
     radii: &'a [f32],
-) -> Fibre<'a> {
+) -> Fiber<'a> {
     let section = Section::new(material);
-    Fibre {
+    Fiber {
         radii,
         density: material.density as f64,
         mass_profile: &material.mass_profile,
@@ -316,19 +316,19 @@ fn fibre<'a>(
 }
 
 /// Computes the rest shape of a strand for a model.
-fn shape(model: Elastic, points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
+fn shape(model: Elastic, points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
     match model {
-        Elastic::Springs => truss(points, fibre, gravity),
-        Elastic::Straight | Elastic::Curvature | Elastic::Rod => rest_shape(points, fibre, gravity),
+        Elastic::Springs => truss(points, fiber, gravity),
+        Elastic::Straight | Elastic::Curvature | Elastic::Rod => rest_shape(points, fiber, gravity),
     }
 }
 
 /// Returns whether single precision cannot represent the stiffness of a strand's elements, by
-/// [`Fibre::stiffest`]. Such a strand is solved in double precision, at about twice the cost.
-fn needs_double(model: Elastic, points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> bool {
+/// [`Fiber::stiffest`]. Such a strand is solved in double precision, at about twice the cost.
+fn needs_double(model: Elastic, points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> bool {
     // The matrix of a flat fiber contains the stiffness of its stiff direction, I_max/I_min times that of the
     // other.
-    let stiff = Fibre { young: fibre.young * (1.0 + fibre.flat), ..*fibre };
+    let stiff = Fiber { young: fiber.young * (1.0 + fiber.flat), ..*fiber };
     // The build without SIMD has single precision only. So has the springs model, which is for comparison
     // only.
     cfg!(not(one_lane))

@@ -61,7 +61,7 @@ enum Spring {
     /// No spring: the segment keeps its length by construction.
     None,
     /// The fiber's own stiffness, EA/L.
-    Fibre,
+    Fiber,
     /// Stiffness as a multiple of the mass of the point before the segment [1/s²].
     PerMass(f64),
 }
@@ -133,7 +133,7 @@ impl Simulation {
         let per_mass =
             if self.state.last_h > 0.0 { STRETCH as f64 / (self.state.last_h as f64).powi(2) } else { 0.0 };
         let spring = match integrator {
-            Integrator::ExplicitEuler | Integrator::Verlet => Spring::Fibre,
+            Integrator::ExplicitEuler | Integrator::Verlet => Spring::Fiber,
             Integrator::Ftl | Integrator::Dftl => Spring::None,
             Integrator::BackwardEuler | Integrator::Bdf2 => Spring::PerMass(
                 per_mass * self.state.strand[tile][strand::STIFFENING].0[place % LANES] as f64,
@@ -154,7 +154,7 @@ impl Simulation {
             let length = self.rest(place, i, rest::LENGTH) as f64;
             let k = match spring {
                 Spring::None => 0.0,
-                Spring::Fibre => axial / length,
+                Spring::Fiber => axial / length,
                 Spring::PerMass(rate) => self.rest(place, i, rest::MASS) as f64 * rate,
             };
             let longer = way(i, i + stride).length() - length;

@@ -53,7 +53,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         tile: &Tile,
         scratch: &mut Scratch,
     ) -> Self {
-        let (drag, damping) = Root::<S>::fibre(simd, tile.strand);
+        let (drag, damping) = Root::<S>::fiber(simd, tile.strand);
         let zero = V3::zero(simd);
         let mut first = V3::load(simd, &scratch.edges[1]);
         if M::STRIDE == 2 {

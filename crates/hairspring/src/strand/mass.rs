@@ -10,7 +10,7 @@
 //!
 //! The profile is integrated, not sampled, so that a narrow bead keeps its weight for any number of points.
 
-use super::rest_shape::Fibre;
+use super::rest_shape::Fiber;
 use std::f64::consts::PI;
 
 /// Masses of one point and of the segment that begins at it [kg].
@@ -25,14 +25,14 @@ pub struct Mass {
 }
 
 /// Returns the masses of a strand whose segments have these `lengths` [m], shape `[points]`.
-pub fn masses(lengths: &[f64], fibre: &Fibre) -> Vec<Mass> {
-    let profile = Profile::new(fibre.mass_profile, lengths.iter().sum());
+pub fn masses(lengths: &[f64], fiber: &Fiber) -> Vec<Mass> {
+    let profile = Profile::new(fiber.mass_profile, lengths.iter().sum());
     let mut out = Vec::with_capacity(lengths.len() + 1);
     let (mut along, mut before) = (0.0, 0.0);
     let (mut even, mut shared) = (0.0, 0.0);
-    for (i, r) in fibre.radii.iter().map(|r| *r as f64).enumerate() {
+    for (i, r) in fiber.radii.iter().map(|r| *r as f64).enumerate() {
         let length = lengths.get(i).copied().unwrap_or(0.0);
-        let line = fibre.density * PI * r * r;
+        let line = fiber.density * PI * r * r;
         let half = 0.5 * (before + length);
         let mass = Mass {
             point: line * half * profile.mean(along - 0.5 * before, along + 0.5 * length),
@@ -81,15 +81,15 @@ impl<'a> Profile<'a> {
 mod tests {
     use super::masses;
     use crate::strand::{
-        rest_shape::{Fibre, rest_shape},
+        rest_shape::{Fiber, rest_shape},
         truss::{particles, truss},
     };
     use glam::{DVec3, Vec3};
 
     const LINE: f64 = 1310.0 * std::f64::consts::PI * 4e-5 * 4e-5;
 
-    fn fibre<'a>(radii: &'a [f32], mass_profile: &'a [f32]) -> Fibre<'a> {
-        Fibre {
+    fn fiber<'a>(radii: &'a [f32], mass_profile: &'a [f32]) -> Fiber<'a> {
+        Fiber {
             radii,
             density: 1310.0,
             mass_profile,
@@ -111,8 +111,8 @@ mod tests {
     fn a_profile_shares_the_mass_and_adds_none() {
         let lengths = [0.01, 0.03, 0.02, 0.04];
         let radii = [4e-5; 5];
-        let even = masses(&lengths, &fibre(&radii, &[1.0]));
-        let shared = masses(&lengths, &fibre(&radii, &[0.5, 1.5]));
+        let even = masses(&lengths, &fiber(&radii, &[1.0]));
+        let shared = masses(&lengths, &fiber(&radii, &[0.5, 1.5]));
         // w = ½ + s/L; its mean over an interval is its value at the center.
         let middles = [0.0025, 0.015, 0.0375, 0.065, 0.09];
         for ((even, shared), middle) in even.iter().zip(&shared).zip(middles) {
@@ -123,13 +123,13 @@ mod tests {
         assert!(near(total, LINE * 0.1) && near(segments, total), "{total} kg, {segments} kg");
         // Only ratios matter: a constant profile gives bitwise the same masses.
         for same in [&[7.0, 7.0, 7.0][..], &[]] {
-            let same = masses(&lengths, &fibre(&radii, same));
+            let same = masses(&lengths, &fiber(&radii, same));
             assert!(same.iter().zip(&even).all(|(a, b)| a.point == b.point && a.segment == b.segment));
         }
         // A taper with a profile keeps the mass of the taper.
         let tapered = [6e-5, 5e-5, 4e-5, 3e-5, 2e-5];
         let sum = |profile: &[f32]| {
-            masses(&lengths, &fibre(&tapered, profile)).iter().map(|m| m.point).sum::<f64>()
+            masses(&lengths, &fiber(&tapered, profile)).iter().map(|m| m.point).sum::<f64>()
         };
         assert!(near(sum(&[1.0, 5.0, 2.0]), sum(&[1.0])));
     }
@@ -141,7 +141,7 @@ mod tests {
         let mut profile = [1.0; 33];
         profile[20] = 100.0;
         let lengths = [0.05; 4];
-        let masses = masses(&lengths, &fibre(&[4e-5; 5], &profile));
+        let masses = masses(&lengths, &fiber(&[4e-5; 5], &profile));
         let (bead, rest) = (99.0 / 32.0, 1.0);
         let unit = LINE * 0.2 / (bead + rest);
         for (mass, share) in masses.iter().zip([0.125, 0.25, 0.25 + 0.5 * bead, 0.25 + 0.5 * bead, 0.125]) {
@@ -154,10 +154,10 @@ mod tests {
     fn what_hangs_is_carried_above_it() {
         let points: Vec<Vec3> = (0..33).map(|i| Vec3::NEG_Y * (0.2 * i as f32 / 32.0)).collect();
         let (radii, gravity) = ([4e-5; 33], DVec3::NEG_Y * 9.81);
-        let fibre = fibre(&radii, &[1.0, 3.0]);
+        let fiber = fiber(&radii, &[1.0, 3.0]);
         for (model, rest, stride) in [
-            ("rod", rest_shape(&points, &fibre, gravity), 1),
-            ("springs", truss(&particles(&points), &fibre, gravity), 2),
+            ("rod", rest_shape(&points, &fiber, gravity), 1),
+            ("springs", truss(&particles(&points), &fiber, gravity), 2),
         ] {
             for i in 1..32 {
                 // Everything beyond the center of the segment: ∫ (½ + s) ds to the tip, where the whole is 1.

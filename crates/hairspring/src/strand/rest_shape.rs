@@ -56,7 +56,7 @@ const LARGEST_CURVATURE: f64 = 0.9;
 const STANDING_SAFETY: f64 = 2.0;
 
 /// Properties of a fiber along one strand.
-pub struct Fibre<'a> {
+pub struct Fiber<'a> {
     /// Radius at each point [m].
     pub radii: &'a [f32],
     /// Density [kg/m³].
@@ -93,7 +93,7 @@ const STIFFEST_SINGLE: f64 = 4e6;
 /// The same in double precision, whose significand is 29 bits longer [1].
 const STIFFEST_DOUBLE: f64 = STIFFEST_SINGLE * (1u64 << 29) as f64;
 
-impl Fibre<'_> {
+impl Fiber<'_> {
     /// Returns the largest stiffness [N/m] of a spring on a point of this mass [kg] that the matrix can
     /// represent together with its damping.
     pub fn stiffest(&self, mass: f64) -> f64 {
@@ -172,7 +172,7 @@ impl std::iter::Sum for Start {
 
 /// Returns the rest shape of the strand through `points` [m], in balance under `gravity` [m/s²], or
 /// stress-free if that is zero. Requires three or more points, with no two consecutive ones equal.
-pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
+pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
     let n = points.len();
     let x: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
     let e: Vec<DVec3> = x.windows(2).map(|w| w[1] - w[0]).collect();
@@ -181,15 +181,15 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     let total: f64 = lengths.iter().sum();
 
     let mut rest = vec![RestPoint::default(); n];
-    for (i, (at, mass)) in rest.iter_mut().zip(masses(&lengths, fibre)).enumerate() {
+    for (i, (at, mass)) in rest.iter_mut().zip(masses(&lengths, fiber)).enumerate() {
         (at.mass, at.segment_mass) = (mass.point, mass.segment);
         at.length = lengths.get(i).copied().unwrap_or(0.0);
     }
     let mut along = 0.0;
     for j in 1..n - 1 {
         along += lengths[j - 1];
-        let r = fibre.radii[j] as f64;
-        let young = fibre.young * (1.0 + (fibre.tip - 1.0) * along / total);
+        let r = fiber.radii[j] as f64;
+        let young = fiber.young * (1.0 + (fiber.tip - 1.0) * along / total);
         let ei = young * std::f64::consts::FRAC_PI_4 * r.powi(4);
         // The driven first segment is rigid. Its compliance is added to the first joint, so that the strand
         // bends like one clamped at its root.
@@ -202,7 +202,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         let shorter = lengths[j - 1].min(lengths[j]);
         // A joint acts on its middle point with both segments, 4 B/L² in all, a spring with one only. A
         // quarter of the stiffness preserves the precision.
-        let stiffest = 0.25 * fine(n) * fibre.stiffest(at.mass) * shorter * shorter;
+        let stiffest = 0.25 * fine(n) * fiber.stiffest(at.mass) * shorter * shorter;
         let asked = at.bend;
         at.bend = asked.min(stiffest);
         usize::from(asked > stiffest)
@@ -246,7 +246,7 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             // unstable.
             let weight_per_length = g * rest[i].mass / mean;
             let held = (moment.length() / LARGEST_CURVATURE).powf(1.5) / weight_per_length.sqrt() / mean;
-            let twisting = fibre.twist_ratio.map_or(0.0, |ratio| {
+            let twisting = fiber.twist_ratio.map_or(0.0, |ratio| {
                 let along = t[i - 1].dot(t[i]) - 1.0;
                 torque.abs() / (ratio * curved_joint(along) * fade(i).powi(2) * LARGEST_TWIST)
             });
@@ -258,13 +258,13 @@ pub fn rest_shape(points: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
             }
             start.held_back += hold_back(i, &mut rest[i]);
             let frame = rest[i - 1].normal;
-            let stiff = frame * (frame.dot(moment) * fibre.flat / (1.0 + fibre.flat));
+            let stiff = frame * (frame.dot(moment) * fiber.flat / (1.0 + fiber.flat));
             let kappa = t[i] - t[i - 1];
             // A joint without stiffness has no moment: only a strand that hangs straight down may have one.
             let bend = rest[i].bend.max(f64::MIN_POSITIVE);
             rest[i].turn = kappa - (moment - stiff) / bend;
             below = moment * (1.0 + t[i - 1].dot(kappa)) - kappa * t[i - 1].dot(moment);
-            if let Some(ratio) = fibre.twist_ratio {
+            if let Some(ratio) = fiber.twist_ratio {
                 let twisting = ratio * bend * curved_joint(rest[i].turn.dot(t[i - 1]));
                 rest[i].twist = -torque / (twisting * fade(i).powi(2));
                 torque_after = binormal(i) * torque;

@@ -52,7 +52,7 @@ impl<S: Simd> Root<S> {
 
     /// Drag and damping coefficients of the strands.
     #[inline(always)]
-    pub fn fibre(simd: S, rows: &StrandRows) -> (F<S>, F<S>) {
+    pub fn fiber(simd: S, rows: &StrandRows) -> (F<S>, F<S>) {
         (load(simd, &rows[strand::DRAG]), load(simd, &rows[strand::DAMPING]))
     }
 }

@@ -26,7 +26,7 @@ use super::{
         bend::transport_normal,
         springs::{BEND, Progressive, TORSION},
     },
-    rest_shape::{Fibre, RestPoint, RestShape, Start, fine, rest_shape},
+    rest_shape::{Fiber, RestPoint, RestShape, Start, fine, rest_shape},
 };
 use crate::simd::lanes::{F, Simd, V3};
 use glam::{DMat3, DVec3, Vec3};
@@ -102,9 +102,9 @@ pub fn normal_of(k: usize, t: DVec3, side: DVec3) -> DVec3 {
 ///
 /// `tile::springs` documents the rows of the rest points. `tension` is that of the strand's segment, and
 /// `normal.x` that of the side to the next particle [N].
-pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
+pub fn truss(particles: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
     let points: Vec<Vec3> = particles.iter().step_by(2).copied().collect();
-    let strand = rest_shape(&points, fibre, gravity);
+    let strand = rest_shape(&points, fiber, gravity);
     let n = particles.len();
     let x: Vec<DVec3> = particles.iter().map(|p| p.as_dvec3()).collect();
     let mut rest = vec![RestPoint::default(); n];
@@ -124,8 +124,8 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
     for j in 1..points.len() - 1 {
         let lengths = [strand.points[j - 1].length, strand.points[j].length];
         let shorter = lengths[0].min(lengths[1]);
-        let stiffest = fibre.stiffest(strand.points[j].mass);
-        let hardest = 1.0 + fibre.flat;
+        let stiffest = fiber.stiffest(strand.points[j].mass);
+        let hardest = 1.0 + fiber.flat;
         let (before, at) = (&strand.points[j - 1], &strand.points[j]);
         let t = [2 * j, 2 * j + 2].map(|k| (x[k] - x[k - 2]).normalize_or_zero());
         let natural = before.normal * at.turn.x + t[0].cross(before.normal) * at.turn.y + t[0] * at.turn.z;
@@ -138,7 +138,7 @@ pub fn truss(particles: &[Vec3], fibre: &Fibre, gravity: DVec3) -> RestShape {
         // A flat fiber is stiffer toward its frame's normal, the side of every other extra particle.
         let harder = [j - 1, j].map(|segment| if segment % 2 == 0 { hardest } else { 1.0 });
         let easier = 0.25 * (1.0 / harder[0] + 1.0 / harder[1]);
-        let twisting = fibre.twist_ratio.map_or(0.0, |ratio| ASIDE * ASIDE / ratio - easier);
+        let twisting = fiber.twist_ratio.map_or(0.0, |ratio| ASIDE * ASIDE / ratio - easier);
         let (p0, e0, p1, e1, p2) = (2 * j - 2, 2 * j - 1, 2 * j, 2 * j + 1, 2 * j + 2);
         let straight = |from: usize, to: usize| ASIDE * lengths[0] * lengths[1] / x[from].distance(x[to]);
         // In the strand's actual shape.

@@ -1,6 +1,6 @@
 //! Promise: a collider keeps hair out at a tenth and at ten times the size as it does at the size of a head.
 //!
-//! Hair falls over each shape, is carried along by it, and comes to rest. Lengths, radii and gravity are multiplied by a scale, the fibre's stiffness by
+//! Hair falls over each shape, is carried along by it, and comes to rest. Lengths, radii and gravity are multiplied by a scale, the fiber's stiffness by
 //! its square: then motion is the same but for lengths. No point is deeper than a
 //! hundred-thousandth of the strand's length at any scale, and a second later every point is where it is at the size of a head, to half a
 //! hundredth of that length.

@@ -1,4 +1,4 @@
-//! Promise: a measure tells what is inside of a collider between points too: how many segments, how many of them deeper than a millimetre, and
+//! Promise: a measure tells what is inside of a collider between points too: how many segments, how many of them deeper than a millimeter, and
 //! how deep the deepest is, below where it was authored.
 //!
 //! The strand is straight and has segments of 2 cm along X, and shapes are put at the middle of one of them: their depth there is known.

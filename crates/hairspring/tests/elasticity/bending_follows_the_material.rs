@@ -1,4 +1,4 @@
-//! Promise: a strand bends as its fibre does, not as the iteration count does.
+//! Promise: a strand bends as its fiber does, not as the iteration count does.
 //!
 //! A straight strand clamped horizontally under its own weight takes one shape, which depends on Γ = ρgAL³/EI alone. The heights and
 //! reaches here are from the closed forms of the elastica (two independent solutions; H = drop of the tip, W = its reach, L = 1).

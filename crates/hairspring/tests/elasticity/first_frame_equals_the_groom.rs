@@ -1,11 +1,11 @@
 //! Promise: a groom starts as it was authored and stays so.
 //!
-//! The sag-free start solves rest turns (and, where a fibre is too soft for the style, stiffness) so that every net force is zero
+//! The sag-free start solves rest turns (and, where a fiber is too soft for the style, stiffness) so that every net force is zero
 //! in the authored shape. One second later, with nothing moving, the mean point has moved less than 0.01 mm (the promise to users is 0.1 mm): straight strands,
 //! hanging, standing and lying curls alike.
 //!
 //! That is the rod, the default. Springs start in balance too, and mean points stay within the promise to users, but a few heavy strands that are held
-//! out as far as a fibre bears give way in them by millimetres, and of long soft fur some fall over. The curvature model knows no twist, so curls that leave a plane are in balance but not at rest in
+//! out as far as a fiber bears give way in them by millimeters, and of long soft fur some fall over. The curvature model knows no twist, so curls that leave a plane are in balance but not at rest in
 //! it; it keeps strands that lie in a plane.
 
 use glam::{Quat, Vec3};
@@ -110,7 +110,7 @@ fn stays_where_it_was_authored(mass_profile: &[f32]) {
     }
 }
 
-/// What had to be changed of the fibre is said: joints that were made stiffer, and those that single precision holds back, which more
+/// What had to be changed of the fiber is said: joints that were made stiffer, and those that single precision holds back, which more
 /// substeps give back.
 #[test]
 fn what_the_start_changed_is_reported() {
@@ -126,7 +126,7 @@ fn what_the_start_changed_is_reported() {
         simulation.start()
     };
     for model in [Model::Curvature, Model::Rod, Model::Springs] {
-        // A metre held out nearly level is more than a hair can do, at any number of substeps.
+        // A meter held out nearly level is more than a hair can do, at any number of substeps.
         let coarse = start(33, Material::default().young, 4, model);
         assert!(coarse.stiffened > 20 && coarse.held_back == 0, "{model:?}: {coarse:?}");
         let [fine, finer] = [2, 64].map(|substeps| start(1024, Material::default().young, substeps, model));

@@ -14,7 +14,7 @@ use hairspring::{
 };
 use std::sync::Arc;
 
-/// A strand that goes down in an open coil, so many points over so many metres.
+/// A strand that goes down in an open coil, so many points over so many meters.
 fn coil(points: usize, length: f32) -> Vec<Vec3> {
     (0..points)
         .map(|i| {
@@ -59,7 +59,7 @@ fn step(simulation: &mut Simulation, strands: usize, pose: RigidTransform) {
 }
 
 #[test]
-fn from_three_points_to_a_thousand_and_from_a_millimetre_to_two_metres() {
+fn from_three_points_to_a_thousand_and_from_a_millimeter_to_two_meters() {
     let groom = Arc::new(mixed());
     let count = groom.strand_count();
     let all: Vec<u32> = (0..count as u32).collect();

@@ -94,7 +94,7 @@ impl Swing {
 fn with_every_model() {
     let mut gaining = Vec::new();
     for model in Model::ALL {
-        // The explicit methods take the fibre's own stiffness and are there to blow up; follow the leader knows no energy.
+        // The explicit methods take the fiber's own stiffness and are there to blow up; follow the leader knows no energy.
         for integrator in [Integrator::BackwardEuler, Integrator::Bdf2, Integrator::LocalGlobal] {
             let mut swing = Swing::new(34, model, integrator);
             let start = swing.energy();
@@ -136,9 +136,9 @@ fn loss(points: usize) -> f32 {
     1.0 - (peaks[16] / peaks[0]).powf(1.0 / 8.0)
 }
 
-/// As stiff as hair is: a strand that leans, on a root of a tenth of a millimetre that points straight down, let go.
+/// As stiff as hair is: a strand that leans, on a root of a tenth of a millimeter that points straight down, let go.
 #[test]
-fn of_a_fibre_as_stiff_as_hair() {
+fn of_a_fiber_as_stiff_as_hair() {
     let mut wrong = Vec::new();
     for model in Model::ALL {
         let root = Vec3::NEG_Y * 1e-4;

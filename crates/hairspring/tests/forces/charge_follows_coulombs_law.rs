@@ -23,7 +23,7 @@ fn resting(center: Vec3, radius: f32, charge: f32) -> ChargedBall {
     ChargedBall { centers: [center; 2], radius, charge }
 }
 
-/// Strands of hair with `charge` [C/m], which no fibre holds, after `frames` beside charged balls.
+/// Strands of hair with `charge` [C/m], which no fiber holds, after `frames` beside charged balls.
 fn charged(
     strands: &[Vec<Vec3>],
     charge: f32,
@@ -68,7 +68,7 @@ fn strand(root: Vec3, way: Vec3) -> Vec<Vec3> {
 #[test]
 fn a_charged_strand_hangs_as_a_charged_pendulum() {
     let weight = Material::default().density * PI * RADIUS * RADIUS * 9.81;
-    // Two metres away, so that the field is even to a few hundredths over the strand's swing.
+    // Two meters away, so that the field is even to a few hundredths over the strand's swing.
     let distance = 2.0_f32;
     for tangent in [0.3_f32, 1.0] {
         let (charge, field) = (1e-9_f32, tangent * weight / 1e-9);

@@ -1,7 +1,7 @@
 //! Promise: a global shape brings hair back to where it was authored, as far as its closed form says, and is nothing where it is off.
 //!
 //! A point on a spring of f Hz gives way by g/ω² under gravity. A strand without bending stiffness that is held by nothing else does that all along; one that is shaken,
-//! with a fibre of its own, comes back to it. The pull goes with the root, by its curve from root to tip, and by what is painted on each strand.
+//! with a fiber of its own, comes back to it. The pull goes with the root, by its curve from root to tip, and by what is painted on each strand.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -105,7 +105,7 @@ fn hair_comes_back_as_far_as_the_closed_form_says() {
             assert!((sag / want - 1.0).abs() < 0.01, "{model:?}, point {i}: {sag} m, closed form {want}");
         }
     }
-    // With its fibre it gives way less; without a global shape it hangs.
+    // With its fiber it gives way less; without a global shape it hangs.
     let with = |global_shape: GlobalShape| {
         let mut brush =
             Brush::new(Material { global_shape, ..Material::default() }, Solver::default(), Vec::new());
@@ -189,6 +189,6 @@ fn it_turns_with_the_head() {
     println!("{worst} m off in motion, {last} m at rest, closed form {}", closed_form(20.0));
     // 6 m/s² twice over, of the step and of the turn at the tip, besides gravity.
     assert!(worst < 3.0 * closed_form(20.0), "{worst} m off in motion");
-    // A fibre that swings out over the root is a little more off at its end.
+    // A fiber that swings out over the root is a little more off at its end.
     assert!(last < 1.05 * closed_form(20.0), "{last} m off at rest");
 }

@@ -89,7 +89,7 @@ fn surface(@builtin(vertex_index) vertex: u32) -> Vertex {
 
 /// `skin::meet`: the weights of a triangle's corners where the ray through the middle of a pixel meets its plane, kept inside the triangle. A place that the
 /// card interpolates is not to be trusted at edges: Mesa's software driver weighs it at the centroid and divides by the w of the pixel's middle, so that a
-/// place a metre and a half from the origin is off by millimetres, and in the shadow of the surface that it lies on.
+/// place a meter and a half from the origin is off by millimeters, and in the shadow of the surface that it lies on.
 fn meet(ray: vec3f, a: vec3f, b: vec3f, c: vec3f) -> vec3f {
     let to_b = b - a;
     let to_c = c - a;

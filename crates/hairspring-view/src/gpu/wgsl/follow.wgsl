@@ -9,7 +9,7 @@ struct Groom {
     clump: f32,
     /// [m]
     curl_radius: f32,
-    /// Angle of the curl in a metre of hair [rad/m].
+    /// Angle of the curl in a meter of hair [rad/m].
     curl_rate: f32,
     /// [m]
     noise: f32,

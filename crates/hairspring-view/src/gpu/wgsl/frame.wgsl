@@ -33,7 +33,7 @@ struct Frame {
     voxel: f32,
     /// Linear RGB of the backdrop.
     center: vec3f,
-    /// Texels of the bodies' depth map in a metre; 0: no map.
+    /// Texels of the bodies' depth map in a meter; 0: no map.
     map_scale: f32,
     edge: vec3f,
     /// Side of the map [texels].
@@ -62,7 +62,7 @@ struct Frame {
     /// How large what stands on it is [m]; 0: there is no ground to be seen.
     floor_extent: f32,
     floor_color: vec3f,
-    /// 1: the ground has that colour; 0: it is the backdrop.
+    /// 1: the ground has that color; 0: it is the backdrop.
     floor_colored: f32,
     floor_middle: vec2f,
     /// `Contact`. X and Z of the first texel's corner [m].
@@ -85,7 +85,7 @@ fn finite(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
-/// `camera::View::project`: pixels from the top left corner, and metres along the axis.
+/// `camera::View::project`: pixels from the top left corner, and meters along the axis.
 fn project(p: vec3f) -> vec3f {
     let d = p - frame.eye;
     let depth = dot(d, frame.forward);

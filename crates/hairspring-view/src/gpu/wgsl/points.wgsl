@@ -1,6 +1,6 @@
-// Every point of every strand: where it is on the screen, and its colour. The counterpart of `hair/project.rs` and `hair/color.rs`.
+// Every point of every strand: where it is on the screen, and its color. The counterpart of `hair/project.rs` and `hair/color.rs`.
 
-/// Three numbers a point, linear RGB; none where no style has colours.
+/// Three numbers a point, linear RGB; none where no style has colors.
 @group(0) @binding(6) var<storage, read> colors: array<f32>;
 /// Place [pixels], share of the depth range, and width [pixels], with a minus sign where the strand does not go on.
 @group(0) @binding(7) var<storage, read_write> dots: array<vec4f>;

@@ -10,7 +10,7 @@ struct Strand {
     /// Its number in its style.
     number: u32,
     style: u32,
-    /// 1: its points have colours of their own.
+    /// 1: its points have colors of their own.
     colored: u32,
 }
 

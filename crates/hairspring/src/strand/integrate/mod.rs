@@ -40,7 +40,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
     let scratch = &mut memory.scratch(tile.rest.len());
     let tile = &mut tile.with_equal_lengths();
     let stretching = match interval.integrator {
-        Integrator::ExplicitEuler | Integrator::Verlet => Stretching::Fibre,
+        Integrator::ExplicitEuler | Integrator::Verlet => Stretching::Fiber,
         _ => Stretching::Moderate,
     };
     precompute(simd, interval.h, stretching, tile, scratch);
@@ -122,7 +122,7 @@ fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u
     // Drag acts on the half segments adjacent to the point. Extra particles are not part of the fiber and
     // have none.
     let around = if i.is_multiple_of(stride) { (length(i - stride) + length(i)) * 0.5 } else { zero };
-    let drag = Root::<S>::fibre(simd, tile.strand).0 * around / load(simd, &tile.rest[i][rest::MASS]);
+    let drag = Root::<S>::fiber(simd, tile.strand).0 * around / load(simd, &tile.rest[i][rest::MASS]);
     // Explicit integration: a larger coefficient would overshoot the velocity of the air.
     let stable = |coefficient: F<S>| (drag * coefficient).min(1.0 / step.h);
     let v = V3::load(simd, &tile.state[i][state::V..]);

@@ -20,7 +20,7 @@ pub enum Stretching {
     /// The highest stiffness at which one linearized solve is stable; projection does the rest.
     Moderate,
     /// The fiber's own stiffness, EA/L.
-    Fibre,
+    Fiber,
 }
 
 impl Stretching {
@@ -35,7 +35,7 @@ impl Stretching {
                 let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
                 load(simd, &rest[rest::MASS]) * stiffening * (STRETCH / (h * h))
             }
-            Self::Fibre => {
+            Self::Fiber => {
                 load(simd, &tile.strand[strand::AXIAL]) * (F::splat(simd, 1.0) / length.max(1e-12))
             }
         };

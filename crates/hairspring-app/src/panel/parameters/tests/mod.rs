@@ -152,7 +152,7 @@ fn what_begins_the_scene_anew_is_known_of_each_parameter() {
 }
 
 #[test]
-fn pigment_takes_the_place_of_colours_in_one_step_and_gives_it_back() {
+fn pigment_takes_the_place_of_colors_in_one_step_and_gives_it_back() {
     let text = "[[groom]]\nfile = \"a.hair\"\n[groom.look]\nroot_color = [0.22, 0.12, 0.055] # chestnut\ntip_color = [0.34, 0.2, 0.1]\n";
     let mut document = document(text);
     let melanin = parameter("look.melanin");
@@ -291,7 +291,7 @@ fn a_search_leaves_the_groups_as_they_were() {
 }
 
 #[test]
-fn the_colour_picker_opens_and_its_letters_are_known() {
+fn the_color_picker_opens_and_its_letters_are_known() {
     let mut panel = panel(HEAD, "root");
     let button = panel.harness.query_all_by_role(egui::accesskit::Role::ColorWell).next().unwrap();
     button.click();

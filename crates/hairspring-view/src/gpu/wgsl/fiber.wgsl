@@ -1,7 +1,7 @@
 // Light from a strand towards the camera: the counterpart of `hair/shade.rs`, term by term.
 
 struct Style {
-    /// Pigment at the root: base-2 logarithm of the colour.
+    /// Pigment at the root: base-2 logarithm of the color.
     root: vec3f,
     /// How much pigment differs from strand to strand.
     variation: f32,
