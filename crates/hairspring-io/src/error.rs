@@ -17,7 +17,7 @@ pub enum Error {
     NotFound {
         /// The path that was looked for.
         path: PathBuf,
-        /// What refers to the file (`": the groom named in scene.toml, line 3"`), or empty.
+        /// What refers to the file (`"; scene.toml, line 3, names it as the groom"`), or empty.
         why: String,
     },
     /// The file exists, but the system could not read it.

@@ -121,7 +121,7 @@ impl<'a> Reader<'a> {
         result.map_err(|error| match error {
             Error::NotFound { path, .. } => {
                 let line = line_at(self.text, name.span().start);
-                let why = format!(": the {what} named in {}, line {line}", self.path.display());
+                let why = format!("; {}, line {line}, names it as the {what}", self.path.display());
                 Error::NotFound { path, why }
             }
             other => other,

@@ -78,13 +78,13 @@ fn what_cannot_be_is_said() {
     let body = "[body]\nfile = \"head.obj\"\nscale = 1\n";
     let wrong = |prop: &str| message(&format!("{body}[[prop]]\n{prop}\n{groom}"));
     for (prop, part) in [
-        ("name = \"\"", "line 5: `name` must be not empty"),
-        ("name = \"root\"", "line 5: the body has a joint \"root\" of its own"),
+        ("name = \"\"", "line 5: `name` must be non-empty"),
+        ("name = \"root\"", "line 5: the body has a joint \"root\" already"),
         ("name = \"a\"\n[[prop]]\nname = \"A\"", "line 7: `name` must be non-empty and unique"),
         ("name = \"a\"\nkeys = [{ time = 1 }, { time = 1 }]", "line 6: `keys` must be in order of `time`"),
         ("name = \"a\"\npivot = [nan, 0, 0]", "line 6: `pivot` must be three finite numbers"),
         ("name = \"a\"\nmesh = { file = \"head.obj\", joint = \"b\" }", "`joint` must be omitted"),
-        ("name = \"a\"\nmesh = { file = \"hed.obj\" }", ": the prop named in"),
+        ("name = \"a\"\nmesh = { file = \"hed.obj\" }", "names it as the prop"),
         ("nmae = \"a\"", "did you mean `name`?"),
     ] {
         assert!(wrong(prop).contains(part), "{prop}: {}", wrong(prop));

@@ -68,11 +68,11 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
         (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = 3\n"), &["line 4", "sequence"]),
         (
             "[[groom]]\nfile = \"hiar.data\"\n".into(),
-            &["hiar.data was not found", "the groom that", "line 2"],
+            &["hiar.data was not found", "names it as the groom", "line 2"],
         ),
         (
             format!("[body]\nfile = \"haed.obj\"\n{GROOM}"),
-            &["haed.obj was not found", "the body that", "line 2"],
+            &["haed.obj was not found", "names it as the body", "line 2"],
         ),
         (
             format!("[body]\nfile = \"head.obj\"\nparts = [\"sclap\"]\n{GROOM}"),

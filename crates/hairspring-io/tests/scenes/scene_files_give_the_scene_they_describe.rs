@@ -323,14 +323,14 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
         ("[[collider]]\nshape.hull = {}", "line 7: `shape` must be"),
         ("[[collider]]\nshape.hull = { file = \"head.obj\", scale = 1 }", "head.obj span no volume"),
         ("[[collider]]\nshape.hull = { file = \"head.obj\", scale = 0 }", "line 7: `shape` must be"),
-        ("[[collider]]\nshape.hull = { file = \"none.obj\" }", "the hull named in scene.toml, line 6"),
+        ("[[collider]]\nshape.hull = { file = \"none.obj\" }", "scene.toml, line 6, names it as the hull"),
         ("[[collider]]\nshape.hull = { point = [[0, 0, 0]] }", "available keys: points, file, scale"),
         ("[[sheet]]\nfile = \"head.obj\"\nthickness = 0", "line 8: `thickness` must be above 0 [m]"),
         (
             "[collision]\nfile = \"head.obj\"\nthickness = 0.1",
             "line 8: `thickness` must be omitted except in [[sheet]]",
         ),
-        ("[[sheet]]\nfile = \"none.obj\"", "the sheet named in scene.toml, line 7"),
+        ("[[sheet]]\nfile = \"none.obj\"", "scene.toml, line 7, names it as the sheet"),
     ] {
         let message = wrong(more);
         assert!(message.contains(says), "{more}: {message}");
