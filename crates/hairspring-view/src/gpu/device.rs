@@ -38,7 +38,11 @@ impl Gpu {
     /// # Errors
     /// Returns [`GpuError::Missing`] if there is neither, or if it does not support WebGPU's default limits.
     pub fn open() -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        // Not OpenGL, which another crate of the program may have compiled in: its shaders cannot read the depth
+        // textures of the shadows.
+        descriptor.backends &= wgpu::Backends::PRIMARY;
+        let instance = wgpu::Instance::new(descriptor);
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             ..Default::default()
