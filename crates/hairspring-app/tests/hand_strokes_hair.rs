@@ -1,5 +1,6 @@
-//! A person strokes a head of hair with the hand: hair gives way and none is in it, neither what is simulated nor what follows; it is met where it is seen, goes no faster than one strokes, and is gone when it
-//! is let go of. Where it has been, hair comes back.
+//! Promise: the hand tool strokes a head of hair. Hair gives way, and neither simulated nor follow hair
+//! penetrates the hand. The hand collides where it is drawn, and its speed is limited. Releasing it removes
+//! it, and the hair returns to where it was.
 
 mod support;
 
@@ -10,7 +11,8 @@ use support::SMALL;
 
 const LENGTH: f32 = hairspring_scene::builtin::Hand::LENGTH;
 
-/// A moment: where what is pushed is, all points [m], how deep the deepest of them is in it [m], and the number of colliders.
+/// The state after a step: the pushed collider and its pose, all points [m], the deepest penetration into
+/// the collider [m], and the number of colliders.
 struct Seen {
     pushed: Option<(Pushed, RigidTransform)>,
     points: Vec<Vec3>,
@@ -18,17 +20,17 @@ struct Seen {
     colliders: usize,
 }
 
-/// A session that stands still but for its steps.
+/// A paused session that advances only by explicit steps.
 fn still() -> Session {
     let document = Document::new("scene.toml".as_ref(), SMALL.into()).unwrap();
     let mut session = Session::new(document, 2, None, || ()).unwrap();
     session.act(Action::Play(false)).unwrap();
-    // Opened anew by who does not play, it is at its first moment.
+    // A scene that is opened while the session is paused stays at its first frame.
     session.act(Action::New(SMALL.into())).unwrap();
     session
 }
 
-/// Steps with that pushed.
+/// Runs one step with this push.
 fn step(session: &mut Session, number: u64, push: Option<Push>) -> Seen {
     session.act(Action::Push(push)).unwrap();
     session.act(Action::Step).unwrap();
@@ -49,7 +51,7 @@ fn step(session: &mut Session, number: u64, push: Option<Push>) -> Seen {
 }
 
 #[test]
-fn hair_gives_way_to_a_hand_and_none_is_in_it() {
+fn hair_gives_way_to_the_hand_without_penetration() {
     let [mut stroked, mut alone] = [still(), still()];
     // Along the hair beside the face, from the temple to the shoulder.
     let way = |k: u64| Vec3::new(-0.075, 0.05 - 0.005 * k as f32, 0.075);
@@ -60,7 +62,7 @@ fn hair_gives_way_to_a_hand_and_none_is_in_it() {
     for k in 1..=40 {
         let seen = step(&mut stroked, k, Some(push(k)));
         let other = if k == 1 { None } else { Some(step(&mut alone, k, None)) };
-        let (what, pose) = seen.pushed.expect("there is a hand");
+        let (what, pose) = seen.pushed.expect("the hand is missing");
         assert_eq!(what, Pushed::Hand(LENGTH));
         assert_eq!(seen.colliders, bare + what.shapes().len());
         if let Some(last) = last {
@@ -74,14 +76,14 @@ fn hair_gives_way_to_a_hand_and_none_is_in_it() {
         }
         last = Some(pose);
     }
-    assert!(deepest < 1e-4, "{deepest} m in the hand");
+    assert!(deepest < 1e-4, "hair penetrates the hand by {deepest} m");
     assert!(moved > 0.1, "hair gave way by {moved} m");
     let mut left = 0.0;
     for k in 41..=160 {
         let (seen, other) = (step(&mut stroked, k, None), step(&mut alone, k, None));
-        assert!(seen.pushed.is_none() && seen.colliders == bare, "it is gone");
+        assert!(seen.pushed.is_none() && seen.colliders == bare, "the released hand is still in the scene");
         left = seen.points.iter().zip(&other.points).map(|(a, b)| a.distance(*b)).sum::<f32>()
             / seen.points.len() as f32;
     }
-    assert!(left < 1e-3, "{left} m off in the mean, two seconds later");
+    assert!(left < 1e-3, "the mean offset two seconds later is {left} m");
 }

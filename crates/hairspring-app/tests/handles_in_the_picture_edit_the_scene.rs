@@ -1,13 +1,15 @@
-//! The wind's arrow and what stands in a scene have handles in the picture. One that is dragged comes to lie under the pointer, and the scene's text says where that is, as if a slider had said so; one
-//! step back undoes the whole drag. The camera stays where it is meanwhile, whatever the tool.
+//! Promise: the wind arrow and the objects of a scene have handles in the picture. A dragged handle follows
+//! the pointer, and the drag changes the scene's text as a slider would. One undo step reverts the whole
+//! drag. The camera does not move during the drag, whichever tool is active.
 //!
-//! Where a place of the picture lies in the world is known in closed form: at the depth d of what is looked at, a picture with the field of view v is 2 d tan(v / 2) high.
+//! Positions in the picture are known in closed form: at the target's depth d, a picture with the field of
+//! view v is 2 d tan(v / 2) high.
 
 mod support;
 
 use support::{until, window};
 
-/// A ball at the middle of the picture, 2 m from the eye.
+/// A ball at the middle of the picture, 2 m from the camera.
 const SCENE: &str = "[builtin]\nstrands = 100\nguides = 20\nmotion = false\n\n\
     [[collider]]\nshape.sphere = { center = [0.0, 1.5, 0.0], radius = 0.05 } # mine\n\n\
     [camera]\nposition = [0.0, 1.5, 2.0]\ntarget = [0.0, 1.5, 0.0]\nfov = 30.0\n";
@@ -17,7 +19,7 @@ fn height() -> f64 {
     4.0 * 15f64.to_radians().tan()
 }
 
-/// The scene's text after this script.
+/// Returns the scene's text after this script.
 fn after(script: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let mut window = window(folder.path(), SCENE, script);
@@ -32,7 +34,7 @@ fn vector(text: &str, key: &[&str]) -> [f64; 3] {
     let table: toml_edit::DocumentMut = text.parse().unwrap();
     let mut item = table.as_item();
     for name in key {
-        item = item.get(name).unwrap_or_else(|| item.get(0).and_then(|i| i.get(name)).expect("it is said"));
+        item = item.get(name).unwrap_or_else(|| item.get(0).and_then(|i| i.get(name)).expect("the key is missing"));
     }
     let list = item.as_array().unwrap();
     std::array::from_fn(|k| list.get(k).unwrap().as_float().unwrap())
@@ -43,27 +45,27 @@ fn near(a: [f64; 3], b: [f64; 3], within: f64) -> bool {
 }
 
 #[test]
-fn a_ball_comes_to_lie_under_the_pointer() {
+fn dragged_ball_follows_the_pointer() {
     let center = &["collider", "shape", "sphere", "center"];
     for hand in ["look", "grab", "head"] {
         let text = after(&format!("pause\nhand {hand}\nwait 1\ndrag 0.5 0.5 0.5 0.4 10"));
         let up = 1.5 + 0.1 * height();
         assert!(near(vector(&text, center), [0.0, up, 0.0], 3e-4), "{hand}: {text}");
-        assert!(text.contains("radius = 0.05 } # mine"), "the rest of the text stays: {text}");
+        assert!(text.contains("radius = 0.05 } # mine"), "the rest of the text changed: {text}");
     }
     let back = after("pause\nwait 1\ndrag 0.5 0.5 0.5 0.4 10\ndrag 0.5 0.4 0.5 0.5 10");
-    assert!(near(vector(&back, center), [0.0, 1.5, 0.0], 5e-4), "the camera did not turn: {back}");
+    assert!(near(vector(&back, center), [0.0, 1.5, 0.0], 5e-4), "the camera turned: {back}");
 }
 
 #[test]
-fn the_winds_arrow_blows_where_it_is_pulled_to() {
+fn dragging_the_wind_arrow_sets_the_velocity() {
     let text = after("pause\nwait 1\ndrag 0.8 0.7 0.8 0.6 10");
-    // Two fifths of the longest arrow, and speed goes as the square.
+    // The arrow has two fifths of its maximum length, and the speed is quadratic in the length.
     assert!(near(vector(&text, &["wind", "velocity"]), [0.0, 20.0 * 0.16, 0.0], 0.02), "{text}");
 }
 
 #[test]
-fn a_drag_is_one_step_back() {
+fn a_drag_is_one_undo_step() {
     assert_eq!(after("pause\nwait 1\ndrag 0.5 0.5 0.6 0.4 10\nundo"), SCENE);
     assert_eq!(after("pause\nwait 1\ndrag 0.8 0.7 0.7 0.6 10\nundo"), SCENE);
 }

@@ -1,6 +1,8 @@
-//! Random presses, drags, keys and scrolls, anywhere in the window: nothing panics, nothing turns non-finite, the simulation lives, and memory does not grow: in the scene that it began with, to which it is
-//! brought back a third of its time on and at the end, as much is in use and held as before. `HAIRSPRING_MONKEY=SECONDS` lets it play longer than the short time of the test (`cargo xtask monkey` for ten
-//! minutes).
+//! Promise: random input breaks nothing. After random presses, drags, keys and scrolls anywhere in the
+//! window, nothing panics, no value is non-finite, the simulation still runs, and memory does not grow.
+//! Memory is compared in the first scene, which is reopened after a third of the time and at the end.
+//! `HAIRSPRING_MONKEY=SECONDS` runs the test for longer than the short default (`cargo xtask monkey` for
+//! ten minutes).
 
 #[path = "support/memory.rs"]
 mod memory;
@@ -16,7 +18,7 @@ use std::{
 };
 use support::{SMALL, sound, until, window};
 
-/// A small generator (SplitMix64): the same monkey every time.
+/// A small random generator (SplitMix64) with a fixed seed, so that every run is the same.
 struct Monkey(u64);
 
 impl Monkey {
@@ -35,7 +37,7 @@ impl Monkey {
         egui::pos2(self.below(960) as f32, self.below(640) as f32)
     }
 
-    /// One thing.
+    /// Performs one random action.
     fn act(&mut self, window: &mut Harness<'static, App>) {
         use egui::{Event, Key, Modifiers, PointerButton};
         let at = self.place();
@@ -98,9 +100,10 @@ impl Monkey {
     }
 }
 
-/// How much more may be in use at the end [bytes]: moments of a scene are kept as they are needed, some more or fewer.
+/// The largest allowed growth of memory in use [bytes]. Snapshots of a scene are allocated on demand, so
+/// their number varies a little.
 const MORE_IN_USE: usize = 32 << 20;
-/// And held for the process: pieces between what is in use.
+/// The largest allowed growth of memory held by the process [bytes], which includes fragmentation.
 const MORE_HELD: usize = 96 << 20;
 
 /// A file that is dropped on the window.
@@ -117,10 +120,10 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
-/// Brings the window back to the scene that it began with; what is in use there, and held for it [bytes].
+/// Reopens the first scene; returns the memory in use and the memory held by the process [bytes].
 fn home(window: &mut Harness<'static, App>, folder: &Path) -> [usize; 2] {
     let file = folder.join("home.toml");
-    // Whatever the monkey has saved there.
+    // The random input may have overwritten this file.
     std::fs::write(&file, SMALL).unwrap();
     window.input_mut().dropped_files.push(Arc::new(Dropped(file)));
     window.step();
@@ -128,8 +131,9 @@ fn home(window: &mut Harness<'static, App>, folder: &Path) -> [usize; 2] {
         let session = app.session();
         session.document().text() == SMALL && session.latest().is_some_and(|s| s.scene == session.begun())
     };
-    assert!(until(window, there), "the scene is opened again");
-    // What the scene before has left behind goes a second after; a picture that is being drawn takes some for itself meanwhile: the least of some seconds counts.
+    assert!(until(window, there), "the scene was not reopened");
+    // Memory of the previous scene is freed one second later, and a picture in progress uses some
+    // meanwhile. So the minimum over several seconds is taken.
     let (began, mut least) = (Instant::now(), [usize::MAX; 2]);
     while began.elapsed() < Duration::from_secs(5) {
         window.step();
@@ -141,9 +145,9 @@ fn home(window: &mut Harness<'static, App>, folder: &Path) -> [usize; 2] {
 }
 
 #[test]
-fn a_monkey_breaks_nothing() {
+fn random_actions_keep_the_session_sound() {
     let seconds = std::env::var("HAIRSPRING_MONKEY").ok().and_then(|s| s.parse().ok()).unwrap_or(10);
-    // What the monkey presses may write files: into a folder of its own.
+    // Random input may write files, so it runs in a folder of its own.
     let folder = tempfile::tempdir().unwrap();
     std::env::set_current_dir(folder.path()).unwrap();
     let mut window = window(folder.path(), SMALL, "wait 3");
@@ -155,11 +159,12 @@ fn a_monkey_breaks_nothing() {
     while began.elapsed() < limit {
         monkey.act(&mut window);
         window.step();
-        assert!(sound(window.state()), "after {acts} acts");
-        assert!(!window.state().session().is_dead(), "the simulation ended after {acts} acts");
+        assert!(sound(window.state()), "after {acts} actions");
+        assert!(!window.state().session().is_dead(), "the simulation ended after {acts} actions");
         acts += 1;
         most = most.max(memory::resident().unwrap_or(0));
-        // What there is room for once is not a leak: from a third of the time on, it counts.
+        // Memory that is allocated once and kept is not a leak. So the comparison starts after a third of
+        // the time.
         if first.is_none() && began.elapsed() > limit / 3 {
             first = Some(home(&mut window, folder.path()));
         }
@@ -168,10 +173,10 @@ fn a_monkey_breaks_nothing() {
     let [first, last, [most, _]] =
         [first.unwrap_or(last), last, [most, 0]].map(|bytes| bytes.map(|b| b >> 20));
     println!(
-        "{acts} acts in {seconds} s; in the scene that it began with {} MiB are in use and {} held after a third, {} and {} at the end; \
-         {most} held at most, whatever was open",
+        "{acts} actions in {seconds} s; in the first scene {} MiB are in use and {} held after a third, {} and {} at the end; \
+         the maximum held in any scene is {most}",
         first[0], first[1], last[0], last[1]
     );
-    assert!(last[0] <= first[0] + (MORE_IN_USE >> 20), "{} MiB in use have become {}", first[0], last[0]);
-    assert!(last[1] <= first[1] + (MORE_HELD >> 20), "{} MiB held have become {}", first[1], last[1]);
+    assert!(last[0] <= first[0] + (MORE_IN_USE >> 20), "memory in use grew from {} MiB to {}", first[0], last[0]);
+    assert!(last[1] <= first[1] + (MORE_HELD >> 20), "memory held grew from {} MiB to {}", first[1], last[1]);
 }

@@ -1,5 +1,7 @@
-//! A person opens the window, plays, changes parameters, throws the ball, grabs a lock, records, saves and opens again. Here a script does so, and what comes out is looked at: the file says what was
-//! changed and nothing else, the record plays, undo leads back, and no line was refused. A step back or forth that cannot be taken is still there once it can.
+//! Promise: a script can do what a user does: open the window, play, change parameters, throw the ball,
+//! grab a lock, record, save and open again. The saved file contains the changes and nothing else, the
+//! recordings play, undo works, and no line is refused. An undo or redo step that fails stays available
+//! until it succeeds.
 
 mod support;
 
@@ -29,22 +31,22 @@ fn a_session_opens_plays_changes_records_saves_and_opens_again() {
         saved = file("saved.toml").display(),
     );
     let mut window = window(folder.path(), SMALL, &script);
-    assert!(until(&mut window, |app| app.is_idle()), "the script came to its end");
+    assert!(until(&mut window, |app| app.is_idle()), "the script did not finish");
     let app = window.state();
     let wrong = app.message().filter(|(_, wrong)| *wrong);
-    assert_eq!(wrong, None, "no line was refused");
+    assert_eq!(wrong, None, "a line was refused");
     assert!(sound(app));
     let text = std::fs::read_to_string(file("saved.toml")).unwrap();
-    assert_eq!(app.session().document().text(), text, "what was saved is open");
+    assert_eq!(app.session().document().text(), text, "the open scene differs from the saved file");
     for line in ["gust = 0.5", "substeps = 3", "method = \"density\"", "roughness = 0.5", "strands = 400"] {
-        assert!(text.contains(line), "{line} is in the file:\n{text}");
+        assert!(text.contains(line), "{line} is missing in the file:\n{text}");
     }
-    assert!(!text.contains("inertia"), "what was undone is not in it:\n{text}");
+    assert!(!text.contains("inertia"), "an undone change is in the file:\n{text}");
     assert!(Document::open(&file("saved.toml")).is_ok());
     let still = hairspring_view::read_png(&file("still.png")).unwrap();
     assert_eq!((still.width, still.height), (1280, 720));
     let dark = still.rgb.iter().filter(|b| **b < 8).count();
-    assert!(dark < still.rgb.len() / 2, "something is seen");
+    assert!(dark < still.rgb.len() / 2, "the picture is mostly black");
     for clip in ["clip.mp4", "turn.mp4"] {
         assert!(std::fs::metadata(file(clip)).unwrap().len() > 2000, "{clip}");
     }
@@ -54,7 +56,7 @@ fn a_session_opens_plays_changes_records_saves_and_opens_again() {
 }
 
 #[test]
-fn a_still_of_two_that_are_compared_shows_both_and_what_they_differ_in() {
+fn still_of_a_comparison_shows_both_scenes_and_captions() {
     let folder = tempfile::tempdir().unwrap();
     let still = folder.path().join("pair.png");
     let script = format!(
@@ -66,7 +68,7 @@ fn a_still_of_two_that_are_compared_shows_both_and_what_they_differ_in() {
     assert!(until(&mut window, |app| app.is_idle()));
     let image = hairspring_view::read_png(&still).unwrap();
     let (left, gap, right) = (0..638, 638..642, 642..1280);
-    assert!(gap.clone().all(|x| (0..692).all(|y| image.pixel(x, y) == [24; 3])), "a gap parts them");
+    assert!(gap.clone().all(|x| (0..692).all(|y| image.pixel(x, y) == [24; 3])), "the gap between the two pictures is missing");
     let red = |columns: std::ops::Range<u32>| -> u64 {
         let of = |x: u32| {
             (0..692).map(|y| image.pixel(x, y)).map(|[r, g, _]| u64::from(r.saturating_sub(g))).sum::<u64>()
@@ -74,10 +76,10 @@ fn a_still_of_two_that_are_compared_shows_both_and_what_they_differ_in() {
         columns.map(of).sum()
     };
     let (brown, dyed) = (red(left.clone()), red(right.clone()));
-    assert!(dyed > 2 * brown && brown > 0, "each side is its own scene: {brown}, {dyed}");
+    assert!(dyed > 2 * brown && brown > 0, "the sides do not show their own scenes: {brown}, {dyed}");
     for side in [left, right] {
         let words = side.map(|x| (692..720).filter(|y| image.pixel(x, *y)[0] > 150).count()).sum::<usize>();
-        assert!(words > 100, "what they differ in stands under each: {words} light pixels");
+        assert!(words > 100, "a caption is missing: {words} light pixels");
     }
     let [first, second] = window.state().session().captions();
     assert!(
@@ -91,14 +93,14 @@ fn press(pos: egui::Pos2, pressed: bool) -> Event {
 }
 
 #[test]
-fn what_cannot_be_done_is_said_and_changes_nothing() {
+fn refused_commands_report_an_error_and_change_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut window = window(folder.path(), SMALL, "pause\nset solver.substeps 0\nwait 1");
     assert!(until(&mut window, |app| app.is_idle()));
-    let (said, wrong) = window.state().message().expect("something is said");
+    let (said, wrong) = window.state().message().expect("there is no message");
     assert!(wrong && said.contains("substeps"), "{said}");
     assert_eq!(window.state().session().document().text(), SMALL);
-    // Who has read it clicks it away.
+    // A click on the message dismisses it.
     let said = said.to_owned();
     let at = window.get_by_label(&said).rect().center();
     for event in [PointerMoved(at), press(at, true), press(at, false)] {
@@ -123,20 +125,20 @@ fn what_cannot_be_done_is_said_and_changes_nothing() {
 }
 
 #[test]
-fn a_record_goes_on_past_the_end_of_the_motion() {
+fn recording_continues_past_the_end_of_the_motion() {
     let folder = tempfile::tempdir().unwrap();
-    // A motion of three steps, which begins anew again and again within a clip of twelve.
+    // The motion has three steps and repeats several times within a clip of twelve.
     let scene =
         format!("{SMALL}[clip]\nkeys = [{{ time = 0.0 }}, {{ time = 0.05, rotation = [0.0, 5.0, 0.0] }}]\n");
     let clip = folder.path().join("p.##.png");
     let script = format!("pause\nwait 9\npictures {} 0.2\n", clip.display());
     let mut window = window(folder.path(), &scene, &script);
-    assert!(until(&mut window, |app| app.is_idle()), "the record came to its end");
+    assert!(until(&mut window, |app| app.is_idle()), "the recording did not finish");
     assert!(folder.path().join("p.06.png").exists());
 }
 
 #[test]
-fn settings_change_while_hair_moves_and_the_play_goes_on() {
+fn settings_change_during_playback() {
     let document = Document::new("scene.toml".as_ref(), SMALL.into()).unwrap();
     let mut session = Session::new(document, 2, None, || ()).unwrap();
     let wait = |session: &Session, step: u64| {
@@ -153,9 +155,10 @@ fn settings_change_while_hair_moves_and_the_play_goes_on() {
     let key = "wind.velocity".parse().unwrap();
     session.act(Action::Set(key, Some(toml_edit::Value::from_iter([5.0, 0.0, 0.0])))).unwrap();
     let after = wait(&session, before.step + 30);
-    assert_eq!(after.scene, before.scene, "a setting does not begin the scene anew");
+    assert_eq!(after.scene, before.scene, "a setting restarted the scene");
     assert!(after.time > before.time);
-    // Paused, a change is something else to see though time stands still: what is ordered after the pause meets a scene that stands.
+    // While paused, a changed look is a new snapshot although time does not advance. The change is applied
+    // after the pause.
     session.act(Action::Play(false)).unwrap();
     let mut seen = |roughness: f64| {
         let key = "builtin.look.roughness".parse().unwrap();
@@ -174,7 +177,7 @@ fn settings_change_while_hair_moves_and_the_play_goes_on() {
 }
 
 #[test]
-fn a_step_that_cannot_be_taken_is_not_lost() {
+fn a_failed_undo_step_stays_available() {
     let folder = tempfile::tempdir().unwrap();
     let stone = folder.path().join("stone.obj");
     let away = folder.path().join("away.obj");
@@ -191,12 +194,12 @@ fn a_step_that_cannot_be_taken_is_not_lost() {
     for action in [set(1.0), Action::Rest, set(2.0), Action::New(SMALL.into())] {
         session.act(action).unwrap();
     }
-    // Back to the other scene, back within it twice, and forth all the way again.
+    // Undo into the previous scene, undo twice within it, and redo all three steps.
     let steps = [Action::Undo, Action::Undo, Action::Undo, Action::Redo, Action::Redo, Action::Redo];
     let mut seen = vec![now(&session)];
     for (k, step) in steps.into_iter().enumerate() {
         let (left, more) = (now(&session), session.steps());
-        // The last leads to a scene that names no file.
+        // The last step leads to a scene that names no file.
         if k < 5 {
             std::fs::rename(&stone, &away).unwrap();
             for _ in 0..2 {
@@ -211,5 +214,5 @@ fn a_step_that_cannot_be_taken_is_not_lost() {
     }
     assert_eq!((&*seen[0], &*seen[3]), (SMALL, &*text), "{seen:?}");
     assert!(seen[1].contains("2.0") && seen[2].contains("1.0"), "{seen:?}");
-    assert!(seen.iter().eq(seen.iter().rev()), "the way forth is the way back: {seen:?}");
+    assert!(seen.iter().eq(seen.iter().rev()), "redo does not mirror undo: {seen:?}");
 }

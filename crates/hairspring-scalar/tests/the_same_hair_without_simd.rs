@@ -1,11 +1,13 @@
-//! Promise: the scalar build is the same code: its hair has the bits of SSE2, lane for lane.
+//! Promise: the scalar build runs the same algorithm: its results equal those of SSE2 bit for bit.
 //!
-//! What `hairspring bench --table` calls scalar would say nothing about SIMD if it did other work. Neither fuses products, so that not a
-//! rounding differs; on a processor without SSE2 there is nothing to hold it against.
+//! The scalar column of `hairspring bench --table` measures the benefit of SIMD only if both builds do the
+//! same work. Neither build uses fused multiply-add, so every rounding is the same. The test is skipped on
+//! a processor without SSE2.
 
 use glam::Vec3;
 
-/// Positions after a tenth of a second of the bench scene, in one of the two builds of the library, for each model.
+/// Positions after a tenth of a second of the bench scene, for each model, in one of the two builds of the
+/// library.
 macro_rules! positions {
     ($library:ident, $scene:ident, $prepare:expr) => {{
         use $library::{

@@ -1,6 +1,7 @@
-//! Promise: no allocation in `step` after the first.
+//! Promise: `step` allocates no memory after its first call.
 //!
-//! A counting allocator around the system's; one thread, because a thread pool's own queues are not the simulation's.
+//! A counting allocator wraps the system allocator. The test uses one thread, because the queues of a
+//! thread pool also allocate.
 
 use glam::Vec3;
 use hairspring::{
@@ -21,15 +22,15 @@ use std::{
 struct Counting;
 
 thread_local! {
-    /// Allocations of this thread: the test harness has another, which allocates when it likes.
+    /// Allocations of this thread; the test harness has another thread, which allocates at any time.
     static COUNT: Cell<usize> = const { Cell::new(0) };
 }
 
-// SAFETY: every call is passed on to the system's allocator as it came.
+// SAFETY: every call is forwarded unchanged to the system allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.set(COUNT.get() + 1);
-        // SAFETY: the caller's promises are the system allocator's.
+        // SAFETY: the caller upholds the system allocator's requirements.
         unsafe { System.alloc(layout) }
     }
 
@@ -42,9 +43,9 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// One test: the harness allocates when another one ends.
+/// A single test, because the harness allocates when a test ends.
 #[test]
-fn after_the_first_step_none_allocates() {
+fn steps_after_the_first_do_not_allocate() {
     hair_on_hair_allocates_nothing();
     wind_and_charge_allocate_nothing();
 }
@@ -62,9 +63,9 @@ fn hair_on_hair_allocates_nothing() {
             }
             COUNT.get() - before
         });
-        assert_eq!(counted, 0, "{counted} allocations in 20 steps, hair on hair {}", method.name());
+        assert_eq!(counted, 0, "{counted} allocations in 20 steps with the volume method {}", method.name());
     }
-    // Strand by strand.
+    // Strand contact.
     let counted = pool.install(|| {
         let mut bench = Bench::new(200, 16, Solver::default());
         bench.simulation.set_neighbours(&Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
@@ -77,8 +78,8 @@ fn hair_on_hair_allocates_nothing() {
         assert!(report.pressing > 50, "{report:?}");
         COUNT.get() - before
     });
-    assert_eq!(counted, 0, "{counted} allocations in 40 steps, strands that meet one by one");
-    // With hands on the hair and a global shape, while a tie still gathers.
+    assert_eq!(counted, 0, "{counted} allocations in 40 steps with strand contact");
+    // Manipulators and a global shape, while a tie is still gathering.
     let counted = pool.install(|| {
         let material = Material {
             global_shape: GlobalShape { pull: 2.0, ..GlobalShape::default() },
@@ -108,7 +109,7 @@ fn hair_on_hair_allocates_nothing() {
         ] {
             let id = bench.simulation.add_manipulator(tool, RigidTransform::default());
             let holds = bench.simulation.attached_points(id).count();
-            assert!(matches!(tool, Manipulator::Comb(_)) || holds > 10, "{tool:?} holds {holds} points");
+            assert!(matches!(tool, Manipulator::Comb(_)) || holds > 10, "{tool:?} holds only {holds} points");
         }
         bench.step();
         let before = COUNT.get();
@@ -117,7 +118,7 @@ fn hair_on_hair_allocates_nothing() {
         }
         COUNT.get() - before
     });
-    assert_eq!(counted, 0, "{counted} allocations in 40 steps, hands on the hair");
+    assert_eq!(counted, 0, "{counted} allocations in 40 steps with manipulators");
 }
 
 fn wind_and_charge_allocate_nothing() {
@@ -161,5 +162,5 @@ fn wind_and_charge_allocate_nothing() {
         (1..20).for_each(step);
         COUNT.get() - before
     });
-    assert_eq!(counted, 0, "{counted} allocations in 19 steps in moving air among charged bodies");
+    assert_eq!(counted, 0, "{counted} allocations in 19 steps with wind and charge");
 }

@@ -1,4 +1,5 @@
-//! Memory of the process: what is in use, counted by the allocator, and what the system says is held for it.
+//! Memory of the process: memory in use, counted by the allocator, and memory held, as the system reports
+//! it.
 
 use std::{
     alloc::{GlobalAlloc, Layout, System},
@@ -9,11 +10,11 @@ struct Counting;
 
 static IN_USE: AtomicUsize = AtomicUsize::new(0);
 
-// SAFETY: every call is passed on to the system's allocator as it came.
+// SAFETY: every call is forwarded unchanged to the system allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         IN_USE.fetch_add(layout.size(), Relaxed);
-        // SAFETY: the caller's promises are the system allocator's.
+        // SAFETY: the caller upholds the system allocator's requirements.
         unsafe { System.alloc(layout) }
     }
 
@@ -40,12 +41,12 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// What has been asked for and not given back [bytes].
+/// Memory that is allocated and not yet freed [bytes].
 pub fn in_use() -> usize {
     IN_USE.load(Relaxed)
 }
 
-/// What the system holds for the process [bytes]; `None` where it does not say.
+/// Resident memory of the process [bytes]; `None` where the system does not report it.
 pub fn resident() -> Option<usize> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find(|l| l.starts_with("VmRSS:"))?;

@@ -1,5 +1,5 @@
-//! The window without a desktop: its frames run one after the other, its picture comes from the CPU.
-#![allow(dead_code)] // Each test uses a part of it.
+//! The window without a desktop: frames run one after another, and the picture is rendered on the CPU.
+#![allow(dead_code)] // Each test uses a part of this module.
 
 use egui_kittest::{Harness, TestRenderer};
 use hairspring_app::{App, Document, Drawn, Options, read_script};
@@ -11,7 +11,8 @@ use std::{
 /// A head that is quick to simulate and to draw.
 pub const SMALL: &str = "name = \"Small\"\n\n[builtin]\nstrands = 400\nguides = 60\n";
 
-/// Looks at nothing: a window that nobody draws would keep every picture of hair until somebody does.
+/// A renderer that discards all textures. Without it, a window that is never drawn would keep every picture
+/// of hair.
 struct Blind;
 
 impl TestRenderer for Blind {
@@ -20,7 +21,7 @@ impl TestRenderer for Blind {
     }
 }
 
-/// The window on this scene, in a folder, with a script.
+/// Opens the window on this scene, in a folder, with a script.
 pub fn window(folder: &Path, scene: &str, script: &str) -> Harness<'static, App> {
     let document = Document::new(&folder.join("scene.toml"), scene.into()).expect("the scene can be read");
     let options = Options {
@@ -34,7 +35,7 @@ pub fn window(folder: &Path, scene: &str, script: &str) -> Harness<'static, App>
         .build_eframe(|creation| App::new(creation, options).expect("the window opens"))
 }
 
-/// Runs frames until `done` or a minute has passed; whether it was done.
+/// Runs frames until `done` or until 120 seconds have passed; returns whether it was done.
 pub fn until(window: &mut Harness<'static, App>, done: impl Fn(&App) -> bool) -> bool {
     let began = Instant::now();
     while began.elapsed() < Duration::from_secs(120) {
@@ -42,13 +43,13 @@ pub fn until(window: &mut Harness<'static, App>, done: impl Fn(&App) -> bool) ->
         if done(window.state()) {
             return true;
         }
-        // The simulation and the picture are made by other threads.
+        // Other threads simulate and render.
         std::thread::sleep(Duration::from_millis(2));
     }
     false
 }
 
-/// Whether all that is simulated is finite.
+/// Whether all simulated points are finite.
 pub fn sound(app: &App) -> bool {
     app.session()
         .latest()

@@ -1,13 +1,14 @@
-//! Promise: bad input ends with one clear sentence and its own exit code, and leaves nothing half-written.
+//! Promise: bad input ends with one clear sentence and a specific exit code, and leaves no partial files.
 //!
-//! Scripts branch on the code; people read the sentence, so it names the file and what is wrong with it. After each
-//! refusal the folder holds what it held before: no output, no temporary file.
+//! Scripts branch on the code, and people read the sentence, so it names the file and the problem. After
+//! each refusal the folder is unchanged: no output, no temporary file.
 
 use crate::common::{contents, groom, program, run, succeed, write_groom};
 use glam::Vec3;
 use std::path::Path;
 
-/// Runs the program, which must fail with `code` and one line that contains `words`, and leave the folder alone.
+/// Runs the program. It must fail with `code` and one line that contains `words`, and leave the folder
+/// unchanged.
 fn refuse(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
     let before = contents(folder);
     let output = run(folder, arguments);
@@ -23,7 +24,7 @@ fn refuse(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
 }
 
 #[test]
-fn files_that_are_not_there_or_not_known() {
+fn missing_and_unknown_files() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     refuse(f, &["info", "no.hair"], 3, &["no.hair", "not found"]);
@@ -40,12 +41,12 @@ fn files_that_are_not_there_or_not_known() {
 }
 
 #[test]
-fn a_machine_without_a_graphics_card() {
+fn no_graphics_card() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_groom(f, 5);
     let before = contents(f);
-    // Of all graphics cards, those that no machine which runs this test has: Windows' on the others, Apple's on Windows.
+    // A graphics API that this machine cannot have: DirectX 12 outside Windows, Metal on Windows.
     let none = if cfg!(windows) { "metal" } else { "dx12" };
     let arguments = ["render", "groom.hair", "-o", "x.png", "--gpu", "--size", "64x36"];
     let output = program(f, &arguments).env("WGPU_BACKEND", none).output().unwrap();
@@ -60,7 +61,7 @@ fn a_machine_without_a_graphics_card() {
 }
 
 #[test]
-fn files_that_lie() {
+fn truncated_and_empty_files() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     let path = write_groom(f, 20);
@@ -78,7 +79,7 @@ fn files_that_lie() {
 }
 
 #[test]
-fn points_that_are_not_numbers_are_mended_and_counted() {
+fn non_finite_points_are_repaired_and_counted() {
     let folder = tempfile::tempdir().unwrap();
     let mut broken = groom(10);
     broken.points[4] = Vec3::NAN;
@@ -92,7 +93,7 @@ fn points_that_are_not_numbers_are_mended_and_counted() {
 }
 
 #[test]
-fn scenes_that_are_wrong() {
+fn invalid_scenes() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_groom(f, 5);
@@ -112,14 +113,14 @@ fn scenes_that_are_wrong() {
 }
 
 #[test]
-fn outputs_that_cannot_be() {
+fn impossible_outputs() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_groom(f, 5);
     refuse(f, &["render", "groom.hair", "-o", "no/x.png"], 5, &["no", "does not exist"]);
     refuse(f, &["bake", "groom.hair", "-o", "no/x.#.hair"], 5, &["no", "does not exist"]);
     refuse(f, &["convert", "groom.hair", "no/x.tfx"], 5, &["no", "does not exist"]);
-    // Strands of different point counts do not fit a .tfx file.
+    // A .tfx file cannot hold strands of different point counts.
     refuse(f, &["convert", "groom.hair", "x.tfx"], 5, &["x.tfx"]);
     refuse(f, &["bake", "groom.hair", "-o", "x.hair"], 2, &["x.hair", "#"]);
     refuse(f, &["render", "groom.hair", "-o", "x.png", "--frames", "1-5"], 2, &["x.png", "#"]);
@@ -129,18 +130,18 @@ fn outputs_that_cannot_be() {
 
 #[cfg(unix)]
 #[test]
-fn folders_that_take_no_files() {
+fn read_only_folders() {
     use std::os::unix::fs::PermissionsExt;
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_groom(f, 5);
     let closed = tempfile::tempdir().unwrap();
     std::fs::set_permissions(closed.path(), std::fs::Permissions::from_mode(0o555)).unwrap();
-    // Rights do not bind the super-user; the process file system takes no files from anyone.
+    // Permissions do not restrict the superuser; the process file system accepts files from nobody.
     let closed = match tempfile::tempfile_in(closed.path()) {
         Err(_) => closed.path(),
         Ok(_) if Path::new("/proc/self").exists() => Path::new("/proc"),
-        Ok(_) => return println!("skipped: every folder takes files here"),
+        Ok(_) => return println!("skipped: every folder is writable here"),
     };
     let at = |name: &str| closed.join(name).to_str().unwrap().to_owned();
     refuse(f, &["render", "groom.hair", "-o", &at("x.png")], 5, &["cannot write to the folder"]);

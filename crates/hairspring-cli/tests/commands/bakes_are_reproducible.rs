@@ -1,13 +1,14 @@
-//! Promise: a bake gives the same bits however it came about: on one thread or two, in one go, resumed after frames went
-//! missing, or stopped by Ctrl-C and resumed.
+//! Promise: a bake gives the same bits on one thread or two, in one run, resumed after frames went missing,
+//! or stopped by Ctrl-C and resumed.
 //!
-//! A farm bakes a shot on whatever machine is free and starts again after a crash; a frame that differs by a bit from
-//! the one beside it flickers. Every frame's file is compared byte for byte with that of an uninterrupted run.
+//! A render farm bakes a shot on any free machine and restarts after a crash. A frame that differs by one
+//! bit from the next flickers. Every frame's file is compared byte for byte with that of an uninterrupted
+//! run.
 
 use crate::common::{contents, names, succeed, write_scene};
 use std::path::Path;
 
-/// Bakes frames 1 to 12 into `folder`/`name`, with further arguments.
+/// Bakes frames 1 to 12 into `folder`/`name`, with additional arguments.
 fn bake(folder: &Path, name: &str, more: &[&str]) -> Vec<(String, Vec<u8>)> {
     std::fs::create_dir_all(folder.join(name)).unwrap();
     let pattern = format!("{name}/hair.###.hair");
@@ -37,7 +38,7 @@ fn resumed_over_missing_and_broken_frames() {
     for n in [3, 7, 12] {
         std::fs::remove_file(at(n)).unwrap();
     }
-    // What a crash of the file system leaves, as no crash of ours does.
+    // A truncated file, as a crash of the file system may leave. A crash of the program leaves none.
     std::fs::write(at(9), &whole[8].1[..500]).unwrap();
     let untouched = std::fs::metadata(at(5)).unwrap().modified().unwrap();
     let resumed = bake(folder.path(), "bake", &["--resume"]);
@@ -45,12 +46,12 @@ fn resumed_over_missing_and_broken_frames() {
     assert_eq!(
         std::fs::metadata(at(5)).unwrap().modified().unwrap(),
         untouched,
-        "a whole frame was written again"
+        "a complete frame was written again"
     );
 }
 
 #[test]
-fn part_of_a_range_is_that_part() {
+fn part_of_a_range_equals_the_full_bake() {
     let folder = tempfile::tempdir().unwrap();
     write_scene(folder.path(), 50);
     let whole = bake(folder.path(), "whole", &[]);
@@ -68,7 +69,7 @@ fn stopped_by_ctrl_c_and_resumed() {
     let whole = bake(folder.path(), "whole", &[]);
     let stopped = folder.path().join("stopped");
     std::fs::create_dir(&stopped).unwrap();
-    // More frames than can be baked before the signal comes.
+    // More frames than can be baked before the signal arrives.
     let arguments = ["bake", "scene.toml", "-o", "stopped/hair.###.hair", "--frames", "1-900000"];
     let child = crate::common::program(folder.path(), &arguments)
         .stdout(Stdio::null())
@@ -85,7 +86,7 @@ fn stopped_by_ctrl_c_and_resumed() {
     assert!(told.contains("--resume"), "{told}");
     let written = names(&stopped);
     assert!(written.iter().all(|n| n.starts_with("hair.")), "{written:?}");
-    // The last frame that it names is there, and it is whole like all others.
+    // All written frames are complete, including the last.
     for name in written.iter().skip(12) {
         std::fs::remove_file(stopped.join(name)).unwrap();
     }

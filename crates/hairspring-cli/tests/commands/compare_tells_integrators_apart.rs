@@ -1,5 +1,5 @@
-//! Promise: `hairspring compare` plays the same hair by each integrator and says under stable keys what became of it; its page
-//! stands by itself.
+//! Promise: `hairspring compare` simulates the same hair with each integrator and reports the results under
+//! stable keys. Its report is one self-contained file.
 
 use crate::common::{json, names, run, succeed};
 use glam::Vec3;
@@ -20,7 +20,7 @@ const KEYS: [&str; 10] = [
     "points_in_real_time",
 ];
 
-/// A folder with a few hairs in it that hang straight down.
+/// A folder with a file of 24 hairs that hang straight down.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let hair = |s: usize| (0..11).map(move |i| Vec3::new(0.002 * s as f32, 1.0 - 0.02 * i as f32, 0.0));
@@ -47,7 +47,7 @@ fn explicit_steps_are_a_thousand_times_shorter_than_implicit_ones() {
     assert_eq!((&implicit["stable"], &implicit["reset_strands"]), (&true.into(), &0.into()));
     assert!(implicit["stretch_max"].as_f64().unwrap() < 0.011);
     assert!(implicit["energy_drift"].as_f64().unwrap().abs() < 0.5);
-    assert_eq!(verlet["energy_drift"], serde_json::Value::Null, "a step of 4 ms is far beyond verlet");
+    assert_eq!(verlet["energy_drift"], serde_json::Value::Null, "verlet is stable at a step of 4 ms");
     let longest = |t: &serde_json::Value| t["longest_stable_step_s"].as_f64().unwrap();
     assert!(longest(implicit) > 1000.0 * longest(verlet));
 }
@@ -68,12 +68,12 @@ fn the_page_is_one_file() {
     }
     assert!(
         !page.contains("src=\"http") && !page.contains("verlet</a>"),
-        "nothing beside itself, none that was not asked for"
+        "the page loads other files or lists an integrator that was not requested"
     );
 }
 
 #[test]
-fn what_it_does_not_know_is_refused() {
+fn invalid_arguments_are_refused() {
     for (arguments, part) in [
         (&["compare", "--integrators", "magic"][..], "'magic'"),
         (&["compare", "--seconds", "1e9"], "--seconds"),

@@ -1,21 +1,21 @@
 //! Promise: `hairspring convert` changes the format of a groom and not one bit of its shape.
 //!
-//! A groom goes through every format that can be written and comes back to the first; its points must be those that it
-//! set out with. Scale and axes are applied once, on the way in.
+//! A groom is converted through every format that can be written and back to the first. Its points must
+//! equal the original ones. Scale and axes are applied once, when the file is read.
 
 use crate::common::{groom, succeed};
 use glam::Vec3;
 use hairspring::groom::Groom;
 use hairspring_io::{ReadOptions, read_groom, write_groom};
 
-/// Strands of one point count, as `.tfx` needs them.
+/// Strands of equal point count, as `.tfx` requires.
 fn even(strands: usize) -> Groom {
     let groom = groom(4 * strands);
     Groom::from_strands((0..strands).map(|s| groom.strand(4 * s).to_vec()), 4e-5)
 }
 
 #[test]
-fn round_all_formats() {
+fn a_round_trip_through_all_formats_is_exact() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let groom = even(100);

@@ -1,13 +1,13 @@
-//! Promise: `hairspring info` says what a file holds, in numbers that a script can rely on.
+//! Promise: `hairspring info` reports the content of a file in numbers that a script can rely on.
 //!
-//! The keys are part of the interface: pipelines count strands and check bounds with them. The values are compared with
-//! the groom that the test itself wrote, and what was repaired on the way in is counted, never hidden.
+//! The keys are part of the interface: pipelines count strands and check bounds with them. The values are
+//! compared with the groom that the test wrote. Repairs made during reading are counted.
 
 use crate::common::{groom, json, succeed, text, write_groom, write_scene};
 use glam::Vec3;
 
 #[test]
-fn a_groom_in_numbers() {
+fn json_of_a_groom() {
     let folder = tempfile::tempdir().unwrap();
     write_groom(folder.path(), 50);
     let found = json(&succeed(folder.path(), &["info", "groom.hair", "--json"]));
@@ -37,7 +37,7 @@ fn a_groom_in_numbers() {
 }
 
 #[test]
-fn people_get_the_same_in_lines() {
+fn text_output_has_the_same_values() {
     let folder = tempfile::tempdir().unwrap();
     write_groom(folder.path(), 1200);
     let lines = succeed(folder.path(), &["info", "groom.hair"]);
@@ -59,7 +59,7 @@ fn repairs_are_counted() {
 }
 
 #[test]
-fn scenes_and_bodies_too() {
+fn scenes_and_bodies() {
     let folder = tempfile::tempdir().unwrap();
     write_scene(folder.path(), 70);
     let scene = json(&succeed(folder.path(), &["info", "scene.toml", "--json"]));

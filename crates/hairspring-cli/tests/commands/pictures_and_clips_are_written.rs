@@ -1,8 +1,8 @@
 //! Promise: `hairspring render` and `hairspring demo` write pictures and clips that open and show hair.
 //!
-//! Pictures are read back and looked at: they have the size that was asked for and are not a bare backdrop. The clip is
-//! read by a demuxer and a decoder that share no code with the writer, and has every frame. A resumed sequence is that of
-//! an uninterrupted run, and a still is the frame of the same number.
+//! Pictures are read back: they have the requested size and are not an empty backdrop. The clip is read by
+//! a demuxer and a decoder that share no code with the writer, and has every frame. A resumed sequence
+//! equals an uninterrupted one, and a still equals the frame of the same number.
 
 use crate::common::{contents, names, succeed, text, write_groom, write_scene};
 use hairspring_view::{Image, read_png};
@@ -11,7 +11,7 @@ use std::{fs::File, io::BufReader, path::Path};
 
 const SIZE: [&str; 2] = ["--size", "160x96"];
 
-/// How many colors differ from those of the row's first pixel by more than the backdrop's soft light does.
+/// The number of pixels that differ from the row's first pixel by more than the shading of the backdrop.
 fn drawn_pixels(image: &Image) -> usize {
     let rows = image.rgb.chunks(3 * image.width as usize);
     rows.map(|row| {
@@ -20,7 +20,7 @@ fn drawn_pixels(image: &Image) -> usize {
     .sum()
 }
 
-/// Frames that decode, and the clip's size.
+/// The number of frames that decode, and the clip's size.
 fn play(path: &Path) -> (u32, (u16, u16)) {
     let file = File::open(path).unwrap();
     let size = file.metadata().unwrap().len();
@@ -53,9 +53,10 @@ fn play(path: &Path) -> (u32, (u16, u16)) {
     (shown, size)
 }
 
-/// The same still on the graphics card, where the machine has one or a driver in its place.
+/// The same still on the graphics card. It is skipped where the machine has neither a card nor a software
+/// driver.
 #[test]
-fn a_still_is_drawn_on_the_graphics_card() {
+fn a_still_is_rendered_on_the_graphics_card() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_groom(f, 400);
@@ -71,23 +72,23 @@ fn a_still_is_drawn_on_the_graphics_card() {
     let [card, cpu] = ["card.png", "cpu.png"].map(|name| read_png(&f.join(name)).unwrap());
     assert_eq!((card.width, card.height), (160, 96));
     let apart = card.rgb.iter().zip(&cpu.rgb).filter(|(a, b)| a.abs_diff(**b) > 8).count();
-    assert!(drawn_pixels(&card) > 100 && apart < card.rgb.len() / 100, "{apart} values are apart");
+    assert!(drawn_pixels(&card) > 100 && apart < card.rgb.len() / 100, "{apart} values differ");
 }
 
 #[test]
-fn a_groom_alone_is_a_still() {
+fn a_groom_alone_renders_as_a_still() {
     let folder = tempfile::tempdir().unwrap();
     write_groom(folder.path(), 800);
     succeed(folder.path(), &[&["render", "groom.hair", "-o", "a.png"], &SIZE[..]].concat());
     let image = read_png(&folder.path().join("a.png")).unwrap();
     assert_eq!((image.width, image.height), (160, 96));
     assert!(drawn_pixels(&image) > 300, "{} pixels of hair", drawn_pixels(&image));
-    // The same picture for a page: its size is in the frame's header, and it is no copy of the PNG.
+    // A JPEG of the same picture: it has the JPEG signature, and its frame header states the size.
     succeed(folder.path(), &[&["render", "groom.hair", "-o", "a.jpg"], &SIZE[..]].concat());
     let jpeg = std::fs::read(folder.path().join("a.jpg")).unwrap();
     let header = jpeg.windows(2).position(|w| w == [0xFF, 0xC0]).unwrap();
     assert_eq!((&jpeg[..2], &jpeg[header + 5..header + 9]), (&[0xFF, 0xD8][..], &[0, 96, 0, 160][..]));
-    // Nothing moves a groom alone.
+    // A groom alone does not move.
     succeed(folder.path(), &[&["render", "groom.hair", "-o", "b.png", "--frames", "20"], &SIZE[..]].concat());
     let later = read_png(&folder.path().join("b.png")).unwrap();
     let moved = image.rgb.iter().zip(&later.rgb).filter(|(a, b)| a.abs_diff(**b) > 24).count();
@@ -95,7 +96,7 @@ fn a_groom_alone_is_a_still() {
 }
 
 #[test]
-fn a_scene_is_numbered_pictures_that_resume() {
+fn a_scene_renders_as_numbered_pictures_that_resume() {
     let folder = tempfile::tempdir().unwrap();
     write_scene(folder.path(), 300);
     let frames = folder.path().join("frames");
@@ -121,10 +122,10 @@ fn a_scene_is_numbered_pictures_that_resume() {
     assert!(std::fs::read(folder.path().join("still.png")).unwrap() == whole[3].1);
 }
 
-/// Once round: the first frame is the picture from where the camera begins, the one after half of the frames that from the other side. A frame of it
-/// that is drawn anew is the same.
+/// A turntable is one full turn: the first frame is the view of the given camera, and the frame at half of
+/// the turn is the view from the opposite side. A frame that is rendered again is the same.
 #[test]
-fn a_turntable_goes_round_once() {
+fn a_turntable_is_one_full_turn() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_groom(f, 400);
@@ -139,11 +140,11 @@ fn a_turntable_goes_round_once() {
     assert!(turn(1) == std::fs::read(f.join("front.png")).unwrap());
     let [second, third] = [turn(2), turn(3)];
     assert!(second != third && third != turn(4));
-    // The scene plays on meanwhile: frame 3 from behind.
+    // The scene plays during the turn, so frame 3 is compared with frame 3 from behind.
     draw("back.png", &["--frames", "3", "--camera", "0.1,0.2,-0.7"]);
     let [turned, still] = ["turn.3.png", "back.png"].map(|name| read_png(&f.join(name)).unwrap());
     let apart = turned.rgb.iter().zip(&still.rgb).filter(|(a, b)| a.abs_diff(**b) > 8).count();
-    assert!(drawn_pixels(&still) > 100 && apart < turned.rgb.len() / 100, "{apart} values are apart");
+    assert!(drawn_pixels(&still) > 100 && apart < turned.rgb.len() / 100, "{apart} values differ");
     std::fs::remove_file(f.join("turn.2.png")).unwrap();
     draw("turn.#.png", &["--turntable", "--frames", "1-4", "--resume", "--camera", "0.1,0.2,0.9"]);
     assert!(turn(2) == second);
@@ -152,7 +153,7 @@ fn a_turntable_goes_round_once() {
 }
 
 #[test]
-fn a_scene_is_a_clip() {
+fn a_scene_renders_as_a_clip() {
     let folder = tempfile::tempdir().unwrap();
     write_scene(folder.path(), 100);
     let render = ["render", "scene.toml", "-o", "clip.mp4", "--frames", "1-7", "--fps", "24"];
@@ -162,7 +163,7 @@ fn a_scene_is_a_clip() {
 }
 
 #[test]
-fn the_built_in_head_is_a_clip_and_a_still() {
+fn demo_writes_a_clip_and_a_still() {
     let folder = tempfile::tempdir().unwrap();
     let small = ["demo", "--strands", "3000", "--guides", "100", "--seconds", "0.25"];
     let told = succeed(folder.path(), &[&small[..], &SIZE[..]].concat());
@@ -186,7 +187,7 @@ fn the_built_in_head_is_a_clip_and_a_still() {
 }
 
 #[test]
-fn a_real_head_is_drawn_and_baked() {
+fn a_real_head_is_rendered_and_baked() {
     let file = "grooms/sintel/SintelHairOriginal-sintel_hair.16points.tfx";
     let (Some(groom), Some(body), Some(collider)) = (
         crate::common::data(file),
@@ -217,5 +218,5 @@ fn a_real_head_is_drawn_and_baked() {
     let rest = hairspring_io::read_groom(&folder.path().join("s.1.tfx"), &Default::default()).unwrap().value;
     let authored = hairspring_io::read_groom(&groom, &Default::default()).unwrap().value;
     let far = rest.points.iter().zip(&authored.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-    assert!(far < 1e-5, "frame 1 is {far} m off the file");
+    assert!(far < 1e-5, "frame 1 differs from the file by {far} m");
 }

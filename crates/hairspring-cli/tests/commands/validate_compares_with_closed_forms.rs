@@ -1,5 +1,6 @@
-//! Promise: `hairspring validate` says what was measured, what was expected and whether that is near enough, under stable keys;
-//! its exit code is 1 where it is not, and its report is one file that stands by itself.
+//! Promise: `hairspring validate` reports measured and expected values and whether they agree, under stable
+//! keys. Its exit code is 1 where a value is outside its tolerance, and its report is one self-contained
+//! file.
 
 use crate::common::{json, names, run, succeed};
 use std::path::Path;
@@ -32,8 +33,8 @@ fn a_case_at_any_parameter() {
 }
 
 #[test]
-fn what_does_not_agree_is_exit_code_1() {
-    // Follow the leader has no bending.
+fn a_disagreement_is_exit_code_1() {
+    // Follow the leader has no bending stiffness.
     let output =
         run(Path::new("."), &["validate", "heavy-cantilever", "--gamma", "1", "--integrator", "ftl"]);
     let told = String::from_utf8(output.stderr).unwrap();
@@ -46,11 +47,11 @@ fn what_does_not_agree_is_exit_code_1() {
 fn a_table_has_a_value_or_a_reason_in_each_cell() {
     let found = succeed(Path::new("."), &["validate", "pendulum", "--table"]);
     let rows: Vec<&str> = found.lines().filter(|line| line.starts_with("| pendulum")).collect();
-    assert_eq!(rows.len(), 3, "one a model: {found}");
+    assert_eq!(rows.len(), 3, "expected one row for each model: {found}");
     for row in rows {
         let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
-        assert_eq!(cells.len(), 3 + 6, "case, model, tolerance, and 32 to 1,024 points: {row}");
-        // The springs model is damped by more than the tolerance, and its cell says so.
+        assert_eq!(cells.len(), 3 + 6, "expected case, model, tolerance, and 32 to 1,024 points: {row}");
+        // The damping of the springs model exceeds the tolerance, which its cell states.
         let wanted = if cells[1] == "springs" { "%** (2)" } else { "%" };
         assert!(cells[3].ends_with(wanted), "{row}");
         assert!(cells[4..].iter().all(|cell| *cell == "(1)"), "{row}");
@@ -68,11 +69,11 @@ fn a_report_is_one_file() {
     for part in ["<!doctype html>", "<h2>end-load</h2>", "<polyline", "<circle", "tip angle θ", "</html>"] {
         assert!(page.contains(part), "{part}");
     }
-    assert!(!page.contains("http") && !page.contains("src="), "nothing beside itself");
+    assert!(!page.contains("http") && !page.contains("src="), "the report loads other files");
 }
 
 #[test]
-fn what_a_case_does_not_know_is_refused() {
+fn invalid_parameters_of_a_case_are_refused() {
     for (arguments, parts) in [
         (&["validate", "cantilever"][..], ["'cantilever'", "heavy-cantilever"]),
         (&["validate", "greenhill", "--mu", "0.3"], ["--mu", "incline"]),

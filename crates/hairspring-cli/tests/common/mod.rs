@@ -1,4 +1,4 @@
-//! The program as a user runs it, and small files for it to read.
+//! Runs the program as a user does, and writes small files for it to read.
 
 // Each test file uses some of this.
 #![allow(dead_code)]
@@ -23,7 +23,7 @@ pub fn run(folder: &Path, arguments: &[&str]) -> Output {
     program(folder, arguments).output().unwrap()
 }
 
-/// Runs the program in `folder`, which must succeed; what it prints.
+/// Runs the program in `folder`; it must succeed. Returns what it prints.
 pub fn succeed(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -31,7 +31,7 @@ pub fn succeed(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Names of the files in `folder`, sorted, hidden ones included.
+/// Names of the files in `folder`, sorted, including hidden ones.
 pub fn names(folder: &Path) -> Vec<String> {
     let name = |f: std::io::Result<std::fs::DirEntry>| f.unwrap().file_name().to_string_lossy().into_owned();
     let mut names: Vec<String> = std::fs::read_dir(folder).unwrap().map(name).collect();
@@ -44,7 +44,7 @@ pub fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     names(folder).into_iter().map(|n| (n.clone(), std::fs::read(folder.join(n)).unwrap())).collect()
 }
 
-/// Strands of 20 cm that stand out sideways from a disc of 10 cm and droop, of 8 to 11 points each.
+/// Strands of 20 cm that start sideways on a disc of 10 cm and droop, with 8 to 11 points each.
 pub fn groom(strands: usize) -> Groom {
     let strand = |s: usize| {
         let angle = s as f32 * 2.4;
@@ -65,7 +65,8 @@ pub fn write_groom(folder: &Path, strands: usize) -> PathBuf {
     path
 }
 
-/// Writes `scene.toml` with its groom to `folder`: a sphere to collide with, and a gusty wind that moves all strands.
+/// Writes `scene.toml` and its groom to `folder`: a sphere collider, and a gusty wind that moves all
+/// strands.
 pub fn write_scene(folder: &Path, strands: usize) {
     write_groom(folder, strands);
     let scene = r#"
@@ -85,7 +86,7 @@ pub fn write_scene(folder: &Path, strands: usize) {
     std::fs::write(folder.join("scene.toml"), scene).unwrap();
 }
 
-/// The JSON object that the program prints.
+/// Parses JSON that the program printed.
 pub fn json(text: &str) -> serde_json::Value {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text:?}"))
 }
@@ -95,7 +96,7 @@ pub fn text(path: &impl AsRef<OsStr>) -> &str {
     path.as_ref().to_str().unwrap()
 }
 
-/// The path of a real file, or `None` with the reason printed where the data is not there.
+/// The path of a real data file, or `None` after printing the reason where the data is missing.
 pub fn data(relative: &str) -> Option<PathBuf> {
     let root = std::env::var_os("HAIRSPRING_DATA").map_or_else(
         || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),

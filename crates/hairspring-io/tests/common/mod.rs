@@ -1,8 +1,8 @@
-//! Where the real files lie.
+//! Locates the real data files.
 
 use std::path::PathBuf;
 
-/// The path of a real file, or `None` with the reason printed where the data is not there.
+/// The path of a real data file, or `None` after printing the reason where the data is missing.
 pub fn data(relative: &str) -> Option<PathBuf> {
     let root = std::env::var_os("HAIRSPRING_DATA").map_or_else(
         || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),

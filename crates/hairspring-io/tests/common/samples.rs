@@ -1,4 +1,4 @@
-//! Small files of every format, made by code, and the readers that take them.
+//! Small generated files of every format, and the readers for them.
 
 use glam::{Vec2, Vec3};
 use hairspring::groom::Groom;
@@ -6,7 +6,7 @@ use hairspring_io::{
     Problem, bvh, gltf, hair, makehuman, obj, scene, tfx, tfxbone, tfxmesh, usc, write_groom,
 };
 
-/// A format's name, a small file of it, and its reader.
+/// A format's name, a small file in it, and its reader.
 pub type Sample = (&'static str, Vec<u8>, fn(&[u8]) -> Result<(), Problem>);
 
 /// Three strands of `points` points, with colors and texture coordinates.
@@ -20,7 +20,7 @@ pub fn groom(points: usize) -> Groom {
     groom
 }
 
-/// The bytes that the writer for `extension` makes of `groom`.
+/// The bytes of `groom` as written in the format of `extension`.
 pub fn written(groom: &Groom, extension: &str) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("groom").with_extension(extension);
@@ -84,7 +84,7 @@ fn bones() -> Vec<u8> {
     bytes
 }
 
-/// The text of a `.tfxmesh` of one triangle.
+/// The text of a `.tfxmesh` with one triangle.
 pub fn skinned_mesh() -> String {
     "# a triangle\nnumOfBones 2\n0 hip\n1 arm\nnumOfVertices 3\n# index, position, normal, joints, weights\n\
      0 0 0 0 0 1 0 0 1 0 0 1 0 0 0\n1 1 0 0 0 1 0 1 0 0 0 0.5 0.5 0 0\n2 0 0 -1 0 1 0 1 0 0 0 1 0 0 0\n\
@@ -92,7 +92,7 @@ pub fn skinned_mesh() -> String {
         .into()
 }
 
-/// The text of an `.obj` of two groups.
+/// The text of an `.obj` with two groups.
 pub fn mesh() -> String {
     "o thing\nv 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\nv 0 1 0\nvt 0 0\nvt 1 1\ng floor\nf 1/1 2/2 3/1 4\n\
      g joint-a\nf -1//1 1 2\n"
@@ -106,14 +106,15 @@ fn motion() -> String {
         .into()
 }
 
-/// A rig of two bones over [`mesh`].
+/// A rig of two bones for [`mesh`].
 pub const RIG: &[u8] = br#"{"hip": {"head": {"strategy": "CUBE", "cube_name": "joint-a"}, "parent": ""},
   "arm": {"head": {"strategy": "MEAN", "vertex_indices": [0, 1]}, "parent": "hip"}}"#;
 
 /// Weights for [`RIG`].
 pub const WEIGHTS: &[u8] = br#"{"weights": {"hip": [[0, 1.0], [1, 0.5]], "arm": [[1, 0.5], [2, 1.0]]}}"#;
 
-/// A GLB of one skinned triangle and one that a node carries, with an animation of every interpolation.
+/// A GLB of one skinned triangle and one that is attached to a node, with an animation of every
+/// interpolation mode.
 pub fn glb() -> Vec<u8> {
     let mut bin: Vec<u8> = Vec::new();
     let mut views = Vec::new();
@@ -126,7 +127,7 @@ pub fn glb() -> Vec<u8> {
     add(floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0])); // 0: positions
     add(vec![0, 0, 1, 0, 2, 0]); // 1: indices, u16
     add(vec![0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]); // 2: joints, u8
-    add(vec![255, 0, 0, 0, 128, 127, 0, 0, 255, 0, 0, 0]); // 3: weights, normalised u8
+    add(vec![255, 0, 0, 0, 128, 127, 0, 0, 255, 0, 0, 0]); // 3: weights, normalized u8
     let identity = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     let mut down = identity;
     down[13] = -1.0;

@@ -1,4 +1,4 @@
-//! Scene files beside small files that they name.
+//! Scene files, with small files that they refer to.
 
 use glam::Vec3;
 use hairspring::groom::Groom;
@@ -22,14 +22,14 @@ pub fn folder() -> TempDir {
     folder
 }
 
-/// Reads a scene of this text in the folder.
+/// Reads a scene with this text in the folder.
 pub fn read(folder: &Path, text: &str) -> Result<Loaded<Scene>, Error> {
     let path = folder.join("scene.toml");
     fs::write(&path, text).unwrap();
     read_scene(&path)
 }
 
-/// The message for a scene, without the folder's name.
+/// The error message for a scene, without the folder's name.
 pub fn message(text: &str) -> String {
     let folder = folder();
     let error = read(folder.path(), text).expect_err(text);

@@ -1,9 +1,10 @@
-//! Promise: no file, however broken, makes a reader panic, hang or allocate without bound; it gives one sentence.
+//! Promise: no broken file makes a reader panic, hang or allocate without bound; the reader returns a
+//! one-sentence error.
 //!
-//! A small sound file of every format is cut at every length, and its bytes and words are changed one at a time to the
-//! values that break careless readers (0, the largest, the smallest). A cut file must be refused wherever something is
-//! missing; a changed one may be refused or read, as long as the reader comes back. The fuzz targets in `/fuzz` go on
-//! from here.
+//! A small valid file of every format is cut at every length. Its bytes and words are changed one at a time
+//! to values that break careless readers (0, the largest, the smallest). A cut file must be refused
+//! wherever something is missing. A changed file may be refused or read, as long as the reader returns. The
+//! fuzz targets in `/fuzz` extend this test.
 
 use glam::Vec3;
 use hairspring_io::{
@@ -14,7 +15,7 @@ use rayon::prelude::*;
 use std::fs;
 
 #[test]
-fn sound_files_are_read() {
+fn valid_files_are_read() {
     for (name, file, read) in crate::samples::all() {
         read(&file).unwrap_or_else(|e| panic!("{name}: {e}"));
     }
@@ -37,7 +38,7 @@ fn binary_files_cut_at_any_length_are_refused() {
 }
 
 #[test]
-fn text_files_cut_at_any_length_come_back() {
+fn readers_of_cut_text_files_return() {
     for (name, file, read) in crate::samples::all() {
         for length in 0..file.len() {
             if let Err(problem) = read(&file[..length]) {
@@ -48,7 +49,7 @@ fn text_files_cut_at_any_length_come_back() {
 }
 
 #[test]
-fn every_byte_and_word_may_lie() {
+fn every_changed_byte_and_word_is_handled() {
     for (name, file, read) in crate::samples::all() {
         println!("{name}: {} bytes", file.len());
         (0..file.len()).into_par_iter().for_each_init(
@@ -80,7 +81,7 @@ fn every_byte_and_word_may_lie() {
 }
 
 #[test]
-fn numbers_in_text_may_lie() {
+fn extreme_numbers_in_text_are_handled() {
     for (name, file, read) in crate::samples::all() {
         let Ok(text) = std::str::from_utf8(&file) else {
             continue;
@@ -106,7 +107,7 @@ fn numbers_in_text_may_lie() {
 }
 
 #[test]
-fn the_sentence_has_file_place_and_remedy() {
+fn the_error_has_file_place_and_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let options = ReadOptions::default();
@@ -146,7 +147,7 @@ fn the_sentence_has_file_place_and_remedy() {
 }
 
 #[test]
-fn a_groom_too_far_for_its_size_is_refused_and_not_repaired() {
+fn a_groom_too_far_from_the_origin_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("far.data");
     let write = |away: f32| {
@@ -167,7 +168,7 @@ fn a_groom_too_far_for_its_size_is_refused_and_not_repaired() {
 }
 
 #[test]
-fn a_gltf_that_runs_in_circles_or_abroad_is_refused() {
+fn a_gltf_with_a_cycle_or_a_remote_buffer_is_refused() {
     let read = |json: &str| hairspring_io::gltf::parse(json.as_bytes(), &|_| None).map(drop).unwrap_err();
     let circle =
         r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}"#;
@@ -183,7 +184,7 @@ fn a_gltf_that_runs_in_circles_or_abroad_is_refused() {
 }
 
 #[test]
-fn a_rig_that_runs_in_circles_is_refused() {
+fn a_rig_with_a_cycle_is_refused() {
     let mesh = || hairspring_io::obj::parse(crate::samples::mesh().as_bytes()).unwrap();
     let end = r#""head": {"strategy": "VERTEX", "vertex_index": 0}"#;
     for (rig, why) in [
@@ -197,7 +198,7 @@ fn a_rig_that_runs_in_circles_is_refused() {
     }
 }
 
-/// Made once: the noise comes many times.
+/// Made once, because the property test runs many times.
 static SAMPLES: std::sync::LazyLock<Vec<crate::samples::Sample>> =
     std::sync::LazyLock::new(crate::samples::all);
 
@@ -206,7 +207,7 @@ proptest! {
     fn noise_is_refused(noise in prop::collection::vec(any::<u8>(), 0..400)) {
         for (_, file, read) in SAMPLES.iter() {
             let _ = read(&noise);
-            // Noise after a sound beginning.
+            // Noise after a valid beginning.
             let mut half = file[..file.len() / 2].to_vec();
             half.extend(&noise);
             let _ = read(&half);

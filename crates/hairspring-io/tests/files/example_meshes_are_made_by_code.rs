@@ -1,12 +1,14 @@
-//! Promise: every mesh of the example scenes is made here, from a few solids and from the library's own head and hand, and its file is, byte for byte, what is made.
-//! `HAIRSPRING_MESHES=write` writes the files anew (`cargo xtask meshes`): then draw the scenes that show them, and look.
+//! Promise: every mesh of the example scenes is generated here, from a few solids and from the library's
+//! own head and hand. The files equal the generated meshes byte for byte. `HAIRSPRING_MESHES=write` writes
+//! the files again (`cargo xtask meshes`); afterwards, render the scenes that show them and check the
+//! pictures.
 
 use glam::{Quat, Vec3, vec3};
 use hairspring::body::Mesh;
 use hairspring_scene::builtin::{hand, head};
 use std::{collections::HashMap, f32::consts::TAU, fmt::Write, fs, path::Path};
 
-/// A mesh as its file has it: the lines of its vertices, then those of its groups and faces.
+/// A mesh as written to its file: the vertex lines, then the group and face lines.
 #[derive(Default)]
 struct Obj {
     vertices: Vec<String>,
@@ -14,27 +16,28 @@ struct Obj {
 }
 
 impl Obj {
-    /// Adds a vertex; its number, from 1.
+    /// Adds a vertex and returns its number, from 1.
     fn vertex(&mut self, p: Vec3) -> usize {
-        // A tenth of a millimeter is enough; adding 0 takes the sign off a zero.
+        // Coordinates are rounded to 0.1 mm; adding 0 turns -0 into 0.
         let [x, y, z] = p.to_array().map(|c| (f64::from(c) * 1e4).round() / 1e4 + 0.0);
         self.vertices.push(format!("v {x:.4} {y:.4} {z:.4}"));
         self.vertices.len()
     }
 
-    /// What follows belongs to this part.
+    /// Starts a part; the faces that follow belong to it.
     fn part(&mut self, name: &str) {
         self.faces.push(format!("g {name}"));
     }
 
-    /// Adds a face, counter-clockwise seen from outside.
+    /// Adds a face, counterclockwise seen from outside.
     fn face(&mut self, corners: &[usize]) {
         let mut line = String::from("f");
         corners.iter().for_each(|corner| write!(line, " {corner}").unwrap());
         self.faces.push(line);
     }
 
-    /// Adds rows of vertices with quads between them, and between the last and the first where it is `closed`; the number of the first vertex.
+    /// Adds rows of vertices with quads between them. A `closed` grid also joins the last row and column to
+    /// the first. Returns the number of the first vertex.
     fn grid(
         &mut self,
         rows: usize,
@@ -55,8 +58,8 @@ impl Obj {
         first
     }
 
-    /// Adds an ellipsoid of so many rows from pole to pole, with as many vertices in each as it is `round`; each row is turned by half a vertex against the one before
-    /// where it is `staggered`.
+    /// Adds an ellipsoid of `rows` rows from pole to pole, with `round` vertices in each. Where it is
+    /// `staggered`, each row is turned by half a vertex relative to the previous one.
     fn ellipsoid(&mut self, rows: usize, round: usize, staggered: bool, at: impl Fn(Vec3) -> Vec3) {
         let top = self.vertex(at(Vec3::Y));
         for row in 1..rows {
@@ -79,7 +82,8 @@ impl Obj {
         (0..round).for_each(|k| self.face(&[vertex(rows - 1, k + 1), vertex(rows - 1, k), bottom]));
     }
 
-    /// Adds a solid between two rectangles that face along z, each given by its middle and half of its width and height.
+    /// Adds a solid between two rectangles that face along z, each given by its center and half of its
+    /// width and height.
     fn frustum(&mut self, front: (Vec3, [f32; 2]), back: (Vec3, [f32; 2])) {
         let first = self.vertices.len();
         for (middle, [x, y]) in [front, back] {
@@ -92,13 +96,14 @@ impl Obj {
         }
     }
 
-    /// Adds a mesh of the library with its parts. It is closed, as what hair meets must be: each edge is there as often one way as the other.
+    /// Adds a mesh of the library with its parts. It must be closed, as a collider must be: each edge
+    /// occurs equally often in both directions.
     fn mesh(&mut self, mesh: &Mesh, place: impl Fn(Vec3) -> Vec3) {
         let mut edges = HashMap::new();
         for (a, b) in mesh.triangles.iter().flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]) {
             *edges.entry((a.min(b), a.max(b))).or_insert(0) += if a < b { 1 } else { -1 };
         }
-        assert!(edges.values().all(|n| *n == 0), "it is closed");
+        assert!(edges.values().all(|n| *n == 0), "the mesh is not closed");
         let first = self.vertices.len() + 1;
         mesh.positions.iter().for_each(|p| _ = self.vertex(place(*p)));
         for part in &mesh.parts {
@@ -109,7 +114,7 @@ impl Obj {
         }
     }
 
-    /// The file is this mesh.
+    /// Checks that the file equals this mesh, or writes it.
     fn is(self, file: &str, what: &str) {
         let lines = [format!("# {what}; in meters. Made by `cargo xtask meshes`.")];
         let text = [&lines[..], &self.vertices, &self.faces].concat().join("\n") + "\n";
@@ -119,7 +124,7 @@ impl Obj {
         }
         let kept = fs::read_to_string(&path).unwrap();
         let other = kept.lines().zip(text.lines()).position(|(kept, made)| kept != made);
-        assert!(kept == text, "{file} differs from what is made, first in line {other:?} from 0");
+        assert!(kept == text, "{file} differs from the generated mesh, first in line {other:?} from 0");
     }
 }
 
@@ -133,7 +138,7 @@ fn the_head() {
 #[test]
 fn the_hand() {
     let mut obj = Obj::default();
-    // Its palm to the head, its fingers forward.
+    // The palm faces the head, and the fingers point forward.
     obj.mesh(&hand(0.005).mesh, |p| vec3(-0.26 - p.z, 0.06 - p.x, -0.09 + p.y));
     obj.is("meshes/hand.obj", "An open right hand beside a head");
 }
@@ -145,7 +150,7 @@ fn the_comb() {
     obj.frustum((vec3(0.0, 0.07, -0.242), [0.066, 0.0035]), (vec3(0.0, 0.07, -0.256), [0.066, 0.0035]));
     for tine in 0..23 {
         let at = |z: f32| vec3(0.063 * (tine as f32 / 11.0 - 1.0), 0.07, z);
-        // The outermost are the thickest.
+        // The outermost tines are the thickest.
         let half = if tine % 22 == 0 { 0.0011 } else { 0.0006 };
         obj.frustum((at(-0.2), [half, 0.0008]), (at(-0.242), [2.0 * half, 0.0016]));
     }
@@ -188,7 +193,8 @@ fn the_leaf() {
     obj.part("leaf");
     let at = |row: usize, column: usize| {
         let (u, v) = (row as f32 / 8.0 - 1.0, 1.0 - column as f32 / 4.0);
-        // It is narrow at both ends, which hang down; it is folded along its middle, and its rim waves.
+        // The leaf is narrow at both ends, which hang down. It is folded along its middle, and its rim is
+        // wavy.
         let (half, wave) = (0.085 * (1.4 * u).cos(), (5.0 * u + 1.2 * v).sin());
         let height = -0.122 - 0.038 * u * u + 0.018 * v.abs() - 0.008 * v + 0.010 * v.abs() * wave;
         vec3(0.15 * u, height, 0.075 + half * v)

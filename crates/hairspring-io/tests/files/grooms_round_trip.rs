@@ -1,7 +1,8 @@
-//! Promise: what is written is read back, to the last bit where the format has room for it.
+//! Promise: a written groom is read back, exactly where the format can hold its values.
 //!
-//! A baked frame is only as good as its file: positions, radii and colors must come back exactly, in meters and Y up
-//! with nothing guessed from `.hair` and `.tfx`; a file is whole or not there; and what a format can not hold is said.
+//! Baked frames must not lose precision: positions, radii and colors come back exactly. `.hair` and `.tfx`
+//! files are in meters and Y up, and the reader guesses neither. A file is either complete or absent, and
+//! data that a format cannot hold is reported.
 
 use glam::{Vec2, Vec3};
 use hairspring::groom::{DEFAULT_RADIUS, Groom};
@@ -17,7 +18,8 @@ fn point() -> impl Strategy<Value = Vec3> {
     (x(), x(), x()).prop_map(Vec3::from)
 }
 
-/// A groom of strands of 1 to 9 points, of any radii and colors. `even`: all of as many points, one radius a strand.
+/// A groom of strands of 1 to 9 points, with any radii and colors. `even`: equal point counts, and one
+/// radius a strand.
 fn groom(even: bool) -> impl Strategy<Value = Groom> {
     let strands = (1usize..9).prop_flat_map(move |n| {
         let counts = if even { n..n + 1 } else { 1..10 };
@@ -38,12 +40,12 @@ fn groom(even: bool) -> impl Strategy<Value = Groom> {
     })
 }
 
-/// The bytes that a groom is written as.
+/// The bytes of a groom as written.
 fn bytes(groom: &Groom, extension: &str) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(format!("groom.{extension}"));
     write_groom(&path, groom).unwrap();
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing but the file itself is left");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "a temporary file is left");
     fs::read(path).unwrap()
 }
 
@@ -67,9 +69,9 @@ proptest! {
 }
 
 #[test]
-fn our_own_files_come_back_in_meters_with_nothing_guessed() {
+fn scale_of_own_files_is_not_guessed() {
     let folder = tempfile::tempdir().unwrap();
-    // A hundredth of the size of a head: a guess would go wrong.
+    // A hundredth of the size of a head, so that a guess of the scale would be wrong.
     let strand =
         |i: usize| (0..5).map(|k| Vec3::new(1e-4 * i as f32, 3e-4 * k as f32, 0.0)).collect::<Vec<_>>();
     let groom = Groom::from_strands((0..4).map(strand), 7e-4);
@@ -96,7 +98,7 @@ fn a_frame_is_written_from_borrowed_points() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused_or_said() {
+fn unsupported_data_is_refused_or_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let line = |n: usize| (0..n).map(|k| Vec3::Y * k as f32).collect::<Vec<_>>();
@@ -116,13 +118,13 @@ fn what_does_not_fit_is_refused_or_said() {
     grouped.groups = vec![0, 1];
     let lost = write_groom(&path("b.data"), &grouped).unwrap();
     assert_eq!(lost, ["a .data file cannot hold groups, radii; left out"]);
-    // Nothing is left of those that were refused.
+    // The refused writes leave no files.
     let names: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name()).collect();
     assert_eq!(names, ["b.data"]);
 }
 
 #[test]
-fn a_file_that_is_there_is_replaced_whole_or_kept() {
+fn an_existing_file_is_replaced_atomically() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.data");
     fs::write(&path, "old").unwrap();

@@ -5,7 +5,7 @@
 mod headless_bake;
 
 #[test]
-fn it_writes_a_file_a_frame() {
+fn it_writes_one_file_for_each_frame() {
     let folder = tempfile::tempdir().unwrap();
     headless_bake::bake(folder.path(), 2).unwrap();
     for frame in 1..=2 {

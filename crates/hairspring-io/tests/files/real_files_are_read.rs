@@ -1,8 +1,9 @@
-//! Promise: files that others made are read, whole and in the right place.
+//! Promise: files from third parties are read completely and in the right place.
 //!
-//! Formats are described by their authors but decided by the files that are about. These tests read real hairstyles,
-//! characters and motions and compare counts, sizes and lengths with those that were measured in the files by other
-//! means (the table in the data's README). They are skipped, with a reason printed, where the data is not there.
+//! Authors describe their formats, but real files decide what a reader must accept. These tests read real
+//! hairstyles, characters and motions. They compare counts, sizes and lengths with values that were
+//! measured in the files by other means (the table in the data's README). A test is skipped, with a reason
+//! printed, where its data is missing.
 
 use crate::common::data;
 use glam::Vec3;
@@ -19,7 +20,7 @@ fn near(a: f32, b: f32, tolerance: f32) {
     assert!((a - b).abs() <= tolerance, "{a} is not within {tolerance} of {b}");
 }
 
-/// In the file's own units and axes.
+/// Reads in the file's own units and axes.
 const RAW: ReadOptions = ReadOptions { scale: Some(1.0), up: Some(hairspring_io::Axis::Y) };
 
 #[test]
@@ -44,7 +45,7 @@ fn grooms_have_their_strands_and_points() {
 }
 
 #[test]
-fn boxes_and_lengths_are_those_of_the_files() {
+fn bounds_and_lengths_match_the_files() {
     let Some(path) = data("grooms/straight/straight.hair") else {
         return;
     };
@@ -76,7 +77,7 @@ fn boxes_and_lengths_are_those_of_the_files() {
 }
 
 #[test]
-fn the_mohawk_has_its_uvs_bones_and_near_zero_segments() {
+fn mohawk_has_uvs_bones_and_near_zero_segments() {
     let Some(path) = data("grooms/tressfx_mohawk/Ratboy_mohawk.tfx") else {
         return;
     };
@@ -117,7 +118,7 @@ fn bodies_have_their_vertices_and_faces() {
 }
 
 #[test]
-fn the_robot_stands_4_5_m_tall_in_its_bind_pose_and_in_every_clip() {
+fn the_robot_is_4_5_m_tall_and_bounded_in_every_clip() {
     let Some(path) = data("characters/robot/robot.glb") else {
         return;
     };
@@ -129,16 +130,17 @@ fn the_robot_stands_4_5_m_tall_in_its_bind_pose_and_in_every_clip() {
     near(lo.y, 0.0, 0.1);
     assert_eq!(robot.value.clips.len(), 14);
     assert!(body.joints.iter().enumerate().all(|(j, joint)| joint.parent.is_none_or(|p| (p as usize) < j)));
-    // The skinned rest pose is the mesh itself.
+    // Skinning the rest pose reproduces the mesh.
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     body.skinned(&body.world(&body.rest_pose()), &mut positions, &mut normals);
     let worst = positions.iter().zip(&body.mesh.positions).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-    assert!(worst < 1e-3, "skinning the rest pose moves a vertex by {worst} m");
+    assert!(worst < 1e-3, "skinning the rest pose moved a vertex by {worst} m");
     for clip in &robot.value.clips {
         assert_eq!(clip.joint_count, body.joints.len());
         let duration = clip.duration();
         assert!((0.3..=3.4).contains(&duration), "{} lasts {duration} s", clip.name);
-        // Whatever it does, its parts hang together: no larger than itself with arms and legs out.
+        // In every clip the body stays connected: it is no larger than the body with arms and legs
+        // stretched out.
         let (lo, hi) = (0..clip.frame_count())
             .step_by(7)
             .map(|f| {
@@ -153,11 +155,11 @@ fn the_robot_stands_4_5_m_tall_in_its_bind_pose_and_in_every_clip() {
     }
     let head = body.joint("Head").unwrap();
     let top = body.world(&body.rest_pose())[head].translation.y;
-    assert!((2.0..4.5).contains(&top), "the head joint is {top} m up");
+    assert!((2.0..4.5).contains(&top), "the head joint is at a height of {top} m");
 }
 
 #[test]
-fn motions_have_their_frames_and_people_their_height() {
+fn motions_have_their_frames_and_height() {
     for (file, frames, rate) in [
         ("motion/cmu/02_01.bvh", 343, 120.0),
         ("motion/cmu/01_01.bvh", 2_752, 120.0),

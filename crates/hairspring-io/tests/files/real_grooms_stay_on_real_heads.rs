@@ -1,10 +1,12 @@
-//! Promise: hair that others made stays on the heads that others made, whatever they do.
+//! Promise: third-party hair stays on third-party heads in any motion.
 //!
-//! Real grooms begin inside their colliders, have segments of no length, roots off the skin and fibers thicker or thinner than
-//! hair; real bodies are open, overlap themselves and jump from pose to pose. Each scene file of `examples/scenes` plays here for a
-//! few seconds with few guides and must keep what the simulation promises: the first frame is the file, nothing explodes, segments
-//! keep their length, roots stay on the skin, hair stays out of the head but for the little that was measured (with margin),
-//! and a body at rest has hair at rest. A scene is skipped, with a reason printed, where its data is not there.
+//! Real grooms begin inside their colliders, have segments of zero length, roots off the skin and fibers
+//! thicker or thinner than hair. Real bodies are open, overlap themselves and jump from pose to pose. Each
+//! scene file of `examples/scenes` is simulated for a few seconds with few guides and must keep what the
+//! simulation promises. The first frame equals the file, nothing explodes, segments keep their length, and
+//! roots stay on the skin. Hair stays out of the head, except for the small penetration that was measured
+//! (with a margin). Hair on a body at rest stays at rest. A scene is skipped, with a reason printed, where
+//! its data is missing.
 
 use crate::common::data;
 use glam::Vec3;
@@ -16,17 +18,18 @@ use std::path::Path;
 /// Length of a frame [s].
 const FRAME: f32 = 1.0 / 60.0;
 
-/// What a scene keeps to.
+/// The bounds of a scene.
 struct Bounds {
-    /// The longest that it plays [s].
+    /// The longest simulated time [s].
     seconds: f64,
-    /// Most of the simulated points, in any frame, deeper in a collider than they were authored [share].
+    /// The largest share of the simulated points, in any frame, that are deeper in a collider than they
+    /// were authored.
     inside: f64,
-    /// The deepest of them [m].
+    /// The largest penetration of these points [m].
     depth: f64,
 }
 
-/// Plays the scene file `name`, whose data `needs` stands for.
+/// Simulates the scene file `name`; it is skipped where the file `needs` is missing.
 fn plays(name: &str, needs: &str, bounds: Bounds) {
     if data(needs).is_none() {
         return;
@@ -41,7 +44,7 @@ fn plays(name: &str, needs: &str, bounds: Bounds) {
     moves(scene, &bounds);
 }
 
-/// Without motion, the first frame is the file, and a second later still is.
+/// Without motion, the first frame equals the file and stays so for a second.
 fn rests(scene: Scene) {
     let mut stage = Stage::new(Scene { clip: None, ..scene }).unwrap();
     let error = |stage: &Stage| {
@@ -58,16 +61,16 @@ fn rests(scene: Scene) {
         sum / count as f64
     };
     let first = error(&stage);
-    assert!(first < 1e-6, "the first frame is {first} m off the file");
+    assert!(first < 1e-6, "the first frame differs from the file by {first} m");
     for _ in 0..60 {
         stage.step(FRAME);
     }
     let moved = error(&stage);
-    println!("at rest: {first:e} m off the file, {moved:e} m after a second");
-    assert!(moved < 1e-4, "the mean point moved {moved} m in a second at rest");
+    println!("at rest: {first:e} m from the file, {moved:e} m after a second");
+    assert!(moved < 1e-4, "points moved by {moved} m in the mean in a second at rest");
 }
 
-/// In motion, bounds are kept in every frame.
+/// In motion, the bounds hold in every frame.
 fn moves(scene: Scene, bounds: &Bounds) {
     let seconds = scene.clip.as_ref().map_or(1.0, |c| c.duration()).min(bounds.seconds);
     let mut stage = Stage::new(scene).unwrap();
@@ -87,22 +90,22 @@ fn moves(scene: Scene, bounds: &Bounds) {
         worst.surface_depth = worst.surface_depth.max(measure.surface_depth);
         inside = inside.max(measure.inside_points);
         let off = root_error(&stage);
-        assert!(off < 1e-4, "at {} s a root is {off} m from where the body carries it", stage.time());
+        assert!(off < 1e-4, "at {} s a root is {off} m from its place on the body", stage.time());
     }
     let share = inside as f64 / points;
     println!(
-        "in motion: stretch {:.3} %, {inside} points ({:.4} %) inside, at most {:.3} mm deep, segments {:.3} mm in the mesh",
+        "in motion: stretch {:.3} %, {inside} points ({:.4} %) inside, at most {:.3} mm deep, segments at most {:.3} mm in the mesh",
         worst.stretch_max * 100.0,
         share * 100.0,
         worst.max_depth * 1e3,
         worst.surface_depth * 1e3
     );
-    assert!(worst.stretch_max < 0.011, "a segment is {} of its length off it", worst.stretch_max);
+    assert!(worst.stretch_max < 0.011, "a segment changed its length by {} of it", worst.stretch_max);
     assert!(share <= bounds.inside, "{inside} points, a share of {share}, are inside");
     assert!(worst.max_depth <= bounds.depth, "a point is {} m deep", worst.max_depth);
 }
 
-/// The farthest that a root is from where its triangle carries it [m].
+/// The largest distance of a root from its place on its triangle [m].
 fn root_error(stage: &Stage) -> f32 {
     let body = stage.body().expect("these scenes have a body");
     let mut worst = 0.0_f32;
@@ -132,28 +135,31 @@ fn sintel_dabs_at_600_degrees_a_second() {
 }
 
 #[test]
-fn the_mohawk_jumps() {
+fn mohawk_jumps() {
     let bounds = Bounds { seconds: 2.0, inside: 3e-3, depth: 1e-3 };
     plays("mohawk.toml", "grooms/tressfx_mohawk/Ratboy_mohawk.tfx", bounds);
 }
 
-/// Her jacket and mouth are open shells, thinner than a tip moves in a substep: a few tips are caught in them for a moment.
+/// The jacket and the mouth are open shells, thinner than the distance a tip moves in a substep. A few tips
+/// are caught in them for a moment.
 #[test]
-fn the_ponytail_swings() {
+fn ponytail_swings() {
     let bounds = Bounds { seconds: 3.0, inside: 5e-3, depth: 9e-3 };
     plays("ponytail.toml", "grooms/tressfx_ponytail/tail.tfx", bounds);
 }
 
-/// 4.5 m tall: a millimeter of a human head is 12 of his. His dome and body are open shells that overlap.
+/// The robot is 4.5 m tall, so 1 mm on a human head corresponds to 12 mm on its head. Its dome and body are
+/// open shells that overlap.
 #[test]
-fn the_robot_dances() {
+fn robot_dances() {
     let bounds = Bounds { seconds: 2.0, inside: 2e-2, depth: 40e-3 };
     plays("robot.toml", "characters/robot/robot.glb", bounds);
 }
 
-/// Segments of 3.5 cm round the chin, whose mouth is an open pocket in the mesh: a few tips are caught in the thin flesh between.
+/// Segments of 3.5 cm hang around the chin, and the mouth is an open pocket in the mesh. A few tips are
+/// caught in the thin layer between.
 #[test]
-fn long_straight_hair_walks_on_a_skinned_human() {
+fn long_straight_hair_on_a_walking_skinned_human() {
     let bounds = Bounds { seconds: 1.5, inside: 5e-3, depth: 15e-3 };
     plays("straight-walk.toml", "grooms/straight/straight.hair", bounds);
 }

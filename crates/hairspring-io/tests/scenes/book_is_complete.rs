@@ -1,7 +1,10 @@
-//! Promise: the book leaves nothing out and points at nothing that is not there. Every parameter of a scene file has its page in the folder
-//! of its group in `docs/parameters`, with its unit, its range and the default that the code has; it has two pictures of values that the
-//! table of pictures names, or says why not. The group's page and the summary list its parameters in one order, and the group's page says of
-//! each what its page does. Every page is in the summary, once, every link of every page and of the README leads to a file, no page is led
+//! Promise: the book is complete and has no broken reference. Every parameter of a scene file has a page in
+//! the folder of its group in `docs/parameters`, with its unit, its range and the default of the code. The
+//! page has two pictures, of the values in the table of pictures, or states why not. The group's page and
+//! the summary list the parameters in the same order, and the group's page repeats the first sentence of
+//! each parameter's page. Every page is in the summary exactly once. Every link of every page and of the
+//! README leads to a file. Every page is linked from a page other than the summary. Every picture is shown,
+//! and the scenes of the book can be read. The glossary is sorted and names files that exist.
 //! to by the summary alone, every picture is shown, and the scenes of the book can be read. The glossary is in order, and names files that are there.
 
 use hairspring::{
@@ -27,7 +30,7 @@ const COLLIDER: &str = include_str!("../../../hairspring-scene/src/settings.rs")
 const SOURCE: &str = include_str!("../../../hairspring/src/air/source.rs");
 const CHARGE: &str = include_str!("../../../hairspring/src/forces/charge.rs");
 
-/// What a parameter's name begins with, and the struct (or variant) whose fields follow.
+/// The prefix of a parameter's name, and the struct (or variant) whose fields follow it.
 const STRUCTS: [(&str, &str, &str); 43] = [
     ("", FILE, "SceneFile"),
     ("builtin.", FILE, "BuiltinFile"),
@@ -71,7 +74,7 @@ const STRUCTS: [(&str, &str, &str); 43] = [
     ("neighbours.", include_str!("../../../hairspring/src/settings/neighbours.rs"), "Neighbours"),
     ("camera.", include_str!("../../../hairspring-scene/src/camera.rs"), "Camera"),
     ("ground.", include_str!("../../../hairspring-scene/src/ground.rs"), "Ground"),
-    // Tables that have a page as a whole, besides those of their fields.
+    // Tables that have a page of their own in addition to those of their fields.
     ("collision.", "", ""),
     ("sheet.", "", ""),
     ("charged.path.", "", ""),
@@ -79,12 +82,12 @@ const STRUCTS: [(&str, &str, &str); 43] = [
     ("prop.mesh.", "", ""),
 ];
 
-/// Fields that the body's other meshes have and it has not, by the name that the book gives them.
+/// Fields that only the other meshes of a body have, and the names that the book gives them.
 const ELSEWHERE: [(&str, &str); 2] =
     [("body.joint", "collision.joint"), ("body.thickness", "sheet.thickness")];
 
 #[test]
-fn every_parameter_has_its_page() {
+fn every_parameter_has_a_page() {
     let known: BTreeSet<String> = STRUCTS
         .iter()
         .flat_map(|(prefix, source, name)| {
@@ -99,18 +102,18 @@ fn every_parameter_has_its_page() {
     }
     for name in said.keys() {
         let there = known.contains(name) || begins(name) || name == "material.preset";
-        assert!(there, "docs/parameters has a page `{name}`, which a scene file does not know");
+        assert!(there, "docs/parameters has a page `{name}`, which is not a parameter of a scene file");
     }
-    // What borrows is not read from a file.
+    // A struct that borrows is not read from a file.
     let structs = FILE.lines().filter_map(|l| l.strip_prefix("pub(super) struct "));
     for line in structs.filter(|line| !line.contains('<')) {
         let name = line.trim_end_matches(" {");
-        assert!(STRUCTS.iter().any(|(.., s)| *s == name), "`{name}` of the scene file is not looked at here");
+        assert!(STRUCTS.iter().any(|(.., s)| *s == name), "`{name}` of the scene file is missing in STRUCTS");
     }
 }
 
 #[test]
-fn every_parameter_has_its_unit_its_range_and_the_default_of_the_code() {
+fn every_parameter_has_unit_range_and_default() {
     let defaults = defaults();
     let said = parameters();
     for (name, text) in &said {
@@ -129,20 +132,20 @@ fn every_parameter_has_its_unit_its_range_and_the_default_of_the_code() {
 }
 
 #[test]
-fn every_parameter_is_shown_or_says_why_not() {
+fn every_parameter_has_pictures_or_a_reason() {
     let table: Table = read(&docs().join("pictures.toml")).parse().unwrap();
     let mut said = parameters();
     for entry in table["parameter"].as_array().unwrap() {
         let name = entry["name"].as_str().unwrap();
         let text =
-            said.remove(name).unwrap_or_else(|| panic!("pictures.toml: there is no parameter `{name}`"));
+            said.remove(name).unwrap_or_else(|| panic!("pictures.toml: unknown parameter `{name}`"));
         let (low, high) = (&entry["low"], &entry["high"]);
-        // By their values: the order of a table's fields is nobody's promise.
+        // Values are compared, because the order of a table's fields is unspecified.
         let heads = text.lines().find(|l| l.starts_with("| `")).unwrap_or_default();
         let heads: Vec<Value> =
             heads.split(" | ").map(|h| value_of(h.trim_matches(['|', ' ', '`']))).collect();
         let right = heads.len() == 2 && same(&heads[0], low) && same(&heads[1], high);
-        assert!(right, "{name}: not its values, {low} and {high}");
+        assert!(right, "{name}: the page does not show the values {low} and {high}");
         for side in ["low", "high"] {
             assert!(
                 text.contains(&format!("(../../pictures/parameters/{name}-{side}.jpg)")),
@@ -150,11 +153,11 @@ fn every_parameter_is_shown_or_says_why_not() {
             );
         }
         let (scene, frame) = (entry["scene"].as_str().unwrap(), &entry["frame"]);
-        assert!(text.contains(&format!("(../scenes/{scene}.toml)")), "{name}: not its scene");
-        assert!(text.contains(&format!("frame {frame}.")), "{name}: not its frame");
+        assert!(text.contains(&format!("(../scenes/{scene}.toml)")), "{name}: the scene {scene} is missing");
+        assert!(text.contains(&format!("frame {frame}.")), "{name}: the frame {frame} is missing");
     }
     for (name, text) in said {
-        assert!(text.contains("*No picture.*"), "{name} has no picture, and does not say why");
+        assert!(text.contains("*No picture.*"), "{name} has neither a picture nor a reason");
     }
     for picture in files(&docs().join("pictures/parameters"), "jpg") {
         let bytes = fs::metadata(&picture).unwrap().len();
@@ -163,20 +166,20 @@ fn every_parameter_is_shown_or_says_why_not() {
 }
 
 #[test]
-fn a_group_lists_its_parameters_and_says_of_each_what_its_page_does() {
+fn group_pages_list_their_parameters() {
     let said = parameters();
     let summary = read(&docs().join("SUMMARY.md"));
     let mut listed = BTreeSet::new();
     for page in files(&docs().join("parameters"), "md").iter().filter(|p| is_a_group(p)) {
         let group = page.file_stem().unwrap().to_str().unwrap();
         let text = read(page);
-        assert!(!text.contains("\n## "), "{}: a parameter has a page of its own", page.display());
+        assert!(!text.contains("\n## "), "{}: parameters must have pages of their own", page.display());
         let rows: Vec<&str> = text.lines().filter(|l| l.starts_with("| [`")).collect();
         let mut entries = format!("](parameters/{group}.md)\n");
         for row in rows {
             let name = row.trim_start_matches("| [`").split('`').next().unwrap();
-            let text = said.get(name).unwrap_or_else(|| panic!("{group}: there is no page `{name}`"));
-            // A page's links begin in its own folder.
+            let text = said.get(name).unwrap_or_else(|| panic!("{group}: the page `{name}` is missing"));
+            // The links of a page are relative to its own folder.
             let [row, text] = [row, text].map(without_links);
             let mut parts = text.lines().filter(|l| !l.is_empty());
             let (unit, rest) =
@@ -192,26 +195,26 @@ fn a_group_lists_its_parameters_and_says_of_each_what_its_page_does() {
     }
     assert!(
         said.keys().eq(&listed),
-        "not on their group's page: {:?}",
+        "missing on the page of their group: {:?}",
         said.keys().filter(|n| !listed.contains(*n))
     );
 }
 
 #[test]
-fn every_page_is_in_the_summary_and_led_to() {
+fn every_page_is_in_the_summary_and_linked() {
     let summary = read(&docs().join("SUMMARY.md"));
     let led_to = links(files(&docs(), "md").into_iter().filter(|page| !page.ends_with("SUMMARY.md")));
     for page in files(&docs(), "md") {
         let name = page.strip_prefix(docs()).unwrap().to_str().unwrap().replace('\\', "/");
         if name != "SUMMARY.md" && name != "README.md" {
             assert_eq!(summary.matches(&format!("]({name})")).count(), 1, "{name} in docs/SUMMARY.md");
-            assert!(led_to.contains(&page.canonicalize().unwrap()), "no page leads to {name}");
+            assert!(led_to.contains(&page.canonicalize().unwrap()), "no page links to {name}");
         }
     }
 }
 
 #[test]
-fn every_link_leads_somewhere() {
+fn every_link_leads_to_a_file() {
     let linked = links(files(&docs(), "md").into_iter().chain([docs().join("../README.md")]));
     for picture in files(&docs(), "jpg") {
         assert!(linked.contains(&picture.canonicalize().unwrap()), "no page shows {}", picture.display());
@@ -238,7 +241,7 @@ fn the_glossary_is_in_order_and_names_files_that_exist() {
     let terms: Vec<&str> = rows.iter().map(|cells| cells[1]).collect();
     assert!(terms.is_sorted(), "the terms are not in order: {terms:?}");
     for cells in &rows {
-        assert!(cells[2].ends_with('.'), "{}: its meaning is no sentence", cells[1]);
+        assert!(cells[2].ends_with('.'), "{}: the meaning is not a sentence", cells[1]);
         for file in cells[3].split('`').skip(1).step_by(2) {
             assert!(source(file).exists(), "{} is in {file}, which does not exist", cells[1]);
         }
@@ -258,7 +261,7 @@ fn every_scene_of_the_book_can_be_read() {
     }
 }
 
-/// Names of the fields of a struct or of a variant, as its source has them.
+/// Names of the fields of a struct or of a variant, as declared in its source.
 fn fields(source: &str, name: &str) -> Vec<String> {
     if name.is_empty() {
         return Vec::new();
@@ -276,7 +279,7 @@ fn fields(source: &str, name: &str) -> Vec<String> {
     inside.filter(|l| indent(l) == outer + 4).filter_map(field).collect()
 }
 
-/// What is written on each parameter's page, `docs/parameters/GROUP/NAME.md`, under its heading.
+/// The text of each parameter's page, `docs/parameters/GROUP/NAME.md`, after its heading.
 fn parameters() -> BTreeMap<String, String> {
     let mut all = BTreeMap::new();
     let folder = docs().join("parameters");
@@ -284,19 +287,19 @@ fn parameters() -> BTreeMap<String, String> {
         let name = page.file_name().unwrap().to_str().unwrap().trim_end_matches(".md");
         let text = read(page);
         let text = text.strip_prefix(&format!("# `{name}`\n"));
-        let text = text.unwrap_or_else(|| panic!("{}: not its heading", page.display()));
+        let text = text.unwrap_or_else(|| panic!("{}: wrong heading", page.display()));
         let before = all.insert(name.to_owned(), text.to_owned());
         assert!(before.is_none(), "{name} has two pages");
     }
     all
 }
 
-/// Whether this page of `docs/parameters` is a group's.
+/// Whether this page of `docs/parameters` is the page of a group.
 fn is_a_group(page: &Path) -> bool {
     page.parent() == Some(&docs().join("parameters")) && !page.ends_with("index.md")
 }
 
-/// All files that these pages lead to or show; each is there.
+/// All files that these pages link to or show; each must exist.
 fn links(pages: impl Iterator<Item = PathBuf>) -> BTreeSet<PathBuf> {
     let mut linked = BTreeSet::new();
     for page in pages {
@@ -307,7 +310,7 @@ fn links(pages: impl Iterator<Item = PathBuf>) -> BTreeSet<PathBuf> {
                 let file = link.split('#').next().unwrap();
                 if !file.is_empty() && !link.contains("://") {
                     let to = page.parent().unwrap().join(file);
-                    assert!(to.is_file(), "{}: {link} is not there", page.display());
+                    assert!(to.is_file(), "{}: {link} does not exist", page.display());
                     linked.insert(to.canonicalize().unwrap());
                 }
             }
@@ -316,7 +319,7 @@ fn links(pages: impl Iterator<Item = PathBuf>) -> BTreeSet<PathBuf> {
     linked
 }
 
-/// A text with `` `name` `` for every `` [`name`](where it leads) ``.
+/// The text with `` `name` `` in place of every `` [`name`](link) ``.
 fn without_links(text: &str) -> String {
     let (start, rest) = text.split_once("](").unwrap_or((text, ""));
     let leads_to = |part: &str| part.split_once(')').map(|(_, behind)| behind.to_owned());
@@ -324,7 +327,7 @@ fn without_links(text: &str) -> String {
     format!("{start}{rest}").replace("[`", "`")
 }
 
-/// Defaults that the code has, by the names of the book.
+/// Defaults in the code, by the names that the book uses.
 fn defaults() -> BTreeMap<String, Value> {
     let mut all = BTreeMap::new();
     defaults_of::<HairLook>("groom.look", "", &mut all);
@@ -360,7 +363,7 @@ fn defaults() -> BTreeMap<String, Value> {
     all
 }
 
-/// What comes out of `T` where a file has no more than what is `needed`.
+/// The value of `T` for a file that has only the fields in `needed`.
 fn defaults_of<T: Serialize + DeserializeOwned>(
     prefix: &str,
     needed: &str,
@@ -382,13 +385,13 @@ fn flatten(prefix: &str, table: &Table, flat: &mut BTreeMap<String, Value>) {
     }
 }
 
-/// The value that is written so in TOML.
+/// Parses a TOML value.
 fn value_of(text: &str) -> Value {
     let table = format!("x = {text}").parse::<Table>();
     table.unwrap_or_else(|why| panic!("`{text}`: {why}")).remove("x").unwrap()
 }
 
-/// Whether two values are the same, where one has been an f32.
+/// Whether two values are equal up to `f32` precision.
 fn same(a: &Value, b: &Value) -> bool {
     let number = |v: &Value| v.as_float().or(v.as_integer().map(|i| i as f64));
     match (a, b) {
@@ -408,7 +411,7 @@ fn read(file: &Path) -> String {
     fs::read_to_string(file).unwrap_or_else(|why| panic!("{}: {why}", file.display()))
 }
 
-/// All files with this extension in a folder and those in it, in order.
+/// All files with this extension in a folder and its subfolders, in order.
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap_or_else(|why| panic!("{}: {why}", folder.display())) {

@@ -1,18 +1,20 @@
-//! Promise: a thing beside the body goes by its own keys, whatever moves the body, and all that names it goes with it: its mesh, hair that grows on it,
-//! colliders and hands. Its keys are those of `[clip]`, and what cannot be is refused in a sentence.
+//! Promise: a prop moves by its own keys, independent of the motion of the body. Its mesh, hair that grows
+//! on it, and colliders and hands attached to it move with it. Its keys have the same format as those of
+//! `[clip]`, and invalid props are refused with a one-sentence error.
 
 use crate::scenes::{folder, message, read};
 use glam::Vec3;
 use hairspring_scene::stage::Stage;
 
-/// A head with hair, and a lid over it with hair of its own and a ball that goes with it: it is lifted by 2 m in a second.
+/// A head with hair, and above it a lid with hair of its own and an attached ball. The lid is lifted by 2 m
+/// in a second.
 const LID: &str = "[body]\nfile = \"head.obj\"\nscale = 1\nparts = [\"scalp\"]\n\
     [[prop]]\nname = \"lid\"\nmesh = { file = \"head.obj\", parts = [\"neck\"], scale = 1 }\n\
     keys = [{ time = 0 }, { time = 1, position = [0, 2, 0] }]\n\
     [[collider]]\njoint = \"LID\"\nshape.sphere = { center = [0, 5, 0], radius = 0.5 }\n\
     [[groom]]\ngrow = { parts = [\"scalp\"], strands = 20 }\n[[groom]]\ngrow = { parts = [\"neck\"], strands = 10 }\n";
 
-/// Ways of the body that move no other joint than its own: none, keys, and a head's nod.
+/// Motions of the body that move only its own joint: none, keys, and a nod of the head.
 const MOTIONS: [&str; 3] = [
     "",
     "[clip]\nkeys = [{ time = 0 }, { time = 0.5, position = [1, 0, 0] }]\n",
@@ -20,7 +22,7 @@ const MOTIONS: [&str; 3] = [
 ];
 
 #[test]
-fn a_prop_goes_by_its_keys_with_all_that_is_fixed_to_it() {
+fn a_prop_and_everything_attached_move_by_its_keys() {
     let folder = folder();
     for motion in MOTIONS {
         let scene = read(folder.path(), &format!("{LID}{motion}")).unwrap().value;
@@ -36,7 +38,7 @@ fn a_prop_goes_by_its_keys_with_all_that_is_fixed_to_it() {
         }
         let up = Vec3::Y * 2.0;
         let now = stage.body().unwrap().positions;
-        // The head has three corners, and the lid comes after it.
+        // The head has three vertices; the vertices of the lid follow.
         for (now, rest) in now[3..].iter().zip(&rest[3..]) {
             assert!(now.distance(*rest + up) < 1e-5, "{motion}: {now} of {rest}");
         }
@@ -57,14 +59,14 @@ fn a_prop_goes_by_its_keys_with_all_that_is_fixed_to_it() {
 }
 
 #[test]
-fn a_prop_goes_beside_the_scene_made_by_code() {
+fn a_prop_can_be_added_to_the_built_in_scene() {
     let folder = folder();
     let text = "[builtin]\nstrands = 50\n[[prop]]\nname = \"hand\"\nmesh = { file = \"head.obj\", scale = 1 }\n\
                 keys = [{ time = 8, rotation = [0, 90, 0] }]\n[[hand]]\njoint = \"hand\"\n\
                 tool.grab = { center = [0, 0, 0], radius = 0.1 }\n";
     let scene = read(folder.path(), text).unwrap().value;
     let (clip, body) = (scene.clip.as_ref().unwrap(), scene.body.as_ref().unwrap());
-    // It nods for 5 s, and is at rest until the prop has come to its key.
+    // The built-in clip lasts 5 s; afterwards the head rests until the prop's last key.
     assert_eq!((clip.joint_count, body.joints.len()), (4, 4));
     assert!((clip.duration() - 8.0).abs() < 0.02, "{} s", clip.duration());
     assert_eq!(clip.sample(6.0)[..3], clip.sample(7.0)[..3]);
@@ -73,7 +75,7 @@ fn a_prop_goes_beside_the_scene_made_by_code() {
 }
 
 #[test]
-fn what_cannot_be_is_said() {
+fn invalid_props_are_refused() {
     let groom = "[[groom]]\nfile = \"hair.data\"\n";
     let body = "[body]\nfile = \"head.obj\"\nscale = 1\n";
     let wrong = |prop: &str| message(&format!("{body}[[prop]]\n{prop}\n{groom}"));

@@ -1,14 +1,14 @@
-//! Promise: where a scene file is wrong, one sentence says so.
+//! Promise: an error in a scene file is reported in one sentence.
 //!
-//! People write scene files by hand, so the reader's answer to a slip is part of the format: the line, what stands
-//! there, what would have been right, and for a misspelt word the word that was meant.
+//! People write scene files by hand, so error messages are part of the format. A message names the line,
+//! what was found there and what is valid. For a misspelled word it suggests the intended one.
 
 use crate::scenes::{folder, message, read};
 use hairspring_io::{ErrorKind, read_scene};
 use std::fs;
 
 #[test]
-fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
+fn errors_name_the_line_and_suggest_the_intended_word() {
     const GROOM: &str = "[[groom]]\nfile = \"hair.data\"\n";
     const GRAB: &str = "[[hand]]\ntool.grab = { center = [0, 0, 0], radius = 1 }\n";
     for (text, parts) in [
@@ -183,9 +183,9 @@ fn slips_are_named_with_their_line_and_the_word_that_was_meant() {
         let message = message(&text);
         println!("{message}");
         for part in parts {
-            assert!(message.contains(part), "{text}\n gives\n{message}\nwithout {part:?}");
+            assert!(message.contains(part), "{text}\n gives\n{message}\nwhich does not contain {part:?}");
         }
-        assert!(!message.contains('\n'), "one sentence: {message}");
+        assert!(!message.contains('\n'), "more than one line: {message}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! Promise: a scene file gives the scene that it describes.
 //!
-//! With the files that it names, real ones among them; and what cannot be made of them is refused in a sentence.
+//! This includes the files that it refers to, some of them real data. Invalid combinations are refused with
+//! a one-sentence error.
 
 use crate::common::data;
 use crate::scenes::{folder, message, read};
@@ -77,7 +78,7 @@ fn scene_files_give_the_scene_they_describe() {
     assert_eq!(body.mesh.parts[0].color, Vec3::new(0.1, 0.2, 0.3));
     let groom = &scene.grooms[0];
     assert_eq!((groom.guides, groom.groom.strand_count()), (Guides::Count(3), 5));
-    // 0.1 → 0.2 m a strand along x, turned by 90° about Y to −z, then moved.
+    // A strand at x = 0.1 m is scaled to 0.2 m, rotated by 90° about Y to −z, then translated.
     assert!(
         groom.groom.strand(1)[0].distance(Vec3::new(0.0, 0.0, 0.8)) < 1e-6,
         "{}",
@@ -90,7 +91,7 @@ fn scene_files_give_the_scene_they_describe() {
     assert!(matches!(scene.colliders[0].shape, Shape::Sphere { radius: 0.5, .. }));
     let floor = Shape::Plane { point: Vec3::NEG_Y, normal: Vec3::Y * 2.0 };
     assert_eq!(scene.colliders[1].shape, floor);
-    // Turned by 90° about Y, its 0.6 m lie along x.
+    // The box is rotated by 90° about Y, so its edge of 0.6 m lies along x.
     let shelf = scene.colliders[2].shape.obstacle().unwrap();
     for (at, distance) in [(Vec3::new(0.31, 1.0, 0.0), 0.01), (Vec3::new(0.0, 1.0, 0.09), -0.01)] {
         assert!((shelf.distance(at) - distance).abs() < 1e-6, "{} at {at}", shelf.distance(at));
@@ -123,7 +124,8 @@ fn a_head_joint_drives_a_bust() {
     let scene = read(folder.path(), text).unwrap().value;
     let clip: &Clip = scene.clip.as_ref().unwrap();
     assert_eq!((clip.joint_count, clip.frame_count()), (1, 2));
-    // Relative to the first used frame; about X, as in the file, whatever the order of channels.
+    // Rotations are relative to the first used frame. The nod is about X as in the file, whatever the order
+    // of channels.
     let want = glam::Quat::from_rotation_x(10f32.to_radians());
     assert!(clip.samples[0].rotation.dot(glam::Quat::IDENTITY).abs() > 0.999999);
     assert!(clip.samples[1].rotation.dot(want).abs() > 0.999999, "{}", clip.samples[1].rotation);
@@ -145,7 +147,7 @@ fn bodies_of_several_files_and_hair_grown_on_them() {
     let groom = &scene.grooms[0].groom;
     assert_eq!((groom.strand_count(), groom.point_count()), (120, 120 * 16));
     assert_eq!(groom.guides[85].guides[0], 5);
-    assert!(groom.radii.iter().all(|r| *r == 25e-6), "hair is drawn as thick as its material says");
+    assert!(groom.radii.iter().all(|r| *r == 25e-6), "the radius of grown hair differs from the material's");
 
     let wrong = |grow: &str| message(&format!("[body]\nfile = \"head.obj\"\nscale = 1\n[[groom]]\n{grow}\n"));
     assert!(
@@ -163,16 +165,16 @@ fn bodies_of_several_files_and_hair_grown_on_them() {
 }
 
 #[test]
-fn a_scene_may_be_laid_over_the_one_made_by_code() {
+fn a_scene_can_extend_the_built_in_one() {
     let folder = folder();
     let text = "[builtin]\nstyle = \"short-fur\"\nstrands = 50\nguides = \"all\"\nmaterial = \"mine\"\n\
                 [material.mine]\nfriction = 0.5\n[[groom]]\nfile = \"hair.data\"\n";
     let scene = read(folder.path(), text).unwrap().value;
     let hair = &scene.grooms[0];
     assert_eq!((hair.groom.strand_count(), hair.guides, hair.materials[0].friction), (50, Guides::All, 0.5));
-    assert_eq!(scene.grooms.len(), 3, "hair, brows, and the file's own");
+    assert_eq!(scene.grooms.len(), 3, "expected the hair, the brows and the groom of the file");
     assert!(scene.clip.is_some() && scene.collision.is_some() && scene.camera.is_some());
-    // By keys, as one piece, its collision mesh with it.
+    // With keys, the body moves as one rigid piece, together with its collision mesh.
     let keyed = "[builtin]\nstrands = 50\n[clip]\npivot = [0, -0.1, 0]\n\
                  keys = [{ time = 0.5 }, { time = 1, position = [0, 0.2, 0], rotation = [0, 90, 0] }]\n";
     let scene = read(folder.path(), keyed).unwrap().value;
@@ -204,7 +206,7 @@ fn a_scene_may_be_laid_over_the_one_made_by_code() {
 }
 
 #[test]
-fn the_mohawk_binds_to_skin_that_follows_its_bones() {
+fn mohawk_roots_bind_to_the_skin() {
     let Some(groom) = data("grooms/tressfx_mohawk/Ratboy_mohawk.tfx") else { return };
     let folder = folder();
     let text = format!(
@@ -280,7 +282,7 @@ fn the_cmu_rig_walks() {
         body.skinned(&world, &mut positions, &mut normals);
         let (lo, hi) =
             positions.iter().fold((positions[0], positions[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-        // Upright, on the floor where the rest pose stands, arms down, one stride long.
+        // The body is upright, on the floor of the rest pose, with its arms down, and one stride long.
         let floor = body.mesh.bounds().unwrap().0.y;
         println!("frame {f}: {lo} {hi} head {}", world[head].translation);
         assert!((lo.y - floor).abs() < 0.12, "frame {f}: lowest {} over a floor at {floor}", lo.y);
@@ -288,7 +290,7 @@ fn the_cmu_rig_walks() {
         assert!(hi.x - lo.x < 1.2 && hi.z - lo.z < 1.3, "frame {f}: {lo} {hi}");
         last = Some(world[head].translation);
     }
-    // It walks along +Z, as the capture does.
+    // The body walks along +Z, as in the capture.
     assert!(last.unwrap().z > 1.0, "{}", last.unwrap());
 }
 

@@ -1,13 +1,13 @@
-//! Promise: the page that documents scene files shows every field, and its example is one.
+//! Promise: the page that documents scene files shows every field, and its example is a valid scene file.
 
 use hairspring_io::scene::check_text;
 
 #[test]
-fn the_page_that_documents_scenes_is_right() {
+fn the_example_of_the_page_is_valid() {
     let page = include_str!("../../../../docs/scene.md");
     let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     check_text(example).unwrap();
-    // The fields that stand in comments there, since they exclude others.
+    // Fields that are commented out in the example because they exclude others.
     check_text(
         &example
             .replace("# rig =", "rig =")
@@ -35,7 +35,7 @@ fn the_page_that_documents_scenes_is_right() {
 }
 
 #[test]
-fn the_page_leaves_no_setting_out() {
+fn the_page_shows_every_setting() {
     let page = include_str!("../../../../docs/scene.md");
     let material = hairspring::material::Material { radius: Some(1.0), ..Default::default() };
     let volume = hairspring::settings::Volume { cell: Some(1.0), ..Default::default() };

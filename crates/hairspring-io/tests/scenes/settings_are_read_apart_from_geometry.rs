@@ -1,7 +1,8 @@
-//! Promise: the settings of a scene file are read apart from its geometry, at once, and the two together are the scene.
+//! Promise: the settings of a scene file are read quickly, without its geometry. Settings and geometry
+//! together equal the scene.
 //!
-//! What `Stage::update_settings` is to take up is what reading the whole scene gives, without a file being opened or a hair grown; and two texts tell whether they
-//! differ in anything else.
+//! `read_settings` returns the same settings as reading the whole scene, for `Stage::update_settings`,
+//! without opening a file or growing hair. `same_geometry` tells whether two texts differ only in settings.
 
 use crate::scenes::{folder, message, read};
 use glam::Vec3;
@@ -10,7 +11,7 @@ use hairspring_io::{Error, read_scene_text, read_settings, same_geometry};
 use hairspring_scene::{HairLook, Scene, SceneGroom, Shape, builtin};
 use std::path::Path;
 
-/// A scene without its geometry.
+/// A scene without geometry.
 fn bare(scene: Scene) -> Scene {
     let grooms = scene.grooms.into_iter().map(|g| SceneGroom { groom: Groom::default(), ..g }).collect();
     Scene { grooms, body: None, collision: None, sheets: Vec::new(), clip: None, ..scene }
@@ -69,15 +70,15 @@ fn settings_and_geometry_are_the_scene() {
         let whole = read(folder.path(), text).unwrap().value;
         let path = folder.path().join("scene.toml");
         let again = read_scene_text(&path, text).unwrap().value;
-        assert!(again == whole, "a text is read as its file is");
+        assert!(again == whole, "reading the text gives another scene than reading the file");
         assert!(whole.grooms.iter().all(|g| g.groom.strand_count() > 0) && whole.body.is_some());
         assert_eq!(read_settings(&path, text).unwrap(), bare(whole));
     }
 }
 
 #[test]
-fn no_file_is_opened_but_a_hulls() {
-    // Nothing is there.
+fn only_hull_files_are_opened() {
+    // This folder does not exist.
     let path = Path::new("nowhere/scene.toml");
     let without =
         FILES.replace("    [[collider]]\n    shape.hull = { file = \"stone.obj\", scale = 1 }\n", "");
@@ -93,12 +94,12 @@ fn no_file_is_opened_but_a_hulls() {
 }
 
 #[test]
-fn the_builtin_hair_takes_a_look_and_effects() {
+fn built_in_hair_accepts_look_and_effects() {
     let settings = |text: &str| read_settings(Path::new("x.toml"), text).unwrap();
     let style = builtin::settings(&Default::default()).grooms[0].clone();
     assert_eq!(settings("[builtin]").grooms[0].look, style.look);
     let hair = settings("[builtin]\nlook.variation = 0.9\n[builtin.effects]\nclump = 0.4").grooms[0].clone();
-    // Over the style's, not over that of any hair.
+    // The given fields override those of the style, not the general defaults.
     assert_eq!(hair.look, HairLook { variation: 0.9, ..style.look });
     assert_eq!(hair.effects, Effects { clump: 0.4, ..Effects::default() });
     assert_eq!(settings("[builtin]\nlook = {}").grooms[1], builtin::settings(&Default::default()).grooms[1]);
@@ -117,7 +118,7 @@ fn the_builtin_hair_takes_a_look_and_effects() {
 }
 
 #[test]
-fn what_a_stage_takes_up_is_no_geometry() {
+fn same_geometry_ignores_settings_only() {
     let builtin = "[builtin]\nstyle = \"wavy\"\nmaterial = \"mine\"\n[material.mine]\nbend = 2\n[solver]\n";
     assert!(same_geometry(builtin, builtin) && same_geometry(FILES, FILES));
     assert!(!same_geometry(builtin, FILES));
@@ -186,14 +187,14 @@ fn what_a_stage_takes_up_is_no_geometry() {
             "{after}"
         );
     }
-    // A preset's radius counts as one that is written.
+    // A radius from a preset counts like a radius in the text.
     let radius = "[builtin]\n[material.mine]\nradius = 25e-6\n";
     let of = |material: &str| radius.replace("[builtin]", &format!("[builtin]\nmaterial = {material}"));
     assert!(same_geometry(&of("\"mine\""), &of("[\"short-fur\", \"mine\"]")));
 }
 
 #[test]
-fn a_stage_takes_up_what_is_read() {
+fn a_stage_accepts_the_settings_that_are_read() {
     let folder = folder();
     let path = folder.path().join("scene.toml");
     let mut stage =

@@ -1,10 +1,11 @@
-//! The built-in scene is what a newcomer sees first and what later work is measured on, so it must be beyond reproach
-//! as data: closed meshes (an inside and an outside for contact), roots on the skin and evenly spread, hair outside the
-//! body in the rest pose, nearly even spacing along each hair, a motion that starts and ends at rest within the range of
-//! a human neck, and the same bits on every run and any number of threads.
+//! Promise: the data of the built-in scene is sound. New users see this scene first, and measurements use
+//! it. Its meshes are closed, so that contact has an inside and an outside. Roots are on the skin and
+//! evenly spread. In the rest pose hair is outside the body, with nearly even spacing along each hair. The
+//! motion starts and ends at rest and stays within the range of a human neck. Every run gives the same bits
+//! on any number of threads.
 //!
-//! Hair is judged here against the *drawn mesh*, not against the distance function that it was combed with: what a viewer
-//! would see, by means that the scene's own code does not use.
+//! Hair is tested against the *drawn mesh* and not against the distance function that it was combed with.
+//! The test uses no code of the scene for this.
 
 use glam::{IVec3, Vec3};
 use hairspring::{body::Mesh, groom::Groom};
@@ -14,7 +15,7 @@ use hairspring_scene::{
 };
 use std::collections::HashMap;
 
-/// A scene small enough for a test.
+/// A scene that is small enough for a test.
 fn small(style: Style) -> Scene {
     scene(&BuiltinOptions { strands: 2_500, ..BuiltinOptions::new(style) })
 }
@@ -27,7 +28,8 @@ fn every_edge_has_two_triangles() {
         for t in &body.mesh.triangles {
             for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
                 assert_ne!(a, b, "{name}: a triangle uses vertex {a} twice");
-                // Once each way: then neighbours also agree about which side is out.
+                // Each edge is used once in each direction, so neighboring triangles agree about the
+                // outside.
                 assert!(
                     edges.insert((a, b), 1).is_none(),
                     "{name}: edge {a} to {b} is used twice the same way"
@@ -35,13 +37,13 @@ fn every_edge_has_two_triangles() {
             }
         }
         let open = edges.keys().filter(|(a, b)| !edges.contains_key(&(*b, *a))).count();
-        assert_eq!(open, 0, "{name}: {open} open edges");
-        assert!(volume(&body.mesh) > 0.008, "{name}: inside out or hollow");
+        assert_eq!(open, 0, "{name}: there are {open} open edges");
+        assert!(volume(&body.mesh) > 0.008, "{name}: the mesh is inside out or hollow");
     }
 }
 
 #[test]
-fn the_meshes_are_as_light_as_their_use_allows() {
+fn meshes_have_moderate_triangle_counts() {
     let scene = small(Style::ShortFur);
     let drawn = scene.body.unwrap().mesh;
     assert!((15_000..75_000).contains(&drawn.triangles.len()), "{} triangles drawn", drawn.triangles.len());
@@ -56,7 +58,7 @@ fn the_meshes_are_as_light_as_their_use_allows() {
 }
 
 #[test]
-fn skin_weights_add_up_and_the_shoulders_stay() {
+fn skin_weights_sum_to_one_and_shoulders_stay_fixed() {
     let body = small(Style::ShortFur).body.unwrap();
     let skin = body.skin.as_ref().unwrap();
     let (chest, head) = (body.joint("chest").unwrap(), body.joint("head").unwrap());
@@ -77,16 +79,17 @@ fn skin_weights_add_up_and_the_shoulders_stay() {
 }
 
 #[test]
-fn roots_are_on_the_skin_and_all_else_is_outside() {
+fn roots_are_on_the_skin_and_other_points_outside() {
     for style in Style::ALL {
         let scene = scene(&BuiltinOptions { strands: 1_000, ..BuiltinOptions::new(style) });
         let surface = Surface::new(&scene.body.as_ref().unwrap().mesh);
-        // The scalp's roots are taken from the mesh; those of brows and lashes from the smooth shape that it follows.
+        // Roots on the scalp are taken from the mesh; those of brows and lashes from the smooth shape that
+        // it approximates.
         for (groom, off) in scene.grooms.iter().map(|g| &g.groom).zip([1e-5, 6e-4]) {
             for s in 0..groom.strand_count() {
                 let strand = groom.strand(s);
                 let root = surface.signed_distance(strand[0]);
-                assert!(root.abs() < off, "{} strand {s}: root {root} m off the skin", style.name());
+                assert!(root.abs() < off, "{} strand {s}: the root is {root} m from the skin", style.name());
                 for (k, p) in strand.iter().enumerate().skip(1) {
                     let d = surface.signed_distance(*p);
                     assert!(d > 1e-4, "{} strand {s} point {k} at {p}: {d} m outside", style.name());
@@ -120,7 +123,8 @@ fn roots_are_evenly_spread() {
     let scene = scene(&BuiltinOptions { strands: 20_000, ..BuiltinOptions::new(Style::ShortFur) });
     let groom = &scene.grooms[0].groom;
     assert_eq!(groom.strand_count(), 20_000);
-    // Distance of each root to its nearest neighbour. Random roots would scatter by 52 % about the mean.
+    // The distance of each root to its nearest neighbor. For random roots it would vary by 52 % about the
+    // mean.
     let roots: Vec<Vec3> = (0..groom.strand_count()).map(|s| groom.strand(s)[0]).collect();
     const CELL: f32 = 0.004;
     let key = |p: Vec3| (p / CELL).floor().as_ivec3();
@@ -139,8 +143,8 @@ fn roots_are_evenly_spread() {
     let mean = distances.iter().sum::<f32>() / distances.len() as f32;
     let variance = distances.iter().map(|d| (d - mean).powi(2)).sum::<f32>() / distances.len() as f32;
     let variation = variance.sqrt() / mean;
-    assert!(variation < 0.45, "nearest neighbours vary by {variation}");
-    // Counts in patches of 2 cm on the crown, where such a patch is nearly flat: within a few per cent of each other.
+    assert!(variation < 0.45, "distances to the nearest neighbor vary by {variation}");
+    // Root counts in patches of 2 cm on the crown, where a patch is nearly flat, vary by less than 15 %.
     let mut patches: HashMap<(i32, i32), u32> = HashMap::new();
     for p in roots.iter().filter(|p| p.x.abs() < 0.04 && p.y > 0.0 && (-0.06..0.02).contains(&p.z)) {
         *patches.entry(((p.x / 0.02).floor() as i32, (p.z / 0.02).floor() as i32)).or_default() += 1;
@@ -161,11 +165,11 @@ fn the_same_options_give_the_same_bits_on_any_number_of_threads() {
     let one = on(1);
     assert!(one == on(3), "one and three threads differ");
     let other = scene(&BuiltinOptions { seed: 2, ..options });
-    assert!(one.grooms[0].groom != other.grooms[0].groom, "the seed changes nothing");
+    assert!(one.grooms[0].groom != other.grooms[0].groom, "the seed has no effect");
 }
 
 #[test]
-fn the_motion_starts_and_ends_at_rest_and_stays_human() {
+fn the_motion_starts_and_ends_at_rest_within_human_range() {
     let scene = small(Style::ShortFur);
     let (body, clip) = (scene.body.unwrap(), scene.clip.unwrap());
     let rest = body.rest_pose();
@@ -190,7 +194,7 @@ fn the_motion_starts_and_ends_at_rest_and_stays_human() {
 }
 
 #[test]
-fn any_size_is_built() {
+fn any_strand_and_point_count_is_built() {
     for (strands, points) in [(0, 32), (1, 3), (7, 0), (50, 200)] {
         let groom: Groom =
             scene(&BuiltinOptions { strands, points, ..BuiltinOptions::default() }).grooms.remove(0).groom;
@@ -201,19 +205,19 @@ fn any_size_is_built() {
     }
 }
 
-/// Volume inside a closed mesh [m³] (divergence theorem).
+/// The volume inside a closed mesh [m³] (divergence theorem).
 fn volume(mesh: &Mesh) -> f32 {
     (0..mesh.triangles.len()).map(|t| mesh.corners(t)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
 
-/// Signed distance to a closed mesh near its surface, by brute force over the triangles around.
+/// The signed distance to a closed mesh near its surface, by a search over the triangles in nearby cells.
 struct Surface<'a> {
     mesh: &'a Mesh,
     cells: HashMap<IVec3, Vec<u32>>,
 }
 
 impl<'a> Surface<'a> {
-    /// Edge of a cell [m]; points farther than this from any triangle count as that far out.
+    /// Edge of a cell [m]. Points farther than this from every triangle count as this far outside.
     const CELL: f32 = 0.008;
 
     fn new(mesh: &'a Mesh) -> Self {
@@ -243,7 +247,8 @@ impl<'a> Surface<'a> {
                 let (q, weights) = nearest(p, corners);
                 let d = p.distance(q);
                 if d < best.0 {
-                    // The interpolated normal tells the side also where the nearest place is an edge or a corner.
+                    // The interpolated normal gives the correct side also where the nearest point is on an
+                    // edge or a corner.
                     let n = self.mesh.triangles[*t as usize].map(|i| self.mesh.normals[i as usize]);
                     let out = n[0] * weights.x + n[1] * weights.y + n[2] * weights.z;
                     best = (d, (p - q).dot(out).signum());
@@ -254,7 +259,7 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// The place on a triangle nearest to `p`, and its barycentric coordinates (Ericson 2005, §5.1.5).
+/// The nearest point to `p` on a triangle, and its barycentric coordinates (Ericson 2005, §5.1.5).
 fn nearest(p: Vec3, [a, b, c]: [Vec3; 3]) -> (Vec3, Vec3) {
     let (ab, ac) = (b - a, c - a);
     let at = |v: f32, w: f32| (a + ab * v + ac * w, Vec3::new(1.0 - v - w, v, w));

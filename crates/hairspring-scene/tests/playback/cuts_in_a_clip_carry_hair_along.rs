@@ -1,7 +1,8 @@
 //! Promise: a cut in a clip carries hair along, at any frame rate.
 //!
-//! A clip of 30 Hz in which the body is put 5 m away from one frame to the next, or turned, or both, moves no hair against its body, whether it is played at 24
-//! frames per second or at 240. A genuine motion is never taken for a cut: hair feels it as it does without teleports.
+//! In a clip of 30 Hz, the body jumps by 5 m from one frame to the next, or turns, or both. Hair does not
+//! move relative to its body, whether the clip is played at 24 frames per second or at 240. A continuous
+//! motion is never mistaken for a cut: hair moves as it does without teleports.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -17,10 +18,10 @@ use hairspring_scene::{
 
 const RATES: [u32; 7] = [24, 25, 30, 48, 60, 120, 240];
 
-/// Frames of the clips, at 30 Hz.
+/// The number of frames of the clips, at 30 Hz.
 const FRAMES: usize = 60;
 
-/// A plate of 20 cm about `middle`.
+/// A plate of 20 cm with its center at `middle`.
 fn plate(middle: Vec3) -> Mesh {
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
     Mesh {
@@ -31,7 +32,7 @@ fn plate(middle: Vec3) -> Mesh {
     }
 }
 
-/// Strands that lie out from a plate that moves by `pose`, which has a frame's number.
+/// Strands that stand off a plate, which has the pose `pose(frame)`.
 fn scene(pose: impl Fn(usize) -> Trs) -> Scene {
     let strand = |k: usize| -> Vec<Vec3> {
         let out = Quat::from_rotation_y(k as f32) * Vec3::new(0.8, 0.6, 0.0);
@@ -52,7 +53,7 @@ fn scene(pose: impl Fn(usize) -> Trs) -> Scene {
     }
 }
 
-/// How far any point ever is from where it was authored, as the body carries it [m].
+/// The largest distance of any point, in any frame, from its authored place on the moving body [m].
 fn farthest(scene: Scene, rate: u32) -> f32 {
     let mut stage = Stage::new(scene).unwrap();
     let mut most = 0.0f32;
@@ -66,7 +67,7 @@ fn farthest(scene: Scene, rate: u32) -> f32 {
     most
 }
 
-/// Elsewhere, from frame `from` on.
+/// The pose of a cut: the rest pose before frame `from`, and `to` from that frame on.
 fn cut(from: usize, to: Trs) -> impl Fn(usize) -> Trs {
     move |frame| if frame < from { Trs::default() } else { to }
 }
@@ -84,7 +85,7 @@ fn hair_stays_with_its_body_at_any_frame_rate() {
     let both = Trs { rotation: turned().rotation, ..away() };
     for rate in RATES {
         for (what, to) in [("away", away()), ("turned", turned()), ("both", both)] {
-            // A multiple of most rates' frames, and one that is between them.
+            // A frame that coincides with a frame of most rates, and one between frames.
             for from in [30, 31] {
                 let off = farthest(scene(cut(from, to)), rate);
                 assert!(off < 1e-4, "{what} in frame {from} at {rate} Hz: {off} m");
@@ -94,7 +95,7 @@ fn hair_stays_with_its_body_at_any_frame_rate() {
 }
 
 #[test]
-fn cuts_from_frame_to_frame_and_in_frames_of_film_are_cuts() {
+fn single_frame_and_resampled_cuts_are_detected() {
     // There and back, and a cut between keys of 24 Hz that were resampled.
     let blink = |frame: usize| if frame == 30 { away() } else { Trs::default() };
     for rate in RATES {
@@ -110,8 +111,9 @@ fn cuts_from_frame_to_frame_and_in_frames_of_film_are_cuts() {
 }
 
 #[test]
-fn a_genuine_motion_is_felt_at_any_frame_rate() {
-    // A start at 3 m/s, a head that turns by 720° per second, and a ride that begins at 20 m/s.
+fn a_continuous_motion_moves_hair_at_any_frame_rate() {
+    // A sudden start at 3 m/s, a head that turns by 24° a frame (720° per second), and a sudden start at 20
+    // m/s.
     let motions: [fn(usize) -> Trs; 3] = [
         |k| Trs { translation: Vec3::X * (0.1 * k.saturating_sub(20) as f32), ..Trs::default() },
         |k| Trs { rotation: Quat::from_rotation_y(0.419 * k.saturating_sub(20) as f32), ..Trs::default() },
@@ -124,15 +126,16 @@ fn a_genuine_motion_is_felt_at_any_frame_rate() {
                 scene.solver.teleport_distance = jump;
                 farthest(scene, rate)
             });
-            assert!(watched > 0.02, "motion {number} at {rate} Hz moves hair by {watched} m alone");
+            assert!(watched > 0.02, "motion {number} at {rate} Hz moves hair by only {watched} m");
             assert_eq!(watched, never, "motion {number} at {rate} Hz");
         }
     }
 }
 
 #[test]
-fn what_is_carried_by_the_body_is_cut_with_it_and_what_is_not_stays() {
-    // A ball rests in front of the hair, carried by the body; a second one, on a joint of its own, is put into the hair's old place by a cut of its own.
+fn attached_colliders_follow_the_cut_and_others_do_not() {
+    // A ball that the body carries rests beside the hair. A second ball, on a joint of its own, crosses the
+    // hair in a cut of its own.
     let joint = |name: &str| Joint { name: name.into(), parent: None, rest: Trs::default() };
     let ball = |joint: &str, center: Vec3| Collider {
         joint: Some(joint.into()),
@@ -153,7 +156,7 @@ fn what_is_carried_by_the_body_is_cut_with_it_and_what_is_not_stays() {
         scene.body = Some(Body { mesh, joints: vec![joint("head"), joint("prop")], skin: Some(skin) });
         let frame = |k: usize| {
             let head = if k < 30 { Trs::default() } else { away() };
-            // Across the hair, from one side to the other.
+            // The prop jumps across the hair, from one side to the other.
             let prop = Trs { translation: Vec3::Z * if k < 20 { -4.0 } else { 4.0 }, ..Trs::default() };
             [head, prop]
         };
@@ -167,7 +170,7 @@ fn what_is_carried_by_the_body_is_cut_with_it_and_what_is_not_stays() {
 }
 
 #[test]
-fn a_body_that_is_moved_besides_its_clip_is_cut_where_it_is() {
+fn cuts_work_on_a_body_moved_by_the_app() {
     for rate in RATES {
         let mut stage = Stage::new(scene(cut(30, away()))).unwrap();
         stage.move_body(RigidTransform {

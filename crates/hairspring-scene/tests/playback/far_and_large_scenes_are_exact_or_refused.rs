@@ -1,7 +1,9 @@
-//! Promise: scenes that are far from the origin or very large are simulated exactly, or refused with a sentence.
+//! Promise: scenes that are far from the origin or very large are simulated exactly, or refused with a
+//! one-sentence error.
 //!
-//! Hair at 100 m from the origin moves as it does at the origin. Where single precision no longer resolves its segments, and where lengths would overflow in a
-//! frame, the scene is refused. Two grooms that are far apart share a volume whose memory is bounded.
+//! Hair at 100 m from the origin moves as it does at the origin. A scene is refused where single precision
+//! does not resolve its segments, or where lengths would overflow in a frame. Two grooms that are far apart
+//! share a volume with bounded memory.
 
 use glam::Vec3;
 use hairspring::{
@@ -16,7 +18,7 @@ use hairspring_scene::{
 
 const POINTS: usize = 10;
 
-/// Strands of `POINTS` points that lie out from `middle`.
+/// Strands of `POINTS` points that extend outward from `middle`.
 fn groom(middle: Vec3, segment: f32) -> SceneGroom {
     let strand = |k: usize| -> Vec<Vec3> {
         let root = middle + Vec3::new(0.002 * (k % 4) as f32, 0.0, 0.002 * (k / 4) as f32);
@@ -34,10 +36,10 @@ fn scene(grooms: Vec<SceneGroom>) -> Scene {
     Scene { grooms, gravity: Vec3::new(0.0, -9.81, 0.0), solver, ..Scene::default() }
 }
 
-/// The sentence that a scene is refused with.
+/// The error for a scene that is refused.
 fn refused(scene: Scene) -> String {
     match Stage::new(scene) {
-        Ok(_) => panic!("the scene is accepted"),
+        Ok(_) => panic!("the scene was accepted"),
         Err(
             error @ (StageError::TooFar { .. } | StageError::OutOfRange { .. } | StageError::Settings(_)),
         ) => error.to_string(),
@@ -45,7 +47,7 @@ fn refused(scene: Scene) -> String {
     }
 }
 
-/// Each point of the first groom, from its root.
+/// The points of the first groom, relative to their roots.
 fn shape(stage: &Stage) -> Vec<Vec3> {
     let strands = stage.strands().next().unwrap();
     strands.points.chunks(POINTS).flat_map(|strand| strand.iter().map(|p| *p - strand[0])).collect()
@@ -63,7 +65,7 @@ fn hair_at_a_hundred_meters_moves_as_at_the_origin() {
 }
 
 #[test]
-fn hair_that_is_too_far_for_its_segments_is_refused() {
+fn hair_too_far_from_the_origin_is_refused() {
     for away in [5e3, 1e5, 1e7, 1e30] {
         let why = refused(scene(vec![groom(Vec3::ZERO, 0.005), groom(Vec3::X * away, 0.005)]));
         assert!(why.starts_with("groom 1: strand 0 is ") && why.contains("nearer to the origin"), "{why}");
@@ -83,7 +85,7 @@ fn lengths_that_overflow_are_refused() {
     ] {
         let curled = SceneGroom { effects, guides: Guides::Count(4), ..groom(Vec3::ZERO, 0.01) };
         assert!(refused(scene(vec![curled.clone()])).contains("groom 0, effects: "));
-        // So are settings that come later.
+        // The same settings are refused as a later change.
         let plain = SceneGroom { effects: Effects::default(), ..curled.clone() };
         let mut stage = Stage::new(scene(vec![plain])).unwrap();
         assert!(matches!(stage.update_settings(scene(vec![curled])), Err(StageError::Settings(_))));

@@ -1,6 +1,7 @@
-//! A viewer may place follow hairs by itself, on a graphics card, and the stage then does not do it as well. What is asked of the stage meanwhile is
-//! answered as if it did: which strand a ray finds, figures of a strand, values to color by; and the points are there, to the bit, as soon as they are
-//! asked for.
+//! Promise: a viewer may interpolate follow hairs itself, on a graphics card. The stage then does not
+//! interpolate them in every step. Queries to the stage still return the same results: the strand that a
+//! ray finds, the figures of a strand, and values to color by. The stage interpolates the points on
+//! request, with the same bits.
 
 use glam::Vec3;
 use hairspring::settings::Effects;
@@ -25,7 +26,7 @@ fn points(stage: &Stage) -> Vec<Vec<Vec3>> {
 }
 
 #[test]
-fn what_is_left_is_there_when_it_is_asked_for() {
+fn skipped_follow_hairs_are_interpolated_on_request() {
     let (mut here, mut left) = (stage(), stage());
     left.set_external_interpolation(true);
     let before = points(&left);
@@ -35,7 +36,7 @@ fn what_is_left_is_there_when_it_is_asked_for() {
     }
     let head = |stage: &Stage| stage.strands().next().unwrap().follow.is_some();
     assert!(left.strands().len() > 1 && head(&left) && here.strands().all(|s| s.follow.is_none()));
-    // Nothing was placed twice; the brows, which nobody follows, are where they are.
+    // Follow hairs are not interpolated; the brows, which are not follow hairs, are updated.
     assert_eq!(points(&left)[0], before[0]);
     assert_eq!(points(&left)[1], points(&here)[1]);
     assert_ne!(points(&here)[0], before[0]);

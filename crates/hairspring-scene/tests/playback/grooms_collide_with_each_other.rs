@@ -1,12 +1,14 @@
-//! Promise: hair of one groom meets that of another as it meets its own.
+//! Promise: hair of one groom interacts with that of another as within one groom.
 //!
-//! A scene has a groom for the fringe and one for the length, or two heads with one each. Which strands an artist put into one groom is a matter of files
-//! and materials: strands are near each other or they are not. So hair that is cut into grooms moves to the bit as it did in one, whatever it is that lets
-//! strands meet: the volume by either method, contact strand by strand, or charge. A guide weighs what the hairs weigh that follow it,
-//! those of its own groom.
+//! A scene may have separate grooms for the fringe and the length, or two heads with one groom each. How an
+//! artist divides strands into grooms depends on files and materials, not on physics. So hair that is
+//! divided into grooms moves exactly, bit for bit, as in one groom. This holds for every interaction: the
+//! volume by either method, strand contact, and charge. A guide has the weight of the hairs of its own
+//! groom that follow it.
 //!
-//! What moves by itself beside the body, a second head, is at rest wherever its file has it, perhaps in the middle of the first. Hair is made on it where it
-//! is when the scene begins, as if its mesh had been there all along.
+//! A second head, which moves independently, may have any position in its file, for example inside the
+//! first head. Its hair is initialized where the head is when the scene begins, as if its mesh had been
+//! authored there.
 
 use glam::Vec3;
 use hairspring::{
@@ -20,12 +22,12 @@ use hairspring_scene::{Collider, Guides, Scene, SceneGroom, Shape, stage::Stage}
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 const POINTS: usize = 12;
 
-/// A strand of 12 cm from `root`, in `direction`.
+/// A strand of 12 cm from `root` along `direction`.
 fn strand(root: Vec3, direction: Vec3) -> Vec<Vec3> {
     (0..POINTS).map(|i| root + direction * (0.12 * i as f32 / (POINTS - 1) as f32)).collect()
 }
 
-/// Two patches of hair 4 cm apart that fall towards each other.
+/// Two patches of hair, 4 cm apart, that fall toward each other.
 fn patches() -> Vec<Vec<Vec3>> {
     let patch = |side: f32| {
         (0..64).map(move |k| {
@@ -50,7 +52,7 @@ fn scene(grooms: Vec<SceneGroom>) -> Scene {
     Scene { grooms, gravity: GRAVITY, solver, ..Scene::default() }
 }
 
-/// All points of a scene after so many frames.
+/// All points of a scene after `frames` frames.
 fn after(scene: &Scene, frames: usize) -> Vec<Vec3> {
     let mut stage = Stage::new(scene.clone()).unwrap();
     for _ in 0..frames {
@@ -64,10 +66,10 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
 }
 
 #[test]
-fn hair_cut_into_grooms_moves_to_the_bit_as_in_one() {
+fn hair_divided_into_grooms_moves_as_in_one() {
     let strands = patches();
     let (left, right) = strands.split_at(64);
-    /// Turns on what hair of two grooms meets by.
+    /// Enables one kind of interaction between two grooms.
     type Meet = fn(&mut Scene);
     let meetings: [(&str, Meet); 4] = [
         ("density", |s| s.volume.method = VolumeMethod::Density),
@@ -80,7 +82,7 @@ fn hair_cut_into_grooms_moves_to_the_bit_as_in_one() {
         [&mut one, &mut two].into_iter().for_each(meet);
         let (one, two) = (after(&one, 20), after(&two, 20));
         assert!(one == two, "{name}: {} m apart", farthest(&one, &two));
-        // And it is a meeting: alone, the left one is elsewhere.
+        // The interaction has an effect: the left groom alone moves differently.
         let mut alone = scene(vec![groom(left)]);
         meet(&mut alone);
         let apart = farthest(&after(&alone, 20), &one);
@@ -89,8 +91,9 @@ fn hair_cut_into_grooms_moves_to_the_bit_as_in_one() {
 }
 
 #[test]
-fn a_guide_weighs_what_the_hairs_weigh_that_follow_it() {
-    // What the right patch does to the left one when every strand of it is simulated, and when each eighth is for all of them.
+fn a_guide_has_the_weight_of_its_follow_hairs() {
+    // The effect of the right patch on the left one, with all strands of the right patch simulated, and
+    // with one eighth of them as guides for all.
     let strands = patches();
     let (left, right) = strands.split_at(64);
     let left_after = |guides: Guides, volume: VolumeMethod| {
@@ -102,12 +105,12 @@ fn a_guide_weighs_what_the_hairs_weigh_that_follow_it() {
     let all = left_after(Guides::All, VolumeMethod::Density);
     let few = left_after(Guides::Count(8), VolumeMethod::Density);
     let (braked, differs) = (farthest(&free, &all), farthest(&all, &few));
-    println!("the right patch moves the left one by {braked:.4} m; by its guides, {differs:.4} m otherwise");
+    println!("the right patch moves the left one by {braked:.4} m; with guides only, the result differs by {differs:.4} m");
     assert!(braked > 5e-3, "{braked} m");
     assert!(differs < 0.5 * braked, "{differs} m of {braked} m");
 }
 
-/// A plate of 4 cm at `middle`, of two triangles.
+/// Adds a plate of 4 cm at `middle`, of two triangles.
 fn plate(mesh: &mut Mesh, middle: Vec3) {
     let first = mesh.positions.len() as u32;
     let corner = |x: f32, z: f32| middle + Vec3::new(0.02 * x, 0.0, 0.02 * z);
@@ -115,7 +118,8 @@ fn plate(mesh: &mut Mesh, middle: Vec3) {
     mesh.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|t| t.map(|k| first + k)));
 }
 
-/// Two plates with hair; the second has a joint of its own, rests `away` from the first, and goes from there to where it is 6 cm from the first.
+/// Two plates with hair. The second has a joint of its own and rests at `away` from the first. The clip
+/// moves it from there to 6 cm from the first.
 fn plates(away: Vec3) -> Scene {
     let mut mesh = Mesh::default();
     plate(&mut mesh, Vec3::ZERO);
@@ -148,8 +152,8 @@ fn plates(away: Vec3) -> Scene {
 }
 
 #[test]
-fn hair_is_made_on_a_thing_beside_the_body_where_that_is_at_the_start() {
-    // In the middle of the first at rest, or there already.
+fn hair_on_a_second_body_is_initialized_at_its_start_pose() {
+    // The second plate rests inside the first, or already at its start position.
     let [moved, made] = [Vec3::ZERO, Vec3::new(0.06, 0.0, 0.0)].map(plates);
     for frames in [0, 15] {
         let apart = farthest(&after(&moved, frames), &after(&made, frames));
@@ -159,5 +163,5 @@ fn hair_is_made_on_a_thing_beside_the_body_where_that_is_at_the_start() {
     let mut stage = Stage::new(moved).unwrap();
     stage.step(1.0 / 60.0);
     let share = stage.volume().unwrap().share;
-    assert!((share - 1.0).abs() < 0.05, "hair has its room where it stands: {share}");
+    assert!((share - 1.0).abs() < 0.05, "hair does not start at rest density: {share}");
 }

@@ -1,8 +1,10 @@
-//! Promise: what a hand grabs follows it, lags by what closed forms say, and swings free when it is let go.
+//! Promise: grabbed hair follows the hand with the lag of a closed form, and swings freely when it is
+//! released.
 //!
-//! A lock of strands without bending stiffness hangs from a rail. A ball takes hold of it half-way and is moved. In steady motion a point lags by what
-//! hangs on it alone: (g + a)/ω² times the mass that it carries over its own. Released, the lock has the speed of the hand and no more, and hangs
-//! where it hung once it has lost it.
+//! A lock of strands without bending stiffness hangs from a rail. A grab sphere holds it half-way down and
+//! moves. In steady motion a point lags only by the load on it: (g + a)/ω² times the ratio of the mass it
+//! carries to its own. A released lock starts with the speed of the hand, and hangs in its old place after
+//! it has come to rest.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -74,24 +76,26 @@ fn chain() -> Material {
     Material { bend: 0.0, drag: 0.0, ..Material::default() }
 }
 
-/// A ball around the points 12 to 16 of every strand.
+/// A grab sphere around the points 12 to 16 of every strand.
 fn grab(pull: f32) -> Manipulator {
     let center = Vec3::NEG_Y * (14.0 * SEGMENT);
     Manipulator::Grab(Grab { center, radius: 2.5 * SEGMENT, pull, damping: 1.0 })
 }
 
 #[test]
-fn a_grabbed_lock_lags_by_what_hangs_on_it() {
+fn a_grabbed_lock_lags_by_the_closed_form() {
     for (pull, model) in [(60.0, Model::Curvature), (30.0, Model::Rod), (60.0, Model::Springs)] {
         let mut lock = Lock::new(Material { model, ..chain() }, Solver::default());
         let id = lock.simulation.add_manipulator(grab(pull), RigidTransform::default());
         let held: Vec<_> = lock.simulation.attached_points(id).collect();
         assert_eq!(held.len(), 12 * 5, "{model:?}");
-        // Up by 6 cm and out by 3, so that the hand carries what it holds, and then to the side at 0.3 m/s.
+        // The hand moves up by 6 cm and out by 3 cm, so that it carries the held hair, and then sideways at
+        // 0.3 m/s.
         let lift = |frame: u32| 0.06 * (frame as f32 / 60.0).min(1.0);
         let side = |frame: u32| 0.3 * (frame.saturating_sub(180) as f32 * FRAME);
         let omega = std::f32::consts::TAU * pull;
-        // From the middle of what is slack above to the tip hangs on five points of 32.
+        // The five held points carry the strand from the middle of the slack part above them to the tip, of
+        // 32 points in all.
         let sag = |carried: f32| carried / 5.0 * GRAVITY / (omega * omega);
         let (least, most) = (sag(16.0), sag(26.0));
         let mut worst = 0.0f32;
@@ -106,7 +110,7 @@ fn a_grabbed_lock_lags_by_what_hangs_on_it() {
             let mean = held.iter().map(lag).sum::<Vec3>() / held.len() as f32;
             let largest = held.iter().map(lag).map(Vec3::length).fold(0.0, f32::max);
             if frame == 175 {
-                println!("{model:?}, {pull} Hz: {mean} m at rest, closed form {least} to {most}");
+                println!("{model:?}, {pull} Hz: the lag at rest is {mean} m, closed form {least} to {most}");
                 assert!(
                     (least..most).contains(&mean.y),
                     "{model:?}: {mean} m, closed form {least} to {most}"
@@ -114,17 +118,18 @@ fn a_grabbed_lock_lags_by_what_hangs_on_it() {
             }
             worst = worst.max(largest);
         }
-        println!("{model:?}, {pull} Hz: at most {worst} m off");
-        assert!(worst < 3.0 * most, "{model:?}: {worst} m off in motion");
+        println!("{model:?}, {pull} Hz: the largest lag is {worst} m");
+        assert!(worst < 3.0 * most, "{model:?}: the lag in motion is {worst} m");
         assert!(lock.simulation.measure(&[]).stretch_max < 0.011);
     }
 }
 
 #[test]
-fn a_released_lock_has_the_hands_speed_and_comes_home() {
+fn a_released_lock_has_the_speed_of_the_hand() {
     let mut lock = Lock::new(Material { damping: 0.02, drag: 0.0, ..Material::default() }, Solver::default());
     let id = lock.simulation.add_manipulator(grab(60.0), RigidTransform::default());
-    // A pendulum's way about the rail, so that hair is neither slack nor torn: slowly aside, then back to the lowest place at 0.25 m/s.
+    // The hand moves like a pendulum about the rail, so that hair is neither slack nor stretched: slowly
+    // aside, then back to the lowest point at 0.25 m/s.
     let turn = 0.03;
     let at = |frame: u32| {
         let angle = if frame < 90 { 0.3 * frame as f32 / 90.0 } else { 0.3 - turn * (frame - 90) as f32 };
@@ -145,17 +150,17 @@ fn a_released_lock_has_the_hands_speed_and_comes_home() {
     let after = (mean(&lock.points) - mean(&before)) / FRAME;
     println!("hand {speed} m/s, lock {after} m/s");
     assert!((after.length() / speed - 1.0).abs() < 0.15, "hand {speed} m/s, lock {after} m/s");
-    // What it has it has from the hand: nothing springs back.
+    // The lock's energy comes from the hand only, so it does not increase after the release.
     for frame in 0..300 {
         let now = lock.simulation.energy();
         let gain = (now.total() - released.total()) / released.kinetic;
-        assert!(gain < 0.02, "frame {frame}: {gain} of the energy at the release gained");
+        assert!(gain < 0.02, "frame {frame}: the energy grew by {gain} of that at the release");
         lock.step();
     }
 }
 
 #[test]
-fn a_released_lock_hangs_where_it_hung() {
+fn a_released_lock_returns_to_rest() {
     let mut lock = Lock::new(Material { damping: 0.02, ..Material::default() }, Solver::default());
     let rest = lock.points.clone();
     let id = lock.simulation.add_manipulator(grab(60.0), RigidTransform::default());
@@ -168,12 +173,12 @@ fn a_released_lock_hangs_where_it_hung() {
     for _ in 0..600 {
         lock.step();
     }
-    println!("{held} m off while it was held, {} m ten seconds after", off(&lock));
-    assert!(held > 0.05 && off(&lock) < 0.002, "{} m off", off(&lock));
+    println!("offset while held: {held} m, ten seconds after the release: {} m", off(&lock));
+    assert!(held > 0.05 && off(&lock) < 0.002, "the lock is {} m from its old place", off(&lock));
 }
 
 #[test]
-fn a_pin_holds_while_its_lock_is_pulled_by_the_root() {
+fn a_pinned_lock_is_held_while_its_roots_move() {
     let mut lock = Lock::new(chain(), Solver::default());
     let id = lock.simulation.add_manipulator(grab(60.0), RigidTransform::default());
     let held: Vec<_> = lock.simulation.attached_points(id).collect();
@@ -190,13 +195,13 @@ fn a_pin_holds_while_its_lock_is_pulled_by_the_root() {
         lock.points[k].distance(homes[k])
     };
     let worst = held.iter().map(off).fold(0.0, f32::max);
-    println!("{worst} m off");
-    assert!(worst < 0.003, "{worst} m off");
+    println!("the largest offset is {worst} m");
+    assert!(worst < 0.003, "the largest offset is {worst} m");
 }
 
 #[test]
-fn a_hand_that_jumps_away_neither_tears_nor_blows_up() {
-    // The explicit ones do not bear such segments even at rest.
+fn a_jumping_hand_keeps_the_simulation_stable() {
+    // Explicit integrators are unstable with such segments even at rest.
     for integrator in &Integrator::ALL[2..] {
         let mut lock =
             Lock::new(Material::default(), Solver { integrator: *integrator, ..Solver::default() });
@@ -215,13 +220,13 @@ fn a_hand_that_jumps_away_neither_tears_nor_blows_up() {
             lock.step();
         }
         let measure = lock.simulation.measure(&[]);
-        println!("{integrator:?}: {measure:?} five seconds after");
+        println!("{integrator:?}: {measure:?} five seconds after the release");
         assert!(measure.speed_max < 3.0, "{integrator:?}: {measure:?}");
     }
 }
 
 #[test]
-fn a_scenes_hands_begin_move_and_end_as_they_say() {
+fn hands_of_a_scene_follow_their_timing_and_path() {
     let strand = (0..POINTS).map(|i| Vec3::new(0.0, -SEGMENT * i as f32, 0.0)).collect::<Vec<_>>();
     let groom =
         SceneGroom { groom: Groom::from_strands([strand], 40e-6), guides: Guides::All, ..Default::default() };
@@ -245,20 +250,20 @@ fn a_scenes_hands_begin_move_and_end_as_they_say() {
             stage.step(FRAME);
             places.push(held(&stage));
         }
-        assert!(places[28].distance(home) < 1e-6, "round {round}: before it begins nothing moves");
+        assert!(places[28].distance(home) < 1e-6, "round {round}: hair moved before the hand began");
         let (middle, end) = (home + Vec3::new(0.04, 0.015, 0.0), home + Vec3::new(0.08, 0.03, 0.0));
         println!(
-            "{} m off in the middle, {} at the end",
+            "offset in the middle: {} m, at the end: {} m",
             places[44].distance(middle),
             places[80].distance(end)
         );
         assert!(places[44].distance(middle) < 1e-3 && places[80].distance(end) < 1e-3);
-        assert!(places[179].distance(end) > 0.03, "round {round}: it did not let go");
+        assert!(places[179].distance(end) > 0.03, "round {round}: the hand did not release");
         played.push(places);
     }
     let apart = played[0].iter().zip(&played[1]).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-    assert!(apart < 1e-5, "a reset lets go of everything: {apart} m apart");
-    // An app's hand does the same.
+    assert!(apart < 1e-5, "after a reset the motion differs by {apart} m");
+    // A hand that an app moves gives the same result.
     stage.reset();
     let id = stage.add_manipulator(Manipulator::Grab(ball), RigidTransform::default());
     for frame in 1..=20 {

@@ -1,7 +1,8 @@
-//! Promise: what an app moves, hair feels: the body as a whole, and a ball.
+//! Promise: an app can move the body as a whole and a ball, and both move hair.
 //!
-//! Roots stay on a body that is carried through the world besides its clip. A ball keeps all hair out, follow hairs too, passes on its velocity, and has none
-//! where it appears. Moments that it does not look at cost nothing, and change nothing.
+//! Roots stay on a body that the app moves in addition to its clip. A ball keeps all hair out, including
+//! follow hairs. It passes on its velocity, but a new ball starts with zero velocity. Frames that are
+//! advanced without updating the render points give the same result.
 
 use glam::{Quat, Vec3};
 use hairspring::{collide::ColliderShape, groom::Groom, material::Material, math::RigidTransform};
@@ -14,7 +15,7 @@ use hairspring_scene::{
 const FRAME: f32 = 1.0 / 60.0;
 
 #[test]
-fn roots_stay_on_a_body_that_is_carried() {
+fn roots_stay_on_a_body_moved_by_the_app() {
     let options = BuiltinOptions { strands: 200, guides: Guides::Count(40), ..BuiltinOptions::default() };
     let scene = builtin::scene(&options);
     let [mut here, mut carried] = [0; 2].map(|_| Stage::new(scene.clone()).unwrap());
@@ -37,14 +38,14 @@ fn roots_stay_on_a_body_that_is_carried() {
         let (still, moved) = (roots(&here), roots(&carried));
         let off =
             still.iter().zip(&moved).map(|(a, b)| way(frame).point(*a).distance(*b)).fold(0.0, f32::max);
-        assert!(off < 2e-6, "frame {frame}: a root is {off} m off the body");
+        assert!(off < 2e-6, "frame {frame}: a root is {off} m from its place on the body");
         let anchor = way(frame).after(&here.body_anchor());
         assert!(anchor.translation.distance(carried.body_anchor().translation) < 1e-6);
-        // The head's field goes along.
+        // The head's distance field moves with the body.
         let end = carried.obstacles()[0].end;
         assert!(end.translation.distance(carried.body_anchor().translation) < 1e-6);
     }
-    // It is felt: hair lags.
+    // The motion has an effect: hair lags behind.
     let tips = |stage: &Stage| stage.strands().next().unwrap().points[31];
     let lag = way(29).point(tips(&here)).distance(tips(&carried));
     assert!(lag > 1e-3, "{lag} m");
@@ -56,7 +57,7 @@ fn roots_stay_on_a_body_that_is_carried() {
     assert_eq!(carried.strands().next().unwrap().points, here.strands().next().unwrap().points);
 }
 
-/// A curtain of strands that hang from a rail along X, a sixth of them simulated.
+/// A curtain of strands that hang from a rail along X; one in six is simulated.
 fn curtain() -> Stage {
     let strands = (0..48).map(|s| {
         let x = (s as f32 - 23.5) * 0.004;
@@ -80,7 +81,7 @@ fn at(place: Vec3) -> RigidTransform {
 }
 
 #[test]
-fn a_ball_takes_hair_along_and_none_is_in_it() {
+fn a_ball_takes_hair_along_without_penetration() {
     let mut stage = curtain();
     let radius = 0.05;
     let ball = |frame: u32| Vec3::new(0.0, -0.35, 0.15 - (frame as f32 * FRAME).min(0.3));
@@ -94,25 +95,25 @@ fn a_ball_takes_hair_along_and_none_is_in_it() {
         assert_eq!(obstacle.start.translation, from, "frame {frame}");
         let points = stage.strands().next().unwrap().points.to_vec();
         let depth = points.iter().map(|p| radius - p.distance(ball(frame))).fold(0.0, f32::max);
-        assert!(depth < 1e-4, "frame {frame}: {depth} m inside");
+        assert!(depth < 1e-4, "frame {frame}: hair penetrates the ball by {depth} m");
         let measured = stage.measure();
         assert_eq!(measured.non_finite, 0);
     }
     let pushed = stage.strands().next().unwrap().points.iter().map(|p| -p.z).fold(0.0, f32::max);
-    assert!(pushed > 0.1, "{pushed} m: the ball takes hair along");
+    assert!(pushed > 0.1, "the ball moved hair by only {pushed} m");
     stage.set_user_colliders(&[], RigidTransform::default());
     assert!(stage.obstacles().is_empty());
     for wrong in [f32::NAN, 0.0, -1.0] {
         stage.set_user_colliders(&[sphere(wrong)], RigidTransform::default());
-        assert!(stage.obstacles().is_empty(), "a radius of {wrong}");
+        assert!(stage.obstacles().is_empty(), "a radius of {wrong} was accepted");
     }
     (0..300).for_each(|_| _ = stage.step(FRAME));
     let left = stage.strands().next().unwrap().points.iter().map(|p| p.z.abs()).fold(0.0, f32::max);
-    assert!(left < 0.01, "{left} m off after it has gone");
+    assert!(left < 0.01, "hair is {left} m from its old place after the ball was removed");
 }
 
 #[test]
-fn a_ball_stays_where_other_settings_come() {
+fn a_ball_stays_when_settings_change() {
     let mut stage = curtain();
     let center = Vec3::new(0.0, -0.35, 0.03);
     stage.set_user_colliders(&[sphere(0.05)], at(center));
@@ -126,14 +127,14 @@ fn a_ball_stays_where_other_settings_come() {
     (0..60).for_each(|_| _ = stage.step(FRAME));
     let strands = stage.strands().next().unwrap();
     let depth = strands.points.iter().map(|p| 0.05 - p.distance(center)).fold(0.0, f32::max);
-    assert!(depth < 1e-4, "{depth} m inside");
+    assert!(depth < 1e-4, "hair penetrates the ball by {depth} m");
     stage.reset();
     assert_eq!(stage.obstacles()[1].start, stage.obstacles()[1].end);
     assert_eq!(stage.obstacles()[1].end.translation, center);
 }
 
 #[test]
-fn moments_that_nobody_looks_at_change_nothing() {
+fn skipped_render_updates_change_nothing() {
     let options = BuiltinOptions { strands: 200, guides: Guides::Count(40), ..BuiltinOptions::default() };
     let scene = builtin::scene(&options);
     let [mut seen, mut unseen] = [0; 2].map(|_| Stage::new(scene.clone()).unwrap());
@@ -143,7 +144,7 @@ fn moments_that_nobody_looks_at_change_nothing() {
         seen.step(FRAME);
         unseen.advance(FRAME);
     }
-    assert_eq!(points(&unseen), before, "what is not shown stays");
+    assert_eq!(points(&unseen), before, "the render points changed without an update");
     unseen.update_render_points();
-    assert_eq!(points(&unseen), points(&seen), "the same bits");
+    assert_eq!(points(&unseen), points(&seen), "the results differ");
 }

@@ -1,7 +1,8 @@
-//! Promise: every point and strand tells what is known of it, and a ray finds the strand that it points at.
+//! Promise: every point and strand reports its values, and a ray finds the strand that it points at.
 //!
-//! A hanging strand is pulled by what hangs on it, by the closed form; a strand on a floor is held out by its weight; what is bent tells by how much, what moves
-//! how fast, what is crowded how dense. Follow hairs tell of their first guide.
+//! The tension of a hanging strand follows the closed form. The contact force on a strand on a floor
+//! balances its weight. Bent strands report their turn, moving points their speed, and points in a volume
+//! their density. Follow hairs report the values of their first guide.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -21,7 +22,8 @@ const RADIUS: f32 = 40e-6;
 const POINTS: usize = 21;
 const SEGMENT: f32 = 0.01;
 
-/// Straight strands along `way` from roots 5 cm apart; strand 0 and 3 are simulated, the others follow the one before or after them.
+/// Straight strands along `way`, with roots 5 cm apart. Strands 0 and 3 are simulated, and strands 1 and 2
+/// follow them.
 fn rail(way: Vec3) -> Groom {
     let strand = |s: usize| {
         let root = Vec3::X * (0.05 * s as f32);
@@ -52,19 +54,19 @@ fn values(stage: &Stage, what: Value) -> Vec<f32> {
 }
 
 #[test]
-fn a_hanging_strand_is_pulled_by_what_hangs_on_it() {
+fn tension_of_a_hanging_strand_follows_the_closed_form() {
     let mut stage = Stage::new(scene(rail(Vec3::NEG_Y))).unwrap();
     (0..60).for_each(|_| _ = stage.step(FRAME));
     let weight = Material::default().density * PI * RADIUS * RADIUS * SEGMENT * G;
     let tension = values(&stage, Value::Tension);
     for s in 0..4 {
-        // From the first segment that is not the root's on; at the tip hangs half a segment.
+        // Starts at the first segment that does not touch the root. The last point carries half a segment.
         for i in 1..POINTS - 1 {
             let expected = weight * (POINTS as f32 - 1.5 - i as f32);
             let found = tension[s * POINTS + i];
             assert!(
                 (found / expected - 1.0).abs() < 0.02,
-                "strand {s}, point {i}: {found} N, not {expected}"
+                "strand {s}, point {i}: {found} N instead of {expected}"
             );
         }
     }
@@ -82,11 +84,11 @@ fn a_hanging_strand_is_pulled_by_what_hangs_on_it() {
     assert!(values(&stage, Value::Contact).iter().chain(&values(&stage, Value::Density)).all(|x| *x == 0.0));
     let mut none = vec![1.0];
     stage.values(Value::Speed, 1, &mut none);
-    assert!(none.is_empty(), "there is no second groom");
+    assert!(none.is_empty(), "a groom that does not exist has values");
 }
 
 #[test]
-fn what_falls_tells_how_fast_and_how_bent() {
+fn falling_strands_report_speed_and_turn() {
     let mut falling = scene(rail(Vec3::X));
     falling.solver = Solver { sag_free: false, ..Solver::default() };
     falling.grooms[0].materials[0].bend = 1e-3;
@@ -99,13 +101,13 @@ fn what_falls_tells_how_fast_and_how_bent() {
     let turn = values(&stage, Value::Turn);
     for i in 10..POINTS {
         let mean = next[i].distance(here[i]) / FRAME;
-        // In a frame of free fall speed grows by g/60.
-        assert!((speed[i] - mean).abs() < 0.5 * G * FRAME + 0.02, "point {i}: {} m/s, not {mean}", speed[i]);
+        // In a frame of free fall the speed grows by g/60.
+        assert!((speed[i] - mean).abs() < 0.5 * G * FRAME + 0.02, "point {i}: {} m/s instead of {mean}", speed[i]);
     }
-    // Straight at rest: a joint is turned by what its two segments make with each other.
+    // The rest shape is straight, so the turn of a joint is the angle between its two segments.
     for i in 1..POINTS - 1 {
         let now = (next[i] - next[i - 1]).angle_between(next[i + 1] - next[i]);
-        assert!((turn[i] - now).abs() < 1e-3, "joint {i}: {} rad, not {now}", turn[i]);
+        assert!((turn[i] - now).abs() < 1e-3, "joint {i}: {} rad instead of {now}", turn[i]);
     }
     assert!(turn[..POINTS].iter().sum::<f32>() > 0.5 && turn[0] == 0.0 && turn[POINTS - 1] == 0.0);
     let figures = stage.strand_figures(0, 0);
@@ -115,7 +117,7 @@ fn what_falls_tells_how_fast_and_how_bent() {
 }
 
 #[test]
-fn a_floor_holds_what_lies_on_it() {
+fn contact_force_on_a_floor_balances_the_weight() {
     let mut lying = scene(rail(Vec3::X));
     lying.solver.sag_free = false;
     lying.grooms[0].materials[0].bend = 0.01;
@@ -133,7 +135,7 @@ fn a_floor_holds_what_lies_on_it() {
 }
 
 #[test]
-fn hair_at_rest_is_as_dense_as_at_rest() {
+fn density_at_rest_is_one() {
     let strands = (0..400).map(|s| {
         let root = Vec3::new((s % 20) as f32 * 0.002, 0.0, (s / 20) as f32 * 0.002);
         (0..POINTS).map(|i| root - Vec3::Y * (SEGMENT * i as f32)).collect::<Vec<_>>()
@@ -145,7 +147,7 @@ fn hair_at_rest_is_as_dense_as_at_rest() {
     (0..5).for_each(|_| _ = stage.step(FRAME));
     let density = values(&stage, Value::Density);
     let middle = density[(10 * 20 + 10) * POINTS + 10];
-    assert!((middle - 1.0).abs() < 0.2, "{middle} in the middle of it");
+    assert!((middle - 1.0).abs() < 0.2, "the density in the middle is {middle}");
     assert!(density.iter().all(|d| (0.0..2.0).contains(d)));
 }
 
@@ -161,16 +163,17 @@ fn a_ray_finds_the_strand_it_points_at() {
     let hit = at(Vec3::new(0.05, -0.1, 0.0)).unwrap();
     assert_eq!((hit.groom, hit.strand, hit.point), (0, 1, 10));
     assert!((hit.distance - eye.distance(Vec3::new(0.05, -0.1, 0.0))).abs() < 1e-5);
-    // Between two strands, nearer to the left one: the nearest in angle.
+    // Between two strands, closer in angle to the left one.
     let near = at(Vec3::new(0.06, -0.102, 0.0)).unwrap();
     assert_eq!((near.groom, near.strand, near.point), (0, 1, 10));
-    // Both within 0.2°: the nearer, though the ray goes through the other.
+    // Both strands are within 0.2° of the ray: the nearer one is found although the ray passes through the
+    // other.
     let behind = at(Vec3::new(0.0, -0.11, -0.1)).unwrap();
     assert_eq!((behind.groom, behind.strand), (0, 0));
-    // A little off both ways.
+    // The ray is rotated by a small angle about Y.
     let turned = Quat::from_rotation_y(0.002) * Vec3::new(0.0, -0.1, -1.0);
     assert_eq!(stage.nearest_strand(eye, turned).map(|p| p.strand), Some(0));
-    assert_eq!(stage.nearest_strand(eye, Vec3::Z), None, "no hair lies that way");
+    assert_eq!(stage.nearest_strand(eye, Vec3::Z), None, "a ray away from the hair found a strand");
     assert_eq!(stage.nearest_strand(eye, Vec3::ZERO), None);
     assert_eq!(stage.nearest_strand(eye, Vec3::splat(f32::NAN)), None);
 }

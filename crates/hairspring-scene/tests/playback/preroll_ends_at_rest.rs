@@ -1,8 +1,10 @@
-//! Promise: hair that falls before the scene begins is where it would have fallen to in it, and lies still from there on.
+//! Promise: hair that falls during the pre-roll ends where it would have fallen in the scene, and stays at
+//! rest there.
 //!
-//! Grown hair stands off the skin. `solver.preroll` lets it fall first: onto a body that stays, a skinned one whose head is not at the origin as well as a
-//! ball in the world. Where it lies then is the groom: the first frame shows it, balance holds it there as if it had been made so, follow hairs are at rest
-//! beside their guides, and every reset goes back to it.
+//! Grown hair stands off the skin. `solver.preroll` lets it fall before the first frame, onto a body at
+//! rest. The tests use a skinned body whose head is not at the origin, and a ball in the world. The result
+//! of the pre-roll becomes the groom. The first frame shows it, the sag-free start keeps it in balance,
+//! follow hairs rest with their guides, and every reset returns to it.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -35,7 +37,7 @@ fn ball(guides: Guides) -> Scene {
     }
 }
 
-/// Hair grown on the built-in head, which stays.
+/// Hair grown on the built-in head, which does not move.
 fn head() -> Scene {
     let mut scene = builtin(&BuiltinOptions { strands: 1, ..BuiltinOptions::default() });
     let mesh = &scene.body.as_ref().unwrap().mesh;
@@ -67,35 +69,35 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
 }
 
 #[test]
-fn it_lies_where_it_would_have_fallen_to() {
+fn preroll_gives_the_result_of_falling_in_the_scene() {
     for (name, scene) in [("ball", ball(Guides::All)), ("head", head())] {
         let mut falling = with(&scene, 0.0, false);
         let start = points(&falling);
         play(&mut falling, 60);
         let way = farthest(&start, &points(&falling));
         let apart = farthest(&points(&falling), &points(&with(&scene, 1.0, true)));
-        println!("{name}: falls by {way:.3} m in a second; before the scene {apart:.1e} m elsewhere");
+        println!("{name}: falls by {way:.3} m in a second; the pre-roll differs by {apart:.1e} m");
         assert!(way > 0.05, "{name}: {way} m");
-        // Contact makes more of a rounding.
+        // Contact amplifies differences in rounding.
         assert!(apart < 1e-3, "{name}: {apart} m");
     }
 }
 
 #[test]
-fn it_lies_still() {
+fn hair_is_at_rest_after_preroll() {
     for (name, scene) in [("all", ball(Guides::All)), ("guides", ball(Guides::Count(20))), ("head", head())] {
         let mut stage = with(&scene, 3.0, true);
         let start = points(&stage);
         play(&mut stage, 30);
         let lies = farthest(&start, &points(&stage));
-        println!("{name}: within {lies:.1e} m for half a second");
+        println!("{name}: moves by at most {lies:.1e} m in half a second");
         assert!(lies < 1e-3, "{name}: {lies} m");
         let measure = stage.measure();
         assert_eq!((measure.inside_points, measure.non_finite), (0, 0), "{name}");
         stage.reset();
-        assert!(points(&stage) == start, "{name}: a reset goes elsewhere");
+        assert!(points(&stage) == start, "{name}: a reset does not restore the start");
     }
     let inside = |stage: Stage| points(&stage).iter().map(|p| HEAD - p.length()).fold(0.0, f32::max);
     let deepest = inside(with(&ball(Guides::All), 3.0, true));
-    assert!(deepest < 1e-4, "{deepest} m inside the ball");
+    assert!(deepest < 1e-4, "hair penetrates the ball by {deepest} m");
 }

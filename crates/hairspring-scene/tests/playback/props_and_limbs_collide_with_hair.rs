@@ -1,9 +1,10 @@
-//! Promise: a thing beside the body, and a limb of it, meets hair as it goes.
+//! Promise: a moving prop and a moving limb of the body collide with hair on their whole path.
 //!
-//! A prop is a part of the body's mesh with a joint of its own. Hair must meet it as it meets a collider that was written as one: on its way through the frame and
-//! not where the frame ends, where a bar thrown at 10 m/s has jumped seventeen centimeters. So it takes with it what hangs in its way, and nothing is
-//! left inside of it or behind. A limb is one surface with the body, which deforms: the same bar as an arm of the board must do the same. So must a sheet
-//! of 2 mm that the arm waves at 5 m/s.
+//! A prop is a part of the body's mesh with a joint of its own. It must collide like an explicit collider:
+//! along its path through the frame and not only where the frame ends. A bar thrown at 10 m/s moves by 17
+//! cm in a frame. It takes all hair in its path along, and no hair remains inside or behind it. A limb is
+//! part of the deforming surface of the body: the same bar as an arm of the board must give the same
+//! result. So must a sheet of 2 mm that the arm waves at 5 m/s.
 
 use glam::{Affine3A, Vec3};
 use hairspring::{
@@ -16,14 +17,15 @@ use hairspring_scene::{Guides, Scene, SceneGroom, SceneSheet, stage::Stage};
 
 const POINTS: usize = 16;
 const LENGTH: f32 = 0.16;
-/// Way of the bar in a frame at 10 m/s [m], and where it is after the third: past the hair, which reaches farther.
+/// Path of the bar in a frame at 10 m/s [m], and its position after the third frame: past the hair, which
+/// is longer.
 const STRIDE: f32 = 10.0 / 60.0;
 const LAST: f32 = 0.04;
 const FRAMES: u32 = 3;
-/// How far below the roots the bar goes [m].
+/// Distance of the bar below the roots [m].
 const BELOW: f32 = 0.08;
 
-/// A closed box.
+/// Adds a closed box.
 fn cuboid(mesh: &mut Mesh, middle: Vec3, half: Vec3) {
     let first = mesh.positions.len() as u32;
     let corner = |k: u32| Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32) * 2.0 - 1.0;
@@ -34,7 +36,8 @@ fn cuboid(mesh: &mut Mesh, middle: Vec3, half: Vec3) {
     mesh.triangles.extend(quads.into_iter().flat_map(halves));
 }
 
-/// A curtain that hangs from a board, and a bar that is thrown at it: a thing by itself, or a child of the board's joint.
+/// A curtain that hangs from a board, and a bar that is thrown at it: independent, or a child of the
+/// board's joint.
 fn scene(parent: Option<u32>, stride: f32) -> Scene {
     let mut mesh = Mesh::default();
     cuboid(&mut mesh, Vec3::Y * 0.01, Vec3::new(0.05, 0.01, 0.08));
@@ -75,27 +78,28 @@ fn scene(parent: Option<u32>, stride: f32) -> Scene {
 }
 
 #[test]
-fn a_bar_that_is_thrown_takes_hair_with_it() {
+fn a_thrown_bar_takes_hair_along() {
     throw(None);
 }
 
 #[test]
-fn an_arm_takes_hair_with_it() {
+fn an_arm_takes_hair_along() {
     throw(Some(0));
 }
 
 #[test]
-fn a_sheet_that_is_waved_takes_hair_with_it() {
+fn a_waved_sheet_takes_hair_along() {
     wave(false);
 }
 
 #[test]
-fn a_sheet_on_an_arm_takes_hair_with_it() {
-    // Each asks for parts of the frame, and not for as many.
+fn a_sheet_on_an_arm_takes_hair_along() {
+    // The arm and the sheet each need time slices, but not the same number.
     wave(true);
 }
 
-/// Waves a strip of two rows of quads in the bar's middle, across the way; the bar itself meets hair or nothing.
+/// Waves a strip of two rows of quads through the hair, with the bar as its middle. The bar itself collides
+/// or does not.
 fn wave(collide_body: bool) {
     let mut waved = scene(Some(0), 0.5 * STRIDE);
     let board = waved.body.as_ref().unwrap();
@@ -126,13 +130,13 @@ fn play(scene: Scene) {
     let points: Vec<Vec3> = stage.strands().flat_map(|strands| strands.points.to_vec()).collect();
     let depth = |p: &Vec3| stage.obstacles().iter().map(|o| -o.now().distance(*p)).fold(f32::MIN, f32::max);
     let deepest = points.chunks(POINTS).flat_map(|strand| &strand[1..]).map(depth).fold(f32::MIN, f32::max);
-    // What crosses the bar's height does so before it.
+    // A strand that reaches below the bar must pass in front of it.
     let taken = points.chunks(POINTS).filter(|strand| {
         let at = strand.windows(2).find(|ends| ends[1].y < -BELOW);
         at.is_none_or(|ends| ends[1].x > LAST)
     });
     let taken = taken.count();
-    println!("{taken} of 31 strands go with the bar, {:.3} mm deep the deepest point", 1e3 * deepest);
-    assert_eq!(taken, 31, "strands that go with the bar");
-    assert!(deepest < 1e-4, "{deepest} m deep");
+    println!("the bar takes {taken} of 31 strands along; the deepest point is {:.3} mm inside", 1e3 * deepest);
+    assert_eq!(taken, 31, "the bar does not take all strands along");
+    assert!(deepest < 1e-4, "a point is {deepest} m inside");
 }

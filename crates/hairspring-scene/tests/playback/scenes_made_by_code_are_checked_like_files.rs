@@ -1,4 +1,5 @@
-//! Promise: a scene made by code is checked by the rules that hold for scene files: the error names the place, the setting and its range.
+//! Promise: a scene made by code is checked by the same rules as a scene file. The error names the place,
+//! the setting and its range.
 
 use glam::Vec3;
 use hairspring::{material::Material, settings::Solver};
@@ -8,11 +9,11 @@ use hairspring_scene::{
     stage::{Stage, StageError},
 };
 
-/// A change of a scene, and what is said of it.
+/// A change that makes a scene invalid, and the beginning of the error.
 type Fault = (fn(&mut Scene), &'static str);
 
 #[test]
-fn every_part() {
+fn every_part_of_a_scene_is_checked() {
     let faults: [Fault; 8] = [
         (|s| s.solver.substeps = 65, "solver: `substeps` must be 1 to 64"),
         (|s| s.wind.gust = -0.1, "wind: `gust` must be 0 to 1"),

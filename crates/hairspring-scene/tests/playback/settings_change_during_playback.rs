@@ -1,8 +1,9 @@
-//! Promise: settings change in the midst of the play, and hair goes on from where it is as it moves.
+//! Promise: settings can change during playback, and hair continues from its current position and velocity.
 //!
-//! The same settings change no bit, even where all rest shapes are found anew. Every elastic model and integrator takes over from every other in the
-//! midst of a swing: points are where they were, tips go on as they went, nothing is ever not a number. Gravity, stiffness, wind, colliders and
-//! hands come and go, and what is refused changes nothing.
+//! Applying the same settings changes no bit, even if all rest shapes are solved again. Every elastic model
+//! and integrator can take over from every other during a swing: positions are unchanged, tips keep their
+//! velocity, and no value is non-finite. Gravity, stiffness, wind, colliders and hands can be added and
+//! removed. Refused settings change nothing.
 
 use glam::Vec3;
 use hairspring::{
@@ -24,7 +25,7 @@ use std::sync::Arc;
 const FRAME: f32 = 1.0 / 60.0;
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
-/// What an app hands to `update_settings`: the settings without geometry.
+/// The argument of `update_settings`: the settings without geometry.
 fn settings_of(scene: &Scene) -> Scene {
     let bare = |groom: &SceneGroom| SceneGroom { groom: Groom::default(), ..groom.clone() };
     Scene {
@@ -52,7 +53,7 @@ fn play(stage: &mut Stage, frames: u32) {
     }
 }
 
-/// The head, which nods, with all that a scene can have.
+/// The nodding head, with every effect that a scene can have.
 fn head() -> Scene {
     let mut scene = builtin::scene(&BuiltinOptions {
         strands: 400,
@@ -71,7 +72,7 @@ fn head() -> Scene {
 }
 
 #[test]
-fn the_same_settings_change_no_bit() {
+fn the_same_settings_change_nothing() {
     let scene = head();
     let settings = settings_of(&scene);
     let mut stages = [0; 3].map(|_| Stage::new(scene.clone()).unwrap());
@@ -93,21 +94,21 @@ fn the_same_settings_change_no_bit() {
     let [untouched, same, fresh] = &mut stages;
     same.update_settings(settings.clone()).unwrap();
     assert_eq!(same.scene(), untouched.scene());
-    // No material has a global shape: the switch does nothing but that rest shapes are found anew.
+    // No material has a global shape, so the switch only causes the rest shapes to be solved again.
     let solver = Solver { global_shape: false, ..settings.solver };
     fresh.update_settings(Scene { solver, ..settings }).unwrap();
     for frame in 0..30 {
         [&mut *untouched, &mut *same, &mut *fresh].into_iter().for_each(|stage| play(stage, 1));
         let expected = points(untouched);
-        assert!(expected == points(same), "frame {frame}: the same settings");
+        assert!(expected == points(same), "frame {frame}: the same settings changed the result");
         let apart = farthest(&expected, &points(fresh));
-        assert!(expected == points(fresh), "frame {frame}: {apart} m with rest shapes found anew");
+        assert!(expected == points(fresh), "frame {frame}: {apart} m apart after rest shapes were solved again");
     }
 }
 
 const ROOT: RigidTransform = RigidTransform { rotation: glam::Quat::IDENTITY, translation: Vec3::ZERO };
 
-/// Strands that stick out to the side, bowed, curled and straight ones.
+/// Strands that extend to the side: straight ones, and curls of two sizes.
 fn stuck_out() -> Groom {
     Groom::from_strands(
         (0..6).map(|k| {
@@ -124,7 +125,7 @@ fn stuck_out() -> Groom {
     )
 }
 
-/// Strands that fall from the side, with one model and integrator.
+/// Strands that fall from a horizontal pose, with one model and integrator.
 fn falling(groom: &Arc<Groom>, model: Model, integrator: Integrator) -> Simulation {
     let explicit = matches!(integrator, Integrator::ExplicitEuler | Integrator::Verlet);
     let substeps = if explicit { 400 } else { 4 };
@@ -141,7 +142,7 @@ fn falling(groom: &Arc<Groom>, model: Model, integrator: Integrator) -> Simulati
         .unwrap()
 }
 
-/// A frame; how many strands were put back because they were not finite.
+/// Simulates a frame; returns how many strands were reset because they were not finite.
 fn fall(simulation: &mut Simulation, groom: &Groom) -> usize {
     let root = |s: usize| RigidTransform { translation: groom.strand(s)[0], ..ROOT };
     let roots: Vec<RigidTransform> = (0..groom.strand_count()).map(root).collect();
@@ -163,7 +164,7 @@ fn every_model_and_integrator_takes_over_from_every_other() {
         .flat_map(|model| Integrator::ALL.map(|integrator| (model, integrator)))
         .chain([(Model::Auto, Integrator::BackwardEuler)])
         .collect();
-    // Explicit methods may lose a strand to a step that they do not bear.
+    // Explicit methods may lose a strand to an unstable step.
     let bears = |way: &(Model, Integrator)| !matches!(way.1, Integrator::ExplicitEuler | Integrator::Verlet);
     let (mut most, mut worst) = (0.0f32, None);
     for from in &ways {
@@ -175,7 +176,8 @@ fn every_model_and_integrator_takes_over_from_every_other() {
             assert!(lost == 0 || !bears(from), "{from:?}");
             before = std::mem::replace(&mut here, places(&old));
         }
-        // Tips have gone from `before` to `here` in the frame before: how far from where that leads they are in the next.
+        // Tips moved from `before` to `here` in the last frame. The jump is the distance in the next frame
+        // from the position extrapolated at constant velocity.
         let tips = || groom.offsets[1..].iter().map(|end| *end as usize - 1);
         let jump =
             |next: &[Vec3]| tips().map(|i| next[i].distance(2.0 * here[i] - before[i])).fold(0.0, f32::max);
@@ -193,9 +195,9 @@ fn every_model_and_integrator_takes_over_from_every_other() {
                     continue;
                 }
                 let jump = jump(&places(&new));
-                // What it does anyway, going on as it is.
+                // The jump without a change of model or integrator.
                 let own = *own.get_or_insert(jump);
-                println!("{from:?} to {to:?}: {jump} m, {own} m by itself");
+                println!("{from:?} to {to:?}: {jump} m, {own} m without a change");
                 if jump - own > most {
                     (most, worst) = (jump - own, Some((*from, *to)));
                 }
@@ -203,11 +205,12 @@ fn every_model_and_integrator_takes_over_from_every_other() {
         }
     }
     println!("at most {most} m: {worst:?}");
-    // 7 g: strands that follow the leader whip, and are stopped by one that damps.
-    assert!(most < 0.02, "{most} m more than by itself from where its speed would take a tip: {worst:?}");
+    // Corresponds to 7 g: strands of the follow-the-leader methods whip, and a method with damping stops
+    // them.
+    assert!(most < 0.02, "a change adds {most} m to the jump of a tip: {worst:?}");
 }
 
-/// A lock that hangs from fixed roots, with hairs that follow.
+/// A lock that hangs from fixed roots, with follow hairs.
 fn lock() -> Scene {
     let strands = (0..24).map(|k| {
         (0..24)
@@ -229,7 +232,7 @@ fn lock() -> Scene {
     }
 }
 
-/// The lock in a gust of wind, and the settings that it has.
+/// The lock in a gust of wind, and its settings.
 fn in_the_wind() -> (Stage, Scene) {
     let mut scene = lock();
     scene.wind.velocity = Vec3::X * 4.0;
@@ -238,13 +241,13 @@ fn in_the_wind() -> (Stage, Scene) {
     (stage, settings_of(&scene))
 }
 
-/// Retunes, and asserts that points stay and go on as they went.
+/// Updates the settings, and asserts that points keep their position and velocity.
 fn changed_smoothly(stage: &mut Stage, settings: &Scene, what: &str, bound: f32) {
     let before = points(stage);
     play(stage, 1);
     let here = points(stage);
     stage.update_settings(settings.clone()).unwrap();
-    assert!(points(stage) == here, "{what}: points are elsewhere");
+    assert!(points(stage) == here, "{what}: the update moved points");
     play(stage, 1);
     let jump = points(stage)
         .iter()
@@ -252,16 +255,16 @@ fn changed_smoothly(stage: &mut Stage, settings: &Scene, what: &str, bound: f32)
         .map(|(next, (here, before))| next.distance(2.0 * here - before))
         .fold(0.0, f32::max);
     println!("{what}: {jump} m");
-    assert!(jump < bound, "{what}: {jump} m from where speed would take a point");
+    assert!(jump < bound, "{what}: a point is {jump} m from its extrapolated position");
 }
 
 #[test]
-fn gravity_and_stiffness_come_and_go() {
+fn gravity_and_stiffness_change_smoothly() {
     let (mut stage, settings) = in_the_wind();
     let mut stiff = settings.clone();
     stiff.grooms[0].materials[0].bend *= 100.0;
     let light = Scene { gravity: Vec3::ZERO, ..settings.clone() };
-    // What wind has bent springs back when it is stiff at once: at 5 g.
+    // Hair that the wind has bent springs back when it becomes stiff, with an acceleration of 5 g.
     for (what, settings, bound) in [
         ("no gravity", &light, 0.01),
         ("gravity", &settings, 0.01),
@@ -271,16 +274,16 @@ fn gravity_and_stiffness_come_and_go() {
         changed_smoothly(&mut stage, settings, what, bound);
         play(&mut stage, 40);
     }
-    // Left alone it hangs as one that nothing was ever changed of.
+    // At rest it hangs like a lock whose settings never changed.
     let still = Scene { wind: Wind::default(), ..settings };
     stage.update_settings(still).unwrap();
     play(&mut stage, 600);
     let apart = farthest(&points(&stage), &lock().grooms[0].groom.points);
-    assert!(apart < 2e-3, "{apart} m off in the end");
+    assert!(apart < 2e-3, "the final offset is {apart} m");
 }
 
 #[test]
-fn wind_and_effects_come() {
+fn wind_and_effects_can_be_added() {
     let scene = lock();
     let mut stage = Stage::new(scene.clone()).unwrap();
     play(&mut stage, 10);
@@ -290,8 +293,8 @@ fn wind_and_effects_come() {
     let lee = points(&stage);
     play(&mut stage, 30);
     let blown = points(&stage).iter().zip(&lee).map(|(now, was)| now.z - was.z).fold(0.0, f32::max);
-    assert!(blown > 0.02, "{blown} m in the wind");
-    // At once, because nothing of it is simulated.
+    assert!(blown > 0.02, "the wind moved hair by only {blown} m");
+    // Effects apply at once, because they are not simulated.
     let before = points(&stage);
     settings.grooms[0].effects = Effects { clump: 1.0, ..Effects::default() };
     settings.grooms[0].look.variation = 0.9;
@@ -301,7 +304,7 @@ fn wind_and_effects_come() {
 }
 
 #[test]
-fn colliders_come_and_go() {
+fn colliders_can_be_added_and_removed() {
     let scene = lock();
     let mut stage = Stage::new(scene.clone()).unwrap();
     play(&mut stage, 5);
@@ -313,16 +316,16 @@ fn colliders_come_and_go() {
     play(&mut stage, 60);
     let ball = ball.obstacle().unwrap();
     let inside = |stage: &Stage| points(stage).iter().map(|p| -ball.distance(*p)).fold(0.0, f32::max);
-    assert!(inside(&stage) < 1e-4, "{} m inside", inside(&stage));
+    assert!(inside(&stage) < 1e-4, "hair penetrates the ball by {} m", inside(&stage));
     stage.update_settings(settings).unwrap();
     assert!(stage.obstacles().is_empty());
     play(&mut stage, 600);
     let apart = farthest(&points(&stage), &scene.grooms[0].groom.points);
-    assert!(apart < 2e-3, "{apart} m off in the end");
+    assert!(apart < 2e-3, "the final offset is {apart} m");
 }
 
 #[test]
-fn a_hand_goes_on_while_its_settings_are_there() {
+fn a_hand_persists_while_its_settings_exist() {
     let mut scene = lock();
     let grab = Grab { center: Vec3::new(0.03, -0.2, 0.0), radius: 0.05, pull: 60.0, damping: 1.0 };
     let mut hand = Hand::new(Manipulator::Grab(grab));
@@ -336,16 +339,16 @@ fn a_hand_goes_on_while_its_settings_are_there() {
     stage.update_settings(settings.clone()).unwrap();
     play(&mut stage, 30);
     let slipped = points(&stage)[23].distance(held[23]);
-    assert!(slipped < 0.03, "{slipped} m: another model is held as well");
+    assert!(slipped < 0.03, "held hair slipped by {slipped} m after a change of model");
     settings.hands.clear();
     stage.update_settings(settings).unwrap();
     play(&mut stage, 300);
     let apart = farthest(&points(&stage), &scene.grooms[0].groom.points);
-    assert!(apart < 0.01, "{apart} m off after it has let go");
+    assert!(apart < 0.01, "the offset after the release is {apart} m");
 }
 
 #[test]
-fn what_is_refused_changes_nothing() {
+fn refused_settings_change_nothing() {
     let scene = head();
     let [mut untouched, mut refused] = [0; 2].map(|_| Stage::new(scene.clone()).unwrap());
     let settings = settings_of(&scene);

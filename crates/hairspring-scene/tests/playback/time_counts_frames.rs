@@ -1,7 +1,8 @@
 //! Promise: time is a count of frames.
 //!
-//! After any number of frames at a fixed rate, the body is where its clip has it at that time: no error adds up. A frame at 23.976, 29.97 or 59.94 Hz, which is
-//! longer by a thousandth, has as many substeps as one at 24, 30 or 60 Hz.
+//! After any number of frames at a fixed rate, the body is where its clip places it at that time, without
+//! accumulated error. A frame at 23.976, 29.97 or 59.94 Hz, which is longer by a thousandth, has as many
+//! substeps as one at 24, 30 or 60 Hz.
 
 use glam::Vec3;
 use hairspring::{
@@ -14,7 +15,7 @@ use hairspring_scene::{
     stage::{FrameRate, Stage},
 };
 
-/// A strand on a plate that moves 0.1 m/s along X for an hour.
+/// A strand on a plate that moves at 0.1 m/s along X for an hour.
 fn scene(substeps: u32) -> Scene {
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
     let mesh = Mesh {
@@ -45,7 +46,7 @@ fn root(stage: &Stage) -> f32 {
 }
 
 #[test]
-fn after_ten_minutes_the_body_is_where_its_clip_has_it() {
+fn after_ten_minutes_the_body_matches_its_clip() {
     for (frames, seconds, count) in
         [(24, 1, 14_400), (60, 1, 36_000), (240, 1, 144_000), (60_000, 1001, 36_000)]
     {
@@ -56,22 +57,22 @@ fn after_ten_minutes_the_body_is_where_its_clip_has_it() {
         let time = rate.time_of(count);
         assert_eq!(stage.time(), time, "at {rate} Hz");
         let off = (f64::from(root(&stage)) - 0.1 * time).abs();
-        assert!(off < 1e-5, "at {rate} Hz the root is {off} m off after {count} frames");
+        assert!(off < 1e-5, "at {rate} Hz the root is {off} m from its place after {count} frames");
     }
 }
 
 #[test]
-fn steps_of_any_length_add_up_without_loss() {
+fn steps_of_any_length_add_up_without_error() {
     let mut stage = Stage::new(scene(1)).unwrap();
     (0..36_000).for_each(|_| _ = stage.advance(1.0 / 60.0));
     stage.update_render_points();
-    // What single precision makes of 1/60 s, 36,000 times.
+    // 1/60 s in single precision, 36,000 times.
     assert!((stage.time() - 36_000.0 * f64::from(1.0_f32 / 60.0)).abs() < 1e-9);
     assert!((root(&stage) - 60.0).abs() < 1e-4, "{}", root(&stage));
 }
 
 #[test]
-fn television_rates_take_as_many_substeps_as_the_whole_rates() {
+fn fractional_rates_have_as_many_substeps_as_integer_rates() {
     for substeps in [1, 4, 64] {
         for whole in [24, 30, 60] {
             let mut stage = Stage::new(scene(substeps)).unwrap();

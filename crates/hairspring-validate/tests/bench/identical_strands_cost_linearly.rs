@@ -1,7 +1,10 @@
-//! Promise: strands in one place do not make the cost of contact grow with the square of their number, and what is left out of it is said.
+//! Promise: coincident strands do not make the cost of strand contact quadratic in their number, and
+//! omitted contacts are reported.
 //!
-//! Files hold the same strand many times, by mistake or as a count of hairs. Such strands have no room beside each other; they meet the rest as one strand of the mass
-//! of all. Strands that are nearly the same meet some of the others in their place. Counted is the work, pairs of segments that were looked at, not time.
+//! Files may hold the same strand many times, by mistake or to represent a number of hairs. Coincident
+//! strands cannot be separated, so they touch other strands as one strand with the mass of all. Of nearly
+//! coincident strands, each touches a limited number of others. The test counts work, as the number of
+//! tested segment pairs, and not time.
 
 use glam::Vec3;
 use hairspring::{
@@ -19,7 +22,8 @@ fn line(from: Vec3, to: Vec3, points: usize) -> Vec<Vec3> {
     (0..points).map(|i| from.lerp(to, i as f32 / (points - 1) as f32)).collect()
 }
 
-/// Strands that fall, and bars that are held: what is known of them after so many frames, and where the tips are.
+/// Simulates falling strands and held bars for `frames` frames; returns the report and the positions of the
+/// tips.
 fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursReport, Vec<Vec3>) {
     let groom = Arc::new(Groom::from_strands(strands, 4e-5));
     let all: Vec<u32> = (0..strands.len() as u32).collect();
@@ -63,7 +67,7 @@ fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursRepor
 }
 
 #[test]
-fn strands_that_are_the_same_meet_the_rest_as_one() {
+fn coincident_strands_touch_others_as_one() {
     let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
     let rope = line(Vec3::new(-0.05, 0.01, 0.0), Vec3::new(0.20, 0.01, 0.0), 26);
     let over = |count: usize| {
@@ -73,26 +77,26 @@ fn strands_that_are_the_same_meet_the_rest_as_one() {
     let (one, lone) = over(1);
     let (many, tips) = over(1000);
     println!("one: {one:?}\n1000: {many:?}");
-    assert!(lone[1].y > -0.3 && one.pressing > 0, "it lies over the bar: {}", lone[1]);
+    assert!(lone[1].y > -0.3 && one.pressing > 0, "the strand does not lie over the bar: {}", lone[1]);
     assert_eq!((one.same, many.same), (0, 999));
-    assert_eq!(one.looked_at, many.looked_at, "pairs that are looked at");
+    assert_eq!(one.looked_at, many.looked_at, "the numbers of tested pairs differ");
     let apart = tips[1..].iter().map(|tip| tip.distance(lone[1])).fold(0.0, f32::max);
-    assert!(apart < 1e-3, "tips of a thousand are {apart} m from where that of one is");
+    assert!(apart < 1e-3, "the tips of a thousand strands are {apart} m from the tip of one");
 }
 
 #[test]
-fn a_crowd_costs_by_its_number_and_says_that_it_is_one() {
-    // So near each other that no two are a hair's width apart.
+fn a_crowd_costs_linearly_and_is_reported() {
+    // All strands are within less than a hair's width of each other.
     let crowd = |count: usize| -> Vec<Vec<Vec3>> {
         let at = |k: usize| Vec3::new((k as f32 * 0.618).fract(), 0.0, (k as f32 * 0.755).fract()) * 1e-5;
         (0..count).map(|k| line(at(k), at(k) + Vec3::new(0.1, 0.0, 0.0), 12)).collect()
     };
     let [half, all] = [600, 1200].map(|count| fallen(0, &crowd(count), 2).0);
     println!("600: {half:?}\n1200: {all:?}");
-    assert!(all.looked_at < 3 * half.looked_at, "{} pairs, {} of half", all.looked_at, half.looked_at);
-    // Eight substeps of two frames, and at most 256 others a segment in each.
+    assert!(all.looked_at < 3 * half.looked_at, "{} pairs, {} for half of the strands", all.looked_at, half.looked_at);
+    // Two frames have eight substeps, and in each a segment is tested against at most 256 others.
     assert!(all.looked_at < 1200 * 11 * 256 * 8, "{} pairs", all.looked_at);
-    assert!(all.crowded > 0, "it is said");
+    assert!(all.crowded > 0, "the crowd is not reported");
     let (few, _) = fallen(0, &crowd(10), 3);
     assert_eq!(few.crowded, 0);
 }

@@ -1,9 +1,10 @@
-//! Promise: the same bits for any number of threads and with any neighbours, and the same hair on any instruction set.
+//! Promise: results have the same bits for any number of threads and for any other strands in a tile, and
+//! agree on all instruction sets.
 //!
-//! Strands are independent within a step and every sum has one order, so neither threads nor the strands that are stepped along
-//! with one can show. Instruction sets differ in fused
-//! multiplication only: after a tenth of a second of hair falling from standing on end (later, rounding decides which way each
-//! strand has buckled) they agree to a fraction of a hair's width in the median.
+//! Strands are independent within a step, and every sum has a fixed order. So neither threads nor the
+//! strands that share a tile affect the result. Instruction sets differ only in fused multiplication. They
+//! are compared after a tenth of a second, while hair falls from standing on end; later, rounding decides
+//! which way each strand buckles. The median distance is a fraction of a hair's width.
 
 use glam::Vec3;
 use hairspring::{
@@ -36,7 +37,7 @@ fn shaken(threads: usize, method: VolumeMethod) -> Vec<Vec3> {
 }
 
 #[test]
-fn threads_do_not_show_in_the_simulation() {
+fn the_simulation_is_independent_of_threads() {
     for method in VolumeMethod::ALL {
         let one = shaken(1, method);
         assert!(one == shaken(2, method), "{method:?}: two threads give other bits than one");
@@ -45,7 +46,7 @@ fn threads_do_not_show_in_the_simulation() {
 }
 
 #[test]
-fn threads_do_not_show_in_a_whole_scene() {
+fn a_whole_scene_is_independent_of_threads() {
     let play = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -64,9 +65,10 @@ fn threads_do_not_show_in_a_whole_scene() {
     assert!(one == play(7), "seven threads give other bits than one");
 }
 
-/// A limp strand that falls onto a ball, alone and among seven that touch the ball elsewhere and at other times.
+/// A limp strand falls onto a ball, alone and with seven strands that touch the ball elsewhere and at other
+/// times.
 #[test]
-fn neighbours_do_not_show_in_contact() {
+fn strands_in_contact_are_independent_of_their_tile() {
     let groom = Arc::new(bench::groom(8, 24));
     let obstacle = MovingCollider {
         shape: ColliderShape::Sphere { center: Vec3::ZERO, radius: bench::RADIUS },
@@ -102,25 +104,25 @@ fn neighbours_do_not_show_in_contact() {
     };
     let all = fall(&[0, 1, 2, 3, 4, 5, 6, 7]);
     let lying = all.iter().filter(|p| p.length() < bench::RADIUS + 1e-5).count();
-    assert!(lying > 3 * 8, "{lying} points lie on the ball, with the roots");
+    assert!(lying > 3 * 8, "only {lying} points lie on the ball, including the roots");
     for strand in 0..8 {
         let alone = fall(&[strand]);
         assert!(
             alone == all[groom.range(strand as usize)],
-            "strand {strand} is another among its neighbours"
+            "strand {strand} depends on the others in its tile"
         );
     }
 }
 
-/// Strands that share a tile do not show in each other, whatever branch one of them takes.
+/// Strands that share a tile do not affect each other, whichever branch one of them takes.
 #[test]
-fn neighbours_do_not_show() {
+fn strands_are_independent_of_their_tile() {
     neighbours_do_not_show_in(Arc::new(bench::groom(8, 20)));
 }
 
-/// Nor does it show that one of them is longer, and is granted more iterations.
+/// The same for strands of different lengths, of which the longer ones run more iterations.
 #[test]
-fn longer_neighbours_do_not_show() {
+fn strands_are_independent_of_longer_ones_in_their_tile() {
     let strand = |k: usize| {
         let points = 12 << (k / 2);
         let out = Vec3::new((k as f32).cos(), 0.2, (k as f32).sin());
@@ -168,7 +170,7 @@ fn neighbours_do_not_show_in(groom: Arc<Groom>) {
         for s in 0..8 {
             assert!(
                 run(&[s])[..] == all[groom.range(s as usize)],
-                "{model:?}: strand {s} alone has other bits"
+                "{model:?}: strand {s} has other bits alone"
             );
         }
     }
@@ -184,7 +186,7 @@ fn instruction_sets_agree_for(model: Model) {
     let run = |set: &str| {
         let mut bench = Bench::of(64, 20, material(), Solver::default());
         if !bench.simulation.use_instruction_set(set) {
-            println!("skipped {set}: this processor has none");
+            println!("skipped: this processor does not support {set}");
             return None;
         }
         (0..6).for_each(|_| _ = bench.step());

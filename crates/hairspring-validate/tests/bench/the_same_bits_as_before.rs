@@ -1,9 +1,11 @@
-//! Promise: the same bits on every run, for each elastic model, integrator and instruction set, on one thread or seven.
+//! Promise: the same bits on every run, for each elastic model, integrator and instruction set, on one
+//! thread or seven.
 //!
-//! A golden table: FNV-1a of the positions' bits after a tenth of a second of the bench scene, one column for instruction sets without fused
-//! multiplication (SSE2), one for those with it (AVX2, AVX-512). A change of a single rounding shows here; when it was meant,
-//! the table that the failing test prints takes the place of this one, in the same commit as the change. For x86-64 and glibc, whose
-//! sine drives the scene; elsewhere the test says that it has no table.
+//! The golden table holds the FNV-1a hash of the positions' bits after a tenth of a second of the bench
+//! scene. One column is for instruction sets without fused multiplication (SSE2), the other for those with
+//! it (AVX2, AVX-512). The test detects a change of a single rounding. After an intended change, replace
+//! the table by the one that the failing test prints, in the same commit. The table is valid for x86-64 and
+//! glibc, whose sine drives the scene; elsewhere the test is skipped.
 
 use glam::Vec3;
 use hairspring::{
@@ -12,7 +14,7 @@ use hairspring::{
 };
 use hairspring_validate::bench::Bench;
 
-/// Model, integrator, hash without and with fused multiplication.
+/// Model, integrator, and hash without and with fused multiplication.
 const GOLDEN: [(Model, Integrator, [u64; 2]); 7] = [
     (Model::Springs, Integrator::BackwardEuler, [0x7691843dce188933, 0x59a32e9c3ebeb5a6]),
     (Model::Curvature, Integrator::BackwardEuler, [0x14f931d118c036c9, 0xd0d3769c86f96e9b]),
@@ -50,7 +52,7 @@ fn golden_hashes() {
         for (row, golden) in now.iter_mut().zip(GOLDEN) {
             let (model, integrator, hashes) = row;
             let Some(one) = hash(set, *model, *integrator, 1) else {
-                println!("skipped {set}: this processor has none");
+                println!("skipped: this processor does not support {set}");
                 break;
             };
             for threads in [2, 7] {
@@ -59,7 +61,7 @@ fn golden_hashes() {
             let before = hashes[fused];
             assert!(
                 before == one || before == golden.2[fused],
-                "{set} differs from its like: {model:?}, {integrator:?}"
+                "{set} differs from the other set with fused multiplication: {model:?}, {integrator:?}"
             );
             hashes[fused] = one;
         }
@@ -69,7 +71,7 @@ fn golden_hashes() {
     };
     assert!(
         now == GOLDEN,
-        "other bits than before; the table now:\n{}",
+        "the bits changed; the new table:\n{}",
         now.iter().map(row).collect::<String>()
     );
 }

@@ -1,7 +1,8 @@
-//! Promise: drag on a hair is that of measured cylinders, from a breath of air to a storm, across and along it.
+//! Promise: drag on a hair is that of measured cylinders, from slow air to a storm, across the hair and
+//! along it.
 //!
-//! A limp, lone hair hangs straight in a horizontal wind, at the angle where drag across it and its weight balance. The reference is computed from
-//! Lamb's and White's formulas without a line of the simulation.
+//! A limp hair hangs straight in a horizontal wind, at the angle where its weight balances the drag across
+//! it. The reference is computed from Lamb's and White's formulas and shares no code with the simulation.
 
 use glam::Vec3;
 use hairspring::{
@@ -16,7 +17,7 @@ use hairspring_validate::{Method, case, drag_coefficient};
 use std::sync::Arc;
 
 #[test]
-fn the_coefficient_of_drag_is_that_of_the_literature() {
+fn the_drag_coefficient_matches_the_literature() {
     // Lamb up to Re 0.5, White from Re 2 on.
     for (re, cd) in [(1e-3, 2820.7), (0.1, 58.38), (0.46, 19.66), (4.6, 4.615), (23.0, 2.237), (100.0, 1.464)]
     {
@@ -26,7 +27,7 @@ fn the_coefficient_of_drag_is_that_of_the_literature() {
 }
 
 #[test]
-fn a_limp_hair_hangs_at_the_angle_of_drag_and_weight() {
+fn a_limp_hair_hangs_where_drag_and_weight_balance() {
     let case = case("wind-angle").unwrap();
     for (speed, degrees) in
         [(0.03, None), (0.1, None), (0.3, None), (1.0, Some(68.0)), (5.0, None), (15.0, None)]
@@ -37,7 +38,7 @@ fn a_limp_hair_hangs_at_the_angle_of_drag_and_weight() {
                 println!("{speed} m/s, {model:?}: {measured}° for {reference}°");
                 assert!(
                     (measured - reference).abs() < 2.0,
-                    "{speed} m/s, {model:?}: {measured}°, not {reference}°"
+                    "{speed} m/s, {model:?}: {measured}° instead of {reference}°"
                 );
                 assert!(
                     degrees.is_none_or(|d: f64| (measured - d).abs() < 2.0),
@@ -64,9 +65,10 @@ fn other_integrators_hang_at_the_same_angle() {
     }
 }
 
-/// In a wind along the hair, tension at the root is the drag along it. Without a velocity across, that is half of the drag across in the slowest air.
+/// In a wind along the hair, the tension at the root equals the drag along it. Without a velocity across
+/// the hair, that is half of the drag across it in the slowest air.
 #[test]
-fn a_hair_meets_less_drag_along_itself() {
+fn drag_along_a_hair_is_smaller() {
     let radius = 35e-6_f64;
     let along = {
         let points: Vec<Vec3> = (0..16).map(|i| Vec3::X * (0.01 * i as f32)).collect();
@@ -93,9 +95,10 @@ fn a_hair_meets_less_drag_along_itself() {
         f64::from(simulation.tension_at(0, 1))
     };
     let across = 0.5 * 1.204 * 2.0 * radius * drag_coefficient(2.0 * radius / 1.516e-5) * 0.14;
-    // Half of k_n where nothing moves across, 1.23, over 13 cm that hang on the first free segment; and the last 5 mm, which meet the air across.
+    // Half of k_n where nothing moves across, 1.23, over the 13 cm that hang on the first free segment; and
+    // the last 5 mm, which have drag across.
     let slender = 0.615 * 1.204 * 1.516e-5 * 0.13 + across * 0.005 / 0.14;
-    println!("{along} N for {slender} N");
+    println!("{along} N, expected {slender} N");
     assert!((along / slender - 1.0).abs() < 0.05, "{along} N instead of {slender} N");
     assert!(along < 0.5 * across, "{along} N along, {across} N across");
 }

@@ -1,9 +1,11 @@
-//! Promise: hair on hair changes nothing of a start at rest, a squeezed bundle comes apart, and a head of hair that falls and is shaken keeps
-//! nine tenths of its rest volume, of which without it a quarter is left.
+//! Promise: the volume methods do not disturb a start at rest. A squeezed bundle expands. A head of hair
+//! that falls and is shaken keeps nine tenths of its rest volume, of which a quarter is left without a
+//! volume method.
 //!
-//! Volume is that of the lattice's cells as far as hair fills them, none more than once (`VolumeReport::share`): where strands crowd into
-//! each other's room, theirs is lost. Counting occupied cells would take frizz for volume, and a hull would take one strand that stands off
-//! for all. Where hair on hair is to be off, it is measured by a method that has neither pressure nor friction.
+//! Volume is the volume of the grid cells, weighted by how far hair fills each, up to 1
+//! (`VolumeReport::share`). Where strands crowd into the same space, their own space is lost. A count of
+//! occupied cells would treat frizz as volume, and in a convex hull one strand that stands off would count
+//! for all. The case without a volume method is measured by a method with neither pressure nor friction.
 
 use glam::Vec3;
 use hairspring::{
@@ -24,13 +26,13 @@ use std::sync::Arc;
 
 const METHODS: [VolumeMethod; 2] = [VolumeMethod::Density, VolumeMethod::Incompressible];
 
-/// A lattice that only measures.
+/// A grid that only measures.
 fn only_measured() -> Volume {
     Volume { method: VolumeMethod::Density, friction: 0.0, pressure: 0.0, ..Volume::default() }
 }
 
 #[test]
-fn the_first_frame_is_the_groom_and_it_stays() {
+fn a_start_at_rest_is_not_disturbed() {
     let options =
         BuiltinOptions { strands: 600, guides: Guides::Count(300), ..BuiltinOptions::new(Style::Wavy) };
     let rest = Scene { clip: None, ..scene(&options) };
@@ -47,26 +49,28 @@ fn the_first_frame_is_the_groom_and_it_stays() {
         (start, first, points(&stage))
     };
     let (start, first, last) = played(VolumeMethod::Off);
-    println!("off: {} m in the mean after a second", apart(&last, &start));
+    println!("off: moved by {} m in the mean after a second", apart(&last, &start));
     for method in METHODS {
         let (own_start, own_first, own_last) = played(method);
-        assert!(own_start == start, "{method:?}: frame 1 is another groom");
-        // Strands meet within the frame too, where they creep by what rounding leaves of their balance.
+        assert!(own_start == start, "{method:?}: the start differs");
+        // Within the frame, strands interact where residual rounding errors of their balance move them.
         let pushed = own_first.iter().zip(&first).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-        println!("{method:?}: {pushed} m from without after a frame");
+        println!("{method:?}: {pushed} m from the result without it after a frame");
         assert!(pushed < 1e-7, "{method:?}: hair at rest was pushed by {pushed} m");
         println!(
-            "{method:?}: {} m in the mean after a second, {} m from without",
+            "{method:?}: moved by {} m in the mean after a second, {} m from the result without it",
             apart(&own_last, &start),
             apart(&own_last, &last)
         );
-        // The wavy head creeps by 0.6 mm without; what creeps takes others along, and a firm volume makes way for it.
+        // Without a volume method the wavy head creeps by 0.6 mm. Creeping hair takes other hair along, and
+        // an incompressible volume makes way for it.
         let moved = apart(&own_last, &start);
-        assert!(moved < 2e-3, "{method:?}: the mean point moved {moved} m in a second at rest");
+        assert!(moved < 2e-3, "{method:?}: points moved by {moved} m in the mean in a second at rest");
     }
 }
 
-/// How many times as far from its axis the tips of a bundle are, in the mean, a second after its roots were drawn together by `pinch`.
+/// The mean distance of a bundle's tips from its axis one second after its roots were drawn together by
+/// `pinch`, relative to that before.
 fn opened(volume: Volume, pinch: f32) -> f32 {
     let (side, points) = (20, 16);
     let place = |k: usize| (k as f32 - 0.5 * (side - 1) as f32) * 0.003;
@@ -112,21 +116,21 @@ fn opened(volume: Volume, pinch: f32) -> f32 {
 }
 
 #[test]
-fn a_squeezed_bundle_comes_apart() {
+fn a_squeezed_bundle_expands() {
     let without = opened(only_measured(), 0.5);
-    assert!((without - 1.0).abs() < 1e-3, "without pressure it stays as it is: {without}");
+    assert!((without - 1.0).abs() < 1e-3, "without pressure the width changed by a factor of {without}");
     for (method, least) in [(VolumeMethod::Density, 1.2), (VolumeMethod::Incompressible, 1.5)] {
         let volume = Volume { method, ..Volume::default() };
         let at_rest = opened(volume, 1.0);
         let opened = opened(volume, 0.5);
-        println!("{method:?}: {opened} times as wide, {at_rest} where it is not squeezed");
+        println!("{method:?}: {opened} times as wide, {at_rest} if not squeezed");
         assert!((at_rest - 1.0).abs() < 1e-3, "{method:?}: a bundle at rest is {at_rest} times as wide");
-        assert!((least..3.0).contains(&opened), "{method:?}: tips are {opened} times as far from the middle");
+        assert!((least..3.0).contains(&opened), "{method:?}: the tips are {opened} times as far from the axis");
     }
 }
 
-/// The part of its rest volume that a head of hair takes up, in the mean of the last of three seconds: it falls from standing out, and is
-/// shaken.
+/// The share of its rest volume that a head of hair occupies, as the mean over the last of three seconds.
+/// The hair falls from standing out, and the head is shaken.
 fn kept(volume: Volume) -> f64 {
     let mut bench = Bench::new(1_500, 24, Solver::default());
     bench.simulation.set_volume(&volume);
@@ -151,7 +155,7 @@ fn a_shaken_head_keeps_its_volume() {
     let density = kept(Volume { method: VolumeMethod::Density, ..Volume::default() });
     let firm = kept(Volume { method: VolumeMethod::Incompressible, ..Volume::default() });
     println!("without {without}, density {density}, incompressible {firm}");
-    assert!(without < 0.4, "without hair on hair {without} of the volume is left");
+    assert!(without < 0.4, "without a volume method {without} of the volume is left");
     assert!(density > without + 0.1, "density keeps {density}");
     assert!(firm >= 0.9, "incompressible keeps {firm}");
 }

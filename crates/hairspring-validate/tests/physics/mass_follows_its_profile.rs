@@ -1,7 +1,8 @@
-//! Promise: a strand's mass lies where its profile says, and everything that mass acts on follows.
+//! Promise: a mass profile distributes a strand's mass, and every effect of mass follows it.
 //!
-//! Closed forms: the moment of a strand's weight, a double pendulum whose bobs have the mass of their halves, a cantilever with a bead at its
-//! tip (Rayleigh's quotient), and a chain in a wind that takes hold of length and not of mass.
+//! Closed forms: the moment of a strand's weight; a double pendulum whose bobs have the mass of their
+//! halves; a cantilever with a bead at its tip (Rayleigh's quotient); and a chain in a wind whose force
+//! depends on length and not on mass.
 
 use glam::Vec3;
 use hairspring::{
@@ -46,13 +47,13 @@ fn step(simulation: &mut Simulation, dt: f64, wind: Vec3) -> Vec<Vec3> {
     points
 }
 
-/// A chain of `n` points that hangs from a held segment a thousandth as long.
+/// A chain of `n` points below a fixed segment that is a thousandth of its length.
 fn chain(n: u32) -> Vec<Vec3> {
     let at = |i: u32| Vec3::NEG_Y * (LENGTH as f32 * (1e-3 + (i as f32 - 1.0) / (n as f32 - 2.0)));
     std::iter::once(Vec3::ZERO).chain((1..n).map(at)).collect()
 }
 
-/// The profile at `s` of 0 to 1, scaled to a mean of 1.
+/// The profile at `s` from 0 to 1, scaled to a mean of 1.
 fn weight(profile: &[f32], s: f64) -> f64 {
     let intervals = (profile.len() - 1) as f64;
     let at = |s: f64| {
@@ -64,13 +65,13 @@ fn weight(profile: &[f32], s: f64) -> f64 {
     at(s) * intervals / sum
 }
 
-/// ∫ f ds over `from` to `to`, by the middle of many pieces.
+/// ∫ f ds from `from` to `to`, by the midpoint rule.
 fn integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     let n = 20_000;
     (0..n).map(|k| f(from + (to - from) * (k as f64 + 0.5) / n as f64)).sum::<f64>() * (to - from) / n as f64
 }
 
-/// A bead at the tip: 62 % of the mass in the last thirty-second.
+/// A bead at the tip: 62 % of the mass is in the last thirty-second of the length.
 fn bead() -> Vec<f32> {
     let mut values = vec![1.0; 33];
     values[32] = 100.0;
@@ -78,7 +79,7 @@ fn bead() -> Vec<f32> {
 }
 
 #[test]
-fn a_strand_weighs_where_its_profile_says() {
+fn the_moment_of_weight_follows_the_profile() {
     let n = 33;
     let points: Vec<Vec3> =
         (0..n).map(|i| Vec3::NEG_Y * (LENGTH as f32 * i as f32 / (n - 1) as f32)).collect();
@@ -87,21 +88,23 @@ fn a_strand_weighs_where_its_profile_says() {
             let material = Material { model, mass_profile: profile.clone(), ..Material::default() };
             let hanging = strand(points.clone(), material, Solver::default(), Vec3::NEG_Y * 9.81);
             let w = |s: f64| if profile.len() == 1 { 1.0 } else { weight(&profile, s) };
-            // The moment about the root of all but the two driven points, from the energy of a strand that hangs straight down.
+            // The moment about the root of all but the two fixed points, from the energy of a strand that
+            // hangs straight down.
             let moment = integral(1.5 / 32.0, 1.0, |s| w(s) * s) * LINE * LENGTH * LENGTH;
             let measured = hanging.energy().gravitational / -9.81;
-            println!("{model:?}, {} values: {measured} kg m for {moment}", profile.len());
+            println!("{model:?}, {} values: {measured} kg m, expected {moment}", profile.len());
             assert!((measured / moment - 1.0).abs() < 4e-3, "{model:?}: {measured} instead of {moment}");
         }
     }
 }
 
 #[test]
-fn a_heavy_tip_swings_as_the_heavier_bob_of_a_double_pendulum() {
+fn a_strand_swings_as_a_double_pendulum_with_its_bobs() {
     let half = LENGTH / 2.0;
     for model in MODELS {
         for profile in [vec![1.0, 1.0], vec![1.0, 10.0], vec![10.0, 1.0], vec![1.0, 1.0, 1.0, 1.0, 100.0]] {
-            // The upper bob has the middle half of the strand, the lower the last quarter; both segments are as long.
+            // The upper bob has the mass of the middle half of the strand, the lower bob that of the last
+            // quarter. Both segments have the same length.
             let bob = |from: f64, to: f64| integral(from, to, |s| weight(&profile, s));
             let ratio = bob(0.75, 1.0) / bob(0.25, 0.75);
             let omega = (9.81 / half * (1.0 + ratio - (ratio * (1.0 + ratio)).sqrt())).sqrt();
@@ -123,22 +126,23 @@ fn a_heavy_tip_swings_as_the_heavier_bob_of_a_double_pendulum() {
             let mut simulation = strand(points, material, solver, Vec3::NEG_Y * 9.81);
             let crossings = crossings(0.0, 5, |_| step(&mut simulation, 1.0 / 960.0, Vec3::ZERO)[3].x as f64);
             let measured = 2.0 * PI / (crossings[4] - crossings[2]);
-            println!("{model:?}, {profile:?}: {measured} rad/s for {omega}");
+            println!("{model:?}, {profile:?}: {measured} rad/s, expected {omega}");
             assert!(
                 (measured / omega - 1.0).abs() < 0.01,
-                "{model:?}, {profile:?}: {measured} rad/s, not {omega}"
+                "{model:?}, {profile:?}: {measured} rad/s instead of {omega}"
             );
         }
     }
 }
 
 #[test]
-fn a_bead_at_the_tip_makes_a_cantilever_ring_lower() {
+fn a_bead_at_the_tip_lowers_the_frequency_of_a_cantilever() {
     let (n, length, bending) = (33, 0.1, 3.9e9 * PI / 4.0 * RADIUS.powi(4));
     let points: Vec<Vec3> = (0..n).map(|i| Vec3::X * (length as f32 * i as f32 / (n - 1) as f32)).collect();
     for model in MODELS {
         for profile in [bead(), bead().into_iter().rev().collect()] {
-            // Rayleigh's quotient of the shape under a load at the tip: exact for a bead, 1.5 % high for an even beam.
+            // Rayleigh's quotient for the shape under a load at the tip: exact for a bead, 1.5 % high for a
+            // uniform beam.
             let shape = |s: f64| 0.5 * s * s * (3.0 - s);
             let mass = LINE * length * integral(0.0, 1.0, |s| weight(&profile, s) * shape(s).powi(2));
             let omega = (3.0 * bending / (mass * length.powi(3))).sqrt();
@@ -152,20 +156,20 @@ fn a_bead_at_the_tip_makes_a_cantilever_ring_lower() {
             };
             let solver =
                 Solver { sag_free: false, integrator: Integrator::Bdf2, substeps: 16, ..Solver::default() };
-            // A light push downwards, about whose rest it swings.
+            // A small downward load; the beam oscillates about its static deflection.
             let push = 1e-3 * length * omega * omega;
             let mut simulation = strand(points.clone(), material, solver, Vec3::NEG_Y * push as f32);
             let crossings = crossings(-1e-3 * length, 3, |_| {
                 step(&mut simulation, 1.0 / 960.0, Vec3::ZERO)[n - 1].y as f64
             });
             let measured = 2.0 * PI / (crossings[2] - crossings[0]);
-            println!("{model:?}: {measured} rad/s for {omega}");
-            assert!((measured / omega - 1.0).abs() < 0.03, "{model:?}: {measured} rad/s, not {omega}");
+            println!("{model:?}: {measured} rad/s, expected {omega}");
+            assert!((measured / omega - 1.0).abs() < 0.03, "{model:?}: {measured} rad/s instead of {omega}");
         }
     }
 }
 
-/// Times [s] at which what `next` says after each 1/960 s first crosses `level`, and so many times in all.
+/// The first `count` times [s] at which the values of `next`, one each 1/960 s, cross `level`.
 fn crossings(level: f64, count: usize, mut next: impl FnMut(usize) -> f64) -> Vec<f64> {
     let mut out = Vec::new();
     let mut before = next(0) - level;
@@ -203,18 +207,19 @@ fn a_heavy_tip_leans_less_in_the_wind() {
         };
         let even = lean(&[1.0]);
         for profile in [[1.0, 3.0], [3.0, 1.0]] {
-            // A chain's slope is the air's force on what is beyond over the weight of it.
+            // The slope of a chain is the wind force on the part below a point over the weight of that
+            // part.
             let [a, b] = profile.map(f64::from);
             let want = integral(0.0, 1.0, |s| 0.5 * (a + b) / (a + 0.5 * (b - a) * (1.0 + s)));
             let got = lean(&profile) / even;
-            println!("{model:?}, {profile:?}: {got} of an even strand's lean, want {want}");
+            println!("{model:?}, {profile:?}: {got} of a uniform strand's deflection, expected {want}");
             assert!((got / want - 1.0).abs() < 0.02, "{model:?}, {profile:?}: {got} instead of {want}");
         }
     }
 }
 
 #[test]
-fn a_shake_neither_stretches_nor_breaks_a_strand_with_any_profile() {
+fn a_shaken_strand_with_any_profile_keeps_its_length() {
     for model in MODELS {
         for profile in [
             bead(),

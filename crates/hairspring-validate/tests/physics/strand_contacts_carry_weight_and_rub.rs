@@ -1,8 +1,10 @@
-//! Promise: strands that meet one by one carry each other's weight, rub by Coulomb's law, hold together up to the force that they are given and not
-//! beyond, keep a squeezed bundle's room, and change nothing of a start at rest; the same bits on any number of threads.
+//! Promise: contacts between strands carry weight, have Coulomb friction, and hold by stiction up to the
+//! given force and not beyond. They keep a squeezed bundle apart, do not disturb a start at rest, and give
+//! the same bits on any number of threads.
 //!
-//! Closed forms are those of ropes and blocks: over a smooth bar the tension is the same on both sides, so that the bar bears N = |T u₁ − T u₂|; what is
-//! pressed with N sticks where it is pulled aside with less than μN, and slides where with more. Momentum, which impulses keep to rounding, has its test
+//! The closed forms are those of ropes and blocks. Over a smooth bar, the tension is the same on both
+//! sides, so the bar carries N = |T u₁ − T u₂|. A strand that is pressed with N sticks while a force below
+//! μN pulls it sideways, and slides above that. Momentum, which impulses preserve up to rounding, is tested
 //! beside the code (`strand_contact/tests.rs`).
 
 use glam::{Mat3, Vec3};
@@ -20,7 +22,7 @@ use std::sync::Arc;
 
 const ON: Neighbours = Neighbours { on: true, radius: Some(0.001), friction: 0.0, stiction: 0.0 };
 
-/// Strands in still air that nothing else meets, on roots that stay where they are.
+/// Strands in still air without other interactions, on fixed roots.
 struct Strands {
     groom: Arc<Groom>,
     simulation: Simulation,
@@ -67,7 +69,7 @@ impl Strands {
         (0..self.groom.strand_count()).map(|s| now[self.groom.range(s)].to_vec()).collect()
     }
 
-    /// All points of a strand held fast where they are.
+    /// Holds all points of a strand in place.
     fn bar(&self, strand: usize) -> Vec<Hold> {
         let points = self.groom.strand(strand);
         let hold = |i: usize| Hold {
@@ -84,12 +86,12 @@ fn line(from: Vec3, to: Vec3, points: usize) -> Vec<Vec3> {
     (0..points).map(|i| from.lerp(to, i as f32 / (points - 1) as f32)).collect()
 }
 
-/// Hair that hardly bends back, and that still air hardly brakes.
+/// Hair with very little bending stiffness and little drag in still air.
 fn limp() -> Material {
     Material { bend: 0.01, drag: 1.0, model: Model::Curvature, ..Material::default() }
 }
 
-/// Hair that still air hardly brakes, and that keeps to one plane.
+/// Hair with the curvature model, which has no twist.
 fn hair() -> Material {
     Material { model: Model::Curvature, ..Material::default() }
 }
@@ -97,8 +99,8 @@ fn hair() -> Material {
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
 #[test]
-fn a_strand_lies_over_another_and_is_borne() {
-    // A bar, and a strand that is rooted beside it and falls over it.
+fn a_strand_that_lies_over_a_bar_is_supported() {
+    // A bar, and a strand with its root beside it that falls over it.
     let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
     let rope = line(Vec3::new(-0.05, 0.01, 0.0), Vec3::new(0.20, 0.01, 0.0), 26);
     let mut strands = Strands::new(&[bar, rope], limp(), GRAVITY, ON);
@@ -112,15 +114,15 @@ fn a_strand_lies_over_another_and_is_borne() {
     let side = |i: usize| (rope[i + 1] - rope[i]).normalize() * strands.simulation.tension_at(1, i);
     let weight = GRAVITY * (5.0 * 0.01 * 1300.0 * std::f32::consts::PI * 4e-5 * 4e-5);
     let borne = (side(k + 2) - side(k - 3) + weight).length();
-    println!("N {} of {borne} from tensions, depth {}", report.force, report.depth);
-    assert!((report.force / borne - 1.0).abs() < 0.01, "the bar bears {} N of {borne} N", report.force);
-    assert!(report.depth < 0.01 * 0.001, "{} m deep", report.depth);
+    println!("N is {} N, from tensions {borne} N, depth {} m", report.force, report.depth);
+    assert!((report.force / borne - 1.0).abs() < 0.01, "the contact force is {} N instead of {borne} N", report.force);
+    assert!(report.depth < 0.01 * 0.001, "the penetration is {} m", report.depth);
     let fastest = (0..26).map(|i| strands.simulation.speed_at(1, i)).fold(0.0, f32::max);
-    assert!(fastest < 1e-3, "it moves at {fastest} m/s");
+    assert!(fastest < 1e-3, "the strand moves at {fastest} m/s");
 }
 
-/// A strand across a bar, at its joints `press` down and `pull` along the bar with these forces [N]; how far the segment there
-/// goes in a second under the whole pull.
+/// A strand across a bar, loaded at two joints by `press` downward and by `pull` along the bar [N]. Returns
+/// how far the segment slides in a second under the full pull.
 fn rubbed(press: f32, pull: f32, friction: f32) -> f32 {
     let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
     let rope = line(Vec3::new(-0.105, 0.002, 0.0), Vec3::new(0.105, 0.002, 0.0), 22);
@@ -137,7 +139,7 @@ fn rubbed(press: f32, pull: f32, friction: f32) -> f32 {
     };
     strands.simulation.set_holds(&pulled(0.0));
     strands.play(0.5);
-    // Slowly, so that it is the force that is felt and not a blow.
+    // The force grows slowly, so that it does not act as an impact.
     for k in 1..=60 {
         strands.simulation.set_holds(&pulled(pull * k as f32 / 60.0));
         strands.play(bench::FRAME);
@@ -149,15 +151,16 @@ fn rubbed(press: f32, pull: f32, friction: f32) -> f32 {
 }
 
 #[test]
-fn what_is_pulled_aside_with_less_than_friction_sticks() {
+fn a_strand_sticks_below_the_friction_limit() {
     let (press, friction) = (2e-5, 0.4);
     let stuck = rubbed(press, 0.95 * friction * press, friction);
     let slid = rubbed(press, 1.10 * friction * press, friction);
-    assert!(stuck.abs() < 2e-5, "below μN it went {stuck} m");
-    assert!(slid > 2e-3, "above μN it went {slid} m");
+    assert!(stuck.abs() < 2e-5, "below μN the strand moved by {stuck} m");
+    assert!(slid > 2e-3, "above μN the strand moved by only {slid} m");
 }
 
-/// How far a strand is from a bar that it was pressed to, a quarter of a second after it is pulled away with a force [N].
+/// The distance of a strand from a bar that it was pressed against, a quarter of a second after a force [N]
+/// pulls it away, and the number of bonds.
 fn torn(stiction: f32, pull: f32) -> (f32, usize) {
     let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
     let rope = line(Vec3::new(-0.105, 0.0021, 0.0), Vec3::new(0.105, 0.0021, 0.0), 22);
@@ -174,7 +177,7 @@ fn torn(stiction: f32, pull: f32) -> (f32, usize) {
         "{:?}",
         strands.simulation.neighbours()
     );
-    // Slowly, so that it is the force that is felt and not a blow.
+    // The force grows slowly, so that it does not act as an impact.
     for k in 1..=60 {
         strands.simulation.set_holds(&pulled(pull * k as f32 / 60.0));
         strands.play(bench::FRAME);
@@ -184,16 +187,17 @@ fn torn(stiction: f32, pull: f32) -> (f32, usize) {
 }
 
 #[test]
-fn a_bond_breaks_at_its_force_and_not_before() {
+fn a_bond_breaks_at_its_force() {
     let stiction = 1e-5;
     let (held, bonds) = torn(stiction, 0.93 * stiction);
-    assert!(held < 1e-4 && bonds == 1, "pulled with less it is {held} m off, with {bonds} bonds");
+    assert!(held < 1e-4 && bonds == 1, "below its force the bond: {held} m away, {bonds} bonds");
     let (off, bonds) = torn(stiction, 1.07 * stiction);
-    assert!(off > 1e-3 && bonds == 0, "pulled with more it is {off} m off, with {bonds} bonds");
-    assert!(torn(0.0, 0.1 * stiction).0 > 1e-3, "nothing held it");
+    assert!(off > 1e-3 && bonds == 0, "above its force the bond: {off} m away, {bonds} bonds");
+    assert!(torn(0.0, 0.1 * stiction).0 > 1e-3, "the strand was held without stiction");
 }
 
-/// A bundle that two walls press to two thirds of its width: mean distance of its tips to the nearest other, over that at rest.
+/// Two walls press a bundle to two thirds of its width. Returns the mean distance of its tips to the
+/// nearest other tip, relative to that at rest.
 fn squeezed(neighbours: Neighbours) -> f32 {
     let (side, step) = (6, 0.003);
     let place = |k: usize| (k as f32 - 0.5 * (side - 1) as f32) * step;
@@ -231,17 +235,17 @@ fn squeezed(neighbours: Neighbours) -> f32 {
 }
 
 #[test]
-fn a_squeezed_bundle_keeps_its_room() {
+fn a_squeezed_bundle_stays_apart() {
     let without = squeezed(Neighbours::default());
     let with = squeezed(Neighbours { on: true, ..Neighbours::default() });
-    println!("nearest tips: {without} of the distance at rest without, {with} with");
+    println!("nearest tips: {without} of the distance at rest without contact, {with} with it");
     assert!(without < 0.75, "without contact {without}");
     assert!(with > 0.9, "with contact {with}");
 }
 
 #[test]
-fn at_rest_nothing_moves() {
-    // Straight hair on a ball, and curls that go through each other.
+fn contacts_do_not_disturb_hair_at_rest() {
+    // Straight hair, and curls that pass through each other.
     let curl = |s: usize| {
         let root = Vec3::new(0.004 * (s % 5) as f32, 0.0, 0.004 * (s / 5) as f32);
         let turn = |i: usize| 0.5 * i as f32 + s as f32;
@@ -288,13 +292,13 @@ fn at_rest_nothing_moves() {
         let (first, last) = played(Neighbours::default());
         let (own_first, own_last) = played(Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
         let far = own_last.iter().zip(&last).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-        println!("{name}: {far} m from without after a second");
-        assert!(own_first == first, "{name}: hair at rest was moved by its neighbours");
-        assert!(far < 1e-4, "{name}: {far} m from where it is without");
+        println!("{name}: {far} m from the result without contact after a second");
+        assert!(own_first == first, "{name}: contact moved hair at rest");
+        assert!(far < 1e-4, "{name}: {far} m from the result without contact");
     }
 }
 
-/// Shaken hair on a ball that is full of contact.
+/// Shaken hair on a ball, with many contacts.
 fn shaken(neighbours: Neighbours, threads: usize, frames: u32) -> (Vec<Vec3>, Bench) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
@@ -308,7 +312,7 @@ fn shaken(neighbours: Neighbours, threads: usize, frames: u32) -> (Vec<Vec3>, Be
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn contacts_are_independent_of_threads() {
     let neighbours = Neighbours { on: true, radius: Some(0.002), stiction: 1e-6, ..Neighbours::default() };
     let (one, bench) = shaken(neighbours, 1, 60);
     let report = bench.simulation.neighbours().unwrap();
@@ -321,7 +325,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn folded_strands_in_a_heap_stay_finite_and_keep_their_lengths() {
-    // Random walks in a box of five centimeters, let fall and shaken by their roots for ten seconds.
+    // Random walks in a box of 5 cm fall, with their roots shaken for eight of ten seconds.
     let mut seed = 7_u32;
     let mut random = || {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -360,11 +364,11 @@ fn folded_strands_in_a_heap_stay_finite_and_keep_their_lengths() {
     let mean = speeds.sum::<f32>() / 800.0;
     println!("stretch {worst}, {mean} m/s, {:?}", strands.simulation.neighbours().unwrap());
     assert!(finite && worst < 0.011, "stretch {worst}");
-    assert!(mean < 0.05, "two seconds after the shake points move at {mean} m/s in the mean");
+    assert!(mean < 0.05, "two seconds after the shake the mean speed of points is {mean} m/s");
 }
 
 #[test]
-fn a_shaken_head_keeps_its_volume_as_strands_and_by_the_lattice() {
+fn strand_contact_keeps_volume_of_a_shaken_head() {
     let measured =
         Volume { method: VolumeMethod::Density, friction: 0.0, pressure: 0.0, ..Volume::default() };
     let kept = |volume: Volume, neighbours: Neighbours| {
@@ -386,10 +390,10 @@ fn a_shaken_head_keeps_its_volume_as_strands_and_by_the_lattice() {
     let lattice = kept(Volume { method: VolumeMethod::Incompressible, ..Volume::default() }, off);
     let soft = kept(Volume { method: VolumeMethod::Density, ..Volume::default() }, off);
     println!("kept: without {without}, strands {strands}, incompressible {lattice}, density {soft}");
-    assert!(strands > without + 0.1, "strands keep {strands}, of which {without} is left without");
+    assert!(strands > without + 0.1, "strand contact keeps {strands} of the volume, and {without} is left without it");
 }
 
-/// A strand that falls across a web of strands stretched side by side: where its tip is two seconds later [m].
+/// A strand falls across a web of strands stretched side by side; returns its tip two seconds later [m].
 fn dropped_on_a_web(volume: VolumeMethod, on: bool) -> Vec3 {
     let web = (0..16).map(|k| {
         let x = 0.004 * (k as f32 - 7.5);
@@ -399,7 +403,7 @@ fn dropped_on_a_web(volume: VolumeMethod, on: bool) -> Vec3 {
     let neighbours = Neighbours { on, radius: Some(0.001), ..Neighbours::default() };
     let mut strands = Strands::new(&web.chain([fallen]).collect::<Vec<_>>(), limp(), GRAVITY, neighbours);
     strands.simulation.set_volume(&Volume { method: volume, ..Volume::default() });
-    // The web is held at both of its sides.
+    // The web is fixed at both of its sides.
     let held = |strand: u32| Hold {
         strand,
         point: 10,
@@ -413,11 +417,11 @@ fn dropped_on_a_web(volume: VolumeMethod, on: bool) -> Vec3 {
 }
 
 #[test]
-fn a_web_holds_what_the_volume_alone_lets_through() {
+fn a_web_with_strand_contact_holds_a_falling_strand() {
     for volume in VolumeMethod::ALL {
         let [through, held] = [false, true].map(|on| dropped_on_a_web(volume, on));
-        println!("{volume:?}: the tip is at {through} by itself, at {held} with neighbours");
-        assert!(through.x < -0.03, "{volume:?}: it did not fall through: {through}");
-        assert!(held.x > 0.02, "{volume:?}: it fell through the web: {held}");
+        println!("{volume:?}: the tip is at {through} without strand contact, at {held} with it");
+        assert!(through.x < -0.03, "{volume:?}: without strand contact the strand did not fall through: {through}");
+        assert!(held.x > 0.02, "{volume:?}: with strand contact the strand fell through the web: {held}");
     }
 }

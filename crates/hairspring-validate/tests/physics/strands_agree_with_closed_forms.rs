@@ -1,11 +1,13 @@
-//! Promise: a strand does what mechanics says that it does.
+//! Promise: strands agree with closed-form mechanics.
 //!
-//! Every case of `hairspring validate` at its default parameters: static shapes within 2 % of the elastica and the catenary,
-//! loads at which a strand gives way and coils of 8 segments a turn within 5 %, frequencies within 2 %, friction within 3 %, self-motion below
-//! 1 mm/s, all at the user's 4 substeps, nearly all at 64 points, with the elastic model that a user gets and with each of the others. The references are computed without a line of the simulation, and are
-//! themselves held against the printed tables in `validate/reference/tests.rs`.
+//! Every case of `hairspring validate` at its default parameters: static shapes within 2 % of the elastica
+//! and the catenary, buckling loads and coils of 8 segments a turn within 5 %, frequencies within 2 %,
+//! friction within 3 %, self-motion below 1 mm/s. All run at the user's 4 substeps, nearly all at 64
+//! points, with the default elastic model and with each of the others. The references share no code with
+//! the simulation, and `validate/reference/tests.rs` compares them with printed tables.
 //!
-//! What a model does not reach carries its reason in its case, and must fail: the day it passes, the reason goes. And what docs/validation.md prints of it is
+//! A case that a model cannot pass states the reason, and must fail: when it passes, the reason must be
+//! removed. The values on docs/validation.md must match this build, so that the page is never out of date.
 //! what this build does, so that nobody reads of a day long past.
 
 use hairspring::material::Model;
@@ -27,30 +29,31 @@ fn check(outcomes: &[Outcome]) {
         assert!(failed.iter().all(|o| o.reason() == reason));
         match reason {
             None => wrong.extend(failed.iter().map(|o| format!("{o:?}"))),
-            Some(why) if failed.is_empty() => wrong.push(format!("{} passes now: not so '{why}'", case.name)),
+            Some(why) if failed.is_empty() => wrong.push(format!("{} passes now, but its reason says '{why}'", case.name)),
             Some(_) => {}
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Largest difference of a measured value from the page's, of the tolerance [1]: instruction sets differ in rounding, most where a strand gives way.
+/// The largest difference of a measured value from the page, in units of the tolerance [1]. Instruction
+/// sets differ in rounding, most where a strand buckles.
 const SAME: f64 = 0.2;
 
-/// Holds the outcomes against the table on docs/validation.md after the line that begins so.
+/// Compares the outcomes with the table on docs/validation.md that follows the line beginning with `after`.
 fn is_on_the_page(after: &str, outcomes: &[Outcome]) {
     let page =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/validation.md")).unwrap();
-    let part = page.split_once(&format!("\n{after}")).expect("the page has the line").1;
-    let table = part.split("```").nth(1).expect("a table follows");
-    // After "text" and the heading.
+    let part = page.split_once(&format!("\n{after}")).expect("the page does not have the line").1;
+    let table = part.split("```").nth(1).expect("no table follows");
+    // Skips "text" and the heading.
     let mut rows = table.lines().skip(2);
     for outcome in outcomes {
-        let row = rows.next().expect("a row for each value");
+        let row = rows.next().expect("a row is missing");
         let said = row.split_once(outcome.quantity).and_then(|(_, rest)| rest.split_whitespace().next());
         let said =
-            said.unwrap_or_else(|| panic!("'{row}' is not of {}", outcome.quantity)).parse::<f64>().ok();
-        assert!(row.starts_with(outcome.case), "'{row}' is not of {}", outcome.case);
+            said.unwrap_or_else(|| panic!("'{row}' is not a row of {}", outcome.quantity)).parse::<f64>().ok();
+        assert!(row.starts_with(outcome.case), "'{row}' is not a row of {}", outcome.case);
         let same = match (said, outcome.measured.as_ref().ok(), outcome.reference.as_ref().ok()) {
             (Some(said), Some(measured), Some(reference)) => {
                 let scale = if *reference == 0.0 { 1.0 } else { reference.abs() };
@@ -58,37 +61,37 @@ fn is_on_the_page(after: &str, outcomes: &[Outcome]) {
             }
             (said, measured, _) => said.is_none() && measured.is_none(),
         };
-        assert!(same, "docs/validation.md says '{row}', measured is {:?}", outcome.measured);
+        assert!(same, "docs/validation.md has '{row}', but measured is {:?}", outcome.measured);
     }
 }
 
 #[test]
-fn as_a_user_gets_them() {
+fn default_model_agrees() {
     let outcomes = run_all(|case| case.method);
     check(&outcomes);
     is_on_the_page("`hairspring validate`, default model", &outcomes);
 }
 
 #[test]
-fn with_the_rod() {
+fn rod_model_agrees() {
     check(&run_all(|case| Method { model: Model::Rod, ..case.method }));
 }
 
 #[test]
-fn with_springs_but_for_what_they_say_that_they_do_not_reach() {
+fn springs_model_agrees_within_its_stated_limits() {
     let outcomes = run_all(|case| Method { model: Model::Springs, ..case.method });
     check(&outcomes);
     is_on_the_page("`hairspring validate --model springs`", &outcomes);
 }
 
 #[test]
-fn with_the_curvature_model_but_for_twist() {
+fn curvature_model_agrees_except_for_twist() {
     check(&run_all(|case| Method { model: Model::Curvature, ..case.method }));
 }
 
-/// What is measured is the strand's, not the step's: other points and substeps than the defaults.
+/// The results do not depend on the discretization: other point and substep counts than the defaults.
 #[test]
-fn with_other_points_and_substeps() {
+fn other_point_and_substep_counts_agree() {
     for (name, values, points, substeps) in [
         ("heavy-cantilever", &[30.0][..], 32, 4),
         ("heavy-cantilever", &[30.0], 64, 16),
@@ -117,7 +120,8 @@ fn a_cantilever_of_32_to_1024_points() {
         .into_par_iter()
         .with_max_len(1)
         .flat_map_iter(|(points, gamma)| case.run(&[gamma], Method { points, ..case.method }))
-        // With Γ = 1000 the strand bends within a tenth of its length: three segments of 32 points hold its drop, and not how far it reaches.
+        // With Γ = 1000 the strand bends within a tenth of its length. There, 32 points have three
+        // segments, which resolve the drop but not the reach.
         .filter(|outcome| {
             let steep = outcome.parameters[0].1 == 1000.0 && outcome.method.points < 128;
             !(outcome.pass() || steep && outcome.quantity != "drop H/L")

@@ -1,4 +1,5 @@
-//! Whatever the arrays hold, a picture comes out: a strand that flew off, a mesh with a wrong index, an empty scene.
+//! Promise: any input gives a picture, including non-finite strands, a mesh with an invalid index, and an
+//! empty scene.
 
 use glam::Vec3;
 use hairspring_scene::{Camera, HairLook};
@@ -26,7 +27,7 @@ fn an_empty_scene_is_the_backdrop() {
 }
 
 #[test]
-fn points_that_are_not_numbers_touch_nothing_else() {
+fn non_finite_points_affect_nothing_else() {
     let style = crate::support::Style { strands: 2000, points: 12, ..crate::support::STRAIGHT };
     let groom = crate::support::groom(style);
     let look = HairLook::default();
@@ -54,7 +55,7 @@ fn points_that_are_not_numbers_touch_nothing_else() {
 }
 
 #[test]
-fn arrays_that_disagree_are_cut_short() {
+fn arrays_of_different_lengths_are_truncated() {
     let points = [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2];
     let look = HairLook { root_color: Vec3::NAN, roughness: f32::NAN, ..HairLook::default() };
     let hair = [

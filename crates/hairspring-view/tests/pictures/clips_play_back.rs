@@ -1,8 +1,9 @@
-//! A clip is what a viewer keeps of a simulation, so it must open everywhere and show what was drawn.
+//! Promise: a clip opens in every player and shows the rendered frames.
 //!
-//! The file is read back by a demuxer and a decoder that share no code with the muxer: the frame count, the rate, the
-//! duration and the size must be those asked for, the index must lie in front of the data (a browser starts playing before the file is
-//! there), every second must begin with a frame that stands alone (seeking), and decoded frames must look like the ones pushed.
+//! A demuxer and a decoder that share no code with the muxer read the file back. Frame count, rate,
+//! duration and size must equal those requested. The index must precede the data, because a browser starts
+//! to play before it has the whole file. Every second must begin with a key frame, for seeking. Decoded
+//! frames must look like the pushed ones.
 
 use hairspring_view::{ClipWriter, Image, OutputError};
 use openh264::{decoder::Decoder, formats::YUVSource};
@@ -11,7 +12,7 @@ use std::io::Cursor;
 const FPS: f64 = 24.0;
 const FRAMES: u32 = 50;
 
-/// A soft colored pattern that drifts.
+/// A smooth colored pattern that moves.
 fn picture(width: u32, height: u32, frame: u32) -> Image {
     let mut image = Image::new(width, height);
     for (i, p) in image.rgb.chunks_mut(3).enumerate() {
@@ -27,7 +28,7 @@ fn psnr(a: &[u8], b: &[u8]) -> f64 {
     10.0 * (255.0f64.powi(2) / (sum / a.len() as f64)).log10()
 }
 
-/// Annex B bytes of a sample, with the parameter sets in front.
+/// A sample in Annex B format, preceded by the parameter sets.
 fn annex_b(sample: &[u8], track: &mp4::Mp4Track, first: bool) -> Vec<u8> {
     let mut out = Vec::new();
     let mut unit = |bytes: &[u8]| {
@@ -48,10 +49,10 @@ fn annex_b(sample: &[u8], track: &mp4::Mp4Track, first: bool) -> Vec<u8> {
 }
 
 #[test]
-fn frames_size_rate_and_pictures_come_back() {
+fn clip_has_the_requested_frames_size_and_rate() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("clip.mp4");
-    // An odd size: video has even ones, so one column and row are added.
+    // An odd size. Video needs even sizes, so one column and one row are added.
     let (w, h) = (239, 161);
     let mut clip = ClipWriter::create(&path, w, h, FPS).unwrap();
     for f in 0..FRAMES {
@@ -77,11 +78,11 @@ fn frames_size_rate_and_pictures_come_back() {
     for f in 0..FRAMES {
         let sample = reader.read_sample(id, f + 1).unwrap().unwrap();
         if f % FPS as u32 == 0 {
-            assert!(sample.is_sync, "frame {f} cannot be jumped to");
+            assert!(sample.is_sync, "frame {f} is not a key frame");
         }
         let bytes = annex_b(&sample.bytes, &reader.tracks()[&id], f == 0);
         if let Some(yuv) = decoder.decode(&bytes).unwrap() {
-            // Luma only: compare with BT.709 luma of the picture, on the columns that it has.
+            // Compares luma only: BT.709 luma of the picture, for the columns of the picture.
             let want = picture(w, h, f);
             let (mut got, mut luma) = (Vec::new(), Vec::new());
             for (i, p) in want.rgb.chunks(3).enumerate() {
@@ -110,7 +111,7 @@ fn an_interrupted_clip_leaves_nothing() {
 }
 
 #[test]
-fn bad_requests_are_answered_in_words() {
+fn invalid_requests_have_clear_errors() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("clip.mp4");
     let message = |r: Result<ClipWriter, OutputError>| r.err().expect("an error").to_string();

@@ -1,9 +1,10 @@
-//! The picture of record is the CPU's; the graphics card draws the same one.
+//! Promise: the graphics card renders the same picture as the CPU, which is the reference.
 //!
-//! Scenes are drawn by both and compared: structure by similarity of luminance (Wang et al. 2004), brightness by the mean of every channel. What may
-//! differ is rounding: light is kept in 16-bit floating point on the card, hair is laid over hair from behind instead of from the front, the outlines
-//! of bodies have four samples instead of eight, and the CPU lets some strands stand for others where much is covered. Where there is no card, nor a
-//! driver that draws in software (Mesa's will do), the tests say so and pass.
+//! Both render each scene, and the pictures are compared: structure by similarity of luminance (Wang et al.
+//! 2004), brightness by the mean of every channel. Small differences are allowed. The card stores light in
+//! 16-bit floating point and blends hair back to front instead of front to back. It has four samples for
+//! outlines of bodies instead of eight. The CPU lets some strands represent others in dense regions.
+//! Without a card or a software driver (such as Mesa's), the tests print a note and pass.
 
 use crate::alike::{compare, compare_everywhere, mean};
 use glam::Vec3;
@@ -15,7 +16,7 @@ use hairspring_scene::{
 };
 use hairspring_view::{Frame, Ground, HairDraw, Lighting, MeshDraw, Quality, gpu::GpuRenderer};
 
-/// Strands of some points in a row.
+/// Strands with their points in one array.
 struct Few {
     points: Vec<Vec3>,
     offsets: Vec<u32>,
@@ -49,7 +50,7 @@ impl Few {
     }
 }
 
-/// A strand that winds from `from` to `to`.
+/// A wavy strand from `from` to `to`.
 fn strand(from: Vec3, to: Vec3, wave: f32) -> Vec<Vec3> {
     (0..12)
         .map(|i| {
@@ -70,7 +71,7 @@ fn leak(few: Few) -> &'static Few {
 }
 
 #[test]
-fn a_strand_is_where_it_is_and_as_wide_as_it_is() {
+fn strands_have_the_same_place_and_width() {
     let Some(mut gpu) = crate::support::card() else { return };
     let (a, b) = (Vec3::new(-0.09, -0.04, 0.0), Vec3::new(0.08, 0.05, 0.03));
     for (name, radius) in [("wide", 2e-3), ("pixel", 4e-4), ("thin", 6e-5)] {
@@ -79,9 +80,10 @@ fn a_strand_is_where_it_is_and_as_wide_as_it_is() {
     }
 }
 
-/// The CPU's hair does not flicker when it moves by parts of a pixel (`hair_covers_its_true_area.rs`), so neither does the card's.
+/// The CPU's hair does not flicker when it moves by fractions of a pixel (`hair_covers_its_true_area.rs`),
+/// so the card's must not either.
 #[test]
-fn a_moving_hair_is_the_same_hair() {
+fn a_moving_hair_looks_the_same() {
     let Some(mut gpu) = crate::support::card() else { return };
     for step in 0..6 {
         let moved = Vec3::new(0.000_23, 0.000_31, 0.0) * step as f32;
@@ -94,7 +96,7 @@ fn a_moving_hair_is_the_same_hair() {
 }
 
 #[test]
-fn what_is_nearer_hides_what_is_farther() {
+fn nearer_hair_hides_farther_hair() {
     let Some(mut gpu) = crate::support::card() else { return };
     let mut far = Few::new(&[strand(Vec3::new(-0.1, -0.06, -0.02), Vec3::new(0.1, 0.06, -0.02), 0.0)], 5e-3);
     far.look = HairLook::from(HairColor::Black);
@@ -113,7 +115,7 @@ fn points_have_their_own_colors() {
 }
 
 #[test]
-fn hair_on_a_body_is_lit_and_shaded_alike() {
+fn hair_on_a_body_looks_the_same() {
     let Some(mut gpu) = crate::support::card() else { return };
     let ball = crate::support::ball();
     for (name, style, color) in [
@@ -128,8 +130,9 @@ fn hair_on_a_body_is_lit_and_shaded_alike() {
     }
 }
 
-/// A place on a surface may not move off it at the triangles' edges: a millimeter farther in, it is in the surface's own shadow. Pleats of slivers seen at a
-/// slant have many edges; and they lie far from the origin, so that a place that is a thousandth too small is millimeters off.
+/// Interpolated positions on a surface must be exact at the triangles' edges: 1 mm deeper, a point is in
+/// the surface's own shadow. Narrow pleats seen at a slant have many edges. They are far from the origin,
+/// so that a relative error of a thousandth is several millimeters.
 #[test]
 fn slivers_have_no_speckles() {
     let Some(mut gpu) = crate::support::card() else { return };
@@ -137,7 +140,7 @@ fn slivers_have_no_speckles() {
     let mut mesh = Mesh::default();
     for (j, i) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (j, i))) {
         let (v, u) = (j as f32 / rows as f32 - 0.5, i as f32 / columns as f32 - 0.5);
-        // Five pleats of a slope of a half; their creases cross the rows of pixels.
+        // Five pleats with a slope of one half; their creases cross the rows of pixels.
         let phase = (5.0 * (v + 0.5)).fract() - 0.5;
         let place = Vec3::new(0.2 * u, 0.02 * (0.5 - phase.abs()), 0.2 * v + 0.03 * u);
         mesh.positions.push(far + place);
@@ -161,9 +164,10 @@ fn slivers_have_no_speckles() {
     }
 }
 
-/// On the backdrop and on a color, cut by the ground and above it: pixel by pixel where there are bodies alone, and hair as everywhere.
+/// The ground with the backdrop's color and with its own, cut by bodies and below them. It is compared
+/// pixel by pixel with bodies alone, and by `compare` with hair.
 #[test]
-fn the_ground_is_alike() {
+fn the_ground_looks_the_same() {
     let Some(mut gpu) = crate::support::card() else { return };
     let ball = crate::support::ball();
     let bodies = [crate::support::body(&ball)];
@@ -181,14 +185,15 @@ fn the_ground_is_alike() {
         let ground = Some(Ground { height, color });
         let frame = Frame { camera, ground, ..crate::support::frame(&[], &bodies) };
         let name = format!("ground{height}");
-        // Where it cuts a body, both are darker in that pixel than around it, and four samples are not eight.
+        // Where the ground cuts a body, both are darker in that pixel than around it, and four samples
+        // differ from eight.
         match height < -0.1 {
             true => compare_everywhere(&mut gpu, &name, &frame, 200, 150),
             false => compare(&mut gpu, &name, &frame, 200, 150),
         }
         compare(&mut gpu, &format!("hair-on-ground{height}"), &Frame { hair: &hair, ..frame }, 200, 150);
     }
-    // From below.
+    // Seen from below.
     let under = Frame {
         camera,
         ground: Some(Ground { height: 1.0, color: None }),
@@ -198,7 +203,7 @@ fn the_ground_is_alike() {
 }
 
 #[test]
-fn a_head_looks_alike() {
+fn a_head_looks_the_same() {
     let Some(mut gpu) = crate::support::card() else { return };
     let options = BuiltinOptions { strands: 4000, ..BuiltinOptions::default() };
     let stage = Stage::new(scene(&options)).unwrap();
@@ -212,7 +217,7 @@ fn a_head_looks_alike() {
 }
 
 #[test]
-fn a_head_in_motion_looks_alike_whoever_places_its_hair() {
+fn a_moving_head_with_hair_interpolated_on_the_gpu_looks_the_same() {
     let Some(mut gpu) = crate::support::card() else { return };
     let options = BuiltinOptions { strands: 4000, guides: Guides::Count(400), ..BuiltinOptions::default() };
     let mut scene = scene(&options);
@@ -224,7 +229,7 @@ fn a_head_in_motion_looks_alike_whoever_places_its_hair() {
     for _ in 0..100 {
         stage.step(1.0 / 60.0);
     }
-    // The CPU draws these points; the card places its own.
+    // The CPU draws these points; the card interpolates its own.
     stage.place_follow_hairs();
     let hair: Vec<HairDraw> =
         stage.strands().map(|s| HairDraw { width_scale: 5.0, ..HairDraw::of(s) }).collect();
@@ -240,7 +245,7 @@ fn a_head_in_motion_looks_alike_whoever_places_its_hair() {
 }
 
 #[test]
-fn a_frame_drawn_twice_is_the_same_picture_at_any_size() {
+fn drawing_a_frame_again_gives_the_same_picture() {
     let Some(mut gpu) = crate::support::card() else { return };
     let groom =
         crate::support::groom(crate::support::Style { strands: 3000, points: 16, ..crate::support::WAVY });
@@ -259,7 +264,7 @@ fn a_frame_drawn_twice_is_the_same_picture_at_any_size() {
 }
 
 #[test]
-fn what_changed_is_sent_again() {
+fn changed_arrays_are_uploaded_again() {
     let Some(mut gpu) = crate::support::card() else { return };
     let mut few = Few::new(&[strand(Vec3::NEG_X * 0.1, Vec3::X * 0.1, 0.03)], 4e-3);
     let close = |few: &Few, gpu: &mut GpuRenderer| {
@@ -320,7 +325,7 @@ fn broken_input_is_skipped() {
     groom.radii[80] = -1.0;
     let hair = [HairDraw { width_scale: 3.0, ..crate::support::hair(&groom, &look) }];
     compare(&mut gpu, "broken", &crate::support::frame(&hair, &[]), 160, 90);
-    // Too far apart for a shadow: the hair is drawn all the same.
+    // Points too far apart for a shadow volume: the hair is still drawn.
     groom.points[700].x = 1e8;
     let hair = [HairDraw { width_scale: 3.0, ..crate::support::hair(&groom, &look) }];
     let seen = |gpu: &mut GpuRenderer, hair: &[HairDraw]| {

@@ -1,9 +1,11 @@
-//! Follow hairs are where the library puts them, whoever does it: the graphics card is sent how guides carry them and no more, and its points are
-//! within 2 µm of the CPU's, in motion, with clumps, curls and flyaways, pushed by every collider that the card knows.
+//! Promise: the graphics card interpolates follow hairs like the CPU. It receives only the transforms of
+//! the guides, and its points are within 2 µm of the CPU's: in motion, with clumps, curls and flyaways, and
+//! pushed out by every collider shape that the card supports.
 //!
-//! What may differ is rounding, and where a curl's frame is carried around a fold of nearly a right angle, little is left of its normal and rounding grows
-//! with what is lost: such strands, one in 500 at most, are within a tenth of a millimeter. Where there is no card, nor a driver that draws in software, the tests
-//! say so and pass.
+//! Rounding may differ. Where the frame of a curl is transported around a fold of nearly a right angle,
+//! little of its normal remains, and the rounding error grows accordingly. Such strands, at most one in
+//! 500, are within a tenth of a millimeter. Without a card or a software driver, the tests print a note and
+//! pass.
 
 use glam::Vec3;
 use hairspring::{follow::HairInterpolation, settings::Effects};
@@ -14,9 +16,10 @@ use hairspring_scene::{
 };
 use hairspring_view::{HairDraw, gpu::GpuRenderer};
 
-/// Farthest that points are apart [m].
+/// The largest distance between points [m].
 const BOUND: f32 = 2e-6;
-/// The same of strands whose curl keeps less of its normal than this share, and how many of them may need it.
+/// The same for strands whose curl frame keeps less than the second value of its normal; the third value is
+/// the largest share of such strands.
 const FOLDED: (f32, f32, f32) = (1e-4, 0.2, 0.002);
 
 fn head(effects: Effects, colliders: Vec<Shape>) -> Scene {
@@ -28,8 +31,9 @@ fn head(effects: Effects, colliders: Vec<Shape>) -> Scene {
     scene
 }
 
-/// The share of its normal that a curl's frame keeps from one end of a strand to the other, as `follow/style.rs` carries it: what is lost at each segment
-/// multiplies the rounding of those before.
+/// The share of its normal that a curl's frame keeps from one end of a strand to the other, when it is
+/// transported as in `follow/style.rs`. The loss at each segment amplifies the rounding errors of the
+/// segments before it.
 fn kept(points: &[Vec3]) -> f32 {
     let way = |w: &[Vec3]| (w[1] - w[0]).normalize_or(Vec3::Y);
     let mut normal = way(points).any_orthonormal_vector();
@@ -42,8 +46,8 @@ fn kept(points: &[Vec3]) -> f32 {
     share
 }
 
-/// Plays, and holds what the card places after every tenth frame against what the CPU places. Returns how many points colliders had moved by more than
-/// 0.1 mm.
+/// Simulates, and compares the points of the card with those of the CPU after every tenth frame. Returns
+/// how many points colliders moved by more than 0.1 mm.
 fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usize {
     let mut stage = Stage::new(scene).unwrap();
     stage.set_external_interpolation(true);
@@ -88,7 +92,7 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
                     let left = kept(&bare[range]);
                     assert!(
                         left < FOLDED.1 && off <= FOLDED.0,
-                        "{name}: strand {k} {off} m apart, {left} kept"
+                        "{name}: strand {k} differs by {off} m and keeps {left} of its normal"
                     );
                 }
             }
@@ -96,12 +100,12 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
             strands += s.groom.strand_count();
         }
         println!(
-            "{name}, frame {frame}: {:.2} um the most; {folded} of {strands} strands beyond {:.0} um; {moved} points pushed; {} kB sent",
+            "{name}, frame {frame}: at most {:.2} um; {folded} of {strands} strands over {:.0} um; {moved} points pushed; {} kB uploaded",
             1e6 * most,
             1e6 * BOUND,
             gpu.timings().bytes / 1000
         );
-        assert!(folded as f32 <= FOLDED.2 * strands as f32, "{name}: {folded} of {strands} strands");
+        assert!(folded as f32 <= FOLDED.2 * strands as f32, "{name}: {folded} of {strands} strands exceed the bound");
         pushed += moved;
     }
     pushed
@@ -110,7 +114,7 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
 const ALL: Effects = Effects { clump: 0.6, curl_radius: 0.004, curl_length: 0.03, noise: 0.006 };
 
 #[test]
-fn hairs_are_carried_alike() {
+fn hairs_are_interpolated_alike() {
     let Some(mut gpu) = crate::support::card() else { return };
     let mut scene = head(Effects::default(), Vec::new());
     scene.solver.collide_body = false;
@@ -119,16 +123,17 @@ fn hairs_are_carried_alike() {
 }
 
 #[test]
-fn the_body_keeps_hairs_out_alike() {
+fn the_body_pushes_hairs_out_alike() {
     let Some(mut gpu) = crate::support::card() else { return };
     assert!(compare(&mut gpu, "body", head(Effects::default(), Vec::new()), 60) > 100);
     assert!(compare(&mut gpu, "body and style", head(ALL, Vec::new()), 60) > 100);
 }
 
 #[test]
-fn every_shape_keeps_hairs_out_alike() {
+fn every_shape_pushes_hairs_out_alike() {
     let Some(mut gpu) = crate::support::card() else { return };
-    // Amid the hair at one side: what is inside at rest may stay as deep, what swings in may not.
+    // The collider is in the hair at one side. Points that are inside at rest may stay as deep; others must
+    // stay out.
     let hair = head(ALL, Vec::new()).grooms[0].groom.points.clone();
     let center = hair.into_iter().reduce(|a, b| if b.x > a.x { b } else { a }).unwrap();
     let corner = |k: u32| Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32) - 0.5;
@@ -148,12 +153,12 @@ fn every_shape_keeps_hairs_out_alike() {
     ];
     for (name, shape) in shapes {
         let pushed = compare(&mut gpu, name, head(ALL, vec![shape]), 20);
-        assert!(pushed > 100, "{name}: {pushed} points pushed");
+        assert!(pushed > 100, "{name}: only {pushed} points were pushed");
     }
 }
 
 #[test]
-fn sheets_are_left_to_the_cpu() {
+fn sheets_are_not_supported_on_the_card() {
     let Some(gpu) = crate::support::card() else { return };
     let mut scene = head(Effects::default(), Vec::new());
     scene.sheets = vec![hairspring_scene::SceneSheet { body: scene.body.clone().unwrap(), thickness: 0.002 }];

@@ -1,5 +1,7 @@
-//! The ground takes the shadow of what stands on it, and is nothing else: where there is no shadow it is the backdrop, bit for bit; far away it is the backdrop whatever
-//! its color; from below it is not there; and what lies under it is hidden. The graphics card draws the same ground (`gpu_draws_what_the_cpu_draws.rs`).
+//! Promise: the ground receives the shadow of the objects on it and is otherwise invisible. Without shadow
+//! it equals the backdrop, bit for bit. In the distance it fades to the backdrop, whatever its color. From
+//! below it is invisible, and it hides what is under it. The graphics card renders the same ground
+//! (`gpu_draws_what_the_cpu_draws.rs`).
 
 use glam::Vec3;
 use hairspring::{
@@ -15,7 +17,7 @@ fn draw(frame: &Frame) -> Image {
     Renderer::new(SIZE[0], SIZE[1]).draw(frame).clone()
 }
 
-/// Looks at the origin from above, along the way that the lamps stand by.
+/// A camera that looks at the origin from above, from the side of the lamps.
 fn above() -> Camera {
     Camera { position: Vec3::new(0.0, 1.2, 1.6), target: Vec3::ZERO, fov: 40.0 }
 }
@@ -24,7 +26,7 @@ fn on(height: f32) -> Option<Ground> {
     Some(Ground { height, color: None })
 }
 
-/// A plate at a height, `half` as wide to each side, lying level.
+/// A horizontal plate at a height, with half-width `half`.
 fn plate(half: f32, height: f32) -> Mesh {
     let corner = |x: f32, z: f32| Vec3::new(half * x, height, half * z);
     Mesh {
@@ -34,7 +36,7 @@ fn plate(half: f32, height: f32) -> Mesh {
     }
 }
 
-/// A mat of hair: threads along X, side by side, so close that light does not pass.
+/// A mat of hair: threads along X, side by side, so dense that no light passes.
 fn mat(half: f32, height: f32) -> Groom {
     let n = 1500;
     let across = |s: usize| half * (2.0 * (s as f32 + 0.5) / n as f32 - 1.0);
@@ -42,7 +44,7 @@ fn mat(half: f32, height: f32) -> Groom {
     Groom::from_strands((0..n).map(|s| thread(s).collect::<Vec<_>>()), 2e-4)
 }
 
-/// Where the camera sees a place [pixels].
+/// Projects a point into the picture [pixels].
 fn seen(camera: &Camera, p: Vec3) -> [u32; 2] {
     let forward = (camera.target - camera.position).normalize();
     let right = forward.cross(Vec3::Y).normalize();
@@ -53,21 +55,21 @@ fn seen(camera: &Camera, p: Vec3) -> [u32; 2] {
     [x as u32, y as u32]
 }
 
-/// Brightness of a place of the ground [codes], and that of the picture without it.
+/// The brightness of a point of the ground [codes], and that of the picture without the ground.
 fn codes(with: &Image, without: &Image, p: Vec3) -> (i32, i32) {
     let [x, y] = seen(&above(), p);
     let sum = |image: &Image| image.pixel(x, y).iter().map(|c| i32::from(*c)).sum();
     (sum(with), sum(without))
 }
 
-/// Where the key lamp's shadow of a place falls on the ground at height 0.
+/// The shadow of a point from the key light on the ground at height 0.
 fn cast(p: Vec3) -> Vec3 {
     let key = Lighting::default().key.direction;
     p - key * (p.y / key.y)
 }
 
 #[test]
-fn it_is_dark_under_hair_and_under_bodies_and_else_the_backdrop() {
+fn the_ground_is_dark_in_shadows_only() {
     let look = HairLook::default();
     let groom = mat(0.15, 0.25);
     let body = plate(0.15, 0.25);
@@ -78,21 +80,22 @@ fn it_is_dark_under_hair_and_under_bodies_and_else_the_backdrop() {
         let frame = Frame { camera: above(), ..crate::support::frame(&hair, &bodies) };
         let (without, with) = (draw(&frame), draw(&Frame { ground: on(0.0), ..frame }));
         let (dark, wall) = codes(&with, &without, cast(Vec3::Y * 0.25));
-        assert!(dark < wall * 2 / 3, "{name}: {dark} in its shadow, {wall} without ground");
+        assert!(dark < wall * 2 / 3, "{name}: {dark} in the shadow, {wall} without ground");
         for beside in [Vec3::new(0.6, 0.0, 0.5), Vec3::new(-0.8, 0.0, -0.3), Vec3::new(0.0, 0.0, 0.75)] {
             let (lit, wall) = codes(&with, &without, beside);
-            assert_eq!(lit, wall, "{name}: beside its shadow, at {beside}");
+            assert_eq!(lit, wall, "{name}: outside the shadow, at {beside}");
         }
-        // All that changed is darker, but for rounding.
+        // All changed pixels are darker, up to rounding.
         let brighter = with.rgb.iter().zip(&without.rgb).map(|(with, without)| with.saturating_sub(*without));
         assert!(brighter.max().unwrap() <= 1, "{name}");
     }
 }
 
-/// The map that shadow is softened in ends with the body: none of its shadow may end with a line there.
+/// The map in which the shadow is blurred ends with the body. The shadow must not be cut off with a hard
+/// line there.
 #[test]
 fn a_shadow_has_a_soft_edge_on_all_sides() {
-    // Its edges lie along those of the map.
+    // The edges of the plate are parallel to those of the map.
     let key = Lighting::default().key.direction.normalize();
     let (right, up) = (key.any_orthonormal_vector(), key.cross(key.any_orthonormal_vector()));
     let corner = |x: f32, y: f32| Vec3::Y * 0.4 + 0.1 * (right * x + up * y);
@@ -113,15 +116,15 @@ fn a_shadow_has_a_soft_edge_on_all_sides() {
     let down = (1..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (code(x, y) - code(x, y - 1)).abs()));
     let whole = i32::from(*image.rgb.iter().max().unwrap()) - i32::from(*image.rgb.iter().min().unwrap());
     let steepest = steps.chain(down).max().unwrap();
-    // A texel is about as wide as a pixel, and shadow is softened over eight of them.
-    assert!(whole > 40 && 10 * steepest < 4 * whole, "a step of {steepest} in a shadow of {whole} codes");
+    // A texel is about as wide as a pixel, and the shadow is blurred over eight texels.
+    assert!(whole > 40 && 10 * steepest < 4 * whole, "a step of {steepest} codes in a shadow of {whole}");
 }
 
 #[test]
-fn far_away_it_is_the_backdrop_whatever_its_color() {
+fn distant_ground_fades_to_the_backdrop() {
     let roof = plate(0.4, 3.0);
     let bodies = [crate::support::body(&roof)];
-    // Low above the ground, the horizon in the middle of the picture.
+    // The camera is low above the ground, with the horizon in the middle of the picture.
     let camera = Camera { position: Vec3::new(0.0, 0.3, 1.2), target: Vec3::new(0.0, 0.3, 0.0), fov: 40.0 };
     let frame = Frame { camera, ..crate::support::frame(&[], &bodies) };
     let ground = Some(Ground { height: -0.2, color: Some(Vec3::splat(0.6)) });
@@ -132,15 +135,15 @@ fn far_away_it_is_the_backdrop_whatever_its_color() {
     for y in 0..horizon + 8 {
         assert_eq!(row(&with, y), row(&without, y), "row {y}; the horizon is row {horizon}");
     }
-    // No row differs from the next by more than a soft edge does.
+    // Adjacent rows differ by no more than in a soft edge.
     let mean = |y: u32| row(&with, y).iter().take(60).map(|c| f32::from(*c)).sum::<f32>() / 60.0;
     let steepest = (1..SIZE[1]).map(|y| (mean(y) - mean(y - 1)).abs()).fold(0.0, f32::max);
-    assert!(mean(SIZE[1] - 1) > mean(0) + 60.0, "near, it has its color");
+    assert!(mean(SIZE[1] - 1) > mean(0) + 60.0, "nearby ground does not have its color");
     assert!(steepest < 25.0, "a step of {steepest} codes from row to row");
 }
 
 #[test]
-fn from_below_it_is_not_there() {
+fn the_ground_is_invisible_from_below() {
     let (ball, look) = (crate::support::ball(), HairLook::default());
     let groom = crate::support::groom(crate::support::Style {
         strands: 2000,
@@ -159,17 +162,17 @@ fn from_below_it_is_not_there() {
 }
 
 #[test]
-fn what_lies_under_it_is_hidden() {
+fn the_ground_hides_objects_under_it() {
     let ball = crate::support::ball();
     let look = HairLook::default();
     let groom = mat(0.1, -0.05);
     let (hair, bodies) = ([crate::support::hair(&groom, &look)], [crate::support::body(&ball)]);
-    // Under a ground that is higher than all of it, there is nothing but the ground.
+    // If the ground is above all objects, only the ground is visible.
     let empty = draw(&Frame { camera: above(), ..crate::support::frame(&[], &[]) });
     let frame = Frame { camera: above(), ground: on(0.2), ..crate::support::frame(&hair, &bodies) };
     let under = draw(&frame);
     assert!(under.rgb.iter().zip(&empty.rgb).all(|(a, b)| a <= b));
-    // Half in it, the ball is cut in a clean line: its upper half is there.
+    // A ball that is half under the ground is cut in a clean line; its upper half is visible.
     let half = draw(&Frame { hair: &[], ground: on(0.0), ..frame });
     let whole = draw(&Frame { hair: &[], ground: None, ..frame });
     let [x, y] = seen(&above(), Vec3::new(0.0, 0.08, 0.0));
@@ -178,9 +181,10 @@ fn what_lies_under_it_is_hidden() {
     assert!(red(&half) < red(&whole) * 9 / 10, "{} of {}", red(&half), red(&whole));
 }
 
-/// Beside what stands on it the ground sees less of the sky; what is higher than a seventh of its own size takes none.
+/// Ambient occlusion: near an object on it, the ground receives less light from the sky. An object higher
+/// than a seventh of its own size has no effect.
 #[test]
-fn it_is_dark_where_bodies_touch_it() {
+fn the_ground_is_dark_where_bodies_touch_it() {
     let dark = hairspring_view::Light { color: Vec3::ZERO, ..Lighting::default().key };
     let lighting = Lighting { key: dark, fill: dark, rim: dark, sky: Vec3::ONE, ..Lighting::default() };
     let background = Background { center: Vec3::splat(0.3), edge: Vec3::splat(0.3) };
@@ -201,11 +205,11 @@ fn it_is_dark_where_bodies_touch_it() {
         })
     };
     let ([near, off, far], hovering) = (beside(0.001), beside(0.07));
-    assert!(near < far - 5, "beside a plate on it: {near}, far from it {far}");
+    assert!(near < far - 5, "{near} beside a plate on the ground, {far} far from it");
     assert!((off - far).abs() <= 1, "{off}, {far}");
     assert!(
         hovering.iter().all(|code| (code - far).abs() <= 1),
-        "under a plate that hovers: {hovering:?}, {far}"
+        "{hovering:?} under a hovering plate, {far} far from one"
     );
 }
 
@@ -222,7 +226,7 @@ fn the_ground_of_a_scene_is_under_its_body() {
 }
 
 #[test]
-fn nothing_is_no_trouble() {
+fn empty_and_broken_scenes_with_a_ground_are_drawn() {
     let broken = Mesh {
         positions: vec![Vec3::NAN, Vec3::ONE, Vec3::INFINITY, Vec3::splat(1e30), Vec3::ZERO],
         triangles: vec![[0, 1, 2], [1, 3, 4], [7, 8, 9]],

@@ -1,8 +1,10 @@
-//! A strand covers as much of the picture as it is wide and long, wherever it lies between the pixels.
+//! Promise: a strand covers the area given by its width and length, wherever it lies relative to the
+//! pixels.
 //!
-//! This is what keeps a head of hair from shimmering: 100,000 strands a tenth of a pixel wide are right on average only if each of them is right.
-//! Black strands are drawn on an even gray wall; what they take from it, brought back to linear light through the picture's own
-//! tone curve (measured here, not assumed), is the area that they cover.
+//! This keeps hair from shimmering: 100,000 strands, each a tenth of a pixel wide, are right on average
+//! only if every single strand is. Black strands are drawn in front of a uniform gray wall. The light that
+//! they block is the area that they cover. Codes are converted back to linear light through the picture's
+//! own tone curve, which is measured here.
 
 use glam::Vec3;
 use hairspring_scene::{Camera, HairLook};
@@ -11,7 +13,7 @@ use hairspring_view::{Background, Frame, HairDraw, Image, Light, Lighting, Quali
 const SIDE: u32 = 96;
 const WALL: f32 = 0.2;
 
-/// A camera that sees one pixel a millimeter at the origin's depth.
+/// A camera that sees one pixel per millimeter at the depth of the origin.
 fn camera() -> Camera {
     let distance: f32 = 3.0;
     Camera {
@@ -25,7 +27,7 @@ fn draw(points: &[Vec3], width: f32, wall: f32) -> Image {
     draw_as(1, points, width, wall)
 }
 
-/// As wisps of so many hairs.
+/// Draws a strand with wisps of `wisp` hairs.
 fn draw_as(wisp: u32, points: &[Vec3], width: f32, wall: f32) -> Image {
     let dark = Light { direction: Vec3::Y, color: Vec3::ZERO };
     let radii = vec![0.5e-3 * width; points.len()];
@@ -61,7 +63,8 @@ fn draw_as(wisp: u32, points: &[Vec3], width: f32, wall: f32) -> Image {
     renderer.image().clone()
 }
 
-/// Linear gray of each 8-bit code: the wall is drawn at many grays, and codes (averaged over the dither) are read off.
+/// The linear gray of each 8-bit code. The wall is drawn in many grays, and the resulting codes are
+/// averaged over the dither.
 struct Curve(Vec<(f32, f32)>);
 
 impl Curve {
@@ -80,7 +83,7 @@ impl Curve {
         g0 + (g1 - g0) * (code - c0) / (c1 - c0)
     }
 
-    /// Covered area [pixels].
+    /// The covered area [pixels].
     fn area(&self, image: &Image) -> f32 {
         image.rgb.iter().skip(1).step_by(3).map(|c| 1.0 - self.linear(*c as f32) / WALL).sum()
     }
@@ -90,7 +93,8 @@ fn mean(image: &Image) -> f32 {
     image.rgb.iter().skip(1).step_by(3).map(|c| *c as f32).sum::<f32>() / (SIDE * SIDE) as f32
 }
 
-/// A straight strand of 60 pixels at an angle, `points` long, its middle `shift` pixels up.
+/// A straight strand of 60 pixels at an angle, with `points` points, and with its middle shifted up by
+/// `shift` pixels.
 fn strand(degrees: f32, shift: f32, points: usize) -> Vec<Vec3> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let at = |k: usize| 60.0 * (k as f32 / (points - 1) as f32 - 0.5);
@@ -98,7 +102,7 @@ fn strand(degrees: f32, shift: f32, points: usize) -> Vec<Vec3> {
 }
 
 #[test]
-fn for_any_width_angle_and_place() {
+fn area_is_exact_for_any_width_angle_and_place() {
     let curve = Curve::measure();
     for width in [0.05, 0.1, 0.3, 0.7, 1.0, 1.6, 3.0] {
         for degrees in [0.0, 12.0, 30.0, 45.0, 60.0, 77.0, 90.0] {
@@ -107,10 +111,11 @@ fn for_any_width_angle_and_place() {
                     let area = curve.area(&draw(&strand(degrees, shift, points), width, WALL));
                     let want = 60.0 * width;
                     let error = (area - want).abs() / want;
-                    // 5 %, and what half a code of rounding leaves over the pixels that a faint strand touches.
+                    // 5 %, and an allowance for rounding by half a code in the pixels that a faint strand
+                    // touches.
                     assert!(
                         error < 0.05 + 0.15 / want,
-                        "width {width}, {degrees}°, shift {shift}, {points} points: {area} of {want}"
+                        "width {width}, {degrees}°, shift {shift}, {points} points: {area} instead of {want}"
                     );
                 }
             }
@@ -127,7 +132,8 @@ fn a_moving_hair_does_not_flicker() {
         let areas: Vec<f32> = frames.iter().map(|f| curve.area(f)).collect();
         let (low, high) = areas.iter().fold((f32::MAX, 0.0f32), |b, a| (b.0.min(*a), b.1.max(*a)));
         assert!(high - low < 0.04 * high + 0.2, "width {width}, {degrees}°: between {low} and {high}");
-        // No pixel jumps: a sixteenth of a pixel's motion moves at most that share of the strand's light, and a little at its ends.
+        // No pixel jumps. A motion of a sixteenth of a pixel changes a pixel by at most that share of the
+        // strand's light, and slightly more at its ends.
         let most = curve.linear(mean(&draw(&[], 1.0, WALL))) * width.min(1.0) * 1.5;
         for pair in frames.windows(2) {
             for (a, b) in pair[0].rgb.iter().zip(&pair[1].rgb) {
@@ -138,9 +144,10 @@ fn a_moving_hair_does_not_flicker() {
     }
 }
 
-/// Its hairs cover what the strand does, less where they cross, wherever tiles meet: over 32 pixels, the side of a tile, it is the same.
+/// The hairs of a wisp cover the area of their strand, less where they cross. The area is the same at all
+/// positions over 32 pixels, the side of a tile.
 #[test]
-fn a_wisp_covers_what_its_strand_does() {
+fn a_wisp_covers_the_area_of_its_strand() {
     let curve = Curve::measure();
     for (wisp, width, degrees) in [(2, 1.6, 0.0), (4, 3.0, 90.0), (4, 2.0, 33.0), (3, 4.0, 12.0)] {
         let areas: Vec<f32> = (0..17)
@@ -155,8 +162,9 @@ fn a_wisp_covers_what_its_strand_does() {
 }
 
 #[test]
-fn a_bent_strand_is_drawn_round() {
-    // A half circle of 9 points: its corners, if seen, would lie 2 % of the radius inside; the curve through them must not.
+fn a_bent_strand_is_drawn_as_a_smooth_curve() {
+    // A half circle of 9 points. Straight segments would be 2 % of the radius inside; the curve through the
+    // points must not.
     let r = 30.0;
     let circle = |n: usize| -> Vec<Vec3> {
         (0..n)

@@ -1,4 +1,4 @@
-//! What is nearer hides what is farther, and what stands towards the lamp shades what stands behind.
+//! Promise: nearer objects hide farther ones, and objects between a lamp and others cast shadows on them.
 
 use glam::Vec3;
 use hairspring::groom::Groom;
@@ -11,7 +11,7 @@ fn camera() -> Camera {
     Camera { position: Vec3::Z, target: Vec3::ZERO, fov: 12.0 }
 }
 
-/// A curtain of upright strands at depth `z`, shifted sideways by `x`, of `n` strands over 10 cm.
+/// A curtain of `n` upright strands over 10 cm at depth `z`, shifted sideways by `x`.
 fn curtain(n: usize, x: f32, z: f32) -> Groom {
     let at = |s: usize| x + 0.1 * ((s as f32 + 0.5) / n as f32 - 0.5);
     Groom::from_strands(
@@ -53,13 +53,13 @@ fn nearer_hair_hides_farther_hair_in_any_order_of_the_input() {
     let alone = middle(&draw(&[front], &[]));
     for hair in [[front, back], [back, front]] {
         let both = middle(&draw(&hair, &[]));
-        assert!(both[0] > 3.0 * both[2], "the red curtain is in front: {both:?}");
+        assert!(both[0] > 3.0 * both[2], "the red curtain is not in front: {both:?}");
         assert!((both[0] - alone[0]).abs() < 0.25 * alone[0], "{both:?} {alone:?}");
     }
 }
 
 #[test]
-fn a_body_hides_hair_behind_it_and_not_hair_before_it() {
+fn a_body_hides_only_hair_behind_it() {
     let ball = crate::support::ball();
     let body = [crate::support::body(&ball)];
     let bare = draw(&[], &body);
@@ -68,12 +68,13 @@ fn a_body_hides_hair_behind_it_and_not_hair_before_it() {
     assert_eq!(middle(&draw(&[crate::support::hair(&behind, &look)], &body)), middle(&bare));
     let before = curtain(3000, 0.0, 0.15);
     let seen = middle(&draw(&[crate::support::hair(&before, &look)], &body));
-    assert!(seen[1] > 1.5 * seen[0], "green hair before the ball: {seen:?}");
+    assert!(seen[1] > 1.5 * seen[0], "green hair in front of the ball is hidden: {seen:?}");
 }
 
 #[test]
-fn roots_on_the_skin_are_seen() {
-    // Strands that lie exactly on the front of the ball must not flicker with its triangles: as many pixels change as strands cover.
+fn strands_on_the_skin_are_visible() {
+    // Strands that lie exactly on the front of the ball must not flicker with its triangles: every pixel
+    // that they cover changes.
     let ball = crate::support::ball();
     let on = |a: f32, b: f32| {
         Vec3::new(b.sin() * a.cos() * 0.93, a.sin(), a.cos() * b.cos() * 0.98) * crate::support::RADIUS
@@ -93,29 +94,29 @@ fn roots_on_the_skin_are_seen() {
 }
 
 #[test]
-fn the_more_hair_towards_the_lamp_the_darker() {
+fn more_hair_toward_the_lamp_is_darker() {
     let look = flat([0.4, 0.3, 0.2]);
     let lit = curtain(4000, 0.0, 0.0);
     let mut last = f32::MAX;
     let mut first = 0.0;
     for n in [0, 300, 1000, 3000, 9000, 30_000] {
-        // Towards the key lamp, and outside the picture.
+        // The second curtain is between the first one and the key light, outside the picture.
         let key = hairspring_view::Lighting::default().key.direction.normalize();
         let mut shade = curtain(n, 0.0, 0.0);
         shade.points.iter_mut().for_each(|p| *p = *p * 1.2 + key * 0.17);
         let hair = [crate::support::hair(&lit, &look), crate::support::hair(&shade, &look)];
         let light: f32 = middle(&draw(&hair[..if n > 0 { 2 } else { 1 }], &[])).iter().sum();
-        assert!(light < last + 1.0, "{n} strands between: {light}, before {last}");
+        assert!(light < last + 1.0, "with {n} strands in between {light}, with fewer {last}");
         if n == 0 {
             first = light;
         }
         last = light;
     }
-    assert!(last < 0.8 * first, "a thick curtain leaves {last} of {first}");
+    assert!(last < 0.8 * first, "a dense curtain leaves {last} of {first}");
 }
 
 #[test]
-fn a_body_shades_hair_and_hair_shades_a_body() {
+fn bodies_and_hair_shade_each_other() {
     let look = flat([0.4, 0.3, 0.2]);
     let key = hairspring_view::Lighting::default().key.direction.normalize();
     let mut ball = crate::support::ball();
@@ -135,9 +136,10 @@ fn a_body_shades_hair_and_hair_shades_a_body() {
 }
 
 #[test]
-fn the_shadow_of_the_sky_on_skin_ends_softly() {
-    // A wall of skin hangs through thick hair and down below it, out of the volume in which the hair's shadow is known. Lit by the sky alone, it
-    // brightens from row to row; where it leaves the volume there must be no line across it.
+fn sky_shadow_on_skin_ends_softly() {
+    // A wall of skin passes through dense hair and extends below it, out of the volume that holds the
+    // shadow of the hair. Lit by the sky alone, it brightens from row to row. There must be no visible line
+    // where the wall leaves the volume.
     let look = flat([0.1, 0.08, 0.06]);
     let curtains: Vec<Groom> = (0..9).map(|k| curtain(1500, 0.0, 0.02 - 0.01 * k as f32)).collect();
     let hair: Vec<HairDraw> = curtains.iter().map(|c| crate::support::hair(c, &look)).collect();
@@ -156,11 +158,11 @@ fn the_shadow_of_the_sky_on_skin_ends_softly() {
         let columns = SIDE / 2 - 16..SIDE / 2 + 16;
         columns.map(|x| f32::from(image.pixel(x, y)[0])).sum::<f32>() / 32.0
     };
-    // The hair ends three quarters down, and two rows below it the volume.
+    // The hair ends three quarters down, and the volume two rows below it.
     let rows: Vec<f32> = (SIDE * 3 / 4..SIDE).map(row).collect();
     let change = rows[rows.len() - 1] - rows[0];
-    assert!(change > 20.0, "the shadow ends with the volume: {rows:?}");
+    assert!(change > 20.0, "the skin does not brighten below the hair: {rows:?}");
     for pair in rows.windows(2) {
-        assert!(pair[1] - pair[0] < 0.2 * change, "a line across the skin: {rows:?}");
+        assert!(pair[1] - pair[0] < 0.2 * change, "there is a line across the skin: {rows:?}");
     }
 }

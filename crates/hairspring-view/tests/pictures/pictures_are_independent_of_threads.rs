@@ -1,6 +1,7 @@
-//! A picture does not depend on how many threads drew it, nor on what the renderer drew before.
+//! Promise: a picture does not depend on the number of threads or on what the renderer drew before.
 //!
-//! Sums in the shadow grid are integers, runs of strands and tiles are cut by the data alone, and ties in depth are broken by order.
+//! Sums in the shadow grid are integers. The data alone determines how strands and tiles are divided into
+//! work items. Ties in depth are broken by order.
 
 use hairspring_scene::HairLook;
 use hairspring_view::{Frame, HairDraw, Image, Quality, Renderer};
@@ -29,7 +30,7 @@ fn one_two_and_seven_threads() {
     };
     for wisp in [1, 4] {
         let one = draw(1, false, wisp);
-        assert!(one.rgb.chunks(3).any(|p| p[0] > p[2] + 20), "there is hair to see");
+        assert!(one.rgb.chunks(3).any(|p| p[0] > p[2] + 20), "no hair is visible");
         for (threads, warm) in [(2, false), (7, false), (1, true), (7, true)] {
             assert!(draw(threads, warm, wisp) == one, "{threads} threads, warm: {warm}, wisps of {wisp}");
         }
@@ -37,7 +38,7 @@ fn one_two_and_seven_threads() {
 }
 
 #[test]
-fn in_its_own_shadows_a_frame_is_the_same() {
+fn draw_on_reuses_the_shadows_of_the_previous_frame() {
     let groom =
         crate::support::groom(crate::support::Style { strands: 2000, points: 14, ..crate::support::WAVY });
     let (ball, look) = (crate::support::ball(), HairLook::default());
@@ -48,7 +49,7 @@ fn in_its_own_shadows_a_frame_is_the_same() {
     let own = renderer.draw(&frame).clone();
     assert!(*renderer.draw_on(&frame) == own);
     renderer.draw(&dark);
-    assert!(*renderer.draw_on(&frame) != own, "the shadows are those of the frame before");
+    assert!(*renderer.draw_on(&frame) != own, "the shadows are not those of the previous frame");
     assert!(*renderer.draw(&frame) == own);
-    assert!(*Renderer::new(160, 120).draw_on(&frame) == own, "where there was none before, its own");
+    assert!(*Renderer::new(160, 120).draw_on(&frame) == own, "a first frame does not use its own shadows");
 }

@@ -1,8 +1,10 @@
-//! The renderer is the project's picture of record, so a change of look must be meant.
+//! Promise: pictures match the golden ones. The CPU renderer is the reference, so a change of its look must
+//! be intended.
 //!
-//! Small scenes are compared with pictures that were looked at and kept, by structural similarity of their luminance (Wang et al. 2004): rounding
-//! on another processor passes, a moved highlight or a lost shadow does not. After a change that is meant, run with
-//! `HAIRSPRING_GOLDEN=write`, look at the pictures in `tests/golden`, and commit them.
+//! Small scenes are compared with approved pictures, by structural similarity of their luminance (Wang et
+//! al. 2004). Different rounding on another processor passes; a moved highlight or a missing shadow does
+//! not. After an intended change, run with `HAIRSPRING_GOLDEN=write`, check the pictures in `tests/golden`,
+//! and commit them.
 
 use crate::alike::{ALIKE, similarity};
 use hairspring_scene::{HairColor, HairLook};
@@ -10,7 +12,7 @@ use hairspring_view::{Frame, Image, Quality, Renderer, read_png, write_png};
 use std::path::PathBuf;
 
 fn draw(style: crate::support::Style, color: HairColor) -> Image {
-    // Fewer, thicker strands: the picture of a full head at a twentieth of the work.
+    // Fewer, thicker strands: a full head at a twentieth of the work.
     let groom = crate::support::groom(crate::support::Style { strands: 8000, points: 20, ..style });
     let ball = crate::support::ball();
     let look = HairLook::from(color);
@@ -31,7 +33,7 @@ fn check(name: &str, image: Image) {
     if score < ALIKE {
         let seen = std::env::temp_dir().join(format!("hairspring-{name}"));
         write_png(&seen, &image).unwrap();
-        panic!("{name} is {score:.4} alike, {ALIKE} is needed; what was drawn: {}", seen.display());
+        panic!("{name}: the similarity is {score:.4}, but {ALIKE} is needed; the picture is in {}", seen.display());
     }
 }
 
@@ -46,7 +48,7 @@ fn wavy_blonde() {
 }
 
 #[test]
-fn the_measure_sees_a_change_of_look() {
+fn similarity_detects_a_change_of_look() {
     let kept = draw(crate::support::STRAIGHT, HairColor::Brown);
     assert!(similarity(&kept, &kept) > 0.9999);
     assert!(similarity(&draw(crate::support::STRAIGHT, HairColor::DarkBrown), &kept) < ALIKE);
@@ -54,14 +56,14 @@ fn the_measure_sees_a_change_of_look() {
 }
 
 #[test]
-fn a_picture_comes_back_from_its_file() {
+fn a_picture_is_read_back_from_its_file() {
     let folder = tempfile::tempdir().unwrap();
     let image = draw(crate::support::WAVY, HairColor::Gray);
     let path = hairspring_view::sequence_path(&folder.path().join("frame.####.png"), 12).unwrap();
     assert!(path.ends_with("frame.0012.png"));
     write_png(&path, &image).unwrap();
     assert!(read_png(&path).unwrap() == image);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file stays");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "a temporary file is left");
     std::fs::write(&path, "no picture").unwrap();
     assert!(read_png(&path).unwrap_err().to_string().contains("frame.0012.png"));
     let missing = folder.path().join("missing/frame.png");

@@ -1,14 +1,15 @@
-//! How two pictures are compared: structure by similarity of luminance (Wang et al. 2004), brightness by means, bodies pixel by pixel.
-#![allow(dead_code)] // Each test file uses its own part of this.
+//! Compares two pictures: structure by similarity of luminance (Wang et al. 2004), brightness by means,
+//! bodies pixel by pixel.
+#![allow(dead_code)] // Each test file uses a part of this module.
 
 use hairspring_view::{Frame, Image, Renderer, gpu::GpuRenderer, write_png};
 use image_compare::{Algorithm, gray_similarity_structure};
 
-/// Least similarity of structure; 1 is equal.
+/// The smallest allowed similarity of structure; 1 is equal.
 pub const ALIKE: f64 = 0.99;
-/// Greatest difference of a channel's mean [codes of 255].
+/// The largest allowed difference of a channel's mean [codes of 255].
 const BRIGHTNESS: f64 = 0.5;
-/// Greatest difference of a channel in any one pixel of a body, of codes around it [codes of 255].
+/// The largest allowed difference of a channel in a pixel from the range of codes around it [codes of 255].
 const BRIGHTNESS_HERE: i32 = 4;
 
 /// Luminance (Rec. 709).
@@ -29,7 +30,7 @@ pub fn mean(image: &Image) -> [f64; 3] {
     [0, 1, 2].map(|c| image.rgb.iter().skip(c).step_by(3).map(|v| *v as f64).sum::<f64>() / n)
 }
 
-/// Draws by both and compares.
+/// Renders with both renderers and compares the pictures.
 pub fn compare(gpu: &mut GpuRenderer, name: &str, frame: &Frame, width: u32, height: u32) {
     let cpu = Renderer::new(width, height).draw(frame).clone();
     gpu.draw(frame, width, height);
@@ -38,7 +39,7 @@ pub fn compare(gpu: &mut GpuRenderer, name: &str, frame: &Frame, width: u32, hei
     let score = similarity(&cpu, &card);
     let apart = mean(&cpu).into_iter().zip(mean(&card)).map(|(a, b)| b - a);
     let apart: Vec<f64> = apart.collect();
-    println!("{name}: {score:.4} alike, means {apart:.2?} apart");
+    println!("{name}: similarity {score:.4}, means differ by {apart:.2?}");
     if std::env::var_os("HAIRSPRING_KEEP").is_some()
         || score < ALIKE
         || apart.iter().any(|a| a.abs() > BRIGHTNESS)
@@ -51,15 +52,16 @@ pub fn compare(gpu: &mut GpuRenderer, name: &str, frame: &Frame, width: u32, hei
         }
         let seen = std::env::temp_dir().join(format!("hairspring-gpu-{name}.png"));
         write_png(&seen, &both).unwrap();
-        println!("{name}: the CPU's picture and the card's: {}", seen.display());
+        println!("{name}: both pictures, CPU and card, are in {}", seen.display());
     }
-    assert!(score >= ALIKE, "{name} is {score:.4} alike, {ALIKE} is needed");
-    assert!(apart.iter().all(|a| a.abs() <= BRIGHTNESS), "{name}: means {apart:?} apart");
+    assert!(score >= ALIKE, "{name}: the similarity is {score:.4}, but {ALIKE} is needed");
+    assert!(apart.iter().all(|a| a.abs() <= BRIGHTNESS), "{name}: the means differ by {apart:?}");
 }
 
-/// Draws bodies by both and compares pixel by pixel: no channel of the card's picture may lie farther than `BRIGHTNESS_HERE` from what the CPU has in
-/// the pixel and its eight neighbours. Means and structure forgive a row of dark dots; this does not. Outlines, where samples differ, have both sides
-/// among the neighbours.
+/// Renders bodies with both renderers and compares pixel by pixel. No channel of the card's picture may
+/// differ by more than `BRIGHTNESS_HERE` from the CPU's range in the pixel and its eight neighbors. Means
+/// and structure tolerate a row of dark dots; this comparison does not. Outlines, where samples differ,
+/// have both sides among the neighbors.
 pub fn compare_everywhere(gpu: &mut GpuRenderer, name: &str, frame: &Frame, width: usize, height: usize) {
     compare(gpu, name, frame, width as u32, height as u32);
     let (cpu, card) = (Renderer::new(width as u32, height as u32).draw(frame).clone(), gpu.read().unwrap());
@@ -78,6 +80,6 @@ pub fn compare_everywhere(gpu: &mut GpuRenderer, name: &str, frame: &Frame, widt
             }
         }
     }
-    println!("{name}: {worst} codes apart at most, at {place:?}");
-    assert!(worst <= BRIGHTNESS_HERE, "{name}: {worst} codes apart at {place:?}");
+    println!("{name}: the largest difference is {worst} codes, at {place:?}");
+    assert!(worst <= BRIGHTNESS_HERE, "{name}: the difference is {worst} codes at {place:?}");
 }
