@@ -12,6 +12,8 @@ const HELP: &str = "cargo xtask NAME
   test           all tests, in release; closes on one line with the sum
   lint           layers, formatting, clippy with warnings refused, the docs, and where all dependencies come from and under which licence
   layers         modules of the library import each other in one direction only
+  package        every crate that is not private can be packaged for publication
+  consumer       a crate outside of the workspace links the library, builds it without optimization and steps 100 strands
   fuzz [SECONDS] every fuzz target, so long each (default 60), two at a time
   window         draws the pictures of docs/window.md anew, on a desktop; Sintel's from ../shared/data
   monkey [MINUTES] random presses in the window, so long (default 10)
@@ -19,7 +21,7 @@ const HELP: &str = "cargo xtask NAME
   meshes         makes the meshes of the example scenes anew (draw the scenes that show them, and look)
   pictures [NAME] draws the pictures of the book anew, all or those whose name contains NAME (look at them too); needs no build where
                  HAIRSPRING names the program
-  ci             lint, fuzz (half a minute each), test: what CI runs";
+  ci             lint, package, consumer, fuzz (half a minute each), test: what CI runs";
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -28,6 +30,7 @@ fn main() {
         ["test"] => test::all(),
         ["lint"] => lint(),
         ["layers"] => layers::check(),
+        ["package"] => package(),
         ["consumer"] => consumer::run(),
         ["fuzz"] => fuzz::all(60, None),
         ["fuzz", seconds] => match seconds.parse() {
@@ -54,7 +57,11 @@ fn main() {
         }
         ["pictures"] => pictures::draw(""),
         ["pictures", part] => pictures::draw(part),
-        ["ci"] => lint().and_then(|()| fuzz::all(30, fuzz::ALWAYS_THE_SAME)).and_then(|()| test::all()),
+        ["ci"] => lint()
+            .and_then(|()| package())
+            .and_then(|()| consumer::run())
+            .and_then(|()| fuzz::all(30, fuzz::ALWAYS_THE_SAME))
+            .and_then(|()| test::all()),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
             Ok(())
@@ -78,6 +85,15 @@ fn monkey(minutes: &str) -> Result<(), String> {
     let seconds = format!("{}", (minutes * 60.0).round() as u64);
     let test = ["test", "--release", "-p", "hairspring-app", "--test", "random_input_breaks_nothing"];
     run::cargo(&[&test[..], &["--", "--nocapture"]].concat(), &[("HAIRSPRING_MONKEY", &seconds)])
+}
+
+/// Packages every crate that is not private. The packages are not compiled again: `test` compiles the same files.
+fn package() -> Result<(), String> {
+    // Private: the developer commands, the scalar build of the library's files, and the program that may link it.
+    let private = ["xtask", "hairspring-scalar", "hairspring-one-lane", "hairspring-cli"];
+    let exclude = private.iter().flat_map(|name| ["--exclude", name]);
+    let package = ["package", "--quiet", "--workspace", "--no-verify", "--allow-dirty"];
+    run::cargo(&package.into_iter().chain(exclude).collect::<Vec<_>>(), &[])
 }
 
 fn lint() -> Result<(), String> {

@@ -137,8 +137,7 @@ fn every_parameter_has_pictures_or_a_reason() {
     let mut said = parameters();
     for entry in table["parameter"].as_array().unwrap() {
         let name = entry["name"].as_str().unwrap();
-        let text =
-            said.remove(name).unwrap_or_else(|| panic!("pictures.toml: unknown parameter `{name}`"));
+        let text = said.remove(name).unwrap_or_else(|| panic!("pictures.toml: unknown parameter `{name}`"));
         let (low, high) = (&entry["low"], &entry["high"]);
         // Values are compared, because the order of a table's fields is unspecified.
         let heads = text.lines().find(|l| l.starts_with("| `")).unwrap_or_default();

@@ -116,7 +116,9 @@ fn invalid_requests_have_clear_errors() {
     let path = folder.path().join("clip.mp4");
     let message = |r: Result<ClipWriter, OutputError>| r.err().expect("an error").to_string();
     assert!(message(ClipWriter::create(&path, 8000, 64, FPS)).contains("8000×64"));
-    assert!(message(ClipWriter::create(&path, 64, 64, f64::NAN)).contains("the rate is NaN frames per second"));
+    assert!(
+        message(ClipWriter::create(&path, 64, 64, f64::NAN)).contains("the rate is NaN frames per second")
+    );
     assert!(
         message(ClipWriter::create(&folder.path().join("no/clip.mp4"), 64, 64, FPS))
             .contains("folder exists")
