@@ -35,7 +35,7 @@ impl Collider for Torus {
 pub fn main() {
     // Strands that stand off to the side, above the ring, and fall on it.
     let strand = |s: i32| {
-        let root = Vec3::new(-0.02, 0.08, 0.01 * s as f32);
+        let root = Vec3::new(0.03, 0.05, 0.01 * s as f32);
         (0..20).map(|i| root + Vec3::X * (0.01 * i as f32)).collect::<Vec<_>>()
     };
     let groom = Groom::from_strands((-3..=3).map(strand), 40e-6);

@@ -36,7 +36,7 @@ impl Collider for Capsule {
 
 #[test]
 fn a_capsule() {
-    let (a, b, radius) = (Vec3::new(-0.1, -0.05, 0.035), Vec3::new(0.2, -0.05, 0.035), 0.02);
+    let (a, b, radius) = (Vec3::new(-0.1, -0.08, 0.09), Vec3::new(0.2, -0.08, 0.09), 0.03);
     for segment_contacts in [false, true] {
         let solver = Solver { segment_contacts, ..Solver::default() };
         let still = RigidTransform::default();

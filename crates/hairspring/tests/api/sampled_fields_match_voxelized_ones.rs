@@ -35,7 +35,7 @@ fn the_same_samples_give_the_same_bits() {
             shake(&mut hair, frame, &colliders);
             touched += hair.contacts(&colliders).points;
         }
-        assert!(touched > 100, "{touched} contacts");
+        assert!(touched > 50, "{touched} contacts");
         points(&hair)
     });
     assert_eq!(made, given);
