@@ -34,7 +34,9 @@ fn vector(text: &str, key: &[&str]) -> [f64; 3] {
     let table: toml_edit::DocumentMut = text.parse().unwrap();
     let mut item = table.as_item();
     for name in key {
-        item = item.get(name).unwrap_or_else(|| item.get(0).and_then(|i| i.get(name)).expect("the key is missing"));
+        item = item
+            .get(name)
+            .unwrap_or_else(|| item.get(0).and_then(|i| i.get(name)).expect("the key is missing"));
     }
     let list = item.as_array().unwrap();
     std::array::from_fn(|k| list.get(k).unwrap().as_float().unwrap())

@@ -177,6 +177,11 @@ fn random_actions_keep_the_session_sound() {
          the maximum held in any scene is {most}",
         first[0], first[1], last[0], last[1]
     );
-    assert!(last[0] <= first[0] + (MORE_IN_USE >> 20), "memory in use grew from {} MiB to {}", first[0], last[0]);
+    assert!(
+        last[0] <= first[0] + (MORE_IN_USE >> 20),
+        "memory in use grew from {} MiB to {}",
+        first[0],
+        last[0]
+    );
     assert!(last[1] <= first[1] + (MORE_HELD >> 20), "memory held grew from {} MiB to {}", first[1], last[1]);
 }

@@ -68,7 +68,10 @@ fn still_of_a_comparison_shows_both_scenes_and_captions() {
     assert!(until(&mut window, |app| app.is_idle()));
     let image = hairspring_view::read_png(&still).unwrap();
     let (left, gap, right) = (0..638, 638..642, 642..1280);
-    assert!(gap.clone().all(|x| (0..692).all(|y| image.pixel(x, y) == [24; 3])), "the gap between the two pictures is missing");
+    assert!(
+        gap.clone().all(|x| (0..692).all(|y| image.pixel(x, y) == [24; 3])),
+        "the gap between the two pictures is missing"
+    );
     let red = |columns: std::ops::Range<u32>| -> u64 {
         let of = |x: u32| {
             (0..692).map(|y| image.pixel(x, y)).map(|[r, g, _]| u64::from(r.saturating_sub(g))).sum::<u64>()

@@ -60,7 +60,10 @@ fn five_seconds_of_shaking() {
     let fastest = number("ms_per_frame_fastest");
     assert!(0.0 < fastest && fastest <= median && median <= p95);
     let ns = median * 1e6 * 2.0 / (400.0 * 32.0 * 4.0);
-    assert!((number("ns_per_point_substep") / ns - 1.0).abs() < 1e-9, "the time per core is wall time x threads");
+    assert!(
+        (number("ns_per_point_substep") / ns - 1.0).abs() < 1e-9,
+        "the time per core is wall time x threads"
+    );
     let stages = found["stages"].as_object().unwrap();
     assert!(!stages.is_empty() && stages.values().all(|ms| ms.as_f64().unwrap() > 0.0));
 }

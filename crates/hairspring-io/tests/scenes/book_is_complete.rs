@@ -5,7 +5,6 @@
 //! each parameter's page. Every page is in the summary exactly once. Every link of every page and of the
 //! README leads to a file. Every page is linked from a page other than the summary. Every picture is shown,
 //! and the scenes of the book can be read. The glossary is sorted and names files that exist.
-//! to by the summary alone, every picture is shown, and the scenes of the book can be read. The glossary is in order, and names files that are there.
 
 use hairspring::{
     air::{Turbulence, WindOcclusion, WindSource},
@@ -137,8 +136,7 @@ fn every_parameter_has_pictures_or_a_reason() {
     let mut said = parameters();
     for entry in table["parameter"].as_array().unwrap() {
         let name = entry["name"].as_str().unwrap();
-        let text =
-            said.remove(name).unwrap_or_else(|| panic!("pictures.toml: unknown parameter `{name}`"));
+        let text = said.remove(name).unwrap_or_else(|| panic!("pictures.toml: unknown parameter `{name}`"));
         let (low, high) = (&entry["low"], &entry["high"]);
         // Values are compared, because the order of a table's fields is unspecified.
         let heads = text.lines().find(|l| l.starts_with("| `")).unwrap_or_default();

@@ -105,7 +105,9 @@ fn a_guide_has_the_weight_of_its_follow_hairs() {
     let all = left_after(Guides::All, VolumeMethod::Density);
     let few = left_after(Guides::Count(8), VolumeMethod::Density);
     let (braked, differs) = (farthest(&free, &all), farthest(&all, &few));
-    println!("the right patch moves the left one by {braked:.4} m; with guides only, the result differs by {differs:.4} m");
+    println!(
+        "the right patch moves the left one by {braked:.4} m; with guides only, the result differs by {differs:.4} m"
+    );
     assert!(braked > 5e-3, "{braked} m");
     assert!(differs < 0.5 * braked, "{differs} m of {braked} m");
 }

@@ -102,7 +102,11 @@ fn falling_strands_report_speed_and_turn() {
     for i in 10..POINTS {
         let mean = next[i].distance(here[i]) / FRAME;
         // In a frame of free fall the speed grows by g/60.
-        assert!((speed[i] - mean).abs() < 0.5 * G * FRAME + 0.02, "point {i}: {} m/s instead of {mean}", speed[i]);
+        assert!(
+            (speed[i] - mean).abs() < 0.5 * G * FRAME + 0.02,
+            "point {i}: {} m/s instead of {mean}",
+            speed[i]
+        );
     }
     // The rest shape is straight, so the turn of a joint is the angle between its two segments.
     for i in 1..POINTS - 1 {

@@ -136,7 +136,10 @@ fn play(scene: Scene) {
         at.is_none_or(|ends| ends[1].x > LAST)
     });
     let taken = taken.count();
-    println!("the bar takes {taken} of 31 strands along; the deepest point is {:.3} mm inside", 1e3 * deepest);
+    println!(
+        "the bar takes {taken} of 31 strands along; the deepest point is {:.3} mm inside",
+        1e3 * deepest
+    );
     assert_eq!(taken, 31, "the bar does not take all strands along");
     assert!(deepest < 1e-4, "a point is {deepest} m inside");
 }

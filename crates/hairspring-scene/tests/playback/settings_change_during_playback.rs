@@ -102,7 +102,10 @@ fn the_same_settings_change_nothing() {
         let expected = points(untouched);
         assert!(expected == points(same), "frame {frame}: the same settings changed the result");
         let apart = farthest(&expected, &points(fresh));
-        assert!(expected == points(fresh), "frame {frame}: {apart} m apart after rest shapes were solved again");
+        assert!(
+            expected == points(fresh),
+            "frame {frame}: {apart} m apart after rest shapes were solved again"
+        );
     }
 }
 

@@ -39,7 +39,11 @@ fn standard_scene(material: Material, strands: u32, mean: f64) -> Bench {
         let report = bench.step();
         assert_eq!(report.reset_strands, 0, "a strand turned non-finite in frame {frame}");
         let m = bench.measure();
-        assert!(m.stretch_max < 0.011, "the length of a segment is wrong by {} of it in frame {frame}", m.stretch_max);
+        assert!(
+            m.stretch_max < 0.011,
+            "the length of a segment is wrong by {} of it in frame {frame}",
+            m.stretch_max
+        );
         assert!(m.max_depth < 1e-4, "a point is {} m deep in frame {frame}", m.max_depth);
         assert_eq!(m.non_finite, 0);
     }
@@ -80,7 +84,10 @@ fn limp_hair_keeps_its_length() {
             // Compares the stretch of the output points with the stretch that the simulation reports.
             let worst = points.windows(2).map(|w| (w[0].distance(w[1]) * 63.0 / 0.2 - 1.0).abs());
             let worst = worst.fold(0.0, f32::max);
-            assert!(worst < 0.011, "{model:?}, frame {frame}: the length of a segment is wrong by {worst} of it");
+            assert!(
+                worst < 0.011,
+                "{model:?}, frame {frame}: the length of a segment is wrong by {worst} of it"
+            );
             let measured = simulation.measure(&[]).stretch_max as f32;
             assert!((measured - worst).abs() < 1e-4, "{model:?}: measured {measured}, output {worst}");
         }
@@ -253,7 +260,10 @@ fn a_non_finite_strand_is_reset_and_counted_without_affecting_others() {
     let (clean, none) = run(None);
     let (poisoned, some) = run(Some(20));
     assert_eq!(none, 0);
-    assert!((1..=2).contains(&some), "{some} resets instead of one or two: in the invalid frame and in the one after it");
+    assert!(
+        (1..=2).contains(&some),
+        "{some} resets instead of one or two: in the invalid frame and in the one after it"
+    );
     assert_eq!(clean[..16], poisoned[..16], "the other strand changed");
     assert!(poisoned.iter().all(|p| p.is_finite()));
 }

@@ -93,7 +93,12 @@ fn a_crowd_costs_linearly_and_is_reported() {
     };
     let [half, all] = [600, 1200].map(|count| fallen(0, &crowd(count), 2).0);
     println!("600: {half:?}\n1200: {all:?}");
-    assert!(all.looked_at < 3 * half.looked_at, "{} pairs, {} for half of the strands", all.looked_at, half.looked_at);
+    assert!(
+        all.looked_at < 3 * half.looked_at,
+        "{} pairs, {} for half of the strands",
+        all.looked_at,
+        half.looked_at
+    );
     // Two frames have eight substeps, and in each a segment is tested against at most 256 others.
     assert!(all.looked_at < 1200 * 11 * 256 * 8, "{} pairs", all.looked_at);
     assert!(all.crowded > 0, "the crowd is not reported");

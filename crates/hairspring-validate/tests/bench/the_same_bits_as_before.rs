@@ -69,9 +69,5 @@ fn golden_hashes() {
     let row = |(model, integrator, [plain, fused]): &(Model, Integrator, [u64; 2])| {
         format!("    (Model::{model:?}, Integrator::{integrator:?}, [{plain:#018x}, {fused:#018x}]),\n")
     };
-    assert!(
-        now == GOLDEN,
-        "the bits changed; the new table:\n{}",
-        now.iter().map(row).collect::<String>()
-    );
+    assert!(now == GOLDEN, "the bits changed; the new table:\n{}", now.iter().map(row).collect::<String>());
 }

@@ -125,7 +125,10 @@ fn a_squeezed_bundle_expands() {
         let opened = opened(volume, 0.5);
         println!("{method:?}: {opened} times as wide, {at_rest} if not squeezed");
         assert!((at_rest - 1.0).abs() < 1e-3, "{method:?}: a bundle at rest is {at_rest} times as wide");
-        assert!((least..3.0).contains(&opened), "{method:?}: the tips are {opened} times as far from the axis");
+        assert!(
+            (least..3.0).contains(&opened),
+            "{method:?}: the tips are {opened} times as far from the axis"
+        );
     }
 }
 

@@ -115,7 +115,11 @@ fn a_strand_that_lies_over_a_bar_is_supported() {
     let weight = GRAVITY * (5.0 * 0.01 * 1300.0 * std::f32::consts::PI * 4e-5 * 4e-5);
     let borne = (side(k + 2) - side(k - 3) + weight).length();
     println!("N is {} N, from tensions {borne} N, depth {} m", report.force, report.depth);
-    assert!((report.force / borne - 1.0).abs() < 0.01, "the contact force is {} N instead of {borne} N", report.force);
+    assert!(
+        (report.force / borne - 1.0).abs() < 0.01,
+        "the contact force is {} N instead of {borne} N",
+        report.force
+    );
     assert!(report.depth < 0.01 * 0.001, "the penetration is {} m", report.depth);
     let fastest = (0..26).map(|i| strands.simulation.speed_at(1, i)).fold(0.0, f32::max);
     assert!(fastest < 1e-3, "the strand moves at {fastest} m/s");
@@ -390,7 +394,10 @@ fn strand_contact_keeps_volume_of_a_shaken_head() {
     let lattice = kept(Volume { method: VolumeMethod::Incompressible, ..Volume::default() }, off);
     let soft = kept(Volume { method: VolumeMethod::Density, ..Volume::default() }, off);
     println!("kept: without {without}, strands {strands}, incompressible {lattice}, density {soft}");
-    assert!(strands > without + 0.1, "strand contact keeps {strands} of the volume, and {without} is left without it");
+    assert!(
+        strands > without + 0.1,
+        "strand contact keeps {strands} of the volume, and {without} is left without it"
+    );
 }
 
 /// A strand falls across a web of strands stretched side by side; returns its tip two seconds later [m].
@@ -421,7 +428,10 @@ fn a_web_with_strand_contact_holds_a_falling_strand() {
     for volume in VolumeMethod::ALL {
         let [through, held] = [false, true].map(|on| dropped_on_a_web(volume, on));
         println!("{volume:?}: the tip is at {through} without strand contact, at {held} with it");
-        assert!(through.x < -0.03, "{volume:?}: without strand contact the strand did not fall through: {through}");
+        assert!(
+            through.x < -0.03,
+            "{volume:?}: without strand contact the strand did not fall through: {through}"
+        );
         assert!(held.x > 0.02, "{volume:?}: with strand contact the strand fell through the web: {held}");
     }
 }

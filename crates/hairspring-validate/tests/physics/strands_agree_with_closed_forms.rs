@@ -8,7 +8,6 @@
 //!
 //! A case that a model cannot pass states the reason, and must fail: when it passes, the reason must be
 //! removed. The values on docs/validation.md must match this build, so that the page is never out of date.
-//! what this build does, so that nobody reads of a day long past.
 
 use hairspring::material::Model;
 use hairspring_validate::{CASES, Case, Method, Outcome};
@@ -29,7 +28,9 @@ fn check(outcomes: &[Outcome]) {
         assert!(failed.iter().all(|o| o.reason() == reason));
         match reason {
             None => wrong.extend(failed.iter().map(|o| format!("{o:?}"))),
-            Some(why) if failed.is_empty() => wrong.push(format!("{} passes now, but its reason says '{why}'", case.name)),
+            Some(why) if failed.is_empty() => {
+                wrong.push(format!("{} passes now, but its reason says '{why}'", case.name))
+            }
             Some(_) => {}
         }
     }
@@ -51,8 +52,10 @@ fn is_on_the_page(after: &str, outcomes: &[Outcome]) {
     for outcome in outcomes {
         let row = rows.next().expect("a row is missing");
         let said = row.split_once(outcome.quantity).and_then(|(_, rest)| rest.split_whitespace().next());
-        let said =
-            said.unwrap_or_else(|| panic!("'{row}' is not a row of {}", outcome.quantity)).parse::<f64>().ok();
+        let said = said
+            .unwrap_or_else(|| panic!("'{row}' is not a row of {}", outcome.quantity))
+            .parse::<f64>()
+            .ok();
         assert!(row.starts_with(outcome.case), "'{row}' is not a row of {}", outcome.case);
         let same = match (said, outcome.measured.as_ref().ok(), outcome.reference.as_ref().ok()) {
             (Some(said), Some(measured), Some(reference)) => {

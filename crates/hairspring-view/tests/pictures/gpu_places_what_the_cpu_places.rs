@@ -105,7 +105,10 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
             1e6 * BOUND,
             gpu.timings().bytes / 1000
         );
-        assert!(folded as f32 <= FOLDED.2 * strands as f32, "{name}: {folded} of {strands} strands exceed the bound");
+        assert!(
+            folded as f32 <= FOLDED.2 * strands as f32,
+            "{name}: {folded} of {strands} strands exceed the bound"
+        );
         pushed += moved;
     }
     pushed

@@ -33,7 +33,10 @@ fn check(name: &str, image: Image) {
     if score < ALIKE {
         let seen = std::env::temp_dir().join(format!("hairspring-{name}"));
         write_png(&seen, &image).unwrap();
-        panic!("{name}: the similarity is {score:.4}, but {ALIKE} is needed; the picture is in {}", seen.display());
+        panic!(
+            "{name}: the similarity is {score:.4}, but {ALIKE} is needed; the picture is in {}",
+            seen.display()
+        );
     }
 }
 

@@ -180,7 +180,10 @@ fn a_sheet_has_two_sides() {
         play(&groom, &sheet, Vec3::Y * (-9.81 * side), 120, |points, depth| {
             assert!(depth < 1e-5, "{depth} m deep");
             let lowest = points.iter().fold(f32::MAX, |least, p| least.min(p.y * side));
-            assert!(lowest > 0.003, "a point is {lowest} m from the middle of the sheet, which has a half-thickness of 4 mm");
+            assert!(
+                lowest > 0.003,
+                "a point is {lowest} m from the middle of the sheet, which has a half-thickness of 4 mm"
+            );
             resting = points.iter().filter(|p| (p.y * side - 0.004).abs() < 1e-4).count();
         });
         assert!(resting >= 24 * 12, "only {resting} points lie on the sheet");

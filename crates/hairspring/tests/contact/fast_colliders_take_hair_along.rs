@@ -4,7 +4,6 @@
 //! A curtain of strands hangs from a bar, and the body crosses it. As long as a strand is long enough to
 //! reach around the body, it stays in front of it at the body's height. A collider that moves with the head
 //! causes no additional substeps, and neither does one that is too far from the hair.
-//! head does, and neither does what is too far to meet.
 
 use glam::{Quat, Vec3};
 use hairspring::{

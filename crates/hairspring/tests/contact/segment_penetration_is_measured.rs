@@ -164,5 +164,8 @@ fn penetration_of_a_mesh_includes_its_edges() {
     assert_eq!(of_cuboid.surface_depth, of_cuboid.segment_depth, "an analytic shape must be exact");
     let (exact, solver) = (of_cuboid.segment_depth, of_field.segment_depth);
     assert!((of_field.surface_depth - exact).abs() < 5e-5, "{} m instead of {exact}", of_field.surface_depth);
-    assert!(exact - solver > 2e-4, "the field does not round the edge, so this test shows nothing: {solver} m");
+    assert!(
+        exact - solver > 2e-4,
+        "the field does not round the edge, so this test shows nothing: {solver} m"
+    );
 }

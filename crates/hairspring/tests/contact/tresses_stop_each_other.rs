@@ -141,7 +141,11 @@ fn tresses_stop_as_with_strand_contact_at_any_frame_rate_and_cell() {
     let bound = 0.1 * 2.0 * TRESSES.radius;
     let through = TRESSES.farthest(Meets::default(), 60.0, 0.5, false);
     let strands = TRESSES.farthest(Meets { neighbours: true, ..Meets::default() }, 60.0, 0.5, false);
-    println!("{:.1} mm past the middle without interaction, {:.1} mm with strand contact", 1e3 * through, 1e3 * strands);
+    println!(
+        "{:.1} mm past the middle without interaction, {:.1} mm with strand contact",
+        1e3 * through,
+        1e3 * strands
+    );
     assert!(
         through > 0.02 && strands < 0.0,
         "{through} m past the middle without interaction, {strands} m with strand contact"
@@ -192,7 +196,11 @@ fn a_single_tress_is_not_slowed() {
     let free = TRESSES.farthest(Meets::default(), 60.0, 0.5, true);
     for method in METHODS {
         let braked = TRESSES.farthest(Meets::by(method), 60.0, 0.5, true);
-        println!("{method:?}: {:.1} mm past the middle, {:.1} mm without interaction", 1e3 * braked, 1e3 * free);
+        println!(
+            "{method:?}: {:.1} mm past the middle, {:.1} mm without interaction",
+            1e3 * braked,
+            1e3 * free
+        );
         assert!(braked > 0.85 * free, "{method:?}: {braked} m past the middle, {free} m without interaction");
     }
 }
@@ -263,6 +271,9 @@ fn width_of_a_shaken_bundle_matches_strand_contact() {
     for method in METHODS {
         let lattice = shaken(100, Meets::by(method), 60.0);
         println!("{method:?}: {:.2} mm", 1e3 * lattice);
-        assert!((lattice / strands - 1.0).abs() < 0.1, "{method:?}: {lattice} m, {strands} m with strand contact");
+        assert!(
+            (lattice / strands - 1.0).abs() < 0.1,
+            "{method:?}: {lattice} m, {strands} m with strand contact"
+        );
     }
 }

@@ -175,6 +175,9 @@ fn the_loss_is_independent_of_the_number_of_points() {
     println!("lost in a period: {losses:.4?}");
     for loss in losses {
         assert!((0.0..0.025).contains(&loss), "{losses:?} of the amplitude lost in a period");
-        assert!((loss - losses[0]).abs() < 0.2 * losses[0], "the loss depends on the number of points: {losses:?}");
+        assert!(
+            (loss - losses[0]).abs() < 0.2 * losses[0],
+            "the loss depends on the number of points: {losses:?}"
+        );
     }
 }

@@ -114,7 +114,10 @@ fn hair_with_the_charge_of_its_head_stands_on_end() {
     println!(
         "tips at {fallen} m, charged at {height} m and {out} m from the center; with only the hair's charge {apart} m, without {together} m"
     );
-    assert!(out > 0.29 && height > fallen + 0.2, "tips are {out} m from the center, at a height of {height} m");
+    assert!(
+        out > 0.29 && height > fallen + 0.2,
+        "tips are {out} m from the center, at a height of {height} m"
+    );
     assert!(apart > together + 0.03, "charged hair: {apart} m, without charge {together} m");
 }
 

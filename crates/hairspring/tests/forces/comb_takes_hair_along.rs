@@ -104,7 +104,9 @@ fn a_comb_across_hair_takes_it_along() {
                 // rotates about its root: a point 6 mm nearer to the root is slower.
                 let along = (curtain.mean(21).0 - curtain.mean(19).0).normalize();
                 let slip = (velocity - Vec3::Z * SPEED).reject_from_normalized(along).length();
-                println!("{model:?}: comb at {comb} m, hair at {at}, velocity {velocity} m/s, slip {slip} m/s");
+                println!(
+                    "{model:?}: comb at {comb} m, hair at {at}, velocity {velocity} m/s, slip {slip} m/s"
+                );
                 assert!((at.z - comb).abs() < 0.015, "{model:?}: the comb is at {comb}, hair at {at}");
                 assert!(slip < 0.2 * SPEED, "{model:?}: hair slips through the comb at {slip} m/s");
             }

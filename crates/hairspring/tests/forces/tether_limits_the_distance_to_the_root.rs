@@ -92,7 +92,10 @@ fn heavy_coils_fall_to_the_limit() {
             let held = fall(model, tether, 20.0, 2).far;
             println!("{model:?}: {free} without a tether, {held} with one of {tether}");
             assert!(held < tether * 1.0011, "{model:?}: {held} with a tether of {tether}");
-            assert!(held > tether - 0.05, "{model:?}: {held} with a tether of {tether}: hair does not reach the limit");
+            assert!(
+                held > tether - 0.05,
+                "{model:?}: {held} with a tether of {tether}: hair does not reach the limit"
+            );
         }
     }
 }

@@ -95,7 +95,11 @@ fn bound_hair_stays_in_the_ring() {
     for model in [Model::Curvature, Model::Rod, Model::Springs] {
         let mut curtain = Curtain::new(model);
         let id = curtain.simulation.add_manipulator(Manipulator::Tie(RING), RigidTransform::default());
-        assert_eq!(curtain.simulation.attached_points(id).count(), 2 * STRANDS, "not every strand is in reach");
+        assert_eq!(
+            curtain.simulation.attached_points(id).count(),
+            2 * STRANDS,
+            "not every strand is in reach"
+        );
         let mut fastest = 0.0f64;
         for _ in 0..90 {
             curtain.step(RigidTransform::default());
