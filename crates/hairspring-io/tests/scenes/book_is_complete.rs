@@ -5,7 +5,6 @@
 //! each parameter's page. Every page is in the summary exactly once. Every link of every page and of the
 //! README leads to a file. Every page is linked from a page other than the summary. Every picture is shown,
 //! and the scenes of the book can be read. The glossary is sorted and names files that exist.
-//! to by the summary alone, every picture is shown, and the scenes of the book can be read. The glossary is in order, and names files that are there.
 
 use hairspring::{
     air::{Turbulence, WindOcclusion, WindSource},

@@ -8,7 +8,6 @@
 //!
 //! A case that a model cannot pass states the reason, and must fail: when it passes, the reason must be
 //! removed. The values on docs/validation.md must match this build, so that the page is never out of date.
-//! what this build does, so that nobody reads of a day long past.
 
 use hairspring::material::Model;
 use hairspring_validate::{CASES, Case, Method, Outcome};

@@ -1,5 +1,5 @@
-//! A head of hair made by code, for tests and benches: a ball with a scalp, and strands that fall from it.
-#![allow(dead_code)] // Each test file uses its own part of this.
+//! A generated head of hair for tests and benches: a ball with a scalp, and strands that fall from it.
+#![allow(dead_code)] // Each test file uses a part of this module.
 
 use glam::{Vec2, Vec3};
 use hairspring::{body::Mesh, groom::Groom};
@@ -12,7 +12,7 @@ use hairspring_view::{
 /// Radius of the ball [m].
 pub const RADIUS: f32 = 0.095;
 
-/// A style: how strands fall.
+/// A hair style.
 #[derive(Clone, Copy)]
 pub struct Style {
     pub strands: usize,
@@ -21,7 +21,7 @@ pub struct Style {
     pub length: f32,
     /// Amplitude of waves [m].
     pub wave: f32,
-    /// Strands that share a lock, about.
+    /// Approximate spacing of locks [m]; strands with roots in the same cell share a lock.
     pub lock: f32,
 }
 
@@ -41,7 +41,7 @@ fn hash(i: u32, j: u32) -> f32 {
     ((h ^ h >> 15) >> 8) as f32 / (1 << 24) as f32
 }
 
-/// Smooth noise of −1 to 1.
+/// Smooth noise from −1 to 1.
 fn noise(p: Vec3, seed: u32) -> f32 {
     let cell = p.floor();
     let f = p - cell;
@@ -61,7 +61,7 @@ fn noise(p: Vec3, seed: u32) -> f32 {
     face(0) + (face(1) - face(0)) * f.z
 }
 
-/// Hair parted along the middle, falling round a ball at the origin; the face looks along +Z.
+/// Hair parted along the middle that falls around a ball at the origin. The face looks along +Z.
 pub fn groom(style: Style) -> Groom {
     let strands = (0..).map(spread).enumerate().filter_map(|(i, uv)| {
         let y = 1.0 - 1.35 * uv.y;
@@ -105,7 +105,7 @@ fn strand(style: Style, i: u32, n: Vec3) -> Vec<Vec3> {
             + 0.02 * Vec3::new(noise(p * 30.0, 8), 0.0, noise(p * 30.0, 9)))
         .normalize();
         p += direction * step;
-        // Lies on the ball, its layers above each other; below it, hangs as from its rim.
+        // Strands lie on the ball in layers; below it, they hang as from its rim.
         let clear = RADIUS + lift * (s * 6.0).min(1.0);
         let from = if p.y > 0.0 { p } else { Vec3::new(p.x, 0.0, p.z) };
         let far = from.length();
@@ -117,7 +117,7 @@ fn strand(style: Style, i: u32, n: Vec3) -> Vec<Vec3> {
     points
 }
 
-/// The ball, a little narrower than the scalp that hair grows from.
+/// The ball, slightly narrower than the scalp on which hair grows.
 pub fn ball() -> Mesh {
     let (rows, columns) = (48, 96);
     let mut mesh = Mesh::default();
@@ -169,7 +169,7 @@ pub fn camera() -> Camera {
     Camera { position: Vec3::new(0.38, 0.02, 0.95), target: Vec3::new(0.0, -0.06, 0.0), fov: 26.0 }
 }
 
-/// A frame with everything at its default.
+/// A frame with default settings.
 pub fn frame<'a>(hair: &'a [HairDraw<'a>], bodies: &'a [MeshDraw<'a>]) -> Frame<'a> {
     Frame {
         hair,
@@ -182,7 +182,7 @@ pub fn frame<'a>(hair: &'a [HairDraw<'a>], bodies: &'a [MeshDraw<'a>]) -> Frame<
     }
 }
 
-/// A renderer on the card there is, if there is one.
+/// A renderer on the graphics card, or `None` where there is none.
 pub fn card() -> Option<GpuRenderer> {
     match Gpu::open() {
         Ok(gpu) => Some(GpuRenderer::new(&gpu)),

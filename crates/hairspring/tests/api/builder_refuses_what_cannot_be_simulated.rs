@@ -1,4 +1,5 @@
-//! Promise: a simulation that cannot be built is refused with a sentence that names the place, and never panics.
+//! Promise: a simulation that cannot be built is refused with a one-sentence error that names the place,
+//! and never panics.
 
 use crate::support::groom;
 use glam::Vec3;
@@ -10,7 +11,7 @@ use hairspring::{
 };
 
 #[test]
-fn grooms() {
+fn invalid_grooms_are_refused() {
     let error = Simulation::builder(groom(3)).strands(&[0, 7]).build().err().unwrap();
     assert_eq!(error.to_string(), "strand 7 was requested, but the groom has only 3");
     let short = Groom::from_strands([vec![Vec3::ZERO, Vec3::Y]], 40e-6);
@@ -34,7 +35,7 @@ fn grooms() {
 }
 
 #[test]
-fn settings() {
+fn invalid_settings_are_refused() {
     let solver = Solver { substeps: 0, ..Solver::default() };
     let error = Simulation::builder(groom(3)).solver(solver).build().err().unwrap();
     assert_eq!(error.to_string(), "solver: `substeps` must be 1 to 64");

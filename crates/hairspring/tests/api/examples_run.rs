@@ -27,7 +27,7 @@ fn examples_run() {
         ("snapshot_and_rollback", snapshot_and_rollback::main),
     ];
     let listed = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/examples")).unwrap().count();
-    assert_eq!(listed, examples.len(), "an example is missing here");
+    assert_eq!(listed, examples.len(), "an example is missing in this list");
     for (name, run) in examples {
         println!("{name}:");
         run();

@@ -1,5 +1,5 @@
-//! Promise: a distance field from an array of samples is met as one that was made from a mesh, to the bit; arrays that are no field are
-//! refused with a sentence.
+//! Promise: a distance field from an array of samples gives the same bits as one made from a mesh. Invalid
+//! arrays are refused with a one-sentence error.
 
 use crate::support::{points, shake, simulation};
 use glam::{UVec3, Vec3};
@@ -35,14 +35,14 @@ fn the_same_samples_give_the_same_bits() {
             shake(&mut hair, frame, &colliders);
             touched += hair.contacts(&colliders).points;
         }
-        assert!(touched > 50, "{touched} contacts");
+        assert!(touched > 50, "only {touched} contacts");
         points(&hair)
     });
     assert_eq!(made, given);
 }
 
 #[test]
-fn what_is_no_field_is_refused() {
+fn invalid_samples_are_refused() {
     let of =
         |cell, size, samples: Vec<f32>| SignedDistanceField::from_samples(Vec3::ZERO, cell, size, samples);
     let two = UVec3::splat(2);

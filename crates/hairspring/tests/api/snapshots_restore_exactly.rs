@@ -1,6 +1,6 @@
-//! Promise: after a snapshot is restored, the same inputs give the same bits again, with every elastic model, with either implicit
-//! integrator, with contact, with hair volume and strand contact, and with manipulators. Simulations that share one model give the bits of
-//! simulations with a model each.
+//! Promise: after a snapshot is restored, the same inputs give the same bits again. This holds with every
+//! elastic model, with either implicit integrator, with contact, with volume and strand contact, and with
+//! manipulators. Simulations that share one model give the same bits as simulations with a model each.
 
 use crate::support::{groom, points, shake, simulation, velocities};
 use glam::Vec3;
@@ -48,7 +48,7 @@ fn with_every_model_and_integrator() {
 }
 
 #[test]
-fn with_hair_on_hair() {
+fn with_volume_and_strand_contact() {
     for method in [VolumeMethod::Density, VolumeMethod::Incompressible] {
         let mut hair = simulation(20, Material::default(), Solver::default());
         hair.set_volume(&Volume { method, ..Volume::default() });
@@ -60,7 +60,7 @@ fn with_hair_on_hair() {
 }
 
 #[test]
-fn with_a_hand() {
+fn with_a_manipulator() {
     let mut hair = simulation(10, Material::default(), Solver::default());
     let grab = Grab { center: Vec3::new(0.0, -0.1, 0.03), radius: 0.05, pull: 60.0, damping: 1.0 };
     hair.add_manipulator(Manipulator::Grab(grab), RigidTransform::default());
@@ -68,7 +68,7 @@ fn with_a_hand() {
 }
 
 #[test]
-fn of_other_hair_is_refused() {
+fn a_snapshot_of_other_hair_is_refused() {
     let mut hair = simulation(10, Material::default(), Solver::default());
     let before = points(&hair);
     let others = [

@@ -1,4 +1,5 @@
-//! Promise: positions and velocities can be read and set as plain arrays, with every elastic model, and hair goes on from them.
+//! Promise: positions and velocities can be read and set as plain arrays, with every elastic model, and the
+//! simulation continues from them.
 
 use crate::support::{points, shake, simulation, velocities};
 use hairspring::{
@@ -7,27 +8,27 @@ use hairspring::{
 };
 
 #[test]
-fn what_is_set_is_read_back() {
+fn set_states_are_read_back() {
     for model in Model::ALL {
         let material = Material { model, ..Material::default() };
         let mut source = simulation(10, material.clone(), Solver::default());
         (0..25).for_each(|frame| shake(&mut source, frame, &[]));
         let (at, moving) = (points(&source), velocities(&source));
         let mut hair = simulation(10, material, Solver::default());
-        // Roots are driven, so the strands must stand where the source's do.
+        // Roots are driven, so the strands must have the same place as those of the source.
         hair.teleport(hairspring::math::RigidTransform {
             translation: at[0] - points(&hair)[0],
             ..Default::default()
         });
         hair.set_points(&at, &moving);
         let off = points(&hair).iter().zip(&at).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-        assert!(off < 1e-6, "{model:?}: {off} m off");
+        assert!(off < 1e-6, "{model:?}: the difference is {off} m");
         assert_eq!(velocities(&hair), moving, "{model:?}");
     }
 }
 
 #[test]
-fn hair_goes_on_from_there() {
+fn the_simulation_continues_from_a_set_state() {
     let mut source = simulation(10, Material::default(), Solver::default());
     (0..25).for_each(|frame| shake(&mut source, frame, &[]));
     let mut hair = source.instance();

@@ -1,4 +1,4 @@
-//! A curtain of strands that is shaken.
+//! A curtain of strands that is shaken, shared by the tests of the interface.
 
 use glam::{Quat, Vec3};
 use hairspring::{

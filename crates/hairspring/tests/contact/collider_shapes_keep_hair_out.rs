@@ -1,10 +1,12 @@
-//! Promise: hair stays outside of every shape of collider, at rest and swept through the hair at 1 m/s, and lets go of it again.
+//! Promise: hair stays outside of every collider shape, both at rest and swept through the hair at 1 m/s,
+//! and is released afterward.
 //!
-//! A curtain of strands hangs from a rail, the shape goes through it and comes to rest in it. No point is deeper than 0.1 mm in any frame, no
-//! segment longer than 1.1 %, and the hair that the shape took along hangs where it hung five seconds after the shape has gone.
+//! A curtain of strands hangs from a rail. The shape moves through it and comes to rest in it. In every
+//! frame, no point is deeper than 0.1 mm and no segment is stretched by more than 1.1 %. Five seconds after
+//! the shape has left, the hair hangs where it hung before.
 //!
-//! Hair that falls on a sheet lies on it, on whichever side it comes from; and what begins inside of a hull or a sheet stays as deep as it
-//! was and no deeper, roots and all.
+//! Hair that falls on a thin shell lies on it, from either side. Hair that begins inside a hull or a thin
+//! shell gets no deeper than it was authored, including its roots.
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
@@ -21,7 +23,7 @@ use std::sync::Arc;
 const FRAME: f32 = 1.0 / 60.0;
 
 fn shapes() -> [(&'static str, ColliderShape); 6] {
-    // A dozen points on the ball of 6 cm, none of which sees all others: a hull of twenty faces.
+    // Twelve points on a ball of 6 cm radius, all on the convex hull: a hull of twenty faces.
     let points: Vec<Vec3> = (0..12)
         .map(|k| {
             let y = 1.0 - (k as f32 + 0.5) / 6.0;
@@ -29,7 +31,7 @@ fn shapes() -> [(&'static str, ColliderShape); 6] {
             Vec3::new(x * (1.0 - y * y).sqrt(), y, z * (1.0 - y * y).sqrt()) * 0.06
         })
         .collect();
-    // A square of cloth, bent about X; what comes at 1 m/s moves 4.2 mm a substep.
+    // A square of cloth, bent about X. At 1 m/s it moves 4.2 mm in a substep.
     let bent = |i: u32, k: u32| {
         let (u, v) = (i as f32 / 6.0 - 0.5, k as f32 / 6.0 - 0.5);
         Vec3::new(0.2 * u, 0.16 * v, -0.2 * v * v)
@@ -37,7 +39,7 @@ fn shapes() -> [(&'static str, ColliderShape); 6] {
     let square: Vec<Vec3> = (0..7).flat_map(|k| (0..7).map(move |i| bent(i, k))).collect();
     let triangles: Vec<[u32; 3]> = (0..36u32)
         .map(|q| q / 6 * 7 + q % 6)
-        // Every other one turned over: a sheet has no outside.
+        // Every other triangle has the opposite orientation, because a thin shell has no outside.
         .flat_map(|a| [[a, a + 1, a + 8], [a, a + 7, a + 8]])
         .collect();
     let turned = Mat3::from_quat(Quat::from_euler(glam::EulerRot::XYZ, 0.3, 0.8, 0.2));
@@ -62,7 +64,7 @@ fn shapes() -> [(&'static str, ColliderShape); 6] {
 }
 
 #[test]
-fn a_shape_goes_through_a_curtain() {
+fn a_shape_swept_through_a_curtain_keeps_hair_out() {
     let strands = (0..48).map(|s| {
         let x = (s as f32 - 23.5) * 0.004;
         (0..32).map(move |i| Vec3::new(x, 0.3 - 0.6 * i as f32 / 31.0, 0.0)).collect::<Vec<_>>()
@@ -82,7 +84,7 @@ fn a_shape_goes_through_a_curtain() {
             .solver(Solver::default())
             .build()
             .unwrap();
-        // In at 1 m/s, a second in the hair, and away to where no strand reaches.
+        // The shape enters at 1 m/s, stays in the hair for a second, and leaves the reach of all strands.
         let at = |frame: u32| {
             let t = frame as f32 * FRAME;
             let z = if t < 1.3 { (t - 0.3).min(0.15) } else { 0.15 + 10.0 * (t - 1.3) };
@@ -108,16 +110,16 @@ fn a_shape_goes_through_a_curtain() {
         }
         let off = points.iter().zip(&groom.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         println!(
-            "{name}, {model:?}: {deepest} m deep, {longest} longer, pushed {pushed} m, {off} m off in the end"
+            "{name}, {model:?}: {deepest} m deep, stretch {longest}, pushed {pushed} m, final offset {off} m"
         );
-        assert!(deepest < 1e-4, "{name}, {model:?}: a point {deepest} m deep");
-        assert!(longest < 0.011, "{name}, {model:?}: a segment {longest} longer");
-        assert!(pushed > 0.1, "{name}, {model:?}: the shape went through hair without touching it");
-        assert!(off < 0.02, "{name}, {model:?}: {off} m off after five seconds");
+        assert!(deepest < 1e-4, "{name}, {model:?}: a point is {deepest} m deep");
+        assert!(longest < 0.011, "{name}, {model:?}: the stretch of a segment is {longest}");
+        assert!(pushed > 0.1, "{name}, {model:?}: the shape passed through the hair");
+        assert!(off < 0.02, "{name}, {model:?}: the offset after five seconds is {off} m");
     }
 }
 
-/// 24 strands of `length` [m] from `root`, 2 mm apart along X, that stand out along `way`.
+/// 24 strands of `length` [m] from `root`, 2 mm apart along X, that extend along `way`.
 fn row(root: Vec3, way: Vec3, length: f32) -> Arc<Groom> {
     let strands = (0..24).map(|s| {
         let root = root + Vec3::X * (0.002 * s as f32);
@@ -126,8 +128,8 @@ fn row(root: Vec3, way: Vec3, length: f32) -> Arc<Groom> {
     Arc::new(Groom::from_strands(strands, 40e-6))
 }
 
-/// Plays `frames` of hair that is not in balance as it is authored, with one obstacle that stands still; `look` sees the points of
-/// every frame and how deep the deepest is.
+/// Simulates `frames` frames of hair that is not in balance, with one fixed collider. `look` receives the
+/// points of every frame and the largest penetration.
 fn play(
     groom: &Arc<Groom>,
     shape: &ColliderShape,
@@ -171,22 +173,25 @@ fn a_sheet_has_two_sides() {
     let square =
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, z)| Vec3::new(x, 0.0, z) * 0.2);
     let sheet = ColliderShape::Sheet(Arc::new(ThinShell::new(&square, &[[0, 1, 2], [0, 2, 3]], 0.004)));
-    // Falls from 1 cm above, then rises from 1 cm below, where gravity points up.
+    // Hair falls from 1 cm above, then rises from 1 cm below under reversed gravity.
     for side in [1.0, -1.0] {
         let groom = row(Vec3::Y * (0.01 * side), Vec3::new(0.0, 0.1 * side, 1.0).normalize(), 0.15);
         let mut resting = 0;
         play(&groom, &sheet, Vec3::Y * (-9.81 * side), 120, |points, depth| {
             assert!(depth < 1e-5, "{depth} m deep");
             let lowest = points.iter().fold(f32::MAX, |least, p| least.min(p.y * side));
-            assert!(lowest > 0.003, "a point {lowest} m over the sheet, which is 4 mm thick");
+            assert!(
+                lowest > 0.003,
+                "a point is {lowest} m from the middle of the sheet, which has a half-thickness of 4 mm"
+            );
             resting = points.iter().filter(|p| (p.y * side - 0.004).abs() < 1e-4).count();
         });
-        assert!(resting >= 24 * 12, "{resting} points lie on the sheet");
+        assert!(resting >= 24 * 12, "only {resting} points lie on the sheet");
     }
 }
 
 #[test]
-fn what_begins_inside_stays_as_deep_and_no_deeper() {
+fn hair_that_begins_inside_gets_no_deeper() {
     let corners: Vec<Vec3> =
         (0..8).map(|k| Vec3::new([-0.1, 0.1][k & 1], [-0.1, 0.0][k >> 1 & 1], [-0.1, 0.1][k >> 2])).collect();
     let flat: Vec<Vec3> = [2, 3, 7, 6].map(|k: usize| corners[k]).to_vec();
@@ -194,7 +199,8 @@ fn what_begins_inside_stays_as_deep_and_no_deeper() {
         ("hull", ColliderShape::Hull(Arc::new(Hull::new(&corners).unwrap()))),
         ("sheet", ColliderShape::Sheet(Arc::new(ThinShell::new(&flat, &[[0, 1, 2], [0, 2, 3]], 0.003)))),
     ] {
-        // Roots 2 mm under the hull's top, in the middle of the sheet; hair stands out and falls to the side.
+        // Roots are 2 mm below the hull's top, or in the middle of the sheet. Hair extends upward and falls
+        // to the side.
         let root = if name == "hull" { Vec3::Y * -0.002 } else { Vec3::ZERO };
         let groom = row(root, Vec3::new(0.0, 0.8, 0.6), 0.08);
         play(&groom, &shape, Vec3::Y * -9.81, 180, |points, depth| {
@@ -203,7 +209,7 @@ fn what_begins_inside_stays_as_deep_and_no_deeper() {
                 let root = strand[0].distance(authored[0]);
                 assert!(root < 1e-6, "{name}: a root moved by {root} m");
                 let over = strand[4..].iter().fold(f32::MAX, |least, p| least.min(p.y));
-                assert!(over > -1e-5, "{name}: a free point {over} m over the top");
+                assert!(over > -1e-5, "{name}: a free point is {over} m above the top");
             }
         });
     }

@@ -1,9 +1,9 @@
-//! Promise: friction holds. Hair at rest on a slope of 20° that is rougher than steep (μ = 0.4, tan 20° = 0.364) creeps by less than 0.1 mm in ten seconds, and
-//! slides down where the slope is smoother (μ = 0.3). What slides is held back by the kinetic coefficient (3 %), and goes on where it would have held, had it
-//! not been moved.
+//! Promise: friction holds hair. On a slope of 20° (tan 20° = 0.364), hair at rest creeps by less than 0.1
+//! mm in ten seconds if μ = 0.4, and slides down if μ = 0.3. Sliding hair is slowed by the kinetic
+//! coefficient (3 %). Once moved, it continues to slide where static friction would have held it.
 //!
-//! Strands lie across the slope, so that their roots hold nothing of them but what is near; limp ones and human ones, every model. The slope stays level and
-//! gravity tilts.
+//! Strands lie across the slope, so that their roots hold only the nearest part. The tests use limp and
+//! human hair, and every model. The slope stays level, and gravity is tilted.
 
 use glam::Vec3;
 use hairspring::{
@@ -17,13 +17,13 @@ use hairspring::{
 };
 use std::sync::Arc;
 
-/// A frame [s].
+/// Duration of a frame [s].
 const DT: f32 = 1.0 / 60.0;
 
-/// What pulls [m/s²].
+/// Gravity [m/s²].
 const GRAVITY: f32 = 9.81;
 
-/// Steepness [°].
+/// Slope [°].
 const SLOPE: f32 = 20.0;
 
 /// Eight strands across a slope.
@@ -60,7 +60,7 @@ impl Slope {
         Self { simulation, roots }
     }
 
-    /// Where all points are after so many frames more, while the slope slips by `by` under them [m].
+    /// Simulates `frames` frames while the slope moves by `by` in each [m]; returns all points.
     fn after(&mut self, frames: usize, by: Vec3) -> Vec<Vec3> {
         let start = RigidTransform::default();
         let end = RigidTransform { translation: by, ..start };
@@ -82,12 +82,12 @@ impl Slope {
     }
 }
 
-/// The farthest that any point went [m].
+/// The largest distance of corresponding points [m].
 fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
 }
 
-/// How far any point goes in the first two seconds, and in the ten after them [m].
+/// The largest motion of a point in the first two seconds, and in the ten seconds after [m].
 fn moved(model: Model, friction: f32, bend: f32) -> [f32; 2] {
     let material = Material { model, friction, bend, drag: 0.1, ..Material::default() };
     let mut slope = Slope::new(material, Response::default(), 0.01);
@@ -102,7 +102,7 @@ fn a_rough_slope_holds_hair_and_a_smooth_one_does_not() {
             let [lay, crept] = moved(model, 0.4, bend).map(|d| d * 1e3);
             let [slid, _] = moved(model, 0.3, bend).map(|d| d * 1e3);
             println!(
-                "{model:?}, bend {bend}: {lay:.4} mm at first, {crept:.4} crept; {slid:.1} slid where smooth"
+                "{model:?}, bend {bend}: {lay:.4} mm at first, then crept {crept:.4} mm; slid {slid:.1} mm if smooth"
             );
             assert!(lay + crept < 0.1, "{model:?}, bend {bend}: {lay} mm, then {crept} mm");
             assert!(slid > 100.0, "{model:?}, bend {bend}: {slid} mm");
@@ -110,7 +110,7 @@ fn a_rough_slope_holds_hair_and_a_smooth_one_does_not() {
     }
 }
 
-/// Friction that a point far from root and tip has while it slides, over what presses it, in the first quarter of a second [1].
+/// The friction coefficient of a sliding point far from root and tip, in the first quarter of a second [1].
 fn kinetic_friction(model: Model, response: Response, friction_kinetic: f32) -> f32 {
     let material =
         Material { model, friction: 0.3, friction_kinetic, bend: 0.01, drag: 0.0, ..Material::default() };
@@ -122,22 +122,23 @@ fn kinetic_friction(model: Model, response: Response, friction_kinetic: f32) -> 
 }
 
 #[test]
-fn what_slides_is_held_back_by_kinetic_friction() {
+fn sliding_hair_has_kinetic_friction() {
     for model in Model::ALL {
         for response in [Response::Projection, Response::Both] {
             for kinetic in [0.0, 0.25, 0.5, 0.75] {
                 let (found, want) = (kinetic_friction(model, response, kinetic), 0.3 * kinetic);
-                println!("{model:?}, {response:?}: friction of {found:.4} where {want} was asked for");
+                println!("{model:?}, {response:?}: friction of {found:.4}, expected {want}");
                 assert!(
                     (found - want).abs() < 0.03 * want + 1e-3,
-                    "{model:?}, {response:?}: {found}, not {want}"
+                    "{model:?}, {response:?}: {found} instead of {want}"
                 );
             }
         }
     }
 }
 
-/// How far any point goes in a second at rest, and from 0.2 to 0.4 s after the slope was jerked down under it [m].
+/// The largest motion of a point in a second at rest, and from 0.2 to 0.4 s after the slope was jerked
+/// downhill [m].
 fn jerked(model: Model, friction_kinetic: f32) -> [f32; 2] {
     let material =
         Material { model, friction: 0.4, friction_kinetic, bend: 0.01, drag: 0.3, ..Material::default() };
@@ -149,15 +150,15 @@ fn jerked(model: Model, friction_kinetic: f32) -> [f32; 2] {
 }
 
 #[test]
-fn what_was_moved_slides_on_where_it_would_have_held() {
+fn moved_hair_continues_to_slide() {
     for model in Model::ALL {
         let [still, slid] = jerked(model, 0.5).map(|d| d * 1e3);
         let [same, stopped] = jerked(model, 1.0).map(|d| d * 1e3);
         println!(
-            "{model:?}: {still:.4} mm at rest, {slid:.2} once moved; {same:.4}, {stopped:.2} with one coefficient"
+            "{model:?}: {still:.4} mm at rest, {slid:.2} mm once moved; {same:.4} and {stopped:.2} mm with one coefficient"
         );
-        assert!(still < 0.1 && same < 0.1, "{model:?}: at rest it went {still} and {same} mm");
-        assert!(slid > 30.0, "{model:?}: it went {slid} mm");
-        assert!(stopped < 3.0, "{model:?}: with one coefficient it went {stopped} mm");
+        assert!(still < 0.1 && same < 0.1, "{model:?}: at rest hair moved by {still} and {same} mm");
+        assert!(slid > 30.0, "{model:?}: hair slid by only {slid} mm");
+        assert!(stopped < 3.0, "{model:?}: with one coefficient hair slid by {stopped} mm");
     }
 }

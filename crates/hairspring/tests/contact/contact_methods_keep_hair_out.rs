@@ -1,7 +1,8 @@
-//! Promise: all responses to contact keep hair out of a body, each in its way (Sams 2014, §3.3): by projection no point is ever inside, by penalty what lands sinks
-//! in for a moment and comes out, and with both it is never inside either.
+//! Promise: every contact method keeps hair out of a body, each in its way (Sams 2014, §3.3). With
+//! projection no point is ever inside. With the penalty method landing hair penetrates for a moment and
+//! comes out. With both no point is ever inside.
 //!
-//! A curtain falls on a ball, every model; the same groom, the same body, the same two seconds.
+//! A curtain falls on a ball, with every model; groom, body and duration are the same.
 
 use glam::Vec3;
 use hairspring::{
@@ -15,10 +16,12 @@ use hairspring::{
 };
 use std::sync::Arc;
 
-/// Frames, and those of them over which the fastest point's speed is averaged at the end: what creeps and trembles a little is fast in some frames.
+/// The number of frames, and of the last frames over which the fastest point's speed is averaged. Creeping
+/// and trembling points are fast only in some frames.
 const FRAMES: [u32; 2] = [240, 30];
 
-/// The deepest that a point is while hair lands on the ball [m], at the end, and the speed of the fastest point in the last half second, in the mean [m/s].
+/// The largest penetration while hair lands on the ball [m], that at the end [m], and the mean speed of the
+/// fastest point in the last half second [m/s].
 fn land(model: Model, contact: Response) -> [f32; 3] {
     let strands = (0..16).map(|s| {
         let root = Vec3::new(-0.1, 0.11, 0.01 * (s as f32 - 7.5));
@@ -61,16 +64,17 @@ fn land(model: Model, contact: Response) -> [f32; 3] {
 }
 
 #[test]
-fn every_response_keeps_hair_out() {
+fn every_contact_method_keeps_hair_out() {
     for model in Model::ALL {
         let [both, penalty, projection] = Response::ALL.map(|contact| land(model, contact));
         println!("{model:?}: both {both:?}, penalty {penalty:?}, projection {projection:?}");
         assert!(both[0] < 2e-5 && both[1] < 2e-6, "{model:?}: {both:?}");
         assert!(projection[0] < 2e-5, "{model:?}: {projection:?}");
-        // At most the way of a substep at the 1.5 m/s that it lands with; and at rest on the surface.
+        // At most the distance of a substep at the landing speed of 1.5 m/s; at rest, points are on the
+        // surface.
         assert!(penalty[0] > 1e-4 && penalty[0] < 7e-3, "{model:?}: {penalty:?}");
         assert!(penalty[1] < 5e-5, "{model:?}: {penalty:?}");
-        // At rest. The springs model's joints tremble where they are pressed.
+        // The speed at rest. Joints of the springs model tremble under contact.
         let still = if model == Model::Springs { 0.1 } else { 0.01 };
         assert!(both[2] < still && penalty[2] < still, "{model:?}: {both:?} {penalty:?}");
     }

@@ -1,9 +1,9 @@
-//! Promise: a collider keeps hair out at a tenth and at ten times the size as it does at the size of a head.
+//! Promise: colliders keep hair out at a tenth and at ten times the size of a head as at that size.
 //!
-//! Hair falls over each shape, is carried along by it, and comes to rest. Lengths, radii and gravity are multiplied by a scale, the fiber's stiffness by
-//! its square: then motion is the same but for lengths. No point is deeper than a
-//! hundred-thousandth of the strand's length at any scale, and a second later every point is where it is at the size of a head, to half a
-//! hundredth of that length.
+//! Hair falls over each shape, moves with it, and comes to rest. Lengths, radii and gravity are multiplied
+//! by a scale, and the fiber's stiffness by its square; then the motion is the same except for lengths. At
+//! any scale, no point is deeper than a hundred-thousandth of the strand's length. A second later, every
+//! point is where it is at the size of a head, within half a hundredth of that length.
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
@@ -44,7 +44,7 @@ fn shapes(s: f32) -> [(&'static str, ColliderShape); 7] {
     ]
 }
 
-/// Where points are after a second, and how deep the deepest was, over the scale.
+/// The points after a second, and the largest penetration, divided by the scale.
 fn fall(shape: &ColliderShape, s: f32) -> (Vec<Vec3>, f32) {
     let strands = (0..16).map(|k| {
         let root = Vec3::new((k as f32 - 7.5) * 0.004, 0.06, 0.0) * s;
@@ -94,16 +94,16 @@ fn fall(shape: &ColliderShape, s: f32) -> (Vec<Vec3>, f32) {
 }
 
 #[test]
-fn hair_falls_over_every_shape_at_a_tenth_and_at_ten_times() {
+fn every_shape_works_at_a_tenth_and_ten_times_the_size() {
     for (k, (name, shape)) in shapes(1.0).into_iter().enumerate() {
         let (usual, depth) = fall(&shape, 1.0);
         assert!(depth < 1e-5 * LENGTH, "{name}: {depth} m deep");
         for s in [0.1, 10.0] {
             let (points, depth) = fall(&shapes(s)[k].1, s);
             let off = points.iter().zip(&usual).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-            println!("{name} at {s}: {depth} deep, {off} off");
-            assert!(depth < 1e-5 * LENGTH, "{name} at {s}: {depth} deep");
-            assert!(off < 0.005 * LENGTH, "{name} at {s}: {off} off");
+            println!("{name} at scale {s}: penetration {depth}, offset {off}");
+            assert!(depth < 1e-5 * LENGTH, "{name} at scale {s}: the penetration is {depth}");
+            assert!(off < 0.005 * LENGTH, "{name} at scale {s}: the offset is {off}");
         }
     }
 }

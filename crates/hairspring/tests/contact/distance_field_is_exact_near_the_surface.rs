@@ -1,7 +1,8 @@
-//! Promise: a distance field is exact at every node near its surface, and knows how the surface moved there.
+//! Promise: a distance field is exact at every node near its surface, and stores the motion of the surface
+//! there.
 //!
-//! Eight nodes are measured at once, to planes and edges. Here every node is asked again by the tree of boxes, triangle by triangle: of a ball pressed flat, with a triangle
-//! in it that is a point.
+//! The voxelizer computes eight nodes at once from planes and edges. Here a bounding-volume tree checks
+//! every node triangle by triangle, on a flattened ball with a degenerate triangle.
 
 use glam::Vec3;
 use hairspring::{
@@ -14,7 +15,7 @@ use std::f32::consts::{PI, TAU};
 const BAND: f32 = 2.0;
 
 #[test]
-fn every_node_of_the_band_is_as_far_off_as_its_nearest_triangle_and_moves_with_it() {
+fn nodes_near_the_surface_have_exact_distance_and_motion() {
     let (rows, columns) = (14, 23);
     let mut mesh = Mesh::default();
     for r in 0..=rows {
@@ -51,15 +52,15 @@ fn every_node_of_the_band_is_as_far_off_as_its_nearest_triangle_and_moves_with_i
         let nearest = tree.nearest(p, |_| true).unwrap();
         let exact = nearest.distance_squared.sqrt();
         if exact > 0.98 * BAND * cell {
-            assert!(d.abs() > 0.97 * BAND * cell, "at {p}: {d} in place of {exact}");
+            assert!(d.abs() > 0.97 * BAND * cell, "at {p}: {d} instead of {exact}");
             continue;
         }
         near += 1;
-        assert!((d.abs() - exact).abs() < 1e-6, "at {p}: {d} in place of {exact}");
+        assert!((d.abs() - exact).abs() < 1e-6, "at {p}: {d} instead of {exact}");
         let corners = mesh.corners(nearest.triangle as usize);
         let foot: Vec3 = corners.iter().zip(nearest.barycentric.to_array()).map(|(c, w)| *c * w).sum();
         let found = grid.displacement(p);
-        assert!((found - moved(foot)).length() < 1e-5, "at {p}: {found} in place of {}", moved(foot));
+        assert!((found - moved(foot)).length() < 1e-5, "at {p}: {found} instead of {}", moved(foot));
     }
-    assert!(near > 1000, "{near} nodes");
+    assert!(near > 1000, "only {near} nodes");
 }

@@ -1,8 +1,9 @@
-//! Promise: a body that goes through hair faster than it is thick takes the hair along: a hand's finger at 5 m/s, and a rod of 1 cm at 20 m/s.
+//! Promise: a body that moves through hair by more than its thickness takes the hair along: a finger at 5
+//! m/s, and a rod of 1 cm at 20 m/s.
 //!
-//! A curtain of strands hangs from a bar, and the body goes through it across. As long as a strand is long enough to go around in front of the body, it does:
-//! at the body's height it is in front. What moves along with the head asks for no more substeps, whatever the
-//! head does, and neither does what is too far to meet.
+//! A curtain of strands hangs from a bar, and the body crosses it. As long as a strand is long enough to
+//! reach around the body, it stays in front of it at the body's height. A collider that moves with the head
+//! causes no additional substeps, and neither does one that is too far from the hair.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -43,13 +44,14 @@ fn curtain(model: Model) -> (Simulation, Vec<RigidTransform>) {
     (simulation, roots)
 }
 
-/// A rod along X, at rest in its own origin.
+/// A rod along X, at the origin.
 fn rod(radius: f32) -> ColliderShape {
     ColliderShape::Capsule { a: Vec3::X * -0.2, b: Vec3::X * 0.2, radius }
 }
 
-/// Strands that the rod, now at the height `y` and at `z`, has gone through: at its height they are behind it, and nowhere in front. (A tail that is flung up behind
-/// crosses its height there too.)
+/// Counts the strands that the rod, now at height `y` and position `z`, has passed through: at its height
+/// they are behind it and nowhere in front. (A tail that is flung up behind the rod crosses its height
+/// there too.)
 fn passed(simulation: &Simulation, y: f32, z: f32) -> usize {
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
     simulation.write_points(&mut points);
@@ -65,7 +67,7 @@ fn passed(simulation: &Simulation, y: f32, z: f32) -> usize {
 }
 
 #[test]
-fn hair_goes_along_in_front() {
+fn hair_stays_in_front_of_a_fast_collider() {
     for (what, radius, speed) in [("finger", 0.008, 5.0), ("rod", 0.005, 20.0)] {
         for model in Model::ALL {
             for dt in [1.0 / 60.0, 1.0 / 240.0] {
@@ -84,7 +86,7 @@ fn hair_goes_along_in_front() {
                     simulation.step(&StepInput { dt, anchor, roots: &roots, obstacles: &obstacles, air });
                     z = next;
                     let through = if z > radius { passed(&simulation, y, z) } else { 0 };
-                    assert_eq!(through, 0, "{what}, {model:?}, {dt} s: strands behind it at {z} m");
+                    assert_eq!(through, 0, "{what}, {model:?}, {dt} s: strands are behind it at {z} m");
                 }
                 assert_eq!(simulation.measure(&[]).non_finite, 0);
             }
@@ -93,9 +95,9 @@ fn hair_goes_along_in_front() {
 }
 
 #[test]
-fn only_what_can_be_passed_through_asks_for_shorter_substeps() {
+fn only_fast_thin_colliders_near_hair_shorten_substeps() {
     let substeps = |anchor: RigidTransform, turned: Quat, shape: ColliderShape, start: Vec3, end: Vec3| {
-        // Hair at rest: hair that is fast near a thin body asks for shorter substeps too.
+        // Hair is at rest, because fast hair near a thin body also causes shorter substeps.
         let (mut simulation, mut roots) = curtain(Model::Auto);
         let place = |translation| RigidTransform { translation, rotation: turned };
         let obstacles = [MovingCollider { shape, start: place(start), end: place(end) }];
@@ -108,7 +110,7 @@ fn only_what_can_be_passed_through_asks_for_shorter_substeps() {
     };
     let (here, still) = (RigidTransform::default(), Quat::IDENTITY);
     let below = Vec3::NEG_Y * 0.1;
-    // 333 mm in steps of 2.5 mm.
+    // 333 mm in substeps of 2.5 mm.
     assert_eq!(substeps(here, still, rod(0.005), below - Vec3::Z * 0.1, below + Vec3::Z * 0.2333), 134);
     assert_eq!(substeps(here, still, rod(0.005), below + Vec3::Y * 2.0, below + Vec3::new(0.0, 2.0, 0.3)), 4);
     let ball = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };

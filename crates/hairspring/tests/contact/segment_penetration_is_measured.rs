@@ -1,7 +1,9 @@
-//! Promise: a measure tells what is inside of a collider between points too: how many segments, how many of them deeper than a millimeter, and
-//! how deep the deepest is, below where it was authored.
+//! Promise: measurements include the penetration of segments between their points: how many segments
+//! penetrate, how many of them by more than a millimeter, and the deepest, relative to their authored
+//! penetration.
 //!
-//! The strand is straight and has segments of 2 cm along X, and shapes are put at the middle of one of them: their depth there is known.
+//! The strand is straight and has segments of 2 cm along X. Shapes are placed at the middle of one segment,
+//! so that the penetration there is known.
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
@@ -20,7 +22,7 @@ const SEGMENT: f32 = 0.02;
 /// The middle of the fifth segment.
 const MIDDLE: Vec3 = Vec3::new(4.5 * SEGMENT, 0.0, 0.0);
 
-/// Measures the strand as it is authored against `shape`, which it was told of at rest or not.
+/// Measures the strand as authored against `shape`, which is a collider at rest if `told`.
 fn measure(model: Model, shape: &ColliderShape, told: bool) -> Measure {
     let points = (0..12).map(|i| Vec3::X * (SEGMENT * i as f32));
     let groom = Arc::new(Groom::from_strands([points.collect::<Vec<_>>()], 40e-6));
@@ -38,12 +40,12 @@ fn measure(model: Model, shape: &ColliderShape, told: bool) -> Measure {
     simulation.measure(&[MovingCollider { shape: shape.clone(), start: still, end: still }])
 }
 
-/// Shapes that reach `depth` [m] over the middle of the fifth segment from below, and over nothing else.
+/// Shapes that reach `depth` [m] above the middle of the fifth segment from below, and touch nothing else.
 fn shapes(depth: f32) -> [(&'static str, ColliderShape); 3] {
     let top = MIDDLE + Vec3::Y * depth;
     let radius = 0.008;
     let below = top - Vec3::Y * radius;
-    // A box on its edge: a place on the way down from the edge is 1/√2 as far from both faces.
+    // A box on its edge: at a distance d below the edge, both faces are d/√2 away.
     let (half, edge) = (0.05, MIDDLE + Vec3::Y * (depth * 2f32.sqrt()));
     [
         ("ball", ColliderShape::Sphere { center: below, radius }),
@@ -60,7 +62,7 @@ fn shapes(depth: f32) -> [(&'static str, ColliderShape); 3] {
 }
 
 #[test]
-fn a_segment_is_as_deep_as_its_middle() {
+fn penetration_at_the_middle_of_a_segment_is_measured() {
     for model in Model::ALL {
         for (depth, deep) in [(4e-4, 0), (1.5e-3, 1), (3e-3, 1)] {
             for (name, shape) in shapes(depth) {
@@ -69,14 +71,14 @@ fn a_segment_is_as_deep_as_its_middle() {
                 let counts = (found.inside_segments, found.deep_segments);
                 assert_eq!(counts, (1, deep), "{name}, {model:?}, {depth} m: {found:?}");
                 let off = (found.segment_depth - f64::from(depth)).abs();
-                assert!(off < 2e-7, "{name}, {model:?}: {} m, not {depth}", found.segment_depth);
+                assert!(off < 2e-7, "{name}, {model:?}: {} m instead of {depth}", found.segment_depth);
             }
         }
     }
 }
 
 #[test]
-fn what_was_authored_inside_is_not_counted() {
+fn authored_penetration_is_not_counted() {
     for model in Model::ALL {
         for (name, shape) in shapes(3e-3) {
             let found = measure(model, &shape, true);
@@ -87,7 +89,7 @@ fn what_was_authored_inside_is_not_counted() {
 }
 
 #[test]
-fn what_is_clear_is_not_counted() {
+fn separate_shapes_are_not_counted() {
     for (name, shape) in shapes(-1e-4) {
         let found = measure(Model::Auto, &shape, false);
         assert_eq!((found.inside_segments, found.segment_depth), (0, 0.0), "{name}");
@@ -95,54 +97,59 @@ fn what_is_clear_is_not_counted() {
 }
 
 #[test]
-fn what_begins_inside_where_the_root_holds_it_is_counted_apart() {
+fn penetration_held_by_the_root_is_counted_separately() {
     let ball =
         |x: f32, y: f32| ColliderShape::Sphere { center: Vec3::new(SEGMENT + x, y, 0.0), radius: 0.008 };
     for model in Model::ALL {
-        // The held end is the deepest place, 3 mm; at the first eighth it is √(5² + 2.5²) from the middle.
+        // The fixed end is the deepest point, 3 mm. At the first eighth, the distance from the center is
+        // √(5² + 2.5²) mm.
         let found = measure(model, &ball(0.0, -0.005), false);
         let counts = (found.inside_segments, found.deep_segments, found.held_segments);
         assert_eq!(counts, (0, 0, 1), "{model:?}: {found:?}");
         assert!((found.held_depth - 0.002_409_8).abs() < 1e-6, "{model:?}: {found:?}");
-        // A quarter on it is 6 mm deep, and its beginning √(5² + 2²) from the middle: what is deeper than that can be moved.
+        // The point at a quarter is 6 mm deep, and the start is √(5² + 2²) mm from the center. Only the
+        // penetration beyond that of the start can be corrected.
         let found = measure(model, &ball(0.005, -0.002), false);
         assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: {found:?}");
         assert!((found.segment_depth - 0.003_385_2).abs() < 1e-6, "{model:?}: {found:?}");
-        // Of one that begins outside nothing is held.
+        // If a segment begins outside, none of its penetration is due to the fixed end.
         let found = measure(model, &ball(0.01, -0.005), false);
         assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: {found:?}");
     }
 }
 
 proptest! {
-    /// Of a ball the nearest place of a segment is known: what is found there is no deeper, by an eighth of the segment less deep at most,
-    /// and on the right side of the surface where the whole segment is outside.
+    /// The nearest point of a segment to a ball's center is known. The result is never deeper than that,
+    /// and by at most an eighth of the segment less deep. It is on the correct side of the surface where
+    /// the whole segment is outside.
     #[test]
-    fn a_ball_is_found_wherever_it_is_met(ends in prop::array::uniform6(-1.0f32..1.0), radius in 0.01f32..0.8) {
+    fn penetration_of_a_ball_is_found_anywhere_on_a_segment(ends in prop::array::uniform6(-1.0f32..1.0), radius in 0.01f32..0.8) {
         let [a, b] = [Vec3::from_slice(&ends[..3]), Vec3::from_slice(&ends[3..])];
         let e = b - a;
         let at = (-a.dot(e) / e.length_squared().max(1e-12)).clamp(0.0, 1.0);
         let exact = a.lerp(b, at).length() - radius;
         let found = ColliderShape::Sphere { center: Vec3::ZERO, radius }.least_distance(a, b);
-        prop_assert!(found > exact - 1e-6, "{found} is less than {exact}");
-        prop_assert!(exact > 0.0 || found < exact + e.length() / 8.0 + 1e-6, "{found}, and it is {exact}");
+        prop_assert!(found > exact - 1e-6, "{found} is less than the exact {exact}");
+        prop_assert!(exact > 0.0 || found < exact + e.length() / 8.0 + 1e-6, "{found} instead of {exact}");
     }
 }
 
 #[test]
-fn a_corner_is_cut_by_half_of_what_is_left_of_it() {
-    // From one face of a box to the other across its edge: the middle is as deep as either end is far from the edge, halved.
+fn penetration_across_a_corner_is_exact() {
+    // A segment from one face of a box to the other across its edge: the middle is half as deep as either
+    // end is far from the edge.
     let shape = ColliderShape::Cuboid { center: Vec3::ZERO, half: Vec3::splat(0.1), axes: Mat3::IDENTITY };
     for cut in [0.001f32, 0.01, 0.05] {
         let [a, b] = [Vec3::new(0.1 - 2.0 * cut, 0.1, 0.02), Vec3::new(0.1, 0.1 - 2.0 * cut, 0.02)];
         let found = shape.least_distance(a, b);
-        assert!((found + cut).abs() < 1e-6, "{found}, and the corner is cut by {cut}");
+        assert!((found + cut).abs() < 1e-6, "{found}, but the corner is cut by {cut}");
     }
 }
 
 #[test]
-fn depth_below_a_mesh_is_that_below_its_edges() {
-    // A cube of 4 cm, rotated against the grid of its field, with an edge 1.5 mm above the middle of the fifth segment and across it.
+fn penetration_of_a_mesh_includes_its_edges() {
+    // A cube of 4 cm, rotated relative to the grid of its field. One edge crosses the fifth segment 1.5 mm
+    // above its middle.
     let turn = Quat::from_rotation_x(0.3) * Quat::from_rotation_z(std::f32::consts::FRAC_PI_4);
     let half = 0.02;
     let depth = 1.5e-3;
@@ -154,8 +161,11 @@ fn depth_below_a_mesh_is_that_below_its_edges() {
     let field = ColliderShape::Field(Arc::new(voxelize(&positions, &triangles, 0.004)));
     let cuboid = ColliderShape::Cuboid { center, half: Vec3::splat(half), axes: Mat3::from_quat(turn) };
     let [of_field, of_cuboid] = [field, cuboid].map(|shape| measure(Model::Auto, &shape, false));
-    assert_eq!(of_cuboid.surface_depth, of_cuboid.segment_depth, "a formula is exact");
+    assert_eq!(of_cuboid.surface_depth, of_cuboid.segment_depth, "an analytic shape must be exact");
     let (exact, solver) = (of_cuboid.segment_depth, of_field.segment_depth);
-    assert!((of_field.surface_depth - exact).abs() < 5e-5, "{} m, not {exact}", of_field.surface_depth);
-    assert!(exact - solver > 2e-4, "the field rounds no edge off, and this test shows nothing: {solver} m");
+    assert!((of_field.surface_depth - exact).abs() < 5e-5, "{} m instead of {exact}", of_field.surface_depth);
+    assert!(
+        exact - solver > 2e-4,
+        "the field does not round the edge, so this test shows nothing: {solver} m"
+    );
 }

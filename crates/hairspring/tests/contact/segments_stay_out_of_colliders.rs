@@ -1,11 +1,13 @@
-//! Promise: segments stay outside of colliders, not only points: a strand that falls over an edge does not cut the corner, one that falls on
-//! a ball or a rod smaller than its segments rests on it, and hair that lies so comes to rest and stays. Ridges of a mesh are met wherever they
-//! cross a segment, and what falls into a crease between two walls is out of both. What walls that face each other would lead to and fro gets out beside
-//! them, and keeps its length.
+//! Promise: segments stay outside of colliders, and not only points. A strand that falls over an edge does
+//! not cut the corner. A strand that falls on a ball or a rod smaller than its segments rests on it, and
+//! stays at rest. Ridges of a mesh are found wherever they cross a segment. Hair that falls into a crease
+//! between two walls penetrates neither. Between facing walls, where corrections would alternate, hair
+//! moves out sideways and keeps its length.
 //!
-//! Segments may be inside by 1.5 % of their length, here 0.3 mm: those on a large round body always are. At rest they are by no more than 0.32 mm, and by 1 mm while they
-//! land. What lies so moves by less than 0.1 mm in a second (springs, which tremble on an edge, by 0.15 mm). Where nothing is near, none of it
-//! shows.
+//! Segments may penetrate by 1.5 % of their length, here 0.3 mm, as they always do on a large round body.
+//! The bounds are 0.32 mm at rest and 1 mm while landing. Hair at rest moves by less than 0.1 mm in a
+//! second (the springs model, which trembles on an edge, by 0.15 mm). Where no collider is near, segment
+//! contacts have no effect.
 
 use glam::{Mat3, Vec3};
 use hairspring::{
@@ -23,12 +25,13 @@ const FRAME: f32 = 1.0 / 60.0;
 const SEGMENT: f32 = 0.02;
 const STRANDS: u32 = 10;
 
-/// Strands that stand out along X, 1 mm above the origin's height, and begin at each tenth of a segment, none of them with a point at the origin.
+/// Strands along X, 1 mm above the height of the origin. They begin at each tenth of a segment, and none
+/// has a point at the origin.
 fn hair(model: Model, rest: &[ColliderPose]) -> (Simulation, Vec<RigidTransform>) {
     hair_of(&Material { model, drag: 0.5, ..Material::default() }, Solver::default(), rest)
 }
 
-/// The same, of this material and solved so.
+/// The same with this material and solver.
 fn hair_of(material: &Material, solver: Solver, rest: &[ColliderPose]) -> (Simulation, Vec<RigidTransform>) {
     let strands = (0..STRANDS).map(|s| {
         let root = Vec3::new(-0.09 - 0.1 * SEGMENT * (s as f32 + 0.5), 1e-3, 0.01 * (s as f32 - 4.5));
@@ -73,7 +76,7 @@ fn points(simulation: &Simulation) -> Vec<Vec3> {
     points
 }
 
-/// The worst of two measures.
+/// The worse values of two measurements.
 fn worst(a: Measure, b: Measure) -> Measure {
     Measure {
         segment_depth: a.segment_depth.max(b.segment_depth),
@@ -87,7 +90,8 @@ fn worst(a: Measure, b: Measure) -> Measure {
 fn shapes() -> [(&'static str, ColliderShape); 5] {
     let corners: Vec<Vec3> =
         (0..8).map(|k| Vec3::new([-0.4, 0.0][k & 1], [-0.2, 0.0][k >> 1 & 1], [-0.2, 0.2][k >> 2])).collect();
-    // A cloth of 2 mm on both sides whose upper side is at the origin's height and whose rim is at x = 0, but for its thickness.
+    // A cloth with a half-thickness of 2 mm. Its upper side is at the height of the origin, and its rim is
+    // at x = 0, except for its thickness.
     let cloth =
         [(-0.4, -0.2), (-0.002, -0.2), (-0.002, 0.2), (-0.4, 0.2)].map(|(x, z)| Vec3::new(x, -0.002, z));
     let center = Vec3::new(-0.2, -0.1, 0.0);
@@ -105,7 +109,7 @@ fn shapes() -> [(&'static str, ColliderShape); 5] {
 }
 
 #[test]
-fn hair_falls_over_edges_and_lies_on_them() {
+fn hair_rests_on_edges() {
     let mut failures = Vec::new();
     for (name, shape) in shapes() {
         for model in Model::ALL {
@@ -123,7 +127,7 @@ fn hair_falls_over_edges_and_lies_on_them() {
             let crept = after.iter().zip(&before).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
             let lowest = after.iter().map(|p| p.y).fold(0.0, f32::min);
             println!(
-                "{name}, {model:?}: segments {:.3} mm deep, {:.3} at rest, points {:.3} mm; {:.4} longer; {:.3} mm crept, {:.4} m/s; hangs to {lowest}",
+                "{name}, {model:?}: segments {:.3} mm deep, {:.3} at rest, points {:.3} mm; stretch {:.4}; crept {:.3} mm, {:.4} m/s; lowest point {lowest}",
                 landing.segment_depth * 1e3,
                 settled.segment_depth * 1e3,
                 landing.max_depth * 1e3,
@@ -136,20 +140,20 @@ fn hair_falls_over_edges_and_lies_on_them() {
                     failures.push(format!("{name}, {model:?}: {what}"));
                 }
             };
-            check(landing.segment_depth < 1e-3, "a segment is deep while it lands");
-            check(settled.segment_depth < 3.2e-4, "a segment is deep at rest");
-            check(landing.max_depth < 1e-4, "a point is deep");
+            check(landing.segment_depth < 1e-3, "a segment penetrates too deeply while landing");
+            check(settled.segment_depth < 3.2e-4, "a segment penetrates too deeply at rest");
+            check(landing.max_depth < 1e-4, "a point penetrates too deeply");
             check(landing.stretch_max < 0.011, "a segment is too long");
-            check(lowest < -0.1, "nothing hangs over");
+            check(lowest < -0.1, "no hair hangs over the edge");
             check(crept < if model == Model::Springs { 1.5e-4 } else { 1e-4 }, "hair at rest creeps");
         }
     }
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
-/// The field of blocks that overlap: their middles, half edges and turns about x [rad].
+/// The distance field of overlapping blocks: their centers, half edges and rotations about x [rad].
 fn blocks(blocks: impl IntoIterator<Item = (Vec3, Vec3, f32)>, cell: f32) -> ColliderShape {
-    // Quads around a block, seen from outside: corner k is on the far side along x, y, z by its bits.
+    // Quads around a block, seen from outside. The bits of a corner's index select its side along x, y, z.
     const FACES: [[u32; 4]; 6] =
         [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let (mut corners, mut triangles) = (Vec::new(), Vec::new());
@@ -166,11 +170,12 @@ fn blocks(blocks: impl IntoIterator<Item = (Vec3, Vec3, f32)>, cell: f32) -> Col
 }
 
 #[test]
-fn ridges_and_creases_are_met_wherever_they_cross_a_segment() {
-    // A board 6 mm below, with ridges of 4 mm every 34: most segments see nothing but the board from their middles.
+fn ridges_and_creases_keep_segments_out() {
+    // A board 6 mm below with ridges of 4 mm every 34 mm. From the middle of most segments, only the board
+    // is near.
     let board = (Vec3::new(0.05, -0.016, 0.0), Vec3::new(0.17, 0.01, 0.06), 0.0);
     let ridge = |k: i32| (Vec3::new(0.034 * k as f32, -0.01, 0.0), Vec3::new(0.002, 0.01, 0.06), 0.0);
-    // Two boards under the hair, along it, that come together at a right angle 5 cm below.
+    // Two boards under the hair and along it, which meet at a right angle 5 cm below.
     let wing = |side: f32| {
         let turn = -side * std::f32::consts::FRAC_PI_4;
         let along = Mat3::from_rotation_x(turn) * Vec3::Z * side;
@@ -193,7 +198,7 @@ fn ridges_and_creases_are_met_wherever_they_cross_a_segment() {
             }
             let touched = points(&simulation).iter().filter(|p| shape.distance(**p) < 1e-3).count();
             println!(
-                "{name}, {model:?}: segments {:.3} mm deep, points {:.3} mm, {inside} inside in all frames, {touched} touch; {:.4} longer",
+                "{name}, {model:?}: segments {:.3} mm deep, points {:.3} mm, {inside} inside over all frames, {touched} touch; stretch {:.4}",
                 all.segment_depth * 1e3,
                 all.max_depth * 1e3,
                 all.stretch_max,
@@ -203,21 +208,22 @@ fn ridges_and_creases_are_met_wherever_they_cross_a_segment() {
                     failures.push(format!("{name}, {model:?}: {what}"));
                 }
             };
-            check(all.segment_depth < 1e-3, "a segment is deep");
-            check(all.max_depth < 1e-4, "a point is deep");
+            check(all.segment_depth < 1e-3, "a segment penetrates too deeply");
+            check(all.max_depth < 1e-4, "a point penetrates too deeply");
             check(all.stretch_max < 0.011, "a segment is too long");
-            // What comes into the crease is between two walls at once: in one frame of fifty, no more.
+            // A point that enters the crease is between two walls at once, but in at most one of fifty
+            // frames.
             check(inside * 50 < 300 * points(&simulation).len(), "points stay inside");
-            check(touched > 10, "hair does not lie there");
+            check(touched > 10, "hair does not lie on the shape");
         }
     }
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
-/// A heap of blocks under the hair, whose walls face each other at all angles; `seed` says which.
+/// A heap of blocks under the hair, with facing walls at all angles; `seed` selects the heap.
 fn heap(seed: u64) -> ColliderShape {
     let mut bits = seed;
-    // A number from 0 to 1 by chance (SplitMix64; Steele, Lea & Flood 2014).
+    // A random number from 0 to 1 (SplitMix64; Steele, Lea & Flood 2014).
     let mut next = || {
         bits = bits.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -233,9 +239,10 @@ fn heap(seed: u64) -> ColliderShape {
 }
 
 #[test]
-fn what_walls_lead_to_and_fro_gets_out_beside_them() {
-    // The first by the default model, where corrections alone leave eleven segments up to 3.3 mm deep and points up to 0.9; then those that such heaps up to the four hundredth left
-    // deepest in trials, and the three where walls that faced each other squarely drew a segment together to nothing.
+fn hair_between_facing_walls_moves_out_sideways() {
+    // The first 160 heaps use the default model; there, simple corrections leave eleven segments up to 3.3
+    // mm deep and points up to 0.9 mm. The next four were the deepest of 400 heaps in trials. In the last
+    // ones, facing walls contracted a segment to nothing.
     let cases = (0..160).map(|seed| (seed, Model::Curvature));
     let deep = [(225, Model::Rod), (265, Model::Curvature), (106, Model::Springs), (155, Model::Curvature)];
     let drawn_together =
@@ -260,7 +267,7 @@ fn what_walls_lead_to_and_fro_gets_out_beside_them() {
         if all.segment_depth >= 1e-3 || all.max_depth >= 3e-4 || all.stretch_max >= 0.011 {
             let (segment, point, longer) = (all.segment_depth * 1e3, all.max_depth * 1e3, all.stretch_max);
             failures.push(format!(
-                "heap {seed}, {model:?}: a segment {segment:.3} mm deep, a point {point:.3} mm; {longer:.4} longer"
+                "heap {seed}, {model:?}: a segment {segment:.3} mm deep, a point {point:.3} mm; stretch {longer:.4}"
             ));
         }
     }
@@ -268,7 +275,7 @@ fn what_walls_lead_to_and_fro_gets_out_beside_them() {
 }
 
 #[test]
-fn what_was_authored_across_a_shape_stays_as_it_is() {
+fn hair_authored_across_a_shape_stays_in_place() {
     for model in Model::ALL {
         // A ball in the middle of a segment of each strand, whose ends are outside.
         let shape = ColliderShape::Sphere { center: Vec3::new(0.05, -0.003, 0.0), radius: 0.006 };
@@ -280,12 +287,12 @@ fn what_was_authored_across_a_shape_stays_as_it_is() {
         step(&mut free, &roots, &[]);
         let moved =
             points(&simulation).iter().zip(points(&free)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
-        assert!(moved < 1e-3, "{model:?}: thrown {moved} m by what it was authored across");
+        assert!(moved < 1e-3, "{model:?}: the shape moved hair by {moved} m");
     }
 }
 
 #[test]
-fn where_nothing_is_near_nothing_changes() {
+fn distant_colliders_change_nothing() {
     for (name, shape) in shapes() {
         for model in Model::ALL {
             let far = RigidTransform { translation: Vec3::Y * 3.0, ..RigidTransform::default() };
@@ -302,8 +309,8 @@ fn where_nothing_is_near_nothing_changes() {
 }
 
 #[test]
-fn beside_what_is_round_for_their_length_points_alone_are_looked_at() {
-    // 12 % of a radius: beside the first ball 2 cm may be left, beside the second not.
+fn segments_are_not_tested_at_large_round_bodies() {
+    // The bound is 12 % of a radius: segments of 2 cm need no test at the first ball, but do at the second.
     let ball =
         |radius: f32| still(&ColliderShape::Sphere { center: Vec3::new(0.05, -radius - 0.01, 0.0), radius });
     for model in Model::ALL {
@@ -320,15 +327,16 @@ fn beside_what_is_round_for_their_length_points_alone_are_looked_at() {
             (lie(true), lie(false))
         };
         let (looked, left) = lie(&ball(0.2));
-        assert_eq!(looked, left, "{model:?}: a large ball");
+        assert_eq!(looked, left, "{model:?}: the large ball");
         let (looked, left) = lie(&ball(0.05));
-        assert_ne!(looked, left, "{model:?}: a small one");
+        assert_ne!(looked, left, "{model:?}: the small ball");
     }
 }
 
 #[test]
-fn what_nothing_keeps_short_is_looked_at_beside_any_ball() {
-    // Round for 2 cm; but hair on it is as soft as gum, and Verlet's lets itself be stretched.
+fn stretchable_segments_are_tested_at_any_ball() {
+    // The ball is large enough for segments of 2 cm. But the hair is as soft as rubber, and the Verlet
+    // method does not prevent stretch.
     let obstacles = still(&ColliderShape::Sphere { center: Vec3::new(0.05, -0.19, 0.0), radius: 0.18 });
     let gum = Material { model: Model::Curvature, young: 1e4, ..Material::default() };
     let fall = |integrator: Integrator, segments: bool| {
@@ -340,13 +348,13 @@ fn what_nothing_keeps_short_is_looked_at_beside_any_ball() {
     };
     for (integrator, looks) in [(Integrator::Verlet, true), (Integrator::BackwardEuler, false)] {
         let [(looked, longest), (left, _)] = [true, false].map(|segments| fall(integrator, segments));
-        println!("{integrator:?}: {longest} longer");
-        assert_eq!(looked != left, looks, "{integrator:?}, {longest} longer");
+        println!("{integrator:?}: stretch {longest}");
+        assert_eq!(looked != left, looks, "{integrator:?}, stretch {longest}");
     }
 }
 
 #[test]
-fn what_pressed_segments_is_forgotten_where_none_is_looked_at() {
+fn segment_contacts_are_reset_without_colliders_nearby() {
     let rod = ColliderShape::Capsule {
         a: Vec3::new(0.03, -0.02, -1.0),
         b: Vec3::new(0.03, -0.02, 1.0),
@@ -354,10 +362,11 @@ fn what_pressed_segments_is_forgotten_where_none_is_looked_at() {
     };
     let away = |radius: f32| still(&ColliderShape::Sphere { center: Vec3::Y * 9.0, radius });
     for model in Model::ALL {
-        // Nothing is near in between: whether segments are looked at there or not, they begin anew; also in a simulation that takes over in the midst.
+        // No collider is near in between. Whether or not segments are tested there, their contacts start
+        // from zero. The same holds in a simulation that takes over in between.
         let meet_again = |between: &[MovingCollider], taken_over: bool| {
             let (mut simulation, roots) = hair(model, &[]);
-            // So short in between that what is forgotten would be pressed again.
+            // The time in between is so short that a stale contact would act again.
             for (obstacles, frames) in [(&still(&rod)[..], 60), (between, 1), (&still(&rod)[..], 20)] {
                 (0..frames).for_each(|_| _ = step(&mut simulation, &roots, obstacles));
                 if taken_over {

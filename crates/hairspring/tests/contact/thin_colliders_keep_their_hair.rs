@@ -1,5 +1,7 @@
-//! Promise: thin and fast colliders keep the hair that they meet. A rod of 1 mm radius, dragged at 0.02 to 1 m/s through hanging hair, keeps every strand, and so
-//! does a box of 1 mm at 0.5 m/s; hair that falls on a rod of 1 mm radius lies over it; and a rod that crosses 15 cm in one frame and stops keeps its hair in the frames after.
+//! Promise: thin and fast colliders hold back the hair that they touch. A rod of 1 mm radius, dragged at
+//! 0.02 to 1 m/s through hanging hair, holds back every strand, and so does a box of 1 mm at 0.5 m/s. Hair
+//! that falls on a rod of 1 mm radius lies over it. A rod that crosses 15 cm in one frame and stops holds
+//! its hair in the following frames.
 
 use glam::{Mat3, Vec3};
 use hairspring::{
@@ -17,7 +19,7 @@ const FRAME: f32 = 1.0 / 60.0;
 const POINTS: usize = 32;
 const LENGTH: f32 = 0.25;
 
-/// A simulation of strands that start at `roots` and run in the direction `along`.
+/// A simulation of strands that start at `roots` and extend in the direction `along`.
 fn hair(roots: impl Iterator<Item = Vec3>, along: Vec3, sag_free: bool) -> (Simulation, Vec<RigidTransform>) {
     let strands = roots.map(|root| {
         (0..POINTS).map(move |i| root + along * (LENGTH * i as f32 / (POINTS - 1) as f32)).collect::<Vec<_>>()
@@ -62,7 +64,8 @@ fn points(simulation: &Simulation) -> Vec<Vec3> {
     points
 }
 
-/// How many strands a body at the height `y` and at `z` holds back: from the root on, they first cross its height in front of it.
+/// Counts the strands that a body at height `y` and position `z` holds back: from the root on, they first
+/// cross its height in front of it.
 fn caught(simulation: &Simulation, y: f32, z: f32) -> usize {
     let crossing = |pair: &[Vec3]| {
         let t = (y - pair[0].y) / (pair[1].y - pair[0].y);
@@ -75,7 +78,8 @@ fn caught(simulation: &Simulation, y: f32, z: f32) -> usize {
     points(simulation).chunks(POINTS).filter(held).count()
 }
 
-/// Drags a shape 15 cm through `strands` hanging strands, 5 cm below their roots, and keeps it there for `frames`; how many strands it holds at the end.
+/// Drags a shape by 15 cm through `strands` hanging strands, 5 cm below their roots, and keeps it there for
+/// `frames`. Returns how many strands it holds back at the end.
 fn drag(shape: &ColliderShape, speed: f32, frames: usize, strands: usize) -> usize {
     let (mut simulation, roots) = curtain(strands);
     let y = -0.05;
@@ -95,7 +99,7 @@ fn rod(radius: f32) -> ColliderShape {
 }
 
 #[test]
-fn a_rod_of_1_mm_radius_keeps_its_hair() {
+fn a_rod_of_1_mm_radius_holds_back_hair() {
     for speed in [0.02, 0.0533, 0.2, 1.0] {
         assert_eq!(drag(&rod(0.001), speed, 20, 200), 200, "{speed} m/s");
     }
@@ -104,7 +108,7 @@ fn a_rod_of_1_mm_radius_keeps_its_hair() {
 }
 
 #[test]
-fn a_thin_box_keeps_its_hair() {
+fn a_thin_box_holds_back_hair() {
     for thickness in [0.002, 0.001] {
         let half = Vec3::new(0.2, 0.005, 0.5 * thickness);
         let shape = ColliderShape::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY };
@@ -115,7 +119,7 @@ fn a_thin_box_keeps_its_hair() {
 }
 
 #[test]
-fn a_rod_that_stops_keeps_its_hair() {
+fn a_rod_that_stops_holds_back_hair() {
     for radius in [0.002, 0.005, 0.01] {
         assert_eq!(drag(&rod(radius), 9.0, 90, 21), 21, "{radius} m");
     }

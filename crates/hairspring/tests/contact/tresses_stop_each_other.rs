@@ -1,8 +1,11 @@
-//! Promise: two tresses that swing into each other stop each other, by the volume as by strand contacts, at any frame rate and in cells of twice the size.
+//! Promise: two tresses that swing into each other stop each other, with the volume methods as with strand
+//! contact, at any frame rate and with cells of twice the size.
 //!
-//! The center of a tress is the mean of its points. With the volume it stays on its side of the middle, and stops within a tenth of the tresses' width of where it does
-//! with strands that meet one by one (`neighbours`). A bundle that is shaken has the same width at 24, 60 and 240 Hz, in cells of twice the size, and as with strand
-//! contacts, within a tenth. What moves as one is not braked by any of this: a lone tress swings as far as without.
+//! The center of a tress is the mean of its points. With a volume method it stays on its side of the
+//! middle. It stops within a tenth of the tress's width of where it stops with strand contact
+//! (`neighbours`). A shaken bundle has the same width, within a tenth, at 24, 60 and 240 Hz, with cells of
+//! twice the size, and with strand contact. Common motion is not slowed: a single tress swings as far as
+//! without a volume method.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -17,16 +20,16 @@ use std::sync::Arc;
 
 const METHODS: [VolumeMethod; 2] = [VolumeMethod::Density, VolumeMethod::Incompressible];
 
-/// Golden angle [rad]: points of a disc at r = R √k lie evenly.
+/// Golden angle [rad]: with it, points of a disc at r = R √k are evenly spread.
 const TURN: f32 = 2.399_963;
 
-/// How hair meets hair.
+/// How strands interact.
 #[derive(Clone, Copy, Debug, Default)]
 struct Meets {
     method: VolumeMethod,
     /// Edge of a cell [m].
     cell: Option<f32>,
-    /// Strand by strand.
+    /// Whether strand contact is on.
     neighbours: bool,
 }
 
@@ -41,7 +44,7 @@ impl Meets {
     }
 }
 
-/// Places in a disc.
+/// Evenly spread points in a disc.
 fn disc(count: usize, radius: f32) -> impl Iterator<Item = (f32, f32)> {
     (0..count).map(move |k| {
         let (sin, cos) = (TURN * k as f32).sin_cos();
@@ -50,7 +53,7 @@ fn disc(count: usize, radius: f32) -> impl Iterator<Item = (f32, f32)> {
     })
 }
 
-/// A straight strand of about `length`: of those beside each other, none is as long as the other.
+/// A straight strand of about `length`; lengths of adjacent strands differ.
 fn strand(k: usize, root: Vec3, direction: Vec3, length: f32, points: usize) -> Vec<Vec3> {
     let length = length * (0.95 + 0.1 * (k * 7919 % 1000) as f32 / 1000.0);
     (0..points).map(|i| root + direction * (length * i as f32 / (points - 1) as f32)).collect()
@@ -75,20 +78,20 @@ fn points(simulation: &Simulation) -> Vec<Vec3> {
     now
 }
 
-/// Two tresses side by side, which hang from discs that touch and are let go of far apart.
+/// Two tresses side by side. They hang from discs that touch, and are released far apart.
 #[derive(Clone, Copy)]
 struct Tresses {
     strands: usize,
     points: usize,
-    /// Of a disc [m].
+    /// Radius of the disc [m].
     radius: f32,
-    /// Of a strand [m].
+    /// Length of a strand [m].
     length: f32,
-    /// Above the horizontal [rad].
+    /// Angle above the horizontal [rad].
     raised: f32,
 }
 
-/// 150 strands each, 20 cm long and 24 mm wide: they meet at 3 m/s.
+/// 150 strands each, 20 cm long and 24 mm wide; they collide at 3 m/s.
 const TRESSES: Tresses = Tresses { strands: 150, points: 24, radius: 0.012, length: 0.2, raised: -0.3 };
 
 impl Tresses {
@@ -101,7 +104,8 @@ impl Tresses {
         disc(self.strands, self.radius).enumerate().map(strand).collect()
     }
 
-    /// How far the center of the left one comes in `seconds`; above 0 it is past the middle [m].
+    /// The farthest position of the left tress's center in `seconds` [m]; a positive value is past the
+    /// middle.
     fn farthest(&self, meets: Meets, fps: f32, seconds: f32, alone: bool) -> f32 {
         let mut strands = self.strands(-1.0);
         if !alone {
@@ -133,27 +137,31 @@ impl Tresses {
 }
 
 #[test]
-fn tresses_stop_each_other_as_strands_do_at_any_frame_rate_and_cell() {
+fn tresses_stop_as_with_strand_contact_at_any_frame_rate_and_cell() {
     let bound = 0.1 * 2.0 * TRESSES.radius;
     let through = TRESSES.farthest(Meets::default(), 60.0, 0.5, false);
     let strands = TRESSES.farthest(Meets { neighbours: true, ..Meets::default() }, 60.0, 0.5, false);
-    println!("{:.1} mm past the middle without, {:.1} mm with strand contacts", 1e3 * through, 1e3 * strands);
+    println!(
+        "{:.1} mm past the middle without interaction, {:.1} mm with strand contact",
+        1e3 * through,
+        1e3 * strands
+    );
     assert!(
         through > 0.02 && strands < 0.0,
-        "{through} m past the middle without, {strands} m with contacts"
+        "{through} m past the middle without interaction, {strands} m with strand contact"
     );
     for method in METHODS {
         let meets = Meets::by(method);
         let by = |cell: Option<f32>, fps: f32| TRESSES.farthest(Meets { cell, ..meets }, fps, 0.5, false);
         let at_60 = by(None, 60.0);
         println!("{method:?}: {:.1} mm past the middle", 1e3 * at_60);
-        assert!((at_60 - strands).abs() < bound, "{method:?}: {at_60} m, with strand contacts {strands} m");
+        assert!((at_60 - strands).abs() < bound, "{method:?}: {at_60} m, with strand contact {strands} m");
         for fps in [24.0, 30.0, 240.0] {
             let other = by(None, fps);
             println!("{method:?}: {:.1} mm at {fps} Hz", 1e3 * other);
             assert!(other < 0.0 && (other - at_60).abs() < 0.5 * bound, "{method:?}: {other} m at {fps} Hz");
         }
-        // The default is 8.7 mm.
+        // The default cell is 8.7 mm.
         for cell in [0.006, 0.0174] {
             let other = by(Some(cell), 60.0);
             println!("{method:?}: {:.1} mm in cells of {cell} m", 1e3 * other);
@@ -166,7 +174,7 @@ fn tresses_stop_each_other_as_strands_do_at_any_frame_rate_and_cell() {
 }
 
 #[test]
-fn no_tress_goes_through_another() {
+fn tresses_do_not_pass_through_each_other() {
     let thin = Tresses { strands: 40, radius: 0.005, ..TRESSES };
     let few = Tresses { strands: 20, points: 12, ..thin };
     let wide = Tresses { strands: 60, radius: 0.02, ..TRESSES };
@@ -184,12 +192,16 @@ fn no_tress_goes_through_another() {
 }
 
 #[test]
-fn a_lone_tress_swings_as_far_as_without() {
+fn a_single_tress_is_not_slowed() {
     let free = TRESSES.farthest(Meets::default(), 60.0, 0.5, true);
     for method in METHODS {
         let braked = TRESSES.farthest(Meets::by(method), 60.0, 0.5, true);
-        println!("{method:?}: {:.1} mm past the middle, {:.1} mm without", 1e3 * braked, 1e3 * free);
-        assert!(braked > 0.85 * free, "{method:?}: {braked} m past the middle, {free} m without");
+        println!(
+            "{method:?}: {:.1} mm past the middle, {:.1} mm without interaction",
+            1e3 * braked,
+            1e3 * free
+        );
+        assert!(braked > 0.85 * free, "{method:?}: {braked} m past the middle, {free} m without interaction");
     }
 }
 
@@ -227,7 +239,7 @@ fn shaken(strands: usize, meets: Meets, fps: f32) -> f32 {
 }
 
 #[test]
-fn a_shaken_bundle_is_as_wide_at_any_frame_rate_and_cell() {
+fn width_of_a_shaken_bundle_is_independent_of_frame_rate_and_cell() {
     for method in METHODS {
         let meets = Meets::by(method);
         let at_60 = shaken(300, meets, 60.0);
@@ -240,7 +252,7 @@ fn a_shaken_bundle_is_as_wide_at_any_frame_rate_and_cell() {
                 "{method:?}: {other} m at {fps} Hz, {at_60} m at 60 Hz"
             );
         }
-        // The default is 8.7 mm.
+        // The default cell is 8.7 mm.
         for cell in [0.006, 0.0174] {
             let other = shaken(300, Meets { cell: Some(cell), ..meets }, 60.0);
             println!("{method:?}: {:.2} mm in cells of {cell} m", 1e3 * other);
@@ -253,12 +265,15 @@ fn a_shaken_bundle_is_as_wide_at_any_frame_rate_and_cell() {
 }
 
 #[test]
-fn a_shaken_bundle_is_as_wide_as_with_strand_contacts() {
+fn width_of_a_shaken_bundle_matches_strand_contact() {
     let strands = shaken(100, Meets { neighbours: true, ..Meets::default() }, 60.0);
-    println!("{:.2} mm with strand contacts", 1e3 * strands);
+    println!("{:.2} mm with strand contact", 1e3 * strands);
     for method in METHODS {
         let lattice = shaken(100, Meets::by(method), 60.0);
         println!("{method:?}: {:.2} mm", 1e3 * lattice);
-        assert!((lattice / strands - 1.0).abs() < 0.1, "{method:?}: {lattice} m, {strands} m with contacts");
+        assert!(
+            (lattice / strands - 1.0).abs() < 0.1,
+            "{method:?}: {lattice} m, {strands} m with strand contact"
+        );
     }
 }

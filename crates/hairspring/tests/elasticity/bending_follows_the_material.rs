@@ -1,9 +1,10 @@
-//! Promise: a strand bends as its fiber does, not as the iteration count does.
+//! Promise: bending depends on the material of the fiber and not on the number of iterations.
 //!
-//! A straight strand clamped horizontally under its own weight takes one shape, which depends on Γ = ρgAL³/EI alone. The heights and
-//! reaches here are from the closed forms of the elastica (two independent solutions; H = drop of the tip, W = its reach, L = 1).
-//! Whatever the model, the points, the substeps and the frame rate, the strand must come to rest there, within 1 or 2 %. The springs model's joints
-//! have sides, so its strands are turned about their axis by quarter turns too.
+//! A straight strand clamped horizontally under its own weight has one shape, which depends only on Γ =
+//! ρgAL³/EI. The drops and reaches here are closed forms of the elastica (two independent solutions; H =
+//! drop of the tip, W = its reach, L = 1). With any model, point count, substep count and frame rate, the
+//! strand must come to rest there, within 1 or 2 %. Joints of the springs model are not axially symmetric,
+//! so its strands are also tested rotated about their axis by quarter turns.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -18,7 +19,7 @@ use std::sync::Arc;
 
 const LENGTH: f32 = 0.25;
 
-/// Drop and reach of the tip over the length, at rest.
+/// Drop and reach of the tip relative to the length, at rest.
 fn cantilever(model: Model, gamma: f32, points: usize, substeps: u32, rate: f32) -> (f32, f32) {
     cantilever_toward(Vec3::NEG_Y, model, gamma, points, substeps, rate)
 }
@@ -65,7 +66,7 @@ fn cantilever_toward(
 }
 
 #[test]
-fn springs_bend_alike_to_all_sides() {
+fn springs_bend_alike_in_all_directions() {
     for down in [Vec3::NEG_Y, Vec3::Y, Vec3::Z, Vec3::NEG_Z, Vec3::new(0.0, 0.6, 0.8)] {
         let (h, w) = cantilever_toward(down, Model::Springs, 100.0, 64, 4, 60.0);
         println!("toward {down}: drop {h}, reach {w}");
@@ -75,7 +76,7 @@ fn springs_bend_alike_to_all_sides() {
 }
 
 #[test]
-fn a_heavy_cantilever_hangs_as_the_elastica_does() {
+fn a_heavy_cantilever_matches_the_elastica() {
     for (gamma, drop, reach) in [(1.0, 0.12347, 0.99125), (10.0, 0.70020, 0.65635), (100.0, 0.93752, 0.15922)]
     {
         for model in [Model::Curvature, Model::Rod, Model::Springs] {

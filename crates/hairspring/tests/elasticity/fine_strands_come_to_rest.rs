@@ -1,5 +1,5 @@
-//! Promise: strands of 3 to 1,024 points, with segments from 0.1 mm to 5 cm, rest as they were drawn and come to rest after a shake, in every preset and
-//! with a damping of 0 to 2 s, and none is reset.
+//! Promise: strands of 3 to 1,024 points, with segments from 0.1 mm to 5 cm, stay as authored and come to
+//! rest after a shake. This holds in every preset and with a damping of 0 to 2 s, and no strand is reset.
 
 use glam::Vec3;
 use hairspring::{
@@ -15,7 +15,7 @@ use std::{f32::consts::TAU, sync::Arc};
 /// Length of a frame [s].
 const FRAME: f32 = 1.0 / 60.0;
 
-/// A strand of `points` along a coil of `turns` that hangs `length` [m] down.
+/// A strand of `points` along a coil of `turns` that hangs down by `length` [m].
 fn coil(points: usize, length: f32, turns: f32) -> Vec<Vec3> {
     let at = |i: usize| {
         let t = i as f32 / (points - 1) as f32;
@@ -65,7 +65,8 @@ impl Scene {
         Self { simulation, points, groom, fastest: Vec::new(), resets: 0 }
     }
 
-    /// One frame, at the end of which the roots are at `x` [m]; the speed of the fastest point [m/s].
+    /// Simulates a frame, at the end of which the roots are at `x` [m]; returns the speed of the fastest
+    /// point [m/s].
     fn frame(&mut self, x: f32) -> f32 {
         let pose = RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() };
         let roots = vec![pose; self.simulation.strand_count()];
@@ -85,14 +86,15 @@ impl Scene {
         self.fastest.iter().copied().fold(0.0, f32::max)
     }
 
-    /// The speed of the fastest point in the last quarter of a second of so many seconds with the roots at rest [m/s].
+    /// Simulates `seconds` with the roots at rest; returns the speed of the fastest point in the last
+    /// quarter of a second [m/s].
     fn rest(&mut self, seconds: f32) -> f32 {
         let frames = (seconds / FRAME).round() as usize;
         let speeds: Vec<f32> = (0..frames).map(|_| self.frame(0.0)).collect();
         speeds[frames - 15..].iter().copied().fold(0.0, f32::max)
     }
 
-    /// The roots go to and fro by 5 cm twice in a second.
+    /// Shakes the roots by 5 cm at 2 Hz for a second.
     fn shake(&mut self) {
         for frame in 1..=60 {
             self.frame(0.05 * (TAU * 2.0 * frame as f32 / 60.0).sin());
@@ -121,14 +123,14 @@ fn check(name: &str, material: Material, substeps: u32) -> bool {
 }
 
 #[test]
-fn in_every_preset() {
+fn every_preset_comes_to_rest() {
     let moving: Vec<&str> =
         PRESETS.into_iter().filter(|name| !check(name, preset(name).unwrap(), 4)).collect();
-    assert!(moving.is_empty(), "still moving: {moving:?}");
+    assert!(moving.is_empty(), "presets that are still moving: {moving:?}");
 }
 
 #[test]
-fn with_any_damping() {
+fn any_damping_comes_to_rest() {
     let wavy = preset("wavy").unwrap();
     let mut moving = Vec::new();
     for (damping, substeps) in [(0.0, 4), (0.5, 4), (2.0, 4), (0.0, 2), (2.0, 2), (0.5, 16)] {
@@ -140,9 +142,9 @@ fn with_any_damping() {
     assert!(moving.is_empty(), "still moving: {moving:?}");
 }
 
-/// One substep of a sixtieth of a second is too long for a shake, after which some go on for longer than 8 s.
+/// One substep of 1/60 s is too long for a shake, after which some strands move for longer than 8 s.
 #[test]
-fn at_rest_with_one_substep() {
+fn one_substep_stays_at_rest() {
     let wavy = preset("wavy").unwrap();
     for damping in [0.0, 2.0] {
         let solver = Solver { substeps: 1, ..Solver::default() };

@@ -1,12 +1,14 @@
 //! Promise: a groom starts as it was authored and stays so.
 //!
-//! The sag-free start solves rest turns (and, where a fiber is too soft for the style, stiffness) so that every net force is zero
-//! in the authored shape. One second later, with nothing moving, the mean point has moved less than 0.01 mm (the promise to users is 0.1 mm): straight strands,
-//! hanging, standing and lying curls alike.
+//! The sag-free start solves for rest turns, so that every net force is zero in the authored shape. Where a
+//! fiber is too soft for the style, it also increases the stiffness. After one second without motion,
+//! points have moved by less than 0.01 mm in the mean (the promise to users is 0.1 mm). This holds for
+//! straight strands and for hanging, standing and lying curls.
 //!
-//! That is the rod, the default. Springs start in balance too, and mean points stay within the promise to users, but a few heavy strands that are held
-//! out as far as a fiber bears give way in them by millimeters, and of long soft fur some fall over. The curvature model knows no twist, so curls that leave a plane are in balance but not at rest in
-//! it; it keeps strands that lie in a plane.
+//! These bounds are for the rod model, the default. The springs model also starts in balance, and its mean
+//! error stays within the promise to users. But a few heavy strands that extend as far as a fiber can carry
+//! sag by millimeters, and some long soft fur falls over. The curvature model has no twist, so curls that
+//! are not planar start in balance but do not stay at rest; it preserves planar strands.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -53,7 +55,7 @@ fn a_groom_at_rest_stays_where_it_was_authored() {
 }
 
 #[test]
-fn so_does_one_whose_mass_has_a_profile() {
+fn a_groom_with_a_mass_profile_stays_where_it_was_authored() {
     for profile in [&[1.0, 1.0, 1.0, 1.0, 10.0][..], &[10.0, 1.0]] {
         stays_where_it_was_authored(profile);
     }
@@ -85,7 +87,7 @@ fn stays_where_it_was_authored(mass_profile: &[f32]) {
                 .collect();
             (d.iter().sum::<f32>() / d.len() as f32, d.into_iter().fold(0.0, f32::max))
         };
-        assert!(error(&out).1 < 1e-6, "{name}, {model:?}: the first frame is the file");
+        assert!(error(&out).1 < 1e-6, "{name}, {model:?}: the first frame differs from the groom");
         for _ in 0..60 {
             simulation.step(&StepInput {
                 dt: 1.0 / 60.0,
@@ -106,14 +108,14 @@ fn stays_where_it_was_authored(mass_profile: &[f32]) {
             (Model::Springs, _) => 1e-4,
             _ => 1e-5,
         };
-        assert!(mean < bound, "{name}, {model:?}: the mean point moved {mean} m in a second");
+        assert!(mean < bound, "{name}, {model:?}: points moved by {mean} m in the mean in a second");
     }
 }
 
-/// What had to be changed of the fiber is said: joints that were made stiffer, and those that single precision holds back, which more
-/// substeps give back.
+/// Changes of the fiber are reported: joints that were made stiffer, and joints whose stiffness single
+/// precision limits, which more substeps improve.
 #[test]
-fn what_the_start_changed_is_reported() {
+fn changes_by_the_start_are_reported() {
     let start = |points: usize, young: f32, substeps: u32, model: Model| {
         let step = Vec3::new(1.0, 0.2, 0.0).normalize() * (1.0 / (points - 1) as f32);
         let strand: Vec<Vec3> = (0..points).map(|i| step * i as f32).collect();
@@ -126,7 +128,7 @@ fn what_the_start_changed_is_reported() {
         simulation.start()
     };
     for model in [Model::Curvature, Model::Rod, Model::Springs] {
-        // A meter held out nearly level is more than a hair can do, at any number of substeps.
+        // A meter held out nearly level is more than a hair can carry, at any number of substeps.
         let coarse = start(33, Material::default().young, 4, model);
         assert!(coarse.stiffened > 20 && coarse.held_back == 0, "{model:?}: {coarse:?}");
         let [fine, finer] = [2, 64].map(|substeps| start(1024, Material::default().young, substeps, model));
@@ -135,10 +137,10 @@ fn what_the_start_changed_is_reported() {
             assert!(fine.held_back > 500, "{model:?}: {fine:?}");
             assert!(finer.held_back < fine.held_back / 2, "{model:?}: {finer:?}");
         } else {
-            // They are solved in double precision, which holds them.
+            // These models are solved in double precision, which suffices.
             assert_eq!([fine.held_back, finer.held_back], [0, 0], "{model:?}");
         }
-        // A material of which every joint is more than the solver's precision holds.
+        // A material whose stiffness exceeds the solver's precision at every joint.
         let steel = start(1024, if springs { 2e14 } else { 2e24 }, 4, model);
         assert_eq!(steel.held_back, 1022, "{model:?}: {steel:?}");
     }

@@ -1,5 +1,5 @@
-//! Promise: a strand gains no energy by its own elasticity: folded by up to 180° at its joints or coiled, it keeps its shape, and comes to rest after a
-//! shake, without gravity too.
+//! Promise: elasticity never adds energy to a strand. Folded by up to 180° at its joints or coiled, it
+//! keeps its shape and comes to rest after a shake, also without gravity.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -15,7 +15,8 @@ use std::{f32::consts::TAU, sync::Arc};
 /// Length of a frame [s].
 const FRAME: f32 = 1.0 / 60.0;
 
-/// A strand of 20 segments of 5 mm that turns by `degrees` at every third joint, each time about another axis.
+/// A strand of 20 segments of 5 mm that turns by `degrees` at every third joint, each time about another
+/// axis.
 fn folded(degrees: f32) -> Vec<Vec3> {
     let (mut points, mut along) = (vec![Vec3::ZERO], Vec3::NEG_Y);
     for k in 0..20 {
@@ -29,7 +30,7 @@ fn folded(degrees: f32) -> Vec<Vec3> {
     points
 }
 
-/// A coil of so many turns, 1 cm in radius, with 12 segments in each.
+/// A coil of `turns` turns, 1 cm in radius, with 12 segments in each.
 fn coil(turns: f32) -> Vec<Vec3> {
     let count = (12.0 * turns) as usize;
     let at = |i: usize| {
@@ -39,7 +40,8 @@ fn coil(turns: f32) -> Vec<Vec3> {
     (0..=count).map(at).collect()
 }
 
-/// The fastest point of strands [m/s] after two seconds at rest, and eight seconds after a shake; and how many were reset.
+/// The speed of the fastest point [m/s] after two seconds at rest and eight seconds after a shake, and the
+/// number of resets.
 fn speeds(strands: &[Vec<Vec3>], material: Material, gravity: Vec3) -> ([f32; 2], usize) {
     let groom = Arc::new(Groom::from_strands(strands, 40e-6));
     let all: Vec<u32> = (0..strands.len() as u32).collect();
@@ -71,7 +73,7 @@ fn speeds(strands: &[Vec<Vec3>], material: Material, gravity: Vec3) -> ([f32; 2]
 }
 
 #[test]
-fn folded_strands() {
+fn folded_strands_come_to_rest() {
     for model in [Model::Auto, Model::Rod, Model::Curvature] {
         for gravity in [Vec3::ZERO, Vec3::NEG_Y * 9.81] {
             let material = Material { model, ..preset("wavy").unwrap() };
@@ -88,7 +90,7 @@ fn folded_strands() {
 }
 
 #[test]
-fn coils() {
+fn coils_come_to_rest() {
     for model in [Model::Auto, Model::Curvature] {
         for turns in [0.75, 1.5, 2.0, 3.0, 6.0, 12.0] {
             for gravity in [Vec3::ZERO, Vec3::NEG_Y * 9.81] {

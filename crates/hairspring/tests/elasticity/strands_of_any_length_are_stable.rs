@@ -1,7 +1,8 @@
-//! Promise: strands of 3 to 1,024 points and of 1 mm to 2 m live in one groom, with segments of 0.1 mm beside others of 5 cm, in every model.
+//! Promise: one groom may contain strands of 3 to 1,024 points and of 1 mm to 2 m, with segments of 0.1 mm
+//! next to segments of 5 cm, in every model.
 //!
-//! They stay as they were drawn, are shaken, and keep their segments' lengths; and the root carries all of its motion into them:
-//! where it is, where it points, and how it is turned about that.
+//! The strands stay as authored, are shaken, and keep the lengths of their segments. The root transfers its
+//! full motion to the strand: position, direction, and twist about the direction.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -14,7 +15,7 @@ use hairspring::{
 };
 use std::sync::Arc;
 
-/// A strand that goes down in an open coil, so many points over so many meters.
+/// A strand of `points` points that hangs down by `length` [m] in an open coil.
 fn coil(points: usize, length: f32) -> Vec<Vec3> {
     (0..points)
         .map(|i| {
@@ -27,7 +28,7 @@ fn coil(points: usize, length: f32) -> Vec<Vec3> {
 }
 
 fn mixed() -> Groom {
-    // Segments of 0.1 mm and of 5 cm in turn, straight down.
+    // Alternating segments of 0.1 mm and 5 cm, straight down.
     let mut side_by_side = vec![Vec3::ZERO];
     for i in 0..20 {
         let step = if i % 2 == 0 { 1e-4 } else { 0.05 };
@@ -59,7 +60,7 @@ fn step(simulation: &mut Simulation, strands: usize, pose: RigidTransform) {
 }
 
 #[test]
-fn from_three_points_to_a_thousand_and_from_a_millimeter_to_two_meters() {
+fn mixed_strands_are_stable_in_one_groom() {
     let groom = Arc::new(mixed());
     let count = groom.strand_count();
     let all: Vec<u32> = (0..count as u32).collect();
@@ -72,13 +73,13 @@ fn from_three_points_to_a_thousand_and_from_a_millimeter_to_two_meters() {
             .gravity(Vec3::NEG_Y * 9.81)
             .build()
             .unwrap();
-        assert_eq!(simulation.point_count(), groom.points.len(), "no point is left out");
+        assert_eq!(simulation.point_count(), groom.points.len(), "points are missing");
         let mut points = vec![Vec3::ZERO; groom.points.len()];
         (0..120).for_each(|_| step(&mut simulation, count, RigidTransform::default()));
         simulation.write_points(&mut points);
         let moved: f32 =
             points.iter().zip(&groom.points).map(|(a, b)| a.distance(*b)).sum::<f32>() / points.len() as f32;
-        assert!(moved < 1e-3, "{model:?}: the mean point moves {moved} m in two seconds at rest");
+        assert!(moved < 1e-3, "{model:?}: points move by {moved} m in the mean in two seconds at rest");
 
         for frame in 0..60 {
             let x = 0.05 * (std::f32::consts::TAU * 2.0 * frame as f32 / 60.0).sin();
@@ -97,13 +98,14 @@ fn from_three_points_to_a_thousand_and_from_a_millimeter_to_two_meters() {
         println!("{model:?}: {moved:e} m at rest, after the shake {m:?}");
         assert!(
             m.stretch_max < 0.011,
-            "{model:?}: half a second after the shake a segment is off by {}",
+            "{model:?}: half a second after the shake the stretch of a segment is {}",
             m.stretch_max
         );
     }
 }
 
-/// Fine and long strands, whose segments are stiff over what they weigh, lie still and come to rest again, in every model.
+/// Fine and long strands, whose segments are stiff relative to their mass, stay at rest and come to rest
+/// again, in every model.
 #[test]
 fn long_strands_come_to_rest() {
     let strands: [(usize, f32); 7] =
@@ -122,7 +124,7 @@ fn long_strands_come_to_rest() {
                 .gravity(gravity)
                 .build()
                 .unwrap();
-            // The fastest strand's mean speed [m/s].
+            // The mean speed of the fastest strand [m/s].
             let speed = |simulation: &mut Simulation| {
                 let [mut before, mut after] = [(); 2].map(|()| vec![Vec3::ZERO; groom.points.len()]);
                 simulation.write_points(&mut before);
@@ -148,7 +150,8 @@ fn long_strands_come_to_rest() {
                     RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() },
                 );
             }
-            // With four substeps, segments of 1 mm are too soft for the style that they are to hold, and take their time.
+            // With four substeps, segments of 1 mm are too soft to hold the style, and take longer to come
+            // to rest.
             let seconds = if substeps == 4 { 8 } else { 2 };
             (0..60 * seconds).for_each(|_| step(&mut simulation, strands.len(), RigidTransform::default()));
             let shaken = speed(&mut simulation);
@@ -164,9 +167,10 @@ fn long_strands_come_to_rest() {
     }
 }
 
-/// A curl that juts out from a root turned about the first segment goes round with it.
+/// A curl extends sideways from its root. When the root twists about the first segment, the curl turns with
+/// it.
 #[test]
-fn the_root_carries_place_direction_and_twist() {
+fn the_root_transfers_position_direction_and_twist() {
     let strand: Vec<Vec3> = (0..12)
         .map(|i| {
             let s = i as f32 / 11.0;
@@ -181,7 +185,7 @@ fn the_root_carries_place_direction_and_twist() {
     for model in [Model::Auto, Model::Rod, Model::Springs, Model::Curvature] {
         for pose in [twist, tilt] {
             let material = Material { model, bend: 20.0, ..Material::default() };
-            // Without gravity the strand rests in its own shape, wherever its root is turned.
+            // Without gravity the strand rests in its own shape, whatever the rotation of its root.
             let mut simulation = Simulation::builder(groom.clone())
                 .strands(&[0])
                 .materials(&[material])

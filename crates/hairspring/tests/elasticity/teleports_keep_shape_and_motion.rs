@@ -1,7 +1,9 @@
-//! Promise: hair goes where its head goes, however that gets there.
+//! Promise: hair follows its head through every kind of motion.
 //!
-//! A teleport keeps shape and motion: what follows is what would have followed, elsewhere. A head that jumps does the same by itself, and its
-//! colliders do not sweep through the hair. Inertia scales how much of the head's motion hair feels, down to none. A reset is the start again, to the bit.
+//! A teleport preserves shape and motion: hair then moves as it would have without the teleport, at the new
+//! place. A head that jumps is teleported automatically, and its colliders do not sweep through the hair.
+//! Inertia scales how much of the head's motion hair feels, down to none. A reset restores the start, bit
+//! for bit.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -20,7 +22,7 @@ const FRAME: f32 = 1.0 / 60.0;
 const HEAD: f32 = 0.09;
 const POINTS: usize = 16;
 
-/// Bowed strands of 20 cm around a head.
+/// Curved strands of 20 cm around a head.
 fn groom() -> Groom {
     Groom::from_strands(
         (0..24).map(|k| {
@@ -37,7 +39,7 @@ fn groom() -> Groom {
     )
 }
 
-/// Hair and its head.
+/// A head with its hair.
 struct Head {
     groom: Arc<Groom>,
     simulation: Simulation,
@@ -74,7 +76,7 @@ impl Head {
             .collect()
     }
 
-    /// A frame in which the head goes to `pose`.
+    /// Simulates a frame in which the head moves to `pose`.
     fn step(&mut self, pose: RigidTransform) {
         let roots = self.roots(&pose);
         let report = self.simulation.step(&StepInput {
@@ -88,7 +90,7 @@ impl Head {
         self.pose = pose;
     }
 
-    /// The points as seen from the head [m].
+    /// The points in the frame of the head [m].
     fn seen(&self) -> Vec<Vec3> {
         let mut points = vec![Vec3::ZERO; self.simulation.point_count()];
         self.simulation.write_points(&mut points);
@@ -100,7 +102,7 @@ fn ball() -> ColliderShape {
     ColliderShape::Sphere { center: Vec3::ZERO, radius: HEAD }
 }
 
-/// A head that sways by 10 cm and turns, as it would walk.
+/// A head that sways by 10 cm and turns, as in a walk.
 fn sway(frame: u32) -> RigidTransform {
     let t = frame as f32 * FRAME;
     RigidTransform {
@@ -113,7 +115,7 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
 }
 
-/// About the vertical, which gravity does not notice.
+/// A rotation about the vertical, which does not change the effect of gravity.
 fn elsewhere() -> RigidTransform {
     RigidTransform { rotation: Quat::from_rotation_y(2.0), translation: Vec3::new(5.0, 1.0, -3.0) }
 }
@@ -127,7 +129,7 @@ const CASES: [(Model, Integrator, VolumeMethod); 5] = [
 ];
 
 #[test]
-fn what_follows_a_teleport_is_what_would_have_followed_elsewhere() {
+fn motion_continues_after_a_teleport() {
     for (model, integrator, volume) in CASES {
         let solver = Solver { integrator, ..Solver::default() };
         let [mut here, mut there] = [0; 2].map(|_| Head::new(model, solver, volume));
@@ -141,14 +143,14 @@ fn what_follows_a_teleport_is_what_would_have_followed_elsewhere() {
             here.step(sway(frame));
             there.step(moved.after(&sway(frame)));
         }
-        // What rounding does to hair that touches and lets go: 0.1 mm in half a second.
+        // Rounding changes hair that makes and breaks contact by less than 0.1 mm in half a second.
         let apart = farthest(&here.seen(), &there.seen());
         assert!(apart < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {apart} m");
     }
 }
 
 #[test]
-fn a_jump_is_a_teleport_without_being_called_one() {
+fn a_jump_is_teleported_automatically() {
     for (model, integrator, volume) in CASES {
         let solver = Solver { integrator, ..Solver::default() };
         let [mut here, mut there] = [0; 2].map(|_| Head::new(model, solver, volume));
@@ -156,7 +158,7 @@ fn a_jump_is_a_teleport_without_being_called_one() {
             here.step(sway(frame));
             there.step(sway(frame));
         }
-        // Hair swings on, as if the head had stopped.
+        // Hair continues to swing, as if the head had stopped.
         here.step(sway(29));
         there.step(elsewhere().after(&sway(29)));
         let apart = farthest(&here.seen(), &there.seen());
@@ -165,8 +167,9 @@ fn a_jump_is_a_teleport_without_being_called_one() {
 }
 
 #[test]
-fn what_is_no_jump_is_not_taken_for_one() {
-    // A ride at 50 m/s at 24 frames a second goes 2 m a frame, and is felt: it begins in one frame, and there alone hair is carried.
+fn fast_motion_is_not_mistaken_for_a_jump() {
+    // A ride at 50 m/s and 24 frames per second moves by 2 m in a frame. It starts in one frame, and only
+    // in that frame is hair carried along; afterward hair feels the motion.
     let [mut carried, mut felt] = [1.0, f32::MAX].map(|jump| {
         Head::new(Model::Rod, Solver { teleport_distance: jump, ..Solver::default() }, VolumeMethod::Off)
     });
@@ -177,26 +180,26 @@ fn what_is_no_jump_is_not_taken_for_one() {
     for head in [&mut carried, &mut felt] {
         head.step(ride(1));
     }
-    assert!(farthest(&carried.seen(), &felt.seen()) > 0.05, "the jump is not felt");
+    assert!(farthest(&carried.seen(), &felt.seen()) > 0.05, "hair was not carried along in the jump");
     let swaying = |frame: u32| ride(frame).after(&sway(frame));
     for frame in 2..120 {
         carried.step(swaying(frame));
         felt.step(swaying(frame));
     }
-    // What was carried sways as what was not, when that has come to rest from its start.
+    // After the other head's hair has settled from the start, both sway alike.
     let most = farthest(&carried.seen(), &felt.seen());
     assert!(most < 0.02, "{most} m");
 }
 
 #[test]
-fn inertia_scales_what_hair_feels_of_its_head() {
+fn inertia_scales_the_effect_of_head_motion() {
     let swing = |inertia: f32| {
         let mut head = Head::new(Model::Rod, Solver { inertia, ..Solver::default() }, VolumeMethod::Off);
         let rest = head.seen();
         let mut most = 0.0f32;
         for frame in 1..120 {
             let t = frame as f32 * FRAME;
-            // Small, so that what hair does is in proportion.
+            // A small motion, so that the response of hair is linear.
             head.step(RigidTransform {
                 translation: Vec3::X * (0.004 * (8.0 * t).sin()),
                 ..RigidTransform::default()
@@ -206,9 +209,9 @@ fn inertia_scales_what_hair_feels_of_its_head() {
         most
     };
     let [none, half, all] = [0.0, 0.5, 1.0].map(swing);
-    assert!(none < 2e-5, "with no inertia hair hangs as on a head that stands still: {none} m");
+    assert!(none < 2e-5, "without inertia hair moved by {none} m on the head");
     assert!((half / all - 0.5).abs() < 0.1, "half: {half} m of {all} m");
-    // A turn is felt as little.
+    // The same holds for a rotation.
     let mut head = Head::new(Model::Rod, Solver { inertia: 0.0, ..Solver::default() }, VolumeMethod::Off);
     let rest = head.seen();
     for frame in 1..60 {
@@ -222,7 +225,7 @@ fn inertia_scales_what_hair_feels_of_its_head() {
 }
 
 #[test]
-fn a_reset_is_the_start_again() {
+fn a_reset_restores_the_start() {
     for (model, integrator, volume) in CASES {
         let solver = Solver { integrator, ..Solver::default() };
         let mut head = Head::new(model, solver, volume);
@@ -235,7 +238,7 @@ fn a_reset_is_the_start_again() {
         };
         let [first, again] = [run(&mut head), run(&mut head)];
         assert!(first == again, "{model:?}, {integrator:?}, {volume:?}: {} m", farthest(&first, &again));
-        // And where it stands: every strand as it was authored.
+        // A reset without new poses puts every strand in its authored place.
         head.simulation.reset();
         let authored = farthest(&head.seen(), &head.groom.points);
         assert!(authored < 1e-6, "{model:?}, {integrator:?}: {authored} m");

@@ -1,7 +1,9 @@
-//! Promise: charged bodies move charged hair by Coulomb's law, charged hair drives itself apart, and neither turns to NaN anywhere.
+//! Promise: charged bodies move charged hair by Coulomb's law, charged strands repel each other, and no
+//! position gives NaN.
 //!
-//! A limp charged strand beside a far charge hangs as a pendulum does in gravity and an even field: at the angle whose tangent is λE over the weight of
-//! a length. Hair charged as its head is stands on end, and without the head's charge its own spreads it.
+//! A limp charged strand near a distant charge hangs like a pendulum in gravity and a uniform field. The
+//! tangent of its angle is λE divided by its weight per length. Hair with the same sign of charge as its
+//! head stands on end. Without the head's charge, its own charge spreads it.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -18,12 +20,12 @@ use std::{f32::consts::PI, sync::Arc};
 const COULOMB: f32 = 8.99e9;
 const RADIUS: f32 = 4e-5;
 
-/// A ball that rests.
+/// A ball at rest.
 fn resting(center: Vec3, radius: f32, charge: f32) -> ChargedBall {
     ChargedBall { centers: [center; 2], radius, charge }
 }
 
-/// Strands of hair with `charge` [C/m], which no fiber holds, after `frames` beside charged balls.
+/// Limp strands with `charge` [C/m], after `frames` near charged balls.
 fn charged(
     strands: &[Vec<Vec3>],
     charge: f32,
@@ -66,35 +68,35 @@ fn strand(root: Vec3, way: Vec3) -> Vec<Vec3> {
 }
 
 #[test]
-fn a_charged_strand_hangs_as_a_charged_pendulum() {
+fn a_charged_strand_hangs_like_a_charged_pendulum() {
     let weight = Material::default().density * PI * RADIUS * RADIUS * 9.81;
-    // Two meters away, so that the field is even to a few hundredths over the strand's swing.
+    // Two meters away, so that over the strand's motion the field is uniform to a few hundredths.
     let distance = 2.0_f32;
     for tangent in [0.3_f32, 1.0] {
         let (charge, field) = (1e-9_f32, tangent * weight / 1e-9);
-        // One body pulls and another pushes: twice as even, and both laws are held.
+        // One body attracts and the other repels. This makes the field more uniform and tests both signs.
         let body = 0.5 * field * distance * distance / COULOMB;
         let balls = [resting(Vec3::X * distance, 0.5, -body), resting(Vec3::X * -distance, 0.5, body)];
         let points = charged(&[strand(Vec3::ZERO, Vec3::NEG_Y)], charge, Vec3::NEG_Y * 9.81, &balls, 900);
         let way = points[31] - points[12];
         let angle = (way.x / -way.y).atan();
         println!("{} degrees, {} by the closed form", angle.to_degrees(), tangent.atan().to_degrees());
-        assert!((angle / tangent.atan() - 1.0).abs() < 0.02, "{} for {} rad", angle, tangent.atan());
+        assert!((angle / tangent.atan() - 1.0).abs() < 0.02, "{} instead of {} rad", angle, tangent.atan());
         assert!(way.z.abs() < 1e-3, "{way}");
     }
 }
 
 #[test]
-fn hair_charged_as_its_head_stands_on_end() {
+fn hair_with_the_charge_of_its_head_stands_on_end() {
     let ways = (0..200).map(|k| {
-        // Evenly over a ball (a spiral of golden angles).
+        // Evenly spread over a sphere (a spiral of golden angles).
         let y = 1.0 - (k as f32 + 0.5) / 100.0;
         let around = 2.399_963 * k as f32;
         Vec3::new(around.cos(), 0.0, around.sin()) * (1.0 - y * y).sqrt() + Vec3::Y * y
     });
     let ways: Vec<Vec3> = ways.filter(|way| way.y > -0.3).collect();
     let strands: Vec<Vec<Vec3>> = ways.iter().map(|way| strand(*way * 0.1, *way)).collect();
-    // How far from the middle tips are, in the mean, and how high.
+    // Mean distance of the tips from the center, and their mean height.
     let tips = |charge: f32, balls: &[ChargedBall]| {
         let points = charged(&strands, charge, Vec3::NEG_Y * 9.81, balls, 240);
         let tips = || points.chunks(32).map(|s| s[31]);
@@ -105,19 +107,22 @@ fn hair_charged_as_its_head_stands_on_end() {
     };
     let head = [resting(Vec3::ZERO, 0.1, 1e-6)];
     let (_, fallen) = tips(0.0, &head);
-    // Ten times its weight where it begins, five times at its end.
+    // The force is ten times its weight at the root and five times at the tip.
     let (out, height) = tips(3e-9, &head);
     let (apart, _) = tips(3e-9, &[]);
     let (together, _) = tips(0.0, &[]);
     println!(
-        "tips at {fallen} m, charged at {height} m and {out} m out; by the hair's own charge {apart} m, without {together} m"
+        "tips at {fallen} m, charged at {height} m and {out} m from the center; with only the hair's charge {apart} m, without {together} m"
     );
-    assert!(out > 0.29 && height > fallen + 0.2, "tips {out} m out, at a height of {height} m");
-    assert!(apart > together + 0.03, "hair charged alike: {apart} m, without charge {together} m");
+    assert!(
+        out > 0.29 && height > fallen + 0.2,
+        "tips are {out} m from the center, at a height of {height} m"
+    );
+    assert!(apart > together + 0.03, "charged hair: {apart} m, without charge {together} m");
 }
 
 #[test]
-fn nothing_breaks_at_the_middle_of_a_charge_however_strong() {
+fn hair_at_the_center_of_a_strong_charge_stays_finite() {
     for body in [-1e-3, 1e-3] {
         for charge in [1e-9, 1e-6] {
             let through = strand(Vec3::new(0.0, 0.1, 0.0), Vec3::NEG_Y);
@@ -130,7 +135,7 @@ fn nothing_breaks_at_the_middle_of_a_charge_however_strong() {
 }
 
 #[test]
-fn threads_do_not_show_in_charged_hair() {
+fn charged_hair_is_independent_of_threads() {
     let strands: Vec<Vec<Vec3>> = (0..600)
         .map(|k| strand(Vec3::new((k % 20) as f32, 0.0, (k / 20) as f32) * 0.01, Vec3::NEG_Y))
         .collect();
@@ -146,7 +151,7 @@ fn threads_do_not_show_in_charged_hair() {
 }
 
 #[test]
-fn a_path_is_walked_in_its_time() {
+fn a_path_is_followed_in_its_time() {
     let path = vec![
         Waypoint { time: 1.0, center: Vec3::X },
         Waypoint { time: 3.0, center: Vec3::new(1.0, 2.0, 0.0) },

@@ -1,6 +1,8 @@
-//! Promise: a comb takes hair along across itself, slides along it, and lets go of it at the tip; nothing is stretched.
+//! Promise: a comb moves hair across itself, slides along hair, and releases it at the tip, without
+//! stretching it.
 //!
-//! A curtain of strands hangs from a rail. A comb at 0.3 m/s goes through it: across, and down along it.
+//! A curtain of strands hangs from a rail. A comb moves through it at 0.3 m/s, across the strands and down
+//! along them.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -62,10 +64,10 @@ impl Curtain {
         std::mem::swap(&mut self.points, &mut self.before);
         self.simulation.write_points(&mut self.points);
         let stretch = self.simulation.measure(&[]).stretch_max;
-        assert!(stretch < 0.011, "a segment is {stretch} longer");
+        assert!(stretch < 0.011, "the stretch of a segment is {stretch}");
     }
 
-    /// Mean place of a point of all strands, and its velocity in the last frame.
+    /// The mean position of point `i` over all strands, and its velocity in the last frame.
     fn mean(&self, i: usize) -> (Vec3, Vec3) {
         let of =
             |points: &[Vec3]| (0..STRANDS).map(|s| points[s * POINTS + i]).sum::<Vec3>() / STRANDS as f32;
@@ -79,7 +81,7 @@ fn comb(at: Vec3) -> Manipulator {
 }
 
 #[test]
-fn across_it_takes_hair_along() {
+fn a_comb_across_hair_takes_it_along() {
     for model in [Model::Curvature, Model::Rod, Model::Springs] {
         let mut curtain = Curtain::new(model);
         let home = curtain.points.clone();
@@ -98,28 +100,30 @@ fn across_it_takes_hair_along() {
             if (0.04..0.045).contains(&comb) {
                 carried = true;
                 let (at, velocity) = curtain.mean(20);
-                // Along itself hair may slide. Across, it goes with the comb, but for that it turns about its root as a whole: a point 6 mm
-                // nearer to it is slower.
+                // Hair may slide along its own direction. Across, it moves with the comb, except that it
+                // rotates about its root: a point 6 mm nearer to the root is slower.
                 let along = (curtain.mean(21).0 - curtain.mean(19).0).normalize();
                 let slip = (velocity - Vec3::Z * SPEED).reject_from_normalized(along).length();
-                println!("{model:?}: comb at {comb} m, hair at {at}, {velocity} m/s, slips by {slip} m/s");
+                println!(
+                    "{model:?}: comb at {comb} m, hair at {at}, velocity {velocity} m/s, slip {slip} m/s"
+                );
                 assert!((at.z - comb).abs() < 0.015, "{model:?}: the comb is at {comb}, hair at {at}");
-                assert!(slip < 0.2 * SPEED, "{model:?}: hair slips through by {slip} m/s");
+                assert!(slip < 0.2 * SPEED, "{model:?}: hair slips through the comb at {slip} m/s");
             }
         }
         assert!(carried);
-        // The comb is out of reach: it has let go of the tips.
+        // The comb is out of reach and has released the tips.
         for _ in 0..480 {
             curtain.step();
         }
         let off = curtain.points.iter().zip(&home).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-        println!("{model:?}: {off} m off eight seconds later");
-        assert!(off < 0.002, "{model:?}: {off} m off");
+        println!("{model:?}: offset {off} m eight seconds later");
+        assert!(off < 0.002, "{model:?}: the offset is {off} m");
     }
 }
 
 #[test]
-fn along_it_slides() {
+fn a_comb_along_hair_slides() {
     let mut curtain = Curtain::new(Model::Curvature);
     let home = curtain.points.clone();
     let id = curtain.simulation.add_manipulator(comb(Vec3::new(0.0, 0.03, 0.0)), RigidTransform::default());
@@ -134,7 +138,7 @@ fn along_it_slides() {
         fastest = fastest.max(curtain.simulation.measure(&[]).speed_max);
     }
     let off = curtain.points.iter().zip(&home).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-    println!("at most {fastest} m/s, {off} m off");
-    assert!(fastest < 0.1 * f64::from(SPEED), "hair that hangs straight was taken along at {fastest} m/s");
-    assert!(off < 0.001, "{off} m off");
+    println!("at most {fastest} m/s, offset {off} m");
+    assert!(fastest < 0.1 * f64::from(SPEED), "the comb pulled straight hair along at {fastest} m/s");
+    assert!(off < 0.001, "the offset is {off} m");
 }

@@ -1,5 +1,6 @@
-//! Promise: dense hair shelters itself from the wind by its density: a lone hair not at all, the inside of a bundle more than its outside, and as
-//! many hairs that follow one guide within a factor of 2 of the same hairs simulated.
+//! Promise: dense hair shelters itself from the wind depending on its density. A single hair is not
+//! sheltered. The inside of a bundle is sheltered more than its outside. Hairs that follow a guide shelter
+//! like the same number of simulated hairs, within a factor of 2.
 
 use glam::Vec3;
 use hairspring::{
@@ -12,8 +13,9 @@ use hairspring::{
 };
 use std::sync::Arc;
 
-/// Mean distance that the middles of the strands of a square bundle of `side`² strands move in a second of wind from the side [m]: of the outermost strands, and of the
-/// others more than a centimeter inside. Each strand stands for `hairs`.
+/// The mean motion of the strands' middles in a square bundle of `side`² strands in a second of wind from
+/// the side [m]: of the outermost strands, and of those more than a centimeter inside. Each strand
+/// represents `hairs` hairs.
 fn blown(side: usize, spacing: f32, hairs: f32, sheltered: bool) -> [f32; 2] {
     let at = |k: usize| k as f32 * spacing;
     let strands = (0..side * side).map(|k| {
@@ -65,29 +67,30 @@ fn blown(side: usize, spacing: f32, hairs: f32, sheltered: bool) -> [f32; 2] {
 }
 
 #[test]
-fn a_lone_hair_is_not_sheltered() {
+fn a_single_hair_is_not_sheltered() {
     let [sheltered, alone] = [true, false].map(|on| blown(1, 1.0, 1.0, on)[0]);
-    assert!(alone > 0.05, "{alone} m");
-    assert!((sheltered / alone - 1.0).abs() < 0.01, "{sheltered} m, not {alone} m");
+    assert!(alone > 0.05, "the wind moved the hair by only {alone} m");
+    assert!((sheltered / alone - 1.0).abs() < 0.01, "{sheltered} m instead of {alone} m");
 }
 
 #[test]
 fn the_inside_of_a_bundle_is_sheltered_more_than_its_outside() {
-    // 25 strands that stand for 1,000 hairs a square centimeter.
+    // The strands represent 1,000 hairs per square centimeter; 25 of them are more than a centimeter
+    // inside.
     let [outside, inside] = blown(11, 0.004, 160.0, true);
     let [_, open] = blown(11, 0.004, 160.0, false);
     println!("{outside} m outside, {inside} m inside, {open} m without shelter");
-    assert!(outside > 1.5 * inside, "the outermost layer meets more wind");
-    assert!(inside < 0.3 * open, "the inside is still");
-    // Few hairs shelter little.
+    assert!(outside > 1.5 * inside, "the outermost layer is not blown farther than the inside");
+    assert!(inside < 0.3 * open, "the inside is not sheltered");
+    // Sparse hair shelters little.
     let [_, sparse] = blown(11, 0.004, 0.1, true);
     assert!(sparse > 0.99 * open, "{sparse} m of {open} m");
 }
 
 #[test]
-fn hairs_that_follow_shelter_as_those_that_are_simulated() {
+fn follow_hairs_shelter_like_simulated_hairs() {
     let [_, few] = blown(9, 0.0045, 25.0, true);
     let [_, many] = blown(41, 0.001, 1.0, true);
-    println!("{few} m by guides, {many} m by hairs");
-    assert!((0.5..2.0).contains(&(few / many)), "{few} m by guides, {many} m by hairs");
+    println!("{few} m with guides, {many} m with all hairs");
+    assert!((0.5..2.0).contains(&(few / many)), "{few} m with guides, {many} m with all hairs");
 }

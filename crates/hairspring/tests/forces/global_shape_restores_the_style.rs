@@ -1,7 +1,9 @@
-//! Promise: a global shape brings hair back to where it was authored, as far as its closed form says, and is nothing where it is off.
+//! Promise: a global shape returns hair to its authored place, with the offset of a closed form, and has no
+//! effect when it is off.
 //!
-//! A point on a spring of f Hz gives way by g/ω² under gravity. A strand without bending stiffness that is held by nothing else does that all along; one that is shaken,
-//! with a fiber of its own, comes back to it. The pull goes with the root, by its curve from root to tip, and by what is painted on each strand.
+//! A point on a spring of f Hz sags by g/ω² under gravity. A strand without bending stiffness sags by that
+//! over its whole length. A strand with a fiber of its own returns to its style after a shake. The pull
+//! moves with the root, and follows its curve from root to tip and the values painted on each strand.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -19,7 +21,7 @@ const POINTS: usize = 24;
 const SEGMENT: f32 = 0.01;
 const GRAVITY: f32 = 9.81;
 
-/// Strands that stick out sideways.
+/// Strands that extend sideways.
 struct Brush {
     simulation: Simulation,
     groom: Arc<Groom>,
@@ -69,7 +71,7 @@ impl Brush {
         }
     }
 
-    /// How far point `i` of strand `s` is below where it was authored [m].
+    /// How far point `i` of strand `s` is below its authored place [m].
     fn sag(&self, s: usize, i: usize) -> f32 {
         (self.groom.strand(s)[i] - self.points[s * POINTS + i]).y
     }
@@ -85,7 +87,7 @@ fn closed_form(pull: f32) -> f32 {
 }
 
 #[test]
-fn hair_comes_back_as_far_as_the_closed_form_says() {
+fn hair_returns_with_the_offset_of_the_closed_form() {
     for model in [Model::Curvature, Model::Springs] {
         let limp = Material {
             model,
@@ -96,7 +98,7 @@ fn hair_comes_back_as_far_as_the_closed_form_says() {
         };
         let mut brush = Brush::new(limp, Solver::default(), Vec::new());
         brush.shake(180);
-        // Near the root it is held by the root too.
+        // Points near the root are also held by the root.
         for i in 6..POINTS {
             let (sag, want) = (brush.sag(0, i), closed_form(20.0));
             if i % 8 == 7 {
@@ -105,7 +107,7 @@ fn hair_comes_back_as_far_as_the_closed_form_says() {
             assert!((sag / want - 1.0).abs() < 0.01, "{model:?}, point {i}: {sag} m, closed form {want}");
         }
     }
-    // With its fiber it gives way less; without a global shape it hangs.
+    // With its fiber hair sags less; without a global shape it hangs down.
     let with = |global_shape: GlobalShape| {
         let mut brush =
             Brush::new(Material { global_shape, ..Material::default() }, Solver::default(), Vec::new());
@@ -113,7 +115,7 @@ fn hair_comes_back_as_far_as_the_closed_form_says() {
         (6..POINTS).map(|i| brush.sag(0, i)).fold(0.0, f32::max)
     };
     let (held, hangs) = (with(global_shape(10.0, 1.0)), with(GlobalShape::default()));
-    println!("held {held} m, at most {}; hangs {hangs} m", closed_form(10.0));
+    println!("sags by {held} m, bound {}; without a global shape by {hangs} m", closed_form(10.0));
     assert!(
         held < 1.05 * closed_form(10.0) && hangs > 0.1,
         "{held} m with a global shape, {hangs} m without"
@@ -121,7 +123,7 @@ fn hair_comes_back_as_far_as_the_closed_form_says() {
 }
 
 #[test]
-fn its_curve_and_its_paint_count() {
+fn the_curve_and_painted_values_scale_the_pull() {
     let limp = |global_shape| Material {
         model: Model::Curvature,
         bend: 0.0,
@@ -141,8 +143,8 @@ fn its_curve_and_its_paint_count() {
         println!("painted {scale}: {sag} m, closed form {want}");
         assert!((sag / want - 1.0).abs() < 0.02, "painted {scale}: {sag} m, closed form {want}");
     }
-    assert!(brush.sag(3, 20) > 0.1, "painted 0, it hangs: {} m", brush.sag(3, 20));
-    // Half as fast at the tip: four times as far there, and in between as its place along the strand says.
+    assert!(brush.sag(3, 20) > 0.1, "painted 0, it sags by only {} m", brush.sag(3, 20));
+    // Half the frequency at the tip gives four times the sag there, with interpolation along the strand.
     let mut brush = Brush::new(limp(global_shape(30.0, 0.5)), Solver::default(), Vec::new());
     brush.shake(240);
     for i in [8, 16, POINTS - 1] {
@@ -154,7 +156,7 @@ fn its_curve_and_its_paint_count() {
 }
 
 #[test]
-fn off_it_is_nothing() {
+fn a_global_shape_that_is_off_has_no_effect() {
     let played = |global_shape: GlobalShape, on: bool| {
         let solver = Solver { global_shape: on, ..Solver::default() };
         let mut brush = Brush::new(Material { global_shape, ..Material::default() }, solver, Vec::new());
@@ -162,15 +164,15 @@ fn off_it_is_nothing() {
         brush.points.iter().flat_map(|p| p.to_array()).map(f32::to_bits).collect::<Vec<_>>()
     };
     let none = played(GlobalShape::default(), true);
-    assert!(played(global_shape(20.0, 1.0), false) == none, "switched off, it changed bits");
-    assert!(played(global_shape(20.0, 1.0), true) != none, "switched on, it did nothing");
+    assert!(played(global_shape(20.0, 1.0), false) == none, "a global shape that is off changed the result");
+    assert!(played(global_shape(20.0, 1.0), true) != none, "a global shape that is on had no effect");
 }
 
 #[test]
-fn it_turns_with_the_head() {
+fn the_global_shape_moves_with_the_head() {
     let material = Material { global_shape: global_shape(20.0, 1.0), drag: 0.05, ..Material::default() };
     let mut brush = Brush::new(material, Solver::default(), Vec::new());
-    // A quarter turn about the vertical and a step of 3 m, in a second.
+    // A quarter turn about the vertical and a translation of 3 m, in a second.
     let at = |frame: u32| {
         let share = (frame as f32 / 60.0).min(1.0);
         let share = share * share * (3.0 - 2.0 * share);
@@ -186,9 +188,9 @@ fn it_turns_with_the_head() {
         last = (0..brush.points.len()).map(off).fold(0.0, f32::max);
         worst = worst.max(last);
     }
-    println!("{worst} m off in motion, {last} m at rest, closed form {}", closed_form(20.0));
-    // 6 m/s² twice over, of the step and of the turn at the tip, besides gravity.
-    assert!(worst < 3.0 * closed_form(20.0), "{worst} m off in motion");
-    // A fiber that swings out over the root is a little more off at its end.
-    assert!(last < 1.05 * closed_form(20.0), "{last} m off at rest");
+    println!("offset in motion {worst} m, at rest {last} m, closed form {}", closed_form(20.0));
+    // In addition to gravity, the translation and the rotation accelerate the tip by 6 m/s² each.
+    assert!(worst < 3.0 * closed_form(20.0), "the offset in motion is {worst} m");
+    // A fiber that hangs out over its root has a slightly larger offset at its end.
+    assert!(last < 1.05 * closed_form(20.0), "the offset at rest is {last} m");
 }

@@ -1,8 +1,10 @@
-//! Promise: with a tether of t no point gets farther from its root than t times what it and those before it were at rest, whatever pulls; at rest, and where
-//! nothing pulls so far, it changes nothing; and what hangs on it comes to rest.
+//! Promise: a tether limits the distance of every point from its root, whatever the load. With a tether of
+//! t, the limit is t times the largest rest distance of the point and those before it. At rest, and where
+//! the limit is not reached, a tether changes nothing. Hair that hangs on it comes to rest.
 //!
-//! Coils that are put under twenty times their weight fall to nearly the length of their hair without it. (Those before it:
-//! where a coil turns back toward its root, its length goes first.)
+//! Without a tether, coils under twenty times their weight fall to nearly the length of their hair. (The
+//! points before are included because a coil may turn back toward its root, and then reaches its length
+//! first.)
 
 use glam::Vec3;
 use hairspring::{
@@ -17,7 +19,7 @@ use std::sync::Arc;
 
 const POINTS: usize = 49;
 
-/// Coils of radius 1 cm that hang from the origin's height.
+/// Coils of radius 1 cm that hang from the height of the origin.
 fn coils() -> Arc<Groom> {
     let strands = (0..9).map(|s| {
         let root = Vec3::X * (0.05 * s as f32);
@@ -31,11 +33,12 @@ fn coils() -> Arc<Groom> {
     Arc::new(Groom::from_strands(strands, 40e-6))
 }
 
-/// What came of some seconds under `g` times gravity.
+/// The result of `seconds` under `g` times gravity.
 struct Fall {
-    /// The most that a point was from its root, over the farthest of it and those before it at rest.
+    /// The largest distance of a point from its root, relative to the largest rest distance of it and those
+    /// before it.
     far: f32,
-    /// Fastest point at the end [m/s].
+    /// Speed of the fastest point at the end [m/s].
     speed: f64,
     points: Vec<Vec3>,
 }
@@ -81,28 +84,31 @@ fn fall(model: Model, tether: f32, g: f32, seconds: usize) -> Fall {
 }
 
 #[test]
-fn heavy_coils_fall_as_far_as_they_may() {
+fn heavy_coils_fall_to_the_limit() {
     for model in Model::ALL {
         let free = fall(model, 0.0, 20.0, 2).far;
         assert!(free > 1.5, "{model:?}: without a tether {free}");
         for tether in [1.05, 1.3] {
             let held = fall(model, tether, 20.0, 2).far;
-            println!("{model:?}: {free} free, {held} with a tether of {tether}");
+            println!("{model:?}: {free} without a tether, {held} with one of {tether}");
             assert!(held < tether * 1.0011, "{model:?}: {held} with a tether of {tether}");
-            assert!(held > tether - 0.05, "{model:?}: {held} with a tether of {tether}: hair hangs on it");
+            assert!(
+                held > tether - 0.05,
+                "{model:?}: {held} with a tether of {tether}: hair does not reach the limit"
+            );
         }
     }
 }
 
 #[test]
-fn at_rest_nothing_changes() {
+fn a_tether_changes_nothing_at_rest() {
     for model in Model::ALL {
         assert_eq!(fall(model, 1.01, 1.0, 2).points, fall(model, 0.0, 1.0, 2).points, "{model:?}");
     }
 }
 
 #[test]
-fn what_hangs_on_its_tether_comes_to_rest() {
+fn hair_that_hangs_on_a_tether_comes_to_rest() {
     for model in Model::ALL {
         for (tether, g) in [(1.05, 2.0), (1.05, 20.0), (1.3, 20.0)] {
             let speed = fall(model, tether, g, 8).speed;

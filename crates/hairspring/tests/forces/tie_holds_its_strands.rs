@@ -1,7 +1,9 @@
-//! Promise: a tie gathers the strands around it without a jerk, and keeps what it holds in its ring through a shake, hops and a jump.
+//! Promise: a tie gathers the strands around it smoothly, and keeps them in its ring through a shake, hops
+//! and a jump.
 //!
-//! A curtain of hair hangs in a wide circle, and a ring on its anchor gathers it, around what is in the way. What is bound lies within the ring's radius and a bound that is what the
-//! closed form says hangs on it: (g + a)/ω² times the mass that it carries over its own.
+//! A curtain of hair hangs in a wide circle. A ring attached to its anchor gathers it, around obstacles.
+//! Bound points stay within the ring's radius plus the lag of a closed form: (g + a)/ω² times the ratio of
+//! the mass they carry to their own.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -77,37 +79,42 @@ impl Curtain {
     }
 }
 
-/// Shaken by 5 cm at 2 Hz and turned by 20°, then two hops of 30 cm.
+/// A shake by 5 cm at 2 Hz with rotations by 20°, then two hops of 30 cm.
 fn motion(time: f32) -> RigidTransform {
     let phase = std::f32::consts::TAU * 2.0 * time;
     let shake = if time < 2.0 { 0.05 * phase.sin() } else { 0.0 };
     let turn = if time < 2.0 { 0.35 * (0.5 * phase).sin() } else { 0.0 };
-    // A parabola under gravity takes 0.49 s for 30 cm.
+    // A parabola of 30 cm under gravity takes 0.49 s.
     let hop = (time - 2.5).rem_euclid(0.75) / 0.495;
     let up = if time > 2.5 && hop < 1.0 { 0.3 * 4.0 * hop * (1.0 - hop) } else { 0.0 };
     RigidTransform { translation: Vec3::new(shake, up, 0.0), rotation: Quat::from_rotation_y(turn) }
 }
 
 #[test]
-fn what_is_bound_stays_in_the_ring() {
+fn bound_hair_stays_in_the_ring() {
     for model in [Model::Curvature, Model::Rod, Model::Springs] {
         let mut curtain = Curtain::new(model);
         let id = curtain.simulation.add_manipulator(Manipulator::Tie(RING), RigidTransform::default());
-        assert_eq!(curtain.simulation.attached_points(id).count(), 2 * STRANDS, "every strand is in reach");
+        assert_eq!(
+            curtain.simulation.attached_points(id).count(),
+            2 * STRANDS,
+            "not every strand is in reach"
+        );
         let mut fastest = 0.0f64;
         for _ in 0..90 {
             curtain.step(RigidTransform::default());
             fastest = fastest.max(curtain.simulation.measure(&[]).speed_max);
         }
-        // 3 cm in half a second, at most half as fast again as their mean, and the tips that swing below.
+        // 3 cm in half a second, with a peak at most half above the mean, and the tips that swing below.
         println!("{model:?}: gathered with at most {fastest} m/s");
-        assert!(fastest < 0.5, "{model:?}: gathered with a jerk of {fastest} m/s");
+        assert!(fastest < 0.5, "{model:?}: gathered too fast, at {fastest} m/s");
         let held: Vec<_> = curtain.simulation.attached_points(id).collect();
         assert_eq!(held.len(), 2 * STRANDS, "{model:?}");
-        // Twenty points hang on two, and the shake has 8 m/s².
+        // Two held points carry twenty, and the shake has an acceleration of 8 m/s².
         let omega = std::f32::consts::TAU * RING.pull;
         let bound = 20.0 / 2.0 * (9.81 + 8.0) / (omega * omega);
-        // A landing stops 2.4 m/s in a frame: what hangs below shoots on, and pulls through the ring's side for a moment.
+        // A landing stops 2.4 m/s in a frame: the hair below the ring continues, and pulls through the
+        // ring's side for a moment.
         let landing = 0.5 * RING.radius;
         let (mut shaken, mut hopped, mut longest) = (0.0f32, 0.0f32, 0.0f64);
         for frame in 1..=240 {
@@ -125,12 +132,12 @@ fn what_is_bound_stays_in_the_ring() {
             *most = most.max(worst);
         }
         println!(
-            "{model:?}: out of the ring by {shaken} m shaken ({bound}), {hopped} m hopping ({landing}), {longest} longer"
+            "{model:?}: out of the ring by {shaken} m shaken (bound {bound}), {hopped} m hopping (bound {landing}), stretch {longest}"
         );
         assert!(shaken < bound, "{model:?}: {shaken} m out of the ring, closed form {bound}");
         assert!(hopped < landing, "{model:?}: {hopped} m out of the ring, bound {landing}");
-        assert!(longest < 0.011, "{model:?}: {longest} longer");
-        // A jump of 5 m: all of it is back in the ring within a second.
+        assert!(longest < 0.011, "{model:?}: the stretch is {longest}");
+        // After a jump of 5 m, all bound points are back in the ring within a second.
         let away = RigidTransform { translation: Vec3::new(5.0, 0.0, 0.0), ..RigidTransform::default() };
         for _ in 0..60 {
             curtain.simulation.set_manipulator_pose(id, away);
@@ -148,9 +155,9 @@ fn what_is_bound_stays_in_the_ring() {
 }
 
 #[test]
-fn hair_that_is_too_short_slips_through_until_it_gets_there() {
+fn short_hair_slips_through_the_ring_until_it_reaches() {
     let mut curtain = Curtain::new(Model::Curvature);
-    // Far to the side: no strand can be there with the segment that was nearest.
+    // A ring far to the side: no strand can reach it with its nearest segment.
     let ring = Tie { center: Vec3::new(0.12, -0.06, 0.0), axis: Vec3::X, reach: 0.2, ..RING };
     let id = curtain.simulation.add_manipulator(Manipulator::Tie(ring), RigidTransform::default());
     let before: Vec<_> = curtain.simulation.attached_points(id).collect();
@@ -158,8 +165,8 @@ fn hair_that_is_too_short_slips_through_until_it_gets_there() {
         curtain.step(RigidTransform::default());
     }
     let after: Vec<_> = curtain.simulation.attached_points(id).collect();
-    assert_eq!(before.len(), after.len(), "all are long enough");
-    assert!(after.iter().zip(&before).any(|(a, b)| a.1 > b.1), "none slipped");
+    assert_eq!(before.len(), after.len(), "strands were lost although all are long enough");
+    assert!(after.iter().zip(&before).any(|(a, b)| a.1 > b.1), "no strand slipped");
     let off = |(s, i): &(u32, u32)| {
         let p = curtain.points[*s as usize * POINTS + *i as usize] - ring.center;
         (p.reject_from_normalized(Vec3::X).length() - ring.radius).max(p.x.abs() - SEGMENT)
@@ -167,7 +174,7 @@ fn hair_that_is_too_short_slips_through_until_it_gets_there() {
     let worst = after.iter().map(off).fold(f32::MIN, f32::max);
     println!("{worst} m out of the ring");
     assert!(worst < 0.5 * SEGMENT, "{worst} m out of the ring");
-    // Out of every strand's reach: nothing is held, nothing is torn.
+    // A ring out of reach of every strand holds nothing and stretches nothing.
     let far = Tie { center: Vec3::X, reach: 2.0, ..RING };
     let id = curtain.simulation.add_manipulator(Manipulator::Tie(far), RigidTransform::default());
     for _ in 0..150 {
@@ -178,9 +185,9 @@ fn hair_that_is_too_short_slips_through_until_it_gets_there() {
 }
 
 #[test]
-fn hair_is_gathered_around_a_body_and_not_into_it() {
+fn hair_is_gathered_around_a_body() {
     let mut curtain = Curtain::new(Model::Curvature);
-    // On the straight way from the curtain to the ring.
+    // The ball is on the straight line from the curtain to the ring.
     let ball = ColliderShape::Sphere { center: Vec3::new(0.07, -0.1, 0.0), radius: 0.028 };
     curtain.obstacles = vec![MovingCollider::at_rest(ball, RigidTransform::default())];
     let ring = Tie { center: Vec3::new(0.1, -0.1, 0.0), axis: Vec3::X, reach: 0.2, ..RING };
@@ -194,14 +201,15 @@ fn hair_is_gathered_around_a_body_and_not_into_it() {
         lost = before - curtain.simulation.attached_points(id).count();
     }
     let lost = lost / 2;
-    println!("{deepest} m deep at most, {lost} of {STRANDS} lost");
-    assert!(deepest < 1e-6, "pulled {deepest} m into the ball");
-    // Those whose way leads through its middle. Pulled straight at the ring, all were held back by the ball, and slipped out.
+    println!("at most {deepest} m deep, {lost} of {STRANDS} lost");
+    assert!(deepest < 1e-6, "hair was pulled {deepest} m into the ball");
+    // Strands whose path leads through the ball's center may be lost. When hair was pulled straight to the
+    // ring, the ball held all strands back and they slipped out.
     assert!(lost < STRANDS / 5, "{lost} of {STRANDS} slipped out of the ring");
 }
 
 #[test]
-fn the_same_bits_on_any_number_of_threads() {
+fn manipulators_are_independent_of_threads() {
     let played = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {

@@ -1,7 +1,8 @@
-//! Promise: a source of wind blows as its law says and nowhere else, bodies and hair shelter what is behind them, and none of it shows in hair that
-//! it does not reach.
+//! Promise: a wind source follows its law and blows nowhere else. Bodies and hair shelter what is behind
+//! them. Hair out of reach keeps its bits.
 //!
-//! Laws are held against what they keep: a fan's jet its momentum, a point's flow its volume. What shelters is held against the same hair without.
+//! Laws are tested by their conserved quantity: the momentum of a fan's jet, the volume flow of a point
+//! source. Sheltered hair is compared with the same hair in the open.
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
@@ -17,7 +18,7 @@ use std::{f32::consts::PI, sync::Arc};
 
 const FAN: Flow = Flow::Fan { center: Vec3::ZERO, axis: Vec3::Z, radius: 0.1, speed: 4.0, spread: 11.8 };
 
-/// What blows at rest and without gusts.
+/// A source at rest, without gusts.
 fn still(flow: Flow) -> Source {
     Source { flow, pose: RigidTransform::default(), factor: 1.0 }
 }
@@ -30,15 +31,15 @@ fn over_disc(radius: f32, z: f32, f: impl Fn(Vec3) -> f32) -> f32 {
 }
 
 #[test]
-fn a_fan_has_its_speed_at_its_mouth_nothing_behind_and_keeps_its_momentum() {
+fn a_fan_conserves_momentum_and_blows_only_forward() {
     for x in [0.0, 0.03, 0.055] {
         assert_eq!(FAN.velocity(Vec3::new(x, 0.0, 0.0)), Vec3::Z * 4.0);
     }
     for behind in [Vec3::new(0.0, 0.0, -0.001), Vec3::new(0.05, 0.02, -1.0)] {
         assert_eq!(FAN.velocity(behind), Vec3::ZERO);
     }
-    assert!(FAN.velocity(Vec3::new(0.3, 0.0, 0.05)).length() < 0.01, "beside the jet the air is still");
-    // Beyond the core.
+    assert!(FAN.velocity(Vec3::new(0.3, 0.0, 0.05)).length() < 0.01, "the air beside the jet moves");
+    // Beyond the core of the jet.
     for z in [0.5, 1.0, 3.0] {
         let momentum = over_disc(4.0, z, |p| FAN.velocity(p).length_squared());
         let mouth = 16.0 * PI * 0.01;
@@ -53,7 +54,7 @@ fn a_fan_has_its_speed_at_its_mouth_nothing_behind_and_keeps_its_momentum() {
 }
 
 #[test]
-fn a_point_keeps_its_volume_and_a_vortex_turns_about_its_axis() {
+fn a_point_conserves_volume_and_a_vortex_rotates() {
     let point = |speed: f32| Flow::Point { center: Vec3::X, radius: 0.05, speed };
     let way = Vec3::new(0.6, -0.8, 0.0);
     for r in [0.05_f32, 0.1, 2.0] {
@@ -75,7 +76,7 @@ fn hanging(roots: &[Vec3]) -> Arc<Groom> {
     Arc::new(Groom::from_strands(roots.iter().map(strand), 4e-5))
 }
 
-/// Points of those strands after `frames` in moving air.
+/// The points of these strands after `frames` in moving air.
 fn blown(
     groom: &Arc<Groom>,
     air: Air,
@@ -122,27 +123,27 @@ fn tip(groom: &Groom, points: &[Vec3], s: usize) -> f32 {
 }
 
 #[test]
-fn hair_behind_a_fan_does_not_know_of_it_and_hair_before_it_flies() {
+fn a_fan_moves_only_hair_in_front_of_it() {
     let groom = hanging(&[Vec3::new(0.0, 0.1, -0.3), Vec3::new(0.0, 0.1, 0.3)]);
     let wind = Wind { velocity: Vec3::new(0.5, 0.0, 0.1), gust: 0.5, gust_rate: 1.0 };
     let alone = blown(&groom, Air { wind, ..Air::default() }, &WindOcclusion::default(), &[], 60);
     let sources = [still(FAN)];
     let both =
         blown(&groom, Air { wind, sources: &sources, ..Air::default() }, &WindOcclusion::default(), &[], 60);
-    assert!(alone[groom.range(0)] == both[groom.range(0)], "behind the fan there are other bits");
+    assert!(alone[groom.range(0)] == both[groom.range(0)], "the fan changed hair behind it");
     let [before, after] = [&alone, &both].map(|points| tip(&groom, points, 1));
-    println!("the tip before the fan is blown by {after} m, {before} without it");
-    assert!(after > before + 0.03, "{after} m, {before} without the fan");
+    println!("the tip in front of the fan is blown by {after} m, {before} m without it");
+    assert!(after > before + 0.03, "{after} m with the fan, {before} m without it");
 }
 
-/// A ball in the way of wind along z.
+/// A ball in a wind along z.
 fn ball() -> MovingCollider {
     let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.06 };
     MovingCollider { shape, start: RigidTransform::default(), end: RigidTransform::default() }
 }
 
 #[test]
-fn a_body_shelters_what_is_behind_it_alone() {
+fn a_body_shelters_only_hair_behind_it() {
     let groom = hanging(&[Vec3::new(0.0, 0.1, -0.1), Vec3::new(0.0, 0.1, 0.15), Vec3::new(0.3, 0.1, 0.15)]);
     let air = Air { wind: Wind { velocity: Vec3::Z * 0.12, ..Wind::default() }, ..Air::default() };
     let open = blown(&groom, air, &WindOcclusion::default(), &[ball()], 120);
@@ -152,14 +153,14 @@ fn a_body_shelters_what_is_behind_it_alone() {
     assert!(open[groom.range(0)] == lee[groom.range(0)], "in front of the ball: {:?} m", tips[0]);
     assert!(open[groom.range(2)] == lee[groom.range(2)], "beside the ball: {:?} m", tips[2]);
     assert!(tips[1][1] < 0.7 * tips[1][0], "behind the ball: {:?} m", tips[1]);
-    // Gravity and drag are the same: hair that is swung is braked as much in the lee.
+    // A shorter reach ends the wake. Gravity and drag are the same, so the damping in the lee is too.
     let far = WindOcclusion { body: 200.0, reach: 0.05, ..WindOcclusion::default() };
     let out = blown(&groom, air, &far, &[ball()], 120);
-    assert!((tip(&groom, &out, 1) / tips[1][0] - 1.0).abs() < 0.02, "the wake has an end");
+    assert!((tip(&groom, &out, 1) / tips[1][0] - 1.0).abs() < 0.02, "the wake does not end");
 }
 
 #[test]
-fn deep_hair_feels_less_wind() {
+fn deep_hair_is_sheltered() {
     let roots: Vec<Vec3> = (0..240).map(|k| Vec3::new((k % 8) as f32, 0.0, (k / 8) as f32) * 0.005).collect();
     let groom = hanging(&roots);
     let air = Air { wind: Wind { velocity: Vec3::Z * 0.12, ..Wind::default() }, ..Air::default() };
@@ -169,12 +170,12 @@ fn deep_hair_feels_less_wind() {
     let tips: Vec<[f32; 2]> = (0..30).step_by(5).map(|z| [row(&open, z), row(&inside, z)]).collect();
     println!("tips in the open and with shelter, from the first row to the last: {tips:?} m");
     assert!(tips.windows(2).all(|w| w[1][1] < 1.02 * w[0][1]), "deeper hair is blown farther: {tips:?}");
-    assert!(tips[0][1] > 0.5 * tips[0][0], "the first row is in the wind: {:?}", tips[0]);
+    assert!(tips[0][1] > 0.5 * tips[0][0], "the first row is sheltered: {:?}", tips[0]);
     assert!(tips[4][1] < 0.2 * tips[4][0], "10 cm deep: {:?}", tips[4]);
 }
 
 #[test]
-fn threads_do_not_show_in_moving_air() {
+fn hair_in_moving_air_is_independent_of_threads() {
     let roots: Vec<Vec3> =
         (0..600).map(|k| Vec3::new((k % 20) as f32, 10.0, (k / 20) as f32) * 0.01 - Vec3::X * 0.1).collect();
     let groom = hanging(&roots);
