@@ -271,7 +271,7 @@ pub const ALL: &[Parameter] = parameters! {
     }
     Solver {
         Scene "solver.integrator", "Integrator", "", Kind::Choice(&["backward-euler", "bdf2", "explicit-euler", "verlet", "local-global", "ftl", "dftl"]), "Time integrator of a substep. The explicit ones become unstable; they are there for comparison.";
-        Scene "solver.substeps", "Substeps", "", Kind::Count { min: 1, max: 64 }, "Substeps per 1/60 s.";
+        Scene "solver.substeps", "Substeps", "", Kind::Count { min: 1, max: 64 }, "Substeps per 1/60 s. The scene file accepts up to 1024.";
         Scene "solver.projection_iterations", "Iterations", "", Kind::Count { min: 0, max: 20 }, "Iterations of fast projection per substep, which keep segments at their length.";
         Scene "solver.quality", "Quality", "", Kind::Choice(&["normal", "high"]), "normal: one linear solve per substep. high: Newton iterations to convergence.";
         Scene "solver.sag_free", "Sag-free start", "", Kind::Switch, "Whether rest shapes are solved so that the groom is in static balance as authored.";

@@ -59,7 +59,7 @@ pub struct Options {
     frames: u32,
 
     /// Substeps per frame
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=1024))]
     substeps: u32,
 
     /// Time integrator: backward-euler, bdf2, explicit-euler, verlet, local-global, ftl, dftl

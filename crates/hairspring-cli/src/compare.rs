@@ -51,7 +51,7 @@ pub struct Options {
     guides: Option<Guides>,
 
     /// Substeps per 1/60 s, for every method [default: from the scene, otherwise 4]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     substeps: Option<u32>,
 
     /// Length of the scene that is played, and of the free swing [s]

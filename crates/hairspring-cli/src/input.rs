@@ -56,7 +56,7 @@ pub struct Input {
     pub guides: Option<Guides>,
 
     /// Substeps per 1/60 s, for any frame rate [default: from the scene, otherwise 4]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub substeps: Option<u32>,
 }
 

@@ -76,8 +76,8 @@ pub struct Options {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=1024), help_heading = "How it is simulated")]
     points: Option<u32>,
 
-    /// Substeps per frame of 1/60 s, 1 to 64 [default: 4 at rest, 8 in motion]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64), help_heading = "How it is simulated")]
+    /// Substeps per frame of 1/60 s, 1 to 1024 [default: 4 at rest, 8 in motion]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "How it is simulated")]
     substeps: Option<u32>,
 
     /// Elastic model: auto, springs, curvature, rod [default: auto; michell: rod]

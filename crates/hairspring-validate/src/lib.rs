@@ -124,7 +124,7 @@ pub struct Quantity {
 pub struct Method {
     /// Points of the strand, 3 to 1,024.
     pub points: u32,
-    /// Substeps of a frame of 1/60 s, 1 to 64.
+    /// Substeps of a frame of 1/60 s, 1 to 1024.
     pub substeps: u32,
     /// Elastic model.
     pub model: Model,

@@ -55,7 +55,11 @@ pub fn main() {
             air: Air::default(),
         });
     }
-    let (contacts, measure) = (simulation.contacts(&obstacles), simulation.measure(&obstacles));
-    println!("{} points touch the torus, {:.3} mm deep at most", contacts.points, 1e3 * measure.max_depth);
-    assert!(contacts.points > 0 && measure.max_depth < 1e-4);
+    let (found, measure) = (simulation.contacts(&obstacles), simulation.measure(&obstacles));
+    let contacts = found.points + found.segments;
+    println!(
+        "{contacts} points and segments touch the torus, {:.3} mm deep at most",
+        1e3 * measure.max_depth
+    );
+    assert!(contacts > 0 && measure.max_depth < 1e-4);
 }

@@ -45,7 +45,7 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         ),
         (format!("{GROOM}[groom.look]\nmelanin = 1.5\n"), &["line 4", "`melanin` must be 0 to 1"]),
         (format!("{GROOM}[groom.look]\ndye = [0, 0, 2]\n"), &["line 4", "`dye` must be three numbers"]),
-        (format!("{GROOM}[solver]\nsubsteps = 0\n"), &["line 4", "1 to 64"]),
+        (format!("{GROOM}[solver]\nsubsteps = 0\n"), &["line 4", "1 to 1024"]),
         (format!("{GROOM}[camera]\nfov = 200\n"), &["line 4", "1 to 170"]),
         (format!("{GROOM}[ground]\nheight = nan\n"), &["line 4", "`height` must be a finite number"]),
         (format!("{GROOM}[ground]\ncolor = [0, 2, 0]\n"), &["line 4", "`color` must be three numbers"]),

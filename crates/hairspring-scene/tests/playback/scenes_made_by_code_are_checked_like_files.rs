@@ -15,7 +15,7 @@ type Fault = (fn(&mut Scene), &'static str);
 #[test]
 fn every_part_of_a_scene_is_checked() {
     let faults: [Fault; 8] = [
-        (|s| s.solver.substeps = 65, "solver: `substeps` must be 1 to 64"),
+        (|s| s.solver.substeps = 1025, "solver: `substeps` must be 1 to 1024"),
         (|s| s.wind.gust = -0.1, "wind: `gust` must be 0 to 1"),
         (|s| s.volume.cell = Some(0.0), "volume: `cell` must be above 0 [m]"),
         (|s| s.gravity = Vec3::NAN, "scene: `gravity` must be three finite numbers [m/s²]"),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Solver {
-    /// Number of substeps in a frame of 1/60 s, 1 to 64. Default 4: substeps of 1/240 s at any frame rate.
+    /// Number of substeps in a frame of 1/60 s, 1 to 1024. Default 4: substeps of 1/240 s at any frame rate.
     pub substeps: u32,
     /// Whether rest shapes are computed so that the groom starts in static balance under gravity. Default
     /// true.
@@ -152,7 +152,7 @@ impl Default for Solver {
 impl Validate for Solver {
     fn checks(&self) -> Vec<Check> {
         vec![
-            check((1..=64).contains(&self.substeps), "substeps", "1 to 64"),
+            check((1..=1024).contains(&self.substeps), "substeps", "1 to 1024"),
             check((0..=20).contains(&self.projection_iterations), "projection_iterations", "0 to 20"),
             check((0.0..=60.0).contains(&self.preroll), "preroll", "0 to 60 [s]"),
             check((0.0..=1.0).contains(&self.inertia), "inertia", "0 to 1"),

@@ -38,7 +38,7 @@ fn invalid_grooms_are_refused() {
 fn invalid_settings_are_refused() {
     let solver = Solver { substeps: 0, ..Solver::default() };
     let error = Simulation::builder(groom(3)).solver(solver).build().err().unwrap();
-    assert_eq!(error.to_string(), "solver: `substeps` must be 1 to 64");
+    assert_eq!(error.to_string(), "solver: `substeps` must be 1 to 1024");
     let materials = [Material::default(), Material { young: f32::NAN, ..Material::default() }];
     let error = Simulation::builder(groom(3)).materials(&materials).build().err().unwrap();
     assert_eq!(error.to_string(), "material 1: `young` must be above 0 [Pa]");
