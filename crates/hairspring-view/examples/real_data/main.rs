@@ -46,8 +46,8 @@ struct Arguments {
 
 /// Head of the table of `docs/contact.md`.
 const CONTACT: &str = "\
-| scene | substeps | frames | points that may meet | points inside | deepest point [mm] | segments inside | segments deeper than 1 mm | in so many frames | deepest segment [mm] | held ones deeper than 1 mm | deepest of them [mm] | ms a frame, strands |
-| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |";
+| scene | substeps | frames | simulated points | points inside | deepest point [mm] | segments inside | segments deeper than 1 mm | frames with such a segment | deepest segment [mm] | the same in the mesh [mm] | held segments deeper than 1 mm | deepest held segment [mm] | ms a frame, strands |
+| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = arguments()?;
