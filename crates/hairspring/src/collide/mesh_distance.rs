@@ -5,6 +5,10 @@ use super::{ColliderShape, SignedDistanceField, voxelize::BAND};
 use crate::body::{nearest_on_triangle, place_on};
 use glam::Vec3;
 
+/// Largest difference between a field and its mesh at which both describe the same surface [cells]. At a sharp edge
+/// they differ by a third of a cell.
+const SAME_SURFACE: f32 = 0.5;
+
 impl ColliderShape {
     /// Returns the distance from `p` [m] in the collider's own space to its exact surface, negative inside. For
     /// a field within a cell of the surface, that is its mesh. Otherwise it is the distance that the solver
@@ -26,7 +30,9 @@ impl SignedDistanceField {
     /// corners are all inside, `p` is inside too: a triangle there may be a wall between two overlapping
     /// pieces. In other cells, the sign is that of the triangle's plane. Of equally near triangles, at an edge
     /// or a corner, the one whose plane is farthest counts (compare Bærentzen and Aanæs 2005, *Signed Distance
-    /// Computation Using the Angle Weighted Pseudonormal*).
+    /// Computation Using the Angle Weighted Pseudonormal*). Where the result differs from the field by more than
+    /// half a cell, the two describe different surfaces, and the field's distance is returned: the field closes
+    /// holes of the mesh (`holes.rs`) and removes walls inside of it.
     pub fn distance_to_mesh(&self, p: Vec3) -> f32 {
         let own = self.distance_and_normal(p).0;
         let cell = self.lattice.cell;
@@ -60,7 +66,8 @@ impl SignedDistanceField {
             return own;
         }
         let outside = best.1 > 0.0 && !enclosed;
-        if outside { best.0.sqrt() } else { -best.0.sqrt() }
+        let exact = if outside { best.0.sqrt() } else { -best.0.sqrt() };
+        if (exact - own).abs() > SAME_SURFACE * cell { own } else { exact }
     }
 }
 
