@@ -65,7 +65,8 @@ impl Field {
                         continue;
                     };
                     for (sum, own) in sum.iter_mut().zip(own) {
-                        *sum += own;
+                        // As in `splat`: sums that cancel may leave the range in between.
+                        *sum = i32::wrapping_add(*sum, *own);
                     }
                 }
                 let mass = sum[3] as f32;
