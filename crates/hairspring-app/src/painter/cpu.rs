@@ -1,5 +1,5 @@
 //! Renders the picture on the CPU, on its own thread, at a quality that fits the available time. The window
-//! stays responsive, and shows what is left out.
+//! stays responsive, and lists the omitted work.
 
 use super::{Pace, image, once, pane::Pane, smooth};
 use crate::snapshot::{Snapshot, ViewParameters};
@@ -309,7 +309,7 @@ impl CpuPainter {
         }
     }
 
-    /// Describes what is left out of the current picture, its time, and the number of pictures per second.
+    /// Describes which work the current picture omits, its time, and the number of pictures per second.
     pub fn note(&self) -> String {
         let scale = LEVELS[self.seen].scale;
         let part = match (scale, self.every) {

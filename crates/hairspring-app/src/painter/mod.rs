@@ -156,7 +156,7 @@ impl Pace {
         Self { mean: 0.0, came: Instant::now() }
     }
 
-    /// Counts a picture. `anew` restarts the measurement, because the picture does not continue a series.
+    /// Counts a picture. `anew` restarts the measurement: use it when the picture does not continue a series.
     fn tick(&mut self, anew: bool) {
         let since = self.came.elapsed().as_secs_f32();
         self.came = Instant::now();
