@@ -22,6 +22,7 @@ pub mod global_shape;
 pub mod grab;
 mod hair_field;
 mod manipulator;
+mod strand_batch;
 mod strand_view;
 pub mod tie;
 mod wind;
@@ -31,13 +32,14 @@ pub use force_field::ForceField;
 pub(crate) use hair_field::HairField;
 pub(crate) use manipulator::ActiveManipulator;
 pub use manipulator::Manipulator;
+pub(crate) use strand_batch::StrandBatch;
 pub use strand_view::StrandView;
 pub(crate) use wind::WindSampler;
 
 use crate::{
     math::RigidTransform,
-    simd::lanes::{LANES, Row},
-    strand::tile::{RestRows, StateRows, StrandRows, TilePlace, anisotropic_drag, position_spring},
+    simd::lanes::Row,
+    strand::tile::{anisotropic_drag, position_spring},
 };
 
 /// The per-point forces of all tiles in a frame. Each array has shape `[points]` over all tiles, or is empty
@@ -91,110 +93,9 @@ impl ForceBuffers {
     }
 }
 
-/// A range of tiles, with the force buffers of their points.
-pub(crate) struct StrandBatch<'a> {
-    pub tiles: &'a [TilePlace],
-    /// Index in the groom of the strand in each lane; `u32::MAX` in unused lanes.
-    pub lanes: &'a [u32],
-    pub strand: &'a [StrandRows],
-    pub rest: &'a [RestRows],
-    pub state: &'a [StateRows],
-    pub external_acceleration: &'a mut [[Row; 3]],
-    pub position_spring: &'a mut [[Row; position_spring::ROWS]],
-    pub anisotropic_drag: &'a mut [[Row; anisotropic_drag::ROWS]],
-    pub wind_delta: &'a mut [[Row; 3]],
-}
-
 /// The motion of the anchor in a frame: its pose at the start and at the end, and the frame's duration [s].
 #[derive(Clone, Copy)]
 pub(crate) struct FrameMotion {
     pub anchor: [RigidTransform; 2],
     pub dt: f32,
-}
-
-/// Number of tiles that one task processes.
-const TILES_PER_TASK: usize = 32;
-
-impl StrandBatch<'_> {
-    /// Calls `act` for every strand, in parallel.
-    pub fn each(&mut self, frame: &FrameMotion, act: &(impl Fn(&mut StrandView) + Sync)) {
-        let count = self.tiles.len();
-        if count > TILES_PER_TASK {
-            let (mut a, mut b) = self.split(count / 2);
-            rayon::join(|| a.each(frame, act), || b.each(frame, act));
-            return;
-        }
-        for (k, place) in self.tiles.iter().enumerate() {
-            let first = (place.first - self.tiles[0].first) as usize;
-            let points = first..first + place.points as usize;
-            let all = |len: usize| if len == 0 { 0..0 } else { points.clone() };
-            for lane in 0..LANES {
-                let strand = self.lanes[k * LANES + lane];
-                if strand == u32::MAX {
-                    continue;
-                }
-                let [accelerations, springs, drags, winds] = [
-                    self.external_acceleration.len(),
-                    self.position_spring.len(),
-                    self.anisotropic_drag.len(),
-                    self.wind_delta.len(),
-                ]
-                .map(all);
-                act(&mut StrandView {
-                    strand: strand as usize,
-                    frame,
-                    lane,
-                    stride: place.model.stride(),
-                    rows: &self.strand[k],
-                    rest: &self.rest[points.clone()],
-                    state: &self.state[points.clone()],
-                    external_acceleration: &mut self.external_acceleration[accelerations],
-                    position_spring: &mut self.position_spring[springs],
-                    anisotropic_drag: &mut self.anisotropic_drag[drags],
-                    wind_delta: &mut self.wind_delta[winds],
-                });
-            }
-        }
-    }
-
-    /// Splits off the first `count` tiles.
-    fn split(&mut self, count: usize) -> (StrandBatch<'_>, StrandBatch<'_>) {
-        let points = (self.tiles[count].first - self.tiles[0].first) as usize;
-        let (tiles, more_tiles) = self.tiles.split_at(count);
-        let (lanes, more_lanes) = self.lanes.split_at(count * LANES);
-        let (strand, more_strand) = self.strand.split_at(count);
-        let (rest, more_rest) = self.rest.split_at(points);
-        let (state, more_state) = self.state.split_at(points);
-        let (external_acceleration, more_external_acceleration) =
-            self.external_acceleration.split_at_mut(points.min(self.external_acceleration.len()));
-        let (position_spring, more_position_spring) =
-            self.position_spring.split_at_mut(points.min(self.position_spring.len()));
-        let (anisotropic_drag, more_anisotropic_drag) =
-            self.anisotropic_drag.split_at_mut(points.min(self.anisotropic_drag.len()));
-        let (wind_delta, more_wind_delta) = self.wind_delta.split_at_mut(points.min(self.wind_delta.len()));
-        (
-            StrandBatch {
-                tiles,
-                lanes,
-                strand,
-                rest,
-                state,
-                external_acceleration,
-                position_spring,
-                anisotropic_drag,
-                wind_delta,
-            },
-            StrandBatch {
-                tiles: more_tiles,
-                lanes: more_lanes,
-                strand: more_strand,
-                rest: more_rest,
-                state: more_state,
-                external_acceleration: more_external_acceleration,
-                position_spring: more_position_spring,
-                anisotropic_drag: more_anisotropic_drag,
-                wind_delta: more_wind_delta,
-            },
-        )
-    }
 }

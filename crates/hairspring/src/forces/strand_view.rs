@@ -1,11 +1,10 @@
 //! One strand as seen by an external force: its points at the start of a frame, and the force buffers to
 //! write to.
 
-use super::FrameMotion;
+use super::{FrameMotion, strand_batch::ForceTile};
 use crate::{
     math::RigidTransform,
-    simd::lanes::Row,
-    strand::tile::{RestRows, StateRows, StrandRows, anisotropic_drag, position_spring, rest, state, strand},
+    strand::tile::{StateRows, anisotropic_drag, position_spring, rest, state, strand},
 };
 use glam::{Quat, Vec3};
 
@@ -16,14 +15,7 @@ pub struct StrandView<'a> {
     pub(crate) strand: usize,
     pub(crate) frame: &'a FrameMotion,
     pub(super) lane: usize,
-    pub(super) stride: usize,
-    pub(super) rows: &'a StrandRows,
-    pub(super) rest: &'a [RestRows],
-    pub(super) state: &'a [StateRows],
-    pub(super) external_acceleration: &'a mut [[Row; 3]],
-    pub(super) position_spring: &'a mut [[Row; position_spring::ROWS]],
-    pub(super) anisotropic_drag: &'a mut [[Row; anisotropic_drag::ROWS]],
-    pub(super) wind_delta: &'a mut [[Row; 3]],
+    pub(super) tile: ForceTile<'a>,
 }
 
 impl<'a> StrandView<'a> {
@@ -34,7 +26,12 @@ impl<'a> StrandView<'a> {
 
     /// Returns the number of points. The root drives the first two.
     pub fn point_count(&self) -> usize {
-        self.rows[strand::POINTS].0[self.lane] as usize
+        self.tile.strand[strand::POINTS].0[self.lane] as usize
+    }
+
+    /// Particles for each point of the strand.
+    fn stride(&self) -> usize {
+        self.tile.layout.model.stride()
     }
 
     /// Returns the length of the frame [s].
@@ -44,7 +41,7 @@ impl<'a> StrandView<'a> {
 
     /// Returns the root's world transform since rest, at the start and at the end of the frame.
     pub fn roots(&self) -> [RigidTransform; 2] {
-        let number = |row: usize| self.rows[row].0[self.lane];
+        let number = |row: usize| self.tile.strand[row].0[self.lane];
         let [start, end] = self.frame.anchor;
         [(start, strand::ROOT_START, strand::TURN_START), (end, strand::ROOT_END, strand::TURN_END)].map(
             |(anchor, root, turn)| RigidTransform {
@@ -57,43 +54,44 @@ impl<'a> StrandView<'a> {
     /// Returns the position relative to the root [m] and the velocity [m/s] of every point at the start of
     /// the frame, root first.
     pub fn points(&self) -> impl Iterator<Item = (Vec3, Vec3)> + use<'a> {
-        let (state, lane) = (self.state, self.lane);
+        let (state, lane) = (self.tile.state, self.lane);
         let vector = move |rows: &StateRows, at: usize| Vec3::from([0, 1, 2].map(|k| rows[at + k].0[lane]));
         let particles = state.iter().scan(Vec3::ZERO, move |x, rows| {
             *x += vector(rows, state::EDGE);
             Some((*x, vector(rows, state::V)))
         });
-        particles.step_by(self.stride).take(self.rows[strand::POINTS].0[lane] as usize)
+        particles.step_by(self.stride()).take(self.tile.strand[strand::POINTS].0[lane] as usize)
     }
 
     /// Returns the length of hair that point `i` represents: half of the adjacent segments [m].
     pub fn length(&self, i: usize) -> f32 {
-        let length = |i: usize| self.rest[i * self.stride][rest::LENGTH].0[self.lane];
+        let length = |i: usize| self.tile.rest[i * self.stride()][rest::LENGTH].0[self.lane];
         0.5 * (length(i) + if i > 0 { length(i - 1) } else { 0.0 })
     }
 
     /// Returns the mass of point `i` [kg].
     pub fn mass(&self, i: usize) -> f32 {
-        self.rest[i * self.stride][rest::MASS].0[self.lane]
+        self.tile.rest[i * self.stride()][rest::MASS].0[self.lane]
     }
 
     /// Returns the allowed depth of point `i` inside a collider, 0 or less [m].
     pub fn clearance(&self, i: usize) -> f32 {
-        self.rest[i * self.stride][rest::CLEARANCE].0[self.lane]
+        self.tile.rest[i * self.stride()][rest::CLEARANCE].0[self.lane]
     }
 
     /// Returns the vector from point `i − 1` to point `i` at the start of the frame [m], and the velocity of
     /// point `i` [m/s]. `i` must be 1 or more.
     pub fn segment(&self, i: usize) -> (Vec3, Vec3) {
-        let vector = |i: usize, at: usize| Vec3::from([0, 1, 2].map(|k| self.state[i][at + k].0[self.lane]));
-        let last = i * self.stride;
-        let edge = (last + 1 - self.stride..=last).map(|i| vector(i, state::EDGE)).sum();
+        let vector =
+            |i: usize, at: usize| Vec3::from([0, 1, 2].map(|k| self.tile.state[i][at + k].0[self.lane]));
+        let last = i * self.stride();
+        let edge = (last + 1 - self.stride()..=last).map(|i| vector(i, state::EDGE)).sum();
         (edge, vector(last, state::V))
     }
 
     /// Adds the acceleration `a` [m/s²] to point `i`.
     pub fn accelerate(&mut self, i: usize, a: Vec3) {
-        let rows = &mut self.external_acceleration[i * self.stride];
+        let rows = &mut self.tile.external_acceleration[i * self.stride()];
         for (row, a) in rows.iter_mut().zip(a.to_array()) {
             row.0[self.lane] += a;
         }
@@ -102,7 +100,7 @@ impl<'a> StrandView<'a> {
     /// Adds a spring that pulls point `i` to a target. The target moves from `from` to `to` during the frame,
     /// both relative to the root at that time [m]. `stiffness` is divided by the point's mass [1/s²].
     pub fn add_position_spring(&mut self, i: usize, [from, to]: [Vec3; 2], stiffness: f32) {
-        let rows = &mut self.position_spring[i * self.stride];
+        let rows = &mut self.tile.position_spring[i * self.stride()];
         rows[position_spring::STIFFNESS].0[self.lane] += stiffness;
         for (row, way) in rows[position_spring::WAY..].iter_mut().zip((to - from).to_array()) {
             row.0[self.lane] += way * stiffness;
@@ -112,13 +110,13 @@ impl<'a> StrandView<'a> {
 
     /// Adds drag that makes point `i` take on `velocity` [m/s] at `rate` [1/s].
     pub fn add_velocity_drag(&mut self, i: usize, velocity: Vec3, rate: f32) {
-        self.position_spring[i * self.stride][position_spring::BRAKE].0[self.lane] += rate;
+        self.tile.position_spring[i * self.stride()][position_spring::BRAKE].0[self.lane] += rate;
         self.accelerate(i, velocity * rate);
     }
 
     /// Adds drag that makes point `i` take on `velocity` [m/s] transverse to its strand, at `rate` [1/s].
     pub fn add_transverse_drag(&mut self, i: usize, velocity: Vec3, rate: f32) {
-        let rows = &mut self.anisotropic_drag[i * self.stride];
+        let rows = &mut self.tile.anisotropic_drag[i * self.stride()];
         rows[anisotropic_drag::BRAKE].0[self.lane] += rate;
         for (row, carry) in
             rows[anisotropic_drag::ACCELERATION..].iter_mut().zip((velocity * rate).to_array())
@@ -129,7 +127,7 @@ impl<'a> StrandView<'a> {
 
     /// Adds `velocity` [m/s] to the air at point `i`, on top of the directional wind.
     pub fn add_wind(&mut self, i: usize, velocity: Vec3) {
-        let rows = &mut self.wind_delta[i * self.stride];
+        let rows = &mut self.tile.wind_delta[i * self.stride()];
         for (row, v) in rows.iter_mut().zip(velocity.to_array()) {
             row.0[self.lane] += v;
         }

@@ -49,6 +49,47 @@ macro_rules! dispatch_double {
     }};
 }
 
+/// Runs an expression for the integrators that exist for comparison, in double precision if `$double`. Compiled
+/// for AVX2 and SSE2 only, to keep the build short.
+#[cfg(all(target_arch = "x86_64", not(one_lane), not(test)))]
+macro_rules! dispatch_comparison {
+    ($level:expr, $double:expr, $simd:pat => $op:expr) => {{
+        let level: fearless_simd::Level = $level;
+        if $double {
+            crate::simd::dispatch::dispatch_double!(level, $simd => $op);
+        } else if let Some(native) = level.as_avx2() {
+            crate::simd::dispatch::whole_tile!(native, $simd => $op);
+        } else if let Some(native) = level.as_sse2() {
+            crate::simd::dispatch::whole_tile!(native, $simd => $op);
+        }
+    }};
+}
+
+/// The same on other processors, and for the library's own unit tests.
+#[cfg(not(all(target_arch = "x86_64", not(one_lane), not(test))))]
+macro_rules! dispatch_comparison {
+    ($level:expr, $double:expr, $simd:pat => $op:expr) => {{
+        if $double {
+            crate::simd::dispatch::dispatch_double!($level, $simd => $op);
+        } else {
+            crate::simd::dispatch::dispatch!($level, $simd => $op);
+        }
+    }};
+}
+
+/// Runs an expression with these instructions in single precision.
+#[cfg(all(target_arch = "x86_64", not(one_lane), not(test)))]
+macro_rules! whole_tile {
+    ($native:ident, $simd:pat => $op:expr) => {{
+        let $simd = crate::simd::lanes::Single($native);
+        fearless_simd::Simd::vectorize(
+            $native,
+            #[inline(always)]
+            || $op,
+        )
+    }};
+}
+
 /// Runs an expression with these instructions in double precision, once for each half of a tile.
 #[cfg(all(target_arch = "x86_64", not(one_lane)))]
 macro_rules! both_halves {
@@ -89,4 +130,6 @@ macro_rules! dispatch_double {
 
 #[cfg(all(target_arch = "x86_64", not(one_lane)))]
 pub(crate) use both_halves;
-pub(crate) use {dispatch, dispatch_double};
+#[cfg(all(target_arch = "x86_64", not(one_lane), not(test)))]
+pub(crate) use whole_tile;
+pub(crate) use {dispatch, dispatch_comparison, dispatch_double};

@@ -1,10 +1,10 @@
 //! Builds tiles from a groom: rest shapes and the sag-free start.
 
 use super::{
-    Simulation, SimulationBuilder, layout::Order, manipulators::Tools, strand_model::StrandModel,
-    strand_state::StrandState, teleport::Motion,
+    Simulation, SimulationBuilder, cpu_solver::CpuSolver, layout::Order, manipulators::Tools,
+    strand_model::StrandModel, strand_state::StrandState, teleport::Motion,
 };
-use crate::strand::tile::TilePlace;
+use crate::strand::tile::TileLayout;
 use crate::{
     air::{Noise, OcclusionSampler, WindOcclusion},
     collide::ColliderPose,
@@ -56,7 +56,7 @@ impl Simulation {
         let coils = coils.count();
         let Order { lanes, asked, places, models } = Order::new(&groom, strands, &elastic);
         let mut first = 0;
-        let tiles: Vec<TilePlace> = lanes
+        let tiles: Vec<TileLayout> = lanes
             .chunks(LANES)
             .zip(models)
             .map(|(lane, (model, double))| {
@@ -64,7 +64,7 @@ impl Simulation {
                 let points = strands().map(|s| groom.range(s).len()).max().unwrap_or(0).max(3);
                 let points = ((points - 1) * model.stride() + 1) as u32;
                 let flat = model == Elastic::Rod && strands().any(|s| material(s).flatness != 1.0);
-                let place = TilePlace { first, points, model, flat, double };
+                let place = TileLayout { first, points, model, flat, double };
                 first += points;
                 place
             })
@@ -103,7 +103,7 @@ impl Simulation {
                 SegmentContactRows::default();
                 if solver.segment_contacts { first as usize } else { 0 }
             ],
-            holds: Vec::new(),
+            holds: vec![Vec::new(); model.tiles.len()],
             tools: Tools::default(),
             charged: Vec::new(),
             motion: Motion::default(),
@@ -136,7 +136,7 @@ impl Simulation {
             wind_occlusion: WindOcclusion::default(),
             shade: OcclusionSampler::default(),
             interval: FrameContext::default(),
-            level: super::levels().next().unwrap_or_else(Level::new),
+            solver: CpuSolver { level: super::levels().next().unwrap_or_else(Level::new) },
         }
     }
 
@@ -145,7 +145,7 @@ impl Simulation {
     /// contact and wind occlusion. Its memory is about 60 % of that of a simulation of its own.
     pub fn instance(&self) -> Self {
         let mut other = Self::with_parts(self.model.clone(), self.state.clone());
-        other.level = self.level;
+        other.solver.level = self.solver.level;
         other.interval.segments = self.interval.segments;
         other
     }

@@ -59,7 +59,7 @@ impl Simulation {
         let frame = FrameMotion { anchor: [anchor, drive.anchor], dt: drive.dt };
         let mut strands = StrandBatch {
             tiles: &self.model.tiles,
-            lanes: &self.model.lanes,
+            lanes: self.model.lanes.as_chunks().0,
             strand: &self.state.strand,
             rest: &self.model.rest,
             state: &self.state.points,

@@ -34,8 +34,7 @@ impl Simulation {
     /// # Panics
     /// If a strand or a point does not exist, or the root drives the point.
     pub fn set_holds(&mut self, holds: &[Hold]) {
-        self.state.holds =
-            if holds.is_empty() { Vec::new() } else { vec![Vec::new(); self.model.tiles.len()] };
+        self.state.holds.iter_mut().for_each(Vec::clear);
         for held in holds {
             let place = self.model.places[held.strand as usize] as usize;
             let points = self.model.groom.range(self.model.lanes[place] as usize).len();

@@ -4,6 +4,7 @@ mod authored;
 mod build;
 mod builder;
 mod contacts;
+mod cpu_solver;
 mod energy;
 mod exposure;
 mod external_forces;
@@ -46,11 +47,12 @@ use crate::{
     simd::lanes::LANES,
     strand::{
         frame_context::FrameContext,
-        tile::{TilePlace, state, strand},
+        tile::{TileLayout, state, strand},
     },
     strand_contact::Neighbours,
     volume::Volume,
 };
+use cpu_solver::CpuSolver;
 use fearless_simd::Level;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -87,7 +89,7 @@ pub struct Simulation {
     shade: OcclusionSampler,
     /// Context of the last frame, kept to reuse its memory.
     interval: FrameContext,
-    level: Level,
+    solver: CpuSolver,
 }
 
 impl Simulation {
@@ -126,12 +128,12 @@ impl Simulation {
                 + self.model.places.len()
                 + self.model.multiplicity.len())
                 * size_of::<u32>()
-            + self.model.tiles.len() * size_of::<TilePlace>()
+            + self.model.tiles.len() * size_of::<TileLayout>()
     }
 
     /// Name of the instruction set in use.
     pub fn instruction_set(&self) -> String {
-        name(self.level)
+        name(self.solver.level)
     }
 
     /// Names of the instruction sets that this processor supports, the best first.
@@ -144,7 +146,7 @@ impl Simulation {
     /// the processor has none with that name.
     pub fn use_instruction_set(&mut self, set: &str) -> bool {
         let found = levels().find(|level| name(*level) == set);
-        self.level = found.unwrap_or(self.level);
+        self.solver.level = found.unwrap_or(self.solver.level);
         found.is_some()
     }
 

@@ -1,6 +1,6 @@
 //! One step: a frame of root motion, divided into substeps. Each tile runs all of them.
 
-use super::{Simulation, reset};
+use super::Simulation;
 use crate::{
     air::Air,
     collide::{ColliderPose, FrameColliders, MovingCollider},
@@ -9,18 +9,12 @@ use crate::{
     simd::lanes::{LANES, Row},
     strand::{
         frame_context::{FrameContext, Substep},
-        model::{curvature, rod, springs, straight},
-        scratch::Memory,
         segment::segment_contact_unneeded,
-        tile::{
-            Elastic, HistoryRows, HoldRows, RestRows, SegmentContactRows, StateRows, StrandRows, Tile,
-            TilePlace, anisotropic_drag, position_spring, segment_contact, strand,
-        },
+        tile::{segment_contact, strand},
     },
 };
-use fearless_simd::Level;
 use rayon::prelude::*;
-use std::{cell::RefCell, time::Duration};
+use std::time::Duration;
 
 /// Input of a step. All poses are at the end of the frame; the start is the end of the last step.
 pub struct StepInput<'a> {
@@ -79,12 +73,8 @@ const LOCAL_GLOBAL: u32 = 10;
 /// Largest number of Newton iterations in a substep at high quality.
 const NEWTON: u32 = 12;
 
-/// Number of tiles in a task.
-const TILES_PER_TASK: usize = 8;
-
-thread_local! {
-    static MEMORY: RefCell<Memory> = RefCell::default();
-}
+/// Number of tiles whose roots one task moves.
+const TILES_PER_TASK: usize = 64;
 
 /// Largest length of a substep [s].
 pub(super) fn substep_length(solver: &Solver) -> f64 {
@@ -133,26 +123,7 @@ impl Simulation {
     /// Runs the substeps of `interval` that are due now. Returns the number of strands that were reset
     /// because of non-finite state.
     pub(super) fn run(&mut self, interval: &FrameContext) -> usize {
-        let reset = run(
-            self.level,
-            interval,
-            TileRange {
-                tiles: &self.model.tiles,
-                strand: &self.state.strand,
-                rest: &self.model.rest,
-                state: &mut self.state.points,
-                history: &mut self.state.history,
-                external_acceleration: &self.forces.external_acceleration,
-                position_spring: &self.forces.position_spring,
-                anisotropic_drag: &self.forces.anisotropic_drag,
-                wind_delta: &self.forces.wind_delta,
-                rest_penetration: &self.model.rest_penetration,
-                contact_age: &mut self.state.contact_age,
-                segment_contacts: if interval.segments { &mut self.state.segment_contacts } else { &mut [] },
-                tether_lengths: &self.model.tethers,
-                holds: &self.state.holds,
-            },
-        );
+        let reset = self.solver.run(&self.model, &mut self.state, &self.forces, interval);
         if reset { self.reset_non_finite() } else { 0 }
     }
 
@@ -209,7 +180,7 @@ impl Simulation {
     pub(super) fn move_roots(&mut self, drive: &StepInput) {
         let turn = drive.anchor.rotation.inverse();
         let tiles = self.state.strand.par_iter_mut().zip(self.model.asked.par_chunks(LANES));
-        tiles.with_min_len(8 * TILES_PER_TASK).for_each(|(rows, asked)| {
+        tiles.with_min_len(TILES_PER_TASK).for_each(|(rows, asked)| {
             for k in 0..strand::ROOT_END {
                 rows[strand::ROOT_START + k] = rows[strand::ROOT_END + k];
             }
@@ -228,178 +199,4 @@ impl Simulation {
             }
         });
     }
-}
-
-/// The arrays of a range of tiles.
-struct TileRange<'a> {
-    tiles: &'a [TilePlace],
-    strand: &'a [StrandRows],
-    rest: &'a [RestRows],
-    state: &'a mut [StateRows],
-    history: &'a mut [HistoryRows],
-    external_acceleration: &'a [[Row; 3]],
-    position_spring: &'a [[Row; position_spring::ROWS]],
-    anisotropic_drag: &'a [[Row; anisotropic_drag::ROWS]],
-    wind_delta: &'a [[Row; 3]],
-    rest_penetration: &'a [Row],
-    contact_age: &'a mut [Row],
-    segment_contacts: &'a mut [SegmentContactRows],
-    tether_lengths: &'a [Row],
-    holds: &'a [Vec<HoldRows>],
-}
-
-impl<'a> TileRange<'a> {
-    /// Splits off the first `count` tiles.
-    fn split(self, count: usize) -> (Self, Self) {
-        let points = (self.tiles[count].first - self.tiles[0].first) as usize;
-        let (tiles, more_tiles) = self.tiles.split_at(count);
-        let (strand, more_strand) = self.strand.split_at(count);
-        let (rest, more_rest) = self.rest.split_at(points);
-        let (state, more_state) = self.state.split_at_mut(points);
-        let (history, more_history) = self.history.split_at_mut(points.min(self.history.len()));
-        let (external_acceleration, more_external_acceleration) =
-            self.external_acceleration.split_at(points.min(self.external_acceleration.len()));
-        let (position_spring, more_position_spring) =
-            self.position_spring.split_at(points.min(self.position_spring.len()));
-        let (anisotropic_drag, more_anisotropic_drag) =
-            self.anisotropic_drag.split_at(points.min(self.anisotropic_drag.len()));
-        let (wind_delta, more_wind_delta) = self.wind_delta.split_at(points.min(self.wind_delta.len()));
-        let (rest_penetration, more_rest_penetration) =
-            self.rest_penetration.split_at(points.min(self.rest_penetration.len()));
-        let (contact_age, more_contact_age) = self.contact_age.split_at_mut(count);
-        let (segment_contacts, more_segment_contacts) =
-            self.segment_contacts.split_at_mut(points.min(self.segment_contacts.len()));
-        let (tether_lengths, more_tether_lengths) =
-            self.tether_lengths.split_at(points.min(self.tether_lengths.len()));
-        let (holds, more_holds) = self.holds.split_at(count.min(self.holds.len()));
-        (
-            TileRange {
-                tiles,
-                strand,
-                rest,
-                state,
-                history,
-                external_acceleration,
-                position_spring,
-                anisotropic_drag,
-                wind_delta,
-                rest_penetration,
-                contact_age,
-                segment_contacts,
-                tether_lengths,
-                holds,
-            },
-            TileRange {
-                tiles: more_tiles,
-                strand: more_strand,
-                rest: more_rest,
-                state: more_state,
-                history: more_history,
-                external_acceleration: more_external_acceleration,
-                position_spring: more_position_spring,
-                anisotropic_drag: more_anisotropic_drag,
-                wind_delta: more_wind_delta,
-                rest_penetration: more_rest_penetration,
-                contact_age: more_contact_age,
-                segment_contacts: more_segment_contacts,
-                tether_lengths: more_tether_lengths,
-                holds: more_holds,
-            },
-        )
-    }
-
-    fn tile(&mut self, k: usize) -> Tile<'_> {
-        let place = self.tiles[k];
-        let at = (place.first - self.tiles[0].first) as usize;
-        let points = at..at + place.points as usize;
-        Tile {
-            model: place.model,
-            flat: place.flat,
-            double: place.double,
-            strand: &self.strand[k],
-            rest: &self.rest[points.clone()],
-            state: &mut self.state[points.clone()],
-            history: if self.history.is_empty() { &mut [] } else { &mut self.history[points.clone()] },
-            external_acceleration: if self.external_acceleration.is_empty() {
-                &[]
-            } else {
-                &self.external_acceleration[points.clone()]
-            },
-            position_spring: if self.position_spring.is_empty() {
-                &[]
-            } else {
-                &self.position_spring[points.clone()]
-            },
-            anisotropic_drag: if self.anisotropic_drag.is_empty() {
-                &[]
-            } else {
-                &self.anisotropic_drag[points.clone()]
-            },
-            wind_delta: if self.wind_delta.is_empty() { &[] } else { &self.wind_delta[points.clone()] },
-            rest_penetration: if self.rest_penetration.is_empty() {
-                &[]
-            } else {
-                &self.rest_penetration[points.clone()]
-            },
-            contact_age: &mut self.contact_age[k],
-            segment_contacts: if self.segment_contacts.is_empty() {
-                &mut []
-            } else {
-                &mut self.segment_contacts[points.clone()]
-            },
-            tether_lengths: if self.tether_lengths.is_empty() { &[] } else { &self.tether_lengths[points] },
-            holds: self.holds.get(k).map_or(&[], |holds| holds),
-        }
-    }
-}
-
-/// Runs the tiles on all threads, by recursive halving down to small tasks. Returns true if any point became
-/// non-finite.
-fn run(level: Level, interval: &FrameContext, piece: TileRange) -> bool {
-    let count = piece.tiles.len();
-    if count > TILES_PER_TASK {
-        let half = (count / 2).next_multiple_of(TILES_PER_TASK).min(count - 1);
-        let (a, b) = piece.split(half);
-        let (a, b) = rayon::join(|| run(level, interval, a), || run(level, interval, b));
-        return a | b;
-    }
-    on_large_stack(|| run_task(level, interval, piece))
-}
-
-/// Runs a task's tiles one after the other; see [`run`].
-fn run_task(level: Level, interval: &FrameContext, mut piece: TileRange) -> bool {
-    MEMORY.with_borrow_mut(|memory| {
-        let mut broken = false;
-        for k in 0..piece.tiles.len() {
-            let mut tile = piece.tile(k);
-            let run = match tile.model {
-                Elastic::Straight => straight::run,
-                Elastic::Curvature => curvature::run,
-                Elastic::Rod => rod::run,
-                Elastic::Springs => springs::run,
-            };
-            run(level, interval, &mut tile, memory);
-            broken |= !reset::all_finite(level, tile.state);
-        }
-        broken
-    })
-}
-
-/// Stack of a task in a build without optimization [bytes].
-const UNOPTIMIZED_STACK: usize = 64 << 20;
-
-/// Runs `task`. A kernel that is compiled without optimization keeps the whole window of the matrix in memory several
-/// times over, which takes more than the 2 MiB of a thread's stack. Such builds run it on a thread of its own.
-fn on_large_stack<T: Send>(task: impl FnOnce() -> T + Send) -> T {
-    if !cfg!(debug_assertions) {
-        return task();
-    }
-    std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(UNOPTIMIZED_STACK).spawn_scoped(scope, task);
-        match thread.map(|thread| thread.join()) {
-            Ok(Ok(done)) => done,
-            Ok(Err(panic)) => std::panic::resume_unwind(panic),
-            Err(why) => panic!("no thread with a stack of {UNOPTIMIZED_STACK} bytes: {why}"),
-        }
-    })
 }

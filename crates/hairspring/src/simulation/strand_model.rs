@@ -7,7 +7,7 @@ use crate::{
     simd::lanes::Row,
     strand::{
         rest_shape::Start,
-        tile::{RestRows, TilePlace},
+        tile::{RestRows, TileLayout},
     },
 };
 use glam::Vec3;
@@ -27,7 +27,7 @@ pub(crate) struct StrandModel {
     pub(super) asked: Vec<u32>,
     /// Lane of each simulated strand, in the order that the caller named them.
     pub(super) places: Vec<u32>,
-    pub(super) tiles: Vec<TilePlace>,
+    pub(super) tiles: Vec<TileLayout>,
     /// Rest shapes; shape `[points]` of all tiles.
     pub(super) rest: Vec<RestRows>,
     /// Authored depth of the segment that ends at each point, 0 or less [m]; as long as `rest`, or empty if no

@@ -24,7 +24,7 @@ pub(crate) struct StrandState {
     pub(super) contact_age: Vec<Row>,
     /// Contacts of the segment that ends at each point; empty if segments are not tested.
     pub(super) segment_contacts: Vec<SegmentContactRows>,
-    /// Holds on points, for each tile; empty if there are none.
+    /// Holds on points, for each tile.
     pub(super) holds: Vec<Vec<HoldRows>>,
     /// Active manipulators.
     pub(super) tools: Tools,

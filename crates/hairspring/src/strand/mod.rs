@@ -29,6 +29,7 @@ pub(crate) mod substitute;
 pub(crate) mod system;
 pub(crate) mod tether;
 pub(crate) mod tile;
+pub(crate) mod tile_arrays;
 pub(crate) mod truss;
 
 #[cfg(test)]

@@ -19,7 +19,9 @@ use super::{
     root::Root,
     scratch::Memory,
     tests::{lane, rows, splat, vector},
-    tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, springs, state, strand},
+    tile::{
+        Elastic, RestRows, StateRows, StrandRows, Tile, TileLayout, TileRange, rest, springs, state, strand,
+    },
 };
 use crate::simd::{
     dispatch::{dispatch, dispatch_double},
@@ -63,24 +65,17 @@ fn forces_of(
     (strand_rows, rest_rows, mut state_rows): (StrandRows, Vec<RestRows>, Vec<StateRows>),
 ) -> Forces {
     let mut forces = Forces::default();
-    let mut tile = Tile {
-        model,
-        flat: true,
-        double: true,
-        strand: &strand_rows,
+    let layout = TileLayout { first: 0, points: rest_rows.len() as u32, model, flat: true, double: true };
+    let mut range = TileRange {
+        tiles: &[layout],
+        strand: &[strand_rows],
         rest: &rest_rows,
         state: &mut state_rows,
-        history: &mut [],
-        external_acceleration: &[],
-        position_spring: &[],
-        anisotropic_drag: &[],
-        wind_delta: &[],
-        rest_penetration: &[],
-        contact_age: &mut Row::default(),
-        segment_contacts: &mut [],
-        tether_lengths: &[],
-        holds: &[],
+        contact_age: &mut [Row::default()],
+        holds: &[Vec::new()],
+        ..TileRange::default()
     };
+    let mut tile = range.tile(0);
     if model == Elastic::Springs {
         dispatch!(Level::new(), simd => forces = walk::<_, Springs, 3, 12>(simd, s, &mut tile));
         return forces;

@@ -40,6 +40,9 @@ pub struct PostSolveParams {
 }
 
 impl PostSolveParams {
+    /// For integrators that are shown without a strain limit, and without contact in the solve.
+    pub const WITHOUT_LIMIT: Self = Self { limit: f32::INFINITY, press: 0.0, project: true, kicks: true };
+
     /// Returns the initial contact force of the next solve for a point that is `depth` [m] inside, where the
     /// force was `force` [N].
     ///

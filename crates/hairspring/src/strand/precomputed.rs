@@ -28,12 +28,12 @@ pub fn precompute<S: Simd>(simd: S, h: f32, stretching: Stretching, tile: &Tile,
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     for (i, at) in tile.rest.iter().enumerate() {
         let mass = load(simd, &at[rest::MASS]);
-        let free = i >= tile.model.driven();
+        let free = i >= tile.layout.model.driven();
         let inverse_mass = if free { mass.simd_gt(0.0).select(one / mass, zero) } else { zero };
         let length = load(simd, &at[rest::LENGTH]);
         let inverse_length = length.simd_gt(0.0).select(one / length.max(1e-12), zero);
         let mut along = stretching.stiffness(simd, h, tile, i);
-        if tile.model == Elastic::Springs {
+        if tile.layout.model == Elastic::Springs {
             along += springs::brace(simd, h, tile, i);
             for (row, span) in
                 scratch.fixed[i].inverse_spans.iter_mut().zip([tile::springs::L2, tile::springs::L3])

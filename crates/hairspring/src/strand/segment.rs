@@ -87,7 +87,7 @@ pub fn segment_contact_unneeded(length: f32, radius: f32) -> bool {
 /// tolerance for smooth bodies.
 #[inline(always)]
 pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
-    let inner = i - tile.model.stride();
+    let inner = i - tile.layout.model.stride();
     let tolerance = load(simd, &tile.rest[inner][rest::LENGTH]) * SAG;
     tile.rest_penetration.get(i).map_or(tolerance, |sunk| tolerance - load(simd, sunk))
 }
@@ -198,7 +198,7 @@ pub fn resolve_segment_contact<S: Simd>(
             // The part of the depth that did not stop an approach becomes a contact force in the next solve,
             // as for points.
             let v = |i: usize| V3::load(simd, &tile.state[i][state::V..]);
-            let (v_a, v_b) = (v(i - tile.model.stride()), v(i));
+            let (v_a, v_b) = (v(i - tile.layout.model.stride()), v(i));
             let way = (v_b - v_a).mul_add(pressed.at, v_a) * F::splat(simd, step.h);
             let carried = surface_displacement(simd, pose, e.mul_add(pressed.at, a));
             let approach = pressed.normal.dot(carried - way).max(0.0);
@@ -380,7 +380,7 @@ pub fn update_segment_contact_multiplier<S: Simd>(
     (i, moved): (usize, [V3<S>; 2]),
     contacts: &[[Work; scratch::ROWS]],
 ) {
-    let outer = i + tile.model.stride();
+    let outer = i + tile.layout.model.stride();
     let Some(rows) = tile.segment_contacts.get_mut(outer) else { return };
     let force = load(simd, &rows[segment_contact::FORCE]);
     let shut = force.simd_gt(0.0);

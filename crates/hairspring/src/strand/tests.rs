@@ -20,7 +20,7 @@ use super::{
     scratch::{Memory, Scratch},
     substitute::substitute,
     system::System,
-    tile::{Elastic, RestRows, StateRows, StrandRows, Tile, rest, state, strand},
+    tile::{Elastic, RestRows, StateRows, StrandRows, Tile, TileLayout, TileRange, rest, state, strand},
     truss::ASIDE,
 };
 use crate::simd::{
@@ -388,24 +388,17 @@ fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, V
     let (strand_rows, rest_rows, mut state_rows, normals) = rows(s);
     let mut memory = Memory::default();
     let mut scratch = memory.scratch(n);
-    let mut tile = Tile {
-        model,
-        flat: false,
-        double,
-        strand: &strand_rows,
+    let layout = TileLayout { first: 0, points: rest_rows.len() as u32, model, flat: false, double };
+    let mut range = TileRange {
+        tiles: &[layout],
+        strand: &[strand_rows],
         rest: &rest_rows,
         state: &mut state_rows,
-        history: &mut [],
-        external_acceleration: &[],
-        position_spring: &[],
-        anisotropic_drag: &[],
-        wind_delta: &[],
-        rest_penetration: &[],
-        contact_age: &mut Row::default(),
-        segment_contacts: &mut [],
-        tether_lengths: &[],
-        holds: &[],
+        contact_age: &mut [Row::default()],
+        holds: &[Vec::new()],
+        ..TileRange::default()
     };
+    let mut tile = range.tile(0);
     let mut edges = vec![DVec3::ZERO; n];
     if double {
         dispatch_double!(Level::new(), simd => solve_substep(simd, s, &mut tile, &mut scratch, &mut edges));
@@ -451,7 +444,7 @@ fn solve_substep<S: Simd>(
 
 #[inline(always)]
 fn solve_once<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &mut Tile, scratch: &mut Scratch) {
-    match tile.model {
+    match tile.layout.model {
         Elastic::Straight => {
             assemble::<S, Straight, 3, 9>(simd, Linearization::Initial, step, tile, scratch);
             substitute::<S, Straight, 3, 9>(simd, Linearization::Initial, step, tile, scratch);

@@ -4,6 +4,7 @@
 //! Strands are sorted by their number of points, and neighbors in that order share a tile. Shorter strands
 //! are padded with points of rest length zero, which coincide with the tip and carry no force.
 
+use super::tile_arrays::{access, tile_arrays};
 use crate::simd::lanes::Row;
 
 /// Rows of state a point.
@@ -195,77 +196,44 @@ pub type SegmentContactRows = [Row; segment_contact::ROWS];
 /// History of the second-order integrator at one point.
 pub type HistoryRows = [Row; history::ROWS];
 
-/// Eight strands, as slices of the simulation's arrays.
-pub struct Tile<'a> {
-    pub model: Elastic,
-    /// Whether any of the strands is flat.
-    pub flat: bool,
-    /// Whether the strands are solved in double precision.
-    pub double: bool,
-    pub strand: &'a StrandRows,
-    /// Shape `[points]`, with the points of the longest strand; as long as `state`.
-    pub rest: &'a [RestRows],
-    pub state: &'a mut [StateRows],
-    /// Shape `[points]` for the second-order integrator, else empty.
-    pub history: &'a mut [HistoryRows],
-    /// External acceleration, constant over the frame [m/s²]: shape `[points]`, empty if there is none. For a
-    /// point with a position spring, it holds the value at the root's position, at rest in the world, at the
-    /// end of the frame. It includes stiffness times the target position relative to the root, and the brake
-    /// rate times the target velocity.
-    pub external_acceleration: &'a [[Row; 3]],
-    /// Position springs, constant over the frame, see `position_spring`: shape `[points]`, empty if there are
-    /// none.
-    pub position_spring: &'a [[Row; position_spring::ROWS]],
-    /// Anisotropic drag, constant over the frame, see `anisotropic_drag`: shape `[points]`, empty if there is
-    /// none.
-    pub anisotropic_drag: &'a [[Row; anisotropic_drag::ROWS]],
-    /// Velocity of the air relative to the uniform wind, constant over the frame [m/s]: shape `[points]`,
-    /// empty if there is none.
-    pub wind_delta: &'a [[Row; 3]],
-    /// Authored depth of the segment that ends at each point, 0 or less [m]: shape `[points]`, empty if no
-    /// segment was authored inside a collider.
-    pub rest_penetration: &'a [Row],
-    /// Remaining time for which each strand still counts as touching [s].
-    pub contact_age: &'a mut Row,
-    /// Contacts of the segment that ends at each point, see `segment_contact`: shape `[points]`, empty if
-    /// segments are not tested.
-    pub segment_contacts: &'a mut [SegmentContactRows],
-    /// Largest distance of each point from its root [m]: shape `[points]`, empty if there are no tethers.
-    pub tether_lengths: &'a [Row],
-    /// Holds, sorted by point.
-    pub holds: &'a [HoldRows],
-}
-
-impl Tile<'_> {
-    /// Returns the same tile with arrays whose equal lengths are visible to the compiler.
-    #[inline(always)]
-    pub fn with_equal_lengths(&mut self) -> Tile<'_> {
-        let points = self.rest.len();
-        let all_or_none = |none: bool| if none { 0 } else { points };
-        let history = all_or_none(self.history.is_empty());
-        let spans = all_or_none(self.segment_contacts.is_empty());
-        Tile {
-            state: &mut self.state[..points],
-            history: &mut self.history[..history],
-            external_acceleration: &self.external_acceleration
-                [..all_or_none(self.external_acceleration.is_empty())],
-            position_spring: &self.position_spring[..all_or_none(self.position_spring.is_empty())],
-            anisotropic_drag: &self.anisotropic_drag[..all_or_none(self.anisotropic_drag.is_empty())],
-            wind_delta: &self.wind_delta[..all_or_none(self.wind_delta.is_empty())],
-            rest_penetration: &self.rest_penetration[..all_or_none(self.rest_penetration.is_empty())],
-            contact_age: self.contact_age,
-            segment_contacts: &mut self.segment_contacts[..spans],
-            tether_lengths: &self.tether_lengths[..all_or_none(self.tether_lengths.is_empty())],
-            ..*self
-        }
+tile_arrays! {
+    /// Eight strands, as slices of the simulation's arrays.
+    tile Tile;
+    /// The arrays of consecutive tiles.
+    range TileRange;
+    per tile {
+        /// Motion of the roots, and the constants of whole strands.
+        strand: shared StrandRows,
+        /// Remaining time for which each strand still counts as touching [s].
+        contact_age: unique Row,
+        /// Holds, sorted by point.
+        holds: shared Vec<HoldRows>,
     }
-
-    /// Borrows the same tile again, for a function outside of the sweep. Passing the sweep's own tile by
-    /// reference would make the compiler reload the pointers and lengths of its arrays at every point.
-    #[inline(always)]
-    pub fn reborrow(&mut self) -> Tile<'_> {
-        let Self { state, history, contact_age: touched, segment_contacts: spans, .. } = self;
-        Tile { state, history, contact_age: touched, segment_contacts: spans, ..*self }
+    per point {
+        /// Rest shapes, with the points of the longest strand; as long as `state`.
+        rest: shared RestRows,
+        state: unique StateRows,
+        /// Only for the second-order integrator.
+        history: unique HistoryRows,
+        /// External acceleration, constant over the frame [m/s²]. For a point with a position spring, it holds
+        /// the value at the root's position, at rest in the world, at the end of the frame. It includes
+        /// stiffness times the target position relative to the root, and the brake rate times the target
+        /// velocity.
+        external_acceleration: shared [Row; 3],
+        /// Position springs, constant over the frame, see `position_spring`.
+        position_spring: shared [Row; position_spring::ROWS],
+        /// Anisotropic drag, constant over the frame, see `anisotropic_drag`.
+        anisotropic_drag: shared [Row; anisotropic_drag::ROWS],
+        /// Velocity of the air relative to the uniform wind, constant over the frame [m/s].
+        wind_delta: shared [Row; 3],
+        /// Authored depth of the segment that ends at each point, 0 or less [m]; not in use if no segment was
+        /// authored inside a collider.
+        rest_penetration: shared Row,
+        /// Contacts of the segment that ends at each point, see `segment_contact`; not in use if segments are
+        /// not tested.
+        segment_contacts: unique SegmentContactRows,
+        /// Largest distance of each point from its root [m]; not in use if there are no tethers.
+        tether_lengths: shared Row,
     }
 }
 
@@ -291,9 +259,9 @@ impl Elastic {
     }
 }
 
-/// Location of a tile's points.
+/// Location of a tile's points, and how they are solved.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TilePlace {
+pub(crate) struct TileLayout {
     /// Index of its first point in the points of all tiles.
     pub first: u32,
     /// Points of its longest strand.

@@ -8,50 +8,79 @@
 //! Müller et al. 2008, *Real Time Physics*, §3.3. A segment of hair oscillates at some 10⁵ rad/s, so both
 //! need time steps of microseconds.
 
-use super::outside;
+use super::{Method, outside, run_tile};
 use crate::{
     settings::Integrator,
-    simd::lanes::{F, Simd, V3, load},
+    simd::{
+        dispatch::dispatch_comparison,
+        lanes::{F, Simd, V3, load},
+    },
     strand::{
         assemble::{SubstepContext, forces},
-        model::Model,
-        scratch::Scratch,
-        tile::{Tile, state},
+        frame_context::FrameContext,
+        model::{Model, Stretching, curvature::Curvature, rod::Rod, springs::Springs, straight::Straight},
+        post_solve::PostSolveParams,
+        scratch::{Memory, Scratch},
+        tile::{Elastic, Tile, state},
     },
 };
+use fearless_simd::Level;
 
-/// Stores the new edges in `scratch.edges` and additional velocity changes in `scratch.kick`.
-#[inline(always)]
-pub fn advance<S, M, const B: usize, const N: usize>(
-    simd: S,
-    integrator: Integrator,
-    step: &SubstepContext<S>,
-    tile: &mut Tile,
-    scratch: &mut Scratch,
-) where
-    S: Simd,
-    M: Model<S, B, N>,
-{
-    forces::<S, M, B, N>(simd, step, tile, scratch);
-    let zero = V3::zero(simd);
-    let h = F::<S>::splat(simd, step.h);
-    let (mut tip, mut before) = (zero, zero);
-    let mut x = V3::load(simd, &scratch.edges[1]);
-    for i in 2..tile.rest.len() {
-        if i + 1 < tile.rest.len() {
-            tip = V3::load(simd, &scratch.edges[i + 1]).length_and_unit().1;
+/// Explicit Euler and Verlet.
+pub struct Explicit;
+
+impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B, N> for Explicit {
+    const STRETCHING: Stretching = Stretching::Fiber;
+
+    /// Additional velocity changes are in `scratch.kick`.
+    #[inline(always)]
+    fn advance(
+        simd: S,
+        interval: &FrameContext,
+        step: &SubstepContext<S>,
+        tile: &mut Tile,
+        scratch: &mut Scratch,
+    ) -> PostSolveParams {
+        forces::<S, M, B, N>(simd, step, tile, scratch);
+        let zero = V3::zero(simd);
+        let h = F::<S>::splat(simd, step.h);
+        let (mut tip, mut before) = (zero, zero);
+        let mut x = V3::load(simd, &scratch.edges[1]);
+        for i in 2..tile.rest.len() {
+            if i + 1 < tile.rest.len() {
+                tip = V3::load(simd, &scratch.edges[i + 1]).length_and_unit().1;
+            }
+            x += V3::load(simd, &scratch.edges[i]);
+            let v = V3::load(simd, &tile.state[i][state::V..]);
+            let inverse = load(simd, &scratch.fixed[i].inverse_mass);
+            let a = outside(simd, step, tile, i, [tip, x]) + V3::load(simd, &scratch.kick[i]) * inverse;
+            let free = inverse.simd_gt(0.0);
+            let gain = V3::select(free, a * h, zero);
+            let (now, later) =
+                if interval.integrator == Integrator::Verlet { (gain, zero) } else { (zero, gain) };
+            let change = V3::select(free, (v + now) * h - step.moved, zero);
+            let edge = &mut scratch.edges[i];
+            (V3::load(simd, edge) + (change - before)).store(edge);
+            before = change;
+            later.store(&mut scratch.kick[i]);
         }
-        x += V3::load(simd, &scratch.edges[i]);
-        let v = V3::load(simd, &tile.state[i][state::V..]);
-        let inverse = load(simd, &scratch.fixed[i].inverse_mass);
-        let a = outside(simd, step, tile, i, [tip, x]) + V3::load(simd, &scratch.kick[i]) * inverse;
-        let free = inverse.simd_gt(0.0);
-        let gain = V3::select(free, a * h, zero);
-        let (now, later) = if integrator == Integrator::Verlet { (gain, zero) } else { (zero, gain) };
-        let change = V3::select(free, (v + now) * h - step.moved, zero);
-        let edge = &mut scratch.edges[i];
-        (V3::load(simd, edge) + (change - before)).store(edge);
-        before = change;
-        later.store(&mut scratch.kick[i]);
+        PostSolveParams::WITHOUT_LIMIT
+    }
+}
+
+/// Advances one tile through a frame.
+pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
+    macro_rules! kernel {
+        ($model:ty, $b:literal, $n:literal) => {
+            dispatch_comparison!(level, tile.layout.double, simd => {
+                run_tile::<_, $model, Explicit, $b, $n>(simd, interval, tile, memory)
+            })
+        };
+    }
+    match tile.layout.model {
+        Elastic::Straight => kernel!(Straight, 3, 9),
+        Elastic::Curvature => kernel!(Curvature<_>, 3, 9),
+        Elastic::Rod => kernel!(Rod<_>, 4, 11),
+        Elastic::Springs => kernel!(Springs, 3, 12),
     }
 }

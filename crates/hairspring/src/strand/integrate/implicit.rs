@@ -1,12 +1,15 @@
 //! Backward Euler and BDF2: one banded solve, linearized at the start of the substep (Baraff & Witkin 1998),
 //! then fast projection. For high quality, Newton iterations with a line search.
 
+use super::Method;
 use crate::{
+    settings::Response,
     simd::lanes::{F, Simd, V3, load},
     strand::{
         assemble::{Linearization, SubstepContext, assemble},
         frame_context::FrameContext,
         model::Model,
+        post_solve::{LIMIT, PostSolveParams},
         project::Projection,
         scratch::Scratch,
         substitute::substitute,
@@ -14,30 +17,38 @@ use crate::{
     },
 };
 
-/// Stores the new edges in `scratch.edges`.
-#[inline(always)]
-pub fn advance<S, M, const B: usize, const N: usize>(
-    simd: S,
-    interval: &FrameContext,
-    step: &SubstepContext<S>,
-    tile: &mut Tile,
-    scratch: &mut Scratch,
-) where
-    S: Simd,
-    M: Model<S, B, N>,
-{
-    let mut projection = solve::<S, M, B, N>(simd, interval, step, tile, scratch);
-    // Stiffer springs take more of a load in the solve; what projection adds to their tension is then mostly
-    // noise, so it is scaled down.
-    let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
-    let force = F::splat(simd, step.inertia() / (step.h * step.h)) / stiffening;
-    let granted = granted(simd, interval.projection_iterations, tile);
-    for iteration in 1.. {
-        let asked = granted.simd_ge(iteration as f32);
-        if !asked.any_true() || !projection.settle(simd, M::STRIDE, (force, asked), tile, scratch) {
-            break;
+/// Backward Euler and BDF2.
+pub struct Implicit;
+
+impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B, N> for Implicit {
+    #[inline(always)]
+    fn advance(
+        simd: S,
+        interval: &FrameContext,
+        step: &SubstepContext<S>,
+        tile: &mut Tile,
+        scratch: &mut Scratch,
+    ) -> PostSolveParams {
+        let mut projection = solve::<S, M, B, N>(simd, interval, step, tile, scratch);
+        // Stiffer springs take more of a load in the solve; what projection adds to their tension is then mostly
+        // noise, so it is scaled down.
+        let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
+        let per_mass = step.inertia() / (step.h * step.h);
+        let force = F::splat(simd, per_mass) / stiffening;
+        let limit = iteration_limit(simd, interval.projection_iterations, tile);
+        for iteration in 1.. {
+            let active = limit.simd_ge(iteration as f32);
+            if !active.any_true() || !projection.settle(simd, M::STRIDE, (force, active), tile, scratch) {
+                break;
+            }
+            projection = Projection::meet_all(simd, M::STRIDE, tile, scratch);
         }
-        projection = Projection::meet_all(simd, M::STRIDE, tile, scratch);
+        PostSolveParams {
+            limit: LIMIT,
+            press: if interval.response == Response::Projection { 0.0 } else { per_mass },
+            project: interval.response != Response::Penalty,
+            kicks: false,
+        }
     }
 }
 
@@ -48,7 +59,7 @@ const POINTS_AN_ITERATION: f32 = 32.0;
 /// springs of the solve carry a change of load along some 60 points in a substep (see `stiffening`); a longer
 /// strand leaves more to projection. Iteration ends as soon as all lengths are within tolerance.
 #[inline(always)]
-fn granted<S: Simd>(simd: S, setting: u32, tile: &Tile) -> F<S> {
+fn iteration_limit<S: Simd>(simd: S, setting: u32, tile: &Tile) -> F<S> {
     let points = load(simd, &tile.strand[strand::POINTS]) * (1.0 / POINTS_AN_ITERATION);
     if setting == 0 { F::splat(simd, 0.0) } else { points.max(setting as f32) }
 }

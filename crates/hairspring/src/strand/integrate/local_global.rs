@@ -10,19 +10,29 @@
 //! scalar, has half-bandwidth 2 and is constant for a whole frame: it is factored once. The unknown is the
 //! change of x, which preserves precision in f32.
 
-use super::outside;
+use super::{Method, outside, run_tile};
 use crate::{
-    simd::lanes::{F, Simd, V3, Work, load},
+    simd::{
+        dispatch::dispatch_comparison,
+        lanes::{F, Simd, V3, Work, load},
+    },
     strand::{
         assemble::SubstepContext,
         band::Band,
-        model::{bend::transport, curvature::turn_in_frame, stretch::STRETCH},
+        frame_context::FrameContext,
+        model::{
+            bend::transport,
+            curvature::{Curvature, turn_in_frame},
+            stretch::STRETCH,
+        },
+        post_solve::PostSolveParams,
         profile::Profile,
-        scratch::Scratch,
+        scratch::{Memory, Scratch},
         system::System,
         tile::{Tile, rest, state},
     },
 };
+use fearless_simd::Level;
 
 /// All unknowns of a window are coupled.
 const PROFILE: Profile<1, 3> = Profile::within(2);
@@ -36,9 +46,38 @@ const MINUS_INVERSE: usize = ROWS - 1;
 /// Points of padding before the first point's factors.
 const BEFORE: usize = Profile::<1, 3>::REACH;
 
+/// The local-global solver, with the bending of the curvature model.
+pub struct LocalGlobal;
+
+impl<S: Simd> Method<S, Curvature<S>, 3, 9> for LocalGlobal {
+    #[inline(always)]
+    fn begin(simd: S, interval: &FrameContext, tile: &Tile, scratch: &mut Scratch) {
+        factor(simd, interval.h, tile, scratch);
+    }
+
+    #[inline(always)]
+    fn advance(
+        simd: S,
+        interval: &FrameContext,
+        step: &SubstepContext<S>,
+        tile: &mut Tile,
+        scratch: &mut Scratch,
+    ) -> PostSolveParams {
+        iterate(simd, interval.iterations, step, tile, scratch);
+        PostSolveParams { kicks: false, ..PostSolveParams::WITHOUT_LIMIT }
+    }
+}
+
+/// Advances one tile through a frame.
+pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
+    dispatch_comparison!(level, tile.layout.double, simd => {
+        run_tile::<_, Curvature<_>, LocalGlobal, 3, 9>(simd, interval, tile, memory)
+    });
+}
+
 /// Factors the constant matrix into `scratch.factors`.
 #[inline(always)]
-pub fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
+fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
     let n = tile.rest.len();
     scratch.factors[..2 * BEFORE * ROWS].fill(Work::default());
     for i in 0..n {
@@ -82,7 +121,7 @@ fn weights<S: Simd>(simd: S, h: f32, tile: &Tile, i: usize) -> [F<S>; 4] {
 
 /// Runs `iterations` iterations and stores the new edges in `scratch.edges`.
 #[inline(always)]
-pub fn advance<S: Simd>(
+fn iterate<S: Simd>(
     simd: S,
     iterations: u32,
     step: &SubstepContext<S>,

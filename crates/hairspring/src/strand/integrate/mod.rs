@@ -1,34 +1,59 @@
 //! Advances one tile through a frame. All substeps of a tile run in sequence while its points are in the L1
-//! caches. Each integrator has a file.
+//! caches.
 //!
 //! A substep drives the root, computes new positions with the integrator, applies strain limit and contact
 //! from root to tip, and updates the velocities.
+//!
+//! Each family of integrators has a file and kernels of its own:
+//!
+//! | family | use |
+//! | --- | --- |
+//! | [`Implicit`] | production; the kernels are in the files of the elastic models |
+//! | [`explicit`], [`local_global`], [`ftl`] | comparison; each file has its kernels |
 
-mod explicit;
-mod ftl;
+pub mod explicit;
+pub mod ftl;
 mod implicit;
-mod local_global;
+pub mod local_global;
+
+pub use implicit::Implicit;
 
 use super::{
     assemble::SubstepContext,
     drag::Drag,
     frame_context::FrameContext,
     model::{Model, Stretching},
-    post_solve::{LIMIT, PostSolveParams, post_solve},
+    post_solve::{PostSolveParams, post_solve},
     precomputed::precompute,
     root::Root,
-    scratch::Memory,
+    scratch::{Memory, Scratch},
     tile::{Tile, anisotropic_drag, position_spring, rest, segment_contact, state},
 };
 use crate::simd::lanes::{F, Mask, Simd, V3, load, store};
-use crate::{
-    collide::ColliderPose,
-    settings::{Integrator, Response},
-};
+use crate::{collide::ColliderPose, settings::Integrator};
 
-/// Runs the substeps of `interval` that are due now, for one tile.
+/// A family of time integrators, for strands with the elastic model `M`.
+pub trait Method<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> {
+    /// Stiffness of the segments' springs.
+    const STRETCHING: Stretching = Stretching::Moderate;
+
+    /// Prepares the substeps of a frame.
+    #[inline(always)]
+    fn begin(_: S, _: &FrameContext, _: &Tile, _: &mut Scratch) {}
+
+    /// Computes a substep: stores the new edges in `scratch.edges`, and returns how the substep is completed.
+    fn advance(
+        simd: S,
+        interval: &FrameContext,
+        step: &SubstepContext<S>,
+        tile: &mut Tile,
+        scratch: &mut Scratch,
+    ) -> PostSolveParams;
+}
+
+/// Runs the substeps of `interval` that are due now, for one tile, with the method `I`.
 #[inline(always)]
-pub fn run_tile<S, M, const B: usize, const N: usize>(
+pub fn run_tile<S, M, I, const B: usize, const N: usize>(
     simd: S,
     interval: &FrameContext,
     tile: &mut Tile,
@@ -36,19 +61,13 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
 ) where
     S: Simd,
     M: Model<S, B, N>,
+    I: Method<S, M, B, N>,
 {
     let scratch = &mut memory.scratch(tile.rest.len());
     let tile = &mut tile.with_equal_lengths();
-    let stretching = match interval.integrator {
-        Integrator::ExplicitEuler | Integrator::Verlet => Stretching::Fiber,
-        _ => Stretching::Moderate,
-    };
-    precompute(simd, interval.h, stretching, tile, scratch);
+    precompute(simd, interval.h, I::STRETCHING, tile, scratch);
     scratch.begin(simd, tile.state);
-    if interval.integrator == Integrator::LocalGlobal {
-        local_global::factor(simd, interval.h, tile, scratch);
-    }
-    let largest_strain = if interval.integrator.limits_strain() { LIMIT } else { f32::INFINITY };
+    I::begin(simd, interval, tile, scratch);
     let (fraction, anchor) = interval.begun();
     let mut root = Root::between(simd, tile.strand, fraction, anchor);
     // Driven points get the velocity of the root.
@@ -86,27 +105,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
             touches: touching(simd, interval, &substep.obstacles, tile),
             obstacles: &substep.obstacles,
         };
-        let mut finish = PostSolveParams { limit: largest_strain, press: 0.0, project: true, kicks: false };
-        match interval.integrator {
-            Integrator::BackwardEuler | Integrator::Bdf2 => {
-                implicit::advance::<S, M, B, N>(simd, interval, &step, tile, scratch);
-                if interval.response != Response::Projection {
-                    finish.press = step.inertia() / (step.h * step.h);
-                }
-                finish.project = interval.response != Response::Penalty;
-            }
-            Integrator::ExplicitEuler | Integrator::Verlet => {
-                explicit::advance::<S, M, B, N>(simd, interval.integrator, &step, tile, scratch);
-                finish.kicks = true;
-            }
-            Integrator::LocalGlobal => {
-                local_global::advance(simd, interval.iterations, &step, tile, scratch);
-            }
-            Integrator::Ftl | Integrator::Dftl => {
-                ftl::advance(simd, interval.integrator, &step, tile, scratch);
-                finish.kicks = true;
-            }
-        }
+        let finish = I::advance(simd, interval, &step, tile, scratch);
         post_solve(simd, M::STRIDE, &finish, &step, tile, scratch);
         continues = true;
     }
@@ -117,7 +116,7 @@ pub fn run_tile<S, M, const B: usize, const N: usize>(
 /// relative to the root.
 #[inline(always)]
 fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u, x]: [V3<S>; 2]) -> V3<S> {
-    let (stride, zero) = (tile.model.stride(), F::<S>::splat(simd, 0.0));
+    let (stride, zero) = (tile.layout.model.stride(), F::<S>::splat(simd, 0.0));
     let length = |i: usize| load(simd, &tile.rest[i][rest::LENGTH]);
     // Drag acts on the half segments adjacent to the point. Extra particles are not part of the fiber and
     // have none.

@@ -45,7 +45,7 @@ use crate::{
     strand::{
         band::Band,
         frame_context::FrameContext,
-        integrate::run_tile,
+        integrate::{Implicit, run_tile},
         precomputed::Precomputed,
         root::Root,
         scratch::{Memory, Scratch},
@@ -183,7 +183,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
         band.add((1, 3), (1, 3), own_angle * (1.0 + HELD * S::ROUNDING));
         band.add_right((1, 3), -moment);
 
-        if tile.flat {
+        if tile.layout.flat {
             // m·κ minus its rest value; κ = e₁/L₁ − û₀.
             let kappa = at.e[1] * beta - u0;
             let a1 = u0.dot(kappa) + 1.0;
@@ -220,12 +220,13 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
     }
 }
 
-/// Advances one tile through a frame, with the widest available SIMD instructions.
+/// Advances one tile through a frame with the implicit integrators, and the widest available SIMD
+/// instructions.
 pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
-    if tile.double {
-        dispatch_double!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, memory));
+    if tile.layout.double {
+        dispatch_double!(level, simd => run_tile::<_, Rod<_>, Implicit, 4, 11>(simd, interval, tile, memory));
     } else {
-        dispatch!(level, simd => run_tile::<_, Rod<_>, 4, 11>(simd, interval, tile, memory));
+        dispatch!(level, simd => run_tile::<_, Rod<_>, Implicit, 4, 11>(simd, interval, tile, memory));
     }
 }
 

@@ -36,7 +36,7 @@ use crate::{
         band::Band,
         bordered::BorderedConstraint,
         frame_context::FrameContext,
-        integrate::run_tile,
+        integrate::{Implicit, run_tile},
         precomputed::Precomputed,
         profile::Profile,
         root::Root,
@@ -127,9 +127,10 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
     }
 }
 
-/// Advances one tile through a frame, with the widest available SIMD instructions.
+/// Advances one tile through a frame with the implicit integrators, and the widest available SIMD
+/// instructions.
 pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
-    dispatch!(level, simd => run_tile::<_, Springs, 3, 12>(simd, interval, tile, memory));
+    dispatch!(level, simd => run_tile::<_, Springs, Implicit, 3, 12>(simd, interval, tile, memory));
 }
 
 /// Stiffness of the sides of the triangle that begins at `point`, in addition to that of all segments (see

@@ -10,7 +10,7 @@ use crate::{
     strand::{
         band::Band,
         frame_context::FrameContext,
-        integrate::run_tile,
+        integrate::{Implicit, run_tile},
         precomputed::Precomputed,
         profile::Profile,
         root::Root,
@@ -60,11 +60,12 @@ impl<S: Simd> Model<S, 3, 9> for Straight {
     fn take(_: S, _: &Solved<S, 9>, _: &mut Tile, _: &[Precomputed]) {}
 }
 
-/// Advances one tile through a frame, with the widest available SIMD instructions.
+/// Advances one tile through a frame with the implicit integrators, and the widest available SIMD
+/// instructions.
 pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
-    if tile.double {
-        dispatch_double!(level, simd => run_tile::<_, Straight, 3, 9>(simd, interval, tile, memory));
+    if tile.layout.double {
+        dispatch_double!(level, simd => run_tile::<_, Straight, Implicit, 3, 9>(simd, interval, tile, memory));
     } else {
-        dispatch!(level, simd => run_tile::<_, Straight, 3, 9>(simd, interval, tile, memory));
+        dispatch!(level, simd => run_tile::<_, Straight, Implicit, 3, 9>(simd, interval, tile, memory));
     }
 }
