@@ -2,12 +2,9 @@
 //! queries.
 
 use super::Simulation;
-use crate::collide::MovingCollider;
 use crate::{
-    collide::ColliderShape,
+    collide::{ColliderShape, MovingCollider},
     math::RigidTransform,
-    simd::lanes::LANES,
-    strand::tile::{segment_contact, state},
 };
 use glam::Vec3;
 use rayon::prelude::*;
@@ -42,19 +39,13 @@ impl Simulation {
     }
 
     fn strand_contacts(&self, place: usize, poses: &[(&ColliderShape, RigidTransform)]) -> Contacts {
-        let (tile, lane) = (place / LANES, place % LANES);
-        let (first, stride) = (self.model.tiles[tile].first as usize, self.model.tiles[tile].model.stride());
-        let root = self.root_position(place);
+        let strand = self.strand(place);
+        let root = strand.root();
         let mut out = Contacts::default();
         // The first two points are driven by the root.
-        for (i, x) in self.particles(place).enumerate().step_by(stride).skip(2) {
-            let at = first + i;
-            let point = f64::from(self.state.points[at][state::NORMAL_FORCE].0[lane]);
-            let segment = self
-                .state
-                .segment_contacts
-                .get(at)
-                .map_or(0.0, |rows| f64::from(rows[segment_contact::FORCE].0[lane]));
+        for (i, x) in strand.particles().enumerate().step_by(strand.stride()).skip(2) {
+            let point = f64::from(strand.normal_force(i));
+            let segment = f64::from(strand.segment_force(i));
             out.points += usize::from(point > 0.0);
             out.segments += usize::from(segment > 0.0);
             out.force += point.max(0.0) + segment.max(0.0);

@@ -1,9 +1,8 @@
 //! The energy of the strands, by form. A swing without losses would conserve the total.
 
-use super::Simulation;
+use super::{Simulation, strand_ref::StrandRef};
 use crate::{
     settings::Integrator,
-    simd::lanes::LANES,
     strand::{
         model::{
             bend::{FOLDED, transport_normal},
@@ -11,10 +10,9 @@ use crate::{
             springs::{BEND, Progressive, TORSION},
             stretch::STRETCH,
         },
-        tile::{Elastic, rest, springs, state, strand},
+        tile::Elastic,
     },
 };
-use glam::{DVec3, Quat};
 use rayon::prelude::*;
 use std::ops::Add;
 
@@ -89,43 +87,33 @@ impl Simulation {
         let gravity = self.model.gravity.as_dvec3();
         let down = gravity.normalize_or_zero();
         let fall = |place: usize| {
-            let stride = self.model.tiles[place / LANES].model.stride();
-            let mut particles = self.particles(place).enumerate().skip(stride);
+            let strand = self.strand(place);
+            let stride = strand.stride();
+            let mut particles = strand.particles().enumerate().skip(stride);
             let mut at = particles.next().unwrap_or_default().1.as_dvec3();
             let mut energy = 0.0;
             for (i, x) in particles {
                 // An extra particle falls to the center of its segment.
                 let from = (i - 1) / stride * stride;
-                let step = down * (self.rest(place, from, rest::LENGTH) as f64 / stride as f64);
+                let step = down * (f64::from(strand.rest_length(from)) / stride as f64);
                 at += step;
                 let way = at - x.as_dvec3();
-                energy += self.rest(place, i, rest::MASS) as f64 * gravity.dot(way);
+                energy += f64::from(strand.mass(i)) * gravity.dot(way);
             }
             energy
         };
         self.model.places.iter().map(|place| fall(*place as usize)).sum()
     }
 
-    /// Number of points of the strand in lane `place`.
-    pub(super) fn points(&self, place: usize) -> usize {
-        self.model.groom.range(self.model.lanes[place] as usize).len()
-    }
-
-    /// Tension of the segment that begins at point `i` [N].
-    pub(super) fn tension(&self, place: usize, i: usize) -> f32 {
-        let (tile, lane) = (place / LANES, place % LANES);
-        self.state.points[self.model.tiles[tile].first as usize + i][state::TENSION].0[lane]
-    }
-
     fn strand_energy(&self, place: usize) -> Energy {
         let gravity = self.model.gravity.as_dvec3();
-        let root = self.root_position(place).as_dvec3();
-        let (tile, n) = (place / LANES, self.simulated_points(place));
-        let stride = self.model.tiles[tile].model.stride();
+        let strand = self.strand(place);
+        let root = strand.root().as_dvec3();
+        let (n, stride) = (strand.particle_count(), strand.stride());
         let mut energy = Energy::default();
-        for (i, x) in self.particles(place).enumerate().skip(stride + 1) {
-            let mass = self.rest(place, i, rest::MASS) as f64;
-            let v = self.vector(place, i, state::V).as_dvec3();
+        for (i, x) in strand.particles().enumerate().skip(stride + 1) {
+            let mass = f64::from(strand.mass(i));
+            let v = strand.velocity(i).as_dvec3();
             energy.kinetic += 0.5 * mass * v.length_squared();
             energy.gravitational -= mass * gravity.dot(root + x.as_dvec3());
         }
@@ -135,9 +123,9 @@ impl Simulation {
         let spring = match integrator {
             Integrator::ExplicitEuler | Integrator::Verlet => Spring::Fiber,
             Integrator::Ftl | Integrator::Dftl => Spring::None,
-            Integrator::BackwardEuler | Integrator::Bdf2 => Spring::PerMass(
-                per_mass * self.state.strand[tile][strand::STIFFENING].0[place % LANES] as f64,
-            ),
+            Integrator::BackwardEuler | Integrator::Bdf2 => {
+                Spring::PerMass(per_mass * f64::from(strand.stiffening()))
+            }
             Integrator::LocalGlobal => Spring::PerMass(per_mass),
         };
         if matches!(spring, Spring::None) {
@@ -146,80 +134,70 @@ impl Simulation {
         // In these integrators, tension is a force. In the direct solver it is a multiplier, which does no
         // work on a segment of constant length.
         let pulls = !matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2);
-        let axial = self.state.strand[tile][strand::AXIAL].0[place % LANES] as f64;
-        let way = |i: usize, j: usize| -> DVec3 {
-            (i + 1..=j).map(|k| self.vector(place, k, state::EDGE).as_dvec3()).sum()
-        };
         for i in (stride..n - 1).step_by(stride) {
-            let length = self.rest(place, i, rest::LENGTH) as f64;
+            let length = f64::from(strand.rest_length(i));
             let k = match spring {
                 Spring::None => 0.0,
-                Spring::Fiber => axial / length,
-                Spring::PerMass(rate) => self.rest(place, i, rest::MASS) as f64 * rate,
+                Spring::Fiber => f64::from(strand.axial_stiffness()) / length,
+                Spring::PerMass(rate) => f64::from(strand.mass(i)) * rate,
             };
-            let longer = way(i, i + stride).length() - length;
-            let tension = if pulls { self.tension(place, i) as f64 } else { 0.0 };
+            let longer = strand.between(i, i + stride).length() - length;
+            let tension = if pulls { f64::from(strand.tension(i)) } else { 0.0 };
             energy.stretching += longer * (tension + 0.5 * k * longer);
         }
-        match self.model.tiles[tile].model {
-            Elastic::Springs => self.add_springs(place, &way, &mut energy),
-            model => self.add_joints(place, model, &|i| way(i, i + 1), &mut energy),
+        match strand.elastic() {
+            Elastic::Springs => add_springs(strand, &mut energy),
+            _ => add_joints(strand, &mut energy),
         }
         energy
     }
+}
 
-    /// Adds the bend and torsion springs between particles that are `way` apart. The triangles count as
-    /// rigid, and the altitude springs as inactive.
-    fn add_springs(&self, place: usize, way: &dyn Fn(usize, usize) -> DVec3, energy: &mut Energy) {
-        let n = self.simulated_points(place);
-        let mut spring = |i: usize, far: usize, (stiffness, length): (usize, usize), law: Progressive| {
-            let rest = self.rest(place, i, length) as f64;
-            let stretched = law.pull(way(i, i + far).length() - rest, rest).1;
-            energy.bending += self.rest(place, i, stiffness) as f64 * stretched;
-        };
-        for i in 0..n - 3 {
-            spring(i, 3, (springs::K3, springs::L3), TORSION);
-            if i % 2 == 1 {
-                spring(i, 2, (springs::K2, springs::L2), BEND);
-            }
+/// Adds the bend and torsion springs. The triangles count as rigid, and the altitude springs as inactive.
+fn add_springs(strand: StrandRef, energy: &mut Energy) {
+    let mut spring = |[i, far]: [usize; 2], [stiffness, rest]: [f32; 2], law: Progressive| {
+        let rest = f64::from(rest);
+        let stretched = law.pull(strand.between(i, i + far).length() - rest, rest).1;
+        energy.bending += f64::from(stiffness) * stretched;
+    };
+    for i in 0..strand.particle_count() - 3 {
+        spring([i, 3], strand.torsion_spring(i), TORSION);
+        if i % 2 == 1 {
+            spring([i, 2], strand.bend_spring(i), BEND);
         }
     }
+}
 
-    /// Adds bending and twisting of the joints between segments `e`. Frames are transported as in the kernel.
-    fn add_joints(&self, place: usize, model: Elastic, e: &dyn Fn(usize) -> DVec3, energy: &mut Energy) {
-        let (tile, lane) = (place / LANES, place % LANES);
-        let rows = &self.state.strand[tile];
-        let row = |at: usize| rows[at].0[lane];
-        let turn = Quat::from_array([0, 1, 2, 3].map(|k| row(strand::TURN_END + k)));
-        let normal = glam::Vec3::from_array([0, 1, 2].map(|k| row(strand::NORMAL + k)));
-        let mut m0 = (self.state.anchor.rotation * turn * normal).as_dvec3();
-        let (ratio, flat) = (row(strand::TWIST_RATIO) as f64, row(strand::FLAT) as f64);
-        let mut u0 = e(0).normalize_or_zero();
-        for j in 1..self.points(place) - 1 {
-            let length = |i: usize| self.rest(place, i, rest::LENGTH) as f64;
-            let u1 = e(j).normalize_or_zero();
-            let stiffness = self.rest(place, j, rest::BEND) as f64;
-            let local = DVec3::from_array([0, 1, 2].map(|k| self.rest(place, j, rest::TURN + k) as f64));
-            let d = m0 * local.x + u0.cross(m0) * local.y + u0 * local.z;
-            let r = e(j) / length(j) - e(j - 1) / length(j - 1) - d;
-            energy.bending += 0.5 * stiffness * r.length_squared();
-            let carried = transport_normal(m0, u0, u1);
-            let mut m1 = carried;
-            if model == Elastic::Rod {
-                let own = self.vector(place, j, state::NORMAL).as_dvec3();
-                let across = own - u1 * own.dot(u1);
-                if across.length_squared() > 1e-6 {
-                    m1 = across.normalize();
-                }
-                let half = carried.cross(m1).dot(u1) / (carried.dot(m1) + 1.0).max(FOLDED as f64);
-                let tau = 4.0 * half / (1.0 + (1.0 + half * half).sqrt());
-                let z = (0.5 * (u0 + u1).length_squared() / FOLDING as f64).min(1.0);
-                let twist = z * (2.0 - z) * (tau - self.rest(place, j, rest::TWIST) as f64);
-                energy.twisting += 0.5 * stiffness * ratio * curved_joint(local.z) * twist * twist;
-                let wider = m0.dot(e(j) / length(j) - u0) - local.x;
-                energy.bending += 0.5 * stiffness * flat * wider * wider;
+/// Adds bending and twisting of the joints. Frames are transported as in the kernel.
+fn add_joints(strand: StrandRef, energy: &mut Energy) {
+    let e = |j: usize| strand.segment(j);
+    let length = |j: usize| f64::from(strand.rest_length(j));
+    let mut m0 = strand.root_normal();
+    let (ratio, flat) = (f64::from(strand.twist_ratio()), f64::from(strand.flatness()));
+    let mut u0 = e(0).normalize_or_zero();
+    for j in 1..strand.point_count() - 1 {
+        let u1 = e(j).normalize_or_zero();
+        let stiffness = f64::from(strand.bend(j));
+        let local = strand.rest_turn(j);
+        let d = m0 * local.x + u0.cross(m0) * local.y + u0 * local.z;
+        let r = e(j) / length(j) - e(j - 1) / length(j - 1) - d;
+        energy.bending += 0.5 * stiffness * r.length_squared();
+        let carried = transport_normal(m0, u0, u1);
+        let mut m1 = carried;
+        if strand.elastic() == Elastic::Rod {
+            let own = strand.normal(j).as_dvec3();
+            let across = own - u1 * own.dot(u1);
+            if across.length_squared() > 1e-6 {
+                m1 = across.normalize();
             }
-            (m0, u0) = (m1, u1);
+            let half = carried.cross(m1).dot(u1) / (carried.dot(m1) + 1.0).max(FOLDED as f64);
+            let tau = 4.0 * half / (1.0 + (1.0 + half * half).sqrt());
+            let z = (0.5 * (u0 + u1).length_squared() / FOLDING as f64).min(1.0);
+            let twist = z * (2.0 - z) * (tau - f64::from(strand.rest_twist(j)));
+            energy.twisting += 0.5 * stiffness * ratio * curved_joint(local.z) * twist * twist;
+            let wider = m0.dot(e(j) / length(j) - u0) - local.x;
+            energy.bending += 0.5 * stiffness * flat * wider * wider;
         }
+        (m0, u0) = (m1, u1);
     }
 }

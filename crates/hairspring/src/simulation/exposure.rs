@@ -22,10 +22,7 @@ use super::Simulation;
 use crate::{
     collide::ColliderPose,
     simd::lanes::LANES,
-    strand::{
-        drag::AIR_KINEMATIC_VISCOSITY,
-        tile::{rest, strand},
-    },
+    strand::{drag::AIR_KINEMATIC_VISCOSITY, tile::rest},
 };
 use glam::Vec3;
 use std::{cmp::Reverse, collections::BinaryHeap, sync::Arc};
@@ -64,7 +61,7 @@ impl Simulation {
         let mut found = Vec::with_capacity(self.point_count());
         for (place, s) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let tile = self.model.tiles[place / LANES];
-            let reynolds = self.state.strand[place / LANES][strand::REYNOLDS].0[place % LANES];
+            let reynolds = self.strand(place).reynolds();
             let own = 0.5 * COEFFICIENT * reynolds * AIR_KINEMATIC_VISCOSITY / grid.edge;
             for (i, point) in self.model.groom.strand(*s as usize).iter().enumerate() {
                 let cell = grid.cell(*point);
@@ -86,7 +83,7 @@ impl Simulation {
     fn dense_grid(&self, low: Vec3, high: Vec3, edge: f32) -> Grid {
         let mut grid = Grid::new(low, high, edge);
         for (place, s) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
-            let reynolds = self.state.strand[place / LANES][strand::REYNOLDS].0[place % LANES];
+            let reynolds = self.strand(place).reynolds();
             let width = self.model.multiplicity[*s as usize] * reynolds * AIR_KINEMATIC_VISCOSITY;
             for w in self.model.groom.strand(*s as usize).windows(2) {
                 grid.add(w[0], w[1], width);

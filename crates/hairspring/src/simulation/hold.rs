@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::{
     simd::lanes::{LANES, Row},
-    strand::tile::{Elastic, HoldRows, hold, state},
+    strand::tile::{Elastic, HoldRows, hold},
 };
 use glam::Vec3;
 
@@ -37,12 +37,12 @@ impl Simulation {
         self.state.holds.iter_mut().for_each(Vec::clear);
         for held in holds {
             let place = self.model.places[held.strand as usize] as usize;
-            let points = self.model.groom.range(self.model.lanes[place] as usize).len();
+            let (model, points) = (self.strand(place).elastic(), self.strand(place).point_count());
             assert!(
                 (2..points).contains(&(held.point as usize)),
                 "a held point must exist and must not be driven"
             );
-            let point = held.point * self.model.tiles[place / LANES].model.stride() as u32;
+            let point = held.point * model.stride() as u32;
             let (tile, lane) = (&mut self.state.holds[place / LANES], place % LANES);
             let at = tile.iter().position(|h| h.point == point).unwrap_or_else(|| {
                 tile.push(HoldRows { point, rows: [Row::default(); hold::ROWS] });
@@ -61,8 +61,7 @@ impl Simulation {
             rows[hold::CLAMPED].0[lane] = if held.clamped { 1.0 } else { 0.0 };
             let next = |h: &&Hold| h.strand == held.strand && h.point == held.point + 1;
             let end = holds.iter().find(next).and_then(|h| h.target);
-            if let (Elastic::Springs, true, Some(start), Some(end)) =
-                (self.model.tiles[place / LANES].model, held.clamped, held.target, end)
+            if let (Elastic::Springs, true, Some(start), Some(end)) = (model, held.clamped, held.target, end)
             {
                 self.hold_extra(place, point, [start, end]);
             }
@@ -80,7 +79,7 @@ impl Simulation {
     /// Pins the extra particle after particle `point` of the springs model to its triangle over the segment
     /// between `ends`, on the side where it currently is.
     fn hold_extra(&mut self, place: usize, point: u32, ends: [Vec3; 2]) {
-        let edge = |i: u32| self.vector(place, (point + i) as usize, state::EDGE);
+        let edge = |i: u32| self.strand(place).edge((point + i) as usize);
         let (tile, lane) = (place / LANES, place % LANES);
         let aside = 0.5 * (edge(1) - edge(2));
         let along = (ends[1] - ends[0]).normalize_or_zero();

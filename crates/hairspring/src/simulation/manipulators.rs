@@ -5,7 +5,6 @@ use crate::collide::FrameColliders;
 use crate::{
     forces::{ActiveManipulator, Manipulator, bond::Bonds},
     math::RigidTransform,
-    simd::lanes::LANES,
 };
 use glam::Vec3;
 
@@ -113,9 +112,7 @@ impl Simulation {
 
     /// Writes the world positions of the points of the strand in a lane [m].
     fn strand_points(&self, place: usize, points: &mut Vec<Vec3>) {
-        let root = self.root_position(place);
-        let stride = self.model.tiles[place / LANES].model.stride();
         points.clear();
-        points.extend(self.particles(place).step_by(stride).map(|x| root + x));
+        points.extend(self.strand(place).points());
     }
 }

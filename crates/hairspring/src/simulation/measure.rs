@@ -1,12 +1,7 @@
 //! Quality measures of a simulation: stretch, depth inside colliders, non-finite values.
 
 use super::Simulation;
-use crate::collide::MovingCollider;
-use crate::{
-    math::RigidTransform,
-    simd::lanes::LANES,
-    strand::tile::{rest, state},
-};
+use crate::{collide::MovingCollider, math::RigidTransform};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -79,44 +74,42 @@ impl Simulation {
     ) -> (f64, usize, Measure) {
         let mut out = Measure::default();
         let (mut sum, mut segments) = (0.0, 0);
-        let root = self.root_position(place);
-        let n = self.simulated_points(place);
-        let stride = self.model.tiles[place / LANES].model.stride();
+        let strand = self.strand(place);
+        let (root, n, stride) = (strand.root(), strand.particle_count(), strand.stride());
         let mut before = Vec3::ZERO;
-        for (i, x) in self.particles(place).enumerate() {
-            let v = self.vector(place, i, state::V);
+        for (i, x) in strand.particles().enumerate() {
+            let v = strand.velocity(i);
             out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
             out.speed_max = out.speed_max.max(v.length() as f64);
             // Only segments that are drawn, without a model's extra particles.
             if i % stride == 0 && i + stride < n {
-                let edges = (i + 1..=i + stride).map(|k| self.vector(place, k, state::EDGE).as_dvec3());
-                let length = self.rest(place, i, rest::LENGTH) as f64;
-                let strain = (edges.sum::<glam::DVec3>().length() / length - 1.0).abs();
+                let length = f64::from(strand.rest_length(i));
+                let strain = (strand.between(i, i + stride).length() / length - 1.0).abs();
                 sum += strain;
                 segments += 1;
                 out.stretch_max = out.stretch_max.max(strain);
             }
             if i % stride == 0 && i >= 2 * stride {
-                let clearance = self.rest(place, i, rest::CLEARANCE);
+                let clearance = strand.clearance(i);
                 let depth = near(poses, root + x, clearance)
                     .map(|(o, pose)| clearance - o.shape.distance(pose.inverse_point(root + x)))
                     .fold(0.0, f32::max) as f64;
                 out.max_depth = out.max_depth.max(depth);
                 out.inside_points += (depth > 1e-6) as usize;
-                let sunk = self.sunk(place, i);
+                let authored = strand.rest_penetration(i);
                 let [a, b] = [root + before, root + x];
                 let begins_held = i == 2 * stride;
                 let (mut depth, mut held) = (0f64, 0f64);
-                for (o, pose) in near(poses, a.midpoint(b), sunk + 0.5 * a.distance(b)) {
+                for (o, pose) in near(poses, a.midpoint(b), authored + 0.5 * a.distance(b)) {
                     let [a, b] = [a, b].map(|p| pose.inverse_point(p));
                     let least = o.shape.least_distance(a, b);
-                    let begins = if begins_held { o.shape.distance(a).min(sunk) } else { sunk };
+                    let begins = if begins_held { o.shape.distance(a).min(authored) } else { authored };
                     depth = depth.max(f64::from(begins - least));
                     if begins >= 0.0 {
                         let exact = -o.shape.least_distance_to_surface(a, b);
                         out.surface_depth = out.surface_depth.max(f64::from(exact));
                     }
-                    held = held.max(f64::from(sunk - least.max(begins)));
+                    held = held.max(f64::from(authored - least.max(begins)));
                 }
                 out.segment_depth = out.segment_depth.max(depth);
                 out.inside_segments += (depth > 1e-6) as usize;

@@ -20,6 +20,7 @@ mod step;
 mod strand_contacts;
 mod strand_model;
 mod strand_parts;
+mod strand_ref;
 mod strand_state;
 mod substeps;
 mod take_over;
@@ -44,11 +45,7 @@ pub use substeps::MAX_TRAVEL;
 use crate::{
     air::{Noise, OcclusionSampler, WindOcclusion},
     forces::{ForceBuffers, ForceField, HairField, charge::ChargedBall},
-    simd::lanes::LANES,
-    strand::{
-        frame_context::FrameContext,
-        tile::{TileLayout, state, strand},
-    },
+    strand::{frame_context::FrameContext, tile::TileLayout},
     strand_contact::Neighbours,
     volume::Volume,
 };
@@ -192,59 +189,10 @@ impl Simulation {
             rest = more;
         }
         pieces.into_par_iter().with_min_len(256).for_each(|(place, piece)| {
-            let root = self.root_position(place);
-            let stride = self.model.tiles[place / LANES].model.stride();
-            for (p, x) in piece.iter_mut().zip(self.particles(place).step_by(stride)) {
-                *p = root + x;
+            for (p, x) in piece.iter_mut().zip(self.strand(place).points()) {
+                *p = x;
             }
         });
-    }
-
-    /// Number of particles of the strand in lane `place`.
-    fn simulated_points(&self, place: usize) -> usize {
-        (self.model.groom.range(self.model.lanes[place] as usize).len() - 1)
-            * self.model.tiles[place / LANES].model.stride()
-            + 1
-    }
-
-    /// Positions of the particles of the strand in lane `place`, relative to its root [m].
-    fn particles(&self, place: usize) -> impl Iterator<Item = Vec3> + '_ {
-        (0..self.simulated_points(place)).scan(Vec3::ZERO, move |x, i| {
-            *x += self.vector(place, i, state::EDGE);
-            Some(*x)
-        })
-    }
-
-    /// A vector of the state at point `i` of the strand in lane `place`.
-    fn vector(&self, place: usize, i: usize, component: usize) -> Vec3 {
-        let (tile, lane) = (place / LANES, place % LANES);
-        let rows = &self.state.points[self.model.tiles[tile].first as usize + i][component..];
-        Vec3::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane])
-    }
-
-    /// A value of the rest shape.
-    fn rest(&self, place: usize, i: usize, component: usize) -> f32 {
-        let (tile, lane) = (place / LANES, place % LANES);
-        self.model.rest[self.model.tiles[tile].first as usize + i][component].0[lane]
-    }
-
-    /// Authored depth of the segment that ends at point `i`, 0 or less [m].
-    fn sunk(&self, place: usize, i: usize) -> f32 {
-        let (tile, lane) = (place / LANES, place % LANES);
-        self.model
-            .rest_penetration
-            .get(self.model.tiles[tile].first as usize + i)
-            .map_or(0.0, |row| row.0[lane])
-    }
-
-    /// World position of a root at the end of the last step [m].
-    fn root_position(&self, place: usize) -> Vec3 {
-        let (tile, lane) = (place / LANES, place % LANES);
-        let rows = &self.state.strand[tile][strand::ROOT_END..];
-        let local = Vec3::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane]);
-        let (m, t) = self.state.anchor.matrix();
-        // The same arithmetic as in the kernel, so that a body at rest gives bitwise the same position.
-        m.x_axis * local.x + m.y_axis * local.y + m.z_axis * local.z + t
     }
 }
 

@@ -1,7 +1,7 @@
 //! Sets a pose without motion: every strand in its rest shape, placed at its root.
 
 use super::Simulation;
-use crate::{math::RigidTransform, simd::lanes::LANES, strand::tile::strand};
+use crate::math::RigidTransform;
 
 impl Simulation {
     /// Puts every strand at rest in its authored shape at the given roots (world pose, rotation since rest),
@@ -14,16 +14,8 @@ impl Simulation {
         self.state.anchor = anchor;
         let turn = anchor.rotation.inverse();
         for (k, root) in roots.iter().enumerate() {
-            let place = self.model.places[k] as usize;
-            let (tile, lane) = (place / LANES, place % LANES);
-            let rows = &mut self.state.strand[tile];
-            let p = anchor.inverse_point(root.translation).to_array();
-            let q = (turn * root.rotation).to_array();
-            for at in [strand::ROOT_START, strand::ROOT_END] {
-                for (k, v) in p.into_iter().chain(q).enumerate() {
-                    rows[at + k].0[lane] = v;
-                }
-            }
+            let lane = self.model.places[k] as usize;
+            self.strand_mut(lane).set_root(anchor.inverse_point(root.translation), turn * root.rotation);
         }
         self.reset();
     }

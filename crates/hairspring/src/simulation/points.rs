@@ -1,13 +1,7 @@
 //! Positions and velocities of the simulated points as plain arrays.
 
 use super::Simulation;
-use crate::{
-    simd::lanes::LANES,
-    strand::{
-        model::bend::transport_normal,
-        tile::{Elastic, state},
-    },
-};
+use crate::strand::{model::bend::transport_normal, tile::Elastic};
 use glam::{DVec3, Vec3};
 
 impl Simulation {
@@ -18,10 +12,9 @@ impl Simulation {
     /// If `out` is too short.
     pub fn write_velocities(&self, out: &mut [Vec3]) {
         let mut out = out.iter_mut();
-        for place in self.model.places.iter().map(|p| *p as usize) {
-            let stride = self.model.tiles[place / LANES].model.stride();
-            for i in 0..self.points(place) {
-                *out.next().expect("one velocity for each point") = self.vector(place, i * stride, state::V);
+        for strand in self.model.places.iter().map(|lane| self.strand(*lane as usize)) {
+            for i in 0..strand.point_count() {
+                *out.next().expect("one velocity for each point") = strand.velocity(i * strand.stride());
             }
         }
     }
@@ -43,37 +36,37 @@ impl Simulation {
         let mut first = 0;
         for k in 0..self.model.places.len() {
             let place = self.model.places[k] as usize;
-            let own = first..first + self.points(place);
+            let own = first..first + self.strand(place).point_count();
             first = own.end;
             self.set_strand(place, &points[own.clone()], &velocities[own]);
         }
     }
 
     fn set_strand(&mut self, place: usize, points: &[Vec3], velocities: &[Vec3]) {
-        let model = self.model.tiles[place / LANES].model;
-        let stride = model.stride();
+        let mut strand = self.strand_mut(place);
+        let (model, stride) = (strand.get().elastic(), strand.get().stride());
         for (i, w) in points.windows(2).enumerate() {
             let (first, new) = (i * stride, w[1] - w[0]);
-            let old: Vec3 = (1..=stride).map(|k| self.vector(place, first + k, state::EDGE)).sum();
+            let old: Vec3 = (1..=stride).map(|k| strand.get().edge(first + k)).sum();
             let turn = |v: Vec3| {
                 let [from, to] = [old, new].map(|e| e.as_dvec3().normalize_or(DVec3::Y));
                 transport_normal(v.as_dvec3(), from, to).as_vec3()
             };
             if model == Elastic::Springs {
                 // The extra particle keeps its place beside the segment.
-                let aside = self.vector(place, first + 1, state::EDGE) - 0.5 * old;
+                let aside = strand.get().edge(first + 1) - 0.5 * old;
                 let aside = turn(aside).normalize_or_zero() * aside.length();
-                self.set_vector(place, first + 1, state::EDGE, 0.5 * new + aside);
-                self.set_vector(place, first + 2, state::EDGE, 0.5 * new - aside);
-                self.set_vector(place, first + 1, state::V, velocities[i].midpoint(velocities[i + 1]));
+                strand.set_edge(first + 1, 0.5 * new + aside);
+                strand.set_edge(first + 2, 0.5 * new - aside);
+                strand.set_velocity(first + 1, velocities[i].midpoint(velocities[i + 1]));
             } else {
-                let normal = self.vector(place, first, state::NORMAL);
-                self.set_vector(place, first, state::NORMAL, turn(normal));
-                self.set_vector(place, first + 1, state::EDGE, new);
+                let normal = strand.get().normal(first);
+                strand.set_normal(first, turn(normal));
+                strand.set_edge(first + 1, new);
             }
         }
         for (i, v) in velocities.iter().enumerate() {
-            self.set_vector(place, i * stride, state::V, *v);
+            strand.set_velocity(i * stride, *v);
         }
         self.begin_history(place);
     }

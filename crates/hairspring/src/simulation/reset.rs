@@ -7,7 +7,7 @@ use crate::{
         dispatch::dispatch,
         lanes::{F, LANES, Row, Simd, load, store},
     },
-    strand::tile::{Elastic, StateRows, springs, state, strand},
+    strand::tile::{Elastic, StateRows, springs, state},
 };
 use fearless_simd::Level;
 use glam::{Quat, Vec3};
@@ -71,9 +71,7 @@ impl Simulation {
 
     pub(super) fn reset_strand(&mut self, place: usize) {
         let (tile, lane) = (place / LANES, place % LANES);
-        let rows = &self.state.strand[tile];
-        let local = Quat::from_array([0, 1, 2, 3].map(|k| rows[strand::TURN_END + k].0[lane]));
-        let turn = self.state.anchor.rotation * local;
+        let turn = self.strand(place).root_rotation();
         let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
         let points = simulated_points(
             self.model.tiles[tile].model,

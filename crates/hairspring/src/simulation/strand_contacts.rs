@@ -4,10 +4,7 @@ use super::Simulation;
 use crate::settings;
 use crate::{
     simd::lanes::LANES,
-    strand::{
-        frame_context::FrameContext,
-        tile::{hold, rest, state, strand},
-    },
+    strand::{frame_context::FrameContext, tile::hold},
     strand_contact::{Hair, Neighbours, NeighboursReport},
 };
 use glam::{Mat3, Vec3};
@@ -76,35 +73,29 @@ impl Simulation {
         let mut i = 0;
         for (k, place) in self.model.places.iter().map(|p| *p as usize).enumerate() {
             let Some(alike) = hair.shown_first(k) else { continue };
-            let (tile, lane) = (place / LANES, place % LANES);
-            let (stride, first) =
-                (self.model.tiles[tile].model.stride(), self.model.tiles[tile].first as usize);
-            let damped = 1.0 + self.state.strand[tile][strand::DAMPING].0[lane] / h;
-            let root = |at: usize| Vec3::from([0, 1, 2].map(|k| self.state.strand[tile][at + k].0[lane]));
-            let mut x = m * root(strand::ROOT_START).lerp(root(strand::ROOT_END), fraction) + t;
-            for j in 0..self.simulated_points(place) {
-                x += self.vector(place, j, state::EDGE);
+            let strand = self.strand(place);
+            let stride = strand.stride();
+            let damped = 1.0 + strand.damping() / h;
+            let [start, end] = strand.local_roots();
+            let mut x = m * start.lerp(end, fraction) + t;
+            for j in 0..strand.particle_count() {
+                x += strand.edge(j);
                 if j.is_multiple_of(stride) {
                     hair.x[i] = x;
-                    hair.v[i] = self.vector(place, j, state::V);
-                    let free = j >= self.model.tiles[tile].model.driven();
-                    hair.inverse_mass[i] = if free {
-                        (alike * self.model.rest[first + j][rest::MASS].0[lane]).recip()
-                    } else {
-                        0.0
-                    };
-                    let rest = |row: usize| self.model.rest[first + j][row].0[lane];
-                    hair.inverse_length[i] =
-                        if rest(rest::LENGTH) > 0.0 { rest(rest::LENGTH).recip() } else { 0.0 };
+                    hair.v[i] = strand.velocity(j);
+                    let free = j >= strand.elastic().driven();
+                    hair.inverse_mass[i] = if free { (alike * strand.mass(j)).recip() } else { 0.0 };
+                    let length = strand.rest_length(j);
+                    hair.inverse_length[i] = if length > 0.0 { length.recip() } else { 0.0 };
                     // The bending springs of the springs model do not act at its points, and their effect
                     // here is small.
-                    hair.bend[i] = if stride == 1 { alike * rest(rest::BEND) * damped } else { 0.0 };
+                    hair.bend[i] = if stride == 1 { alike * strand.bend(j) * damped } else { 0.0 };
                     i += 1;
                 }
             }
-            let start = i - self.points(place);
-            for held in self.state.holds.get(tile).into_iter().flatten() {
-                if held.rows[hold::PINNED].0[lane] > 0.0 {
+            let start = i - strand.point_count();
+            for held in &self.state.holds[place / LANES] {
+                if held.rows[hold::PINNED].0[place % LANES] > 0.0 {
                     hair.inverse_mass[start + held.point as usize / stride] = 0.0;
                 }
             }
@@ -115,13 +106,12 @@ impl Simulation {
     /// [`Simulation::builder`]: the index of the point in `hair`, and whether its strand is the first of its
     /// merged strands.
     fn each_velocity(&mut self, hair: &Hair, mut see: impl FnMut(usize, bool, [&mut f32; 3])) {
-        for (k, place) in self.model.places.iter().map(|p| *p as usize).enumerate() {
-            let (tile, lane) = (self.model.tiles[place / LANES], place % LANES);
+        for k in 0..self.model.places.len() {
+            let mut strand = self.strand_mut(self.model.places[k] as usize);
+            let stride = strand.get().stride();
             let first = hair.shown_first(k).is_some();
             for (j, i) in hair.strand(hair.shown(k)).enumerate() {
-                let rows = &mut self.state.points[tile.first as usize + j * tile.model.stride()];
-                let [x, y, z] = &mut rows[state::V..state::V + 3] else { unreachable!() };
-                see(i, first, [&mut x.0[lane], &mut y.0[lane], &mut z.0[lane]]);
+                see(i, first, strand.velocity_mut(j * stride));
             }
         }
     }

@@ -20,7 +20,7 @@ use super::{
     Simulation,
     step::{StepInput, substep_length},
 };
-use crate::{collide::MovingCollider, math::RigidTransform, strand::tile::state};
+use crate::{collide::MovingCollider, math::RigidTransform};
 use rayon::prelude::*;
 
 /// Largest motion of a body in a substep, over its half thickness [1]. A strand in contact then stays on the
@@ -100,18 +100,18 @@ impl Simulation {
         let part = (MAX_TRAVEL * shape.half_thickness()).max(1e-12);
         let slow = part * drive.dt / substep_length(&self.model.solver) as f32;
         let way_of_strand = |place: usize| {
-            let mut x = self.root_position(place);
-            let n = self.simulated_points(place);
+            let strand = self.strand(place);
+            let mut x = strand.root();
             if x.distance(center) > radius + 2.0 * self.model.longest {
                 return 0.0;
             }
             let mut most = 0.0f32;
-            for i in 0..n {
-                let edge = self.vector(place, i, state::EDGE);
+            for i in 0..strand.particle_count() {
+                let edge = strand.edge(i);
                 x += edge;
                 let own = start.inverse_point(x);
                 // Hair at rest follows the head and the body when they move away together.
-                let slip = self.vector(place, i, state::V) * drive.dt + x - end.point(own);
+                let slip = strand.velocity(i) * drive.dt + x - end.point(own);
                 let with_head = drive.anchor.point(self.state.anchor.inverse_point(x)) - x;
                 let way = slip.length().min((slip + with_head).length());
                 if way > most.max(slow) && shape.distance(own) < way + edge.length() {

@@ -12,7 +12,7 @@
 //!                                        between those and the truss, the tensions of the rest shape
 //! ```
 
-use super::Simulation;
+use super::{Simulation, strand_ref::StrandRef};
 use crate::{
     settings::Integrator,
     simd::lanes::{LANES, Row},
@@ -22,7 +22,7 @@ use crate::{
         truss::{ASIDE, normal_of, side},
     },
 };
-use glam::{DVec3, Quat, Vec3};
+use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
 impl Simulation {
@@ -87,11 +87,12 @@ impl Simulation {
             for at in (0..state::ROWS).filter(|at| !kept(*at)) {
                 self.state.points[to][at].0[lane] = old.state.points[from][at].0[from_lane];
             }
+            let model = Arc::make_mut(&mut self.model);
             for at in [rest::CLEARANCE, rest::EXPOSURE] {
-                Arc::make_mut(&mut self.model).rest[to][at].0[lane] = old.model.rest[from][at].0[from_lane];
+                model.rest[to][at].0[lane] = old.model.rest[from][at].0[from_lane];
             }
-            if let Some(sunk) = Arc::make_mut(&mut self.model).rest_penetration.get_mut(to) {
-                sunk.0[lane] = old.model.rest_penetration[from].0[from_lane];
+            if let Some(authored) = model.rest_penetration.get_mut(to) {
+                authored.0[lane] = old.model.rest_penetration[from].0[from_lane];
             }
             if let (true, Some(span), Some(was)) =
                 (forces, self.state.segment_contacts.get_mut(to), old.state.segment_contacts.get(from))
@@ -113,48 +114,50 @@ impl Simulation {
         let [stride, was] =
             [self.model.tiles[place / LANES].model, old.model.tiles[from / LANES].model].map(Elastic::stride);
         let forces = self.carries_forces() && old.carries_forces();
-        let edge = |j: usize| (1..=was).map(|k| old.vector(from, j * was + k, state::EDGE)).sum::<Vec3>();
-        let velocity = |j: usize| old.vector(from, j * was, state::V);
-        for j in 0..self.points(place) {
+        let source = old.strand(from);
+        let edge = |j: usize| (1..=was).map(|k| source.edge(j * was + k)).sum::<Vec3>();
+        let velocity = |j: usize| source.velocity(j * was);
+        for j in 0..source.point_count() {
             let (i, i_was) = (j * stride, j * was);
-            self.set_vector(place, i, state::V, velocity(j));
+            self.strand_mut(place).set_velocity(i, velocity(j));
             let at = self.model.tiles[place / LANES].first as usize + i;
-            for row in [rest::CLEARANCE, rest::EXPOSURE] {
-                Arc::make_mut(&mut self.model).rest[at][row].0[place % LANES] = old.rest(from, i_was, row);
-            }
-            if let Some(sunk) = Arc::make_mut(&mut self.model).rest_penetration.get_mut(at) {
-                sunk.0[place % LANES] = old.sunk(from, i_was);
-            }
             let was_at = old.model.tiles[from / LANES].first as usize + i_was;
+            let model = Arc::make_mut(&mut self.model);
+            for row in [rest::CLEARANCE, rest::EXPOSURE] {
+                model.rest[at][row].0[place % LANES] = old.model.rest[was_at][row].0[from % LANES];
+            }
+            if let Some(authored) = model.rest_penetration.get_mut(at) {
+                authored.0[place % LANES] = source.rest_penetration(i_was);
+            }
             if let (true, Some(span), Some(was)) =
                 (forces, self.state.segment_contacts.get_mut(at), old.state.segment_contacts.get(was_at))
             {
                 span.iter_mut().zip(was).for_each(|(row, was)| row.0[place % LANES] = was.0[from % LANES]);
             }
             if forces {
-                let rows = &mut self.state.points[at];
-                let was_at = &old.state.points[was_at];
-                rows[state::NORMAL_FORCE].0[place % LANES] = was_at[state::NORMAL_FORCE].0[from % LANES];
+                let mut strand = self.strand_mut(place);
+                strand.set_normal_force(i, source.normal_force(i_was));
                 if stride == was {
-                    rows[state::TENSION].0[place % LANES] = was_at[state::TENSION].0[from % LANES];
+                    strand.set_tension(i, source.tension(i_was));
                 }
             }
         }
-        for (j, normal) in old.frames(from).into_iter().enumerate() {
+        let mut strand = self.strand_mut(place);
+        for (j, normal) in frames(source).into_iter().enumerate() {
             let i = j * stride;
             if stride == 1 {
-                self.set_vector(place, i + 1, state::EDGE, edge(j));
-                self.set_vector(place, i, state::NORMAL, normal.as_vec3());
+                strand.set_edge(i + 1, edge(j));
+                strand.set_normal(i, normal.as_vec3());
                 continue;
             }
             // The triangle over the segment, rotating with it.
             let (e, [a, b]) = (edge(j).as_dvec3(), [velocity(j), velocity(j + 1)].map(Vec3::as_dvec3));
-            let length = f64::from(self.rest(place, i, rest::LENGTH));
+            let length = f64::from(strand.get().rest_length(i));
             let aside = side(j, e.normalize_or(DVec3::Y), normal) * (ASIDE * length);
             let spin = e.cross(b - a) / e.length_squared().max(1e-24);
-            self.set_vector(place, i + 1, state::EDGE, (0.5 * e + aside).as_vec3());
-            self.set_vector(place, i + 2, state::EDGE, (0.5 * e - aside).as_vec3());
-            self.set_vector(place, i + 1, state::V, (0.5 * (a + b) + spin.cross(aside)).as_vec3());
+            strand.set_edge(i + 1, (0.5 * e + aside).as_vec3());
+            strand.set_edge(i + 2, (0.5 * e - aside).as_vec3());
+            strand.set_velocity(i + 1, (0.5 * (a + b) + spin.cross(aside)).as_vec3());
         }
         self.begin_history(place);
     }
@@ -174,42 +177,30 @@ impl Simulation {
             }
         }
     }
+}
 
-    /// Returns the frame's normal on each segment of the strand in lane `place`; shape `[points − 1]`.
-    fn frames(&self, place: usize) -> Vec<DVec3> {
-        let (tile, lane) = (place / LANES, place % LANES);
-        let (model, rows) = (self.model.tiles[tile].model, &self.state.strand[tile]);
-        let turn = Quat::from_array([0, 1, 2, 3].map(|k| rows[strand::TURN_END + k].0[lane]));
-        let normal = Vec3::from_array([0, 1, 2].map(|k| rows[strand::NORMAL + k].0[lane]));
-        let mut normal = (self.state.anchor.rotation * turn * normal).as_dvec3();
-        let stride = model.stride();
-        let mut before = None;
-        (0..self.points(place) - 1)
-            .map(|j| {
-                let e: DVec3 =
-                    (1..=stride).map(|k| self.vector(place, j * stride + k, state::EDGE).as_dvec3()).sum();
-                let t = e.normalize_or(before.unwrap_or(DVec3::Y));
-                if let Some(before) = before {
-                    normal = transport_normal(normal, before, t);
+/// Returns the frame's normal on each segment of a strand; shape `[points − 1]`.
+fn frames(strand: StrandRef) -> Vec<DVec3> {
+    let mut normal = strand.root_normal();
+    let mut before = None;
+    (0..strand.point_count() - 1)
+        .map(|j| {
+            let e = strand.segment(j);
+            let t = e.normalize_or(before.unwrap_or(DVec3::Y));
+            if let Some(before) = before {
+                normal = transport_normal(normal, before, t);
+            }
+            let own = match strand.elastic() {
+                Elastic::Rod if j > 0 => strand.normal(j).as_dvec3(),
+                Elastic::Springs => {
+                    let extra = strand.edge(2 * j + 1).as_dvec3() - 0.5 * e;
+                    normal_of(j, t, extra.reject_from_normalized(t).normalize_or_zero())
                 }
-                let own = match model {
-                    Elastic::Rod if j > 0 => self.vector(place, j, state::NORMAL).as_dvec3(),
-                    Elastic::Springs => {
-                        let extra = self.vector(place, 2 * j + 1, state::EDGE).as_dvec3() - 0.5 * e;
-                        normal_of(j, t, extra.reject_from_normalized(t).normalize_or_zero())
-                    }
-                    _ => DVec3::ZERO,
-                };
-                normal = own.reject_from_normalized(t).normalize_or(normal);
-                before = Some(t);
-                normal
-            })
-            .collect()
-    }
-
-    pub(super) fn set_vector(&mut self, place: usize, i: usize, component: usize, v: Vec3) {
-        let (tile, lane) = (place / LANES, place % LANES);
-        let rows = &mut self.state.points[self.model.tiles[tile].first as usize + i][component..];
-        (rows[0].0[lane], rows[1].0[lane], rows[2].0[lane]) = (v.x, v.y, v.z);
-    }
+                Elastic::Straight | Elastic::Curvature | Elastic::Rod => DVec3::ZERO,
+            };
+            normal = own.reject_from_normalized(t).normalize_or(normal);
+            before = Some(t);
+            normal
+        })
+        .collect()
 }

@@ -1,41 +1,34 @@
 //! State of single points, by strand (an index into those given to [`Simulation::builder`]) and index in the
 //! strand.
 
-use super::Simulation;
-use crate::{
-    simd::lanes::LANES,
-    strand::tile::{rest, state},
-};
-use glam::{DVec3, Vec3};
+use super::{Simulation, strand_ref::StrandRef};
+use glam::Vec3;
 
 impl Simulation {
     /// Tension of the segment from point `i` to the next, from the last substep [N]. At the tip, that of the
     /// last segment.
     pub fn tension_at(&self, strand: usize, i: usize) -> f32 {
-        let (place, segment) = self.segment(strand, i);
-        self.tension(place, segment * self.stride(place))
+        let (strand, segment) = self.segment(strand, i);
+        strand.tension(segment * strand.stride())
     }
 
     /// Strain of that segment: extension over rest length [1].
     pub fn stretch_at(&self, strand: usize, i: usize) -> f32 {
-        let (place, segment) = self.segment(strand, i);
-        let (stride, first) = (self.stride(place), segment * self.stride(place));
-        let edges = (first + 1..=first + stride).map(|k| self.vector(place, k, state::EDGE).as_dvec3());
-        let length = f64::from(self.rest(place, first, rest::LENGTH));
-        (edges.sum::<DVec3>().length() / length - 1.0) as f32
+        let (strand, segment) = self.segment(strand, i);
+        let length = f64::from(strand.rest_length(segment * strand.stride()));
+        (strand.segment(segment).length() / length - 1.0) as f32
     }
 
     /// Speed of point `i` [m/s].
     pub fn speed_at(&self, strand: usize, i: usize) -> f32 {
-        let place = self.model.places[strand] as usize;
-        self.vector(place, i * self.stride(place), state::V).length()
+        let strand = self.strand(self.model.places[strand] as usize);
+        strand.velocity(i * strand.stride()).length()
     }
 
     /// Contact force of a collider on point `i`, from the last substep; 0 without contact [N].
     pub fn contact_at(&self, strand: usize, i: usize) -> f32 {
-        let place = self.model.places[strand] as usize;
-        let at = self.model.tiles[place / LANES].first as usize + i * self.stride(place);
-        self.state.points[at][state::NORMAL_FORCE].0[place % LANES]
+        let strand = self.strand(self.model.places[strand] as usize);
+        strand.normal_force(i * strand.stride())
     }
 
     /// Fill ratio at the world position `place`: hair when the volume was last measured, relative to rest
@@ -44,13 +37,9 @@ impl Simulation {
         self.volume.as_ref().map_or(0.0, |volume| volume.density(self.state.anchor).fill(place))
     }
 
-    /// Lane of a strand, and the segment that begins at point `i`, or the last one.
-    fn segment(&self, strand: usize, i: usize) -> (usize, usize) {
-        let place = self.model.places[strand] as usize;
-        (place, i.min(self.points(place) - 2))
-    }
-
-    fn stride(&self, place: usize) -> usize {
-        self.model.tiles[place / LANES].model.stride()
+    /// A strand, and its segment that begins at point `i`, or the last one.
+    fn segment(&self, strand: usize, i: usize) -> (StrandRef<'_>, usize) {
+        let strand = self.strand(self.model.places[strand] as usize);
+        (strand, i.min(strand.point_count() - 2))
     }
 }
