@@ -20,7 +20,7 @@ pub(super) struct Holes {
     /// Rows whose signs are not known yet: layer, row.
     open: Vec<[u32; 2]>,
     /// Whether the signs of a row are known, layer after layer.
-    told: Vec<bool>,
+    known: Vec<bool>,
     /// Runs of deep nodes: layer, row, first and end.
     deep: Vec<[u32; 4]>,
 }
@@ -34,7 +34,7 @@ impl Holes {
         open: impl Iterator<Item = [u32; 2]>,
         closed: impl Iterator<Item = [u32; 4]>,
     ) -> &[[u32; 4]] {
-        let Self { open: rows, told, deep: runs } = self;
+        let Self { open: rows, known, deep: runs } = self;
         rows.clear();
         rows.extend(open);
         runs.clear();
@@ -44,9 +44,9 @@ impl Holes {
         }
         let [nx, ny, nz] = grid.size().to_array().map(|n| n as usize);
         let row = |[z, y]: [u32; 2]| z as usize * ny + y as usize;
-        told.clear();
-        told.resize(ny * nz, true);
-        rows.iter().for_each(|at| told[row(*at)] = false);
+        known.clear();
+        known.resize(ny * nz, true);
+        rows.iter().for_each(|at| known[row(*at)] = false);
         let mut left = rows.len() + 1;
         while rows.len() < left {
             left = rows.len();
@@ -58,13 +58,13 @@ impl Holes {
                     (z > 0).then(|| (z - 1) * ny + y),
                     (z + 1 < nz).then(|| (z + 1) * ny + y),
                 ];
-                let beside = beside.map(|row| row.filter(|row| told[*row]));
+                let beside = beside.map(|row| row.filter(|row| known[*row]));
                 if beside == [None; 4] {
                     return true;
                 }
                 take_after(grid, row(at) * nx, beside.map(|row| row.map(|row| row * nx)));
                 deep_interior::push(at, &grid.distances[row(at) * nx..][..nx], grid.cell(), runs);
-                told[row(at)] = true;
+                known[row(at)] = true;
                 false
             });
         }

@@ -250,7 +250,7 @@ impl HairInterpolation<'_> {
         let (rest, ride) = (&layout.groom.points[range.clone()], &layout.ride[range.clone()]);
         carry::carry(rest, &layout.weights[s], guides.map(|g| &self.carriers[g]), ride, strand);
         if self.effects != Effects::default() {
-            style::lay_over(&self.effects, s as u32, lead, ride, strand);
+            style::apply_styling(&self.effects, s as u32, lead, ride, strand);
         }
         let clearance = &layout.clearance[range];
         dispatch!(Level::new(), simd => keep_out::keep_out(simd, poses, strand, clearance));

@@ -4,7 +4,7 @@ use crate::settings::Effects;
 use glam::Vec3;
 
 /// Applies clumping toward the first guide, then curls, then noise. Each grows from zero at the root.
-pub(super) fn lay_over(
+pub(super) fn apply_styling(
     effects: &Effects,
     strand: u32,
     lead: &[Vec3],

@@ -17,7 +17,7 @@ pub(crate) struct WindSampler<'a> {
     /// The air without occlusion.
     pub air: AirSample<'a>,
     /// Wind occlusion.
-    pub shade: Option<(&'a OcclusionSampler, Density<'a>)>,
+    pub occlusion: Option<(&'a OcclusionSampler, Density<'a>)>,
 }
 
 impl WindSampler<'_> {
@@ -26,7 +26,7 @@ impl WindSampler<'_> {
         let [root, _] = strand.roots();
         for (i, (x, _)) in strand.points().enumerate().skip(2) {
             let place = root.translation + x;
-            let left = self.shade.as_ref().map_or(1.0, |(shade, hair)| shade.left(hair, place));
+            let left = self.occlusion.as_ref().map_or(1.0, |(occlusion, hair)| occlusion.left(hair, place));
             strand.add_wind(i, self.air.velocity(place) * left - self.air.uniform);
         }
     }

@@ -16,7 +16,7 @@ impl Simulation {
             return Vec::new();
         }
         let mut reach = vec![Row([f32::INFINITY; LANES]); self.state.points.len()];
-        for (place, s) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+        for (place, s) in self.model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let s = *s as usize;
             let material = materials.get(self.model.groom.group(s) as usize).or(materials.last());
             let Some(tether) = material.map(|m| m.tether).filter(|t| *t > 0.0) else { continue };
@@ -40,19 +40,19 @@ impl Simulation {
             .model
             .tiles
             .par_iter()
-            .zip(self.model.lanes.par_chunks(LANES))
+            .zip(self.model.groom_strands.par_chunks(LANES))
             .map(|(tile, lanes)| {
-                let mut sunk = vec![Row::default(); tile.points as usize];
+                let mut depths = vec![Row::default(); tile.points as usize];
                 for (lane, s) in lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
                     let points = simulated_points(tile.model, self.model.groom.strand(*s as usize));
                     let stride = tile.model.stride();
                     for i in (2 * stride..points.len()).step_by(stride) {
                         let [a, b] = [points[i - stride], points[i]];
                         let depth = obstacles.iter().map(|o| o.least_distance(a, b).min(o.distance(a)));
-                        sunk[i].0[lane] = depth.fold(0.0, f32::min);
+                        depths[i].0[lane] = depth.fold(0.0, f32::min);
                     }
                 }
-                sunk
+                depths
             })
             .collect();
         let none = tiles.iter().flatten().all(|row| row.0 == [0.0; LANES]);

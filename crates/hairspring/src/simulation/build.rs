@@ -1,7 +1,7 @@
 //! Builds tiles from a groom: rest shapes and the sag-free start.
 
 use super::{
-    Simulation, SimulationBuilder, cpu_solver::CpuSolver, layout::Order, manipulators::Tools,
+    Simulation, SimulationBuilder, cpu_solver::CpuSolver, layout::Order, manipulators::Manipulators,
     strand_model::StrandModel, strand_state::StrandState, teleport::Motion,
 };
 use crate::strand::tile::TileLayout;
@@ -54,9 +54,10 @@ impl Simulation {
             *model == Elastic::Rod && material(**s as usize).model == Model::Curvature
         });
         let coils = coils.count();
-        let Order { lanes, asked, places, models } = Order::new(&groom, strands, &elastic);
+        let Order { groom_strands, strand_of_lane, lane_of_strand, models } =
+            Order::new(&groom, strands, &elastic);
         let mut first = 0;
-        let tiles: Vec<TileLayout> = lanes
+        let tiles: Vec<TileLayout> = groom_strands
             .chunks(LANES)
             .zip(models)
             .map(|(lane, (model, double))| {
@@ -86,9 +87,9 @@ impl Simulation {
             charges: materials.iter().map(|m| m.charge).collect(),
             start: Start::default(),
             groom,
-            lanes,
-            asked,
-            places,
+            groom_strands,
+            strand_of_lane,
+            lane_of_strand,
             tiles,
             solver,
             gravity,
@@ -104,7 +105,7 @@ impl Simulation {
                 if solver.segment_contacts { first as usize } else { 0 }
             ],
             holds: vec![Vec::new(); model.tiles.len()],
-            tools: Tools::default(),
+            manipulators: Manipulators::default(),
             charged: Vec::new(),
             motion: Motion::default(),
             last_h: 0.0,
@@ -134,8 +135,8 @@ impl Simulation {
             neighbours: None,
             noise: Noise::default(),
             wind_occlusion: WindOcclusion::default(),
-            shade: OcclusionSampler::default(),
-            interval: FrameContext::default(),
+            occlusion: OcclusionSampler::default(),
+            frame: FrameContext::default(),
             solver: CpuSolver { level: super::levels().next().unwrap_or_else(Level::new) },
         }
     }
@@ -146,7 +147,7 @@ impl Simulation {
     pub fn instance(&self) -> Self {
         let mut other = Self::with_parts(self.model.clone(), self.state.clone());
         other.solver.level = self.solver.level;
-        other.interval.segments = self.interval.segments;
+        other.frame.segments = self.frame.segments;
         other
     }
 
@@ -162,7 +163,7 @@ impl Simulation {
         let mut state_of = self.state.points.as_mut_slice();
         let mut work = Vec::with_capacity(model.tiles.len());
         for ((tile, lanes), strand) in
-            model.tiles.iter().zip(model.lanes.chunks(LANES)).zip(&mut self.state.strand)
+            model.tiles.iter().zip(model.groom_strands.chunks(LANES)).zip(&mut self.state.strand)
         {
             let (rest, more_rest) = rest_of.split_at_mut(tile.points as usize);
             let (state, more_state) = state_of.split_at_mut(tile.points as usize);

@@ -28,8 +28,12 @@ impl Simulation {
     pub fn contacts(&self, obstacles: &[MovingCollider]) -> Contacts {
         let poses: Vec<_> = obstacles.iter().map(|o| (&o.shape, o.end)).collect();
         // Summed in a fixed order, so that the force is bitwise independent of the number of threads.
-        let of_strands: Vec<Contacts> =
-            self.model.places.par_iter().map(|&place| self.strand_contacts(place as usize, &poses)).collect();
+        let of_strands: Vec<Contacts> = self
+            .model
+            .lane_of_strand
+            .par_iter()
+            .map(|&place| self.strand_contacts(place as usize, &poses))
+            .collect();
         of_strands.into_iter().fold(Contacts::default(), |a, b| Contacts {
             points: a.points + b.points,
             segments: a.segments + b.segments,

@@ -22,13 +22,13 @@ pub(super) struct CpuSolver {
 }
 
 impl CpuSolver {
-    /// Runs the substeps of `interval` that are due now. Returns true if any point became non-finite.
+    /// Runs the substeps of `frame` that are due now. Returns true if any point became non-finite.
     pub fn run(
         &self,
         model: &StrandModel,
         state: &mut StrandState,
         forces: &ForceBuffers,
-        interval: &FrameContext,
+        frame: &FrameContext,
     ) -> bool {
         let tiles = TileRange {
             tiles: &model.tiles,
@@ -43,10 +43,10 @@ impl CpuSolver {
             anisotropic_drag: &forces.anisotropic_drag,
             wind_delta: &forces.wind_delta,
             rest_penetration: &model.rest_penetration,
-            segment_contacts: if interval.segments { &mut state.segment_contacts[..] } else { &mut [] },
+            segment_contacts: if frame.segments { &mut state.segment_contacts[..] } else { &mut [] },
             tether_lengths: &model.tethers,
         };
-        run(self.level, interval, tiles)
+        run(self.level, frame, tiles)
     }
 }
 
@@ -59,24 +59,24 @@ thread_local! {
 
 /// Runs the tiles on all threads, by recursive halving down to small tasks. Returns true if any point became
 /// non-finite.
-fn run(level: Level, interval: &FrameContext, tiles: TileRange) -> bool {
+fn run(level: Level, frame: &FrameContext, tiles: TileRange) -> bool {
     let count = tiles.tiles.len();
     if count > TILES_PER_TASK {
         let half = (count / 2).next_multiple_of(TILES_PER_TASK).min(count - 1);
         let (a, b) = tiles.split(half);
-        let (a, b) = rayon::join(|| run(level, interval, a), || run(level, interval, b));
+        let (a, b) = rayon::join(|| run(level, frame, a), || run(level, frame, b));
         return a | b;
     }
-    on_large_stack(|| run_task(level, interval, tiles))
+    on_large_stack(|| run_task(level, frame, tiles))
 }
 
 /// Runs a task's tiles one after the other; see [`run`].
-fn run_task(level: Level, interval: &FrameContext, mut tiles: TileRange) -> bool {
+fn run_task(level: Level, frame: &FrameContext, mut tiles: TileRange) -> bool {
     MEMORY.with_borrow_mut(|memory| {
         let mut broken = false;
         for k in 0..tiles.tiles.len() {
             let mut tile = tiles.tile(k);
-            kernel(interval.integrator, tile.layout.model)(level, interval, &mut tile, memory);
+            kernel(frame.integrator, tile.layout.model)(level, frame, &mut tile, memory);
             broken |= !reset::all_finite(level, tile.state);
         }
         broken

@@ -73,7 +73,7 @@ impl Simulation {
         // Summed in a fixed order: bitwise independent of the number of threads.
         let strands: Vec<Energy> = self
             .model
-            .places
+            .lane_of_strand
             .par_iter()
             .with_min_len(64)
             .map(|place| self.strand_energy(*place as usize))
@@ -102,7 +102,7 @@ impl Simulation {
             }
             energy
         };
-        self.model.places.iter().map(|place| fall(*place as usize)).sum()
+        self.model.lane_of_strand.iter().map(|place| fall(*place as usize)).sum()
     }
 
     fn strand_energy(&self, place: usize) -> Energy {

@@ -59,7 +59,7 @@ impl Simulation {
         }
         let depth = grid.depths(obstacles);
         let mut found = Vec::with_capacity(self.point_count());
-        for (place, s) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+        for (place, s) in self.model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let tile = self.model.tiles[place / LANES];
             let reynolds = self.strand(place).reynolds();
             let own = 0.5 * COEFFICIENT * reynolds * AIR_KINEMATIC_VISCOSITY / grid.edge;
@@ -82,7 +82,7 @@ impl Simulation {
     /// Builds the density grid between `low` and `high`, with cells whose edge is at least `edge` [m].
     fn dense_grid(&self, low: Vec3, high: Vec3, edge: f32) -> Grid {
         let mut grid = Grid::new(low, high, edge);
-        for (place, s) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+        for (place, s) in self.model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let reynolds = self.strand(place).reynolds();
             let width = self.model.multiplicity[*s as usize] * reynolds * AIR_KINEMATIC_VISCOSITY;
             for w in self.model.groom.strand(*s as usize).windows(2) {

@@ -12,54 +12,56 @@ use std::time::{Duration, Instant};
 
 impl Simulation {
     /// Computes the external forces on all points for the frame, and moves the roots. The hair volume acts
-    /// for the substeps in `interval` that are due now. `carried` is the rigid motion that the hair made
+    /// for the substeps in `frame` that are due now. `carried` is the rigid motion that the hair made
     /// before. Returns the time that the hair volume took.
-    pub(super) fn exchange(
+    pub(super) fn compute_external_forces(
         &mut self,
-        drive: &StepInput,
+        input: &StepInput,
         carried: Option<&RigidTransform>,
-        interval: &FrameContext,
+        frame: &FrameContext,
     ) -> Duration {
         let global_shapes = self.model.solver.global_shape
             && self.model.global_shapes.iter().any(|global_shape| global_shape.is_on());
         let charged = self.model.charges.iter().any(|charge| *charge != 0.0);
-        let pressed = self.is_pressed();
-        let occluded = self.wind_occlusion.is_on() && drive.air.moves();
+        let with_volume = self.volume_acts();
+        let occluded = self.wind_occlusion.is_on() && input.air.moves();
         let custom = !self.force_fields.is_empty();
-        let gripped = global_shapes || charged || custom || !self.state.tools.used.is_empty();
-        let tines = custom || self.state.tools.used.iter().any(|used| !used.tool.binds());
-        let blown = occluded || drive.air.varies();
+        let position_springs =
+            global_shapes || charged || custom || !self.state.manipulators.active.is_empty();
+        let transverse_drag =
+            custom || self.state.manipulators.active.iter().any(|active| !active.tool.binds());
+        let moving_air = occluded || input.air.varies();
         let kinds = ForceMask {
-            external_acceleration: pressed,
-            position_spring: gripped,
-            anisotropic_drag: tines,
-            wind_delta: blown || custom,
+            external_acceleration: with_volume,
+            position_spring: position_springs,
+            anisotropic_drag: transverse_drag,
+            wind_delta: moving_air || custom,
         };
         self.forces.prepare(self.state.points.len(), kinds);
         let anchor = self.state.anchor;
-        let bodies = FrameColliders::new((drive.obstacles, carried));
+        let bodies = FrameColliders::new((input.obstacles, carried));
         let began = Instant::now();
-        if let Some(volume) = self.volume.as_mut().filter(|_| pressed || occluded) {
+        if let Some(volume) = self.volume.as_mut().filter(|_| with_volume || occluded) {
             volume.begin_frame();
             // Roots are moved below.
             let now = Now { anchor, gone: 1.0 };
             let hair = (&self.state.strand[..], &self.state.points[..]);
             volume.measure(hair, &now);
-            if pressed {
-                let first = (&interval.substeps[0].obstacles[..], interval.h);
-                let dt = interval.now.len() as f32 * interval.h;
-                volume.exchange(dt, hair, &now, first, &mut self.forces.external_acceleration);
+            if with_volume {
+                let first = (&frame.substeps[0].obstacles[..], frame.h);
+                let dt = frame.now.len() as f32 * frame.h;
+                volume.compute_accelerations(dt, hair, &now, first, &mut self.forces.external_acceleration);
             }
         }
         let volume_took = began.elapsed();
-        self.move_roots(drive);
-        if !gripped && !blown {
+        self.move_roots(input);
+        if !position_springs && !moving_air {
             return volume_took;
         }
-        let frame = FrameMotion { anchor: [anchor, drive.anchor], dt: drive.dt };
+        let motion = FrameMotion { anchor: [anchor, input.anchor], dt: input.dt };
         let mut strands = StrandBatch {
             tiles: &self.model.tiles,
-            lanes: self.model.lanes.as_chunks().0,
+            lanes: self.model.groom_strands.as_chunks().0,
             strand: &self.state.strand,
             rest: &self.model.rest,
             state: &self.state.points,
@@ -75,19 +77,19 @@ impl Simulation {
             self.state.charged.iter_mut().for_each(|ball| ball.carry(carried));
             // Follow hairs have the charge of their guides.
             let of_all = |strand: usize| charge_of(strand) * self.model.multiplicity[strand];
-            self.hair_field.find(&mut strands, &frame, of_all);
+            self.hair_field.find(&mut strands, &motion, of_all);
         }
-        let air = drive.air.moment(drive.dt, &mut self.noise);
-        let shade = self.volume.as_ref().filter(|_| occluded).map(|volume| {
+        let air = input.air.moment(input.dt, &mut self.noise);
+        let occlusion = self.volume.as_ref().filter(|_| occluded).map(|volume| {
             let hair = volume.density(anchor);
-            self.shade.reserve(volume.most_nodes());
-            self.shade.cast(&self.wind_occlusion, &air, &bodies, &hair);
-            (&self.shade, hair)
+            self.occlusion.reserve(volume.most_nodes());
+            self.occlusion.cast(&self.wind_occlusion, &air, &bodies, &hair);
+            (&self.occlusion, hair)
         });
-        let blow = WindSampler { air, shade };
+        let wind = WindSampler { air, occlusion };
         let charges = Charges { balls: &self.state.charged, hair: &self.hair_field };
         let (groom, shape_of) = (&self.model.groom, &self.model.global_shapes);
-        let tools = &self.state.tools.used;
+        let manipulators = &self.state.manipulators.active;
         let force_fields = &self.force_fields;
         let act = |strand: &mut StrandView| {
             let s = strand.strand;
@@ -98,17 +100,17 @@ impl Simulation {
             if charged {
                 charges.add(charge_of(s), strand);
             }
-            for used in tools {
-                used.act(&bodies, strand, groom.range(s).len());
+            for active in manipulators {
+                active.act(&bodies, strand, groom.range(s).len());
             }
-            if blown {
-                blow.add(strand);
+            if moving_air {
+                wind.add(strand);
             }
             for (_, force) in force_fields {
                 force.apply(strand);
             }
         };
-        strands.each(&frame, &act);
+        strands.each(&motion, &act);
         volume_took
     }
 }
@@ -116,14 +118,14 @@ impl Simulation {
 impl Simulation {
     /// Applies the hair volume again, with the anchor at `anchor`, for those of the frame's substeps that are
     /// due now.
-    pub(super) fn exchange_again(&mut self, anchor: RigidTransform, interval: &FrameContext) {
+    pub(super) fn update_volume_forces(&mut self, anchor: RigidTransform, frame: &FrameContext) {
         let Some(volume) = &mut self.volume else { return };
-        let now = Now { anchor, gone: interval.begun().0 };
+        let now = Now { anchor, gone: frame.begun().0 };
         let hair = (&self.state.strand[..], &self.state.points[..]);
         volume.measure(hair, &now);
-        let first = (&interval.substeps[interval.now.start].obstacles[..], interval.h);
-        volume.exchange(
-            interval.now.len() as f32 * interval.h,
+        let first = (&frame.substeps[frame.now.start].obstacles[..], frame.h);
+        volume.compute_accelerations(
+            frame.now.len() as f32 * frame.h,
             hair,
             &now,
             first,
@@ -132,7 +134,7 @@ impl Simulation {
     }
 
     /// Returns whether the hair volume exerts forces.
-    pub(super) fn is_pressed(&self) -> bool {
+    pub(super) fn volume_acts(&self) -> bool {
         self.volume.as_ref().is_some_and(|volume| volume.acts())
     }
 }

@@ -36,7 +36,7 @@ impl Simulation {
     pub fn set_holds(&mut self, holds: &[Hold]) {
         self.state.holds.iter_mut().for_each(Vec::clear);
         for held in holds {
-            let place = self.model.places[held.strand as usize] as usize;
+            let place = self.model.lane_of_strand[held.strand as usize] as usize;
             let (model, points) = (self.strand(place).elastic(), self.strand(place).point_count());
             assert!(
                 (2..points).contains(&(held.point as usize)),
@@ -70,7 +70,7 @@ impl Simulation {
     }
 
     /// Puts the targets at rest after they have reached their positions.
-    pub(super) fn rest_holds(&mut self) {
+    pub(super) fn end_holds(&mut self) {
         for held in self.state.holds.iter_mut().flatten() {
             held.rows[hold::WAY..hold::WAY + 3].fill(Row::default());
         }

@@ -15,12 +15,12 @@ use std::cmp::Reverse;
 /// Assignment of strands to lanes.
 pub(super) struct Order {
     /// Index of the groom's strand in every lane, `u32::MAX` where there is none; shape `[tiles * LANES]`.
-    pub lanes: Vec<u32>,
+    pub groom_strands: Vec<u32>,
     /// Index into the requested strands for each lane, `u32::MAX` where there is none; shape `[tiles *
     /// LANES]`.
-    pub asked: Vec<u32>,
+    pub strand_of_lane: Vec<u32>,
     /// The lane of each requested strand; shape `[strands]`.
-    pub places: Vec<u32>,
+    pub lane_of_strand: Vec<u32>,
     /// The elastic model of each tile, and whether the tile is solved in double precision.
     pub models: Vec<(Elastic, bool)>,
 }
@@ -41,23 +41,24 @@ impl Order {
             let points = groom.range(strand as usize).len();
             (elastic[*k as usize], Reverse(points), curve.along(middle(strand)))
         });
-        let mut places = vec![0; strands.len()];
-        let mut asked: Vec<u32> = Vec::with_capacity(strands.len().next_multiple_of(LANES));
+        let mut lane_of_strand = vec![0; strands.len()];
+        let mut strand_of_lane: Vec<u32> = Vec::with_capacity(strands.len().next_multiple_of(LANES));
         let mut models = Vec::new();
         for k in order {
             let model = elastic[k as usize];
             if models.last().is_some_and(|last| *last != model) {
-                asked.resize(asked.len().next_multiple_of(LANES), u32::MAX);
+                strand_of_lane.resize(strand_of_lane.len().next_multiple_of(LANES), u32::MAX);
             }
-            if asked.len().is_multiple_of(LANES) {
+            if strand_of_lane.len().is_multiple_of(LANES) {
                 models.push(model);
             }
-            places[k as usize] = asked.len() as u32;
-            asked.push(k);
+            lane_of_strand[k as usize] = strand_of_lane.len() as u32;
+            strand_of_lane.push(k);
         }
-        asked.resize(asked.len().next_multiple_of(LANES), u32::MAX);
-        let lanes = asked.iter().map(|k| strands.get(*k as usize).copied().unwrap_or(u32::MAX)).collect();
-        Self { lanes, asked, places, models }
+        strand_of_lane.resize(strand_of_lane.len().next_multiple_of(LANES), u32::MAX);
+        let groom_strands =
+            strand_of_lane.iter().map(|k| strands.get(*k as usize).copied().unwrap_or(u32::MAX)).collect();
+        Self { groom_strands, strand_of_lane, lane_of_strand, models }
     }
 }
 
@@ -84,7 +85,7 @@ mod tests {
         let all: Vec<u32> = (0..36).collect();
         let order = Order::new(&groom, &all, &[(Elastic::Rod, false); 36]);
         assert_eq!(order.models, [(Elastic::Rod, false); 5]);
-        let tiles: Vec<&[u32]> = order.lanes.chunks(LANES).collect();
+        let tiles: Vec<&[u32]> = order.groom_strands.chunks(LANES).collect();
         for s in [0, 9, 18, 27] {
             assert!(tiles[0].contains(&s), "the four of 12 points come first: {:?}", tiles[0]);
         }
@@ -92,8 +93,8 @@ mod tests {
             let sides = tile.iter().filter(|s| **s != u32::MAX).map(|s| s % 2);
             assert!(sides.clone().min() == sides.max() || *tile == tiles[2], "{tile:?}");
         }
-        for (k, place) in order.places.iter().enumerate() {
-            assert_eq!(order.lanes[*place as usize], k as u32);
+        for (k, place) in order.lane_of_strand.iter().enumerate() {
+            assert_eq!(order.groom_strands[*place as usize], k as u32);
         }
     }
 
@@ -105,15 +106,15 @@ mod tests {
         let order = Order::new(&groom, &[4, 3, 2, 1, 0], &elastic);
         assert_eq!(order.models.len(), 2);
         for (k, strand) in [4, 3, 2, 1, 0].into_iter().enumerate() {
-            let place = order.places[k] as usize;
-            assert_eq!((order.lanes[place], order.models[place / LANES]), (strand, elastic[k]));
+            let place = order.lane_of_strand[k] as usize;
+            assert_eq!((order.groom_strands[place], order.models[place / LANES]), (strand, elastic[k]));
         }
-        assert_eq!(order.lanes.iter().filter(|s| **s == u32::MAX).count(), 11);
+        assert_eq!(order.groom_strands.iter().filter(|s| **s == u32::MAX).count(), 11);
     }
 
     #[test]
     fn nothing_is_in_order() {
         let order = Order::new(&Groom::default(), &[], &[]);
-        assert!(order.lanes.is_empty() && order.places.is_empty() && order.models.is_empty());
+        assert!(order.groom_strands.is_empty() && order.lane_of_strand.is_empty() && order.models.is_empty());
     }
 }

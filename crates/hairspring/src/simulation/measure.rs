@@ -43,8 +43,12 @@ impl Simulation {
     /// Measures the state against the colliders at the end of their frame.
     pub fn measure(&self, obstacles: &[MovingCollider]) -> Measure {
         let poses: Vec<_> = obstacles.iter().map(|o| (o, o.end)).collect();
-        let (sum, segments, figures) =
-            self.model.places.par_iter().map(|&place| self.measure_strand(place as usize, &poses)).reduce(
+        let (sum, segments, figures) = self
+            .model
+            .lane_of_strand
+            .par_iter()
+            .map(|&place| self.measure_strand(place as usize, &poses))
+            .reduce(
                 || (0.0, 0, Measure::default()),
                 |(s1, n1, a), (s2, n2, b)| {
                     let merged = Measure {

@@ -83,16 +83,16 @@ pub struct Simulation {
     noise: Noise,
     /// Wind occlusion by bodies and hair, and its result in the last frame.
     wind_occlusion: WindOcclusion,
-    shade: OcclusionSampler,
+    occlusion: OcclusionSampler,
     /// Context of the last frame, kept to reuse its memory.
-    interval: FrameContext,
+    frame: FrameContext,
     solver: CpuSolver,
 }
 
 impl Simulation {
     /// Number of simulated strands.
     pub fn strand_count(&self) -> usize {
-        self.model.places.len()
+        self.model.lane_of_strand.len()
     }
 
     /// Number of simulated points, without padding.
@@ -120,9 +120,9 @@ impl Simulation {
             + self.model.tensions.iter().map(|rows| size_of_val(&rows[..])).sum::<usize>()
             + self.volume.as_ref().map_or(0, |volume| volume.bytes())
             + self.neighbours.as_ref().map_or(0, |neighbours| neighbours.bytes())
-            + (self.model.lanes.len()
-                + self.model.asked.len()
-                + self.model.places.len()
+            + (self.model.groom_strands.len()
+                + self.model.strand_of_lane.len()
+                + self.model.lane_of_strand.len()
                 + self.model.multiplicity.len())
                 * size_of::<u32>()
             + self.model.tiles.len() * size_of::<TileLayout>()
@@ -166,13 +166,13 @@ impl Simulation {
 
     /// The simulated strands, as indices of the groom, in the order given to [`Simulation::builder`].
     pub fn strands(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
-        self.model.places.iter().map(|p| self.model.lanes[*p as usize])
+        self.model.lane_of_strand.iter().map(|p| self.model.groom_strands[*p as usize])
     }
 
     /// Writes the points of every simulated strand [m], one after the other, in the order given to
     /// [`Simulation::builder`]. `out` has the shape `[point_count]`.
     pub fn write_points(&self, out: &mut [Vec3]) {
-        self.write_points_of(0..self.model.places.len(), out);
+        self.write_points_of(0..self.model.lane_of_strand.len(), out);
     }
 
     /// The same for some of the strands, by their indices in that order.
@@ -182,9 +182,10 @@ impl Simulation {
     pub fn write_points_of(&self, strands: Range<usize>, out: &mut [Vec3]) {
         let mut rest = out;
         let mut pieces = Vec::with_capacity(strands.len());
-        for &place in &self.model.places[strands] {
-            let (piece, more) =
-                rest.split_at_mut(self.model.groom.range(self.model.lanes[place as usize] as usize).len());
+        for &place in &self.model.lane_of_strand[strands] {
+            let (piece, more) = rest.split_at_mut(
+                self.model.groom.range(self.model.groom_strands[place as usize] as usize).len(),
+            );
             pieces.push((place as usize, piece));
             rest = more;
         }

@@ -10,11 +10,11 @@ impl Simulation {
     /// # Panics
     /// If `roots` is not as long as [`Simulation::strand_count`].
     pub fn place(&mut self, anchor: RigidTransform, roots: &[RigidTransform]) {
-        assert_eq!(roots.len(), self.model.places.len(), "one root pose for each simulated strand");
+        assert_eq!(roots.len(), self.model.lane_of_strand.len(), "one root pose for each simulated strand");
         self.state.anchor = anchor;
         let turn = anchor.rotation.inverse();
         for (k, root) in roots.iter().enumerate() {
-            let lane = self.model.places[k] as usize;
+            let lane = self.model.lane_of_strand[k] as usize;
             self.strand_mut(lane).set_root(anchor.inverse_point(root.translation), turn * root.rotation);
         }
         self.reset();

@@ -12,7 +12,7 @@ impl Simulation {
     /// If `out` is too short.
     pub fn write_velocities(&self, out: &mut [Vec3]) {
         let mut out = out.iter_mut();
-        for strand in self.model.places.iter().map(|lane| self.strand(*lane as usize)) {
+        for strand in self.model.lane_of_strand.iter().map(|lane| self.strand(*lane as usize)) {
             for i in 0..strand.point_count() {
                 *out.next().expect("one velocity for each point") = strand.velocity(i * strand.stride());
             }
@@ -34,8 +34,8 @@ impl Simulation {
             "positions and velocities are finite"
         );
         let mut first = 0;
-        for k in 0..self.model.places.len() {
-            let place = self.model.places[k] as usize;
+        for k in 0..self.model.lane_of_strand.len() {
+            let place = self.model.lane_of_strand[k] as usize;
             let own = first..first + self.strand(place).point_count();
             first = own.end;
             self.set_strand(place, &points[own.clone()], &velocities[own]);

@@ -38,16 +38,16 @@ impl Simulation {
     /// how many were reset.
     pub(super) fn reset_non_finite(&mut self) -> usize {
         let mut count = 0;
-        for place in 0..self.model.lanes.len() {
+        for place in 0..self.model.groom_strands.len() {
             let (tile, lane) = (place / LANES, place % LANES);
             let first = self.model.tiles[tile].first as usize;
             let rows = first..first + self.model.tiles[tile].points as usize;
-            if self.model.lanes[place] != u32::MAX
+            if self.model.groom_strands[place] != u32::MAX
                 && self.state.points[rows.clone()].iter().flatten().any(|r| !r.0[lane].is_finite())
             {
                 self.reset_strand(place);
                 count += 1;
-            } else if self.model.lanes[place] == u32::MAX {
+            } else if self.model.groom_strands[place] == u32::MAX {
                 self.state.points[rows.clone()].iter_mut().flatten().for_each(|r| r.0[lane] = 0.0);
                 if let Some(history) = self.state.history.get_mut(rows) {
                     history.iter_mut().flatten().for_each(|r| r.0[lane] = 0.0);
@@ -59,8 +59,8 @@ impl Simulation {
 
     /// Resets every strand to its rest shape at the current pose of its root, without motion.
     pub fn reset(&mut self) {
-        for k in 0..self.model.places.len() {
-            self.reset_strand(self.model.places[k] as usize);
+        for k in 0..self.model.lane_of_strand.len() {
+            self.reset_strand(self.model.lane_of_strand[k] as usize);
         }
         if let Some(neighbours) = &mut self.neighbours {
             neighbours.forget();
@@ -75,7 +75,7 @@ impl Simulation {
         let turn = if turn.is_finite() { turn.normalize() } else { Quat::IDENTITY };
         let points = simulated_points(
             self.model.tiles[tile].model,
-            self.model.groom.strand(self.model.lanes[place] as usize),
+            self.model.groom.strand(self.model.groom_strands[place] as usize),
         )
         .into_owned();
         self.state.contact_age[tile].0[lane] = 0.0;

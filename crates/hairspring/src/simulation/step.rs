@@ -90,82 +90,86 @@ impl Simulation {
     /// substeps are used where a body that is fast relative to its thickness passes through the hair.
     ///
     /// # Panics
-    /// If `drive.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
-    pub fn step(&mut self, drive: &StepInput) -> StepReport {
-        assert_eq!(drive.roots.len(), self.model.places.len(), "one root pose for each simulated strand");
-        assert!(drive.dt > 0.0, "`dt` must be positive");
+    /// If `input.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
+    pub fn step(&mut self, input: &StepInput) -> StepReport {
+        assert_eq!(
+            input.roots.len(),
+            self.model.lane_of_strand.len(),
+            "one root pose for each simulated strand"
+        );
+        assert!(input.dt > 0.0, "`dt` must be positive");
         let solver = self.model.solver;
-        let carried = self.carry_along(drive);
+        let carried = self.carry_along(input);
         // For bodies with several time slices, each slice has the same number of substeps.
-        let parts = drive.obstacles.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
-        let substeps = ((f64::from(drive.dt) / (substep_length(&solver) * LONGER)).ceil() as u32)
-            .max(self.substeps_past(drive, carried.as_ref()))
+        let parts = input.obstacles.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
+        let substeps = ((f64::from(input.dt) / (substep_length(&solver) * LONGER)).ceil() as u32)
+            .max(self.substeps_past(input, carried.as_ref()))
             .clamp(1, MAX_SUBSTEPS)
             .next_multiple_of(parts);
-        let mut interval = std::mem::take(&mut self.interval);
-        let looked_at = interval.segments;
-        self.fill_interval(drive, carried.as_ref(), substeps, &mut interval);
-        if looked_at && !interval.segments {
+        let mut frame = std::mem::take(&mut self.frame);
+        let looked_at = frame.segments;
+        self.fill_frame(input, carried.as_ref(), substeps, &mut frame);
+        if looked_at && !frame.segments {
             // Discard the segment contacts: nothing would update them until segments are tested again.
             self.state.segment_contacts.fill([Row::default(); segment_contact::ROWS]);
         }
-        self.begin_tools(&FrameColliders::new((drive.obstacles, carried.as_ref())));
-        let (reset_strands, times) = self.run_in_parts(drive, carried.as_ref(), &mut interval);
-        self.rest_holds();
-        self.rest_tools(drive.dt);
-        self.state.last_h = interval.h;
+        self.begin_manipulators(&FrameColliders::new((input.obstacles, carried.as_ref())));
+        let (reset_strands, times) = self.run_substeps(input, carried.as_ref(), &mut frame);
+        self.end_holds();
+        self.end_manipulators(input.dt);
+        self.state.last_h = frame.h;
         // Release the colliders' shapes to the caller.
-        interval.substeps.iter_mut().for_each(|s| s.obstacles.clear());
-        self.interval = interval;
+        frame.substeps.iter_mut().for_each(|s| s.obstacles.clear());
+        self.frame = frame;
         StepReport { substeps, reset_strands, times }
     }
 
-    /// Runs the substeps of `interval` that are due now. Returns the number of strands that were reset
+    /// Runs the substeps of `frame` that are due now. Returns the number of strands that were reset
     /// because of non-finite state.
-    pub(super) fn run(&mut self, interval: &FrameContext) -> usize {
-        let reset = self.solver.run(&self.model, &mut self.state, &self.forces, interval);
+    pub(super) fn run(&mut self, frame: &FrameContext) -> usize {
+        let reset = self.solver.run(&self.model, &mut self.state, &self.forces, frame);
         if reset { self.reset_non_finite() } else { 0 }
     }
 
-    /// Fills `interval` for a frame, reusing its memory.
-    fn fill_interval(
+    /// Fills `frame` for a frame, reusing its memory.
+    fn fill_frame(
         &self,
-        drive: &StepInput,
+        input: &StepInput,
         carried: Option<&RigidTransform>,
         count: u32,
-        interval: &mut FrameContext,
+        frame: &mut FrameContext,
     ) {
         let from = self.state.anchor;
-        interval.h = drive.dt / count as f32;
+        frame.h = input.dt / count as f32;
         let solver = self.model.solver;
-        interval.integrator = solver.integrator;
-        interval.iterations = match (solver.integrator, solver.quality) {
+        frame.integrator = solver.integrator;
+        frame.iterations = match (solver.integrator, solver.quality) {
             (Integrator::LocalGlobal, Quality::Normal) => LOCAL_GLOBAL,
             (Integrator::LocalGlobal, Quality::High) => 4 * LOCAL_GLOBAL,
             (_, Quality::Normal) => 1,
             (_, Quality::High) => NEWTON,
         };
-        interval.continues = (interval.h / self.state.last_h - 1.0).abs() < 1e-3;
-        interval.response = solver.contact;
+        frame.continues = (frame.h / self.state.last_h - 1.0).abs() < 1e-3;
+        frame.response = solver.contact;
         // For the largest length that a segment can have. Without a strain limit, segments are always tested.
         let may_cut = |o: &MovingCollider| {
             !(solver.integrator.limits_strain()
                 && segment_contact_unneeded(self.model.longest_segment, o.shape.roundness()))
         };
-        interval.segments = solver.segment_contacts && drive.obstacles.iter().any(may_cut);
-        interval.projection_iterations = solver.projection_iterations;
-        interval.gravity = self.model.gravity;
-        interval.anchor = from.matrix();
-        interval.substeps.resize_with(count as usize, Substep::default);
-        interval.now = 0..count as usize;
-        for (k, substep) in interval.substeps.iter_mut().enumerate() {
+        frame.segments = solver.segment_contacts && input.obstacles.iter().any(may_cut);
+        frame.projection_iterations = solver.projection_iterations;
+        frame.gravity = self.model.gravity;
+        frame.anchor = from.matrix();
+        frame.substeps.resize_with(count as usize, Substep::default);
+        frame.now = 0..count as usize;
+        for (k, substep) in frame.substeps.iter_mut().enumerate() {
             let fraction = (k + 1) as f32 / count as f32;
             let before = k as f32 / count as f32;
             substep.fraction = fraction;
-            substep.anchor = from.lerp(&drive.anchor, fraction).matrix();
-            substep.wind = drive.air.uniform(fraction * drive.dt);
+            substep.anchor = from.lerp(&input.anchor, fraction).matrix();
+            substep.wind = input.air.uniform(fraction * input.dt);
             substep.obstacles.clear();
-            substep.obstacles.extend(drive.obstacles.iter().map(|o| {
+            substep.obstacles.extend(input.obstacles.iter().map(|o| {
                 let start = o.start(carried);
                 let at = |t: f32| start.lerp(&o.end, t).matrix();
                 let (parts, count) = (o.shape.time_slices(), count as usize);
@@ -175,20 +179,20 @@ impl Simulation {
         }
     }
 
-    /// Makes the root poses of the last frame the start and those of `drive` the end, both relative to the
+    /// Makes the root poses of the last frame the start and those of `input` the end, both relative to the
     /// anchor.
-    pub(super) fn move_roots(&mut self, drive: &StepInput) {
-        let turn = drive.anchor.rotation.inverse();
-        let tiles = self.state.strand.par_iter_mut().zip(self.model.asked.par_chunks(LANES));
+    pub(super) fn move_roots(&mut self, input: &StepInput) {
+        let turn = input.anchor.rotation.inverse();
+        let tiles = self.state.strand.par_iter_mut().zip(self.model.strand_of_lane.par_chunks(LANES));
         tiles.with_min_len(TILES_PER_TASK).for_each(|(rows, asked)| {
             for k in 0..strand::ROOT_END {
                 rows[strand::ROOT_START + k] = rows[strand::ROOT_END + k];
             }
             let start = strand::TURN_START;
             for (lane, k) in asked.iter().enumerate() {
-                let Some(root) = drive.roots.get(*k as usize) else { continue };
+                let Some(root) = input.roots.get(*k as usize) else { continue };
                 let before = glam::Quat::from_array([0, 1, 2, 3].map(|k| rows[start + k].0[lane]));
-                let p = drive.anchor.inverse_point(root.translation);
+                let p = input.anchor.inverse_point(root.translation);
                 let q = turn * root.rotation;
                 // Of the two quaternions of the rotation, the one in the same hemisphere, as `nlerp`
                 // requires.

@@ -17,8 +17,8 @@ impl Simulation {
         let mut hair = Hair::default();
         if settings.on {
             let mut known = HashMap::new();
-            for place in &self.model.places {
-                let strand = self.model.lanes[*place as usize] as usize;
+            for place in &self.model.lane_of_strand {
+                let strand = self.model.groom_strands[*place as usize] as usize;
                 let points = self.model.groom.strand(strand);
                 let next = hair.strand_count() as u32;
                 let bits: &[u32] = bytemuck::cast_slice(points);
@@ -27,7 +27,7 @@ impl Simulation {
                     _ => hair.add_strand(points.len()),
                 }
             }
-            self.show_neighbours((1.0, self.state.anchor.matrix()), f32::INFINITY, &mut hair);
+            self.copy_points((1.0, self.state.anchor.matrix()), f32::INFINITY, &mut hair);
         }
         self.neighbours = Neighbours::new(settings, hair).map(Box::new);
     }
@@ -38,7 +38,7 @@ impl Simulation {
     }
 
     /// Adds the carried contact loads to the velocities of all points before a substep.
-    pub(super) fn bear_neighbours(&mut self, neighbours: &mut Neighbours, h: f32) {
+    pub(super) fn apply_contact_loads(&mut self, neighbours: &mut Neighbours, h: f32) {
         neighbours.apply_warm_start(h);
         let kicks = &neighbours.hair.v;
         self.each_velocity(&neighbours.hair, |i, _, rows| {
@@ -47,15 +47,15 @@ impl Simulation {
     }
 
     /// Solves the strand contacts at the end of the frame's substep `number`.
-    pub(super) fn meet_neighbours(
+    pub(super) fn solve_strand_contacts(
         &mut self,
         neighbours: &mut Neighbours,
-        interval: &FrameContext,
+        frame: &FrameContext,
         number: usize,
     ) {
-        let substep = &interval.substeps[number];
-        self.show_neighbours((substep.fraction, substep.anchor), interval.h, &mut neighbours.hair);
-        neighbours.solve_contacts(interval.h);
+        let substep = &frame.substeps[number];
+        self.copy_points((substep.fraction, substep.anchor), frame.h, &mut neighbours.hair);
+        neighbours.solve_contacts(frame.h);
         let hair = &neighbours.hair;
         self.each_velocity(hair, |i, first, rows| {
             if hair.inverse_mass[i] > 0.0 && first {
@@ -69,9 +69,9 @@ impl Simulation {
 
     /// Copies positions, velocities, masses and bending stiffness of all points to `hair`, for a substep of
     /// `h` [s]. The pair holds the fraction of the frame and the anchor's pose at that time.
-    fn show_neighbours(&self, (fraction, (m, t)): (f32, (Mat3, Vec3)), h: f32, hair: &mut Hair) {
+    fn copy_points(&self, (fraction, (m, t)): (f32, (Mat3, Vec3)), h: f32, hair: &mut Hair) {
         let mut i = 0;
-        for (k, place) in self.model.places.iter().map(|p| *p as usize).enumerate() {
+        for (k, place) in self.model.lane_of_strand.iter().map(|p| *p as usize).enumerate() {
             let Some(alike) = hair.shown_first(k) else { continue };
             let strand = self.strand(place);
             let stride = strand.stride();
@@ -106,8 +106,8 @@ impl Simulation {
     /// [`Simulation::builder`]: the index of the point in `hair`, and whether its strand is the first of its
     /// merged strands.
     fn each_velocity(&mut self, hair: &Hair, mut see: impl FnMut(usize, bool, [&mut f32; 3])) {
-        for k in 0..self.model.places.len() {
-            let mut strand = self.strand_mut(self.model.places[k] as usize);
+        for k in 0..self.model.lane_of_strand.len() {
+            let mut strand = self.strand_mut(self.model.lane_of_strand[k] as usize);
             let stride = strand.get().stride();
             let first = hair.shown_first(k).is_some();
             for (j, i) in hair.strand(hair.shown(k)).enumerate() {

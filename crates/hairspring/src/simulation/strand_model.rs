@@ -22,11 +22,11 @@ use std::sync::Arc;
 pub(crate) struct StrandModel {
     pub(super) groom: Arc<Groom>,
     /// Strand of the groom in each lane, tile after tile; `u32::MAX` in lanes without one.
-    pub(super) lanes: Vec<u32>,
+    pub(super) groom_strands: Vec<u32>,
     /// Index into the caller's strands for each lane; `u32::MAX` in lanes without one.
-    pub(super) asked: Vec<u32>,
+    pub(super) strand_of_lane: Vec<u32>,
     /// Lane of each simulated strand, in the order that the caller named them.
-    pub(super) places: Vec<u32>,
+    pub(super) lane_of_strand: Vec<u32>,
     pub(super) tiles: Vec<TileLayout>,
     /// Rest shapes; shape `[points]` of all tiles.
     pub(super) rest: Vec<RestRows>,

@@ -20,48 +20,48 @@ const LONGEST: f64 = 1.0 / 240.0;
 impl Simulation {
     /// Computes the external forces, runs all substeps, and solves strand contacts between them. Returns how
     /// many strands were reset, and the durations of the stages.
-    pub(super) fn run_in_parts(
+    pub(super) fn run_substeps(
         &mut self,
-        drive: &StepInput,
+        input: &StepInput,
         carried: Option<&RigidTransform>,
-        interval: &mut FrameContext,
+        frame: &mut FrameContext,
     ) -> (usize, StepTimes) {
-        let substeps = interval.now.len();
-        let exchanges = (f64::from(drive.dt) / (LONGEST * LONGER)).ceil() as usize;
-        let frozen = if self.is_pressed() { substeps.div_ceil(exchanges) } else { substeps };
+        let substeps = frame.now.len();
+        let exchanges = (f64::from(input.dt) / (LONGEST * LONGER)).ceil() as usize;
+        let frozen = if self.volume_acts() { substeps.div_ceil(exchanges) } else { substeps };
         let mut neighbours = self.neighbours.take();
-        interval.meets = false;
+        frame.meets = false;
         let alone = if neighbours.is_some() { 1 } else { frozen };
-        interval.now = 0..frozen.min(substeps);
+        frame.now = 0..frozen.min(substeps);
         let mut times = StepTimes::default();
         let began = Instant::now();
-        times.volume = self.exchange(drive, carried, interval);
+        times.volume = self.compute_external_forces(input, carried, frame);
         times.forces = began.elapsed() - times.volume;
-        let start = std::mem::replace(&mut self.state.anchor, drive.anchor);
+        let start = std::mem::replace(&mut self.state.anchor, input.anchor);
         let mut reset_strands = 0;
         for number in (0..substeps).step_by(alone) {
             if number > 0 && number.is_multiple_of(frozen) {
-                interval.now = number..(number + frozen).min(substeps);
+                frame.now = number..(number + frozen).min(substeps);
                 let began = Instant::now();
-                self.exchange_again(start.lerp(&drive.anchor, interval.begun().0), interval);
+                self.update_volume_forces(start.lerp(&input.anchor, frame.begun().0), frame);
                 times.volume += began.elapsed();
             }
-            interval.now = number..(number + alone).min(substeps);
+            frame.now = number..(number + alone).min(substeps);
             let began = Instant::now();
             if let Some(neighbours) = &mut neighbours {
-                self.bear_neighbours(neighbours, interval.h);
-                interval.meets = neighbours.touch();
+                self.apply_contact_loads(neighbours, frame.h);
+                frame.meets = neighbours.touch();
             }
             let borne = Instant::now();
             if neighbours.is_some() {
                 times.neighbours += borne - began;
             }
-            reset_strands += self.run(interval);
-            interval.continues = true;
+            reset_strands += self.run(frame);
+            frame.continues = true;
             times.solve += borne.elapsed();
             if let Some(neighbours) = &mut neighbours {
                 let began = Instant::now();
-                self.meet_neighbours(neighbours, interval, number);
+                self.solve_strand_contacts(neighbours, frame, number);
                 times.neighbours += began.elapsed();
             }
         }

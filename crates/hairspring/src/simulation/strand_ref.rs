@@ -66,7 +66,7 @@ impl<'a> StrandRef<'a> {
 
     /// Its index in the groom.
     pub fn index(self) -> usize {
-        self.model.lanes[self.lane] as usize
+        self.model.groom_strands[self.lane] as usize
     }
 
     /// Its elastic model.

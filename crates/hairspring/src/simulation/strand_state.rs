@@ -1,6 +1,6 @@
 //! The state of the simulated strands: everything that a step changes, and copies of it.
 
-use super::{Simulation, manipulators::Tools, teleport::Motion};
+use super::{Simulation, manipulators::Manipulators, teleport::Motion};
 use crate::{
     forces::charge::ChargedBall,
     math::RigidTransform,
@@ -27,7 +27,7 @@ pub(crate) struct StrandState {
     /// Holds on points, for each tile.
     pub(super) holds: Vec<Vec<HoldRows>>,
     /// Active manipulators.
-    pub(super) tools: Tools,
+    pub(super) manipulators: Manipulators,
     pub(super) charged: Vec<ChargedBall>,
     /// How the anchor moved in the last frame.
     pub(super) motion: Motion,
@@ -57,7 +57,7 @@ impl Simulation {
         Snapshot {
             state: self.state.clone(),
             contacts: self.neighbours.as_ref().map(|n| n.contacts().to_vec()).unwrap_or_default(),
-            segments: self.interval.segments,
+            segments: self.frame.segments,
         }
     }
 
@@ -76,7 +76,7 @@ impl Simulation {
             return Err(SnapshotMismatch);
         }
         self.state.clone_from(other);
-        self.interval.segments = snapshot.segments;
+        self.frame.segments = snapshot.segments;
         if let Some(neighbours) = &mut self.neighbours {
             neighbours.set_contacts(&snapshot.contacts);
         }

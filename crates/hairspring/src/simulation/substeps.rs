@@ -49,13 +49,13 @@ const THIN: f32 = 0.02;
 impl Simulation {
     /// Returns the number of substeps in which no body tunnels through a strand; 1 if all bodies are slow or
     /// far away.
-    pub(super) fn substeps_past(&self, drive: &StepInput, carried: Option<&RigidTransform>) -> u32 {
-        let mut asked = 1;
-        for obstacle in drive.obstacles {
-            asked = asked.max(self.substeps_of_hair(drive, carried, obstacle));
+    pub(super) fn substeps_past(&self, input: &StepInput, carried: Option<&RigidTransform>) -> u32 {
+        let mut needed = 1;
+        for obstacle in input.obstacles {
+            needed = needed.max(self.substeps_of_hair(input, carried, obstacle));
             // Relative to the anchor, because hair moves with it.
             let start = self.state.anchor.inverse().after(&obstacle.start(carried));
-            let end = drive.anchor.inverse().after(&obstacle.end);
+            let end = input.anchor.inverse().after(&obstacle.end);
             let (center, radius) = obstacle.shape.bounds();
             let [a, b] = [start, end].map(|pose| pose.point(center));
             let turn = start.rotation.angle_between(end.rotation);
@@ -70,23 +70,23 @@ impl Simulation {
             if count <= 1.0 {
                 continue;
             }
-            let near = drive.roots.iter().any(|root| {
-                let root = drive.anchor.inverse_point(root.translation);
+            let near = input.roots.iter().any(|root| {
+                let root = input.anchor.inverse_point(root.translation);
                 let along = ((root - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
                 root.distance(a.lerp(b, along)) < radius + turn * radius + self.model.longest
             });
             if near {
-                asked = asked.max(count as u32);
+                needed = needed.max(count as u32);
             }
         }
-        asked
+        needed
     }
 
     /// Returns the number of substeps that the velocity of the hair near a thin body requires. When a body
     /// stops, the hair on it goes on at the body's speed.
     fn substeps_of_hair(
         &self,
-        drive: &StepInput,
+        input: &StepInput,
         carried: Option<&RigidTransform>,
         obstacle: &MovingCollider,
     ) -> u32 {
@@ -98,7 +98,7 @@ impl Simulation {
         let (center, radius) = shape.bounds();
         let center = start.point(center);
         let part = (MAX_TRAVEL * shape.half_thickness()).max(1e-12);
-        let slow = part * drive.dt / substep_length(&self.model.solver) as f32;
+        let slow = part * input.dt / substep_length(&self.model.solver) as f32;
         let way_of_strand = |place: usize| {
             let strand = self.strand(place);
             let mut x = strand.root();
@@ -111,8 +111,8 @@ impl Simulation {
                 x += edge;
                 let own = start.inverse_point(x);
                 // Hair at rest follows the head and the body when they move away together.
-                let slip = strand.velocity(i) * drive.dt + x - end.point(own);
-                let with_head = drive.anchor.point(self.state.anchor.inverse_point(x)) - x;
+                let slip = strand.velocity(i) * input.dt + x - end.point(own);
+                let with_head = input.anchor.point(self.state.anchor.inverse_point(x)) - x;
                 let way = slip.length().min((slip + with_head).length());
                 if way > most.max(slow) && shape.distance(own) < way + edge.length() {
                     most = way;
@@ -120,8 +120,12 @@ impl Simulation {
             }
             most
         };
-        let way =
-            self.model.places.par_iter().map(|&place| way_of_strand(place as usize)).reduce(|| 0.0, f32::max);
+        let way = self
+            .model
+            .lane_of_strand
+            .par_iter()
+            .map(|&place| way_of_strand(place as usize))
+            .reduce(|| 0.0, f32::max);
         (way / part).ceil().min(MOST) as u32
     }
 }

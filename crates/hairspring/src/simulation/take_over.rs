@@ -39,16 +39,16 @@ impl Simulation {
         self.state.motion = old.state.motion;
         self.state.last_h = old.state.last_h;
         self.force_fields.clone_from(&old.force_fields);
-        self.interval.segments = old.interval.segments;
+        self.frame.segments = old.frame.segments;
         self.state.charged.clone_from(&old.state.charged);
         Arc::make_mut(&mut self.model).rest_penetration = if old.model.rest_penetration.is_empty() {
             Vec::new()
         } else {
             vec![Row::default(); self.state.points.len()]
         };
-        let mut lanes = vec![u32::MAX; old.model.lanes.len()];
-        for k in 0..self.model.places.len() {
-            let (place, from) = (self.model.places[k] as usize, old.model.places[k] as usize);
+        let mut lanes = vec![u32::MAX; old.model.groom_strands.len()];
+        for k in 0..self.model.lane_of_strand.len() {
+            let (place, from) = (self.model.lane_of_strand[k] as usize, old.model.lane_of_strand[k] as usize);
             lanes[from] = place as u32;
             let rows = &mut self.state.strand[place / LANES];
             for (row, was) in rows[..strand::FIRST].iter_mut().zip(&old.state.strand[from / LANES]) {
@@ -65,7 +65,7 @@ impl Simulation {
         if let (Some(neighbours), Some(old)) = (&mut self.neighbours, &old.neighbours) {
             neighbours.set_contacts(old.contacts());
         }
-        self.take_over_tools(old, &lanes);
+        self.take_over_manipulators(old, &lanes);
     }
 
     /// Returns whether the integrator updates tensions and contact forces in every substep and carries them

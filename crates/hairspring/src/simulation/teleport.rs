@@ -56,7 +56,7 @@ impl Simulation {
         if let Some(neighbours) = &mut self.neighbours {
             neighbours.turn(by.rotation);
         }
-        self.carry_tools(&by);
+        self.carry_manipulators(&by);
         self.state.anchor = by.after(&self.state.anchor);
         self.state.motion.velocity = turn * self.state.motion.velocity;
         self.state.motion.spin = turn * self.state.motion.spin;
@@ -64,23 +64,23 @@ impl Simulation {
 
     /// Moves the hair rigidly before a frame: by the part that `inertia` leaves, or completely if the anchor
     /// teleports. Returns the applied motion.
-    pub(super) fn carry_along(&mut self, drive: &StepInput) -> Option<RigidTransform> {
+    pub(super) fn carry_along(&mut self, input: &StepInput) -> Option<RigidTransform> {
         let solver = self.model.solver;
-        let way = drive.anchor.after(&self.state.anchor.inverse());
-        let moved = drive.anchor.translation - self.state.anchor.translation;
+        let way = input.anchor.after(&self.state.anchor.inverse());
+        let moved = input.anchor.translation - self.state.anchor.translation;
         let turned = way.rotation.to_scaled_axis();
-        let expected = Quat::from_scaled_axis(self.state.motion.spin * drive.dt);
-        let off = (moved - self.state.motion.velocity * drive.dt).length();
+        let expected = Quat::from_scaled_axis(self.state.motion.spin * input.dt);
+        let off = (moved - self.state.motion.velocity * input.dt).length();
         let turned_off = way.rotation.angle_between(expected);
-        let jumped = is_teleport(off, turned_off, solver.teleport_distance, f64::from(drive.dt));
+        let jumped = is_teleport(off, turned_off, solver.teleport_distance, f64::from(input.dt));
         // The next frame is compared with the motion of a teleport, too. After a single jump, hair is thus
         // moved rigidly once more, by as little as the head then moves. If it was the start of a fast motion,
         // the solver sees the motion from the next frame on.
-        let now = Motion { velocity: moved / drive.dt, spin: turned / drive.dt };
+        let now = Motion { velocity: moved / input.dt, spin: turned / input.dt };
         let by = if jumped {
             way
         } else if solver.inertia < 1.0 {
-            self.state.anchor.lerp(&drive.anchor, 1.0 - solver.inertia).after(&self.state.anchor.inverse())
+            self.state.anchor.lerp(&input.anchor, 1.0 - solver.inertia).after(&self.state.anchor.inverse())
         } else {
             self.state.motion = now;
             return None;

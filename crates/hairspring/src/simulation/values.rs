@@ -21,13 +21,13 @@ impl Simulation {
 
     /// Speed of point `i` [m/s].
     pub fn speed_at(&self, strand: usize, i: usize) -> f32 {
-        let strand = self.strand(self.model.places[strand] as usize);
+        let strand = self.strand(self.model.lane_of_strand[strand] as usize);
         strand.velocity(i * strand.stride()).length()
     }
 
     /// Contact force of a collider on point `i`, from the last substep; 0 without contact [N].
     pub fn contact_at(&self, strand: usize, i: usize) -> f32 {
-        let strand = self.strand(self.model.places[strand] as usize);
+        let strand = self.strand(self.model.lane_of_strand[strand] as usize);
         strand.normal_force(i * strand.stride())
     }
 
@@ -39,7 +39,7 @@ impl Simulation {
 
     /// A strand, and its segment that begins at point `i`, or the last one.
     fn segment(&self, strand: usize, i: usize) -> (StrandRef<'_>, usize) {
-        let strand = self.strand(self.model.places[strand] as usize);
+        let strand = self.strand(self.model.lane_of_strand[strand] as usize);
         (strand, i.min(strand.point_count() - 2))
     }
 }

@@ -22,7 +22,7 @@ impl Simulation {
         let (mut segments, mut sum, mut longest) = (0_usize, 0.0_f64, 0.0_f32);
         // A strand has the mass of the hairs that it represents. Only ratios between strands matter.
         let most = self.strands().map(|s| self.model.multiplicity[s as usize]).fold(0.0, f32::max);
-        for (place, strand) in self.model.lanes.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+        for (place, strand) in self.model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let (tile, lane) = (self.model.tiles[place / LANES], place % LANES);
             let points = self.model.groom.range(*strand as usize).len();
             let mut length = 0.0;

@@ -96,10 +96,10 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
             if r < B {
                 each!(c, {
                     if c >= r && c + B < N {
-                        self.a[r][c] += load(simd, &ahead[profile.said(r, c)]);
+                        self.a[r][c] += load(simd, &ahead[profile.pending_row(r, c)]);
                     }
                 });
-                self.b[r] += load(simd, &ahead[profile.said_right(r)]);
+                self.b[r] += load(simd, &ahead[profile.pending_right_row(r)]);
             }
         });
         ahead.fill(Work::default());
@@ -117,10 +117,10 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
             if r + B < N && points.contains(&(r / B + 1)) {
                 each!(c, {
                     if c >= r && c + B < N {
-                        add(self.a[r + B][c + B], &mut ahead[profile.said(r, c)], c + 2 * B < N);
+                        add(self.a[r + B][c + B], &mut ahead[profile.pending_row(r, c)], c + 2 * B < N);
                     }
                 });
-                add(self.b[r + B], &mut ahead[profile.said_right(r)], r + 2 * B < N);
+                add(self.b[r + B], &mut ahead[profile.pending_right_row(r)], r + 2 * B < N);
             }
         });
     }
@@ -165,7 +165,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 
     /// Decouples the first point from all others in the strands where it is not `free`.
     #[inline(always)]
-    pub fn with_checked_lengths(&mut self, simd: S, free: Mask<S>) {
+    pub fn decouple_first(&mut self, simd: S, free: Mask<S>) {
         let zero = F::<S>::splat(simd, 0.0);
         let one = F::<S>::splat(simd, 1.0);
         for r in 0..B {
@@ -205,9 +205,9 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                 // another at every point, which is an eighth of all instructions.
                 let ahead = &own[reach * rows..][..rows];
                 for c in r..N - B {
-                    row[c] += load(simd, &ahead[profile.said(r, c)]);
+                    row[c] += load(simd, &ahead[profile.pending_row(r, c)]);
                 }
-                right += load(simd, &ahead[profile.said_right(r)]);
+                right += load(simd, &ahead[profile.pending_right_row(r)]);
                 each!(back of 3 2 1 0, {
                     if back <= reach {
                         // The fence itself is free. Without it the compiler loads all factors long before

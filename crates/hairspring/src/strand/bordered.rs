@@ -94,13 +94,13 @@ impl<S: Simd> BorderedConstraint<S> {
         }
         let h = [h1, h2, h3 - V3::load(simd, &point[profile.far_row(B)..]) * of_far];
         let pivot = stiffness / stiffness.mul_add(squares, F::splat(simd, 1.0));
-        let said = &mut PendingRows::<B, N>::new(profile, i + 1, factors);
+        let pending = &mut PendingRows::<B, N>::new(profile, i + 1, factors);
         for p in 0..3 {
             let scaled = h[p] * pivot;
-            said.add_force(p, -(scaled * right));
-            said.add_diagonal(p, Sym3::outer(h[p], pivot));
+            pending.add_force(p, -(scaled * right));
+            pending.add_diagonal(p, Sym3::outer(h[p], pivot));
             for (q, h) in h.into_iter().enumerate().skip(p + 1) {
-                said.add_block(p, q, &M3 { rows: [h * scaled.x, h * scaled.y, h * scaled.z] });
+                pending.add_block(p, q, &M3 { rows: [h * scaled.x, h * scaled.y, h * scaled.z] });
             }
         }
         let mut rows = [Work::default(); 5];

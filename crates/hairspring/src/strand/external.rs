@@ -84,13 +84,13 @@ fn act<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let Scratch { factors, edges, contacts, .. } = scratch;
-    let said = &mut PendingRows::<B, N>::new(M::PROFILE, i, factors);
+    let pending = &mut PendingRows::<B, N>::new(M::PROFILE, i, factors);
     let (next, share) = (i + 1, sweep.predicted_displacement(step.h));
     let velocity = |tile: &Tile, i: usize| V3::load(simd, &tile.state[i][state::V..]) - root_velocity;
     if i.is_multiple_of(M::STRIDE) && i > 0 && i + M::STRIDE < tile.rest.len() {
         let outset = PredictedState { sweep, faster: velocity(tile, i), share, way };
         let inner = (i, x, outset.drift(simd), outset.way(simd));
-        assemble_segment_contact(simd, (sweep, step, M::STRIDE), tile, inner, said, (edges, contacts));
+        assemble_segment_contact(simd, (sweep, step, M::STRIDE), tile, inner, pending, (edges, contacts));
     }
     let edge = V3::load(simd, &edges[next]);
     let x = x + edge;
@@ -108,8 +108,8 @@ fn act<S, M, const B: usize, const N: usize>(
         let stiffness = load(simd, &rows[position_spring::STIFFNESS]);
         let brake = load(simd, &rows[position_spring::BRAKE]) * inv_h;
         let late = V3::load(simd, &rows[position_spring::WAY..]) * F::splat(simd, step.left);
-        said.add_force(1, (late + (x + drift) * stiffness + (way + step.moved) * brake) * -mass);
-        said.add_identity(1, mass * (stiffness + brake));
+        pending.add_force(1, (late + (x + drift) * stiffness + (way + step.moved) * brake) * -mass);
+        pending.add_identity(1, mass * (stiffness + brake));
     }
     let on_strand = next.is_multiple_of(M::STRIDE);
     if let Some(rows) = tile.anisotropic_drag.get(next).filter(|_| on_strand) {
@@ -121,13 +121,13 @@ fn act<S, M, const B: usize, const N: usize>(
         let u = after.length_and_unit().1;
         let brake = load(simd, &rows[anisotropic_drag::BRAKE]) * inv_h;
         let slip = V3::load(simd, &rows[anisotropic_drag::ACCELERATION..]) - (way + step.moved) * brake;
-        said.add_force(1, (slip - u * u.dot(slip)) * mass);
+        pending.add_force(1, (slip - u * u.dot(slip)) * mass);
         let across = brake * mass;
-        said.add_diagonal(1, Sym3::outer(u, -across).add_identity(across));
+        pending.add_diagonal(1, Sym3::outer(u, -across).add_identity(across));
     }
     for at in tile.holds {
         if B > 3 && at.point as usize == i {
-            said.add((0, 3), (0, 3), load(simd, &at.rows[hold::CLAMPED]) * HOLD_FRAME);
+            pending.add((0, 3), (0, 3), load(simd, &at.rows[hold::CLAMPED]) * HOLD_FRAME);
         }
         if at.point as usize == next {
             let pinned = load(simd, &at.rows[hold::PINNED]);
@@ -135,12 +135,12 @@ fn act<S, M, const B: usize, const N: usize>(
             let target = V3::load(simd, &at.rows[hold::TARGET..]) - to_go - step.root.position;
             let m_h2 = mass * (step.inertia() * inv_h * inv_h);
             let k = (pinned * HOLD).mul_add(m_h2, load(simd, &at.rows[hold::STIFFNESS]));
-            said.add_identity(1, k);
-            said.add_force(1, (target - x - drift) * k + V3::load(simd, &at.rows[hold::FORCE..]));
+            pending.add_identity(1, k);
+            pending.add_force(1, (target - x - drift) * k + V3::load(simd, &at.rows[hold::FORCE..]));
         }
     }
     if on_strand {
-        tether::pull(simd, step, tile, (next, x, drift), said);
-        assemble_contact(simd, step, tile, (next, x, drift, way), said, &mut contacts[next]);
+        tether::pull(simd, step, tile, (next, x, drift), pending);
+        assemble_contact(simd, step, tile, (next, x, drift, way), pending, &mut contacts[next]);
     }
 }

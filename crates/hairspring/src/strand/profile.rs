@@ -70,14 +70,14 @@ impl<const B: usize, const N: usize> Profile<B, N> {
 
     /// The row that holds the pending entry (r, c) of the window before its point is eliminated, relative to
     /// the rows of the window's first point. It is the row of the entry's future factor.
-    pub const fn said(self, r: usize, c: usize) -> usize {
+    pub const fn pending_row(self, r: usize, c: usize) -> usize {
         let (own, first) = (r % B, r / B * B);
         let row = if c > r { self.row(own) + c - r - 1 } else { self.pivot(own) };
         first / B * self.rows() + row
     }
 
     /// The same for the right-hand side of unknown `r`.
-    pub const fn said_right(self, r: usize) -> usize {
+    pub const fn pending_right_row(self, r: usize) -> usize {
         let own = r % B;
         r / B * self.rows() + self.row(own) + self.last(own) - own
     }

@@ -70,7 +70,7 @@ impl<S: Simd> Projection<S> {
     /// Eliminates the segment from point `i` to the strand's next, as in `scratch.edges`. The first segment
     /// is driven by the root and must not be passed.
     #[inline(always)]
-    pub fn meet(&mut self, simd: S, (stride, i): (usize, usize), tile: &Tile, scratch: &mut Scratch) {
+    pub fn eliminate(&mut self, simd: S, (stride, i): (usize, usize), tile: &Tile, scratch: &mut Scratch) {
         let Scratch { pulls, edges, fixed, .. } = scratch;
         let length = load(simd, &tile.rest[i][rest::LENGTH]);
         let [inner, inverse_length] =
@@ -93,29 +93,29 @@ impl<S: Simd> Projection<S> {
 
     /// Eliminates all segments of `scratch.edges`.
     #[inline(always)]
-    pub fn meet_all(simd: S, stride: usize, tile: &Tile, scratch: &mut Scratch) -> Self {
+    pub fn eliminate_all(simd: S, stride: usize, tile: &Tile, scratch: &mut Scratch) -> Self {
         let mut projection = Self::begin(simd, tile, scratch.fixed);
         for k in (1..(tile.rest.len() - 1) / stride).rev() {
-            projection.meet(simd, (stride, k * stride), tile, scratch);
+            projection.eliminate(simd, (stride, k * stride), tile, scratch);
         }
         projection
     }
 
-    /// Moves the points of the strands in `asked` after all segments have been eliminated, and adds λ times
+    /// Moves the points of the strands in `selected` after all segments have been eliminated, and adds λ times
     /// `force` (a/h² of the integrator) to the tensions. Returns false if all lengths were within tolerance
     /// before, or are now.
     #[inline(always)]
-    pub fn settle(
+    pub fn move_points(
         self,
         simd: S,
         stride: usize,
-        (force, asked): (F<S>, Mask<S>),
+        (force, selected): (F<S>, Mask<S>),
         tile: &mut Tile,
         scratch: &mut Scratch,
     ) -> bool {
         // Strands within tolerance are not changed, so that their result does not depend on their neighbors
         // in the tile.
-        let active = asked & self.worst.simd_gt(0.0);
+        let active = selected & self.worst.simd_gt(0.0);
         if !active.any_true() {
             return false;
         }
@@ -159,7 +159,7 @@ impl<S: Simd> Projection<S> {
             before = i;
             i += stride;
         }
-        (asked & worst.simd_gt(0.0)).any_true()
+        (selected & worst.simd_gt(0.0)).any_true()
     }
 }
 

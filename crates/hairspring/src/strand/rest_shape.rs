@@ -203,9 +203,9 @@ pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
         // A joint acts on its middle point with both segments, 4 B/L² in all, a spring with one only. A
         // quarter of the stiffness preserves the precision.
         let stiffest = 0.25 * fine(n) * fiber.stiffest(at.mass) * shorter * shorter;
-        let asked = at.bend;
-        at.bend = asked.min(stiffest);
-        usize::from(asked > stiffest)
+        let wanted = at.bend;
+        at.bend = wanted.min(stiffest);
+        usize::from(wanted > stiffest)
     };
 
     // The parallel-transported frame of the strand.

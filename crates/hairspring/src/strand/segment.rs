@@ -89,7 +89,7 @@ pub fn segment_contact_unneeded(length: f32, radius: f32) -> bool {
 pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
     let inner = i - tile.layout.model.stride();
     let tolerance = load(simd, &tile.rest[inner][rest::LENGTH]) * SAG;
-    tile.rest_penetration.get(i).map_or(tolerance, |sunk| tolerance - load(simd, sunk))
+    tile.rest_penetration.get(i).map_or(tolerance, |authored| tolerance - load(simd, authored))
 }
 
 /// Returns the corrected offset `e` of point `i` from the strand's previous point, so that the segment
@@ -145,13 +145,14 @@ pub fn resolve_segment_contact<S: Simd>(
     let (mut best, mut least) = (e, F::<S>::splat(simd, f32::MAX));
     let last = CORRECTIONS + STARTS * OF_EACH;
     for correction in 0..=last {
-        let asked = if correction == 0 { clear } else { clear * ENOUGH };
+        let required = if correction == 0 { clear } else { clear * ENOUGH };
         // A contact near the inner end gets a force in the next solve and does not rotate the outer end.
-        let mut place = cut(simd, (pose, &side), (a, q), (if correction == 0 { zero } else { from }, asked));
+        let mut place =
+            cut(simd, (pose, &side), (a, q), (if correction == 0 { zero } else { from }, required));
         let pressed = place;
         let near = place.found & place.at.simd_lt(from);
         if correction == 0 && near.any_true() {
-            place = place.or(near, cut(simd, (pose, &side), (a, q), (from, asked)));
+            place = place.or(near, cut(simd, (pose, &side), (a, q), (from, required)));
         }
         let (distance, normal) = contact(simd, pose, a + q);
         let between = place.found.select(clear - place.distance, zero);

@@ -127,7 +127,7 @@ impl<S: Simd, const N: usize> BackSubstitution<S, N> {
             let length = [load(simd, &tile.rest[i][rest::LENGTH]), load(simd, &fixed.inverse_length)];
             let row = &mut tile.state[i][state::TENSION];
             store(load(simd, row) + solved.taken(M::STRIDE, length, solved.along), row);
-            projection.meet(simd, (M::STRIDE, i), tile, scratch);
+            projection.eliminate(simd, (M::STRIDE, i), tile, scratch);
         }
     }
 }

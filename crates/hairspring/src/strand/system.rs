@@ -78,13 +78,13 @@ impl<'a, const B: usize, const N: usize> PendingRows<'a, B, N> {
 impl<S: Simd, const B: usize, const N: usize> System<S, B> for PendingRows<'_, B, N> {
     #[inline(always)]
     fn add(&mut self, (p, j): (usize, usize), (q, k): (usize, usize), value: F<S>) {
-        let row = &mut self.rows[self.profile.said(p * B + j, q * B + k)];
+        let row = &mut self.rows[self.profile.pending_row(p * B + j, q * B + k)];
         store(load(value.simd, row) + value, row);
     }
 
     #[inline(always)]
     fn add_right(&mut self, (p, k): (usize, usize), value: F<S>) {
-        let row = &mut self.rows[self.profile.said_right(p * B + k)];
+        let row = &mut self.rows[self.profile.pending_right_row(p * B + k)];
         store(load(value.simd, row) + value, row);
     }
 }

@@ -195,16 +195,16 @@ impl Contact {
         if sides.give <= 0.0 {
             return;
         }
-        let asked = before - (along + aim) / sides.give;
-        let now = asked.max(-bound);
+        let wanted = before - (along + aim) / sides.give;
+        let now = wanted.max(-bound);
 
         let across = velocity - self.normal * along + self.slip * (RECOVERY / h);
-        let asked_across = rubbed - across / sides.give;
+        let wanted_across = rubbed - across / sides.give;
         let cone = friction * now.max(0.0) + bound;
-        let held = asked_across.clamp_length_max(cone);
+        let held = wanted_across.clamp_length_max(cone);
         // Without normal force there is no friction, and the contact does not count as sliding.
         self.at_bound =
-            (bound > 0.0 && asked < -bound) || (cone > 0.0 && asked_across.length_squared() > cone * cone);
+            (bound > 0.0 && wanted < -bound) || (cone > 0.0 && wanted_across.length_squared() > cone * cone);
 
         let change = self.normal * (now - before) + (held - rubbed);
         if change.is_finite() {

@@ -21,8 +21,8 @@ pub fn fill_push(
     (friction, crossing): (f32, Crossing),
     acceleration: impl Fn(usize, f32) -> Vec3 + Sync,
 ) {
-    let (window, nodes, spread, fill) = (field.window, &field.nodes, &field.spread, &field.fill);
-    let (slab, corners) = (window.slab(), window.corners());
+    let (bounds, nodes, spread, fill) = (field.bounds, &field.nodes, &field.spread, &field.fill);
+    let (slab, corners) = (bounds.slab(), bounds.corners());
     field.push.par_chunks_mut(slab).enumerate().for_each(|(z, push)| {
         for (k, push) in push.iter_mut().enumerate() {
             let n = z * slab + k;

@@ -24,7 +24,7 @@ pub const ITERATIONS: u32 = 24;
 /// A linear system and its solution. All arrays have the shape of the grid's nodes.
 #[derive(Default)]
 pub struct Solve {
-    window: GridBounds,
+    bounds: GridBounds,
     /// Inverse mass of the nodes; 0 where there is no hair and where it cannot move.
     pub inverse_mass: Vec<f32>,
     /// Inverse diagonal; 0 in cells that have no pressure.
@@ -108,28 +108,28 @@ impl Solve {
     }
 
     /// Starts a new system. Everything is 0 except for the pressures, which are those of the last system.
-    pub fn begin(&mut self, window: GridBounds) {
-        self.last.0 = self.window;
+    pub fn begin(&mut self, bounds: GridBounds) {
+        self.last.0 = self.bounds;
         std::mem::swap(&mut self.last.1, &mut self.pressure);
-        self.window = window;
+        self.bounds = bounds;
         self.arrays().into_par_iter().for_each(|array| {
             array.clear();
-            array.resize(window.nodes(), 0.0);
+            array.resize(bounds.nodes(), 0.0);
         });
         self.spans.clear();
-        self.spans.resize(window.dims[1] * window.dims[2], Span::default());
+        self.spans.resize(bounds.dims[1] * bounds.dims[2], Span::default());
         self.partial.clear();
-        self.partial.resize(window.dims[2], 0.0);
+        self.partial.resize(bounds.dims[2], 0.0);
         let (before, last) = &self.last;
         if last.is_empty() {
             return;
         }
         // Copies the rows that both bounds share, over their common range of x.
-        let (from, to) = (before.lo.max(window.lo), before.end().min(window.end()));
+        let (from, to) = (before.lo.max(bounds.lo), before.end().min(bounds.end()));
         let count = usize::try_from(to.x - from.x).unwrap_or(0);
         for (z, y) in (from.z..to.z).flat_map(|z| (from.y..to.y).map(move |y| (z, y))) {
             let row = IVec3::new(from.x, y, z);
-            if let (Some(old), Some(new)) = (before.index(row), window.index(row)) {
+            if let (Some(old), Some(new)) = (before.index(row), bounds.index(row)) {
                 self.pressure[new..new + count].copy_from_slice(&last[old..old + count]);
             }
         }
@@ -139,8 +139,8 @@ impl Solve {
     /// Returns their number. A cell with a hardness below 1 is compliant: its diagonal is divided by the
     /// hardness, so a softer cell takes less part in the system.
     pub fn fill(&mut self, cell: impl Fn(usize) -> Option<(f32, f32)> + Sync) -> usize {
-        let [nx, ny, nz] = self.window.dims;
-        let (slab, corners, inverse_mass) = (nx * ny, self.window.corners(), &self.inverse_mass);
+        let [nx, ny, nz] = self.bounds.dims;
+        let (slab, corners, inverse_mass) = (nx * ny, self.bounds.corners(), &self.inverse_mass);
         let parts = self.inverse_diagonal.par_chunks_mut(slab).zip(self.right.par_chunks_mut(slab));
         let parts = parts.zip(self.pressure.par_chunks_mut(slab)).zip(self.compliance.par_chunks_mut(slab));
         let parts = parts.zip(self.spans.par_chunks_mut(ny)).enumerate();
@@ -175,7 +175,7 @@ impl Solve {
     /// remaining cells. Softening prevents the rounding of a position from deciding whether a cell has
     /// pressure after others are released.
     pub fn let_go(&mut self) -> usize {
-        let slab = self.window.slab();
+        let slab = self.bounds.slab();
         let (square, cells) = (
             self.sum(|s, k| f64::from(s.pressure[k]) * f64::from(s.pressure[k])),
             self.sum(|s, k| f64::from(u8::from(s.inverse_diagonal[k] > 0.0))),
@@ -205,7 +205,7 @@ impl Solve {
     /// Solves, starting from the current pressures. Returns the number of iterations and the residual
     /// relative to the right-hand side.
     pub fn run(&mut self) -> (u32, f64) {
-        let [nx, ny, _] = self.window.dims;
+        let [nx, ny, _] = self.bounds.dims;
         let slab = nx * ny;
         self.direction.copy_from_slice(&self.pressure);
         self.apply();
@@ -275,7 +275,7 @@ impl Solve {
 
     /// Returns a sum over all cells with pressure.
     fn sum(&mut self, of: impl Fn(&Self, usize) -> f64 + Sync) -> f64 {
-        let [nx, ny, _] = self.window.dims;
+        let [nx, ny, _] = self.bounds.dims;
         let mut partial = std::mem::take(&mut self.partial);
         partial.par_iter_mut().enumerate().for_each(|(z, sum)| {
             let spans = &self.spans[z * ny..(z + 1) * ny];
@@ -287,7 +287,7 @@ impl Solve {
 
     /// Computes `flux` and `image` of `direction`.
     fn apply(&mut self) {
-        let [nx, ny, nz] = self.window.dims;
+        let [nx, ny, nz] = self.bounds.dims;
         let (slab, spans, p) = (nx * ny, &self.spans, &self.direction);
         let [fx, fy, fz] = &mut self.flux;
         let parts = fx.par_chunks_mut(slab).zip(fy.par_chunks_mut(slab)).zip(fz.par_chunks_mut(slab));

@@ -24,16 +24,16 @@ const CROSSING: f32 = 2.0;
 
 /// Computes the pressure of every cell, e ρ_least, with mass relative to the largest point's [1].
 pub fn pressures(field: &Field, excess: impl Fn(usize) -> f32 + Sync, pressures: &mut Vec<f32>) {
-    let window = field.window;
-    let (slab, corners) = (window.slab(), window.corners());
-    pressures.resize(window.nodes(), 0.0);
+    let bounds = field.bounds;
+    let (slab, corners) = (bounds.slab(), bounds.corners());
+    pressures.resize(bounds.nodes(), 0.0);
     pressures.par_chunks_mut(slab).enumerate().for_each(|(z, out)| {
         let first = z * slab;
         out.fill(0.0);
-        if z + 1 >= window.dims[2] {
+        if z + 1 >= bounds.dims[2] {
             return;
         }
-        let cells = slab.saturating_sub(window.dims[0] + 1);
+        let cells = slab.saturating_sub(bounds.dims[0] + 1);
         for (c, p) in out.iter_mut().enumerate().take(cells) {
             let cell = first + c;
             if field.fill[cell] > 1.0 {
@@ -60,7 +60,7 @@ impl<'a> Push<'a> {
     /// Creates the accelerations, see [`Push`].
     pub fn new(field: &Field, pressures: &'a [f32], speed: f32, cell: f32, dt: f32) -> Self {
         let speed = speed.min(cell / (CROSSING * dt));
-        Self { pressures, corners: field.window.corners(), strength: speed * speed / (4.0 * cell) }
+        Self { pressures, corners: field.bounds.corners(), strength: speed * speed / (4.0 * cell) }
     }
 
     /// Returns the acceleration of node `n` with this mass. The node must not be in the outer ring of the

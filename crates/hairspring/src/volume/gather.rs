@@ -21,21 +21,21 @@ type Points<'a> = (&'a mut [[Row; 3]], &'a mut [[Row; 3]]);
 /// is 0 outside the grid bounds.
 pub fn all(
     tiles: &Tiles,
-    chart: &GridTransform,
-    window: &GridBounds,
+    transform: &GridTransform,
+    bounds: &GridBounds,
     field: &[[f32; PUSH]],
     (taken, push): Points<'_>,
 ) {
     let count = tiles.count();
     if count <= TILES_PER_TASK {
-        return gather(tiles, chart, window, field, (taken, push));
+        return gather(tiles, transform, bounds, field, (taken, push));
     }
     let (a, b) = (tiles.part(0, 2), tiles.part(1, 2));
     let at = (b.firsts[0] - a.firsts[0]) as usize;
     let ((low, high), (low_push, high_push)) = (taken.split_at_mut(at), push.split_at_mut(at));
     rayon::join(
-        || all(&a, chart, window, field, (low, low_push)),
-        || all(&b, chart, window, field, (high, high_push)),
+        || all(&a, transform, bounds, field, (low, low_push)),
+        || all(&b, transform, bounds, field, (high, high_push)),
     );
 }
 
@@ -43,18 +43,18 @@ pub fn all(
 #[expect(clippy::needless_range_loop, reason = "a lane is one point, in several rows")]
 fn gather(
     tiles: &Tiles,
-    chart: &GridTransform,
-    window: &GridBounds,
+    transform: &GridTransform,
+    bounds: &GridBounds,
     field: &[[f32; PUSH]],
     (acceleration, push): Points<'_>,
 ) {
-    let [_, _, row, _, slab, _, both, _] = window.corners();
+    let [_, _, row, _, slab, _, both, _] = bounds.corners();
     let mut points = acceleration.iter_mut().zip(push);
     for (strand, state, _) in tiles.iter() {
-        let mut places = chart.roots(strand, window.lo);
+        let mut places = transform.roots(strand, bounds.lo);
         for (at, (acceleration, push)) in state.iter().zip(&mut points) {
-            chart.walk(&mut places, at);
-            let placed = Placed::new(&places, window);
+            transform.advance(&mut places, at);
+            let placed = Placed::new(&places, bounds);
             let mut taken = [[0.0; LANES]; TAKEN];
             for lane in 0..LANES {
                 let cell = placed.cell[lane] as usize;

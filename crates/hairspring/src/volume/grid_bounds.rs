@@ -102,7 +102,7 @@ impl GridTransform {
 
     /// Advances eight positions [cells] from one point of their strands to the next.
     #[inline(always)]
-    pub fn walk(&self, places: &mut [[f32; LANES]; 3], next: &StateRows) {
+    pub fn advance(&self, places: &mut [[f32; LANES]; 3], next: &StateRows) {
         let [Row(x), Row(y), Row(z)] =
             &next[state::EDGE..].first_chunk::<3>().expect("an edge is three rows");
         let [a, b, c] = [self.turn.x_axis, self.turn.y_axis, self.turn.z_axis].map(|axis| axis.to_array());
@@ -138,12 +138,12 @@ pub fn nearest(x: f32) -> i32 {
 impl Placed {
     /// Locates points, which are relative to the lowest node of the bounds [cells].
     #[inline(always)]
-    pub fn new(points: &[[f32; LANES]; 3], window: &GridBounds) -> Self {
-        let strides = [1, window.dims[0] as i32, window.slab() as i32];
+    pub fn new(points: &[[f32; LANES]; 3], bounds: &GridBounds) -> Self {
+        let strides = [1, bounds.dims[0] as i32, bounds.slab() as i32];
         let (mut cell, mut inside) = ([0; LANES], [1.0; LANES]);
         let mut f = [[0.0; LANES]; 3];
         for k in 0..3 {
-            let last = (window.dims[k] - 2) as f32;
+            let last = (bounds.dims[k] - 2) as f32;
             for lane in 0..LANES {
                 let at = points[k][lane];
                 // Comparisons that are false for a NaN.

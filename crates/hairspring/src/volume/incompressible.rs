@@ -77,10 +77,10 @@ impl Projection {
         to_lattice: impl Fn(usize, &[f32; 4]) -> (Vec3, bool) + Sync,
         wanted: impl Fn(usize) -> f32 + Sync,
     ) -> Projected {
-        let window = field.window;
-        let (slab, corners) = (window.slab(), window.corners());
-        self.velocities.iter_mut().for_each(|v| v.resize(window.nodes(), 0.0));
-        self.solve.begin(window);
+        let bounds = field.bounds;
+        let (slab, corners) = (bounds.slab(), bounds.corners());
+        self.velocities.iter_mut().for_each(|v| v.resize(bounds.nodes(), 0.0));
+        self.solve.begin(bounds);
         let [vx, vy, vz] = &mut self.velocities;
         let inverse = &mut self.solve.inverse_mass;
         let parts = field.nodes.par_chunks(slab).zip(inverse.par_chunks_mut(slab));

@@ -142,7 +142,7 @@ pub(crate) struct Now {
 }
 
 impl Now {
-    fn chart(&self, cell: f32) -> GridTransform {
+    fn transform(&self, cell: f32) -> GridTransform {
         GridTransform::on_the_way(&self.anchor, cell, self.gone)
     }
 }
@@ -184,12 +184,12 @@ impl Volume {
             .collect();
         let tiles = Tiles { firsts: &at.firsts, strand: at.strand, state: at.state, own: &own };
         let grain = rest::grain(&tiles, &at.anchor, at.segment.max(1e-4));
-        let asked = settings.cell.unwrap_or(grain.cell);
+        let requested = settings.cell.unwrap_or(grain.cell);
         // Hair reaches no farther from its roots than its length.
         let extent = Extent::of(&tiles, &GridTransform::new(&at.anchor, 1.0), Vec3::ZERO);
         let reach = rest::reach((extent.lo, extent.hi), at.length);
-        let size = (reach.1 - reach.0).max(Vec3::splat(asked));
-        let mut cell = asked.max((size.element_product() / (0.5 * MOST_NODES)).cbrt());
+        let size = (reach.1 - reach.0).max(Vec3::splat(requested));
+        let mut cell = requested.max((size.element_product() / (0.5 * MOST_NODES)).cbrt());
         // If hair is in two places far apart, most of the grid is the ring.
         let farthest = reach.0.abs().max(reach.1.abs()).max_element();
         while (size / cell + RING + 1.0).element_product() > MOST_NODES || farthest / cell > FARTHEST {
@@ -200,7 +200,7 @@ impl Volume {
         let mut volume = Self {
             settings: *settings,
             cell,
-            grown: cell > asked,
+            grown: cell > requested,
             reach,
             length: at.length,
             spacing: grain.spacing,
@@ -248,7 +248,7 @@ impl Volume {
 
     /// Returns the report, see [`VolumeReport`].
     pub fn report(&self) -> VolumeReport {
-        let nodes = self.field.window.nodes();
+        let nodes = self.field.bounds.nodes();
         VolumeReport { cell: self.cell, grown: self.grown, nodes, share: self.taken_up[1] / self.taken_up[0] }
     }
 
@@ -276,7 +276,7 @@ impl Volume {
     /// beyond is ignored. If roots have moved so far from their rest position in the anchor's space that
     /// there would be too many nodes, the bounds are those reachable from the rest position, and hair
     /// elsewhere does not interact.
-    fn window(&self, extent: &Extent) -> GridBounds {
+    fn bounds(&self, extent: &Extent) -> GridBounds {
         let rest = [self.reach.0 / self.cell, self.reach.1 / self.cell];
         let within = |[lo, hi]: [Vec3; 2]| [extent.lo, extent.hi].map(|corner| corner.clamp(lo, hi));
         let reach = rest::reach((extent.roots[0], extent.roots[1]), self.length / self.cell);
@@ -299,29 +299,29 @@ impl Volume {
     /// Measures the hair at the start of an interval.
     pub fn measure(&mut self, (strand, state): (&[StrandRows], &[StateRows]), now: &Now) {
         self.reserve();
-        let chart = now.chart(self.cell);
+        let transform = now.transform(self.cell);
         let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
         let parts = rayon::current_num_threads().clamp(1, self.sums.len());
         let carried = splat::root_velocity(&tiles);
         let extent = (0..parts)
             .into_par_iter()
-            .map(|part| Extent::of(&tiles.part(part, parts), &chart, carried))
+            .map(|part| Extent::of(&tiles.part(part, parts), &transform, carried))
             .reduce(|| Extent::NONE, Extent::with);
-        let window = self.window(&extent);
+        let bounds = self.bounds(&extent);
         let units = Units::new(self.points, self.total, (extent.speed, carried));
         let sums = &mut self.sums[..parts];
         sums.par_iter_mut().enumerate().for_each(|(part, sums)| {
-            sums.clear(window.nodes());
-            sums.add(&tiles.part(part, parts), &chart, &window, &units);
+            sums.clear(bounds.nodes());
+            sums.add(&tiles.part(part, parts), &transform, &bounds, &units);
         });
-        self.field.collect(window, &units, sums);
+        self.field.collect(bounds, &units, sums);
         self.taken_up[1] = fill_ratio(&self.field.fill);
     }
 
     /// Computes the accelerations of all points for an interval of `dt` [s] that has been measured. They
     /// replace those of the last interval in `push` [m/s²], shape `[points]` of all tiles. `obstacles` are
     /// the colliders in the first substep of the interval, of `h` [s].
-    pub fn exchange(
+    pub fn compute_accelerations(
         &mut self,
         dt: f32,
         (strand, state): (&[StrandRows], &[StateRows]),
@@ -336,7 +336,7 @@ impl Volume {
         }
         let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
         let points = (&mut self.acceleration[..], push);
-        gather::all(&tiles, &now.chart(self.cell), &self.field.window, &self.field.push, points);
+        gather::all(&tiles, &now.transform(self.cell), &self.field.bounds, &self.field.push, points);
     }
 
     /// Returns the drag of crossing hair in an interval of `dt` [s].
@@ -346,8 +346,8 @@ impl Volume {
 
     /// Computes the acceleration by the pressure of overfull cells.
     fn press(&mut self, dt: f32, anchor: &RigidTransform) {
-        let (field, rest, window) = (&self.field, &self.rest, self.field.window);
-        let excess = |cell: usize| rest.over_density(&window, cell, field.fill[cell]);
+        let (field, rest, bounds) = (&self.field, &self.rest, self.field.bounds);
+        let excess = |cell: usize| rest.over_density(&bounds, cell, field.fill[cell]);
         density::pressures(field, excess, &mut self.pressures);
         let push = density::Push::new(field, &self.pressures, self.settings.pressure, self.cell, dt);
         let turn = Mat3::from_quat(anchor.rotation);
@@ -357,11 +357,11 @@ impl Volume {
 
     /// Computes the acceleration that makes velocities free of divergence where hair is full.
     fn project(&mut self, dt: f32, anchor: &RigidTransform, obstacles: (&[ColliderPose], f32)) {
-        let (field, rest, window, cell) = (&self.field, &self.rest, self.field.window, self.cell);
+        let (field, rest, bounds, cell) = (&self.field, &self.rest, self.field.bounds, self.cell);
         let turn = Mat3::from_quat(anchor.rotation);
         let back = turn.transpose();
         let to_lattice = |n: usize, node: &[f32; 4]| {
-            let place = anchor.point(window.place(n).as_vec3() * cell);
+            let place = anchor.point(bounds.place(n).as_vec3() * cell);
             match solid(obstacles, place) {
                 Some(v) => (back * v, true),
                 None => (back * Vec3::new(node[0], node[1], node[2]), false),
@@ -371,7 +371,7 @@ impl Volume {
         let wanted = |c: usize| {
             4.0 * cell
                 * regain
-                * rest.over_density(&window, c, field.fill[c]).clamp(0.0, density::MOST_EXCESS)
+                * rest.over_density(&bounds, c, field.fill[c]).clamp(0.0, density::MOST_EXCESS)
         };
         self.projection.project(field, to_lattice, wanted);
         let brakes = (brakes::friction(&self.settings, dt), self.crossing(dt));

@@ -43,12 +43,12 @@ pub fn grain(tiles: &Tiles, anchor: &RigidTransform, segment: f32) -> Grain {
     let (mut cell, mut spacing) = (segment, segment);
     let mut occupied: Vec<u64> = Vec::new();
     for _ in 0..64 {
-        let chart = GridTransform::new(anchor, cell);
+        let transform = GridTransform::new(anchor, cell);
         occupied.clear();
         for (strand, state, own) in tiles.iter() {
-            let mut places = chart.roots(strand, IVec3::ZERO);
+            let mut places = transform.roots(strand, IVec3::ZERO);
             for (at, own) in state.iter().zip(own) {
-                chart.walk(&mut places, at);
+                transform.advance(&mut places, at);
                 for lane in (0..LANES).filter(|lane| own[own::MASS].0[*lane] > 0.0) {
                     let key = |k: usize| (places[k][lane].floor() as i64 & 0x1f_ffff) as u64;
                     occupied.push(key(2) << 42 | key(1) << 21 | key(0));
@@ -72,15 +72,15 @@ pub fn grain(tiles: &Tiles, anchor: &RigidTransform, segment: f32) -> Grain {
 /// Fill of the cells at rest, where that is above 1.
 #[derive(Default)]
 pub struct Rest {
-    window: GridBounds,
+    bounds: GridBounds,
     fill: Vec<f32>,
 }
 
 impl Rest {
-    /// Returns the excess of a cell of `window` with this fill over the allowed fill; 0 or less if there is
+    /// Returns the excess of a cell of `bounds` with this fill over the allowed fill; 0 or less if there is
     /// none [1].
-    pub fn over_density(&self, window: &GridBounds, cell: usize, fill: f32) -> f32 {
-        let at = if *window == self.window { Some(cell) } else { self.window.index(window.place(cell)) };
+    pub fn over_density(&self, bounds: &GridBounds, cell: usize, fill: f32) -> f32 {
+        let at = if *bounds == self.bounds { Some(cell) } else { self.bounds.index(bounds.place(cell)) };
         fill - SLACK * at.map_or(1.0, |at| self.fill[at].max(1.0))
     }
 
@@ -101,44 +101,48 @@ impl Rest {
     ) {
         let (strand, state, firsts) = tiles;
         let fine = cell.min(grain);
-        let chart = GridTransform::new(anchor, fine);
+        let transform = GridTransform::new(anchor, fine);
         // Volume of a fine cell in units of the grid's cell.
         let share = (fine / cell).powi(3);
-        let Some(window) = fill(&Tiles { firsts, strand, state, own }, &chart, sums, field) else { return };
+        let Some(bounds) = fill(&Tiles { firsts, strand, state, own }, &transform, sums, field) else {
+            return;
+        };
         for (rows, first) in strand.iter().zip(firsts.windows(2)) {
-            let mut places = chart.roots(rows, window.lo);
+            let mut places = transform.roots(rows, bounds.lo);
             for i in first[0] as usize..first[1] as usize {
-                chart.walk(&mut places, &state[i]);
-                let placed = Placed::new(&places, &window);
-                let room = &mut own[i][own::ROOM].0;
-                for (room, cell) in room.iter_mut().zip(placed.cell) {
+                transform.advance(&mut places, &state[i]);
+                let placed = Placed::new(&places, &bounds);
+                let rest_volume = &mut own[i][own::ROOM].0;
+                for (rest_volume, cell) in rest_volume.iter_mut().zip(placed.cell) {
                     let fill = field.fill[cell as usize];
-                    if *room > 0.0 && fill > 0.0 {
-                        *room = ((*room / fill).min(MOST_ROOM * ROOM) * share).round().max(1.0);
+                    if *rest_volume > 0.0 && fill > 0.0 {
+                        *rest_volume = ((*rest_volume / fill).min(MOST_ROOM * ROOM) * share).round().max(1.0);
                     }
                 }
             }
         }
-        let chart = GridTransform::new(anchor, cell);
-        let Some(window) = fill(&Tiles { firsts, strand, state, own }, &chart, sums, field) else { return };
-        self.window = window;
+        let transform = GridTransform::new(anchor, cell);
+        let Some(bounds) = fill(&Tiles { firsts, strand, state, own }, &transform, sums, field) else {
+            return;
+        };
+        self.bounds = bounds;
         self.fill.clone_from(&field.fill);
     }
 }
 
 /// Computes the fill of the cells. Returns the bounds of the hair, or `None` if there is none.
-fn fill(tiles: &Tiles, chart: &GridTransform, sums: &mut Sums, field: &mut Field) -> Option<GridBounds> {
-    let extent = Extent::of(tiles, chart, Vec3::ZERO);
+fn fill(tiles: &Tiles, transform: &GridTransform, sums: &mut Sums, field: &mut Field) -> Option<GridBounds> {
+    let extent = Extent::of(tiles, transform, Vec3::ZERO);
     if !(extent.lo.is_finite() && extent.hi.is_finite()) {
         return None;
     }
-    let window = GridBounds::around(extent.lo, extent.hi);
+    let bounds = GridBounds::around(extent.lo, extent.hi);
     // Only the rest volumes are used here, so any unit of mass will do.
     let units = Units { mass: 1.0, momentum: 0.0, energy: 0.0, speed: 0.0, carried: Vec3::ZERO };
-    sums.clear(window.nodes());
-    sums.add(tiles, chart, &window, &units);
-    field.collect(window, &units, std::slice::from_ref(sums));
-    Some(window)
+    sums.clear(bounds.nodes());
+    sums.add(tiles, transform, &bounds, &units);
+    field.collect(bounds, &units, std::slice::from_ref(sums));
+    Some(bounds)
 }
 
 /// Returns the box that strands of at most `length` can reach, if their roots are in the box (`lo`, `hi`).

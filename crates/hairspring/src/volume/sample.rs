@@ -24,12 +24,12 @@ impl<'a> Density<'a> {
 
     /// Returns the number of nodes.
     pub fn nodes(&self) -> usize {
-        self.field.window.nodes()
+        self.field.bounds.nodes()
     }
 
     /// Returns the number of nodes in a slab of constant z.
     pub fn slab(&self) -> usize {
-        self.field.window.slab()
+        self.field.bounds.slab()
     }
 
     /// Returns whether there is hair in a cell around a node.
@@ -39,7 +39,7 @@ impl<'a> Density<'a> {
 
     /// Returns the position of a node in world space [m].
     pub fn place(&self, node: usize) -> Vec3 {
-        self.anchor.point(self.field.window.place(node).as_vec3() * self.cell)
+        self.anchor.point(self.field.bounds.place(node).as_vec3() * self.cell)
     }
 
     /// Returns whether `place` in world space is inside the grid.
@@ -60,13 +60,13 @@ impl<'a> Density<'a> {
 
     /// Transforms `place` from world space to cells from the lowest node of the bounds.
     fn on_lattice(&self, place: Vec3) -> Vec3 {
-        self.anchor.inverse_point(place) / self.cell - self.field.window.lo.as_vec3()
+        self.anchor.inverse_point(place) / self.cell - self.field.bounds.lo.as_vec3()
     }
 
     /// Returns the index of the lowest node of the cell that contains `at`, and the offset of `at` from it;
     /// `None` outside the bounds.
     fn corner(&self, at: Vec3) -> Option<(usize, Vec3)> {
-        let GridBounds { dims, .. } = self.field.window;
+        let GridBounds { dims, .. } = self.field.bounds;
         let floor = at.floor();
         let [x, y, z] = floor.to_array();
         let inside = (0..3).all(|k| floor[k] >= 0.0 && floor[k] + 1.0 < dims[k] as f32);
@@ -76,7 +76,7 @@ impl<'a> Density<'a> {
     /// Interpolates `values` at integer positions trilinearly.
     fn between(&self, at: Vec3, values: &[f32]) -> Option<f32> {
         let (first, f) = self.corner(at)?;
-        let v = self.field.window.corners().map(|corner| values[first + corner]);
+        let v = self.field.bounds.corners().map(|corner| values[first + corner]);
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
         let x: [f32; 4] = std::array::from_fn(|k| mix(v[2 * k], v[2 * k + 1], f.x));
         Some(mix(mix(x[0], x[1], f.y), mix(x[2], x[3], f.y), f.z))

@@ -107,12 +107,12 @@ impl Extent {
 
     /// Computes the extent of these points, with velocities relative to `carried` [m/s]. Values that are not
     /// finite are ignored.
-    pub fn of(tiles: &Tiles, chart: &GridTransform, carried: Vec3) -> Self {
+    pub fn of(tiles: &Tiles, transform: &GridTransform, carried: Vec3) -> Self {
         let (mut lo, mut hi) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
         let mut speed = [0.0_f32; LANES];
         let mut roots = Self::NONE.roots;
         for (strand, state, own) in tiles.iter() {
-            let mut places = chart.roots(strand, IVec3::ZERO);
+            let mut places = transform.roots(strand, IVec3::ZERO);
             for lane in (0..LANES).filter(|lane| own[0][own::MASS].0[*lane] > 0.0) {
                 let root = Vec3::from([0, 1, 2].map(|k: usize| places[k][lane]));
                 if root.is_finite() {
@@ -120,7 +120,7 @@ impl Extent {
                 }
             }
             for (at, own) in state.iter().zip(own) {
-                chart.walk(&mut places, at);
+                transform.advance(&mut places, at);
                 for lane in 0..LANES {
                     let counts = own[own::MASS].0[lane] > 0.0;
                     for k in 0..3 {
@@ -188,7 +188,7 @@ pub struct Sums {
     /// the sum of m |v|².
     pub nodes: Vec<i32>,
     /// Rest volume of the points at each node.
-    pub rooms: Vec<u32>,
+    pub rest_volumes: Vec<u32>,
 }
 
 /// Number of values per node.
@@ -198,26 +198,26 @@ impl Sums {
     /// Reserves memory for at most `nodes` nodes.
     pub fn reserve(&mut self, nodes: usize) {
         self.nodes.reserve_exact((nodes * NODE).saturating_sub(self.nodes.len()));
-        self.rooms.reserve_exact(nodes.saturating_sub(self.rooms.len()));
+        self.rest_volumes.reserve_exact(nodes.saturating_sub(self.rest_volumes.len()));
     }
 
     /// Resizes to `nodes` nodes and sets all sums to 0.
     pub fn clear(&mut self, nodes: usize) {
         self.nodes.clear();
         self.nodes.resize(nodes * NODE, 0);
-        self.rooms.clear();
-        self.rooms.resize(nodes, 0);
+        self.rest_volumes.clear();
+        self.rest_volumes.resize(nodes, 0);
     }
 
-    /// Adds points to the nodes of `window`.
-    pub fn add(&mut self, tiles: &Tiles, chart: &GridTransform, window: &GridBounds, units: &Units) {
-        let [_, _, row, _, slab, _, both, _] = window.corners();
+    /// Adds points to the nodes of `bounds`.
+    pub fn add(&mut self, tiles: &Tiles, transform: &GridTransform, bounds: &GridBounds, units: &Units) {
+        let [_, _, row, _, slab, _, both, _] = bounds.corners();
         let (per_speed, per_energy) = (units.momentum / units.mass, units.energy / units.mass);
         for (strand, state, own) in tiles.iter() {
-            let mut places = chart.roots(strand, window.lo);
+            let mut places = transform.roots(strand, bounds.lo);
             for (at, own) in state.iter().zip(own) {
-                chart.walk(&mut places, at);
-                let placed = Placed::new(&places, window);
+                transform.advance(&mut places, at);
+                let placed = Placed::new(&places, bounds);
                 // Momentum, mass, direction, energy and rest volume of eight points.
                 let mut there = placed.inside;
                 for k in 0..3 {
@@ -228,10 +228,10 @@ impl Sums {
                     }
                 }
                 let mut counted = [[0.0; LANES]; NODE];
-                let mut room = [0.0; LANES];
+                let mut rest_volume = [0.0; LANES];
                 for lane in 0..LANES {
                     counted[3][lane] = own[own::MASS].0[lane] * there[lane] * units.mass;
-                    room[lane] = own[own::ROOM].0[lane] * there[lane];
+                    rest_volume[lane] = own[own::ROOM].0[lane] * there[lane];
                     let edge = [0, 1, 2].map(|k: usize| at[state::EDGE + k].0[lane]);
                     let length = (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]).sqrt();
                     // The edge vector to a root has no direction.
@@ -266,8 +266,8 @@ impl Sums {
                         for c in 0..NODE {
                             pair[NODE + c] = pair[NODE + c].wrapping_add(nearest(point[c] * b));
                         }
-                        for (sum, weight) in self.rooms[cell + corner..].iter_mut().zip([a, b]) {
-                            *sum = sum.saturating_add(nearest(room[lane] * weight) as u32);
+                        for (sum, weight) in self.rest_volumes[cell + corner..].iter_mut().zip([a, b]) {
+                            *sum = sum.saturating_add(nearest(rest_volume[lane] * weight) as u32);
                         }
                     }
                 }

@@ -93,12 +93,12 @@ impl Bundle {
     }
 
     /// Returns the resulting accelerations of all points.
-    fn exchange(&self, volume: &mut Volume, anchor: &RigidTransform) -> Vec<Vec3> {
+    fn compute_accelerations(&self, volume: &mut Volume, anchor: &RigidTransform) -> Vec<Vec3> {
         let mut push = vec![[Row::default(); 3]; self.state.len()];
         let now = Now { anchor: *anchor, gone: 1.0 };
         volume.begin_frame();
         volume.measure((&self.strand, &self.state), &now);
-        volume.exchange(DT, (&self.strand, &self.state), &now, (&[], DT), &mut push);
+        volume.compute_accelerations(DT, (&self.strand, &self.state), &now, (&[], DT), &mut push);
         push.iter().flat_map(|p| (0..LANES).map(|l| Vec3::new(p[0].0[l], p[1].0[l], p[2].0[l]))).collect()
     }
 
@@ -112,13 +112,13 @@ fn a_rest_is_left_alone_in_every_pose_of_the_head() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
-        let push = bundle.exchange(&mut volume, &RigidTransform::default());
+        let push = bundle.compute_accelerations(&mut volume, &RigidTransform::default());
         assert!(push.iter().all(|a| *a == Vec3::ZERO), "{method:?}: hair at rest is pushed");
         for k in 1..20 {
             let rotation = Quat::from_euler(glam::EulerRot::XYZ, 0.3 * k as f32, 0.7, -0.2 * k as f32);
             let anchor = RigidTransform { rotation, translation: Vec3::new(1.0, 2.0, 30.0) };
             bundle.set(|p| (p, Vec3::ZERO), &anchor);
-            let push = bundle.exchange(&mut volume, &anchor);
+            let push = bundle.compute_accelerations(&mut volume, &anchor);
             let most = push.iter().map(|a| a.length()).fold(0.0, f32::max);
             // Where rounding moves a point to the next cell, that is overfull by a few hundredths: a tenth of
             // gravity.
@@ -134,7 +134,7 @@ fn what_moves_together_is_not_braked() {
         let mut volume = bundle.volume(method);
         bundle.set(|p| (p, Vec3::new(3.0, -1.0, 2.0)), &RigidTransform::default());
         let most = bundle
-            .exchange(&mut volume, &RigidTransform::default())
+            .compute_accelerations(&mut volume, &RigidTransform::default())
             .iter()
             .map(|a| a.length())
             .fold(0.0, f32::max);
@@ -153,7 +153,7 @@ fn strands_that_cross_stop_each_other_and_slide_along_each_other() {
         let mut taken = |direction: Vec3| {
             let side = |p: Vec3| if (1e5 * (p.x + p.z)) as i32 & 1 == 0 { 1.0 } else { -1.0 };
             bundle.set(|p| (p, direction * side(p)), &RigidTransform::default());
-            let push = bundle.exchange(&mut volume, &RigidTransform::default());
+            let push = bundle.compute_accelerations(&mut volume, &RigidTransform::default());
             let velocity = |k: usize| {
                 let rows = &bundle.state[k / LANES];
                 Vec3::from([0, 1, 2].map(|c| rows[state::V + c].0[k % LANES]))
@@ -177,7 +177,7 @@ fn pressure_and_friction_keep_momentum() {
         let mut volume = bundle.volume(method);
         let swirl = |p: Vec3| Vec3::new((90.0 * p.z).sin(), (150.0 * p.x).cos(), -20.0 * p.x) + Vec3::Y;
         bundle.set(|p| (p * Vec3::new(0.7, 1.0, 0.8), swirl(p)), &RigidTransform::default());
-        let push = bundle.exchange(&mut volume, &RigidTransform::default());
+        let push = bundle.compute_accelerations(&mut volume, &RigidTransform::default());
         let (mut sum, mut size) = (Vec3::ZERO, 0.0);
         for (m, a) in bundle.masses().zip(&push) {
             (sum, size) = (sum + m * *a, size + m * a.length());
@@ -194,7 +194,7 @@ fn what_is_squeezed_is_pressed_apart() {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
         bundle.set(|p| (p * Vec3::new(0.6, 1.0, 1.0), Vec3::ZERO), &RigidTransform::default());
-        let push = bundle.exchange(&mut volume, &RigidTransform::default());
+        let push = bundle.compute_accelerations(&mut volume, &RigidTransform::default());
         let share = volume.report().share;
         assert!((0.55..0.75).contains(&share), "{method:?}: {share} of the volume at 0.6 of the width");
         for (side, outward) in [(0..SIDE / 4, -1.0), (3 * SIDE / 4..SIDE, 1.0)] {
@@ -212,13 +212,13 @@ fn no_divergence_is_left_where_hair_is_full() {
     let mut volume = bundle.volume(VolumeMethod::Incompressible);
     // The bundle collapses, and is heavier on one side than on the other.
     bundle.set(|p| (p, Vec3::new(-4.0, 1.0, -2.0) * p), &RigidTransform::default());
-    bundle.exchange(&mut volume, &RigidTransform::default());
+    bundle.compute_accelerations(&mut volume, &RigidTransform::default());
     let field: &Field = &volume.field;
     let mut projection = Projection::default();
     let found = projection.project(field, |_, v| (Vec3::new(v[0], v[1], v[2]), false), |_| 0.0);
     assert!(found.cells > 500 && found.left < TOLERANCE, "{found:?}");
     // Independent check: the net outflow of each full cell.
-    let corners = field.window.corners();
+    let corners = field.bounds.corners();
     let out = |cell: usize, projected: bool| -> f64 {
         let flow = |(k, corner): (usize, &usize)| {
             let n = cell + corner;
@@ -229,7 +229,7 @@ fn no_divergence_is_left_where_hair_is_full() {
         };
         corners.iter().enumerate().map(flow).sum()
     };
-    let full = (0..field.window.nodes()).filter(|c| field.fill[*c] > 0.95);
+    let full = (0..field.bounds.nodes()).filter(|c| field.fill[*c] > 0.95);
     let (mut before, mut after) = (0.0, 0.0);
     for cell in full {
         (before, after) = (before + out(cell, false).powi(2), after + out(cell, true).powi(2));
@@ -247,7 +247,7 @@ fn threads_do_not_show() {
         bundle.set(|p| (p * 0.8, Vec3::new(p.z, -p.x, p.y) * 20.0), &RigidTransform::default());
         let mut run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| bundle.exchange(&mut volume, &RigidTransform::default()))
+            pool.install(|| bundle.compute_accelerations(&mut volume, &RigidTransform::default()))
         };
         let one = run(1);
         assert!(one == run(2), "{method:?}: two threads give other bits than one");
@@ -269,7 +269,7 @@ fn what_is_not_finite_does_not_count() {
             bundle.state[point][row].0[5] = x;
         }
         bundle.strand[7][strand::ROOT_END].0[2] = f32::NAN;
-        let push = bundle.exchange(&mut volume, &RigidTransform::default());
+        let push = bundle.compute_accelerations(&mut volume, &RigidTransform::default());
         assert!(push.iter().all(|a| a.is_finite()), "{method:?}");
         assert!(push.iter().any(|a| a.length() > 0.1), "{method:?}: the others are pushed");
         for k in [3 * LANES + 5, 40 * LANES + 5, 90 * LANES + 5, 7 * POINTS * LANES + 2] {

@@ -36,7 +36,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B,
     #[inline(always)]
     fn advance(
         simd: S,
-        interval: &FrameContext,
+        frame: &FrameContext,
         step: &SubstepContext<S>,
         tile: &mut Tile,
         scratch: &mut Scratch,
@@ -57,7 +57,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B,
             let free = inverse.simd_gt(0.0);
             let gain = V3::select(free, a * h, zero);
             let (now, later) =
-                if interval.integrator == Integrator::Verlet { (gain, zero) } else { (zero, gain) };
+                if frame.integrator == Integrator::Verlet { (gain, zero) } else { (zero, gain) };
             let change = V3::select(free, (v + now) * h - step.moved, zero);
             let edge = &mut scratch.edges[i];
             (V3::load(simd, edge) + (change - before)).store(edge);
@@ -69,11 +69,11 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B,
 }
 
 /// Advances one tile through a frame.
-pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
+pub fn run(level: Level, frame: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     macro_rules! kernel {
         ($model:ty, $b:literal, $n:literal) => {
             dispatch_comparison!(level, tile.layout.double, simd => {
-                run_tile::<_, $model, Explicit, $b, $n>(simd, interval, tile, memory)
+                run_tile::<_, $model, Explicit, $b, $n>(simd, frame, tile, memory)
             })
         };
     }

@@ -38,14 +38,14 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B,
     #[inline(always)]
     fn advance(
         simd: S,
-        interval: &FrameContext,
+        frame: &FrameContext,
         step: &SubstepContext<S>,
         tile: &mut Tile,
         scratch: &mut Scratch,
     ) -> PostSolveParams {
         let zero = V3::zero(simd);
         let h = F::<S>::splat(simd, step.h);
-        let share = if interval.integrator == Integrator::Dftl { -KEPT / step.h } else { 0.0 };
+        let share = if frame.integrator == Integrator::Dftl { -KEPT / step.h } else { 0.0 };
         let stride = M::STRIDE;
         // Displacement of the previous point.
         let mut shift = zero;
@@ -85,14 +85,14 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B,
 }
 
 /// Advances one tile through a frame. Of the elastic model, only the particles count.
-pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
+pub fn run(level: Level, frame: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     if tile.layout.model == Elastic::Springs {
         dispatch_comparison!(level, tile.layout.double, simd => {
-            run_tile::<_, Springs, FollowTheLeader, 3, 12>(simd, interval, tile, memory)
+            run_tile::<_, Springs, FollowTheLeader, 3, 12>(simd, frame, tile, memory)
         });
     } else {
         dispatch_comparison!(level, tile.layout.double, simd => {
-            run_tile::<_, Straight, FollowTheLeader, 3, 9>(simd, interval, tile, memory)
+            run_tile::<_, Straight, FollowTheLeader, 3, 9>(simd, frame, tile, memory)
         });
     }
 }

@@ -24,29 +24,30 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B,
     #[inline(always)]
     fn advance(
         simd: S,
-        interval: &FrameContext,
+        frame: &FrameContext,
         step: &SubstepContext<S>,
         tile: &mut Tile,
         scratch: &mut Scratch,
     ) -> PostSolveParams {
-        let mut projection = solve::<S, M, B, N>(simd, interval, step, tile, scratch);
+        let mut projection = solve::<S, M, B, N>(simd, frame, step, tile, scratch);
         // Stiffer springs take more of a load in the solve; what projection adds to their tension is then mostly
         // noise, so it is scaled down.
         let stiffening = load(simd, &tile.strand[strand::STIFFENING]);
         let per_mass = step.inertia() / (step.h * step.h);
         let force = F::splat(simd, per_mass) / stiffening;
-        let limit = iteration_limit(simd, interval.projection_iterations, tile);
+        let limit = iteration_limit(simd, frame.projection_iterations, tile);
         for iteration in 1.. {
             let active = limit.simd_ge(iteration as f32);
-            if !active.any_true() || !projection.settle(simd, M::STRIDE, (force, active), tile, scratch) {
+            if !active.any_true() || !projection.move_points(simd, M::STRIDE, (force, active), tile, scratch)
+            {
                 break;
             }
-            projection = Projection::meet_all(simd, M::STRIDE, tile, scratch);
+            projection = Projection::eliminate_all(simd, M::STRIDE, tile, scratch);
         }
         PostSolveParams {
             limit: LIMIT,
-            press: if interval.response == Response::Projection { 0.0 } else { per_mass },
-            project: interval.response != Response::Penalty,
+            press: if frame.response == Response::Projection { 0.0 } else { per_mass },
+            project: frame.response != Response::Penalty,
             kicks: false,
         }
     }
@@ -71,7 +72,7 @@ const CONVERGED: f32 = 1e-5;
 #[inline(always)]
 fn solve<S, M, const B: usize, const N: usize>(
     simd: S,
-    interval: &FrameContext,
+    frame: &FrameContext,
     step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
@@ -82,7 +83,7 @@ where
 {
     assemble::<S, M, B, N>(simd, Linearization::Initial, step, tile, scratch);
     let projection = substitute::<S, M, B, N>(simd, Linearization::Initial, step, tile, scratch);
-    if interval.iterations == 1 {
+    if frame.iterations == 1 {
         return projection;
     }
     // Newton: linearize again at the last iterate. A correction larger than the previous one shows that the
@@ -91,7 +92,7 @@ where
     let mut share = F::<S>::splat(simd, 1.0);
     let mut last = F::<S>::splat(simd, f32::INFINITY);
     let points = tile.rest.len();
-    for _ in 1..interval.iterations {
+    for _ in 1..frame.iterations {
         scratch.kick[..points].copy_from_slice(&scratch.edges[..points]);
         assemble::<S, M, B, N>(simd, Linearization::Newton, step, tile, scratch);
         substitute::<S, M, B, N>(simd, Linearization::Newton, step, tile, scratch);
@@ -120,5 +121,5 @@ where
         last = size;
     }
     // After a damped step, the segments are not where the upward sweep evaluated them.
-    Projection::meet_all(simd, M::STRIDE, tile, scratch)
+    Projection::eliminate_all(simd, M::STRIDE, tile, scratch)
 }

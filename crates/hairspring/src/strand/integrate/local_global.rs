@@ -51,27 +51,27 @@ pub struct LocalGlobal;
 
 impl<S: Simd> Method<S, Curvature<S>, 3, 9> for LocalGlobal {
     #[inline(always)]
-    fn begin(simd: S, interval: &FrameContext, tile: &Tile, scratch: &mut Scratch) {
-        factor(simd, interval.h, tile, scratch);
+    fn begin(simd: S, frame: &FrameContext, tile: &Tile, scratch: &mut Scratch) {
+        factor(simd, frame.h, tile, scratch);
     }
 
     #[inline(always)]
     fn advance(
         simd: S,
-        interval: &FrameContext,
+        frame: &FrameContext,
         step: &SubstepContext<S>,
         tile: &mut Tile,
         scratch: &mut Scratch,
     ) -> PostSolveParams {
-        iterate(simd, interval.iterations, step, tile, scratch);
+        iterate(simd, frame.iterations, step, tile, scratch);
         PostSolveParams { kicks: false, ..PostSolveParams::WITHOUT_LIMIT }
     }
 }
 
 /// Advances one tile through a frame.
-pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
+pub fn run(level: Level, frame: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     dispatch_comparison!(level, tile.layout.double, simd => {
-        run_tile::<_, Curvature<_>, LocalGlobal, 3, 9>(simd, interval, tile, memory)
+        run_tile::<_, Curvature<_>, LocalGlobal, 3, 9>(simd, frame, tile, memory)
     });
 }
 
@@ -98,7 +98,7 @@ fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
         }
         // Points that do not move are decoupled.
         let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
-        band.with_checked_lengths(simd, free);
+        band.decouple_first(simd, free);
         band.eliminate(simd, PROFILE, i, scratch.factors);
     }
 }

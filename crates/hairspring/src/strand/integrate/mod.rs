@@ -44,18 +44,18 @@ pub trait Method<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> {
     /// Computes a substep: stores the new edges in `scratch.edges`, and returns how the substep is completed.
     fn advance(
         simd: S,
-        interval: &FrameContext,
+        frame: &FrameContext,
         step: &SubstepContext<S>,
         tile: &mut Tile,
         scratch: &mut Scratch,
     ) -> PostSolveParams;
 }
 
-/// Runs the substeps of `interval` that are due now, for one tile, with the method `I`.
+/// Runs the substeps of `frame` that are due now, for one tile, with the method `I`.
 #[inline(always)]
 pub fn run_tile<S, M, I, const B: usize, const N: usize>(
     simd: S,
-    interval: &FrameContext,
+    frame: &FrameContext,
     tile: &mut Tile,
     memory: &mut Memory,
 ) where
@@ -65,18 +65,18 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
 {
     let scratch = &mut memory.scratch(tile.rest.len());
     let tile = &mut tile.with_equal_lengths();
-    precompute(simd, interval.h, I::STRETCHING, tile, scratch);
+    precompute(simd, frame.h, I::STRETCHING, tile, scratch);
     scratch.begin(simd, tile.state);
-    I::begin(simd, interval, tile, scratch);
-    let (fraction, anchor) = interval.begun();
+    I::begin(simd, frame, tile, scratch);
+    let (fraction, anchor) = frame.begun();
     let mut root = Root::between(simd, tile.strand, fraction, anchor);
     // Driven points get the velocity of the root.
     let velocity: [_; 3] = std::array::from_fn(|k| tile.state[0][state::V + k]);
     for driven in &mut tile.state[1..M::DRIVEN] {
         driven[state::V..state::V + 3].copy_from_slice(&velocity);
     }
-    let mut continues = interval.continues;
-    for (number, substep) in interval.substeps[interval.now.clone()].iter().enumerate() {
+    let mut continues = frame.continues;
+    for (number, substep) in frame.substeps[frame.now.clone()].iter().enumerate() {
         let next = Root::at(simd, tile.strand, substep);
         let moved = next.position - root.position;
         root = next;
@@ -92,20 +92,20 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
         let next = &mut scratch.edges[M::DRIVEN];
         (V3::load(simd, next) - behind).store(next);
 
-        let second_order = interval.integrator == Integrator::Bdf2 && continues;
+        let second_order = frame.integrator == Integrator::Bdf2 && continues;
         let step = SubstepContext {
             number,
             left: 1.0 - substep.fraction,
-            h: interval.h,
-            gravity: interval.gravity,
+            h: frame.h,
+            gravity: frame.gravity,
             wind: substep.wind,
             root,
             moved,
             second_order,
-            touches: touching(simd, interval, &substep.obstacles, tile),
+            touches: touching(simd, frame, &substep.obstacles, tile),
             obstacles: &substep.obstacles,
         };
-        let finish = I::advance(simd, interval, &step, tile, scratch);
+        let finish = I::advance(simd, frame, &step, tile, scratch);
         post_solve(simd, M::STRIDE, &finish, &step, tile, scratch);
         continues = true;
     }
@@ -166,13 +166,8 @@ const TOUCHED: f32 = 0.1;
 /// A contact may push a point away, and the point soon returns. In between, its motion is damped as in
 /// contact. Otherwise it would gain speed from each bounce.
 #[inline(always)]
-fn touching<S: Simd>(
-    simd: S,
-    interval: &FrameContext,
-    obstacles: &[ColliderPose],
-    tile: &mut Tile,
-) -> Mask<S> {
-    let mut most = F::<S>::splat(simd, if interval.meets { 1.0 } else { 0.0 });
+fn touching<S: Simd>(simd: S, frame: &FrameContext, obstacles: &[ColliderPose], tile: &mut Tile) -> Mask<S> {
+    let mut most = F::<S>::splat(simd, if frame.meets { 1.0 } else { 0.0 });
     if !obstacles.is_empty() {
         for rows in tile.state.iter() {
             most = most.max(load(simd, &rows[state::NORMAL_FORCE]));
@@ -185,7 +180,7 @@ fn touching<S: Simd>(
         most = most.max(load(simd, &rows[position_spring::STIFFNESS]));
     }
     let zero = F::<S>::splat(simd, 0.0);
-    let left = (load(simd, tile.contact_age) - interval.h).max(0.0);
+    let left = (load(simd, tile.contact_age) - frame.h).max(0.0);
     let left = most.simd_gt(zero).select(F::splat(simd, TOUCHED), left);
     store(left, tile.contact_age);
     most.simd_gt(zero) | left.simd_gt(zero)

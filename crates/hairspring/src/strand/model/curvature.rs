@@ -56,11 +56,11 @@ impl<S: Simd> Model<S, 3, 9> for Curvature<S> {
 
 /// Advances one tile through a frame with the implicit integrators, and the widest available SIMD
 /// instructions.
-pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
+pub fn run(level: Level, frame: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     if tile.layout.double {
-        dispatch_double!(level, simd => run_tile::<_, Curvature<_>, Implicit, 3, 9>(simd, interval, tile, memory));
+        dispatch_double!(level, simd => run_tile::<_, Curvature<_>, Implicit, 3, 9>(simd, frame, tile, memory));
     } else {
-        dispatch!(level, simd => run_tile::<_, Curvature<_>, Implicit, 3, 9>(simd, interval, tile, memory));
+        dispatch!(level, simd => run_tile::<_, Curvature<_>, Implicit, 3, 9>(simd, frame, tile, memory));
     }
 }
 

@@ -222,11 +222,11 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
 
 /// Advances one tile through a frame with the implicit integrators, and the widest available SIMD
 /// instructions.
-pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
+pub fn run(level: Level, frame: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
     if tile.layout.double {
-        dispatch_double!(level, simd => run_tile::<_, Rod<_>, Implicit, 4, 11>(simd, interval, tile, memory));
+        dispatch_double!(level, simd => run_tile::<_, Rod<_>, Implicit, 4, 11>(simd, frame, tile, memory));
     } else {
-        dispatch!(level, simd => run_tile::<_, Rod<_>, Implicit, 4, 11>(simd, interval, tile, memory));
+        dispatch!(level, simd => run_tile::<_, Rod<_>, Implicit, 4, 11>(simd, frame, tile, memory));
     }
 }
 

@@ -129,8 +129,8 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
 
 /// Advances one tile through a frame with the implicit integrators, and the widest available SIMD
 /// instructions.
-pub fn run(level: Level, interval: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
-    dispatch!(level, simd => run_tile::<_, Springs, Implicit, 3, 12>(simd, interval, tile, memory));
+pub fn run(level: Level, frame: &FrameContext, tile: &mut Tile, memory: &mut Memory) {
+    dispatch!(level, simd => run_tile::<_, Springs, Implicit, 3, 12>(simd, frame, tile, memory));
 }
 
 /// Stiffness of the sides of the triangle that begins at `point`, in addition to that of all segments (see
