@@ -4,7 +4,7 @@ use super::{FrameMotion, StrandView};
 use crate::{
     simd::lanes::{LANES, Row},
     strand::{
-        tile::{RestRows, StateRows, StrandRows, TileLayout, anisotropic_drag, position_spring},
+        tile::{RestRows, RootRows, StateRows, StrandRows, TileLayout, anisotropic_drag, position_spring},
         tile_arrays::{access, tile_arrays},
     },
 };
@@ -17,6 +17,7 @@ tile_arrays! {
     per tile {
         /// Index in the groom of the strand in each lane; `u32::MAX` in unused lanes.
         lanes: shared [u32; LANES],
+        roots: shared RootRows,
         strand: shared StrandRows,
     }
     per point {

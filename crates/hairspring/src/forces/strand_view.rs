@@ -4,7 +4,7 @@
 use super::{FrameMotion, strand_batch::ForceTile};
 use crate::{
     math::RigidTransform,
-    strand::tile::{StateRows, anisotropic_drag, position_spring, rest, state, strand},
+    strand::tile::{StateRows, anisotropic_drag, position_spring, rest, root, state, strand},
 };
 use glam::{Quat, Vec3};
 
@@ -41,11 +41,11 @@ impl<'a> StrandView<'a> {
 
     /// Returns the root's world transform since rest, at the start and at the end of the frame.
     pub fn roots(&self) -> [RigidTransform; 2] {
-        let number = |row: usize| self.tile.strand[row].0[self.lane];
+        let number = |row: usize| self.tile.roots[row].0[self.lane];
         let [start, end] = self.frame.anchor;
-        [(start, strand::ROOT_START, strand::TURN_START), (end, strand::ROOT_END, strand::TURN_END)].map(
-            |(anchor, root, turn)| RigidTransform {
-                translation: anchor.point(Vec3::from([0, 1, 2].map(|k| number(root + k)))),
+        [(start, root::START, root::TURN_START), (end, root::END, root::TURN_END)].map(
+            |(anchor, place, turn)| RigidTransform {
+                translation: anchor.point(Vec3::from([0, 1, 2].map(|k| number(place + k)))),
                 rotation: anchor.rotation * Quat::from_array([0, 1, 2, 3].map(|k| number(turn + k))),
             },
         )

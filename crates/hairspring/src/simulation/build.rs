@@ -20,8 +20,8 @@ use crate::{
         model::stretch::stiffening,
         rest_shape::{Fiber, RestShape, Start, rest_shape},
         tile::{
-            Elastic, RestRows, SegmentContactRows, StateRows, StrandRows, history, rest, springs, state,
-            strand,
+            Elastic, RestRows, RootRows, SegmentContactRows, StateRows, StrandRows, history, rest, root,
+            springs, state, strand,
         },
         truss::{particles, truss},
     },
@@ -73,6 +73,7 @@ impl Simulation {
         let second_order = solver.integrator == Integrator::Bdf2;
 
         let model = StrandModel {
+            strand: vec![[Row::default(); strand::ROWS]; tiles.len()],
             rest: vec![[Row::default(); rest::ROWS]; first as usize],
             rest_penetration: Vec::new(),
             tethers: Vec::new(),
@@ -96,7 +97,7 @@ impl Simulation {
         };
         let state = StrandState {
             anchor,
-            strand: vec![[Row::default(); strand::ROWS]; model.tiles.len()],
+            roots: vec![[Row::default(); root::ROWS]; model.tiles.len()],
             points: vec![[Row::default(); state::ROWS]; first as usize],
             history: vec![[Row::default(); history::ROWS]; if second_order { first as usize } else { 0 }],
             contact_age: vec![Row::default(); model.tiles.len()],
@@ -162,22 +163,29 @@ impl Simulation {
         let mut rest_of = model.rest.as_mut_slice();
         let mut state_of = self.state.points.as_mut_slice();
         let mut work = Vec::with_capacity(model.tiles.len());
-        for ((tile, lanes), strand) in
-            model.tiles.iter().zip(model.groom_strands.chunks(LANES)).zip(&mut self.state.strand)
+        let strands = self.state.roots.iter_mut().zip(&mut model.strand);
+        for ((tile, lanes), (roots, strand)) in
+            model.tiles.iter().zip(model.groom_strands.chunks(LANES)).zip(strands)
         {
             let (rest, more_rest) = rest_of.split_at_mut(tile.points as usize);
             let (state, more_state) = state_of.split_at_mut(tile.points as usize);
             (rest_of, state_of) = (more_rest, more_state);
-            work.push((tile, lanes, strand, rest, state));
+            work.push((tile, lanes, (roots, strand), rest, state));
         }
         model.start = work
             .into_par_iter()
             .with_min_len(16)
-            .map(|(tile, lanes, strand, rest, state)| {
+            .map(|(tile, lanes, (roots, strand), rest, state)| {
                 let model = tile.model;
                 let mut start = Start::default();
                 for (lane, s) in lanes.iter().enumerate() {
-                    let mut into = Lane { lane, strand: &mut *strand, rest: &mut *rest, state: &mut *state };
+                    let mut into = Lane {
+                        lane,
+                        roots: &mut *roots,
+                        strand: &mut *strand,
+                        rest: &mut *rest,
+                        state: &mut *state,
+                    };
                     if *s == u32::MAX {
                         into.write_idle();
                         continue;
@@ -362,6 +370,7 @@ impl Section {
 /// One lane of a tile, for writing.
 struct Lane<'a> {
     lane: usize,
+    roots: &'a mut RootRows,
     strand: &'a mut StrandRows,
     rest: &'a mut [RestRows],
     state: &'a mut [StateRows],
@@ -380,8 +389,8 @@ impl Lane<'_> {
             rows[rest::CLEARANCE].0[lane] = f32::MIN;
         }
         self.strand[strand::STIFFENING].0[lane] = 1.0;
-        self.strand[strand::TURN_START + 3].0[lane] = 1.0;
-        self.strand[strand::TURN_END + 3].0[lane] = 1.0;
+        self.roots[root::TURN_START + 3].0[lane] = 1.0;
+        self.roots[root::TURN_END + 3].0[lane] = 1.0;
         Self::write_vector(&mut self.strand[strand::FIRST..], lane, Vec3::Y * 0.01);
         Self::write_vector(&mut self.strand[strand::NORMAL..], lane, Vec3::X);
     }
@@ -414,13 +423,12 @@ impl Lane<'_> {
             rows[rest::CLEARANCE].0[lane] = depth;
             Self::write_vector(&mut self.state[i][state::EDGE..], lane, at - before);
         }
-        let root = anchor.inverse_point(points[0]);
+        let position = anchor.inverse_point(points[0]);
         let turn = anchor.rotation.inverse();
-        for (at, rotation) in [(strand::ROOT_START, strand::TURN_START), (strand::ROOT_END, strand::TURN_END)]
-        {
-            Self::write_vector(&mut self.strand[at..], lane, root);
-            Self::write_vector(&mut self.strand[rotation..], lane, turn.xyz());
-            self.strand[rotation + 3].0[lane] = turn.w;
+        for (at, rotation) in [(root::START, root::TURN_START), (root::END, root::TURN_END)] {
+            Self::write_vector(&mut self.roots[at..], lane, position);
+            Self::write_vector(&mut self.roots[rotation..], lane, turn.xyz());
+            self.roots[rotation + 3].0[lane] = turn.w;
         }
         Self::write_vector(&mut self.strand[strand::FIRST..], lane, points[1] - points[0]);
         Self::write_vector(&mut self.strand[strand::THIRD..], lane, points[2] - points[0]);

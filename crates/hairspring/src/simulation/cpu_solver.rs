@@ -32,7 +32,8 @@ impl CpuSolver {
     ) -> bool {
         let tiles = TileRange {
             tiles: &model.tiles,
-            strand: &state.strand,
+            roots: &state.roots,
+            strand: &model.strand,
             contact_age: &mut state.contact_age,
             holds: &state.holds,
             rest: &model.rest,

@@ -45,7 +45,7 @@ impl Simulation {
             volume.begin_frame();
             // Roots are moved below.
             let now = Now { anchor, gone: 1.0 };
-            let hair = (&self.state.strand[..], &self.state.points[..]);
+            let hair = (&self.state.roots[..], &self.state.points[..]);
             volume.measure(hair, &now);
             if with_volume {
                 let first = (&frame.substeps[0].obstacles[..], frame.h);
@@ -62,7 +62,8 @@ impl Simulation {
         let mut strands = StrandBatch {
             tiles: &self.model.tiles,
             lanes: self.model.groom_strands.as_chunks().0,
-            strand: &self.state.strand,
+            roots: &self.state.roots,
+            strand: &self.model.strand,
             rest: &self.model.rest,
             state: &self.state.points,
             external_acceleration: &mut self.forces.external_acceleration,
@@ -121,7 +122,7 @@ impl Simulation {
     pub(super) fn update_volume_forces(&mut self, anchor: RigidTransform, frame: &FrameContext) {
         let Some(volume) = &mut self.volume else { return };
         let now = Now { anchor, gone: frame.begun().0 };
-        let hair = (&self.state.strand[..], &self.state.points[..]);
+        let hair = (&self.state.roots[..], &self.state.points[..]);
         volume.measure(hair, &now);
         let first = (&frame.substeps[frame.now.start].obstacles[..], frame.h);
         volume.compute_accelerations(

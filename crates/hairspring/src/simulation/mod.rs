@@ -108,7 +108,8 @@ impl Simulation {
 
     /// Size of state, rest shape and strand data in memory, with padding [bytes].
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.state.strand[..])
+        size_of_val(&self.state.roots[..])
+            + size_of_val(&self.model.strand[..])
             + size_of_val(&self.model.rest[..])
             + size_of_val(&self.state.points[..])
             + size_of_val(&self.model.rest_penetration[..])

@@ -10,7 +10,7 @@ use crate::{
     strand::{
         frame_context::{FrameContext, Substep},
         segment::segment_contact_unneeded,
-        tile::{segment_contact, strand},
+        tile::{root, segment_contact},
     },
 };
 use rayon::prelude::*;
@@ -183,12 +183,12 @@ impl Simulation {
     /// anchor.
     pub(super) fn move_roots(&mut self, input: &StepInput) {
         let turn = input.anchor.rotation.inverse();
-        let tiles = self.state.strand.par_iter_mut().zip(self.model.strand_of_lane.par_chunks(LANES));
+        let tiles = self.state.roots.par_iter_mut().zip(self.model.strand_of_lane.par_chunks(LANES));
         tiles.with_min_len(TILES_PER_TASK).for_each(|(rows, asked)| {
-            for k in 0..strand::ROOT_END {
-                rows[strand::ROOT_START + k] = rows[strand::ROOT_END + k];
+            for k in 0..root::END {
+                rows[root::START + k] = rows[root::END + k];
             }
-            let start = strand::TURN_START;
+            let start = root::TURN_START;
             for (lane, k) in asked.iter().enumerate() {
                 let Some(root) = input.roots.get(*k as usize) else { continue };
                 let before = glam::Quat::from_array([0, 1, 2, 3].map(|k| rows[start + k].0[lane]));
@@ -198,7 +198,7 @@ impl Simulation {
                 // requires.
                 let q = if q.dot(before) < 0.0 { -q } else { q };
                 for (k, v) in p.to_array().into_iter().chain(q.to_array()).enumerate() {
-                    rows[strand::ROOT_END + k].0[lane] = v;
+                    rows[root::END + k].0[lane] = v;
                 }
             }
         });

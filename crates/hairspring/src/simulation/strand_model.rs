@@ -7,7 +7,7 @@ use crate::{
     simd::lanes::Row,
     strand::{
         rest_shape::Start,
-        tile::{RestRows, TileLayout},
+        tile::{RestRows, StrandRows, TileLayout},
     },
 };
 use glam::Vec3;
@@ -28,6 +28,8 @@ pub(crate) struct StrandModel {
     /// Lane of each simulated strand, in the order that the caller named them.
     pub(super) lane_of_strand: Vec<u32>,
     pub(super) tiles: Vec<TileLayout>,
+    /// Constants of whole strands; shape `[tiles]`.
+    pub(super) strand: Vec<StrandRows>,
     /// Rest shapes; shape `[points]` of all tiles.
     pub(super) rest: Vec<RestRows>,
     /// Authored depth of the segment that ends at each point, 0 or less [m]; as long as `rest`, or empty if no

@@ -7,7 +7,7 @@
 use super::{Simulation, strand_model::StrandModel, strand_state::StrandState};
 use crate::{
     simd::lanes::{LANES, Row},
-    strand::tile::{Elastic, TileLayout, rest, segment_contact, springs, state, strand},
+    strand::tile::{Elastic, TileLayout, rest, root, segment_contact, springs, state, strand},
 };
 use glam::{DVec3, Quat, Vec3};
 
@@ -37,13 +37,17 @@ impl<'a> StrandRef<'a> {
         self.model.tiles[self.lane / LANES]
     }
 
-    /// A constant of the strand, or the motion of its root.
     fn constant(self, row: usize) -> f32 {
-        self.state.strand[self.lane / LANES][row].0[self.lane % LANES]
+        self.model.strand[self.lane / LANES][row].0[self.lane % LANES]
     }
 
-    fn vector_of_strand(self, row: usize) -> Vec3 {
-        Vec3::from([0, 1, 2].map(|k| self.constant(row + k)))
+    /// The motion of its root.
+    fn root_motion(self, row: usize) -> f32 {
+        self.state.roots[self.lane / LANES][row].0[self.lane % LANES]
+    }
+
+    fn root_position(self, row: usize) -> Vec3 {
+        Vec3::from([0, 1, 2].map(|k| self.root_motion(row + k)))
     }
 
     fn rest(self, i: usize, row: usize) -> f32 {
@@ -91,7 +95,7 @@ impl<'a> StrandRef<'a> {
 
     /// World position of its root at the end of the last step [m].
     pub fn root(self) -> Vec3 {
-        let local = self.vector_of_strand(strand::ROOT_END);
+        let local = self.root_position(root::END);
         let (m, t) = self.state.anchor.matrix();
         // The same arithmetic as in the kernel, so that a body at rest gives bitwise the same position.
         m.x_axis * local.x + m.y_axis * local.y + m.z_axis * local.z + t
@@ -99,18 +103,19 @@ impl<'a> StrandRef<'a> {
 
     /// Root positions relative to the anchor at the start and at the end of the last step [m].
     pub fn local_roots(self) -> [Vec3; 2] {
-        [strand::ROOT_START, strand::ROOT_END].map(|row| self.vector_of_strand(row))
+        [root::START, root::END].map(|row| self.root_position(row))
     }
 
     /// World rotation of its root since rest.
     pub fn root_rotation(self) -> Quat {
-        let local = Quat::from_array([0, 1, 2, 3].map(|k| self.constant(strand::TURN_END + k)));
+        let local = Quat::from_array([0, 1, 2, 3].map(|k| self.root_motion(root::TURN_END + k)));
         self.state.anchor.rotation * local
     }
 
     /// The frame's normal on the first segment, in the world.
     pub fn root_normal(self) -> DVec3 {
-        (self.root_rotation() * self.vector_of_strand(strand::NORMAL)).as_dvec3()
+        let normal = Vec3::from([0, 1, 2].map(|k| self.constant(strand::NORMAL + k)));
+        (self.root_rotation() * normal).as_dvec3()
     }
 
     /// Relaxation time of bending [s].
@@ -306,8 +311,8 @@ impl StrandMut<'_> {
     /// Sets the pose of its root relative to the anchor at rest in this frame.
     pub fn set_root(&mut self, position: Vec3, rotation: Quat) {
         let lane = self.lane % LANES;
-        let rows = &mut self.state.strand[self.lane / LANES];
-        for at in [strand::ROOT_START, strand::ROOT_END] {
+        let rows = &mut self.state.roots[self.lane / LANES];
+        for at in [root::START, root::END] {
             for (k, v) in position.to_array().into_iter().chain(rotation.to_array()).enumerate() {
                 rows[at + k].0[lane] = v;
             }

@@ -5,7 +5,7 @@ use crate::{
     forces::charge::ChargedBall,
     math::RigidTransform,
     simd::lanes::Row,
-    strand::tile::{HistoryRows, HoldRows, SegmentContactRows, StateRows, StrandRows},
+    strand::tile::{HistoryRows, HoldRows, RootRows, SegmentContactRows, StateRows},
     strand_contact::Contact,
 };
 
@@ -14,8 +14,8 @@ use crate::{
 pub(crate) struct StrandState {
     /// Pose of the anchor at the end of the last step.
     pub(super) anchor: RigidTransform,
-    /// Motion of the roots, and the constants of whole strands; shape `[tiles]`.
-    pub(super) strand: Vec<StrandRows>,
+    /// Motion of the roots; shape `[tiles]`.
+    pub(super) roots: Vec<RootRows>,
     /// Shape `[points]` of all tiles.
     pub(super) points: Vec<StateRows>,
     /// As long as `points` for the second-order integrator, else empty.
@@ -68,7 +68,7 @@ impl Simulation {
     /// If the layout of the snapshot differs; the state is then unchanged.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SnapshotMismatch> {
         let (own, other) = (&self.state, &snapshot.state);
-        let alike = own.strand.len() == other.strand.len()
+        let alike = own.roots.len() == other.roots.len()
             && own.points.len() == other.points.len()
             && own.history.len() == other.history.len()
             && own.segment_contacts.len() == other.segment_contacts.len();

@@ -18,7 +18,7 @@ use crate::{
     simd::lanes::{LANES, Row},
     strand::{
         model::bend::transport_normal,
-        tile::{Elastic, history, rest, springs, state, strand},
+        tile::{Elastic, history, rest, springs, state},
         truss::{ASIDE, normal_of, side},
     },
 };
@@ -50,8 +50,8 @@ impl Simulation {
         for k in 0..self.model.lane_of_strand.len() {
             let (place, from) = (self.model.lane_of_strand[k] as usize, old.model.lane_of_strand[k] as usize);
             lanes[from] = place as u32;
-            let rows = &mut self.state.strand[place / LANES];
-            for (row, was) in rows[..strand::FIRST].iter_mut().zip(&old.state.strand[from / LANES]) {
+            let rows = &mut self.state.roots[place / LANES];
+            for (row, was) in rows.iter_mut().zip(&old.state.roots[from / LANES]) {
                 row.0[place % LANES] = was.0[from % LANES];
             }
             self.state.contact_age[place / LANES].0[place % LANES] =

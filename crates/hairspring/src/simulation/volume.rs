@@ -38,7 +38,7 @@ impl Simulation {
         let at_rest = AtRest {
             firsts: self.model.tiles.iter().map(|tile| tile.first).chain([points]).collect(),
             mass,
-            strand: &self.state.strand,
+            roots: &self.state.roots,
             state: &self.state.points,
             anchor: self.state.anchor,
             segment: (sum / segments.max(1) as f64) as f32,

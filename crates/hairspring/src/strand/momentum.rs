@@ -20,7 +20,8 @@ use super::{
     scratch::Memory,
     tests::{lane, rows, splat, vector},
     tile::{
-        Elastic, RestRows, StateRows, StrandRows, Tile, TileLayout, TileRange, rest, springs, state, strand,
+        Elastic, RestRows, RootRows, StateRows, StrandRows, Tile, TileLayout, TileRange, rest, springs,
+        state, strand,
     },
 };
 use crate::simd::{
@@ -36,7 +37,7 @@ type Forces = (Vec<DVec3>, Vec<f64>);
 
 /// Returns the internal forces of a strand that is deformed, flat and twisted.
 fn internal(s: &reference::Strand, model: Elastic) -> Forces {
-    let (mut strand_rows, mut rest_rows, state_rows, _) = rows(s);
+    let ((root_rows, mut strand_rows), mut rest_rows, state_rows, _) = rows(s);
     strand_rows[strand::FLAT] = Row([2.0; LANES]);
     let points = rest_rows.len();
     if model == Elastic::Springs {
@@ -55,19 +56,24 @@ fn internal(s: &reference::Strand, model: Elastic) -> Forces {
     } else {
         rest_rows.iter_mut().for_each(|row| row[rest::TWIST] = Row([0.3; LANES]));
     }
-    forces_of(s, model, (strand_rows, rest_rows, state_rows))
+    forces_of(s, model, ((root_rows, strand_rows), rest_rows, state_rows))
 }
 
 /// Returns the internal forces of the strand in these rows, in double precision where the model has it.
 fn forces_of(
     s: &reference::Strand,
     model: Elastic,
-    (strand_rows, rest_rows, mut state_rows): (StrandRows, Vec<RestRows>, Vec<StateRows>),
+    ((root_rows, strand_rows), rest_rows, mut state_rows): (
+        (RootRows, StrandRows),
+        Vec<RestRows>,
+        Vec<StateRows>,
+    ),
 ) -> Forces {
     let mut forces = Forces::default();
     let layout = TileLayout { first: 0, points: rest_rows.len() as u32, model, flat: true, double: true };
     let mut range = TileRange {
         tiles: &[layout],
+        roots: &[root_rows],
         strand: &[strand_rows],
         rest: &rest_rows,
         state: &mut state_rows,
@@ -95,7 +101,7 @@ where
     S: Simd,
     M: Model<S, B, N>,
 {
-    let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
+    let root = Root::between(simd, (tile.roots, tile.strand), 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
     let step = SubstepContext {
         number: 0,
         left: 0.0,

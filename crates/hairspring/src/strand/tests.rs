@@ -20,7 +20,10 @@ use super::{
     scratch::{Memory, Scratch},
     substitute::substitute,
     system::System,
-    tile::{Elastic, RestRows, StateRows, StrandRows, Tile, TileLayout, TileRange, rest, state, strand},
+    tile::{
+        Elastic, RestRows, RootRows, StateRows, StrandRows, Tile, TileLayout, TileRange, rest, root, state,
+        strand,
+    },
     truss::ASIDE,
 };
 use crate::simd::{
@@ -335,8 +338,9 @@ proptest! {
 
 /// Returns the rows of a tile whose lanes all hold this strand, and the normals of its segments, transported
 /// from the root.
-pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>, Vec<DVec3>) {
+pub fn rows(s: &reference::Strand) -> ((RootRows, StrandRows), Vec<RestRows>, Vec<StateRows>, Vec<DVec3>) {
     let n = s.x.len();
+    let mut root_rows = [Row::default(); root::ROWS];
     let mut strand_rows = [Row::default(); strand::ROWS];
     let mut rest_rows = vec![[Row::default(); rest::ROWS]; n];
     let mut state_rows = vec![[Row::default(); state::ROWS]; n];
@@ -345,9 +349,9 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
             *row = Row([*v; LANES]);
         }
     };
-    set(&mut strand_rows, strand::ROOT_END, &s.moved.as_vec3().to_array());
-    for at in [strand::TURN_START, strand::TURN_END] {
-        set(&mut strand_rows, at, &[0.0, 0.0, 0.0, 1.0]);
+    set(&mut root_rows, root::END, &s.moved.as_vec3().to_array());
+    for at in [root::TURN_START, root::TURN_END] {
+        set(&mut root_rows, at, &[0.0, 0.0, 0.0, 1.0]);
     }
     let mut normals = Vec::new();
     let first = s.x[1] - s.x[0];
@@ -378,19 +382,20 @@ pub fn rows(s: &reference::Strand) -> (StrandRows, Vec<RestRows>, Vec<StateRows>
         set(&mut state_rows[i], state::NORMAL, &normal.as_vec3().to_array());
         set(&mut state_rows[i], state::TENSION, &[s.tension[i] as f32]);
     }
-    (strand_rows, rest_rows, state_rows, normals)
+    ((root_rows, strand_rows), rest_rows, state_rows, normals)
 }
 
 /// Solves one substep on a tile whose lanes all hold this strand. Returns the solved positions and the
 /// normals of the segments before the solve, transported from the root.
 fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, Vec<DVec3>) {
     let n = s.x.len();
-    let (strand_rows, rest_rows, mut state_rows, normals) = rows(s);
+    let ((root_rows, strand_rows), rest_rows, mut state_rows, normals) = rows(s);
     let mut memory = Memory::default();
     let mut scratch = memory.scratch(n);
     let layout = TileLayout { first: 0, points: rest_rows.len() as u32, model, flat: false, double };
     let mut range = TileRange {
         tiles: &[layout],
+        roots: &[root_rows],
         strand: &[strand_rows],
         rest: &rest_rows,
         state: &mut state_rows,
@@ -421,7 +426,7 @@ fn solve_substep<S: Simd>(
     scratch: &mut Scratch,
     edges: &mut [DVec3],
 ) {
-    let root = Root::between(simd, tile.strand, 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
+    let root = Root::between(simd, (tile.roots, tile.strand), 1.0, &(Mat3::IDENTITY, Vec3::ZERO));
     let step = SubstepContext {
         number: 0,
         left: 0.0,

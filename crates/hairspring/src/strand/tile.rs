@@ -48,45 +48,51 @@ pub mod rest {
     pub const ROWS: usize = 9;
 }
 
-/// Rows of a whole strand.
-pub mod strand {
-    /// Root position relative to the anchor at the start of the frame [m], 3 rows.
-    pub const ROOT_START: usize = 0;
+/// Rows of the motion of a strand's root in a frame.
+pub mod root {
+    /// Position relative to the anchor at the start of the frame [m], 3 rows.
+    pub const START: usize = 0;
     /// Rotation since rest relative to the anchor at the start, a quaternion in 4 rows.
     pub const TURN_START: usize = 3;
-    /// Root position relative to the anchor at the end [m], 3 rows.
-    pub const ROOT_END: usize = 7;
+    /// Position relative to the anchor at the end [m], 3 rows.
+    pub const END: usize = 7;
     /// Rotation since rest relative to the anchor at the end, a quaternion in 4 rows.
     pub const TURN_END: usize = 10;
+    /// Rows a strand.
+    pub const ROWS: usize = 14;
+}
+
+/// Rows of the constants of a whole strand.
+pub mod strand {
     /// The first segment in the rest pose, root to second point [m], 3 rows.
-    pub const FIRST: usize = 14;
+    pub const FIRST: usize = 0;
     /// The frame's normal on the first segment in the rest pose, 3 rows.
-    pub const NORMAL: usize = 17;
+    pub const NORMAL: usize = 3;
     /// Viscosity of the air, times the material's multiplier over drag [Pa s].
-    pub const DRAG: usize = 20;
+    pub const DRAG: usize = 6;
     /// Relaxation time of bending [s].
-    pub const DAMPING: usize = 21;
+    pub const DAMPING: usize = 7;
     /// Coulomb friction against the body, static.
-    pub const FRICTION: usize = 22;
+    pub const FRICTION: usize = 8;
     /// Twisting over bending stiffness, GJ/EI [1].
-    pub const TWIST_RATIO: usize = 23;
+    pub const TWIST_RATIO: usize = 9;
     /// Relative additional bending stiffness in the plane of the frame's normal, ΔB/B; 0 for a round fiber
     /// [1].
-    pub const FLAT: usize = 24;
+    pub const FLAT: usize = 10;
     /// Stretching stiffness EA [N].
-    pub const AXIAL: usize = 25;
+    pub const AXIAL: usize = 11;
     /// The third point in the rest pose, from the root [m], 3 rows; driven as well in the springs model.
-    pub const THIRD: usize = 26;
+    pub const THIRD: usize = 12;
     /// Points of the strand, without extra particles [1].
-    pub const POINTS: usize = 29;
+    pub const POINTS: usize = 15;
     /// Stiffness of its segments relative to most strands'; see `stiffening` [1].
-    pub const STIFFENING: usize = 30;
+    pub const STIFFENING: usize = 16;
     /// Kinetic friction over static [1].
-    pub const FRICTION_KINETIC: usize = 31;
+    pub const FRICTION_KINETIC: usize = 17;
     /// Reynolds number over the speed of the air across the fiber, d/ν [s/m].
-    pub const REYNOLDS: usize = 32;
+    pub const REYNOLDS: usize = 18;
     /// Rows a strand.
-    pub const ROWS: usize = 33;
+    pub const ROWS: usize = 19;
 }
 
 /// Meaning of the rows in the springs model. The points of a strand are its even particles. Values of a
@@ -183,7 +189,9 @@ pub struct HoldRows {
     pub rows: [Row; hold::ROWS],
 }
 
-/// Rows of eight whole strands.
+/// Motion of the roots of eight strands.
+pub type RootRows = [Row; root::ROWS];
+/// Constants of eight whole strands.
 pub type StrandRows = [Row; strand::ROWS];
 /// The rest shape at one point of eight strands.
 pub type RestRows = [Row; rest::ROWS];
@@ -202,7 +210,7 @@ tile_arrays! {
     /// The arrays of consecutive tiles.
     range TileRange;
     per tile {
-        /// Motion of the roots, and the constants of whole strands.
+        roots: shared RootRows,
         strand: shared StrandRows,
         /// Remaining time for which each strand still counts as touching [s].
         contact_age: unique Row,

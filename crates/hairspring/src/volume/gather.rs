@@ -50,8 +50,8 @@ fn gather(
 ) {
     let [_, _, row, _, slab, _, both, _] = bounds.corners();
     let mut points = acceleration.iter_mut().zip(push);
-    for (strand, state, _) in tiles.iter() {
-        let mut places = transform.roots(strand, bounds.lo);
+    for (roots, state, _) in tiles.iter() {
+        let mut places = transform.roots(roots, bounds.lo);
         for (at, (acceleration, push)) in state.iter().zip(&mut points) {
             transform.advance(&mut places, at);
             let placed = Placed::new(&places, bounds);

@@ -7,7 +7,7 @@
 use crate::{
     math::RigidTransform,
     simd::lanes::{LANES, Row},
-    strand::tile::{StateRows, StrandRows, state, strand},
+    strand::tile::{RootRows, StateRows, root, state},
 };
 use glam::{IVec3, Mat3, Vec3};
 
@@ -90,10 +90,10 @@ impl GridTransform {
     }
 
     /// Returns the roots of eight strands relative to the node `from` [cells].
-    pub fn roots(&self, rows: &StrandRows, from: IVec3) -> [[f32; LANES]; 3] {
+    pub fn roots(&self, rows: &RootRows, from: IVec3) -> [[f32; LANES]; 3] {
         let from = from.as_vec3().to_array();
         std::array::from_fn(|k| {
-            let [start, end] = [strand::ROOT_START, strand::ROOT_END].map(|at| &rows[at + k].0);
+            let [start, end] = [root::START, root::END].map(|at| &rows[at + k].0);
             std::array::from_fn(|lane| {
                 (start[lane] * (1.0 - self.gone) + end[lane] * self.gone) * self.scale - from[k]
             })

@@ -61,7 +61,7 @@ use crate::{
     math::RigidTransform,
     settings::{self, VolumeMethod},
     simd::lanes::Row,
-    strand::tile::{StateRows, StrandRows},
+    strand::tile::{RootRows, StateRows},
 };
 use brakes::fill_push;
 use crossing::Crossing;
@@ -155,7 +155,7 @@ pub(crate) struct AtRest<'a> {
     /// tiles.
     pub mass: Vec<Row>,
     /// Shape `[tiles]`.
-    pub strand: &'a [StrandRows],
+    pub roots: &'a [RootRows],
     /// Shape `[points]` of all tiles.
     pub state: &'a [StateRows],
     /// Pose of the anchor.
@@ -182,7 +182,7 @@ impl Volume {
                 [m.0.map(|m| m / largest), m.0.map(|m| (m / largest * splat::ROOM / 8.0).ceil())].map(Row)
             })
             .collect();
-        let tiles = Tiles { firsts: &at.firsts, strand: at.strand, state: at.state, own: &own };
+        let tiles = Tiles { firsts: &at.firsts, roots: at.roots, state: at.state, own: &own };
         let grain = rest::grain(&tiles, &at.anchor, at.segment.max(1e-4));
         let requested = settings.cell.unwrap_or(grain.cell);
         // Hair reaches no farther from its roots than its length.
@@ -223,7 +223,7 @@ impl Volume {
         volume.reserve();
         let work = (&mut volume.sums[0], &mut volume.field);
         let cells = (&at.anchor, cell, grain.cell);
-        volume.rest.measure((at.strand, at.state, &volume.firsts), &mut own, cells, work);
+        volume.rest.measure((at.roots, at.state, &volume.firsts), &mut own, cells, work);
         volume.own = own;
         volume.taken_up = [fill_ratio(&volume.field.fill); 2];
         Some(volume)
@@ -297,10 +297,10 @@ impl Volume {
     }
 
     /// Measures the hair at the start of an interval.
-    pub fn measure(&mut self, (strand, state): (&[StrandRows], &[StateRows]), now: &Now) {
+    pub fn measure(&mut self, (roots, state): (&[RootRows], &[StateRows]), now: &Now) {
         self.reserve();
         let transform = now.transform(self.cell);
-        let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
+        let tiles = Tiles { firsts: &self.firsts, roots, state, own: &self.own };
         let parts = rayon::current_num_threads().clamp(1, self.sums.len());
         let carried = splat::root_velocity(&tiles);
         let extent = (0..parts)
@@ -324,7 +324,7 @@ impl Volume {
     pub fn compute_accelerations(
         &mut self,
         dt: f32,
-        (strand, state): (&[StrandRows], &[StateRows]),
+        (roots, state): (&[RootRows], &[StateRows]),
         now: &Now,
         obstacles: (&[ColliderPose], f32),
         push: &mut [[Row; 3]],
@@ -334,7 +334,7 @@ impl Volume {
             VolumeMethod::Density => self.press(dt, &now.anchor),
             VolumeMethod::Incompressible => self.project(dt, &now.anchor, obstacles),
         }
-        let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
+        let tiles = Tiles { firsts: &self.firsts, roots, state, own: &self.own };
         let points = (&mut self.acceleration[..], push);
         gather::all(&tiles, &now.transform(self.cell), &self.field.bounds, &self.field.push, points);
     }

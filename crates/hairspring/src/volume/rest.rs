@@ -8,7 +8,7 @@ use super::{
 use crate::{
     math::RigidTransform,
     simd::lanes::LANES,
-    strand::tile::{StateRows, StrandRows},
+    strand::tile::{RootRows, StateRows},
 };
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
@@ -45,8 +45,8 @@ pub fn grain(tiles: &Tiles, anchor: &RigidTransform, segment: f32) -> Grain {
     for _ in 0..64 {
         let transform = GridTransform::new(anchor, cell);
         occupied.clear();
-        for (strand, state, own) in tiles.iter() {
-            let mut places = transform.roots(strand, IVec3::ZERO);
+        for (roots, state, own) in tiles.iter() {
+            let mut places = transform.roots(roots, IVec3::ZERO);
             for (at, own) in state.iter().zip(own) {
                 transform.advance(&mut places, at);
                 for lane in (0..LANES).filter(|lane| own[own::MASS].0[*lane] > 0.0) {
@@ -94,20 +94,20 @@ impl Rest {
     /// cells at the surface are as full as those inside.
     pub fn measure(
         &mut self,
-        tiles: (&[StrandRows], &[StateRows], &[u32]),
+        tiles: (&[RootRows], &[StateRows], &[u32]),
         own: &mut [OwnRows],
         (anchor, cell, grain): (&RigidTransform, f32, f32),
         (sums, field): (&mut Sums, &mut Field),
     ) {
-        let (strand, state, firsts) = tiles;
+        let (roots, state, firsts) = tiles;
         let fine = cell.min(grain);
         let transform = GridTransform::new(anchor, fine);
         // Volume of a fine cell in units of the grid's cell.
         let share = (fine / cell).powi(3);
-        let Some(bounds) = fill(&Tiles { firsts, strand, state, own }, &transform, sums, field) else {
+        let Some(bounds) = fill(&Tiles { firsts, roots, state, own }, &transform, sums, field) else {
             return;
         };
-        for (rows, first) in strand.iter().zip(firsts.windows(2)) {
+        for (rows, first) in roots.iter().zip(firsts.windows(2)) {
             let mut places = transform.roots(rows, bounds.lo);
             for i in first[0] as usize..first[1] as usize {
                 transform.advance(&mut places, &state[i]);
@@ -122,7 +122,7 @@ impl Rest {
             }
         }
         let transform = GridTransform::new(anchor, cell);
-        let Some(bounds) = fill(&Tiles { firsts, strand, state, own }, &transform, sums, field) else {
+        let Some(bounds) = fill(&Tiles { firsts, roots, state, own }, &transform, sums, field) else {
             return;
         };
         self.bounds = bounds;

@@ -6,7 +6,7 @@
 use super::grid_bounds::{GridBounds, GridTransform, Placed, nearest};
 use crate::{
     simd::lanes::{LANES, Row},
-    strand::tile::{StateRows, StrandRows, state},
+    strand::tile::{RootRows, StateRows, state},
 };
 use glam::{IVec3, Vec3};
 
@@ -36,7 +36,7 @@ pub struct Tiles<'a> {
     /// Index of each tile's first point, followed by the end.
     pub firsts: &'a [u32],
     /// Shape `[tiles]`.
-    pub strand: &'a [StrandRows],
+    pub roots: &'a [RootRows],
     /// Shape `[points]` of all tiles, like `own`.
     pub state: &'a [StateRows],
     /// Shape `[points]` of all tiles.
@@ -46,15 +46,15 @@ pub struct Tiles<'a> {
 impl<'a> Tiles<'a> {
     /// Returns the number of tiles.
     pub fn count(&self) -> usize {
-        self.strand.len()
+        self.roots.len()
     }
 
     /// Iterates over each tile's strands and points.
-    pub fn iter(&self) -> impl Iterator<Item = (&'a StrandRows, &'a [StateRows], &'a [OwnRows])> {
+    pub fn iter(&self) -> impl Iterator<Item = (&'a RootRows, &'a [StateRows], &'a [OwnRows])> {
         let (state, own) = (self.state, self.own);
-        self.strand.iter().zip(self.firsts.windows(2)).map(move |(strand, first)| {
+        self.roots.iter().zip(self.firsts.windows(2)).map(move |(roots, first)| {
             let points = first[0] as usize..first[1] as usize;
-            (strand, &state[points.clone()], &own[points])
+            (roots, &state[points.clone()], &own[points])
         })
     }
 
@@ -62,7 +62,7 @@ impl<'a> Tiles<'a> {
     pub fn part(&self, part: usize, parts: usize) -> Self {
         let at = |k: usize| k * self.count() / parts;
         let (a, b) = (at(part), at(part + 1));
-        Self { firsts: &self.firsts[a..=b], strand: &self.strand[a..b], ..*self }
+        Self { firsts: &self.firsts[a..=b], roots: &self.roots[a..b], ..*self }
     }
 }
 
@@ -111,8 +111,8 @@ impl Extent {
         let (mut lo, mut hi) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
         let mut speed = [0.0_f32; LANES];
         let mut roots = Self::NONE.roots;
-        for (strand, state, own) in tiles.iter() {
-            let mut places = transform.roots(strand, IVec3::ZERO);
+        for (motion, state, own) in tiles.iter() {
+            let mut places = transform.roots(motion, IVec3::ZERO);
             for lane in (0..LANES).filter(|lane| own[0][own::MASS].0[*lane] > 0.0) {
                 let root = Vec3::from([0, 1, 2].map(|k: usize| places[k][lane]));
                 if root.is_finite() {
@@ -213,8 +213,8 @@ impl Sums {
     pub fn add(&mut self, tiles: &Tiles, transform: &GridTransform, bounds: &GridBounds, units: &Units) {
         let [_, _, row, _, slab, _, both, _] = bounds.corners();
         let (per_speed, per_energy) = (units.momentum / units.mass, units.energy / units.mass);
-        for (strand, state, own) in tiles.iter() {
-            let mut places = transform.roots(strand, bounds.lo);
+        for (roots, state, own) in tiles.iter() {
+            let mut places = transform.roots(roots, bounds.lo);
             for (at, own) in state.iter().zip(own) {
                 transform.advance(&mut places, at);
                 let placed = Placed::new(&places, bounds);

@@ -7,7 +7,7 @@ use crate::{
     math::RigidTransform,
     settings::VolumeMethod,
     simd::lanes::{LANES, Row},
-    strand::tile::{StateRows, StrandRows, state, strand},
+    strand::tile::{RootRows, StateRows, root, state},
 };
 use glam::{Quat, Vec3};
 
@@ -24,7 +24,7 @@ const METHODS: [VolumeMethod; 2] = [VolumeMethod::Density, VolumeMethod::Incompr
 
 /// A square bundle of strands with different masses.
 struct Bundle {
-    strand: Vec<StrandRows>,
+    roots: Vec<RootRows>,
     state: Vec<StateRows>,
     mass: Vec<Row>,
 }
@@ -34,7 +34,7 @@ impl Bundle {
     fn new() -> Self {
         let tiles = SIDE * SIDE / LANES;
         let mut bundle = Self {
-            strand: vec![[Row::default(); strand::ROWS]; tiles],
+            roots: vec![[Row::default(); root::ROWS]; tiles],
             state: vec![[Row::default(); state::ROWS]; tiles * POINTS],
             mass: vec![Row::default(); tiles * POINTS],
         };
@@ -63,7 +63,7 @@ impl Bundle {
             let (tile, lane) = (s / LANES, s % LANES);
             let root = of(Self::rest(s, 0)).0;
             for k in 0..3 {
-                self.strand[tile][strand::ROOT_END + k].0[lane] = root[k];
+                self.roots[tile][root::END + k].0[lane] = root[k];
             }
             for i in 0..POINTS {
                 let (x, v) = of(Self::rest(s, i));
@@ -81,9 +81,9 @@ impl Bundle {
     /// Creates its volume, with the current state as the rest state.
     fn volume(&self, method: VolumeMethod) -> Volume {
         let at = AtRest {
-            firsts: (0..=self.strand.len() as u32).map(|t| t * POINTS as u32).collect(),
+            firsts: (0..=self.roots.len() as u32).map(|t| t * POINTS as u32).collect(),
             mass: self.mass.clone(),
-            strand: &self.strand,
+            roots: &self.roots,
             state: &self.state,
             anchor: RigidTransform::default(),
             segment: APART,
@@ -97,8 +97,8 @@ impl Bundle {
         let mut push = vec![[Row::default(); 3]; self.state.len()];
         let now = Now { anchor: *anchor, gone: 1.0 };
         volume.begin_frame();
-        volume.measure((&self.strand, &self.state), &now);
-        volume.compute_accelerations(DT, (&self.strand, &self.state), &now, (&[], DT), &mut push);
+        volume.measure((&self.roots, &self.state), &now);
+        volume.compute_accelerations(DT, (&self.roots, &self.state), &now, (&[], DT), &mut push);
         push.iter().flat_map(|p| (0..LANES).map(|l| Vec3::new(p[0].0[l], p[1].0[l], p[2].0[l]))).collect()
     }
 
@@ -268,7 +268,7 @@ fn what_is_not_finite_does_not_count() {
         ] {
             bundle.state[point][row].0[5] = x;
         }
-        bundle.strand[7][strand::ROOT_END].0[2] = f32::NAN;
+        bundle.roots[7][root::END].0[2] = f32::NAN;
         let push = bundle.compute_accelerations(&mut volume, &RigidTransform::default());
         assert!(push.iter().all(|a| a.is_finite()), "{method:?}");
         assert!(push.iter().any(|a| a.length() > 0.1), "{method:?}: the others are pushed");

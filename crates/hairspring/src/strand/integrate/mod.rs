@@ -69,7 +69,7 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
     scratch.begin(simd, tile.state);
     I::begin(simd, frame, tile, scratch);
     let (fraction, anchor) = frame.begun();
-    let mut root = Root::between(simd, tile.strand, fraction, anchor);
+    let mut root = Root::between(simd, (tile.roots, tile.strand), fraction, anchor);
     // Driven points get the velocity of the root.
     let velocity: [_; 3] = std::array::from_fn(|k| tile.state[0][state::V + k]);
     for driven in &mut tile.state[1..M::DRIVEN] {
@@ -77,12 +77,12 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
     }
     let mut continues = frame.continues;
     for (number, substep) in frame.substeps[frame.now.clone()].iter().enumerate() {
-        let next = Root::at(simd, tile.strand, substep);
+        let next = Root::at(simd, (tile.roots, tile.strand), substep);
         let moved = next.position - root.position;
         root = next;
         // The solve starts with every point where the last substep left it, except for the driven segment,
         // which is already at its new position.
-        let third = Root::third(simd, tile.strand, substep);
+        let third = Root::third(simd, (tile.roots, tile.strand), substep);
         let driven = [V3::zero(simd), root.first, third - root.first];
         let mut behind = V3::zero(simd);
         for (edge, new) in scratch.edges.iter_mut().zip(driven).take(M::DRIVEN) {
