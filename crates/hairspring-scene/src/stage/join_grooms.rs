@@ -17,7 +17,7 @@ pub(super) fn simulation(
     anchor: RigidTransform,
     obstacles: &[ColliderPose],
 ) -> Simulation {
-    let (groom, materials) = join(hair);
+    let (groom, materials) = (join(hair), materials(hair));
     let strands: Vec<u32> = (0..groom.strand_count() as u32).collect();
     let mut simulation = Simulation::builder(Arc::new(groom))
         .strands(&strands)
@@ -36,19 +36,23 @@ pub(super) fn simulation(
     simulation
 }
 
-/// Joins the simulated strands into one groom with the data that a simulation needs. The materials of the
-/// grooms are concatenated.
-fn join(hair: &[StagedHair]) -> (Groom, Vec<Material>) {
+/// The materials of all grooms, one groom after the other; at least one for each.
+pub(super) fn materials(hair: &[StagedHair]) -> Vec<Material> {
+    let default = [Material::default()];
+    hair.iter().flat_map(|hair| own_materials(hair, &default)).cloned().collect()
+}
+
+fn own_materials<'a>(hair: &'a StagedHair, default: &'a [Material]) -> &'a [Material] {
+    if hair.materials().is_empty() { default } else { hair.materials() }
+}
+
+/// Joins the simulated strands into one groom with the data that a simulation needs.
+fn join(hair: &[StagedHair]) -> Groom {
     let mut all = Groom { offsets: vec![0], ..Groom::default() };
-    let mut materials = Vec::new();
+    let mut first = 0;
     for hair in hair {
-        let (groom, own) = (hair.groom(), hair.materials());
-        let first = materials.len();
-        materials.extend_from_slice(own);
-        if own.is_empty() {
-            materials.push(Material::default());
-        }
-        let last = materials.len() - 1;
+        let groom = hair.groom();
+        let last = first + hair.materials().len().max(1) - 1;
         for s in hair.simulated_strands().iter().map(|s| *s as usize) {
             all.points.extend_from_slice(groom.strand(s));
             all.radii.extend_from_slice(&groom.radii[groom.range(s)]);
@@ -57,6 +61,7 @@ fn join(hair: &[StagedHair]) -> (Groom, Vec<Material>) {
             all.groups.push((first + groom.group(s) as usize).min(last) as u16);
             all.scales.push(groom.scale(s));
         }
+        first = last + 1;
     }
-    (all, materials)
+    all
 }

@@ -77,7 +77,7 @@ pub enum StageError {
     },
     /// The settings have another number of grooms than the stage.
     #[error(
-        "there are settings for {settings} grooms, and {grooms} are on the stage: their hair needs a stage of its own"
+        "the settings have {settings} grooms, but the stage has {grooms}: create a new stage for other grooms"
     )]
     GroomCount {
         /// Number of grooms in the settings.

@@ -3,6 +3,8 @@
 use super::{Stage, StageError, join_grooms, joints::Joints, wind::StagedWind};
 use crate::Scene;
 use hairspring::settings::Solver;
+#[cfg(doc)]
+use hairspring::simulation::Simulation;
 
 impl Stage {
     /// Applies the settings of `settings` to the running scene. The hair keeps its positions and velocities.
@@ -12,9 +14,11 @@ impl Stage {
     /// `collision`, `sheets`, `clip`, `solver.collide_body` and `solver.preroll`. Everything else is applied.
     /// The `radius` of a material only affects the simulated fiber; drawn hairs have the groom's radius.
     ///
-    /// - If materials, gravity, or the settings of solver, volume, neighbors or wind occlusion change, rest
-    ///   shapes are computed again. With `solver.sag_free`, the groom is in balance under the new gravity, as
-    ///   it would be from the start. Unchanged settings cost nothing.
+    /// - Drag, friction, charge, global shape and tether of a material, and contact, quality and inertia of the
+    ///   solver, change in place (see [`Simulation::update_settings`]). If another setting of a material or the
+    ///   solver changes, or gravity, volume, neighbors or wind occlusion, rest shapes are computed again. With
+    ///   `solver.sag_free`, the groom is then in balance under the new gravity, as it would be from the start.
+    ///   Unchanged settings cost nothing.
     /// - The allowed depth of hair in a collider is that of the authored groom: a new collider pushes out all
     ///   hair.
     /// - Manipulators of [`Stage::add_manipulator`] stay. A hand of the scene with unchanged settings also
@@ -56,17 +60,22 @@ impl Stage {
         if before.hands != scene.hands {
             self.hands.update_settings((&before.hands, &scene.hands), joints.hands, &mut self.simulation);
         }
-        let rests = |scene: &Scene| {
-            (scene.gravity, scene.solver, scene.volume, scene.wind_occlusion, scene.neighbours)
-        };
-        let fresh = (before.gravity, before.solver, before.volume, before.wind_occlusion, before.neighbours)
-            != rests(scene);
-        let [mut made, mut laid] = [fresh, false];
+        let between_strands = (before.volume, before.wind_occlusion, before.neighbours)
+            != (scene.volume, scene.wind_occlusion, scene.neighbours);
+        let [mut changed, mut laid] =
+            [(before.gravity, before.solver) != (scene.gravity, scene.solver), false];
         for (hair, groom) in self.hair.iter_mut().zip(grooms) {
             let other = hair.update_settings(groom);
-            (made, laid) = (made | other.0, laid | other.1);
+            (changed, laid) = (changed | other.0, laid | other.1);
         }
-        if made {
+        let materials = join_grooms::materials(&self.hair);
+        let in_place = !between_strands
+            && (!changed
+                || self
+                    .simulation
+                    .update_settings(&materials, scene.solver, scene.gravity)
+                    .expect("the settings were checked above"));
+        if !in_place {
             let mut new =
                 join_grooms::simulation(&self.hair, scene, scene.solver, self.body.pose().rest_anchor(), &[]);
             new.take_over(&self.simulation);

@@ -4,22 +4,23 @@
 use super::{Simulation, build::simulated_points};
 use crate::{
     collide::ColliderPose,
-    material::Material,
     simd::lanes::{LANES, Row},
 };
 use rayon::prelude::*;
 
 impl Simulation {
     /// Returns the largest distance of each point from its root, see `Tile::tether_lengths`.
-    pub(super) fn tethers(&self, materials: &[Material]) -> Vec<Row> {
-        if materials.iter().all(|m| m.tether == 0.0) {
+    pub(super) fn tethers(&self) -> Vec<Row> {
+        if self.model.materials.iter().all(|m| m.tether == 0.0) {
             return Vec::new();
         }
         let mut reach = vec![Row([f32::INFINITY; LANES]); self.state.points.len()];
         for (place, s) in self.model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let s = *s as usize;
-            let material = materials.get(self.model.groom.group(s) as usize).or(materials.last());
-            let Some(tether) = material.map(|m| m.tether).filter(|t| *t > 0.0) else { continue };
+            let tether = self.model.material(s).tether;
+            if tether == 0.0 {
+                continue;
+            }
             let tile = self.model.tiles[place / LANES];
             let points = self.model.groom.strand(s);
             let mut before = 0.0f32;

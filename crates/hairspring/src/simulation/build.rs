@@ -36,9 +36,8 @@ impl Simulation {
     pub(super) fn from_builder(builder: SimulationBuilder) -> Self {
         let SimulationBuilder { groom, strands, materials, solver, gravity, anchor, colliders } = builder;
         let strands = &*strands;
-        let fallback = Material::default();
-        let material =
-            |s: usize| materials.get(groom.group(s) as usize).or(materials.last()).unwrap_or(&fallback);
+        let materials = if materials.is_empty() { vec![Material::default()] } else { materials.to_vec() };
+        let material = |s: usize| &materials[(groom.group(s) as usize).min(materials.len() - 1)];
         let balanced = if solver.sag_free { gravity.as_dvec3() } else { DVec3::ZERO };
         let elastic: Vec<(Elastic, bool)> = strands
             .par_iter()
@@ -84,9 +83,8 @@ impl Simulation {
                 .flat_map(|s| groom.strand(*s as usize).windows(2).map(|w| w[0].distance(w[1])))
                 .fold(0.0, f32::max),
             multiplicity: vec![groom.strand_count() as f32 / strands.len() as f32; groom.strand_count()],
-            global_shapes: materials.iter().map(|m| m.global_shape).collect(),
-            charges: materials.iter().map(|m| m.charge).collect(),
             start: Start::default(),
+            materials,
             groom,
             groom_strands,
             strand_of_lane,
@@ -112,9 +110,9 @@ impl Simulation {
             last_h: 0.0,
         };
         let mut simulation = Simulation::with_parts(Arc::new(model), state);
-        simulation.fill(materials, colliders);
+        simulation.fill(colliders);
         let rest_penetration = simulation.authored_depths(colliders);
-        let tethers = simulation.tethers(materials);
+        let tethers = simulation.tethers();
         let springs = simulation.model.tiles.iter().any(|tile| tile.model == Elastic::Springs);
         let rows = |at: usize| simulation.state.points.iter().map(|rows| rows[at]).collect();
         let tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
@@ -126,6 +124,7 @@ impl Simulation {
 
     /// Puts a simulation together, without forces on the hair besides those of the model.
     fn with_parts(model: Arc<StrandModel>, state: StrandState) -> Self {
+        let level = super::levels().next().unwrap_or_else(Level::new);
         Simulation {
             model,
             state,
@@ -138,7 +137,8 @@ impl Simulation {
             wind_occlusion: WindOcclusion::default(),
             occlusion: OcclusionSampler::default(),
             frame: FrameContext::default(),
-            solver: CpuSolver { level: super::levels().next().unwrap_or_else(Level::new) },
+            solver: Box::new(CpuSolver { level }),
+            level,
         }
     }
 
@@ -147,18 +147,17 @@ impl Simulation {
     /// contact and wind occlusion. Its memory is about 60 % of that of a simulation of its own.
     pub fn instance(&self) -> Self {
         let mut other = Self::with_parts(self.model.clone(), self.state.clone());
-        other.solver.level = self.solver.level;
+        other.use_level(self.level);
         other.frame.segments = self.frame.segments;
         other
     }
 
-    fn fill(&mut self, materials: &[Material], obstacles: &[ColliderPose]) {
-        let fallback = Material::default();
-        let material = |group: u16| materials.get(group as usize).or(materials.last()).unwrap_or(&fallback);
+    fn fill(&mut self, obstacles: &[ColliderPose]) {
         let gravity = if self.model.solver.sag_free { self.model.gravity.as_dvec3() } else { DVec3::ZERO };
         let anchor = self.state.anchor;
         let model = Arc::make_mut(&mut self.model);
         let (groom, solver) = (&*model.groom, model.solver);
+        let material = |s: usize| &model.materials[(groom.group(s) as usize).min(model.materials.len() - 1)];
 
         let mut rest_of = model.rest.as_mut_slice();
         let mut state_of = self.state.points.as_mut_slice();
@@ -191,7 +190,7 @@ impl Simulation {
                         continue;
                     }
                     let s = *s as usize;
-                    let material = material(groom.group(s));
+                    let material = material(s);
                     let scale = groom.scale(s);
                     let points = simulated_points(model, groom.strand(s));
                     let radii = radii(material, groom, s);
@@ -203,11 +202,9 @@ impl Simulation {
                     into.write_strand(&points, &shape, anchor, obstacles);
                     let radius = radii.iter().sum::<f32>() / radii.len() as f32;
                     let rows = &mut *into.strand;
-                    rows[strand::DRAG].0[lane] = material.drag * scale.drag * AIR_VISCOSITY;
+                    write_surface(rows, lane, material, scale.drag);
                     rows[strand::REYNOLDS].0[lane] = 2.0 * radius / AIR_KINEMATIC_VISCOSITY;
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
-                    rows[strand::FRICTION].0[lane] = material.friction;
-                    rows[strand::FRICTION_KINETIC].0[lane] = material.friction_kinetic;
                     rows[strand::TWIST_RATIO].0[lane] = section.twist_ratio;
                     rows[strand::FLAT].0[lane] = section.flat;
                     let points = groom.range(s).len();
@@ -219,6 +216,13 @@ impl Simulation {
             })
             .sum();
     }
+}
+
+/// Writes drag and friction of the strand in a lane, whose groom multiplies the drag by `scale`.
+pub(super) fn write_surface(rows: &mut StrandRows, lane: usize, material: &Material, scale: f32) {
+    rows[strand::DRAG].0[lane] = material.drag * scale * AIR_VISCOSITY;
+    rows[strand::FRICTION].0[lane] = material.friction;
+    rows[strand::FRICTION_KINETIC].0[lane] = material.friction_kinetic;
 }
 
 /// Shortest simulated segment, over the length of its strand [1]. Single precision resolves a point far from

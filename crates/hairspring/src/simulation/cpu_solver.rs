@@ -1,8 +1,11 @@
 //! The solver on the CPU: tiles of eight strands in SIMD lanes, distributed to all threads.
 
-use super::{reset, strand_model::StrandModel, strand_state::StrandState};
+use super::{
+    reset,
+    solver::{SolverInput, StrandSolver},
+    strand_state::StrandState,
+};
 use crate::{
-    forces::ForceBuffers,
     settings::Integrator,
     strand::{
         frame_context::FrameContext,
@@ -21,15 +24,9 @@ pub(super) struct CpuSolver {
     pub level: Level,
 }
 
-impl CpuSolver {
-    /// Runs the substeps of `frame` that are due now. Returns true if any point became non-finite.
-    pub fn run(
-        &self,
-        model: &StrandModel,
-        state: &mut StrandState,
-        forces: &ForceBuffers,
-        frame: &FrameContext,
-    ) -> bool {
+impl StrandSolver for CpuSolver {
+    fn run(&mut self, input: &SolverInput, state: &mut StrandState) -> bool {
+        let SolverInput { model, forces, frame } = *input;
         let tiles = TileRange {
             tiles: &model.tiles,
             roots: &state.roots,

@@ -21,8 +21,8 @@ impl Simulation {
         frame: &FrameContext,
     ) -> Duration {
         let global_shapes = self.model.solver.global_shape
-            && self.model.global_shapes.iter().any(|global_shape| global_shape.is_on());
-        let charged = self.model.charges.iter().any(|charge| *charge != 0.0);
+            && self.model.materials.iter().any(|material| material.global_shape.is_on());
+        let charged = self.model.materials.iter().any(|material| material.charge != 0.0);
         let with_volume = self.volume_acts();
         let occluded = self.wind_occlusion.is_on() && input.air.moves();
         let custom = !self.force_fields.is_empty();
@@ -71,9 +71,7 @@ impl Simulation {
             anisotropic_drag: &mut self.forces.anisotropic_drag,
             wind_delta: &mut self.forces.wind_delta,
         };
-        let charge_of = |strand: usize| {
-            of_group(&self.model.charges, self.model.groom.group(strand) as usize).copied().unwrap_or(0.0)
-        };
+        let charge_of = |strand: usize| self.model.material(strand).charge;
         if charged {
             self.state.charged.iter_mut().for_each(|ball| ball.carry(carried));
             // Follow hairs have the charge of their guides.
@@ -89,14 +87,18 @@ impl Simulation {
         });
         let wind = WindSampler { air, occlusion };
         let charges = Charges { balls: &self.state.charged, hair: &self.hair_field };
-        let (groom, shape_of) = (&self.model.groom, &self.model.global_shapes);
+        let (model, groom) = (&self.model, &self.model.groom);
         let manipulators = &self.state.manipulators.active;
         let force_fields = &self.force_fields;
         let act = |strand: &mut StrandView| {
             let s = strand.strand;
-            let group = groom.group(s) as usize;
-            if let Some(global_shape) = of_group(shape_of, group).filter(|_| global_shapes) {
-                global_shape::apply(global_shape, groom.scale(s).global_shape, groom.strand(s), strand);
+            if global_shapes {
+                global_shape::apply(
+                    &model.material(s).global_shape,
+                    groom.scale(s).global_shape,
+                    groom.strand(s),
+                    strand,
+                );
             }
             if charged {
                 charges.add(charge_of(s), strand);
@@ -138,9 +140,4 @@ impl Simulation {
     pub(super) fn volume_acts(&self) -> bool {
         self.volume.as_ref().is_some_and(|volume| volume.acts())
     }
-}
-
-/// Returns the value for a group. A group past the end uses the last value.
-fn of_group<T>(all: &[T], group: usize) -> Option<&T> {
-    all.get(group).or(all.last())
 }

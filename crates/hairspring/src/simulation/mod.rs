@@ -16,6 +16,7 @@ mod measure;
 mod place;
 mod points;
 mod reset;
+mod solver;
 mod step;
 mod strand_contacts;
 mod strand_model;
@@ -25,6 +26,7 @@ mod strand_state;
 mod substeps;
 mod take_over;
 mod teleport;
+mod update_settings;
 mod values;
 mod volume;
 
@@ -53,6 +55,7 @@ use cpu_solver::CpuSolver;
 use fearless_simd::Level;
 use glam::Vec3;
 use rayon::prelude::*;
+use solver::StrandSolver;
 use std::{ops::Range, sync::Arc};
 use strand_model::StrandModel;
 use strand_state::StrandState;
@@ -86,7 +89,9 @@ pub struct Simulation {
     occlusion: OcclusionSampler,
     /// Context of the last frame, kept to reuse its memory.
     frame: FrameContext,
-    solver: CpuSolver,
+    solver: Box<dyn StrandSolver>,
+    /// The instruction set of the solver on the CPU.
+    level: Level,
 }
 
 impl Simulation {
@@ -131,7 +136,7 @@ impl Simulation {
 
     /// Name of the instruction set in use.
     pub fn instruction_set(&self) -> String {
-        name(self.solver.level)
+        name(self.level)
     }
 
     /// Names of the instruction sets that this processor supports, the best first.
@@ -144,8 +149,16 @@ impl Simulation {
     /// the processor has none with that name.
     pub fn use_instruction_set(&mut self, set: &str) -> bool {
         let found = levels().find(|level| name(*level) == set);
-        self.solver.level = found.unwrap_or(self.solver.level);
+        if let Some(level) = found {
+            self.use_level(level);
+        }
         found.is_some()
+    }
+
+    /// Uses the solver on the CPU, with the instructions of `level`.
+    fn use_level(&mut self, level: Level) {
+        self.level = level;
+        self.solver = Box::new(CpuSolver { level });
     }
 
     /// Sets how many hairs each strand of the groom represents, including itself: those that follow it. Each

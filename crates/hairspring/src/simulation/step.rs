@@ -1,6 +1,6 @@
 //! One step: a frame of root motion, divided into substeps. Each tile runs all of them.
 
-use super::Simulation;
+use super::{Simulation, solver::SolverInput};
 use crate::{
     air::Air,
     collide::{ColliderPose, FrameColliders, MovingCollider},
@@ -127,7 +127,8 @@ impl Simulation {
     /// Runs the substeps of `frame` that are due now. Returns the number of strands that were reset
     /// because of non-finite state.
     pub(super) fn run(&mut self, frame: &FrameContext) -> usize {
-        let reset = self.solver.run(&self.model, &mut self.state, &self.forces, frame);
+        let input = SolverInput { model: &self.model, forces: &self.forces, frame };
+        let reset = self.solver.run(&input, &mut self.state);
         if reset { self.reset_non_finite() } else { 0 }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::{
     groom::Groom,
-    material::GlobalShape,
+    material::Material,
     settings::Solver,
     simd::lanes::Row,
     strand::{
@@ -46,12 +46,18 @@ pub(crate) struct StrandModel {
     pub(super) longest_segment: f32,
     /// Number of hairs that each strand of the groom represents; shape `[strands of the groom]`.
     pub(super) multiplicity: Vec<f32>,
-    /// Global shape of each material; a group past the end uses the last one.
-    pub(super) global_shapes: Vec<GlobalShape>,
-    /// Charge of each material's hair [C/m]; a group past the end uses the last one.
-    pub(super) charges: Vec<f32>,
+    /// At least one; a group past the end uses the last one.
+    pub(super) materials: Vec<Material>,
     pub(super) solver: Solver,
     /// Gravity [m/s²].
     pub(super) gravity: Vec3,
     pub(super) start: Start,
+}
+
+impl StrandModel {
+    /// Material of a strand of the groom.
+    pub(super) fn material(&self, strand: usize) -> &Material {
+        let group = self.groom.group(strand) as usize;
+        &self.materials[group.min(self.materials.len() - 1)]
+    }
 }

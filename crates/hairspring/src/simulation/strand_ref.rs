@@ -28,7 +28,7 @@ impl Simulation {
 
     /// The same, for writing.
     pub(super) fn strand_mut(&mut self, lane: usize) -> StrandMut<'_> {
-        StrandMut { model: &self.model, state: &mut self.state, lane }
+        StrandMut::new(&self.model, &mut self.state, lane)
     }
 }
 
@@ -258,7 +258,12 @@ pub(super) struct StrandMut<'a> {
     lane: usize,
 }
 
-impl StrandMut<'_> {
+impl<'a> StrandMut<'a> {
+    /// The strand in a lane, counted over all tiles.
+    pub fn new(model: &'a StrandModel, state: &'a mut StrandState, lane: usize) -> Self {
+        Self { model, state, lane }
+    }
+
     /// The same strand, for reading.
     pub fn get(&self) -> StrandRef<'_> {
         StrandRef { model: self.model, state: self.state, lane: self.lane }

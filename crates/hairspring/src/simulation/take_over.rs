@@ -34,7 +34,7 @@ impl Simulation {
     /// If the two do not simulate the same strands in the same order.
     pub fn take_over(&mut self, old: &Simulation) {
         assert!(self.strands().eq(old.strands()), "both must have the same strands in the same order");
-        self.solver.level = old.solver.level;
+        self.use_level(old.level);
         self.state.anchor = old.state.anchor;
         self.state.motion = old.state.motion;
         self.state.last_h = old.state.last_h;

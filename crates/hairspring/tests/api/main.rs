@@ -5,6 +5,7 @@ mod custom_colliders_match_built_in_ones;
 mod custom_forces_match_built_in_ones;
 mod examples_run;
 mod sampled_fields_match_voxelized_ones;
+mod settings_change_in_place;
 mod snapshots_restore_exactly;
 mod states_can_be_read_and_set;
 mod support;
