@@ -70,6 +70,7 @@ pub mod forces;
 pub mod groom;
 pub mod material;
 pub mod math;
+pub(crate) mod parallel;
 pub mod prelude;
 pub mod settings;
 pub(crate) mod simd;

@@ -17,10 +17,10 @@
 //! occluded as their guides are.
 
 use super::AirSample;
+use crate::parallel::prelude::*;
 use crate::settings::{Check, Validate, above_0, check, from_0};
 use crate::{collide::FrameColliders, volume::Density};
 use glam::Vec3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Occlusion of the wind by bodies and hair.

@@ -2,12 +2,12 @@
 
 use super::{lattice::Lattice, voxelize::BAND};
 use crate::body::nearest_on_triangle;
+use crate::parallel::prelude::*;
 use crate::simd::lanes::{F, LANES, Mask, Row, Simd, V3, load};
 use fearless_simd::f32x4;
 #[cfg(not(one_lane))]
 use fearless_simd::prelude::*;
 use glam::{UVec3, Vec3};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Padding after the nodes' distances, so that four values can be loaded starting at the last node but one.

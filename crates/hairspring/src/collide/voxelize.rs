@@ -12,13 +12,13 @@ use super::{
     holes::Holes,
     lattice::{self, Lattice},
 };
+use crate::parallel::prelude::*;
 use crate::simd::{
     dispatch::dispatch,
     lanes::{F, LANES, Simd, V3},
 };
 use fearless_simd::Level;
 use glam::{DVec2, UVec3, Vec3};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Half-width of the band of exact distances, in cells.
@@ -88,7 +88,7 @@ impl Voxelizer {
 
         // Use a few scratch buffers for each thread, each for several consecutive layers. Layers are
         // independent, so the result does not depend on the threads.
-        let each = size.z.div_ceil(4 * rayon::current_num_threads());
+        let each = size.z.div_ceil(4 * crate::parallel::current_num_threads());
         self.benches.resize_with(size.z.div_ceil(each), Bench::default);
         let (flats, layers, level) = (&self.triangles, &self.layers, Level::new());
         let span = each * size.x * size.y;

@@ -1,8 +1,8 @@
 //! Transforms of the guides, applied to the hairs that follow them.
 
 use crate::groom::{Groom, GuideWeights};
+use crate::parallel::prelude::*;
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
-use rayon::prelude::*;
 
 /// Returns the coordinate of every point on each of its guides: the position at the same arc length, or the
 /// tip if the guide is shorter.

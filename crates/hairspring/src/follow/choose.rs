@@ -1,8 +1,8 @@
 //! Selects the guide strands, and the guides that each hair follows.
 
 use crate::groom::{Groom, GuideWeights};
+use crate::parallel::prelude::*;
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Weight of the difference in shape of two strands, relative to the distance of their roots [1]. Hairs on
 /// either side of a parting have nearby roots but should not follow each other.

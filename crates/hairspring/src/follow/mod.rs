@@ -17,6 +17,7 @@ mod style;
 
 pub use choose::{assign_guides, choose_guides};
 
+use crate::parallel::prelude::*;
 use crate::{
     collide::{ColliderPose, MovingCollider},
     groom::{Groom, GuideWeights},
@@ -25,7 +26,6 @@ use crate::{
 };
 use fearless_simd::Level;
 use glam::{Affine3A, Quat, Vec3};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The static part of the interpolation: which guides each hair of a groom follows, and at which points of

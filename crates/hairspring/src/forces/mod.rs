@@ -121,7 +121,7 @@ impl StrandBatch<'_> {
         let count = self.tiles.len();
         if count > TILES_PER_TASK {
             let (mut a, mut b) = self.split(count / 2);
-            rayon::join(|| a.each(frame, act), || b.each(frame, act));
+            crate::parallel::join(|| a.each(frame, act), || b.each(frame, act));
             return;
         }
         for (k, place) in self.tiles.iter().enumerate() {

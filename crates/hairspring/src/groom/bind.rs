@@ -2,8 +2,8 @@
 
 use super::Groom;
 use crate::body::{Mesh, NearestTree, place_on};
+use crate::parallel::prelude::*;
 use glam::{Mat3, Quat, Vec3};
-use rayon::prelude::*;
 
 /// Binding of a root to a triangle of a mesh: the root moves with the triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,6 +4,7 @@ use super::{
     Simulation, SimulationBuilder, layout::Order, manipulators::Tools, strand_model::StrandModel,
     strand_state::StrandState, teleport::Motion,
 };
+use crate::parallel::prelude::*;
 use crate::strand::tile::TilePlace;
 use crate::{
     air::{Noise, OcclusionSampler, WindOcclusion},
@@ -28,7 +29,6 @@ use crate::{
 };
 use fearless_simd::Level;
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 use std::{borrow::Cow, sync::Arc};
 
 impl Simulation {

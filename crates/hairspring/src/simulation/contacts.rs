@@ -3,6 +3,7 @@
 
 use super::Simulation;
 use crate::collide::MovingCollider;
+use crate::parallel::prelude::*;
 use crate::{
     collide::ColliderShape,
     math::RigidTransform,
@@ -10,7 +11,6 @@ use crate::{
     strand::tile::{segment_contact, state},
 };
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Contacts with colliders at the end of the last substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

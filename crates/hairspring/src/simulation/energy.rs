@@ -1,6 +1,7 @@
 //! The energy of the strands, by form. A swing without losses would conserve the total.
 
 use super::Simulation;
+use crate::parallel::prelude::*;
 use crate::{
     settings::Integrator,
     simd::lanes::LANES,
@@ -15,7 +16,6 @@ use crate::{
     },
 };
 use glam::{DVec3, Quat};
-use rayon::prelude::*;
 use std::ops::Add;
 
 /// Energy of all simulated strands [J], without the first two points of each strand, which its root drives.

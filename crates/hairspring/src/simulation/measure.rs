@@ -2,13 +2,13 @@
 
 use super::Simulation;
 use crate::collide::MovingCollider;
+use crate::parallel::prelude::*;
 use crate::{
     math::RigidTransform,
     simd::lanes::LANES,
     strand::tile::{rest, state},
 };
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Measures over all simulated points at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

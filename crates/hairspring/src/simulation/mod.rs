@@ -40,6 +40,7 @@ pub use step::{StepInput, StepReport, StepTimes};
 pub use strand_state::{Snapshot, SnapshotMismatch};
 pub use substeps::MAX_TRAVEL;
 
+use crate::parallel::prelude::*;
 use crate::{
     air::{Noise, OcclusionSampler, WindOcclusion},
     forces::{ForceBuffers, ForceField, HairField, charge::ChargedBall},
@@ -53,7 +54,6 @@ use crate::{
 };
 use fearless_simd::Level;
 use glam::Vec3;
-use rayon::prelude::*;
 use std::{ops::Range, sync::Arc};
 use strand_model::StrandModel;
 use strand_state::StrandState;

@@ -1,6 +1,7 @@
 //! One step: a frame of root motion, divided into substeps. Each tile runs all of them.
 
 use super::{Simulation, reset};
+use crate::parallel::prelude::*;
 use crate::{
     air::Air,
     collide::{ColliderPose, FrameColliders, MovingCollider},
@@ -19,7 +20,6 @@ use crate::{
     },
 };
 use fearless_simd::Level;
-use rayon::prelude::*;
 use std::{cell::RefCell, time::Duration};
 
 /// Input of a step. All poses are at the end of the frame; the start is the end of the last step.
@@ -360,7 +360,7 @@ fn run(level: Level, interval: &FrameContext, piece: TileRange) -> bool {
     if count > TILES_PER_TASK {
         let half = (count / 2).next_multiple_of(TILES_PER_TASK).min(count - 1);
         let (a, b) = piece.split(half);
-        let (a, b) = rayon::join(|| run(level, interval, a), || run(level, interval, b));
+        let (a, b) = crate::parallel::join(|| run(level, interval, a), || run(level, interval, b));
         return a | b;
     }
     on_large_stack(|| run_task(level, interval, piece))

@@ -56,6 +56,7 @@ mod splat;
 #[cfg(test)]
 mod tests;
 
+use crate::parallel::prelude::*;
 use crate::{
     collide::ColliderPose,
     math::RigidTransform,
@@ -69,7 +70,6 @@ use field::Field;
 use glam::{Mat3, Vec3};
 use grid_bounds::{GridBounds, GridTransform};
 use incompressible::Projection;
-use rayon::prelude::*;
 use rest::Rest;
 pub(crate) use sample::Density;
 use splat::{Extent, OwnRows, Sums, Tiles, Units, own};
@@ -233,7 +233,7 @@ impl Volume {
     /// no step allocates.
     fn reserve(&mut self) {
         let nodes = self.most_nodes();
-        let grids = rayon::current_num_threads().clamp(1, MOST_GRIDS);
+        let grids = crate::parallel::current_num_threads().clamp(1, MOST_GRIDS);
         if self.sums.len() < grids {
             self.sums.resize_with(grids, Sums::default);
             self.sums.iter_mut().for_each(|sums| sums.reserve(nodes));
@@ -301,7 +301,7 @@ impl Volume {
         self.reserve();
         let chart = now.chart(self.cell);
         let tiles = Tiles { firsts: &self.firsts, strand, state, own: &self.own };
-        let parts = rayon::current_num_threads().clamp(1, self.sums.len());
+        let parts = crate::parallel::current_num_threads().clamp(1, self.sums.len());
         let carried = splat::root_velocity(&tiles);
         let extent = (0..parts)
             .into_par_iter()
