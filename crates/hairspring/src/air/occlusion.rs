@@ -21,11 +21,14 @@ use crate::parallel::prelude::*;
 use crate::settings::{Check, Validate, above_0, check, from_0};
 use crate::{collide::FrameColliders, volume::Density};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// Occlusion of the wind by bodies and hair.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct WindOcclusion {
     /// Attenuation of the wind inside a body, β [1/m], 0 or more. Default 0: bodies do not block the wind.
     /// With 100, the wind falls to 1/e within one centimeter.

@@ -16,22 +16,21 @@ use super::gust::Gust;
 use crate::math::RigidTransform;
 use crate::settings::{Check, Validate, above_0, check, gusts};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A source of wind.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct WindSource {
     /// Name of the body joint that the source is attached to. `None`: the source is fixed in the world.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub joint: Option<String>,
     /// The velocity field, in the space of the body's rest pose or of the world.
     pub shape: Flow,
     /// Gust amplitude as a fraction of the mean speed, 0 to 1. Default 0.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub gust: f32,
     /// Gust frequency [Hz]. Default 0: none. Every source has its own gust phase.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub gust_rate: f32,
 }
 
@@ -47,8 +46,12 @@ impl WindSource {
 }
 
 /// The velocity field of a [`WindSource`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Flow {
     /// Flow out of a ball in all directions, or into it.
     Point {
@@ -82,12 +85,13 @@ pub enum Flow {
         speed: f32,
         /// Half-angle of the jet's cone, between its axis and its edge [degrees], 0 to 80. Default 11.8, the
         /// angle of every free turbulent jet: its radius grows by a fifth of the distance (Pope 2000, §5.1).
-        #[serde(default = "free_jet")]
+        #[cfg_attr(feature = "serde", serde(default = "free_jet"))]
         spread: f32,
     },
 }
 
 /// Half-angle of a free turbulent jet [degrees].
+#[cfg(feature = "serde")]
 fn free_jet() -> f32 {
     11.8
 }

@@ -22,7 +22,6 @@ use super::{HairField, StrandView};
 use crate::math::{RigidTransform, between};
 use crate::settings::{Check, Validate, above_0, check};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// 1/4πε₀ of air [N m²/C²].
 pub(crate) const COULOMB: f32 = 8.99e9;
@@ -32,11 +31,11 @@ pub(crate) const COULOMB: f32 = 8.99e9;
 pub(crate) const BREAKDOWN: f32 = 3e6;
 
 /// A charged ball: a balloon, a hand, a head.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Charged {
     /// Name of the body joint that carries it. `None`: it is fixed in the world, except for its `path`.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub joint: Option<String>,
     /// Its center at the start, in the space of the body's rest pose or of the world [m].
     pub center: Vec3,
@@ -47,21 +46,22 @@ pub struct Charged {
     pub charge: f32,
     /// Whether hair collides with it. Default true. Set it to false for a ball that represents the charge of
     /// a body, such as the head's.
-    #[serde(default = "yes")]
+    #[cfg_attr(feature = "serde", serde(default = "yes"))]
     pub solid: bool,
     /// Waypoints of its center in order of time. The center moves linearly between them and rests after the
     /// last. Default: it does not move.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub path: Vec<Waypoint>,
 }
 
+#[cfg(feature = "serde")]
 fn yes() -> bool {
     true
 }
 
 /// A waypoint of a [`Charged`] ball.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Waypoint {
     /// Time at which the ball is there [s], above 0.
     pub time: f32,

@@ -3,11 +3,14 @@
 use super::{DEFAULT_RADIUS, Groom, RootBinding};
 use crate::body::{Mesh, place_on};
 use glam::{Quat, Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 
 /// Settings of [`grow`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Growth {
     /// Number of strands, 1 to 10,000,000. Default 1,000.
     pub strands: u32,

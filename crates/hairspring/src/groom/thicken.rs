@@ -4,11 +4,14 @@
 use super::{Groom, GuideWeights, grow::evenly};
 use crate::body::{Mesh, NearestTree};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// Settings of [`thicken`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Thicken {
     /// Number of follow hairs for each strand, 0 to 1,000. Default 0.
     pub copies: u32,
