@@ -5,13 +5,16 @@ mod global_shape;
 pub use global_shape::GlobalShape;
 
 use crate::settings::{Check, Validate, above_0, check, from_0};
-use serde::{Deserialize, Serialize};
 
 /// The fiber of one group of strands: physical constants, and dimensionless multipliers for artists.
 ///
 /// The constants are those of human hair (Robbins 2012, *Chemical and Physical Behavior of Human Hair*).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Material {
     /// Elastic model of a strand. Default `auto`.
     pub model: Model,
@@ -69,8 +72,8 @@ pub struct Material {
 }
 
 /// The elastic model of a strand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Model {
     /// The rod model. Straight, round strands, for which the result is the same, use the cheaper curvature
     /// model.
