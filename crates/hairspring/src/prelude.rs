@@ -8,6 +8,6 @@ pub use crate::{
     material::{Material, Model},
     math::RigidTransform,
     settings::{Integrator, Neighbours, Quality, Response, Solver, Volume, VolumeMethod, Wind},
-    simulation::{ForceId, ManipulatorId, Simulation, Snapshot, StepInput, StepReport},
+    simulation::{ForceId, GroupId, ManipulatorId, Simulation, Snapshot, StepInput, StepReport},
 };
 pub use glam::{Quat, Vec3};

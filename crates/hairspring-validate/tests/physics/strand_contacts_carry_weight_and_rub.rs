@@ -221,11 +221,11 @@ fn squeezed(neighbours: Neighbours) -> f32 {
                 }
             };
             let (center, half) = (Vec3::new(side * 0.02, -0.13, 0.0), Vec3::new(0.02, 0.04, 0.1));
-            hairspring::collide::MovingCollider {
-                shape: ColliderShape::Cuboid { center, half, axes: Mat3::IDENTITY },
-                start: at(frame),
-                end: at(frame + 1),
-            }
+            hairspring::collide::MovingCollider::new(
+                ColliderShape::Cuboid { center, half, axes: Mat3::IDENTITY },
+                at(frame),
+                at(frame + 1),
+            )
         };
         strands.bodies = vec![wall(-1.0), wall(1.0)];
         strands.play(bench::FRAME);

@@ -168,7 +168,8 @@ impl<'a> Shape<'a> {
                 },
                 numbers: grid.distances().into(),
             },
-            ColliderShape::Field(_) | ColliderShape::Sheet(_) | ColliderShape::Custom(_) => return None,
+            // Empty fields, thin shells and custom shapes.
+            _ => return None,
         })
     }
 }

@@ -52,6 +52,7 @@ impl WindSource {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "kebab-case", deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub enum Flow {
     /// Flow out of a ball in all directions, or into it.
     Point {

@@ -125,6 +125,7 @@ fn heading(joints: &[Joint], world: &[Affine3A]) -> f32 {
 
 /// A clip retargeted to another rig.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Retargeted {
     /// Motion of the body's joints.
     pub clip: Clip,

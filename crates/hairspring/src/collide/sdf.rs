@@ -408,8 +408,7 @@ pub(super) mod tests {
                     translation: Vec3::X * (0.008 * frame as f32 - 0.25),
                     ..anchor
                 };
-                let obstacles =
-                    [MovingCollider { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
+                let obstacles = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
                 let air = Air::default();
                 simulation.step(&StepInput {
                     dt: 1.0 / 60.0,

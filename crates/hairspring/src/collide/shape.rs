@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 /// A collider shape in its own space.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum ColliderShape {
     /// A ball around `center` [m].
     Sphere {

@@ -18,6 +18,7 @@ use glam::Vec3;
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "kebab-case", deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub enum Manipulator {
     /// Fingers: points in a ball are held.
     Grab(Grab),

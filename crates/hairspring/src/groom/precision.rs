@@ -18,6 +18,7 @@ const COARSEST: f32 = 0.02;
 
 /// Error for a strand that is too far from the origin for the length of its segments.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Imprecise {
     /// Index of the strand.
     pub strand: usize,

@@ -5,6 +5,7 @@ use glam::Vec3;
 
 /// Counts of what [`sanitize`] found and repaired. Nothing is changed without being counted here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Repairs {
     /// Points with a NaN or infinite coordinate, moved onto the line between their finite neighbors.
     pub non_finite_points: usize,

@@ -74,6 +74,7 @@ pub struct Material {
 /// The elastic model of a strand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Model {
     /// The rod model. Straight, round strands, for which the result is the same, use the cheaper curvature
     /// model.

@@ -48,6 +48,7 @@ pub struct Solver {
 /// Contact method for points and segments inside a collider (Sams 2014, §3.3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Response {
     /// An implicit force in the solve, followed by projection of what is still inside to the nearest free
     /// position. The force carries weight and tension without jerks; the projection stops impacts.
@@ -69,6 +70,7 @@ impl Response {
 /// Time integration method. All methods act on the same strands, for comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Integrator {
     /// x⁺ = x + h v, v⁺ = v + h a with the fiber's own stiffness: a baseline that is unstable.
     ExplicitEuler,
@@ -125,6 +127,7 @@ impl Integrator {
 /// Accuracy of the solve in each substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Quality {
     /// One linear solve (10 iterations of local-global).
     #[default]

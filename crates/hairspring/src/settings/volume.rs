@@ -40,6 +40,7 @@ impl Default for Volume {
 /// Method that keeps hair from being compressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum VolumeMethod {
     /// None.
     #[default]

@@ -34,7 +34,7 @@ use std::{borrow::Cow, sync::Arc};
 impl Simulation {
     /// Creates the simulation that a valid builder describes.
     pub(super) fn from_builder(builder: SimulationBuilder) -> Self {
-        let SimulationBuilder { groom, strands, materials, solver, gravity, anchor, colliders } = builder;
+        let SimulationBuilder { groom, strands, materials, solver, gravity, anchor, colliders, .. } = builder;
         let strands = &*strands;
         let fallback = Material::default();
         let material =
@@ -137,6 +137,7 @@ impl Simulation {
             shade: OcclusionSampler::default(),
             interval: FrameContext::default(),
             level: super::levels().next().unwrap_or_else(Level::new),
+            group_user_data: Vec::new(),
         }
     }
 
@@ -146,6 +147,7 @@ impl Simulation {
     pub fn instance(&self) -> Self {
         let mut other = Self::with_parts(self.model.clone(), self.state.clone());
         other.level = self.level;
+        other.group_user_data.clone_from(&self.group_user_data);
         other.interval.segments = self.interval.segments;
         other
     }

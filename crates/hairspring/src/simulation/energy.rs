@@ -20,6 +20,7 @@ use std::ops::Add;
 
 /// Energy of all simulated strands [J], without the first two points of each strand, which its root drives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Energy {
     /// ½ m v² of the points.
     pub kinetic: f64,

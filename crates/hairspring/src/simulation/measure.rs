@@ -12,6 +12,7 @@ use glam::Vec3;
 
 /// Measures over all simulated points at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Measure {
     /// Mean of |ℓ/L − 1| over segments [1].
     pub stretch_mean: f64,

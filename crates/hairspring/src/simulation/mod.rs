@@ -3,11 +3,14 @@
 mod authored;
 mod build;
 mod builder;
+mod contact_points;
 mod contacts;
+mod debug_lines;
 mod energy;
 mod exposure;
 mod external_forces;
 mod force_fields;
+mod groups;
 mod hold;
 mod layout;
 mod manipulators;
@@ -30,9 +33,12 @@ pub use crate::strand::rest_shape::Start;
 pub use crate::strand_contact::NeighboursReport;
 pub use crate::volume::VolumeReport;
 pub use builder::{BuildError, SimulationBuilder};
+pub use contact_points::ContactPoint;
 pub use contacts::Contacts;
+pub use debug_lines::{DebugLine, DebugLineKind, DebugRenderMode};
 pub use energy::Energy;
 pub use force_fields::ForceId;
+pub use groups::GroupId;
 pub use hold::Hold;
 pub use manipulators::ManipulatorId;
 pub use measure::Measure;
@@ -88,6 +94,8 @@ pub struct Simulation {
     /// Context of the last frame, kept to reuse its memory.
     interval: FrameContext,
     level: Level,
+    /// See [`Simulation::group_user_data`].
+    group_user_data: Vec<u128>,
 }
 
 impl Simulation {

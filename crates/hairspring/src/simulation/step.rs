@@ -38,8 +38,11 @@ pub struct StepInput<'a> {
     pub air: Air<'a>,
 }
 
-/// The result of a step.
+/// The result of a step. Counts that need a pass over the points are made on request: contacts and distance
+/// queries by [`Simulation::contacts`], each contact by [`Simulation::contact_points`], lengths and depths by
+/// [`Simulation::measure`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct StepReport {
     /// Number of substeps.
     pub substeps: u32,
@@ -51,6 +54,7 @@ pub struct StepReport {
 
 /// Durations of the stages of a step. The little work between them (substep poses, tools) is not included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct StepTimes {
     /// The hair volume: density and forces, in each of the volume's intervals.
     pub volume: Duration,

@@ -88,6 +88,7 @@ pub(crate) struct Neighbours {
 
 /// Statistics of the strand contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct NeighboursReport {
     /// The largest contact radius [m]: the given one, or the computed one.
     pub radius: f32,

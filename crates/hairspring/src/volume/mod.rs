@@ -121,6 +121,7 @@ pub(crate) struct Volume {
 
 /// Report of a simulation's hair volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct VolumeReport {
     /// Edge of a cell [m].
     pub cell: f32,
