@@ -26,6 +26,7 @@ mod strand_state;
 mod substeps;
 mod take_over;
 mod teleport;
+mod try_step;
 mod values;
 mod volume;
 
@@ -42,9 +43,11 @@ pub use groups::GroupId;
 pub use hold::Hold;
 pub use manipulators::ManipulatorId;
 pub use measure::Measure;
+pub use points::PointsError;
 pub use step::{StepInput, StepReport, StepTimes};
 pub use strand_state::{Snapshot, SnapshotMismatch};
 pub use substeps::MAX_TRAVEL;
+pub use try_step::StepError;
 
 use crate::parallel::prelude::*;
 use crate::{
@@ -180,6 +183,9 @@ impl Simulation {
 
     /// Writes the points of every simulated strand [m], one after the other, in the order given to
     /// [`Simulation::builder`]. `out` has the shape `[point_count]`.
+    ///
+    /// # Panics
+    /// If `out` is too short.
     pub fn write_points(&self, out: &mut [Vec3]) {
         self.write_points_of(0..self.model.places.len(), out);
     }

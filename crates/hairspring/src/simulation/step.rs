@@ -103,8 +103,11 @@ impl Simulation {
     /// roots match the skin at every frame, which an accumulator with a remainder would not ensure. More
     /// substeps are used where a body that is fast relative to its thickness passes through the hair.
     ///
+    /// State that is not finite, from input that is not, is reset and counted in the report.
+    ///
     /// # Panics
     /// If `drive.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
+    /// [`Simulation::try_step`] returns an error instead.
     pub fn step(&mut self, drive: &StepInput) -> StepReport {
         assert_eq!(drive.roots.len(), self.model.places.len(), "one root pose for each simulated strand");
         assert!(drive.dt > 0.0, "`dt` must be positive");
