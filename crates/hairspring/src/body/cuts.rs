@@ -91,7 +91,12 @@ impl Cuts {
 
     /// Returns the rigid motion of each joint due to the cuts after time `from` and up to `to` [s]; `None`
     /// for joints without a cut. Empty if there is no cut at all.
-    pub fn between(&self, body: &Body, clip: &Clip, (from, to): (f64, f64)) -> Vec<Option<RigidTransform>> {
+    pub fn motion_between(
+        &self,
+        body: &Body,
+        clip: &Clip,
+        (from, to): (f64, f64),
+    ) -> Vec<Option<RigidTransform>> {
         let (first, last) = (clip.place(from).0, clip.place(to).0);
         let mut moved = Vec::new();
         for (number, tree) in self.trees.iter().enumerate() {

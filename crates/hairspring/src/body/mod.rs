@@ -12,7 +12,7 @@ pub use clip::{Clip, Trs};
 pub use cuts::Cuts;
 pub(crate) use cuts::is_teleport;
 pub use keyed::ease;
-pub use keyed::{Key, beside, keyed};
+pub use keyed::{Key, combine_clips, keyframe_clip};
 pub use mesh::{Mesh, Part};
 pub use nearest::{NearestPlace, NearestTree};
 pub(crate) use nearest::{at as place_on, nearest_on_triangle};

@@ -83,7 +83,7 @@ impl Body {
 
     /// Returns a copy of the body with only the triangles whose index `keep` accepts, and the vertices that
     /// they use. The copy has no parts.
-    pub fn of_triangles(&self, keep: impl Fn(usize) -> bool) -> Self {
+    pub fn with_triangles(&self, keep: impl Fn(usize) -> bool) -> Self {
         let mut body = self.clone();
         body.mesh.parts.clear();
         let mut index = 0..;

@@ -13,7 +13,7 @@ use crate::math::RigidTransform;
 /// let start = RigidTransform::default();
 /// let end = RigidTransform { translation: Vec3::X * 0.01, ..start };
 /// let collider = MovingCollider::new(ball, start, end).with_user_data(42);
-/// assert!(collider.now().distance(Vec3::X * 0.01) < 0.0);
+/// assert!(collider.end_pose().distance(Vec3::X * 0.01) < 0.0);
 /// assert_eq!(collider.user_data, 42);
 /// ```
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ impl MovingCollider {
     }
 
     /// Returns the collider at the end of a frame throughout which it has moved.
-    pub fn now(&self) -> ColliderPose {
+    pub fn end_pose(&self) -> ColliderPose {
         ColliderPose::new(self.shape.clone(), self.start.matrix(), self.end.matrix(), 1.0)
     }
 

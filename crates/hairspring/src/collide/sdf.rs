@@ -83,7 +83,7 @@ impl SignedDistanceField {
     }
 
     /// Discards the deformation, as if the surface had stayed in place during the last interval.
-    pub fn hold_still(&mut self) {
+    pub fn clear_motion(&mut self) {
         self.moved.clear();
     }
 

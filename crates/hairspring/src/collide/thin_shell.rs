@@ -170,7 +170,7 @@ impl ThinShell {
     }
 
     /// Discards its deformation, as if it had stayed in place during the last interval.
-    pub fn hold_still(&mut self) {
+    pub fn clear_motion(&mut self) {
         self.moved.clear();
     }
 

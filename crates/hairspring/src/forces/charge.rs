@@ -19,7 +19,7 @@
 //! uncharged body. The hair of one groom does not repel that of another.
 
 use super::{HairField, StrandView};
-use crate::math::{RigidTransform, between};
+use crate::math::{RigidTransform, find_keys};
 use crate::settings::{Check, Validate, above_0, check};
 use glam::Vec3;
 
@@ -74,7 +74,7 @@ impl Charged {
     pub fn center(&self, time: f64) -> Vec3 {
         let start = Waypoint { time: 0.0, center: self.center };
         let key = |k: usize| k.checked_sub(1).map_or(start, |k| self.path[k]);
-        let way = between(1 + self.path.len(), |k| key(k).time, time);
+        let way = find_keys(1 + self.path.len(), |k| key(k).time, time);
         way.map_or(self.center, |(a, b, share)| key(a).center.lerp(key(b).center, share))
     }
 }

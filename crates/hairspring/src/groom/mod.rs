@@ -8,7 +8,7 @@ mod sanitize;
 mod thicken;
 
 pub use bind::{RootBinding, bind_roots, bind_roots_where};
-pub use curve::Curve;
+pub use curve::MortonCurve;
 pub use grow::{Growth, grow};
 pub use precision::{Imprecise, MAX_COORDINATE, first_imprecise};
 pub use sanitize::{Repairs, sanitize};

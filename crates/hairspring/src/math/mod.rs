@@ -3,5 +3,5 @@
 mod interpolate;
 mod rigid_transform;
 
-pub use interpolate::between;
+pub use interpolate::find_keys;
 pub use rigid_transform::RigidTransform;

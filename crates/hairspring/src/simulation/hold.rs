@@ -17,7 +17,7 @@ pub struct Hold {
     /// World position of the target at the end of the next frame [m]; `None` if the point is free.
     pub target: Option<Vec3>,
     /// Displacement of the target in the next frame [m]. After that, the target is at rest.
-    pub way: Vec3,
+    pub displacement: Vec3,
     /// Stiffness of the spring that pulls the point to the target [N/m], above 0; `None` if the point is
     /// pinned.
     pub stiffness: Option<f32>,
@@ -54,7 +54,7 @@ impl Simulation {
             for k in 0..3 {
                 rows[hold::TARGET + k].0[lane] = target[k];
                 rows[hold::FORCE + k].0[lane] = held.force[k];
-                rows[hold::WAY + k].0[lane] = held.way[k];
+                rows[hold::WAY + k].0[lane] = held.displacement[k];
             }
             let fast = held.target.is_some() && held.stiffness.is_none();
             rows[hold::PINNED].0[lane] = if fast { 1.0 } else { 0.0 };

@@ -126,13 +126,13 @@ pub struct VolumeReport {
     /// Edge of a cell [m].
     pub cell: f32,
     /// Whether that is larger than requested, to bound the number of cells.
-    pub grown: bool,
+    pub cell_enlarged: bool,
     /// Number of grid nodes in the last interval.
     pub nodes: usize,
     /// Volume of the hair at the start of the last interval relative to that at rest [1]. The volume is that
     /// of its cells as far as they are filled, each at most once: where strands are compressed into each
     /// other's rest volume, it is lost.
-    pub share: f64,
+    pub volume_ratio: f64,
 }
 
 /// State at the start of an interval: the anchor, and the fraction of their motion in the frame that roots
@@ -250,7 +250,12 @@ impl Volume {
     /// Returns the report, see [`VolumeReport`].
     pub fn report(&self) -> VolumeReport {
         let nodes = self.field.window.nodes();
-        VolumeReport { cell: self.cell, grown: self.grown, nodes, share: self.taken_up[1] / self.taken_up[0] }
+        VolumeReport {
+            cell: self.cell,
+            cell_enlarged: self.grown,
+            nodes,
+            volume_ratio: self.taken_up[1] / self.taken_up[0],
+        }
     }
 
     /// Returns the memory used for the points, in bytes, without the grid.
