@@ -1,4 +1,4 @@
-//! The types that most programs need: `use hairspring::prelude::*;`.
+//! The types that most programs need: `use hairspring::prelude::*;`. For an example, see the [crate](crate#quick-start).
 
 pub use crate::{
     air::Air,

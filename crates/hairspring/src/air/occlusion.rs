@@ -23,6 +23,17 @@ use crate::{collide::FrameColliders, volume::Density};
 use glam::Vec3;
 
 /// Occlusion of the wind by bodies and hair.
+///
+/// ```
+/// use hairspring::{air::WindOcclusion, prelude::*};
+///
+/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+/// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+/// let occlusion = WindOcclusion { body: 1.0, ..Default::default() };
+/// assert!(occlusion.is_on());
+/// simulation.set_wind_occlusion(&occlusion);
+/// # Ok::<(), hairspring::simulation::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -18,6 +18,8 @@ use crate::settings::{Check, Validate, above_0, check, gusts};
 use glam::Vec3;
 
 /// A source of wind.
+///
+/// For an example, see [`air`](crate::air).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct WindSource {
@@ -46,6 +48,8 @@ impl WindSource {
 }
 
 /// The velocity field of a [`WindSource`].
+///
+/// For an example, see [`air`](crate::air).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -132,6 +136,8 @@ impl Flow {
 }
 
 /// A wind source as it is in one frame.
+///
+/// For an example, see [`air`](crate::air).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
     /// The velocity field, at rest.

@@ -20,6 +20,13 @@ use crate::settings::{Check, Validate, above_0, check, from_0};
 use glam::{DVec3, IVec3, Mat3, Vec3};
 
 /// Parameters of the turbulence.
+///
+/// ```
+/// use hairspring::air::Turbulence;
+///
+/// let gusty = Turbulence { strength: 1.5, ..Default::default() };
+/// assert!(gusty.is_on() && !Turbulence::default().is_on());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

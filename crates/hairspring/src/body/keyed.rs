@@ -8,6 +8,8 @@ use glam::{Quat, Vec3};
 const RATE: f64 = 60.0;
 
 /// A keyframe of a rigid body. Motion between keys is eased and comes to rest at every key.
+///
+/// For an example, see [`body`](crate::body).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
     /// Time [s], 0 or more.
@@ -21,6 +23,8 @@ pub struct Key {
 /// Returns the motion of a body's only joint through `keys`, which are in order of time. Rotations are about
 /// `pivot` [m]. Before the first key, the pose is that of the first key. Without keys, the body stays at
 /// rest.
+///
+/// For an example, see [`body`](crate::body).
 pub fn keyframe_clip(keys: &[Key], pivot: Vec3) -> Clip {
     let end = keys.last().map_or(0.0, |key| key.time);
     let frames = (f64::from(end) * RATE).ceil() as usize + 1;
@@ -31,6 +35,16 @@ pub fn keyframe_clip(keys: &[Key], pivot: Vec3) -> Clip {
 /// Combines the motion of a body with that of separate props. `own` moves the first joints of the result;
 /// `None` keeps them at `rest`. Each clip in `others` moves one more joint. The result is as long as the
 /// longest clip; shorter clips hold their last frame.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::body::{Trs, combine_clips, keyframe_clip};
+///
+/// // A body at rest, and a prop that is the second joint.
+/// let prop = keyframe_clip(&[], Vec3::ZERO);
+/// let clip = combine_clips(None, &[Trs::default()], &[prop]);
+/// assert_eq!(clip.joint_count, 2);
+/// ```
 pub fn combine_clips(own: Option<Clip>, rest: &[Trs], others: &[Clip]) -> Clip {
     let still = || Clip { name: "keys".into(), rate: RATE, joint_count: rest.len(), samples: rest.to_vec() };
     let own = own.unwrap_or_else(still);
@@ -56,6 +70,12 @@ fn at(keys: &[Key], pivot: Vec3, time: f64) -> Trs {
 
 /// Smooth step from 0 to 1 with zero velocity and acceleration at both ends: the minimum-jerk profile of
 /// human motion (Flash and Hogan 1985).
+///
+/// ```
+/// use hairspring::body::ease;
+///
+/// assert_eq!([ease(0.0), ease(0.5), ease(1.0)], [0.0, 0.5, 1.0]);
+/// ```
 pub fn ease(t: f32) -> f32 {
     t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
 }

@@ -16,6 +16,15 @@ const MOST_LOOKS: u32 = 8;
 const LONG: f32 = 2.0;
 
 /// A collider during one substep.
+///
+/// ```
+/// use glam::{Mat3, Vec3};
+/// use hairspring::collide::{ColliderPose, ColliderShape};
+///
+/// let ball = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };
+/// let (start, end) = ((Mat3::IDENTITY, Vec3::ZERO), (Mat3::IDENTITY, Vec3::X));
+/// assert!(ColliderPose::new(ball, start, end, 1.0).distance(Vec3::X) < 0.0);
+/// ```
 #[derive(Clone)]
 pub struct ColliderPose {
     /// The shape.

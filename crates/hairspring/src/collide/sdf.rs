@@ -14,6 +14,8 @@ use std::sync::Arc;
 pub(super) const BEYOND: usize = 2;
 
 /// Signed distances at the nodes of a regular grid, negative inside, with trilinear interpolation.
+///
+/// For an example, see [`SignedDistanceField::from_samples`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignedDistanceField {
     pub(super) lattice: Lattice,

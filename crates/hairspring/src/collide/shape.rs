@@ -6,6 +6,8 @@ use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
 /// A collider shape in its own space.
+///
+/// For an example, see [`collide`](crate::collide).
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum ColliderShape {

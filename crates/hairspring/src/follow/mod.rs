@@ -9,6 +9,29 @@
 //!
 //! This keeps the rest offset in the guide's frame without storing an offset. At rest R = I, and p = p₀ up to
 //! rounding.
+//!
+//! # Example
+//! ```
+//! use glam::{Quat, Vec3};
+//! use hairspring::{
+//!     follow::{Follow, assign_guides, choose_guides},
+//!     groom::Groom,
+//!     settings::Effects,
+//! };
+//! use std::sync::Arc;
+//!
+//! let strand = |s| (0..8).map(|i| Vec3::new(0.01 * s as f32, -0.01 * i as f32, 0.0)).collect::<Vec<_>>();
+//! let groom = Arc::new(Groom::from_strands((0..10).map(strand), 35e-6));
+//! let guides = choose_guides(&groom, 2);
+//! let weights = assign_guides(&groom, &guides);
+//! let mut follow = Follow::new(groom.clone(), &guides, &weights, Effects::default(), &[]);
+//! // The guides move by 1 m; `Simulation::write_points` gives their points in a program.
+//! let moved: Vec<Vec3> = guides.iter().flat_map(|s| groom.strand(*s as usize)).map(|p| *p + Vec3::Z).collect();
+//! follow.update_guide_transforms(&moved, &[Quat::IDENTITY; 2]);
+//! let mut all = vec![Vec3::ZERO; groom.point_count()];
+//! follow.interpolation(&moved, &[]).place(&mut all);
+//! assert!(all.iter().zip(&groom.points).all(|(p, rest)| p.distance(*rest + Vec3::Z) < 1e-5));
+//! ```
 
 mod carry;
 mod choose;
@@ -30,6 +53,8 @@ use std::sync::Arc;
 
 /// The static part of the interpolation: which guides each hair of a groom follows, and at which points of
 /// them.
+///
+/// For an example, see [`follow`](crate::follow).
 #[derive(Clone, Debug)]
 pub struct FollowLayout {
     /// The groom, with the points of the rest pose.
@@ -54,6 +79,8 @@ pub struct FollowLayout {
 ///
 /// # Missing
 /// Levels of detail.
+///
+/// For an example, see [`follow`](crate::follow).
 pub struct Follow {
     layout: Arc<FollowLayout>,
     effects: Effects,
@@ -63,6 +90,8 @@ pub struct Follow {
 
 /// All data needed to place the follow hairs of one groom in the current frame, either on the CPU by
 /// [`HairInterpolation::place`] or by a renderer on the GPU.
+///
+/// For an example, see [`follow`](crate::follow).
 #[derive(Clone, Copy)]
 pub struct HairInterpolation<'a> {
     /// The static part.
@@ -112,6 +141,9 @@ impl Follow {
     /// - `guides`: the simulated strands.
     /// - `weights`: for every strand, strands of the groom that are in `guides`; shape `[strands]`.
     /// - `obstacles`: colliders at rest. Points that start inside may stay as deep as they are.
+    ///
+    /// # Panics
+    /// If `guides` or `weights` name a strand that does not exist or is no guide, or `weights` is too short.
     pub fn new(
         groom: Arc<Groom>,
         guides: &[u32],
@@ -165,6 +197,9 @@ impl Follow {
     ///
     /// - `guide_points`: current points of all guides [m], as written by `Simulation::write_points`.
     /// - `turns`: rotation of each guide's root since rest.
+    ///
+    /// # Panics
+    /// If an array is too short.
     pub fn update_guide_transforms(&mut self, guide_points: &[Vec3], turns: &[Quat]) {
         let FollowLayout { groom, guides, guide_offsets, .. } = &*self.layout;
         carry::update_guide_transforms(
@@ -205,6 +240,9 @@ impl Follow {
 
     /// Writes one value for each point of all strands, given the values of all guide points. Guides keep
     /// their own values; follow hairs interpolate those of their first guide.
+    ///
+    /// # Panics
+    /// If an array is too short.
     pub fn interpolate_values(&self, of_guides: &[f32], out: &mut [f32]) {
         let layout = &*self.layout;
         let strands = split_by(out, &layout.groom.offsets);
@@ -237,6 +275,9 @@ impl Follow {
 impl HairInterpolation<'_> {
     /// Writes all points of the groom [m]. Guides keep their points; follow hairs are interpolated and moved
     /// out of the colliders.
+    ///
+    /// # Panics
+    /// If an array has another shape.
     pub fn place(&self, out: &mut [Vec3]) {
         self.place_every(1, &self.layout.groom.offsets, out);
     }
@@ -246,6 +287,9 @@ impl HairInterpolation<'_> {
     ///
     /// - `offsets`: first point of each of these strands in `out`, followed by the end; shape `[strands +
     ///   1]`.
+    ///
+    /// # Panics
+    /// If an array has another shape.
     pub fn place_every(&self, every: usize, offsets: &[u32], out: &mut [Vec3]) {
         let poses: Vec<ColliderPose> = self.obstacles.iter().map(MovingCollider::end_pose).collect();
         let strands = split_by(out, offsets).into_par_iter().enumerate();
@@ -253,6 +297,9 @@ impl HairInterpolation<'_> {
     }
 
     /// Like [`Self::place`], for one strand and the collider poses `poses`.
+    ///
+    /// # Panics
+    /// If there is no such strand, or `strand` has another number of points.
     pub fn place_strand(&self, s: usize, poses: &[ColliderPose], strand: &mut [Vec3]) {
         let layout = &**self.layout;
         if let Some(guide) = layout.guide(s) {
@@ -273,6 +320,16 @@ impl HairInterpolation<'_> {
 }
 
 /// Splits `array` at `offsets`.
+///
+/// ```
+/// use hairspring::follow::split_by;
+///
+/// let mut values = [1, 2, 3];
+/// assert_eq!(split_by(&mut values, &[0, 1, 3]), [&[1][..], &[2, 3]]);
+/// ```
+///
+/// # Panics
+/// If the offsets descend or go past the end of the array.
 pub fn split_by<'a, T>(array: &'a mut [T], offsets: &[u32]) -> Vec<&'a mut [T]> {
     let mut rest = array;
     let mut pieces = Vec::with_capacity(offsets.len().saturating_sub(1));

@@ -31,6 +31,17 @@ pub(crate) const COULOMB: f32 = 8.99e9;
 pub(crate) const BREAKDOWN: f32 = 3e6;
 
 /// A charged ball: a balloon, a hand, a head.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::forces::charge::{Charged, Waypoint};
+///
+/// // A balloon that approaches within a second.
+/// let path = vec![Waypoint { time: 1.0, center: Vec3::Y * 0.2 }];
+/// let (center, radius) = (Vec3::Y, 0.13);
+/// let balloon = Charged { joint: None, center, radius, charge: -1e-7, solid: true, path };
+/// assert_eq!(balloon.center(0.5), Vec3::Y * 0.6);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Charged {
@@ -60,6 +71,8 @@ fn yes() -> bool {
 }
 
 /// A waypoint of a [`Charged`] ball.
+///
+/// For an example, see [`Charged`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Waypoint {
@@ -80,6 +93,15 @@ impl Charged {
 }
 
 /// A charged ball in a frame.
+///
+/// ```
+/// use hairspring::{forces::charge::ChargedBall, prelude::*};
+///
+/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+/// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+/// simulation.set_charged([ChargedBall { centers: [Vec3::X; 2], radius: 0.13, charge: -1e-7 }]);
+/// # Ok::<(), hairspring::simulation::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChargedBall {
     /// Its center at the start and at the end of the frame, in world space [m].

@@ -18,6 +18,15 @@ use crate::math::RigidTransform;
 use glam::Vec3;
 
 /// A capsule that drags hair along, mainly transverse to the strands.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::forces::{Manipulator, comb::Comb};
+///
+/// let (a, b) = (Vec3::NEG_X * 0.05, Vec3::X * 0.05);
+/// let comb = Manipulator::Comb(Comb { a, b, radius: 0.01, grip: 1000.0, friction: 3.0 });
+/// assert!(matches!(comb, Manipulator::Comb(Comb { radius: 0.01, .. })));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Comb {

@@ -18,6 +18,8 @@ use super::bond::{Bond, Spring};
 use glam::Vec3;
 
 /// A ball that holds the points that were inside. If it does not move, it is a pin.
+///
+/// For an example, see [`forces`](crate::forces).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Grab {

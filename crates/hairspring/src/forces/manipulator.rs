@@ -12,6 +12,8 @@ use crate::{collide::FrameColliders, math::RigidTransform};
 use glam::Vec3;
 
 /// A tool that acts on hair by hand, in the space that it moves with.
+///
+/// For an example, see [`forces`](crate::forces).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

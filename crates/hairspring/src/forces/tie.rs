@@ -22,6 +22,16 @@ use super::bond::{Bond, Spring};
 use glam::Vec3;
 
 /// A ring that gathers strands.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::forces::{Manipulator, tie::Tie};
+///
+/// let ring = Tie {
+///     center: Vec3::ZERO, axis: Vec3::NEG_Y, radius: 0.01, reach: 0.1, gather: 0.5, pull: 60.0, damping: 1.0,
+/// };
+/// assert!(matches!(Manipulator::Tie(ring), Manipulator::Tie(Tie { reach: 0.1, .. })));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Tie {

@@ -7,6 +7,14 @@ use glam::Vec3;
 ///
 /// Files store strands in any order. Processing them along the curve keeps the data that they read and write
 /// in cache.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::groom::MortonCurve;
+///
+/// let curve = MortonCurve::covering(Vec3::ZERO, Vec3::ONE);
+/// assert!(curve.index(Vec3::splat(0.1)) < curve.index(Vec3::splat(0.9)));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct MortonCurve {
     lo: Vec3,

@@ -4,6 +4,13 @@
 /// Returns the indices of the two keys around `time` [s] and the interpolation fraction between them, 0 to 1.
 /// Before the first key and after the last, both indices are that key. `at` returns the time of a key [s];
 /// the `count` keys are in ascending order of time. Returns `None` if there are no keys.
+///
+/// ```
+/// use hairspring::math::find_keys;
+///
+/// let times = [1.0, 2.0, 4.0];
+/// assert_eq!(find_keys(3, |k| times[k], 3.5), Some((1, 2, 0.75)));
+/// ```
 pub fn find_keys(count: usize, at: impl Fn(usize) -> f32, time: f64) -> Option<(usize, usize, f32)> {
     let last = count.checked_sub(1)?;
     let at = |key| f64::from(at(key));

@@ -12,6 +12,8 @@ use glam::Vec3;
 use std::{borrow::Cow, sync::Arc};
 
 /// Describes a [`Simulation`]; see [`Simulation::builder`].
+///
+/// For an example, see [`Simulation::builder`].
 pub struct SimulationBuilder<'a> {
     pub(super) groom: Arc<Groom>,
     pub(super) strands: Cow<'a, [u32]>,
@@ -24,6 +26,15 @@ pub struct SimulationBuilder<'a> {
 }
 
 /// The reason that a simulation cannot be built.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::{groom::Groom, simulation::{BuildError, Simulation}};
+///
+/// let short = Groom::from_strands([[Vec3::ZERO, Vec3::Y]], 35e-6);
+/// let refused = Simulation::builder(short).build().err();
+/// assert_eq!(refused, Some(BuildError::TooFewPoints { strand: 0, points: 2 }));
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {

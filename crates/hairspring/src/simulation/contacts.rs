@@ -13,6 +13,8 @@ use crate::{
 use glam::Vec3;
 
 /// Contacts with colliders at the end of the last substep.
+///
+/// For an example, see [`Simulation::contact_points`], which lists them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Contacts {

@@ -37,6 +37,8 @@ const WIND: f32 = 0.01;
 const WIND_POINTS: usize = 4;
 
 /// A line in world space.
+///
+/// For an example, see [`Simulation::debug_lines`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DebugLine {
     /// Start [m].
@@ -48,6 +50,8 @@ pub struct DebugLine {
 }
 
 /// What a [`DebugLine`] shows.
+///
+/// For an example, see [`Simulation::debug_lines`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum DebugLineKind {

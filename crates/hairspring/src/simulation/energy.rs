@@ -19,6 +19,8 @@ use glam::{DVec3, Quat};
 use std::ops::Add;
 
 /// Energy of all simulated strands [J], without the first two points of each strand, which its root drives.
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Energy {

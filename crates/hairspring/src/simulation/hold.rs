@@ -8,6 +8,17 @@ use crate::{
 use glam::Vec3;
 
 /// A hold on one point.
+///
+/// ```
+/// use hairspring::{prelude::*, simulation::Hold};
+///
+/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+/// let tip = strand[7];
+/// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+/// // The tip is pinned where it is.
+/// simulation.set_holds(&[Hold { strand: 0, point: 7, target: Some(tip), ..Default::default() }]);
+/// # Ok::<(), hairspring::simulation::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hold {
     /// The strand, as an index into those given to [`Simulation::builder`].

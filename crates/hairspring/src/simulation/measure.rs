@@ -11,6 +11,8 @@ use crate::{
 use glam::Vec3;
 
 /// Measures over all simulated points at the end of a step.
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Measure {

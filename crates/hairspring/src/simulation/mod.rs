@@ -1,4 +1,23 @@
 //! The simulation: the state of all simulated strands, and its time step.
+//!
+//! # Example
+//! ```
+//! use hairspring::prelude::*;
+//!
+//! let strand: Vec<Vec3> = (0..16).map(|i| Vec3::X * (0.01 * i as f32)).collect();
+//! let solver = Solver { sag_free: false, ..Default::default() };
+//! let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).solver(solver).build()?;
+//! let (anchor, roots) = (RigidTransform::default(), [RigidTransform::default()]);
+//! let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &[], air: Air::default() };
+//! let saved = simulation.snapshot();
+//! let report = simulation.step(&input);
+//! assert_eq!((report.substeps, report.reset_strands), (4, 0));
+//! // The strand begins to fall. Time can be turned back.
+//! assert!(simulation.energy().kinetic > 0.0 && simulation.measure(&[]).stretch_max < 0.011);
+//! simulation.restore(&saved).expect("the same strands");
+//! assert_eq!(simulation.energy().kinetic, 0.0);
+//! # Ok::<(), hairspring::simulation::BuildError>(())
+//! ```
 
 mod authored;
 mod build;
@@ -76,6 +95,8 @@ use strand_state::StrandState;
 ///
 /// # Limitations
 /// Cutting and wetting are not supported.
+///
+/// For an example, see [`simulation`](crate::simulation).
 pub struct Simulation {
     model: Arc<StrandModel>,
     state: StrandState,

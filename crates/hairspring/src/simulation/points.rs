@@ -11,6 +11,16 @@ use crate::{
 use glam::{DVec3, Vec3};
 
 /// The reason that [`Simulation::set_points`] refused its input.
+///
+/// ```
+/// use hairspring::{prelude::*, simulation::PointsError};
+///
+/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+/// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+/// let refused = simulation.set_points(&[], &[]);
+/// assert_eq!(refused, Err(PointsError::Count { points: 0, velocities: 0, expected: 8 }));
+/// # Ok::<(), hairspring::simulation::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PointsError {

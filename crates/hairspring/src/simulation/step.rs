@@ -23,6 +23,8 @@ use fearless_simd::Level;
 use std::{cell::RefCell, time::Duration};
 
 /// Input of a step. All poses are at the end of the frame; the start is the end of the last step.
+///
+/// For an example, see [`simulation`](crate::simulation).
 pub struct StepInput<'a> {
     /// Length of the frame [s], above 0.
     pub dt: f32,
@@ -41,6 +43,8 @@ pub struct StepInput<'a> {
 /// The result of a step. Counts that need a pass over the points are made on request: contacts and distance
 /// queries by [`Simulation::contacts`], each contact by [`Simulation::contact_points`], lengths and depths by
 /// [`Simulation::measure`].
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct StepReport {
@@ -53,6 +57,8 @@ pub struct StepReport {
 }
 
 /// Durations of the stages of a step. The little work between them (substep poses, tools) is not included.
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct StepTimes {

@@ -4,6 +4,8 @@ use super::{Simulation, StepInput, StepReport};
 use crate::math::RigidTransform;
 
 /// The reason that [`Simulation::try_step`] refused its input.
+///
+/// For an example, see [`Simulation::try_step`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StepError {
