@@ -1,6 +1,8 @@
 //! Settings of the global shape: a pull of the strand to its rest shape.
 
 /// Parameters of the global shape.
+///
+/// Fields may be added: write `..Default::default()`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

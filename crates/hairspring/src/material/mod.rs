@@ -1,4 +1,12 @@
 //! Materials: the physical constants of human hair, and presets of hair types.
+//!
+//! # Example
+//! ```
+//! use hairspring::material::{Material, Model, preset};
+//!
+//! let curls = Material { model: Model::Rod, flatness: 0.6, ..preset("curly").expect("a preset") };
+//! assert_eq!((curls.bend, curls.flatness), (8.0, 0.6));
+//! ```
 
 mod global_shape;
 
@@ -9,6 +17,8 @@ use crate::settings::{Check, Validate, above_0, check, from_0};
 /// The fiber of one group of strands: physical constants, and dimensionless multipliers for artists.
 ///
 /// The constants are those of human hair (Robbins 2012, *Chemical and Physical Behavior of Human Hair*).
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`material`](crate::material).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -72,6 +82,8 @@ pub struct Material {
 }
 
 /// The elastic model of a strand.
+///
+/// For an example, see [`material`](crate::material).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
@@ -168,6 +180,8 @@ pub const PRESETS: [&str; 5] = ["straight", "wavy", "curly", "coily", "short-fur
 
 /// Returns the preset with this name: `straight`, `wavy`, `curly`, `coily` or `short-fur`; `None` for any
 /// other name.
+///
+/// For an example, see [`material`](crate::material).
 pub fn preset(name: &str) -> Option<Material> {
     let base = Material::default();
     Some(match name {

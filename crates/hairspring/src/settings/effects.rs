@@ -6,6 +6,8 @@ use super::check::{Check, Validate, above_0, check};
 const MAX_LENGTH: f32 = 1e6;
 
 /// Styling of follow hairs, applied after interpolation from the guides. All off by default.
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

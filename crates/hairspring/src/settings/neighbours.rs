@@ -4,6 +4,8 @@ use super::check::{Check, Validate, above_0, check, from_0};
 
 /// Settings of contact between individual strands, for guides and small scenes. It is the reference for the
 /// volume methods, and acts between the simulated strands of all grooms.
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -3,6 +3,8 @@
 use super::check::{Check, Validate, above_0, check};
 
 /// Settings of time steps and contact.
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -46,6 +48,8 @@ pub struct Solver {
 }
 
 /// Contact method for points and segments inside a collider (Sams 2014, §3.3).
+///
+/// For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
@@ -68,6 +72,8 @@ impl Response {
 }
 
 /// Time integration method. All methods act on the same strands, for comparison.
+///
+/// For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
@@ -125,6 +131,8 @@ impl Integrator {
 }
 
 /// Accuracy of the solve in each substep.
+///
+/// For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]

@@ -4,6 +4,8 @@ use super::check::{Check, Validate, above_0, check, from_0};
 
 /// Settings of the hair volume, which acts between the simulated strands of all grooms. Each strand has the
 /// mass of the hairs that follow it.
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -38,6 +40,8 @@ impl Default for Volume {
 }
 
 /// Method that keeps hair from being compressed.
+///
+/// For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]

@@ -4,6 +4,8 @@ use super::check::{Check, Validate, check, from_0};
 use glam::Vec3;
 
 /// Directional wind, the same everywhere, with gusts.
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
