@@ -46,7 +46,7 @@
 //!
 //! The crate `hairspring-scene` plays whole scenes, and `hairspring-io` reads and writes files. The folder
 //! `examples` has a program for each use: an engine's loop, a custom force and collider, a distance field from an
-//! array, rollback, many characters, follow hairs.
+//! array, rollback, many characters, follow hairs, debug lines.
 //!
 //! # Units
 //!
