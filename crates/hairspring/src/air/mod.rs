@@ -28,7 +28,7 @@
 //! // A fan that blows along X, in a breeze.
 //! let shape = Flow::Fan { center: Vec3::ZERO, axis: Vec3::X, radius: 0.1, speed: 4.0, spread: 11.8 };
 //! let fan = WindSource { joint: None, shape, gust: 0.0, gust_rate: 0.0 };
-//! let sources = [fan.at(0, RigidTransform::default(), 0.0)];
+//! let sources = [fan.at_time(0, RigidTransform::default(), 0.0)];
 //! let wind = Wind { velocity: Vec3::Z, ..Default::default() };
 //! let air = Air { wind, sources: &sources, ..Default::default() };
 //! assert!(air.sources[0].velocity(Vec3::X * 0.1).x > 3.0);

@@ -39,7 +39,7 @@ pub struct WindSource {
 impl WindSource {
     /// Returns the source at `time` [s], moved by `pose` relative to its rest pose. `number` is the index of
     /// the source in the scene; it selects the gust phase.
-    pub fn at(&self, number: usize, pose: RigidTransform, time: f64) -> Source {
+    pub fn at_time(&self, number: usize, pose: RigidTransform, time: f64) -> Source {
         // Multiples of the golden angle, so that all phases differ.
         let gust = Gust { amount: self.gust, rate: self.gust_rate, phase: 2.4 * (number + 1) as f32 };
         let factor = if self.gust_rate > 0.0 { gust.factor(time) } else { 1.0 };

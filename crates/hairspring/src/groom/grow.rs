@@ -43,13 +43,14 @@ impl Default for Growth {
 /// use hairspring::{body::Mesh, groom::{Growth, grow}};
 ///
 /// let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Z];
-/// let mesh = Mesh { positions, triangles: vec![[0, 2, 1]], ..Default::default() };
+/// let mut mesh = Mesh { positions, triangles: vec![[0, 2, 1]], ..Default::default() };
+/// mesh.compute_normals();
 /// let fur = grow(&mesh, &Growth { strands: 100, points: 8, ..Default::default() }, |_| true);
 /// assert_eq!((fur.strand_count(), fur.point_count()), (100, 800));
 /// ```
 ///
 /// # Panics
-/// If a triangle names a vertex that does not exist.
+/// If a triangle names a vertex that does not exist or has no normal.
 pub fn grow(mesh: &Mesh, growth: &Growth, allowed: impl Fn(usize) -> bool) -> Groom {
     let area = |t: usize| {
         let [a, b, c] = mesh.corners(t);
