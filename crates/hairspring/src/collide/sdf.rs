@@ -16,6 +16,8 @@ pub(super) const BEYOND: usize = 2;
 /// Signed distances at the nodes of a regular grid, negative inside, with trilinear interpolation.
 ///
 /// For an example, see [`SignedDistanceField::from_samples`].
+///
+/// The default is an empty field, which a [`Voxelizer`](super::Voxelizer) fills. A query of an empty field panics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignedDistanceField {
     pub(super) lattice: Lattice,

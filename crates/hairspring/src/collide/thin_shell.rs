@@ -40,6 +40,8 @@ const MAX_NODES: usize = 1 << 22;
 ///   pushed from one layer to the other.
 ///
 /// For an example, see [`collide`](crate::collide).
+///
+/// The default is an empty shell, which [`ThinShell::update`] fills. A query of an empty shell may panic.
 #[derive(Clone, Debug, Default)]
 pub struct ThinShell {
     /// Half-thickness: distance that it extends from its triangles on both sides [m].
