@@ -10,7 +10,7 @@ mod test;
 const HELP: &str = "cargo xtask NAME
 
   test           all tests, in release; closes on one line with the sum
-  lint           layers, formatting, clippy with warnings refused, the docs, and where all dependencies come from and under which licence
+  lint           layers, formatting, clippy with warnings refused (the library also without its features), the docs, and where all dependencies come from and under which licence
   layers         modules of the library import each other in one direction only
   package        every crate that is not private can be packaged for publication
   consumer       a crate outside of the workspace links the library, builds it without optimization and steps 100 strands
@@ -103,6 +103,9 @@ fn lint() -> Result<(), String> {
         &["clippy", "--release", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"],
         &[],
     )?;
+    // Without rayon and serde, which no other crate of the workspace leaves out.
+    let bare = ["clippy", "--release", "-p", "hairspring", "--no-default-features", "--", "-D", "warnings"];
+    run::cargo(&bare, &[])?;
     run::cargo(&["doc", "--release", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")])?;
     // Advisories are left out: their database comes from the network, and no check of ours may depend on it.
     run::cargo(&["deny", "--workspace", "check", "bans", "licenses", "sources"], &[])

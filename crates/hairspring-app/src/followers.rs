@@ -16,7 +16,7 @@ pub struct Followers {
     /// The static data.
     pub layout: Arc<FollowLayout>,
     effects: Effects,
-    carriers: Vec<Affine3A>,
+    guide_transforms: Vec<Affine3A>,
     guide_points: Vec<Vec3>,
     /// All points, computed on the first request, for a recording or an overlay.
     placed: OnceLock<Vec<Vec3>>,
@@ -26,16 +26,16 @@ impl Followers {
     /// Allocates memory for a groom.
     pub fn new(follow: HairInterpolation) -> Self {
         let layout = follow.layout.clone();
-        let (carriers, guide_points) = (Vec::new(), Vec::new());
-        Self { layout, effects: follow.effects, carriers, guide_points, placed: OnceLock::new() }
+        let (guide_transforms, guide_points) = (Vec::new(), Vec::new());
+        Self { layout, effects: follow.effects, guide_transforms, guide_points, placed: OnceLock::new() }
     }
 
     /// Copies a moment, reusing the memory.
     pub fn fill(&mut self, follow: HairInterpolation) {
         self.layout.clone_from(follow.layout);
         self.effects = follow.effects;
-        self.carriers.clear();
-        self.carriers.extend_from_slice(follow.carriers);
+        self.guide_transforms.clear();
+        self.guide_transforms.extend_from_slice(follow.guide_transforms);
         self.guide_points.clear();
         self.guide_points.extend_from_slice(follow.guide_points);
         self.placed = OnceLock::new();
@@ -43,8 +43,8 @@ impl Followers {
 
     /// The data for a renderer that interpolates the hairs.
     pub fn now<'a>(&'a self, obstacles: &'a [MovingCollider]) -> HairInterpolation<'a> {
-        let Self { layout, effects, carriers, guide_points, .. } = self;
-        HairInterpolation { layout, effects: *effects, carriers, guide_points, obstacles }
+        let Self { layout, effects, guide_transforms, guide_points, .. } = self;
+        HairInterpolation { layout, effects: *effects, guide_transforms, guide_points, obstacles }
     }
 
     /// All points [m], computed on the first request.

@@ -240,6 +240,8 @@ fn collider(
             pen.ball(pose.point(center), radius, stroke);
         }
         ColliderShape::Field(_) => skin(pen, scenery, stroke.color),
+        // A shape that a later version of the library adds.
+        _ => {}
     }
 }
 

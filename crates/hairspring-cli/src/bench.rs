@@ -258,7 +258,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
                 "method": method.name(),
                 "cell_m": v.cell,
                 "nodes": v.nodes,
-                "share": v.share,
+                "share": v.volume_ratio,
             })),
         }));
         return Ok(());
@@ -297,7 +297,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             method.name(),
             volume.cell * 1e3,
             grouped(volume.nodes),
-            volume.share * 1e2
+            volume.volume_ratio * 1e2
         ));
     }
     say(format_args!("memory   {bytes:.1} bytes per point"));

@@ -137,16 +137,16 @@ impl Totals {
             ));
         }
         let neighbours = stage.neighbours().unwrap_or_default();
-        if neighbours.same > 0 {
+        if neighbours.merged_strands > 0 {
             say(format_args!(
                 "same     {} strands are identical to others and share their contacts",
-                grouped(neighbours.same)
+                grouped(neighbours.merged_strands)
             ));
         }
-        if neighbours.crowded > 0 {
+        if neighbours.crowded_segments > 0 {
             say(format_args!(
                 "crowded  {} segments had more neighbors at once than are tested; some contacts were missed",
-                grouped(neighbours.crowded)
+                grouped(neighbours.crowded_segments)
             ));
         }
         let stages: Vec<String> = self.stages().iter().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
@@ -193,8 +193,8 @@ impl Totals {
             "stiffened_joints": stage.start().stiffened,
             "held_back_joints": stage.start().held_back,
             "coils_as_rods": stage.start().coils,
-            "same_strands": stage.neighbours().unwrap_or_default().same,
-            "crowded_segments": stage.neighbours().unwrap_or_default().crowded,
+            "same_strands": stage.neighbours().unwrap_or_default().merged_strands,
+            "crowded_segments": stage.neighbours().unwrap_or_default().crowded_segments,
             "substeps": self.substeps,
             "threads": rayon::current_num_threads(),
             "simd": stage.instruction_set(),

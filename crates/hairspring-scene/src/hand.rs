@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use hairspring::settings::{Check, Validate, check, from_0};
-use hairspring::{forces::Manipulator, math::between};
+use hairspring::{forces::Manipulator, math::find_keys};
 use serde::{Deserialize, Serialize};
 
 /// A hand with a manipulator.
@@ -35,7 +35,7 @@ impl Hand {
     /// Returns the displacement at `time` [s].
     pub fn moved(&self, time: f64) -> Vec3 {
         let place = |k: usize| Vec3::from_slice(&self.path[k][1..]);
-        let way = between(self.path.len(), |k| self.path[k][0], time);
+        let way = find_keys(self.path.len(), |k| self.path[k][0], time);
         way.map_or(Vec3::ZERO, |(a, b, share)| place(a).lerp(place(b), share))
     }
 }

@@ -154,11 +154,7 @@ impl Bench {
                 .map(|p| RigidTransform { translation: *p, ..RigidTransform::default() })
                 .collect(),
             roots,
-            obstacle: MovingCollider {
-                shape,
-                start: RigidTransform::default(),
-                end: RigidTransform::default(),
-            },
+            obstacle: MovingCollider::at_rest(shape, RigidTransform::default()),
             frame: 0,
         }
     }

@@ -199,11 +199,7 @@ impl Specimen {
         let obstacles: Vec<MovingCollider> = setup
             .obstacle
             .into_iter()
-            .map(|shape| MovingCollider {
-                shape,
-                start: RigidTransform::default(),
-                end: RigidTransform::default(),
-            })
+            .map(|shape| MovingCollider::at_rest(shape, RigidTransform::default()))
             .collect();
         let poses: Vec<ColliderPose> =
             obstacles.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();

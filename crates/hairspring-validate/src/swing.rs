@@ -172,21 +172,25 @@ impl Swing {
 
     /// Returns the current measurements.
     pub fn measure(&self) -> Measure {
-        let measure = self.simulation.measure(&[]);
-        Measure { speed_max: measure.speed_max / self.pace, ..measure }
+        let mut measure = self.simulation.measure(&[]);
+        measure.speed_max /= self.pace;
+        measure
     }
 
     /// Returns the current energy [J].
     pub fn energy(&self) -> Energy {
-        let Energy { kinetic, gravitational, bending, twisting, stretching } = self.simulation.energy();
+        let mut energy = self.simulation.energy();
         let p2 = self.pace * self.pace;
-        Energy {
-            kinetic: kinetic / p2,
-            gravitational: gravitational / p2,
-            bending: bending / p2,
-            twisting: twisting / p2,
-            stretching: stretching / p2,
+        for part in [
+            &mut energy.kinetic,
+            &mut energy.gravitational,
+            &mut energy.bending,
+            &mut energy.twisting,
+            &mut energy.stretching,
+        ] {
+            *part /= p2;
         }
+        energy
     }
 
     /// Returns the energy that could still be released by falling [J]; see [`Simulation::energy_to_fall`].

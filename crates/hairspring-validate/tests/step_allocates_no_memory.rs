@@ -75,7 +75,7 @@ fn hair_on_hair_allocates_nothing() {
             bench.step();
         }
         let report = bench.simulation.neighbours().unwrap();
-        assert!(report.pressing > 50, "{report:?}");
+        assert!(report.touching_pairs > 50, "{report:?}");
         COUNT.get() - before
     });
     assert_eq!(counted, 0, "{counted} allocations in 40 steps with strand contact");

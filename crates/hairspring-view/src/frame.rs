@@ -107,7 +107,8 @@ impl<'a> HairDraw<'a> {
     /// The interpolation data of the strands, if it has the same number of points.
     pub(crate) fn followed(&self) -> Option<HairInterpolation<'a>> {
         self.follow.filter(|f| {
-            f.layout.groom.points.len() == self.points.len() && f.carriers.len() == f.guide_points.len()
+            f.layout.groom.points.len() == self.points.len()
+                && f.guide_transforms.len() == f.guide_points.len()
         })
     }
 

@@ -47,8 +47,8 @@ pub fn main() {
             air: Air::default(),
         });
         simulation.write_points(&mut of_guides);
-        follow.carry(&of_guides, &turns);
-        follow.now(&of_guides, &[]).place(&mut all);
+        follow.update_guide_transforms(&of_guides, &turns);
+        follow.interpolation(&of_guides, &[]).place(&mut all);
     }
     let lowest = all.iter().map(|p| p.y).fold(0.0, f32::min);
     println!(

@@ -40,11 +40,13 @@
 //! | tools that hold hair: grab, comb, tie | [`forces::Manipulator`] |
 //! | hair on hair, as a volume or strand by strand | [`settings::Volume`], [`settings::Neighbours`] |
 //! | hairs that are drawn and not simulated | [`follow::Follow`] |
+//! | what to draw for debugging | [`simulation::Simulation::debug_lines`] |
+//! | contacts one by one, with the data of the user | [`simulation::Simulation::contact_points`] |
 //! | a character's mesh, skeleton and motion | [`body::Body`], [`body::Clip`] |
 //!
 //! The crate `hairspring-scene` plays whole scenes, and `hairspring-io` reads and writes files. The folder
 //! `examples` has a program for each use: an engine's loop, a custom force and collider, a distance field from an
-//! array, rollback, many characters, follow hairs.
+//! array, rollback, many characters, follow hairs, debug lines.
 //!
 //! # Units
 //!
@@ -60,7 +62,29 @@
 //! # Threads
 //!
 //! Steps run on the current [`rayon`](https://docs.rs/rayon) thread pool. To limit the threads, call them inside of
-//! `ThreadPool::install`.
+//! `ThreadPool::install`. Without the feature `parallel` they run on the calling thread.
+//!
+//! # Features
+//!
+//! | feature | default | |
+//! | --- | --- | --- |
+//! | `parallel` | yes | Steps run on all threads of a `rayon` pool. Without it, `rayon` is not compiled, and results have the same bits. |
+//! | `serde` | no | Settings, materials and manipulators implement `Serialize` and `Deserialize`, in the form of scene files; so do the vectors of `glam`. |
+//!
+//! # Errors and panics
+//!
+//! Building, setting points and restoring a snapshot return errors. [`simulation::Simulation::try_step`] returns an error
+//! for input that is not finite or of the wrong length. Strands whose state becomes non-finite are reset and counted in
+//! [`simulation::StepReport::reset_strands`]. Functions that take an index or an array of a given shape panic on a wrong
+//! one; each says so under *Panics*.
+//!
+//! # Versions
+//!
+//! The minimum supported Rust version is 1.95. CI builds with it, and the lint `clippy::incompatible_msrv` refuses newer
+//! functions of the standard library. A higher minimum comes with a new minor version, not with a patch.
+//!
+//! Enums and reports are `#[non_exhaustive]`: a match needs a wildcard arm. Settings are plain structs that may get more
+//! fields in a minor version. Write `..Default::default()`, also where all present fields are given.
 
 pub mod air;
 pub mod body;
@@ -70,6 +94,7 @@ pub mod forces;
 pub mod groom;
 pub mod material;
 pub mod math;
+pub(crate) mod parallel;
 pub mod prelude;
 pub mod settings;
 pub(crate) mod simd;

@@ -1,4 +1,4 @@
-//! The types that most programs need: `use hairspring::prelude::*;`.
+//! The types that most programs need: `use hairspring::prelude::*;`. For an example, see the [crate](crate#quick-start).
 
 pub use crate::{
     air::Air,
@@ -8,6 +8,6 @@ pub use crate::{
     material::{Material, Model},
     math::RigidTransform,
     settings::{Integrator, Neighbours, Quality, Response, Solver, Volume, VolumeMethod, Wind},
-    simulation::{ForceId, ManipulatorId, Simulation, Snapshot, StepInput, StepReport},
+    simulation::{ForceId, GroupId, ManipulatorId, Simulation, Snapshot, StepInput, StepReport},
 };
 pub use glam::{Quat, Vec3};

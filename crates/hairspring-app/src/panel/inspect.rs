@@ -120,7 +120,7 @@ pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) 
             _ if k == 0 => "left: ",
             _ => "right: ",
         };
-        let volume = scenery.volume.map(|v| format!(", volume {:.0} %", 100.0 * v.share));
+        let volume = scenery.volume.map(|v| format!(", volume {:.0} %", 100.0 * v.volume_ratio));
         ui.label(format!(
             "{side}stretch {:.2} % mean, {:.2} % worst; {} points and {} segments inside{}",
             100.0 * m.stretch_mean,

@@ -63,7 +63,7 @@ pub(super) fn run(path: &Path, frames: u32, as_json: bool, console: Console) -> 
         let contacts = stage.contacts();
         count(&mut points, contacts.points);
         count(&mut segments, contacts.segments);
-        count(&mut looked_up, contacts.looked_up);
+        count(&mut looked_up, contacts.distance_queries);
         substeps = report.step.substeps.max(substeps);
         reset += report.step.reset_strands;
         progress.step(|| format!("frame {frame}: {:.2} ms", whole.0[frame as usize - 1] * 1e3));

@@ -111,5 +111,6 @@ pub fn lesson(integrator: Integrator) -> Lesson {
                    back. The whip effect is gone, but a damping remains that depends on the step. The method is very cheap, keeps \
                    all lengths, and suits fur that needs no shape of its own.",
         },
+        other => Lesson { title: other.name(), equations: "", source: "", text: "" },
     }
 }

@@ -7,7 +7,7 @@ use super::{
     sentence::unknown,
 };
 use crate::{Character, ReadOptions, Result, load::pick_clip, read_motion};
-use hairspring::body::{Body, Clip, HeadMotion, Key, Travel, head_motion, keyed, retarget};
+use hairspring::body::{Body, Clip, HeadMotion, Key, Travel, head_motion, keyframe_clip, retarget};
 
 impl Reader<'_> {
     /// Returns the body as it is simulated, and its motion.
@@ -33,7 +33,7 @@ impl Reader<'_> {
         if !named.keys.is_empty() {
             let pivot = named.pivot.unwrap_or_default();
             let keys: Vec<Key> = named.keys.iter().map(KeyFile::key).collect();
-            return Ok((Some(rigid(character.body)), Some(keyed(&keys, pivot))));
+            return Ok((Some(rigid(character.body)), Some(keyframe_clip(&keys, pivot))));
         }
         let Some(file) = &named.file else {
             let clip = pick_clip(&character.clips, named.name.as_deref());

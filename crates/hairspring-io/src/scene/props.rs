@@ -9,7 +9,7 @@ use super::{
     file::{KeyFile, PropFile, SceneFile},
 };
 use crate::{Problem, Result};
-use hairspring::body::{Body, Clip, Joint, Trs, beside, keyed};
+use hairspring::body::{Body, Clip, Joint, Trs, combine_clips, keyframe_clip};
 
 /// Header of a prop's table.
 const HEADER: &str = "[[prop]]";
@@ -62,7 +62,7 @@ impl Reader<'_> {
             }
             let mesh = prop.mesh.as_ref().map(|mesh| self.body(mesh, "prop")).transpose()?.map(|c| c.body);
             let keys: Vec<_> = prop.keys.iter().map(KeyFile::key).collect();
-            props.push(Prop { name: prop.name.clone(), mesh, clip: keyed(&keys, prop.pivot) });
+            props.push(Prop { name: prop.name.clone(), mesh, clip: keyframe_clip(&keys, prop.pivot) });
         }
         Ok(props)
     }
@@ -88,7 +88,7 @@ pub(super) fn beside_props(clip: Option<Clip>, body: Option<&Body>, props: &[Pro
     match body {
         Some(body) if !props.is_empty() => {
             let ways: Vec<Clip> = props.iter().map(|prop| prop.clip.clone()).collect();
-            Some(beside(clip, &body.rest_pose(), &ways))
+            Some(combine_clips(clip, &body.rest_pose(), &ways))
         }
         _ => clip,
     }

@@ -340,7 +340,7 @@ impl StagedBody {
 
     /// Returns the current poses of the colliders.
     pub(super) fn poses(&self) -> Vec<ColliderPose> {
-        self.obstacles.iter().map(MovingCollider::now).collect()
+        self.obstacles.iter().map(MovingCollider::end_pose).collect()
     }
 
     /// Returns the posed body.

@@ -89,7 +89,7 @@ impl BodyPose {
         let (Some(body), Some(clip)) = (&scene.body, &scene.clip) else { return Vec::new() };
         let moved = self.moved;
         let in_world = |by: RigidTransform| moved.after(&by.after(&moved.inverse()));
-        self.cuts.between(body, clip, times).into_iter().map(|by| by.map(in_world)).collect()
+        self.cuts.motion_between(body, clip, times).into_iter().map(|by| by.map(in_world)).collect()
     }
 
     /// Returns whether the body has no joints, because there is none.

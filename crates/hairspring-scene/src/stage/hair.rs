@@ -127,7 +127,7 @@ impl StagedHair {
         for (turn, root) in self.turns.iter_mut().zip(&self.roots) {
             *turn = root.rotation;
         }
-        follow.carry(&self.guide_points, &self.turns);
+        follow.update_guide_transforms(&self.guide_points, &self.turns);
         if !self.left {
             self.place_followers(body);
         }
@@ -136,13 +136,13 @@ impl StagedHair {
     /// See [`super::Stage::place_follow_hairs`].
     pub(super) fn place_followers(&mut self, body: &StagedBody) {
         if let Some(follow) = &self.follow {
-            follow.now(&self.guide_points, body.obstacles()).place(&mut self.points);
+            follow.interpolation(&self.guide_points, body.obstacles()).place(&mut self.points);
         }
     }
 
     /// Returns the data that places the follow hairs in the current frame, if there are any.
     fn followed<'a>(&'a self, body: &'a StagedBody) -> Option<HairInterpolation<'a>> {
-        Some(self.follow.as_ref()?.now(&self.guide_points, body.obstacles()))
+        Some(self.follow.as_ref()?.interpolation(&self.guide_points, body.obstacles()))
     }
 
     /// Calls `look` with the current points of each strand, in parallel. This includes follow hairs that the
@@ -200,7 +200,7 @@ impl StagedHair {
             None => *out = of_guides,
             Some(follow) => {
                 out.resize(self.groom.point_count(), 0.0);
-                follow.spread(&of_guides, out);
+                follow.interpolate_values(&of_guides, out);
             }
         }
     }
@@ -262,7 +262,7 @@ impl StagedHair {
         self.show(simulation, body);
         let groom = Arc::new(Groom { points: self.points.clone(), ..(*self.groom).clone() });
         if let (Some(follow), Some(effects)) = (&mut self.follow, effects) {
-            *follow = follow.of(groom.clone(), obstacles);
+            *follow = follow.with_rest_pose(groom.clone(), obstacles);
             follow.set_effects(effects);
         }
         self.groom = groom;

@@ -46,14 +46,14 @@ pub(super) fn take(body: &mut Body, anchor: usize, longest: f32) -> Vec<Piece> {
         body.mesh.triangles.iter().map(|triangle| of(triangle)[0].map(usize::from)).collect();
     let mut pieces = Vec::new();
     for (joint, alone) in alone.iter_mut().enumerate().filter(|(_, alone)| **alone) {
-        let piece = body.of_triangles(|t| joint_of[t] == Some(joint));
+        let piece = body.with_triangles(|t| joint_of[t] == Some(joint));
         *alone = piece.mesh.bounds().is_some_and(|(lo, hi)| (hi - lo).max_element() <= longest);
         if *alone {
             pieces.push(Piece { joint, body: piece });
         }
     }
     if !pieces.is_empty() {
-        *body = body.of_triangles(|t| joint_of[t].is_none_or(|joint| !alone[joint]));
+        *body = body.with_triangles(|t| joint_of[t].is_none_or(|joint| !alone[joint]));
     }
     pieces
 }

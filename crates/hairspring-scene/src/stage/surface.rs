@@ -158,9 +158,11 @@ impl Surface {
         if !fresh && moved < (STILL * fine).powi(2) {
             match shape {
                 ColliderShape::Field(grid) if grid.deforms() => {
-                    SignedDistanceField::hold_still(Arc::make_mut(grid))
+                    SignedDistanceField::clear_motion(Arc::make_mut(grid))
                 }
-                ColliderShape::Sheet(sheet) if sheet.deforms() => ThinShell::hold_still(Arc::make_mut(sheet)),
+                ColliderShape::Sheet(sheet) if sheet.deforms() => {
+                    ThinShell::clear_motion(Arc::make_mut(sheet))
+                }
                 _ => {}
             }
             // Small motion is not lost: it accumulates relative to the last built surface.

@@ -21,7 +21,8 @@ impl StagedWind {
     pub(super) fn advance(&mut self, scene: &Scene, time: f64, body: &StagedBody) {
         self.sources.clear();
         let all = scene.wind_sources.iter().zip(&self.joints).enumerate();
-        self.sources.extend(all.map(|(k, (source, joint))| source.at(k, body.pose().carried(*joint), time)));
+        self.sources
+            .extend(all.map(|(k, (source, joint))| source.at_time(k, body.pose().carried(*joint), time)));
     }
 
     /// Returns the sources in the last frame that was begun.

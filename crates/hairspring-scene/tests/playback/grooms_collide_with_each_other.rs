@@ -164,6 +164,6 @@ fn hair_on_a_second_body_is_initialized_at_its_start_pose() {
     }
     let mut stage = Stage::new(moved).unwrap();
     stage.step(1.0 / 60.0);
-    let share = stage.volume().unwrap().share;
+    let share = stage.volume().unwrap().volume_ratio;
     assert!((share - 1.0).abs() < 0.05, "hair does not start at rest density: {share}");
 }

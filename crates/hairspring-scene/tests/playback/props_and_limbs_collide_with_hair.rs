@@ -128,7 +128,8 @@ fn play(scene: Scene) {
         stage.step(1.0 / 60.0);
     }
     let points: Vec<Vec3> = stage.strands().flat_map(|strands| strands.points.to_vec()).collect();
-    let depth = |p: &Vec3| stage.obstacles().iter().map(|o| -o.now().distance(*p)).fold(f32::MIN, f32::max);
+    let depth =
+        |p: &Vec3| stage.obstacles().iter().map(|o| -o.end_pose().distance(*p)).fold(f32::MIN, f32::max);
     let deepest = points.chunks(POINTS).flat_map(|strand| &strand[1..]).map(depth).fold(f32::MIN, f32::max);
     // A strand that reaches below the bar must pass in front of it.
     let taken = points.chunks(POINTS).filter(|strand| {

@@ -29,7 +29,8 @@ pub const CASE: Case = Case {
         Model::Auto => Some(
             "for a strand that is straight at rest, auto selects the curvature model, which has no twist",
         ),
-        Model::Rod => (method.points < 48).then_some(
+        // The rod.
+        _ => (method.points < 48).then_some(
             "at 32 points each joint of the ring turns by 0.2 rad and twists by 0.8 rad, too much for the twist measure",
         ),
     }

@@ -160,7 +160,7 @@ fn shaken(
         frame += 1;
         let pose = motion(time.min(VIOLENCE));
         let pose = RigidTransform { translation: pose.translation + root, rotation: pose.rotation };
-        let body = [MovingCollider { shape: head.clone(), start: before, end: pose }];
+        let body = [MovingCollider::new(head.clone(), before, pose)];
         before = pose;
         let report = simulation.step(&StepInput {
             dt,

@@ -77,9 +77,9 @@ fn coincident_strands_touch_others_as_one() {
     let (one, lone) = over(1);
     let (many, tips) = over(1000);
     println!("one: {one:?}\n1000: {many:?}");
-    assert!(lone[1].y > -0.3 && one.pressing > 0, "the strand does not lie over the bar: {}", lone[1]);
-    assert_eq!((one.same, many.same), (0, 999));
-    assert_eq!(one.looked_at, many.looked_at, "the numbers of tested pairs differ");
+    assert!(lone[1].y > -0.3 && one.touching_pairs > 0, "the strand does not lie over the bar: {}", lone[1]);
+    assert_eq!((one.merged_strands, many.merged_strands), (0, 999));
+    assert_eq!(one.tested_pairs, many.tested_pairs, "the numbers of tested pairs differ");
     let apart = tips[1..].iter().map(|tip| tip.distance(lone[1])).fold(0.0, f32::max);
     assert!(apart < 1e-3, "the tips of a thousand strands are {apart} m from the tip of one");
 }
@@ -94,14 +94,14 @@ fn a_crowd_costs_linearly_and_is_reported() {
     let [half, all] = [600, 1200].map(|count| fallen(0, &crowd(count), 2).0);
     println!("600: {half:?}\n1200: {all:?}");
     assert!(
-        all.looked_at < 3 * half.looked_at,
+        all.tested_pairs < 3 * half.tested_pairs,
         "{} pairs, {} for half of the strands",
-        all.looked_at,
-        half.looked_at
+        all.tested_pairs,
+        half.tested_pairs
     );
     // Two frames have eight substeps, and in each a segment is tested against at most 256 others.
-    assert!(all.looked_at < 1200 * 11 * 256 * 8, "{} pairs", all.looked_at);
-    assert!(all.crowded > 0, "the crowd is not reported");
+    assert!(all.tested_pairs < 1200 * 11 * 256 * 8, "{} pairs", all.tested_pairs);
+    assert!(all.crowded_segments > 0, "the crowd is not reported");
     let (few, _) = fallen(0, &crowd(10), 3);
-    assert_eq!(few.crowded, 0);
+    assert_eq!(few.crowded_segments, 0);
 }

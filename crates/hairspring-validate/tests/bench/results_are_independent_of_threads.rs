@@ -70,11 +70,10 @@ fn a_whole_scene_is_independent_of_threads() {
 #[test]
 fn strands_in_contact_are_independent_of_their_tile() {
     let groom = Arc::new(bench::groom(8, 24));
-    let obstacle = MovingCollider {
-        shape: ColliderShape::Sphere { center: Vec3::ZERO, radius: bench::RADIUS },
-        start: RigidTransform::default(),
-        end: RigidTransform::default(),
-    };
+    let obstacle = MovingCollider::at_rest(
+        ColliderShape::Sphere { center: Vec3::ZERO, radius: bench::RADIUS },
+        RigidTransform::default(),
+    );
     let fall = |strands: &[u32]| {
         let mut simulation = Simulation::builder(groom.clone())
             .strands(strands)

@@ -141,7 +141,7 @@ fn kept(volume: Volume) -> f64 {
     for frame in 0..180 {
         assert_eq!(bench.step().reset_strands, 0);
         if frame >= 120 {
-            sum += bench.simulation.volume().unwrap().share / 60.0;
+            sum += bench.simulation.volume().unwrap().volume_ratio / 60.0;
         }
     }
     let measure = bench.measure();

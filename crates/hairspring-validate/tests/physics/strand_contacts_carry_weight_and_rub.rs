@@ -177,7 +177,7 @@ fn torn(stiction: f32, pull: f32) -> (f32, usize) {
     strands.simulation.set_holds(&pulled(-5e-6));
     strands.play(0.5);
     assert!(
-        stiction == 0.0 || strands.simulation.neighbours().unwrap().bonds > 0,
+        stiction == 0.0 || strands.simulation.neighbours().unwrap().stuck_pairs > 0,
         "{:?}",
         strands.simulation.neighbours()
     );
@@ -187,7 +187,7 @@ fn torn(stiction: f32, pull: f32) -> (f32, usize) {
         strands.play(bench::FRAME);
     }
     strands.play(0.25);
-    (strands.points()[1][10].y - 0.002, strands.simulation.neighbours().unwrap().bonds)
+    (strands.points()[1][10].y - 0.002, strands.simulation.neighbours().unwrap().stuck_pairs)
 }
 
 #[test]
@@ -221,11 +221,11 @@ fn squeezed(neighbours: Neighbours) -> f32 {
                 }
             };
             let (center, half) = (Vec3::new(side * 0.02, -0.13, 0.0), Vec3::new(0.02, 0.04, 0.1));
-            hairspring::collide::MovingCollider {
-                shape: ColliderShape::Cuboid { center, half, axes: Mat3::IDENTITY },
-                start: at(frame),
-                end: at(frame + 1),
-            }
+            hairspring::collide::MovingCollider::new(
+                ColliderShape::Cuboid { center, half, axes: Mat3::IDENTITY },
+                at(frame),
+                at(frame + 1),
+            )
         };
         strands.bodies = vec![wall(-1.0), wall(1.0)];
         strands.play(bench::FRAME);
@@ -321,7 +321,7 @@ fn contacts_are_independent_of_threads() {
     let (one, bench) = shaken(neighbours, 1, 60);
     let report = bench.simulation.neighbours().unwrap();
     println!("{report:?}");
-    assert!(report.pressing > 50, "{report:?}");
+    assert!(report.touching_pairs > 50, "{report:?}");
     for threads in [2, 7] {
         assert!(shaken(neighbours, threads, 60).0 == one, "other bits on {threads} threads");
     }
@@ -383,7 +383,7 @@ fn strand_contact_keeps_volume_of_a_shaken_head() {
         for frame in 0..180 {
             assert_eq!(bench.step().reset_strands, 0);
             if frame >= 120 {
-                sum += bench.simulation.volume().unwrap().share / 60.0;
+                sum += bench.simulation.volume().unwrap().volume_ratio / 60.0;
             }
         }
         sum

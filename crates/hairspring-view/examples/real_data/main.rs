@@ -190,20 +190,18 @@ fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
         }
         played.deep_frames += usize::from(measure.deep_segments > 0);
         let worst = &mut played.worst;
-        *worst = Measure {
-            stretch_mean: worst.stretch_mean.max(measure.stretch_mean),
-            stretch_max: worst.stretch_max.max(measure.stretch_max),
-            inside_points: worst.inside_points.max(measure.inside_points),
-            max_depth: worst.max_depth.max(measure.max_depth),
-            inside_segments: worst.inside_segments.max(measure.inside_segments),
-            deep_segments: worst.deep_segments.max(measure.deep_segments),
-            surface_depth: worst.surface_depth.max(measure.surface_depth),
-            segment_depth: worst.segment_depth.max(measure.segment_depth),
-            held_segments: worst.held_segments.max(measure.held_segments),
-            held_depth: worst.held_depth.max(measure.held_depth),
-            non_finite: worst.non_finite + measure.non_finite + report.step.reset_strands,
-            speed_max: worst.speed_max.max(measure.speed_max),
-        };
+        worst.stretch_mean = worst.stretch_mean.max(measure.stretch_mean);
+        worst.stretch_max = worst.stretch_max.max(measure.stretch_max);
+        worst.inside_points = worst.inside_points.max(measure.inside_points);
+        worst.max_depth = worst.max_depth.max(measure.max_depth);
+        worst.inside_segments = worst.inside_segments.max(measure.inside_segments);
+        worst.deep_segments = worst.deep_segments.max(measure.deep_segments);
+        worst.surface_depth = worst.surface_depth.max(measure.surface_depth);
+        worst.segment_depth = worst.segment_depth.max(measure.segment_depth);
+        worst.held_segments = worst.held_segments.max(measure.held_segments);
+        worst.held_depth = worst.held_depth.max(measure.held_depth);
+        worst.non_finite += measure.non_finite + report.step.reset_strands;
+        worst.speed_max = worst.speed_max.max(measure.speed_max);
         let times = [report.body, report.simulate, report.follow];
         played.frames.push(times.map(|t| t.as_secs_f64() * 1e3));
     }

@@ -168,7 +168,8 @@ impl<'a> Shape<'a> {
                 },
                 numbers: grid.distances().into(),
             },
-            ColliderShape::Field(_) | ColliderShape::Sheet(_) | ColliderShape::Custom(_) => return None,
+            // Empty fields, thin shells and custom shapes.
+            _ => return None,
         })
     }
 }
@@ -233,7 +234,8 @@ impl Groom {
         let word = |(ride, clearance): (&[u16; 3], &f32)| {
             [u32::from(ride[0]) | u32::from(ride[1]) << 16, u32::from(ride[2]), clearance.to_bits()]
         };
-        let rides: Vec<[u32; 3]> = layout.ride.par_iter().zip(&layout.clearance).map(word).collect();
+        let rides: Vec<[u32; 3]> =
+            layout.guide_coordinates.par_iter().zip(&layout.clearance).map(word).collect();
         groom.rides.fill(gpu, &rides, generation);
         let guides: Vec<Vec3> =
             layout.guides.iter().flat_map(|g| layout.groom.strand(*g as usize)).copied().collect();
@@ -253,7 +255,7 @@ impl Groom {
             let m = Mat3::from(carrier.matrix3);
             [m.x_axis.extend(at.x), m.y_axis.extend(at.y), m.z_axis.extend(at.z)]
         };
-        let places = || now.carriers.iter().zip(now.guide_points);
+        let places = || now.guide_transforms.iter().zip(now.guide_points);
         let carriers: Vec<[Vec4; 3]> = places().map(carried).collect();
         self.carriers.fill(gpu, &carriers, generation);
         let Effects { clump, curl_radius, curl_length, noise } = now.effects;
@@ -310,7 +312,7 @@ fn boxes(layout: &FollowLayout) -> Vec<(Vec3, Vec3)> {
             let range = layout.guide_range(weights.guides[g] as usize);
             let last = range.len() - 1;
             for i in layout.groom.range(s) {
-                let at = f32::from(layout.ride[i][g]) * (last as f32 / f32::from(u16::MAX));
+                let at = f32::from(layout.guide_coordinates[i][g]) * (last as f32 / f32::from(u16::MAX));
                 let k = range.start + (at as usize).min(last - 1);
                 for k in [k, k + 1] {
                     let d = layout.groom.points[i] - rest[k];

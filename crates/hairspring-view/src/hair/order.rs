@@ -10,7 +10,7 @@
 use super::shade::LANES;
 use crate::frame::Frame;
 use glam::Vec3;
-use hairspring::groom::Curve;
+use hairspring::groom::MortonCurve;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -56,14 +56,14 @@ impl Order {
         self.strands.clear();
         self.runs.clear();
         self.owners.clear();
-        let curve = Curve::through(bounds.0, bounds.1);
+        let curve = MortonCurve::covering(bounds.0, bounds.1);
         for (hair, h) in frame.hair.iter().enumerate() {
             let first = self.strands.len();
             // Strands are sorted by their middle points, because their roots are close together.
             self.strands.par_extend((0..h.strand_count()).into_par_iter().map(|s| {
                 let range = h.range(s);
                 let middle = h.points.get(range.start + range.len() / 2).copied().unwrap_or_default();
-                (curve.along(middle), s as u32)
+                (curve.index(middle), s as u32)
             }));
             self.strands[first..].par_sort_unstable();
             let (mut start, mut slot) = (first, self.owners.len() * LANES);

@@ -7,10 +7,10 @@
 //!
 //! | file | |
 //! | --- | --- |
-//!  [`gust`] | variation of the wind over time |
+//! | [`gust`] | variation of the wind over time |
 //! | [`source`] | points, vortices and fans |
 //! | [`turbulence`] | curl noise |
-//!  [`occlusion`] | T, the fraction of the wind that bodies and hair let through |
+//! | [`occlusion`] | T, the fraction of the wind that bodies and hair let through |
 //!
 //! W is the directional wind. It is the same everywhere and is evaluated for every substep; several
 //! directional winds would add up to one. Everything else is sampled once a frame, at the positions of the
@@ -19,6 +19,20 @@
 //! # Missing
 //! The air is prescribed, not simulated: hair and bodies slow it down but do not deflect it. The velocity of
 //! a moving source is not added to its wind.
+//!
+//! # Example
+//! ```
+//! use glam::Vec3;
+//! use hairspring::{air::{Air, Flow, WindSource}, math::RigidTransform, settings::Wind};
+//!
+//! // A fan that blows along X, in a breeze.
+//! let shape = Flow::Fan { center: Vec3::ZERO, axis: Vec3::X, radius: 0.1, speed: 4.0, spread: 11.8 };
+//! let fan = WindSource { joint: None, shape, gust: 0.0, gust_rate: 0.0 };
+//! let sources = [fan.at_time(0, RigidTransform::default(), 0.0)];
+//! let wind = Wind { velocity: Vec3::Z, ..Default::default() };
+//! let air = Air { wind, sources: &sources, ..Default::default() };
+//! assert!(air.sources[0].velocity(Vec3::X * 0.1).x > 3.0);
+//! ```
 
 mod gust;
 mod occlusion;
@@ -36,6 +50,8 @@ use glam::Vec3;
 use gust::Gust;
 
 /// The air during a frame. The default is still air.
+///
+/// For an example, see [`air`](crate::air).
 #[derive(Clone, Copy, Default)]
 pub struct Air<'a> {
     /// The directional wind, the same everywhere.

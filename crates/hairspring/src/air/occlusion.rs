@@ -17,15 +17,29 @@
 //! occluded as their guides are.
 
 use super::AirSample;
+use crate::parallel::prelude::*;
 use crate::settings::{Check, Validate, above_0, check, from_0};
 use crate::{collide::FrameColliders, volume::Density};
 use glam::Vec3;
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 /// Occlusion of the wind by bodies and hair.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// ```
+/// use hairspring::{air::WindOcclusion, prelude::*};
+///
+/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+/// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+/// let occlusion = WindOcclusion { body: 1.0, ..Default::default() };
+/// assert!(occlusion.is_on());
+/// simulation.set_wind_occlusion(&occlusion);
+/// # Ok::<(), hairspring::simulation::BuildError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct WindOcclusion {
     /// Attenuation of the wind inside a body, β [1/m], 0 or more. Default 0: bodies do not block the wind.
     /// With 100, the wind falls to 1/e within one centimeter.

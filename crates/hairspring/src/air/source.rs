@@ -16,29 +16,30 @@ use super::gust::Gust;
 use crate::math::RigidTransform;
 use crate::settings::{Check, Validate, above_0, check, gusts};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A source of wind.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+///
+/// For an example, see [`air`](crate::air).
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct WindSource {
     /// Name of the body joint that the source is attached to. `None`: the source is fixed in the world.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub joint: Option<String>,
     /// The velocity field, in the space of the body's rest pose or of the world.
     pub shape: Flow,
     /// Gust amplitude as a fraction of the mean speed, 0 to 1. Default 0.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub gust: f32,
     /// Gust frequency [Hz]. Default 0: none. Every source has its own gust phase.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub gust_rate: f32,
 }
 
 impl WindSource {
     /// Returns the source at `time` [s], moved by `pose` relative to its rest pose. `number` is the index of
     /// the source in the scene; it selects the gust phase.
-    pub fn at(&self, number: usize, pose: RigidTransform, time: f64) -> Source {
+    pub fn at_time(&self, number: usize, pose: RigidTransform, time: f64) -> Source {
         // Multiples of the golden angle, so that all phases differ.
         let gust = Gust { amount: self.gust, rate: self.gust_rate, phase: 2.4 * (number + 1) as f32 };
         let factor = if self.gust_rate > 0.0 { gust.factor(time) } else { 1.0 };
@@ -47,8 +48,15 @@ impl WindSource {
 }
 
 /// The velocity field of a [`WindSource`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+///
+/// For an example, see [`air`](crate::air).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
+#[non_exhaustive]
 pub enum Flow {
     /// Flow out of a ball in all directions, or into it.
     Point {
@@ -82,12 +90,13 @@ pub enum Flow {
         speed: f32,
         /// Half-angle of the jet's cone, between its axis and its edge [degrees], 0 to 80. Default 11.8, the
         /// angle of every free turbulent jet: its radius grows by a fifth of the distance (Pope 2000, §5.1).
-        #[serde(default = "free_jet")]
+        #[cfg_attr(feature = "serde", serde(default = "free_jet"))]
         spread: f32,
     },
 }
 
 /// Half-angle of a free turbulent jet [degrees].
+#[cfg(feature = "serde")]
 fn free_jet() -> f32 {
     11.8
 }
@@ -127,6 +136,8 @@ impl Flow {
 }
 
 /// A wind source as it is in one frame.
+///
+/// For an example, see [`air`](crate::air).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
     /// The velocity field, at rest.

@@ -18,11 +18,21 @@
 
 use crate::settings::{Check, Validate, above_0, check, from_0};
 use glam::{DVec3, IVec3, Mat3, Vec3};
-use serde::{Deserialize, Serialize};
 
 /// Parameters of the turbulence.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// ```
+/// use hairspring::air::Turbulence;
+///
+/// let gusty = Turbulence { strength: 1.5, ..Default::default() };
+/// assert!(gusty.is_on() && !Turbulence::default().is_on());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Turbulence {
     /// Root mean square of the turbulent velocity [m/s], 0 or more. Default 0: none. Outdoors it is a tenth
     /// to a third of the wind speed.

@@ -3,6 +3,8 @@
 use glam::{Affine3A, Quat, Vec3};
 
 /// A joint's transform relative to its parent: scale, then rotate, then translate.
+///
+/// For an example, see [`body`](crate::body).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trs {
     /// Translation [m].
@@ -40,6 +42,8 @@ impl Trs {
 const ON_FRAME: f64 = 1e-6;
 
 /// A motion clip: for every frame and joint, the joint's local transform.
+///
+/// For an example, see [`body`](crate::body).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     /// Name of the clip in the file.
@@ -71,6 +75,9 @@ impl Clip {
     }
 
     /// Returns the local transforms at `time` [s], clamped to the first and last frame; shape `[joints]`.
+    ///
+    /// # Panics
+    /// If the clip has joints but no frame.
     pub fn sample(&self, time: f64) -> Vec<Trs> {
         let (i, t) = self.place(time);
         self.frame(i).iter().zip(self.frame(i + 1)).map(|(a, b)| a.lerp(b, t)).collect()

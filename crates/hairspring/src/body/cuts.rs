@@ -34,6 +34,20 @@ pub(crate) fn is_teleport(off: f32, turned: f32, distance: f32, dt: f64) -> bool
 }
 
 /// The cuts of a clip on a body.
+///
+/// ```
+/// use glam::{Quat, Vec3};
+/// use hairspring::body::{Body, Clip, Cuts, Mesh, Trs};
+///
+/// // A clip of 30 Hz that jumps by 5 m after its second frame.
+/// let at = |x| Trs { translation: Vec3::X * x, ..Default::default() };
+/// let samples = [0.0, 0.0, 5.0, 5.0].map(at).to_vec();
+/// let clip = Clip { name: "cut".into(), rate: 30.0, joint_count: 1, samples };
+/// let body = Body::rigid(Mesh::default());
+/// let cuts = Cuts::new(&body, &clip, 0, 1.0);
+/// let moved = cuts.motion_between(&body, &clip, (0.0, 0.1));
+/// assert_eq!(moved[0].map(|by| by.translation), Some(Vec3::X * 5.0));
+/// ```
 #[derive(Debug, Default)]
 pub struct Cuts {
     trees: Vec<Tree>,
@@ -53,6 +67,9 @@ struct Tree {
 impl Cuts {
     /// Finds the cuts of `clip`. `distance` is the teleport distance [m], and `anchor` the joint that carries
     /// the hair.
+    ///
+    /// # Panics
+    /// If there is no joint `anchor`, or the clip has other joints than the body.
     pub fn new(body: &Body, clip: &Clip, anchor: usize, distance: f32) -> Self {
         let mut cuts = Self::default();
         for (joint, parent) in body.joints.iter().map(|j| j.parent).enumerate() {
@@ -91,7 +108,12 @@ impl Cuts {
 
     /// Returns the rigid motion of each joint due to the cuts after time `from` and up to `to` [s]; `None`
     /// for joints without a cut. Empty if there is no cut at all.
-    pub fn between(&self, body: &Body, clip: &Clip, (from, to): (f64, f64)) -> Vec<Option<RigidTransform>> {
+    pub fn motion_between(
+        &self,
+        body: &Body,
+        clip: &Clip,
+        (from, to): (f64, f64),
+    ) -> Vec<Option<RigidTransform>> {
         let (first, last) = (clip.place(from).0, clip.place(to).0);
         let mut moved = Vec::new();
         for (number, tree) in self.trees.iter().enumerate() {

@@ -3,6 +3,8 @@
 use glam::{Vec2, Vec3};
 
 /// A triangle mesh [m], counter-clockwise seen from outside.
+///
+/// For an example, see [`body`](crate::body).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Vertex positions in the rest pose [m]; shape `[vertices]`.
@@ -20,6 +22,8 @@ pub struct Mesh {
 }
 
 /// A named range of a mesh's triangles with its own color.
+///
+/// For an example, see [`body`](crate::body).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// Name of the part in the file.
@@ -34,11 +38,17 @@ pub struct Part {
 
 impl Mesh {
     /// Returns the corner positions of triangle `t` [m].
+    ///
+    /// # Panics
+    /// If there is no triangle `t`, or it names a vertex that does not exist.
     pub fn corners(&self, t: usize) -> [Vec3; 3] {
         self.triangles[t].map(|i| self.positions[i as usize])
     }
 
     /// Sets `normals` to the area-weighted mean of the normals of the adjoining faces.
+    ///
+    /// # Panics
+    /// If a triangle names a vertex that does not exist.
     pub fn compute_normals(&mut self) {
         self.normals = vertex_normals(&self.positions, &self.triangles);
     }

@@ -8,6 +8,8 @@ use glam::Vec3;
 const LEAF: usize = 4;
 
 /// A point on a triangle, with its distance from the query point.
+///
+/// For an example, see [`NearestTree`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPlace {
     /// Index of the triangle.
@@ -19,6 +21,17 @@ pub struct NearestPlace {
 }
 
 /// A bounding volume hierarchy over the triangles of a mesh.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::body::{Mesh, NearestTree};
+///
+/// let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Z];
+/// let mesh = Mesh { positions, triangles: vec![[0, 2, 1]], ..Default::default() };
+/// let tree = NearestTree::new(&mesh);
+/// let place = tree.nearest(Vec3::new(0.2, 0.5, 0.2), |_| true).unwrap();
+/// assert_eq!((place.triangle, place.distance_squared), (0, 0.25));
+/// ```
 pub struct NearestTree<'a> {
     mesh: &'a Mesh,
     nodes: Vec<Node>,
@@ -38,6 +51,9 @@ struct Node {
 
 impl<'a> NearestTree<'a> {
     /// Builds the tree. Nodes are split at the median centroid along their longest axis.
+    ///
+    /// # Panics
+    /// If a triangle names a vertex that does not exist.
     pub fn new(mesh: &'a Mesh) -> Self {
         let centroids: Vec<Vec3> =
             (0..mesh.triangles.len()).map(|t| mesh.corners(t).into_iter().sum::<Vec3>() / 3.0).collect();

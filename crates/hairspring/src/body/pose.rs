@@ -4,6 +4,8 @@ use super::{Mesh, Part, Trs, mesh::vertex_normals};
 use glam::{Affine3A, Vec3, Vec3A};
 
 /// One joint of a skeleton.
+///
+/// For an example, see [`body`](crate::body).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Name of the joint in the file.
@@ -15,6 +17,8 @@ pub struct Joint {
 }
 
 /// Skinning data: how the vertices of a mesh follow the joints.
+///
+/// For an example, see [`body`](crate::body).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skin {
     /// Up to four joints of each vertex; shape `[vertices]`.
@@ -33,6 +37,9 @@ impl Skin {
 
     /// Returns the posed position of a vertex whose rest position is `rest` [m] (linear blend skinning).
     /// `matrices` are those of [`Skin::matrices`].
+    ///
+    /// # Panics
+    /// If there is no such vertex, or it names a joint without a matrix.
     pub fn place(&self, vertex: usize, rest: Vec3, matrices: &[Affine3A]) -> Vec3 {
         let mut at = Vec3A::ZERO;
         for (j, w) in self.joints[vertex].iter().zip(self.weights[vertex]) {
@@ -45,6 +52,8 @@ impl Skin {
 }
 
 /// A mesh with its skeleton. Without a skin the whole mesh is rigid and moves with joint 0.
+///
+/// For an example, see [`body`](crate::body).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Body {
     /// The surface.
@@ -83,7 +92,7 @@ impl Body {
 
     /// Returns a copy of the body with only the triangles whose index `keep` accepts, and the vertices that
     /// they use. The copy has no parts.
-    pub fn of_triangles(&self, keep: impl Fn(usize) -> bool) -> Self {
+    pub fn with_triangles(&self, keep: impl Fn(usize) -> bool) -> Self {
         let mut body = self.clone();
         body.mesh.parts.clear();
         let mut index = 0..;
@@ -116,6 +125,9 @@ impl Body {
     }
 
     /// Returns the model-space matrix of every joint for the local transforms `pose` of shape `[joints]`.
+    ///
+    /// # Panics
+    /// If a parent does not precede its joint.
     pub fn world(&self, pose: &[Trs]) -> Vec<Affine3A> {
         let mut world: Vec<Affine3A> = Vec::with_capacity(self.joints.len());
         for (joint, local) in self.joints.iter().zip(pose) {
@@ -132,6 +144,9 @@ impl Body {
 
     /// Writes the vertex positions [m] and unit normals of the pose with joint matrices `world` (linear blend
     /// skinning).
+    ///
+    /// # Panics
+    /// If the skin has fewer vertices than the mesh, or names a joint without a matrix.
     pub fn skinned(&self, world: &[Affine3A], positions: &mut Vec<Vec3>, normals: &mut Vec<Vec3>) {
         positions.clear();
         normals.clear();

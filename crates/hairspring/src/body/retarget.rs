@@ -6,6 +6,8 @@ use crate::{math::RigidTransform, settings::Solver};
 use glam::{Affine3A, Quat, Vec3};
 
 /// How much of the head's translation [`head_motion`] keeps.
+///
+/// For an example, see [`head_motion`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Travel {
     /// All of it: the bust walks away with the capture.
@@ -19,6 +21,8 @@ pub enum Travel {
 }
 
 /// Options of [`head_motion`].
+///
+/// For an example, see [`head_motion`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadMotion {
     /// Point that the bust rotates about [m]: its own head joint, at the top of the neck.
@@ -44,6 +48,15 @@ impl Default for HeadMotion {
 ///
 /// The person's heading in the rest frame, computed from the joints named left and right, is rotated to that
 /// of the bust. A nod therefore stays a nod whichever way the captured person faces.
+///
+/// ```
+/// use hairspring::body::{Clip, HeadMotion, Joint, Trs, head_motion};
+///
+/// let joints = [Joint { name: "Head".into(), parent: None, rest: Trs::default() }];
+/// let clip = Clip { name: "nod".into(), rate: 30.0, joint_count: 1, samples: vec![Trs::default(); 10] };
+/// let head = head_motion(&joints, &clip, "Head", &HeadMotion::default()).unwrap();
+/// assert_eq!((head.joint_count, head.frame_count()), (1, 10));
+/// ```
 pub fn head_motion(joints: &[Joint], clip: &Clip, name: &str, options: &HeadMotion) -> Option<Clip> {
     let skeleton = Body { joints: joints.to_vec(), ..Body::default() };
     let head = skeleton.joint(name)?;
@@ -124,7 +137,10 @@ fn heading(joints: &[Joint], world: &[Affine3A]) -> f32 {
 }
 
 /// A clip retargeted to another rig.
+///
+/// For an example, see [`retarget`].
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Retargeted {
     /// Motion of the body's joints.
     pub clip: Clip,
@@ -141,6 +157,15 @@ pub struct Retargeted {
 /// if the rest poses differ (arms down or out). The spine up to the head keeps the curve of the body's rest
 /// pose. The root's translation is scaled by the ratio of the hip heights. It starts at the body's own place,
 /// with the lowest joint on the same floor.
+///
+/// ```
+/// use hairspring::body::{Body, Clip, Joint, Mesh, Trs, retarget};
+///
+/// // A motion whose joints the body does not have.
+/// let joints = [Joint { name: "Tail".into(), parent: None, rest: Trs::default() }];
+/// let clip = Clip { name: "wag".into(), rate: 30.0, joint_count: 1, samples: vec![Trs::default(); 10] };
+/// assert!(retarget(&joints, &clip, &Body::rigid(Mesh::default())).is_none());
+/// ```
 pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted> {
     let source = Body { joints: joints.to_vec(), ..Body::default() };
     let map: Vec<Option<usize>> =

@@ -28,6 +28,8 @@ const JOGGLES: [f32; 4] = [0.0, 1e-6, 1e-5, 1e-4];
 /// A convex solid, given by its faces. Each face costs about ten instructions for eight points that touch the
 /// hull, so a hull of a hundred faces is about as fast as a distance field. A shape with more faces should be
 /// given as a mesh.
+///
+/// For an example, see [`collide`](crate::collide).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     faces: Vec<Face>,

@@ -4,7 +4,19 @@ use super::{ColliderPose, ColliderShape};
 use crate::math::RigidTransform;
 
 /// A collider with its pose at the start and at the end of a frame.
-#[derive(Clone)]
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::{collide::{ColliderShape, MovingCollider}, math::RigidTransform};
+///
+/// let ball = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };
+/// let start = RigidTransform::default();
+/// let end = RigidTransform { translation: Vec3::X * 0.01, ..start };
+/// let collider = MovingCollider::new(ball, start, end).with_user_data(42);
+/// assert!(collider.end_pose().distance(Vec3::X * 0.01) < 0.0);
+/// assert_eq!(collider.user_data, 42);
+/// ```
+#[derive(Clone, Debug)]
 pub struct MovingCollider {
     /// The shape in its own space.
     pub shape: ColliderShape,
@@ -12,16 +24,29 @@ pub struct MovingCollider {
     pub start: RigidTransform,
     /// Pose at the end.
     pub end: RigidTransform,
+    /// Data of the user, such as an entity of the engine. The simulation does not read it.
+    /// [`Simulation::contact_points`](crate::simulation::Simulation::contact_points) returns it. Default 0.
+    pub user_data: u128,
 }
 
 impl MovingCollider {
-    /// A shape that stays at `pose`.
+    /// Creates a collider that moves from `start` to `end` during the frame.
+    pub fn new(shape: ColliderShape, start: RigidTransform, end: RigidTransform) -> Self {
+        Self { shape, start, end, user_data: 0 }
+    }
+
+    /// Creates a collider that stays at `pose`.
     pub fn at_rest(shape: ColliderShape, pose: RigidTransform) -> Self {
-        Self { shape, start: pose, end: pose }
+        Self::new(shape, pose, pose)
+    }
+
+    /// Sets [`Self::user_data`].
+    pub fn with_user_data(self, user_data: u128) -> Self {
+        Self { user_data, ..self }
     }
 
     /// Returns the collider at the end of a frame throughout which it has moved.
-    pub fn now(&self) -> ColliderPose {
+    pub fn end_pose(&self) -> ColliderPose {
         ColliderPose::new(self.shape.clone(), self.start.matrix(), self.end.matrix(), 1.0)
     }
 

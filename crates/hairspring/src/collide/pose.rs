@@ -16,6 +16,15 @@ const MOST_LOOKS: u32 = 8;
 const LONG: f32 = 2.0;
 
 /// A collider during one substep.
+///
+/// ```
+/// use glam::{Mat3, Vec3};
+/// use hairspring::collide::{ColliderPose, ColliderShape};
+///
+/// let ball = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };
+/// let (start, end) = ((Mat3::IDENTITY, Vec3::ZERO), (Mat3::IDENTITY, Vec3::X));
+/// assert!(ColliderPose::new(ball, start, end, 1.0).distance(Vec3::X) < 0.0);
+/// ```
 #[derive(Clone)]
 pub struct ColliderPose {
     /// The shape.
@@ -26,7 +35,7 @@ pub struct ColliderPose {
     pub start: (Mat3, Vec3),
     /// Duration of the substep as a fraction of the interval that the displacement of a deforming shape
     /// refers to.
-    pub share: f32,
+    pub interval_fraction: f32,
     /// Bounding sphere at the end of the substep: center in world space and radius [m], which is infinite for
     /// a plane.
     bounds: (Vec3, f32),
@@ -40,13 +49,13 @@ pub struct ColliderPose {
 impl ColliderPose {
     /// Creates the pose of a shape that moves from `start` to `end` in a substep that lasts `share` of an
     /// interval.
-    pub fn new(shape: ColliderShape, start: (Mat3, Vec3), end: (Mat3, Vec3), share: f32) -> Self {
+    pub fn new(shape: ColliderShape, start: (Mat3, Vec3), end: (Mat3, Vec3), interval_fraction: f32) -> Self {
         let (center, radius) = shape.bounds();
         let bounds = (end.0 * center + end.1, radius);
         // Without rotation the matrix is exactly zero; a rotation times its inverse would not be.
         let turned = if start.0 == end.0 { Mat3::ZERO } else { Mat3::IDENTITY - start.0 * end.0.transpose() };
         let edges = Edges::new(&shape, start, end);
-        Self { shape, start, end, share, bounds, motion: (turned, end.1 - start.1), edges }
+        Self { shape, start, end, interval_fraction, bounds, motion: (turned, end.1 - start.1), edges }
     }
 
     /// Returns which of eight points may be inside at the end of the substep. The others are not.
@@ -252,7 +261,7 @@ pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ColliderPose, p: V3<
         let mut rows = [Row::default(); 3];
         for lane in 0..LANES {
             let at = Vec3::new(local.x.lane(lane), local.y.lane(lane), local.z.lane(lane));
-            let d = pose.end.0 * (displacement(at) * pose.share);
+            let d = pose.end.0 * (displacement(at) * pose.interval_fraction);
             for (row, d) in rows.iter_mut().zip(d.to_array()) {
                 row.0[lane] = d;
             }

@@ -8,6 +8,14 @@ use super::{
 use glam::{UVec3, Vec3};
 
 /// The reason that samples are no signed distance field.
+///
+/// ```
+/// use glam::{UVec3, Vec3};
+/// use hairspring::collide::{FieldError, SignedDistanceField};
+///
+/// let refused = SignedDistanceField::from_samples(Vec3::ZERO, -1.0, UVec3::splat(2), vec![1.0; 8]);
+/// assert_eq!(refused, Err(FieldError::Cell(-1.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FieldError {

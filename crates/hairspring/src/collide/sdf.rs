@@ -2,18 +2,22 @@
 
 use super::{lattice::Lattice, voxelize::BAND};
 use crate::body::nearest_on_triangle;
+use crate::parallel::prelude::*;
 use crate::simd::lanes::{F, LANES, Mask, Row, Simd, V3, load};
 use fearless_simd::f32x4;
 #[cfg(not(one_lane))]
 use fearless_simd::prelude::*;
 use glam::{UVec3, Vec3};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Padding after the nodes' distances, so that four values can be loaded starting at the last node but one.
 pub(super) const BEYOND: usize = 2;
 
 /// Signed distances at the nodes of a regular grid, negative inside, with trilinear interpolation.
+///
+/// For an example, see [`SignedDistanceField::from_samples`].
+///
+/// The default is an empty field, which a [`Voxelizer`](super::Voxelizer) fills. A query of an empty field panics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignedDistanceField {
     pub(super) lattice: Lattice,
@@ -83,7 +87,7 @@ impl SignedDistanceField {
     }
 
     /// Discards the deformation, as if the surface had stayed in place during the last interval.
-    pub fn hold_still(&mut self) {
+    pub fn clear_motion(&mut self) {
         self.moved.clear();
     }
 
@@ -408,8 +412,7 @@ pub(super) mod tests {
                     translation: Vec3::X * (0.008 * frame as f32 - 0.25),
                     ..anchor
                 };
-                let obstacles =
-                    [MovingCollider { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
+                let obstacles = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
                 let air = Air::default();
                 simulation.step(&StepInput {
                     dt: 1.0 / 60.0,

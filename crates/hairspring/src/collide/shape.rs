@@ -6,7 +6,10 @@ use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
 /// A collider shape in its own space.
+///
+/// For an example, see [`collide`](crate::collide).
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum ColliderShape {
     /// A ball around `center` [m].
     Sphere {

@@ -38,6 +38,10 @@ const MAX_NODES: usize = 1 << 22;
 ///   are divided into time slices and substeps that are short enough.)
 /// - Between two layers that are closer than twice the thickness there is no free space, and a point there is
 ///   pushed from one layer to the other.
+///
+/// For an example, see [`collide`](crate::collide).
+///
+/// The default is an empty shell, which [`ThinShell::update`] fills. A query of an empty shell may panic.
 #[derive(Clone, Debug, Default)]
 pub struct ThinShell {
     /// Half-thickness: distance that it extends from its triangles on both sides [m].
@@ -72,6 +76,9 @@ impl ThinShell {
     }
 
     /// Creates the shell of a mesh. It extends by `thickness` [m], above 0, to both sides of the triangles.
+    ///
+    /// # Panics
+    /// If a triangle names a vertex that does not exist.
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]], thickness: f32) -> Self {
         let mut sheet = Self::default();
         sheet.update(positions, None, triangles, None, thickness);
@@ -81,6 +88,9 @@ impl ThinShell {
     /// Rebuilds the shell from a mesh, reusing its buffers. `before`, if given, holds the vertices one
     /// interval ago in the same space. If `within` (min, max) [m] is given, only that box needs to be
     /// covered. Triangles that are not finite are ignored.
+    ///
+    /// # Panics
+    /// If a triangle names a vertex that does not exist, also in `before`.
     pub fn update(
         &mut self,
         positions: &[Vec3],
@@ -170,7 +180,7 @@ impl ThinShell {
     }
 
     /// Discards its deformation, as if it had stayed in place during the last interval.
-    pub fn hold_still(&mut self) {
+    pub fn clear_motion(&mut self) {
         self.moved.clear();
     }
 

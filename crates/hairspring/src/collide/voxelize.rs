@@ -12,13 +12,13 @@ use super::{
     holes::Holes,
     lattice::{self, Lattice},
 };
+use crate::parallel::prelude::*;
 use crate::simd::{
     dispatch::dispatch,
     lanes::{F, LANES, Simd, V3},
 };
 use fearless_simd::Level;
 use glam::{DVec2, UVec3, Vec3};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Half-width of the band of exact distances, in cells.
@@ -28,6 +28,11 @@ pub(super) const BAND: f32 = 2.0;
 const MAX_NODES: usize = lattice::MAX_NODES / 2;
 
 /// Builds the field of a closed mesh with cells of about `cell` [m].
+///
+/// For an example, see [`collide`](crate::collide).
+///
+/// # Panics
+/// If a triangle names a vertex that does not exist.
 pub fn voxelize(positions: &[Vec3], triangles: &[[u32; 3]], cell: f32) -> SignedDistanceField {
     let mut grid = SignedDistanceField::default();
     Voxelizer::default().update(&mut grid, positions, None, triangles, None, cell);
@@ -35,6 +40,17 @@ pub fn voxelize(positions: &[Vec3], triangles: &[[u32; 3]], cell: f32) -> Signed
 }
 
 /// Builds fields repeatedly, without allocating once its buffers have grown.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::collide::{SignedDistanceField, Voxelizer};
+///
+/// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let (mut voxelizer, mut field) = (Voxelizer::default(), SignedDistanceField::default());
+/// voxelizer.update(&mut field, &corners, None, &triangles, None, 0.1);
+/// assert!(field.distance_and_normal(Vec3::splat(0.1)).0 < 0.0);
+/// ```
 #[derive(Default)]
 pub struct Voxelizer {
     triangles: Vec<Flat>,
@@ -51,6 +67,9 @@ impl Voxelizer {
     /// The grid covers the mesh with a margin of the band, clipped to the box `within` (min, max) [m] if
     /// given. Its cells are of `cell` [m], or larger if that would take too many. A mesh without triangles
     /// gives a field in which every point is far outside.
+    ///
+    /// # Panics
+    /// If a triangle names a vertex that does not exist, also in `before`.
     pub fn update(
         &mut self,
         grid: &mut SignedDistanceField,
@@ -88,7 +107,7 @@ impl Voxelizer {
 
         // Use a few scratch buffers for each thread, each for several consecutive layers. Layers are
         // independent, so the result does not depend on the threads.
-        let each = size.z.div_ceil(4 * rayon::current_num_threads());
+        let each = size.z.div_ceil(4 * crate::parallel::current_num_threads());
         self.benches.resize_with(size.z.div_ceil(each), Bench::default);
         let (flats, layers, level) = (&self.triangles, &self.layers, Level::new());
         let span = each * size.x * size.y;

@@ -1,8 +1,8 @@
 //! Transforms of the guides, applied to the hairs that follow them.
 
 use crate::groom::{Groom, GuideWeights};
+use crate::parallel::prelude::*;
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
-use rayon::prelude::*;
 
 /// Returns the coordinate of every point on each of its guides: the position at the same arc length, or the
 /// tip if the guide is shorter.
@@ -37,35 +37,37 @@ fn position(arcs: &[f32], at: f32) -> u16 {
 
 /// Computes the transform from rest to the current pose at every guide point. The rotation is that of the
 /// root, parallel-transported by the smallest rotations between the rest tangents and the current ones.
-pub(super) fn update_carriers(
+pub(super) fn update_guide_transforms(
     groom: &Groom,
     guides: &[u32],
     offsets: &[u32],
     points: &[Vec3],
     turns: &[Quat],
-    carriers: &mut [Affine3A],
+    guide_transforms: &mut [Affine3A],
 ) {
-    super::split_by(carriers, offsets).into_par_iter().enumerate().with_min_len(16).for_each(|(k, out)| {
-        let rest = groom.strand(guides[k] as usize);
-        let now = &points[offsets[k] as usize..offsets[k + 1] as usize];
-        let mut turn = turns[k];
-        for i in 0..rest.len() {
-            let (a, b) = if i + 1 < rest.len() { (i, i + 1) } else { (i - 1, i) };
-            let was = (turn * (rest[b] - rest[a])).try_normalize();
-            if let (Some(was), Some(is)) = (was, (now[b] - now[a]).try_normalize()) {
-                turn = (Quat::from_rotation_arc(was, is) * turn).normalize();
+    super::split_by(guide_transforms, offsets).into_par_iter().enumerate().with_min_len(16).for_each(
+        |(k, out)| {
+            let rest = groom.strand(guides[k] as usize);
+            let now = &points[offsets[k] as usize..offsets[k + 1] as usize];
+            let mut turn = turns[k];
+            for i in 0..rest.len() {
+                let (a, b) = if i + 1 < rest.len() { (i, i + 1) } else { (i - 1, i) };
+                let was = (turn * (rest[b] - rest[a])).try_normalize();
+                if let (Some(was), Some(is)) = (was, (now[b] - now[a]).try_normalize()) {
+                    turn = (Quat::from_rotation_arc(was, is) * turn).normalize();
+                }
+                let m = Mat3A::from_quat(turn);
+                out[i] = Affine3A { matrix3: m, translation: Vec3A::from(now[i]) - m * Vec3A::from(rest[i]) };
             }
-            let m = Mat3A::from_quat(turn);
-            out[i] = Affine3A { matrix3: m, translation: Vec3A::from(now[i]) - m * Vec3A::from(rest[i]) };
-        }
-    });
+        },
+    );
 }
 
 /// Applies the guides' transforms to the rest points of one strand.
 pub(super) fn carry(
     rest: &[Vec3],
     weights: &GuideWeights,
-    carriers: [&[Affine3A]; 3],
+    guide_transforms: [&[Affine3A]; 3],
     ride: &[[u16; 3]],
     out: &mut [Vec3],
 ) {
@@ -77,11 +79,12 @@ pub(super) fn carry(
             if w == 0.0 {
                 continue;
             }
-            let last = carriers[k].len() - 1;
+            let last = guide_transforms[k].len() - 1;
             let at = ride[k] as f32 * (last as f32 / u16::MAX as f32);
             let i = (at as usize).min(last - 1);
             let t = at - i as f32;
-            let [a, b] = [&carriers[k][i], &carriers[k][i + 1]].map(|m| m.transform_point3a(p0));
+            let [a, b] =
+                [&guide_transforms[k][i], &guide_transforms[k][i + 1]].map(|m| m.transform_point3a(p0));
             sum += (a + (b - a) * t) * w;
         }
         *p = sum.into();

@@ -1,8 +1,8 @@
 //! Selects the guide strands, and the guides that each hair follows.
 
 use crate::groom::{Groom, GuideWeights};
+use crate::parallel::prelude::*;
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Weight of the difference in shape of two strands, relative to the distance of their roots [1]. Hairs on
 /// either side of a parting have nearby roots but should not follow each other.
@@ -16,6 +16,11 @@ const CANDIDATES: usize = 8;
 /// sampling; Gonzalez 1985).
 ///
 /// Returns strand indices in increasing order, or all strands if there are no more than `count`.
+///
+/// For an example, see [`follow`](crate::follow).
+///
+/// # Panics
+/// If a strand has no points and there are fewer guides than strands.
 pub fn choose_guides(groom: &Groom, count: usize) -> Vec<u32> {
     let strands = groom.strand_count();
     if count >= strands {
@@ -79,6 +84,11 @@ fn farthest_points(groom: &Groom, group: Vec<u32>, count: usize) -> Vec<u32> {
 /// Returns up to three guides for each strand, weighted by the inverse squared difference in root position
 /// and shape. The guides are of the strand's own group if that has any. A guide follows itself. `guides` must
 /// not be empty.
+///
+/// For an example, see [`follow`](crate::follow).
+///
+/// # Panics
+/// If `guides` is empty, names a strand that does not exist, or a strand has no points.
 pub fn assign_guides(groom: &Groom, guides: &[u32]) -> Vec<GuideWeights> {
     let grid = RootGrid::new(groom, guides);
     (0..groom.strand_count())

@@ -9,6 +9,29 @@
 //!
 //! This keeps the rest offset in the guide's frame without storing an offset. At rest R = I, and p = p₀ up to
 //! rounding.
+//!
+//! # Example
+//! ```
+//! use glam::{Quat, Vec3};
+//! use hairspring::{
+//!     follow::{Follow, assign_guides, choose_guides},
+//!     groom::Groom,
+//!     settings::Effects,
+//! };
+//! use std::sync::Arc;
+//!
+//! let strand = |s| (0..8).map(|i| Vec3::new(0.01 * s as f32, -0.01 * i as f32, 0.0)).collect::<Vec<_>>();
+//! let groom = Arc::new(Groom::from_strands((0..10).map(strand), 35e-6));
+//! let guides = choose_guides(&groom, 2);
+//! let weights = assign_guides(&groom, &guides);
+//! let mut follow = Follow::new(groom.clone(), &guides, &weights, Effects::default(), &[]);
+//! // The guides move by 1 m; `Simulation::write_points` gives their points in a program.
+//! let moved: Vec<Vec3> = guides.iter().flat_map(|s| groom.strand(*s as usize)).map(|p| *p + Vec3::Z).collect();
+//! follow.update_guide_transforms(&moved, &[Quat::IDENTITY; 2]);
+//! let mut all = vec![Vec3::ZERO; groom.point_count()];
+//! follow.interpolation(&moved, &[]).place(&mut all);
+//! assert!(all.iter().zip(&groom.points).all(|(p, rest)| p.distance(*rest + Vec3::Z) < 1e-5));
+//! ```
 
 mod carry;
 mod choose;
@@ -17,6 +40,7 @@ mod style;
 
 pub use choose::{assign_guides, choose_guides};
 
+use crate::parallel::prelude::*;
 use crate::{
     collide::{ColliderPose, MovingCollider},
     groom::{Groom, GuideWeights},
@@ -25,11 +49,12 @@ use crate::{
 };
 use fearless_simd::Level;
 use glam::{Affine3A, Quat, Vec3};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The static part of the interpolation: which guides each hair of a groom follows, and at which points of
 /// them.
+///
+/// For an example, see [`follow`](crate::follow).
 #[derive(Clone, Debug)]
 pub struct FollowLayout {
     /// The groom, with the points of the rest pose.
@@ -42,10 +67,10 @@ pub struct FollowLayout {
     /// 1]`.
     pub guide_offsets: Vec<u32>,
     /// Index of each strand among the guides; `u32::MAX` for follow hairs; shape `[strands]`.
-    pub guide_of: Vec<u32>,
+    pub guide_indices: Vec<u32>,
     /// Coordinate of each point on each of its guides, as a 16-bit fraction of the guide's points; shape
     /// `[points]`.
-    pub ride: Vec<[u16; 3]>,
+    pub guide_coordinates: Vec<[u16; 3]>,
     /// Allowed depth of each point inside a collider, 0 or less [m]; shape `[points]`.
     pub clearance: Vec<f32>,
 }
@@ -54,15 +79,19 @@ pub struct FollowLayout {
 ///
 /// # Missing
 /// Levels of detail.
+///
+/// For an example, see [`follow`](crate::follow).
 pub struct Follow {
     layout: Arc<FollowLayout>,
     effects: Effects,
     /// Transform from rest to the current pose for each guide point.
-    carriers: Vec<Affine3A>,
+    guide_transforms: Vec<Affine3A>,
 }
 
 /// All data needed to place the follow hairs of one groom in the current frame, either on the CPU by
 /// [`HairInterpolation::place`] or by a renderer on the GPU.
+///
+/// For an example, see [`follow`](crate::follow).
 #[derive(Clone, Copy)]
 pub struct HairInterpolation<'a> {
     /// The static part.
@@ -70,7 +99,7 @@ pub struct HairInterpolation<'a> {
     /// Styling of the follow hairs.
     pub effects: Effects,
     /// Transform from rest to the current pose for each guide point; shape `[guide points]`.
-    pub carriers: &'a [Affine3A],
+    pub guide_transforms: &'a [Affine3A],
     /// Current positions of all guide points [m]; shape `[guide points]`.
     pub guide_points: &'a [Vec3],
     /// Colliders that hairs are kept out of, at their poses at the end of the frame.
@@ -79,7 +108,7 @@ pub struct HairInterpolation<'a> {
 
 impl std::fmt::Debug for HairInterpolation<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Followed {{ {} guides }}", self.layout.guides.len())
+        write!(f, "HairInterpolation {{ {} guides }}", self.layout.guides.len())
     }
 }
 
@@ -96,7 +125,7 @@ impl FollowLayout {
 
     /// Returns the index of a strand among the guides, or `None` if it is not a guide.
     pub fn guide(&self, strand: usize) -> Option<usize> {
-        Some(self.guide_of[strand]).filter(|guide| *guide != u32::MAX).map(|guide| guide as usize)
+        Some(self.guide_indices[strand]).filter(|guide| *guide != u32::MAX).map(|guide| guide as usize)
     }
 
     /// Returns the phases of a strand's curl and of the four waves of its flyaway noise, in this order, 0 to
@@ -112,6 +141,9 @@ impl Follow {
     /// - `guides`: the simulated strands.
     /// - `weights`: for every strand, strands of the groom that are in `guides`; shape `[strands]`.
     /// - `obstacles`: colliders at rest. Points that start inside may stay as deep as they are.
+    ///
+    /// # Panics
+    /// If `guides` or `weights` name a strand that does not exist or is no guide, or `weights` is too short.
     pub fn new(
         groom: Arc<Groom>,
         guides: &[u32],
@@ -119,30 +151,38 @@ impl Follow {
         effects: Effects,
         obstacles: &[ColliderPose],
     ) -> Self {
-        let mut guide_of = vec![u32::MAX; groom.strand_count()];
+        let mut guide_indices = vec![u32::MAX; groom.strand_count()];
         let mut guide_offsets = vec![0];
         for (k, s) in guides.iter().enumerate() {
-            guide_of[*s as usize] = k as u32;
+            guide_indices[*s as usize] = k as u32;
             guide_offsets.push(guide_offsets[k] + groom.range(*s as usize).len() as u32);
         }
         let weights: Vec<GuideWeights> = weights
             .iter()
-            .map(|w| GuideWeights { guides: w.guides.map(|g| guide_of[g as usize]), weights: w.weights })
+            .map(|w| GuideWeights { guides: w.guides.map(|g| guide_indices[g as usize]), weights: w.weights })
             .collect();
-        let ride = carry::rides(&groom, guides, &weights);
+        let guide_coordinates = carry::rides(&groom, guides, &weights);
         let clearance = groom
             .points
             .par_iter()
             .map(|p| obstacles.iter().map(|o| o.distance(*p)).fold(0.0, f32::min))
             .collect();
-        let carriers = vec![Affine3A::IDENTITY; *guide_offsets.last().unwrap_or(&0) as usize];
+        let guide_transforms = vec![Affine3A::IDENTITY; *guide_offsets.last().unwrap_or(&0) as usize];
         let guides = guides.to_vec();
-        let layout = FollowLayout { groom, weights, guides, guide_offsets, guide_of, ride, clearance };
-        Self { layout: Arc::new(layout), effects, carriers }
+        let layout = FollowLayout {
+            groom,
+            weights,
+            guides,
+            guide_offsets,
+            guide_indices,
+            guide_coordinates,
+            clearance,
+        };
+        Self { layout: Arc::new(layout), effects, guide_transforms }
     }
 
     /// Creates the same hairs with the same guides for another rest pose: that of `groom`, with `obstacles`.
-    pub fn of(&self, groom: Arc<Groom>, obstacles: &[ColliderPose]) -> Self {
+    pub fn with_rest_pose(&self, groom: Arc<Groom>, obstacles: &[ColliderPose]) -> Self {
         let FollowLayout { guides, weights, .. } = &*self.layout;
         let name = |w: &GuideWeights| GuideWeights { guides: w.guides.map(|g| guides[g as usize]), ..*w };
         Self::new(groom, guides, &weights.iter().map(name).collect::<Vec<_>>(), self.effects, obstacles)
@@ -157,20 +197,30 @@ impl Follow {
     ///
     /// - `guide_points`: current points of all guides [m], as written by `Simulation::write_points`.
     /// - `turns`: rotation of each guide's root since rest.
-    pub fn carry(&mut self, guide_points: &[Vec3], turns: &[Quat]) {
+    ///
+    /// # Panics
+    /// If an array is too short.
+    pub fn update_guide_transforms(&mut self, guide_points: &[Vec3], turns: &[Quat]) {
         let FollowLayout { groom, guides, guide_offsets, .. } = &*self.layout;
-        carry::update_carriers(groom, guides, guide_offsets, guide_points, turns, &mut self.carriers);
+        carry::update_guide_transforms(
+            groom,
+            guides,
+            guide_offsets,
+            guide_points,
+            turns,
+            &mut self.guide_transforms,
+        );
     }
 
     /// Returns the data of the current frame: the last computed transforms, with guides at `guide_points` [m]
     /// and colliders `obstacles`.
-    pub fn now<'a>(
+    pub fn interpolation<'a>(
         &'a self,
         guide_points: &'a [Vec3],
         obstacles: &'a [MovingCollider],
     ) -> HairInterpolation<'a> {
-        let Self { layout, effects, carriers } = self;
-        HairInterpolation { layout, effects: *effects, carriers, guide_points, obstacles }
+        let Self { layout, effects, guide_transforms } = self;
+        HairInterpolation { layout, effects: *effects, guide_transforms, guide_points, obstacles }
     }
 
     /// Returns the index of a strand among the guides, or `None` if it is not a guide.
@@ -190,7 +240,10 @@ impl Follow {
 
     /// Writes one value for each point of all strands, given the values of all guide points. Guides keep
     /// their own values; follow hairs interpolate those of their first guide.
-    pub fn spread(&self, of_guides: &[f32], out: &mut [f32]) {
+    ///
+    /// # Panics
+    /// If an array is too short.
+    pub fn interpolate_values(&self, of_guides: &[f32], out: &mut [f32]) {
         let layout = &*self.layout;
         let strands = split_by(out, &layout.groom.offsets);
         strands.into_par_iter().enumerate().with_min_len(64).for_each(|(s, out)| {
@@ -201,7 +254,7 @@ impl Follow {
                 return;
             }
             let last = lead.len() - 1;
-            for (value, ride) in out.iter_mut().zip(&layout.ride[layout.groom.range(s)]) {
+            for (value, ride) in out.iter_mut().zip(&layout.guide_coordinates[layout.groom.range(s)]) {
                 let at = f32::from(ride[0]) * (last as f32 / f32::from(u16::MAX));
                 let i = (at as usize).min(last - 1);
                 *value = lead[i] + (lead[i + 1] - lead[i]) * (at - i as f32);
@@ -211,17 +264,20 @@ impl Follow {
 
     /// Returns the memory used, in bytes.
     pub fn bytes(&self) -> usize {
-        let FollowLayout { weights, ride, clearance, .. } = &*self.layout;
+        let FollowLayout { weights, guide_coordinates, clearance, .. } = &*self.layout;
         size_of_val(&weights[..])
-            + size_of_val(&ride[..])
+            + size_of_val(&guide_coordinates[..])
             + size_of_val(&clearance[..])
-            + size_of_val(&self.carriers[..])
+            + size_of_val(&self.guide_transforms[..])
     }
 }
 
 impl HairInterpolation<'_> {
     /// Writes all points of the groom [m]. Guides keep their points; follow hairs are interpolated and moved
     /// out of the colliders.
+    ///
+    /// # Panics
+    /// If an array has another shape.
     pub fn place(&self, out: &mut [Vec3]) {
         self.place_every(1, &self.layout.groom.offsets, out);
     }
@@ -231,13 +287,19 @@ impl HairInterpolation<'_> {
     ///
     /// - `offsets`: first point of each of these strands in `out`, followed by the end; shape `[strands +
     ///   1]`.
+    ///
+    /// # Panics
+    /// If an array has another shape.
     pub fn place_every(&self, every: usize, offsets: &[u32], out: &mut [Vec3]) {
-        let poses: Vec<ColliderPose> = self.obstacles.iter().map(MovingCollider::now).collect();
+        let poses: Vec<ColliderPose> = self.obstacles.iter().map(MovingCollider::end_pose).collect();
         let strands = split_by(out, offsets).into_par_iter().enumerate();
         strands.with_min_len(64).for_each(|(s, strand)| self.place_strand(s * every, &poses, strand));
     }
 
     /// Like [`Self::place`], for one strand and the collider poses `poses`.
+    ///
+    /// # Panics
+    /// If there is no such strand, or `strand` has another number of points.
     pub fn place_strand(&self, s: usize, poses: &[ColliderPose], strand: &mut [Vec3]) {
         let layout = &**self.layout;
         if let Some(guide) = layout.guide(s) {
@@ -247,8 +309,8 @@ impl HairInterpolation<'_> {
         let range = layout.groom.range(s);
         let guides = layout.guide_ranges(s);
         let lead = &self.guide_points[guides[0].clone()];
-        let (rest, ride) = (&layout.groom.points[range.clone()], &layout.ride[range.clone()]);
-        carry::carry(rest, &layout.weights[s], guides.map(|g| &self.carriers[g]), ride, strand);
+        let (rest, ride) = (&layout.groom.points[range.clone()], &layout.guide_coordinates[range.clone()]);
+        carry::carry(rest, &layout.weights[s], guides.map(|g| &self.guide_transforms[g]), ride, strand);
         if self.effects != Effects::default() {
             style::apply_styling(&self.effects, s as u32, lead, ride, strand);
         }
@@ -258,6 +320,16 @@ impl HairInterpolation<'_> {
 }
 
 /// Splits `array` at `offsets`.
+///
+/// ```
+/// use hairspring::follow::split_by;
+///
+/// let mut values = [1, 2, 3];
+/// assert_eq!(split_by(&mut values, &[0, 1, 3]), [&[1][..], &[2, 3]]);
+/// ```
+///
+/// # Panics
+/// If the offsets descend or go past the end of the array.
 pub fn split_by<'a, T>(array: &'a mut [T], offsets: &[u32]) -> Vec<&'a mut [T]> {
     let mut rest = array;
     let mut pieces = Vec::with_capacity(offsets.len().saturating_sub(1));

@@ -19,10 +19,9 @@
 //! uncharged body. The hair of one groom does not repel that of another.
 
 use super::{HairField, StrandView};
-use crate::math::{RigidTransform, between};
+use crate::math::{RigidTransform, find_keys};
 use crate::settings::{Check, Validate, above_0, check};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// 1/4πε₀ of air [N m²/C²].
 pub(crate) const COULOMB: f32 = 8.99e9;
@@ -32,11 +31,22 @@ pub(crate) const COULOMB: f32 = 8.99e9;
 pub(crate) const BREAKDOWN: f32 = 3e6;
 
 /// A charged ball: a balloon, a hand, a head.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::forces::charge::{Charged, Waypoint};
+///
+/// // A balloon that approaches within a second.
+/// let path = vec![Waypoint { time: 1.0, center: Vec3::Y * 0.2 }];
+/// let (center, radius) = (Vec3::Y, 0.13);
+/// let balloon = Charged { joint: None, center, radius, charge: -1e-7, solid: true, path };
+/// assert!(balloon.center(0.5).distance(Vec3::Y * 0.6) < 1e-6);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Charged {
     /// Name of the body joint that carries it. `None`: it is fixed in the world, except for its `path`.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub joint: Option<String>,
     /// Its center at the start, in the space of the body's rest pose or of the world [m].
     pub center: Vec3,
@@ -47,21 +57,24 @@ pub struct Charged {
     pub charge: f32,
     /// Whether hair collides with it. Default true. Set it to false for a ball that represents the charge of
     /// a body, such as the head's.
-    #[serde(default = "yes")]
+    #[cfg_attr(feature = "serde", serde(default = "yes"))]
     pub solid: bool,
     /// Waypoints of its center in order of time. The center moves linearly between them and rests after the
     /// last. Default: it does not move.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub path: Vec<Waypoint>,
 }
 
+#[cfg(feature = "serde")]
 fn yes() -> bool {
     true
 }
 
 /// A waypoint of a [`Charged`] ball.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+///
+/// For an example, see [`Charged`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Waypoint {
     /// Time at which the ball is there [s], above 0.
     pub time: f32,
@@ -74,12 +87,21 @@ impl Charged {
     pub fn center(&self, time: f64) -> Vec3 {
         let start = Waypoint { time: 0.0, center: self.center };
         let key = |k: usize| k.checked_sub(1).map_or(start, |k| self.path[k]);
-        let way = between(1 + self.path.len(), |k| key(k).time, time);
+        let way = find_keys(1 + self.path.len(), |k| key(k).time, time);
         way.map_or(self.center, |(a, b, share)| key(a).center.lerp(key(b).center, share))
     }
 }
 
 /// A charged ball in a frame.
+///
+/// ```
+/// use hairspring::{forces::charge::ChargedBall, prelude::*};
+///
+/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+/// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+/// simulation.set_charged([ChargedBall { centers: [Vec3::X; 2], radius: 0.13, charge: -1e-7 }]);
+/// # Ok::<(), hairspring::simulation::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChargedBall {
     /// Its center at the start and at the end of the frame, in world space [m].

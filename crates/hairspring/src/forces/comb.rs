@@ -16,11 +16,19 @@
 use super::StrandView;
 use crate::math::RigidTransform;
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A capsule that drags hair along, mainly transverse to the strands.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::forces::{Manipulator, comb::Comb};
+///
+/// let (a, b) = (Vec3::NEG_X * 0.05, Vec3::X * 0.05);
+/// let comb = Manipulator::Comb(Comb { a, b, radius: 0.01, grip: 1000.0, friction: 3.0 });
+/// assert!(matches!(comb, Manipulator::Comb(Comb { radius: 0.01, .. })));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Comb {
     /// One end of the row of tines [m], in the space that it moves with.
     pub a: Vec3,
@@ -30,18 +38,20 @@ pub struct Comb {
     pub radius: f32,
     /// Rate at which hair takes on the comb's velocity transverse to the strand, c⊥ [1/s], 0 to 10000.
     /// Default 1000: rigid within a substep.
-    #[serde(default = "firm")]
+    #[cfg_attr(feature = "serde", serde(default = "firm"))]
     pub grip: f32,
     /// The same rate along the strand, c∥ [1/s], 0 to `grip`. Default 3: hair slides on plastic with some
     /// friction.
-    #[serde(default = "slick")]
+    #[cfg_attr(feature = "serde", serde(default = "slick"))]
     pub friction: f32,
 }
 
+#[cfg(feature = "serde")]
 fn firm() -> f32 {
     1000.0
 }
 
+#[cfg(feature = "serde")]
 fn slick() -> f32 {
     3.0
 }

@@ -16,11 +16,12 @@
 
 use super::bond::{Bond, Spring};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A ball that holds the points that were inside. If it does not move, it is a pin.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+///
+/// For an example, see [`forces`](crate::forces).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Grab {
     /// Center of the ball [m], in the space that it moves with.
     pub center: Vec3,
@@ -28,17 +29,19 @@ pub struct Grab {
     pub radius: f32,
     /// Natural frequency of a free point, f [Hz], 0 to 1000. Default 60: points sag by 0.07 mm under their
     /// own weight.
-    #[serde(default = "firm")]
+    #[cfg_attr(feature = "serde", serde(default = "firm"))]
     pub pull: f32,
     /// Damping ratio, relative to critical, ζ, 0 to 10. Default 1: held points do not oscillate.
-    #[serde(default = "critical")]
+    #[cfg_attr(feature = "serde", serde(default = "critical"))]
     pub damping: f32,
 }
 
+#[cfg(feature = "serde")]
 pub(super) fn firm() -> f32 {
     60.0
 }
 
+#[cfg(feature = "serde")]
 pub(super) fn critical() -> f32 {
     1.0
 }

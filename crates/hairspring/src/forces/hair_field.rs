@@ -14,8 +14,8 @@ use super::{
     FrameMotion, StrandBatch, StrandView,
     charge::{BREAKDOWN, COULOMB},
 };
+use crate::parallel::prelude::*;
 use glam::Vec3;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicI32, AtomicI64, Ordering::Relaxed};
 
 /// Cells along the longest side of the hair: about 3 cm each for long hair. Closer than that, contact between

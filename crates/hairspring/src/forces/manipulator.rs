@@ -10,11 +10,17 @@ use super::{
 use crate::settings::{Check, Validate, above_0, check, from_0};
 use crate::{collide::FrameColliders, math::RigidTransform};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A tool that acts on hair by hand, in the space that it moves with.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+///
+/// For an example, see [`forces`](crate::forces).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
+#[non_exhaustive]
 pub enum Manipulator {
     /// Fingers: points in a ball are held.
     Grab(Grab),

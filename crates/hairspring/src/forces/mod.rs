@@ -5,20 +5,33 @@
 //! couples no two strands. The hair volume writes first; then each force adds its part, strand by strand.
 //! Each has its own file:
 //!
-//!  force | |
+//! | force | |
 //! | --- | --- |
-//!  [`global_shape`] | a weak spring to the rest shape |
-//!  [`grab`] | a hand that holds the points in a ball |
-//!  [`comb`] | tines that drag hair transverse to itself |
-//!  [`tie`] | a ring that gathers strands |
+//! | [`global_shape`] | a weak spring to the rest shape |
+//! | [`grab`] | a hand that holds the points in a ball |
+//! | [`comb`] | tines that drag hair transverse to itself |
+//! | [`tie`] | a ring that gathers strands |
 //! | [`charge`] | charged bodies, and charged hair |
-//!  [`wind`] | air whose velocity varies in space |
+//! | [`wind`] | air whose velocity varies in space |
+//!
+//! # Example
+//! ```
+//! use hairspring::{forces::grab::Grab, prelude::*};
+//!
+//! let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+//! let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+//! let hand = Grab { center: Vec3::NEG_Y * 0.07, radius: 0.005, pull: 60.0, damping: 1.0 };
+//! let id = simulation.add_manipulator(Manipulator::Grab(hand), RigidTransform::default());
+//! // The tip, which is point 7 of strand 0.
+//! assert!(simulation.attached_points(id).eq([(0, 7)]));
+//! # Ok::<(), hairspring::simulation::BuildError>(())
+//! ```
 
 pub(crate) mod bond;
 pub mod charge;
 pub mod comb;
 mod force_field;
-pub mod global_shape;
+pub(crate) mod global_shape;
 pub mod grab;
 mod hair_field;
 mod manipulator;

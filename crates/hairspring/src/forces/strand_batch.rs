@@ -39,7 +39,7 @@ impl StrandBatch<'_> {
         let count = self.tiles.len();
         if count > TILES_PER_TASK {
             let (mut a, mut b) = self.reborrow().split(count / 2);
-            rayon::join(|| a.each(frame, act), || b.each(frame, act));
+            crate::parallel::join(|| a.each(frame, act), || b.each(frame, act));
             return;
         }
         for k in 0..count {

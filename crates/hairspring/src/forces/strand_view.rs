@@ -10,6 +10,11 @@ use glam::{Quat, Vec3};
 
 /// One strand in a frame. Points are numbered as in the groom. The extra particles of the springs model are
 /// skipped.
+///
+/// For an example, see [`ForceField`](super::ForceField).
+///
+/// Point indices must be less than [`StrandView::point_count`]. A method may panic for a larger index, or access
+/// padding that belongs to no point.
 pub struct StrandView<'a> {
     /// Index of the strand in the groom.
     pub(crate) strand: usize,
@@ -81,6 +86,9 @@ impl<'a> StrandView<'a> {
 
     /// Returns the vector from point `i − 1` to point `i` at the start of the frame [m], and the velocity of
     /// point `i` [m/s]. `i` must be 1 or more.
+    ///
+    /// # Panics
+    /// May panic if `i` is 0 or there is no such point.
     pub fn segment(&self, i: usize) -> (Vec3, Vec3) {
         let vector =
             |i: usize, at: usize| Vec3::from([0, 1, 2].map(|k| self.tile.state[i][at + k].0[self.lane]));

@@ -18,16 +18,22 @@
 //! does not slide off the hair. Only guides are gathered, and follow hairs keep their distance from their
 //! guides. If guides are far apart, more guides or clumping make the tie tight.
 
-use super::{
-    bond::{Bond, Spring},
-    grab::{critical, firm},
-};
+use super::bond::{Bond, Spring};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A ring that gathers strands.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::forces::{Manipulator, tie::Tie};
+///
+/// let ring = Tie {
+///     center: Vec3::ZERO, axis: Vec3::NEG_Y, radius: 0.01, reach: 0.1, gather: 0.5, pull: 60.0, damping: 1.0,
+/// };
+/// assert!(matches!(Manipulator::Tie(ring), Manipulator::Tie(Tie { reach: 0.1, .. })));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Tie {
     /// Center of the ring [m], in the space that it moves with.
     pub center: Vec3,
@@ -38,16 +44,17 @@ pub struct Tie {
     /// Maximum distance from the center at which a strand is gathered [m], above 0.
     pub reach: f32,
     /// Duration of gathering [s], 0 or more. Default 0.5, which avoids a jerk.
-    #[serde(default = "half")]
+    #[cfg_attr(feature = "serde", serde(default = "half"))]
     pub gather: f32,
     /// Natural frequency of a free point, f [Hz], 0 to 1000. Default 60.
-    #[serde(default = "firm")]
+    #[cfg_attr(feature = "serde", serde(default = "super::grab::firm"))]
     pub pull: f32,
     /// Damping ratio, relative to critical, ζ, 0 to 10. Default 1.
-    #[serde(default = "critical")]
+    #[cfg_attr(feature = "serde", serde(default = "super::grab::critical"))]
     pub damping: f32,
 }
 
+#[cfg(feature = "serde")]
 fn half() -> f32 {
     0.5
 }

@@ -2,10 +2,12 @@
 
 use super::Groom;
 use crate::body::{Mesh, NearestTree, place_on};
+use crate::parallel::prelude::*;
 use glam::{Mat3, Quat, Vec3};
-use rayon::prelude::*;
 
 /// Binding of a root to a triangle of a mesh: the root moves with the triangle.
+///
+/// For an example, see [`bind_roots`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootBinding {
     /// Index of the triangle.
@@ -48,11 +50,28 @@ fn triangle_frame([a, b, c]: [Vec3; 3]) -> Quat {
 
 /// Binds every root to the nearest point of `mesh`, unless the groom already has bindings. A mesh without
 /// triangles binds nothing.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::{body::Mesh, groom::{Groom, bind_roots}};
+///
+/// let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Z];
+/// let mesh = Mesh { positions, triangles: vec![[0, 2, 1]], ..Default::default() };
+/// let root = Vec3::new(0.2, 0.0, 0.2);
+/// let mut groom = Groom::from_strands([[root, root + Vec3::Y, root + Vec3::Y * 2.0]], 35e-6);
+/// bind_roots(&mut groom, &mesh);
+/// assert!(groom.roots[0].position(mesh.corners(0)).distance(root) < 1e-6);
+/// ```
+///
+/// # Panics
+/// If a triangle names a vertex that does not exist.
 pub fn bind_roots(groom: &mut Groom, mesh: &Mesh) {
     bind_roots_where(groom, mesh, |_, _| true);
 }
 
 /// Like [`bind_roots`], but strand `s` is bound only to triangles `t` with `allowed(s, t)`, if there are any.
+///
+/// For an example, see [`bind_roots`].
 pub fn bind_roots_where(groom: &mut Groom, mesh: &Mesh, allowed: impl Fn(usize, usize) -> bool + Sync) {
     if !groom.roots.is_empty() {
         return;

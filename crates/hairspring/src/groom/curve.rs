@@ -7,8 +7,16 @@ use glam::Vec3;
 ///
 /// Files store strands in any order. Processing them along the curve keeps the data that they read and write
 /// in cache.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::groom::MortonCurve;
+///
+/// let curve = MortonCurve::covering(Vec3::ZERO, Vec3::ONE);
+/// assert!(curve.index(Vec3::splat(0.1)) < curve.index(Vec3::splat(0.9)));
+/// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Curve {
+pub struct MortonCurve {
     lo: Vec3,
     /// Steps of the curve per meter [1/m].
     scale: f32,
@@ -17,22 +25,22 @@ pub struct Curve {
 /// Steps of the curve along each axis: three coordinates of ten bits are interleaved into 30 bits.
 const STEPS: f32 = 1024.0;
 
-impl Curve {
+impl MortonCurve {
     /// Creates the curve through the cube that starts at `lo` and covers the box from `lo` to `hi` [m].
-    pub fn through(lo: Vec3, hi: Vec3) -> Self {
+    pub fn covering(lo: Vec3, hi: Vec3) -> Self {
         Self { lo, scale: (STEPS - 1.0) / (hi - lo).max_element().max(1e-9) }
     }
 
     /// Creates the curve through the cube around `places` [m].
-    pub fn around(places: impl Iterator<Item = Vec3>) -> Self {
+    pub fn covering_points(places: impl Iterator<Item = Vec3>) -> Self {
         let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (lo, hi) = places.fold(none, |(lo, hi), place| (lo.min(place), hi.max(place)));
-        Self::through(lo, hi)
+        Self::covering(lo, hi)
     }
 
     /// Returns the position of a place [m] along the curve, 0 to 2³⁰ - 1. Places outside the cube are clamped
     /// to its surface.
-    pub fn along(&self, place: Vec3) -> u32 {
+    pub fn index(&self, place: Vec3) -> u32 {
         let [x, y, z] = ((place - self.lo) * self.scale).to_array().map(spread);
         x | y << 1 | z << 2
     }
@@ -53,11 +61,11 @@ mod tests {
 
     #[test]
     fn each_eighth_of_the_cube_is_one_piece_of_the_curve() {
-        let curve = Curve::through(Vec3::splat(-1.0), Vec3::splat(1.0));
+        let curve = MortonCurve::covering(Vec3::splat(-1.0), Vec3::splat(1.0));
         let mut seen: Vec<(u32, [bool; 3])> = (0..4096)
             .map(|k| {
                 let place = Vec3::new((k % 16) as f32, (k / 16 % 16) as f32, (k / 256) as f32) / 7.5 - 1.0;
-                (curve.along(place), place.to_array().map(|x| x > 0.0))
+                (curve.index(place), place.to_array().map(|x| x > 0.0))
             })
             .collect();
         seen.sort_unstable();
@@ -68,11 +76,11 @@ mod tests {
 
     #[test]
     fn places_anywhere_are_on_it() {
-        let curve = Curve::around([Vec3::ZERO, Vec3::ONE].into_iter());
-        assert_eq!(curve.along(Vec3::splat(-5.0)), 0);
-        assert_eq!(curve.along(Vec3::splat(5.0)), (1 << 30) - 1);
-        assert_eq!(curve.along(Vec3::NAN), 0);
-        assert_eq!(Curve::around(std::iter::empty()).along(Vec3::ONE), 0);
-        assert_eq!(Curve::around(std::iter::once(Vec3::ONE)).along(Vec3::ONE), 0);
+        let curve = MortonCurve::covering_points([Vec3::ZERO, Vec3::ONE].into_iter());
+        assert_eq!(curve.index(Vec3::splat(-5.0)), 0);
+        assert_eq!(curve.index(Vec3::splat(5.0)), (1 << 30) - 1);
+        assert_eq!(curve.index(Vec3::NAN), 0);
+        assert_eq!(MortonCurve::covering_points(std::iter::empty()).index(Vec3::ONE), 0);
+        assert_eq!(MortonCurve::covering_points(std::iter::once(Vec3::ONE)).index(Vec3::ONE), 0);
     }
 }

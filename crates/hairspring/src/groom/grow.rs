@@ -3,11 +3,16 @@
 use super::{DEFAULT_RADIUS, Groom, RootBinding};
 use crate::body::{Mesh, place_on};
 use glam::{Quat, Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 
 /// Settings of [`grow`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// For an example, see [`grow`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Growth {
     /// Number of strands, 1 to 10,000,000. Default 1,000.
     pub strands: u32,
@@ -32,6 +37,20 @@ impl Default for Growth {
 /// Grows strands from the triangles `t` of `mesh` with `allowed(t)`, uniformly by area. Each is a smooth arc
 /// from the normal toward −Y, bound to the point that it grows from. Returns no strands if the allowed area
 /// is zero.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::{body::Mesh, groom::{Growth, grow}};
+///
+/// let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Z];
+/// let mut mesh = Mesh { positions, triangles: vec![[0, 2, 1]], ..Default::default() };
+/// mesh.compute_normals();
+/// let fur = grow(&mesh, &Growth { strands: 100, points: 8, ..Default::default() }, |_| true);
+/// assert_eq!((fur.strand_count(), fur.point_count()), (100, 800));
+/// ```
+///
+/// # Panics
+/// If a triangle names a vertex that does not exist or has no normal.
 pub fn grow(mesh: &Mesh, growth: &Growth, allowed: impl Fn(usize) -> bool) -> Groom {
     let area = |t: usize| {
         let [a, b, c] = mesh.corners(t);

@@ -1,4 +1,16 @@
 //! Grooms: the strands of a hairstyle as authored, in flat arrays.
+//!
+//! # Example
+//! ```
+//! use glam::Vec3;
+//! use hairspring::groom::{Groom, sanitize};
+//!
+//! let strand = [Vec3::ZERO, Vec3::NEG_Y * 0.01, Vec3::splat(f32::NAN), Vec3::NEG_Y * 0.03];
+//! let mut groom = Groom::from_strands([strand], 35e-6);
+//! let repairs = sanitize(&mut groom);
+//! assert_eq!((repairs.non_finite_points, repairs.total()), (1, 1));
+//! assert!((groom.strand_length(0) - 0.03).abs() < 1e-6);
+//! ```
 
 mod bind;
 mod curve;
@@ -8,7 +20,7 @@ mod sanitize;
 mod thicken;
 
 pub use bind::{RootBinding, bind_roots, bind_roots_where};
-pub use curve::Curve;
+pub use curve::MortonCurve;
 pub use grow::{Growth, grow};
 pub use precision::{Imprecise, MAX_COORDINATE, first_imprecise};
 pub use sanitize::{Repairs, sanitize};
@@ -23,6 +35,8 @@ use glam::{Vec2, Vec3};
 ///
 /// Per-strand arrays are either empty or `strand_count()` long; per-point arrays are either empty or
 /// `point_count()` long.
+///
+/// For an example, see [`groom`](crate::groom).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Groom {
     /// Positions, root to tip, strand after strand [m]; shape `[points]`.
@@ -54,6 +68,13 @@ pub struct Groom {
 pub const DEFAULT_RADIUS: f32 = 35e-6;
 
 /// Dimensionless multipliers of the group's material for one strand. Default: all 1.
+///
+/// ```
+/// use hairspring::groom::StrandScale;
+///
+/// let stiff = StrandScale { bend: 2.0, ..Default::default() };
+/// assert_eq!((stiff.bend, stiff.drag), (2.0, 1.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrandScale {
     /// Multiplier of the bending stiffness; 0 or more.
@@ -75,6 +96,8 @@ impl Default for StrandScale {
 /// Up to three guide strands (indices of strands of the same groom) and their weights, which sum to 1.
 ///
 /// Unused entries have weight 0 and repeat the first guide.
+///
+/// For an example, see [`follow`](crate::follow).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuideWeights {
     /// Strand indices of the guides.
@@ -107,11 +130,17 @@ impl Groom {
     }
 
     /// Returns the index range of the points of strand `s`.
+    ///
+    /// # Panics
+    /// If there is no strand `s`.
     pub fn range(&self, s: usize) -> std::ops::Range<usize> {
         self.offsets[s] as usize..self.offsets[s + 1] as usize
     }
 
     /// Returns the points of strand `s`, root first [m].
+    ///
+    /// # Panics
+    /// If there is no strand `s`, or the arrays do not fit together.
     pub fn strand(&self, s: usize) -> &[Vec3] {
         &self.points[self.range(s)]
     }
@@ -127,6 +156,9 @@ impl Groom {
     }
 
     /// Returns the length of strand `s` along its points [m].
+    ///
+    /// # Panics
+    /// If there is no strand `s`, or the arrays do not fit together.
     pub fn strand_length(&self, s: usize) -> f32 {
         self.strand(s).windows(2).map(|w| w[0].distance(w[1])).sum()
     }

@@ -17,7 +17,10 @@ const NEAR: f32 = 128.0;
 const COARSEST: f32 = 0.02;
 
 /// Error for a strand that is too far from the origin for the length of its segments.
+///
+/// For an example, see [`first_imprecise`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Imprecise {
     /// Index of the strand.
     pub strand: usize,
@@ -42,6 +45,16 @@ impl fmt::Display for Imprecise {
 
 /// Returns the first strand whose segments are too short for its distance from the origin, or that is beyond
 /// [`MAX_COORDINATE`]. Single outlying points do not count; [`sanitize`](super::sanitize) corrects them.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::groom::{Groom, first_imprecise};
+///
+/// // Segments of 1 mm, 10 km from the origin.
+/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::new(1e4, 0.001 * i as f32, 0.0)).collect();
+/// let found = first_imprecise(&Groom::from_strands([strand], 35e-6)).unwrap();
+/// assert_eq!((found.strand, found.distance), (0, 1e4));
+/// ```
 pub fn first_imprecise(groom: &Groom) -> Option<Imprecise> {
     let of_strand = |strand: usize| {
         let points = groom.strand(strand);

@@ -4,7 +4,10 @@ use super::{DEFAULT_RADIUS, Groom, MAX_COORDINATE};
 use glam::Vec3;
 
 /// Counts of what [`sanitize`] found and repaired. Nothing is changed without being counted here.
+///
+/// For an example, see [`groom`](crate::groom).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Repairs {
     /// Points with a NaN or infinite coordinate, moved onto the line between their finite neighbors.
     pub non_finite_points: usize,
@@ -45,6 +48,11 @@ const STUB: f32 = 1e-3;
 ///
 /// A strand shorter than the resolution of single precision at its position has no shape to keep. Such grooms
 /// should be rejected first; [`first_imprecise`](super::first_imprecise) finds them.
+///
+/// For an example, see [`groom`](crate::groom).
+///
+/// # Panics
+/// If the arrays of the groom do not fit together.
 pub fn sanitize(groom: &mut Groom) -> Repairs {
     let mut repairs = Repairs::default();
     if groom.offsets.is_empty() {

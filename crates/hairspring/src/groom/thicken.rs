@@ -4,11 +4,16 @@
 use super::{Groom, GuideWeights, grow::evenly};
 use crate::body::{Mesh, NearestTree};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// Settings of [`thicken`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// For an example, see [`thicken`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Thicken {
     /// Number of follow hairs for each strand, 0 to 1,000. Default 0.
     pub copies: u32,
@@ -30,6 +35,18 @@ impl Default for Thicken {
 ///
 /// The copies grow in a disc on the triangle nearest to the root. Without a mesh, the disc is perpendicular
 /// to the strand's direction at the root.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::groom::{Groom, Thicken, thicken};
+///
+/// let mut groom = Groom::from_strands([[Vec3::ZERO, Vec3::NEG_Y, Vec3::NEG_Y * 2.0]], 35e-6);
+/// thicken(&mut groom, &Thicken { copies: 5, ..Default::default() }, None);
+/// assert_eq!(groom.strand_count(), 6);
+/// ```
+///
+/// # Panics
+/// If the arrays of the groom do not fit together.
 pub fn thicken(groom: &mut Groom, thicken: &Thicken, mesh: Option<&Mesh>) {
     let n = groom.strand_count();
     if thicken.copies == 0 || n == 0 {

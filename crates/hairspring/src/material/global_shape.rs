@@ -1,10 +1,14 @@
 //! Settings of the global shape: a pull of the strand to its rest shape.
 
-use serde::{Deserialize, Serialize};
-
 /// Parameters of the global shape.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// Fields may be added: write `..Default::default()`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct GlobalShape {
     /// Natural frequency of a free point, f [Hz], 0 to 60. Default 0: no global shape. From about 1 on, hair
     /// keeps its style during a walk; from about 4 on, it looks set.

@@ -1,17 +1,30 @@
 //! Materials: the physical constants of human hair, and presets of hair types.
+//!
+//! # Example
+//! ```
+//! use hairspring::material::{Material, Model, preset};
+//!
+//! let curls = Material { model: Model::Rod, flatness: 0.6, ..preset("curly").expect("a preset") };
+//! assert_eq!((curls.bend, curls.flatness), (8.0, 0.6));
+//! ```
 
 mod global_shape;
 
 pub use global_shape::GlobalShape;
 
 use crate::settings::{Check, Validate, above_0, check, from_0};
-use serde::{Deserialize, Serialize};
 
 /// The fiber of one group of strands: physical constants, and dimensionless multipliers for artists.
 ///
 /// The constants are those of human hair (Robbins 2012, *Chemical and Physical Behavior of Human Hair*).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`material`](crate::material).
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Material {
     /// Elastic model of a strand. Default `auto`.
     pub model: Model,
@@ -69,8 +82,11 @@ pub struct Material {
 }
 
 /// The elastic model of a strand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+///
+/// For an example, see [`material`](crate::material).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Model {
     /// The rod model. Straight, round strands, for which the result is the same, use the cheaper curvature
     /// model.
@@ -164,6 +180,8 @@ pub const PRESETS: [&str; 5] = ["straight", "wavy", "curly", "coily", "short-fur
 
 /// Returns the preset with this name: `straight`, `wavy`, `curly`, `coily` or `short-fur`; `None` for any
 /// other name.
+///
+/// For an example, see [`material`](crate::material).
 pub fn preset(name: &str) -> Option<Material> {
     let base = Material::default();
     Some(match name {

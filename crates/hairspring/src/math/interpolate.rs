@@ -4,7 +4,14 @@
 /// Returns the indices of the two keys around `time` [s] and the interpolation fraction between them, 0 to 1.
 /// Before the first key and after the last, both indices are that key. `at` returns the time of a key [s];
 /// the `count` keys are in ascending order of time. Returns `None` if there are no keys.
-pub fn between(count: usize, at: impl Fn(usize) -> f32, time: f64) -> Option<(usize, usize, f32)> {
+///
+/// ```
+/// use hairspring::math::find_keys;
+///
+/// let times = [1.0, 2.0, 4.0];
+/// assert_eq!(find_keys(3, |k| times[k], 3.5), Some((1, 2, 0.75)));
+/// ```
+pub fn find_keys(count: usize, at: impl Fn(usize) -> f32, time: f64) -> Option<(usize, usize, f32)> {
     let last = count.checked_sub(1)?;
     let at = |key| f64::from(at(key));
     let next = (0..count).take_while(|key| at(*key) <= time).count();
@@ -29,8 +36,8 @@ mod tests {
             (4.0, (2, 2, 0.0)),
             (9.0, (2, 2, 0.0)),
         ] {
-            assert_eq!(between(3, |k| times[k], time), Some(right), "{time} s");
+            assert_eq!(find_keys(3, |k| times[k], time), Some(right), "{time} s");
         }
-        assert_eq!(between(0, |_| 0.0, 1.0), None);
+        assert_eq!(find_keys(0, |_| 0.0, 1.0), None);
     }
 }

@@ -3,6 +3,8 @@
 use glam::{Affine3A, Mat3, Quat, Vec3};
 
 /// A rotation followed by a translation.
+///
+/// For an example, see [`math`](crate::math).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidTransform {
     /// Unit rotation.

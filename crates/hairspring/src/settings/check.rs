@@ -1,6 +1,8 @@
 //! Ranges of settings: one rule a value, used by the readers of scene files and by code that builds a simulation.
 
 /// A rule for the value of a setting.
+///
+/// For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Check {
     /// Whether the value follows the rule.
@@ -12,6 +14,8 @@ pub struct Check {
 }
 
 /// The error for a setting that is not finite or outside of its range.
+///
+/// For an example, see [`settings`](crate::settings).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{key}` must be {expected}")]
 pub struct OutOfRange {
@@ -22,6 +26,8 @@ pub struct OutOfRange {
 }
 
 /// Settings with a documented range for each value.
+///
+/// For an example, see [`settings`](crate::settings).
 pub trait Validate {
     /// Returns the rules of all values, in the order of the fields.
     fn checks(&self) -> Vec<Check>;

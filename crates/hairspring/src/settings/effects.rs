@@ -1,14 +1,19 @@
 //! Settings of the styling of follow hairs.
 
 use super::check::{Check, Validate, above_0, check};
-use serde::{Deserialize, Serialize};
 
 /// Largest radius or amplitude [m].
 const MAX_LENGTH: f32 = 1e6;
 
 /// Styling of follow hairs, applied after interpolation from the guides. All off by default.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Effects {
     /// How far tips are drawn to their first guide, 0 (not at all) to 1 (fully); grows from root to tip.
     pub clump: f32,

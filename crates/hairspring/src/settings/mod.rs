@@ -1,4 +1,16 @@
 //! Settings of a simulation as plain data. The default of each field is the value that a scene file may leave out.
+//!
+//! Fields may be added in a minor version: write `..Default::default()`, also where all present fields are given.
+//!
+//! # Example
+//! ```
+//! use hairspring::settings::{Integrator, Solver, Validate};
+//!
+//! let solver = Solver { substeps: 8, integrator: Integrator::Bdf2, ..Default::default() };
+//! assert!(solver.validate().is_ok());
+//! let refused = Solver { substeps: 0, ..solver }.validate().unwrap_err();
+//! assert_eq!(refused.to_string(), "`substeps` must be 1 to 1024");
+//! ```
 
 mod check;
 mod effects;

@@ -1,12 +1,17 @@
 //! Settings of contact between strands, one by one.
 
 use super::check::{Check, Validate, above_0, check, from_0};
-use serde::{Deserialize, Serialize};
 
 /// Settings of contact between individual strands, for guides and small scenes. It is the reference for the
 /// volume methods, and acts between the simulated strands of all grooms.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Neighbours {
     /// Whether strands collide. Default false: they pass through each other.
     pub on: bool,

@@ -1,11 +1,16 @@
 //! Settings of the solver: time steps, integrator, contact.
 
 use super::check::{Check, Validate, above_0, check};
-use serde::{Deserialize, Serialize};
 
 /// Settings of time steps and contact.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Solver {
     /// Number of substeps in a frame of 1/60 s, 1 to 1024. Default 4: substeps of 1/240 s at any frame rate.
     pub substeps: u32,
@@ -43,8 +48,11 @@ pub struct Solver {
 }
 
 /// Contact method for points and segments inside a collider (Sams 2014, §3.3).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+///
+/// For an example, see [`settings`](crate::settings).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Response {
     /// An implicit force in the solve, followed by projection of what is still inside to the nearest free
     /// position. The force carries weight and tension without jerks; the projection stops impacts.
@@ -64,8 +72,11 @@ impl Response {
 }
 
 /// Time integration method. All methods act on the same strands, for comparison.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+///
+/// For an example, see [`settings`](crate::settings).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Integrator {
     /// x⁺ = x + h v, v⁺ = v + h a with the fiber's own stiffness: a baseline that is unstable.
     ExplicitEuler,
@@ -120,8 +131,11 @@ impl Integrator {
 }
 
 /// Accuracy of the solve in each substep.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+///
+/// For an example, see [`settings`](crate::settings).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Quality {
     /// One linear solve (10 iterations of local-global).
     #[default]

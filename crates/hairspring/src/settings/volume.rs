@@ -1,12 +1,17 @@
 //! Settings of contact between hairs as a volume.
 
 use super::check::{Check, Validate, above_0, check, from_0};
-use serde::{Deserialize, Serialize};
 
 /// Settings of the hair volume, which acts between the simulated strands of all grooms. Each strand has the
 /// mass of the hairs that follow it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Volume {
     /// Volume method. Default `off`: strands pass through each other.
     pub method: VolumeMethod,
@@ -35,8 +40,11 @@ impl Default for Volume {
 }
 
 /// Method that keeps hair from being compressed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+///
+/// For an example, see [`settings`](crate::settings).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum VolumeMethod {
     /// None.
     #[default]

@@ -2,11 +2,16 @@
 
 use super::check::{Check, Validate, check, from_0};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// Directional wind, the same everywhere, with gusts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// Fields may be added: write `..Default::default()`. For an example, see [`settings`](crate::settings).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Wind {
     /// Mean velocity of the air [m/s]. Default 0.
     pub velocity: Vec3,

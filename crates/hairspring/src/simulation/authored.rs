@@ -2,11 +2,11 @@
 //! bodies.
 
 use super::{Simulation, build::simulated_points};
+use crate::parallel::prelude::*;
 use crate::{
     collide::ColliderPose,
     simd::lanes::{LANES, Row},
 };
-use rayon::prelude::*;
 
 impl Simulation {
     /// Returns the largest distance of each point from its root, see `Tile::tether_lengths`.

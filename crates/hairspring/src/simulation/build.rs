@@ -4,6 +4,7 @@ use super::{
     Simulation, SimulationBuilder, cpu_solver::CpuSolver, layout::Order, manipulators::Manipulators,
     strand_model::StrandModel, strand_state::StrandState, teleport::Motion,
 };
+use crate::parallel::prelude::*;
 use crate::strand::tile::TileLayout;
 use crate::{
     air::{Noise, OcclusionSampler, WindOcclusion},
@@ -28,13 +29,12 @@ use crate::{
 };
 use fearless_simd::Level;
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 use std::{borrow::Cow, sync::Arc};
 
 impl Simulation {
     /// Creates the simulation that a valid builder describes.
     pub(super) fn from_builder(builder: SimulationBuilder) -> Self {
-        let SimulationBuilder { groom, strands, materials, solver, gravity, anchor, colliders } = builder;
+        let SimulationBuilder { groom, strands, materials, solver, gravity, anchor, colliders, .. } = builder;
         let strands = &*strands;
         let materials = if materials.is_empty() { vec![Material::default()] } else { materials.to_vec() };
         let material = |s: usize| &materials[(groom.group(s) as usize).min(materials.len() - 1)];
@@ -139,6 +139,7 @@ impl Simulation {
             frame: FrameContext::default(),
             solver: Box::new(CpuSolver { level }),
             level,
+            group_user_data: Vec::new(),
         }
     }
 
@@ -149,6 +150,7 @@ impl Simulation {
         let mut other = Self::with_parts(self.model.clone(), self.state.clone());
         other.use_level(self.level);
         other.frame.segments = self.frame.segments;
+        other.group_user_data.clone_from(&self.group_user_data);
         other
     }
 

@@ -12,6 +12,8 @@ use glam::Vec3;
 use std::{borrow::Cow, sync::Arc};
 
 /// Describes a [`Simulation`]; see [`Simulation::builder`].
+///
+/// For an example, see [`Simulation::builder`].
 pub struct SimulationBuilder<'a> {
     pub(super) groom: Arc<Groom>,
     pub(super) strands: Cow<'a, [u32]>,
@@ -20,9 +22,19 @@ pub struct SimulationBuilder<'a> {
     pub(super) gravity: Vec3,
     pub(super) anchor: RigidTransform,
     pub(super) colliders: &'a [ColliderPose],
+    pub(super) group_user_data: &'a [u128],
 }
 
 /// The reason that a simulation cannot be built.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::{groom::Groom, simulation::{BuildError, Simulation}};
+///
+/// let short = Groom::from_strands([[Vec3::ZERO, Vec3::Y]], 35e-6);
+/// let refused = Simulation::builder(short).build().err();
+/// assert_eq!(refused, Some(BuildError::TooFewPoints { strand: 0, points: 2 }));
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
@@ -96,6 +108,7 @@ impl Simulation {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             anchor: RigidTransform::default(),
             colliders: &[],
+            group_user_data: &[],
         }
     }
 }
@@ -139,13 +152,23 @@ impl<'a> SimulationBuilder<'a> {
         self
     }
 
+    /// Sets the data of the user for each group of the groom; see [`Simulation::group_user_data`]. A group past
+    /// the end has 0. Default: 0 for all.
+    pub fn group_user_data(mut self, user_data: &'a [u128]) -> Self {
+        self.group_user_data = user_data;
+        self
+    }
+
     /// Builds the simulation, at rest.
     ///
     /// # Errors
     /// If a strand, an array of the groom or a setting is invalid: see [`BuildError`].
     pub fn build(self) -> Result<Simulation, BuildError> {
         self.check()?;
-        Ok(Simulation::from_builder(self))
+        let group_user_data = self.group_user_data.to_vec();
+        let mut simulation = Simulation::from_builder(self);
+        simulation.group_user_data = group_user_data;
+        Ok(simulation)
     }
 
     fn check(&self) -> Result<(), BuildError> {

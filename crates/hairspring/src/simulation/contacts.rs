@@ -2,15 +2,18 @@
 //! queries.
 
 use super::Simulation;
+use crate::parallel::prelude::*;
 use crate::{
     collide::{ColliderShape, MovingCollider},
     math::RigidTransform,
 };
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Contacts with colliders at the end of the last substep.
+///
+/// For an example, see [`Simulation::contact_points`], which lists them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Contacts {
     /// Points in contact with a collider.
     pub points: usize,
@@ -20,11 +23,13 @@ pub struct Contacts {
     pub force: f64,
     /// Pairs of a point and a collider for which a substep queries the distance: the point is in the
     /// collider's bounds and, for a distance field, in a cell that is not entirely outside.
-    pub looked_up: usize,
+    pub distance_queries: usize,
 }
 
 impl Simulation {
-    /// Counts the contacts of all strands with `obstacles`, the colliders of the last step.
+    /// Counts the contacts of all strands with `obstacles`, the colliders of the last step. It reads the state
+    /// after the step, so steps whose contacts are not counted cost nothing extra. For the place and the
+    /// collider of each contact, see [`Simulation::contact_points`].
     pub fn contacts(&self, obstacles: &[MovingCollider]) -> Contacts {
         let poses: Vec<_> = obstacles.iter().map(|o| (&o.shape, o.end)).collect();
         // Summed in a fixed order, so that the force is bitwise independent of the number of threads.
@@ -38,7 +43,7 @@ impl Simulation {
             points: a.points + b.points,
             segments: a.segments + b.segments,
             force: a.force + b.force,
-            looked_up: a.looked_up + b.looked_up,
+            distance_queries: a.distance_queries + b.distance_queries,
         })
     }
 
@@ -49,11 +54,12 @@ impl Simulation {
         // The first two points are driven by the root.
         for (i, x) in strand.particles().enumerate().step_by(strand.stride()).skip(2) {
             let point = f64::from(strand.normal_force(i));
-            let segment = f64::from(strand.segment_force(i));
+            let segment = f64::from(strand.segment_contact(i).1);
             out.points += usize::from(point > 0.0);
             out.segments += usize::from(segment > 0.0);
             out.force += point.max(0.0) + segment.max(0.0);
-            out.looked_up += poses.iter().filter(|(shape, pose)| may_touch(shape, pose, root + x)).count();
+            out.distance_queries +=
+                poses.iter().filter(|(shape, pose)| may_touch(shape, pose, root + x)).count();
         }
         out
     }

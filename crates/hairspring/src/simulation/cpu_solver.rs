@@ -62,7 +62,7 @@ fn run(level: Level, frame: &FrameContext, tiles: TileRange) -> bool {
     if count > TILES_PER_TASK {
         let half = (count / 2).next_multiple_of(TILES_PER_TASK).min(count - 1);
         let (a, b) = tiles.split(half);
-        let (a, b) = rayon::join(|| run(level, frame, a), || run(level, frame, b));
+        let (a, b) = crate::parallel::join(|| run(level, frame, a), || run(level, frame, b));
         return a | b;
     }
     on_large_stack(|| run_task(level, frame, tiles))

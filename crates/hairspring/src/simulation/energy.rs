@@ -1,6 +1,7 @@
 //! The energy of the strands, by form. A swing without losses would conserve the total.
 
 use super::{Simulation, strand_ref::StrandRef};
+use crate::parallel::prelude::*;
 use crate::{
     settings::Integrator,
     strand::{
@@ -13,11 +14,13 @@ use crate::{
         tile::Elastic,
     },
 };
-use rayon::prelude::*;
 use std::ops::Add;
 
 /// Energy of all simulated strands [J], without the first two points of each strand, which its root drives.
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Energy {
     /// ½ m v² of the points.
     pub kinetic: f64,

@@ -5,6 +5,8 @@ use crate::forces::ForceField;
 use std::sync::Arc;
 
 /// Identifies a force field of a simulation.
+///
+/// For an example, see `examples/custom_force.rs`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ForceId(u32);
 

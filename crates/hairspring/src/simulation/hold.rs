@@ -8,6 +8,17 @@ use crate::{
 use glam::Vec3;
 
 /// A hold on one point.
+///
+/// ```
+/// use hairspring::{prelude::*, simulation::Hold};
+///
+/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+/// let tip = strand[7];
+/// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+/// // The tip is pinned where it is.
+/// simulation.set_holds(&[Hold { strand: 0, point: 7, target: Some(tip), ..Default::default() }]);
+/// # Ok::<(), hairspring::simulation::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hold {
     /// The strand, as an index into those given to [`Simulation::builder`].
@@ -17,7 +28,7 @@ pub struct Hold {
     /// World position of the target at the end of the next frame [m]; `None` if the point is free.
     pub target: Option<Vec3>,
     /// Displacement of the target in the next frame [m]. After that, the target is at rest.
-    pub way: Vec3,
+    pub displacement: Vec3,
     /// Stiffness of the spring that pulls the point to the target [N/m], above 0; `None` if the point is
     /// pinned.
     pub stiffness: Option<f32>,
@@ -53,7 +64,7 @@ impl Simulation {
             for k in 0..3 {
                 rows[hold::TARGET + k].0[lane] = target[k];
                 rows[hold::FORCE + k].0[lane] = held.force[k];
-                rows[hold::WAY + k].0[lane] = held.way[k];
+                rows[hold::WAY + k].0[lane] = held.displacement[k];
             }
             let fast = held.target.is_some() && held.stiffness.is_none();
             rows[hold::PINNED].0[lane] = if fast { 1.0 } else { 0.0 };

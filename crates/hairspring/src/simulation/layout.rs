@@ -6,7 +6,7 @@
 //! the volume grid. The assignment does not change results, because the lanes of a tile are independent.
 
 use crate::{
-    groom::{Curve, Groom},
+    groom::{Groom, MortonCurve},
     simd::lanes::LANES,
     strand::tile::Elastic,
 };
@@ -34,12 +34,12 @@ impl Order {
             let points = groom.strand(s as usize);
             points[points.len() / 2]
         };
-        let curve = Curve::around(strands.iter().map(|s| middle(*s)));
+        let curve = MortonCurve::covering_points(strands.iter().map(|s| middle(*s)));
         let mut order: Vec<u32> = (0..strands.len() as u32).collect();
         order.sort_by_cached_key(|k| {
             let strand = strands[*k as usize];
             let points = groom.range(strand as usize).len();
-            (elastic[*k as usize], Reverse(points), curve.along(middle(strand)))
+            (elastic[*k as usize], Reverse(points), curve.index(middle(strand)))
         });
         let mut lane_of_strand = vec![0; strands.len()];
         let mut strand_of_lane: Vec<u32> = Vec::with_capacity(strands.len().next_multiple_of(LANES));

@@ -9,6 +9,8 @@ use crate::{
 use glam::Vec3;
 
 /// Identifies an active manipulator.
+///
+/// For an example, see [`forces`](crate::forces).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ManipulatorId(u32);
 

@@ -1,12 +1,15 @@
 //! Quality measures of a simulation: stretch, depth inside colliders, non-finite values.
 
 use super::Simulation;
+use crate::parallel::prelude::*;
 use crate::{collide::MovingCollider, math::RigidTransform};
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Measures over all simulated points at the end of a step.
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Measure {
     /// Mean of |ℓ/L − 1| over segments [1].
     pub stretch_mean: f64,

@@ -1,14 +1,36 @@
 //! The simulation: the state of all simulated strands, and its time step.
+//!
+//! # Example
+//! ```
+//! use hairspring::prelude::*;
+//!
+//! let strand: Vec<Vec3> = (0..16).map(|i| Vec3::X * (0.01 * i as f32)).collect();
+//! let solver = Solver { sag_free: false, ..Default::default() };
+//! let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).solver(solver).build()?;
+//! let (anchor, roots) = (RigidTransform::default(), [RigidTransform::default()]);
+//! let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &[], air: Air::default() };
+//! let saved = simulation.snapshot();
+//! let report = simulation.step(&input);
+//! assert_eq!((report.substeps, report.reset_strands), (4, 0));
+//! // The strand begins to fall. Time can be turned back.
+//! assert!(simulation.energy().kinetic > 0.0 && simulation.measure(&[]).stretch_max < 0.011);
+//! simulation.restore(&saved).expect("the same strands");
+//! assert_eq!(simulation.energy().kinetic, 0.0);
+//! # Ok::<(), hairspring::simulation::BuildError>(())
+//! ```
 
 mod authored;
 mod build;
 mod builder;
+mod contact_points;
 mod contacts;
 mod cpu_solver;
+mod debug_lines;
 mod energy;
 mod exposure;
 mod external_forces;
 mod force_fields;
+mod groups;
 mod hold;
 mod layout;
 mod manipulators;
@@ -26,6 +48,7 @@ mod strand_state;
 mod substeps;
 mod take_over;
 mod teleport;
+mod try_step;
 mod update_settings;
 mod values;
 mod volume;
@@ -34,16 +57,22 @@ pub use crate::strand::rest_shape::Start;
 pub use crate::strand_contact::NeighboursReport;
 pub use crate::volume::VolumeReport;
 pub use builder::{BuildError, SimulationBuilder};
+pub use contact_points::ContactPoint;
 pub use contacts::Contacts;
+pub use debug_lines::{DebugLine, DebugLineKind, DebugRenderMode};
 pub use energy::Energy;
 pub use force_fields::ForceId;
+pub use groups::GroupId;
 pub use hold::Hold;
 pub use manipulators::ManipulatorId;
 pub use measure::Measure;
+pub use points::PointsError;
 pub use step::{StepInput, StepReport, StepTimes};
 pub use strand_state::{Snapshot, SnapshotMismatch};
 pub use substeps::MAX_TRAVEL;
+pub use try_step::StepError;
 
+use crate::parallel::prelude::*;
 use crate::{
     air::{Noise, OcclusionSampler, WindOcclusion},
     forces::{ForceBuffers, ForceField, HairField, charge::ChargedBall},
@@ -54,7 +83,6 @@ use crate::{
 use cpu_solver::CpuSolver;
 use fearless_simd::Level;
 use glam::Vec3;
-use rayon::prelude::*;
 use solver::StrandSolver;
 use std::{ops::Range, sync::Arc};
 use strand_model::StrandModel;
@@ -69,6 +97,8 @@ use strand_state::StrandState;
 ///
 /// # Limitations
 /// Cutting and wetting are not supported.
+///
+/// For an example, see [`simulation`](crate::simulation).
 pub struct Simulation {
     model: Arc<StrandModel>,
     state: StrandState,
@@ -92,6 +122,8 @@ pub struct Simulation {
     solver: Box<dyn StrandSolver>,
     /// The instruction set of the solver on the CPU.
     level: Level,
+    /// See [`Simulation::group_user_data`].
+    group_user_data: Vec<u128>,
 }
 
 impl Simulation {
@@ -185,6 +217,9 @@ impl Simulation {
 
     /// Writes the points of every simulated strand [m], one after the other, in the order given to
     /// [`Simulation::builder`]. `out` has the shape `[point_count]`.
+    ///
+    /// # Panics
+    /// If `out` is too short.
     pub fn write_points(&self, out: &mut [Vec3]) {
         self.write_points_of(0..self.model.lane_of_strand.len(), out);
     }

@@ -4,6 +4,35 @@ use super::Simulation;
 use crate::strand::{model::bend::transport_normal, tile::Elastic};
 use glam::{DVec3, Vec3};
 
+/// The reason that [`Simulation::set_points`] refused its input.
+///
+/// ```
+/// use hairspring::{prelude::*, simulation::PointsError};
+///
+/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+/// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+/// let refused = simulation.set_points(&[], &[]);
+/// assert_eq!(refused, Err(PointsError::Count { points: 0, velocities: 0, expected: 8 }));
+/// # Ok::<(), hairspring::simulation::BuildError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PointsError {
+    /// An array has another length than the number of simulated points.
+    #[error("{points} points and {velocities} velocities were given for {expected} simulated points")]
+    Count {
+        /// The given points.
+        points: usize,
+        /// The given velocities.
+        velocities: usize,
+        /// The simulated points.
+        expected: usize,
+    },
+    /// The position or the velocity of this point is not finite.
+    #[error("the position or the velocity of point {0} is not finite")]
+    NotFinite(usize),
+}
+
 impl Simulation {
     /// Writes the velocity of every simulated point [m/s], in the order of [`Simulation::write_points`]; `out`
     /// has the shape `[point_count]`.
@@ -24,15 +53,18 @@ impl Simulation {
     /// smallest rotation. Tensions and contact forces stay. A strand whose first point is not at its root is
     /// translated there, since roots are driven.
     ///
-    /// # Panics
-    /// If an array has another length, or a number is not finite.
-    pub fn set_points(&mut self, points: &[Vec3], velocities: &[Vec3]) {
-        let count = self.point_count();
-        assert_eq!((points.len(), velocities.len()), (count, count), "one entry for each simulated point");
-        assert!(
-            points.iter().chain(velocities).all(|v| v.is_finite()),
-            "positions and velocities are finite"
-        );
+    /// # Errors
+    /// If an array has another length, or a number is not finite: see [`PointsError`]. The state is then
+    /// unchanged.
+    pub fn set_points(&mut self, points: &[Vec3], velocities: &[Vec3]) -> Result<(), PointsError> {
+        let expected = self.point_count();
+        if [points.len(), velocities.len()] != [expected; 2] {
+            let (points, velocities) = (points.len(), velocities.len());
+            return Err(PointsError::Count { points, velocities, expected });
+        }
+        if let Some(k) = points.iter().zip(velocities).position(|(p, v)| !(p.is_finite() && v.is_finite())) {
+            return Err(PointsError::NotFinite(k));
+        }
         let mut first = 0;
         for k in 0..self.model.lane_of_strand.len() {
             let place = self.model.lane_of_strand[k] as usize;
@@ -40,6 +72,7 @@ impl Simulation {
             first = own.end;
             self.set_strand(place, &points[own.clone()], &velocities[own]);
         }
+        Ok(())
     }
 
     fn set_strand(&mut self, place: usize, points: &[Vec3], velocities: &[Vec3]) {

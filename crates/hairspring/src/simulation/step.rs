@@ -1,6 +1,7 @@
 //! One step: a frame of root motion, divided into substeps. Each tile runs all of them.
 
 use super::{Simulation, solver::SolverInput};
+use crate::parallel::prelude::*;
 use crate::{
     air::Air,
     collide::{ColliderPose, FrameColliders, MovingCollider},
@@ -13,10 +14,11 @@ use crate::{
         tile::{root, segment_contact},
     },
 };
-use rayon::prelude::*;
 use std::time::Duration;
 
 /// Input of a step. All poses are at the end of the frame; the start is the end of the last step.
+///
+/// For an example, see [`simulation`](crate::simulation).
 pub struct StepInput<'a> {
     /// Length of the frame [s], above 0.
     pub dt: f32,
@@ -32,8 +34,13 @@ pub struct StepInput<'a> {
     pub air: Air<'a>,
 }
 
-/// The result of a step.
+/// The result of a step. Counts that need a pass over the points are made on request: contacts and distance
+/// queries by [`Simulation::contacts`], each contact by [`Simulation::contact_points`], lengths and depths by
+/// [`Simulation::measure`].
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct StepReport {
     /// Number of substeps.
     pub substeps: u32,
@@ -44,7 +51,10 @@ pub struct StepReport {
 }
 
 /// Durations of the stages of a step. The little work between them (substep poses, tools) is not included.
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct StepTimes {
     /// The hair volume: density and forces, in each of the volume's intervals.
     pub volume: Duration,
@@ -89,8 +99,11 @@ impl Simulation {
     /// roots match the skin at every frame, which an accumulator with a remainder would not ensure. More
     /// substeps are used where a body that is fast relative to its thickness passes through the hair.
     ///
+    /// State that is not finite, from input that is not, is reset and counted in the report.
+    ///
     /// # Panics
     /// If `input.roots` is not as long as [`Simulation::strand_count`], or `dt` is not above 0.
+    /// [`Simulation::try_step`] returns an error instead.
     pub fn step(&mut self, input: &StepInput) -> StepReport {
         assert_eq!(
             input.roots.len(),

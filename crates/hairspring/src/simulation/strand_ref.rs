@@ -26,6 +26,11 @@ impl Simulation {
         StrandRef { model: &self.model, state: &self.state, lane }
     }
 
+    /// All simulated strands, in the order given to [`Simulation::builder`].
+    pub(super) fn each_strand(&self) -> impl ExactSizeIterator<Item = StrandRef<'_>> {
+        self.model.lane_of_strand.iter().map(|lane| self.strand(*lane as usize))
+    }
+
     /// The same, for writing.
     pub(super) fn strand_mut(&mut self, lane: usize) -> StrandMut<'_> {
         StrandMut::new(&self.model, &mut self.state, lane)
@@ -197,10 +202,14 @@ impl<'a> StrandRef<'a> {
         self.value(i, state::NORMAL_FORCE)
     }
 
-    /// Contact force of a collider on the segment that ends at particle `i` [N]; 0 without contact.
-    pub fn segment_force(self, i: usize) -> f32 {
+    /// Contact of a collider with the segment that ends at particle `i`: its place on the segment, from 0 at the
+    /// start to 1 at the end, and its force [N]; 0 without contact.
+    pub fn segment_contact(self, i: usize) -> (f32, f32) {
         let rows = self.state.segment_contacts.get(self.at(i));
-        rows.map_or(0.0, |rows| rows[segment_contact::FORCE].0[self.lane % LANES])
+        let value = |rows: &[Row], row: usize| rows[row].0[self.lane % LANES];
+        rows.map_or((1.0, 0.0), |rows| {
+            (value(rows, segment_contact::AT), value(rows, segment_contact::FORCE))
+        })
     }
 
     /// Rest length of the strand's segment that begins at particle `i` [m].

@@ -36,6 +36,8 @@ pub(crate) struct StrandState {
 }
 
 /// A copy of the state of a [`Simulation`], from [`Simulation::snapshot`].
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone)]
 pub struct Snapshot {
     state: StrandState,
@@ -46,6 +48,8 @@ pub struct Snapshot {
 }
 
 /// The reason that a [`Snapshot`] cannot be restored.
+///
+/// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the snapshot is of other strands, or of another elastic model or integrator")]
 pub struct SnapshotMismatch;

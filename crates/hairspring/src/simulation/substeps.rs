@@ -20,8 +20,8 @@ use super::{
     Simulation,
     step::{StepInput, substep_length},
 };
+use crate::parallel::prelude::*;
 use crate::{collide::MovingCollider, math::RigidTransform};
-use rayon::prelude::*;
 
 /// Largest motion of a body in a substep, over its half thickness [1]. A strand in contact then stays on the
 /// side where the contact began.

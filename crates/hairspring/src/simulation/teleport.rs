@@ -11,6 +11,7 @@
 //! With inertia 0, hair on a moving head hangs as on one at rest.
 
 use super::{Simulation, StepInput};
+use crate::parallel::prelude::*;
 use crate::{
     body::is_teleport,
     math::RigidTransform,
@@ -18,7 +19,6 @@ use crate::{
     strand::tile::{Elastic, history, state},
 };
 use glam::{Mat3, Quat, Vec3};
-use rayon::prelude::*;
 
 /// Motion of the anchor in the last frame, used to detect teleports.
 #[derive(Clone, Copy, Debug, Default)]

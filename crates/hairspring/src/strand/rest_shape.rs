@@ -139,6 +139,7 @@ pub struct RestShape {
 
 /// Changes to fibers that were needed so that strands start as authored, and changes that were not possible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Start {
     /// Joints whose bending stiffness the sag-free start raised, by the smallest amount that holds the shape:
     /// no fiber of the material could hold it.

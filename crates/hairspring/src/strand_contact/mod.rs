@@ -88,25 +88,26 @@ pub(crate) struct Neighbours {
 
 /// Statistics of the strand contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct NeighboursReport {
     /// The largest contact radius [m]: the given one, or the computed one.
     pub radius: f32,
     /// Pairs of segments near each other.
-    pub near: usize,
+    pub near_pairs: usize,
     /// Pairs of these that push each other apart.
-    pub pressing: usize,
+    pub touching_pairs: usize,
     /// Pairs of these that stick together.
-    pub bonds: usize,
+    pub stuck_pairs: usize,
     /// Sum of the normal forces of all pairs; pulling forces are negative [N].
     pub force: f32,
     /// Largest depth of an overlap of two segments [m].
     pub depth: f32,
     /// Strands that are identical at rest to earlier ones, and are merged with those.
-    pub same: usize,
+    pub merged_strands: usize,
     /// Pairs of segments that the broad phase tested after the last substep.
-    pub looked_at: usize,
+    pub tested_pairs: usize,
     /// Largest number of segments so far that had some neighbors ignored, because they exceeded the limit.
-    pub crowded: usize,
+    pub crowded_segments: usize,
 }
 
 impl Neighbours {
@@ -136,15 +137,15 @@ impl Neighbours {
     pub fn report(&self) -> NeighboursReport {
         let mut report = NeighboursReport {
             radius: self.radius,
-            near: self.contacts.len(),
-            same: self.hair.shown_count() - self.hair.strand_count(),
-            looked_at: self.grid.looked_at,
-            crowded: self.crowded,
+            near_pairs: self.contacts.len(),
+            merged_strands: self.hair.shown_count() - self.hair.strand_count(),
+            tested_pairs: self.grid.looked_at,
+            crowded_segments: self.crowded,
             ..Default::default()
         };
         for contact in &self.contacts {
-            report.pressing += usize::from(contact.presses());
-            report.bonds += usize::from(contact.holds());
+            report.touching_pairs += usize::from(contact.presses());
+            report.stuck_pairs += usize::from(contact.holds());
             report.force += contact.force();
             report.depth = report.depth.max(contact.depth());
         }

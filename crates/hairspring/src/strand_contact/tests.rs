@@ -55,7 +55,7 @@ fn momentum_is_kept() {
         let report = neighbours.report();
         let error = momentum(&neighbours.hair).distance(before.0) / all;
         println!("{substep}: {error} of all, {report:?}");
-        assert!(report.pressing > 50, "{report:?}");
+        assert!(report.touching_pairs > 50, "{report:?}");
         assert!(error < 1e-6, "momentum changed by {error} of the total");
     }
     let changed = neighbours.hair.v.iter().zip(&before.1).filter(|(a, b)| a.distance(**b) > 0.01).count();

@@ -5,9 +5,9 @@ use super::{
     crossing::Crossing,
     field::{BRAKE, Field, PUSH},
 };
+use crate::parallel::prelude::*;
 use crate::settings;
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Returns β of full cells for intervals of `dt` [s] [1/s].
 pub fn friction(settings: &settings::Volume, dt: f32) -> f32 {

@@ -5,8 +5,8 @@
 //! pressure is processed.
 
 use super::grid_bounds::GridBounds;
+use crate::parallel::prelude::*;
 use glam::{IVec3, Vec3};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Residual at which a solve ends, relative to the right-hand side [1]. A twentieth of the divergence is not

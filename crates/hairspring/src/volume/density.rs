@@ -11,8 +11,8 @@
 //! groom: cells as full as at rest.
 
 use super::field::Field;
+use crate::parallel::prelude::*;
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Largest excess that the pressure takes into account [1].
 pub const MOST_EXCESS: f32 = 1.0;

@@ -4,7 +4,7 @@ use super::{
     grid_bounds::GridBounds,
     splat::{NODE, ROOM, Sums, Units},
 };
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Number of used values in an element of [`Field::push`].
 pub const TAKEN: usize = 9;

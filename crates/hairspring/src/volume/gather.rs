@@ -33,7 +33,7 @@ pub fn all(
     let (a, b) = (tiles.part(0, 2), tiles.part(1, 2));
     let at = (b.firsts[0] - a.firsts[0]) as usize;
     let ((low, high), (low_push, high_push)) = (taken.split_at_mut(at), push.split_at_mut(at));
-    rayon::join(
+    crate::parallel::join(
         || all(&a, transform, bounds, field, (low, low_push)),
         || all(&b, transform, bounds, field, (high, high_push)),
     );

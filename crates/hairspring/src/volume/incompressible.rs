@@ -17,8 +17,8 @@
 //! pressures that are still negative count as 0.
 
 use super::{conjugate::Solve, field::Field};
+use crate::parallel::prelude::*;
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Fill at which a cell begins to have pressure, and at which it is hard [1]. Both are below the random
 /// variation of a full cell, see `rest::POINTS_A_CELL`.

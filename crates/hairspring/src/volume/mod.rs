@@ -56,6 +56,7 @@ mod splat;
 #[cfg(test)]
 mod tests;
 
+use crate::parallel::prelude::*;
 use crate::{
     collide::ColliderPose,
     math::RigidTransform,
@@ -69,7 +70,6 @@ use field::Field;
 use glam::{Mat3, Vec3};
 use grid_bounds::{GridBounds, GridTransform};
 use incompressible::Projection;
-use rayon::prelude::*;
 use rest::Rest;
 pub(crate) use sample::Density;
 use splat::{Extent, OwnRows, Sums, Tiles, Units, own};
@@ -121,17 +121,18 @@ pub(crate) struct Volume {
 
 /// Report of a simulation's hair volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct VolumeReport {
     /// Edge of a cell [m].
     pub cell: f32,
     /// Whether that is larger than requested, to bound the number of cells.
-    pub grown: bool,
+    pub cell_enlarged: bool,
     /// Number of grid nodes in the last interval.
     pub nodes: usize,
     /// Volume of the hair at the start of the last interval relative to that at rest [1]. The volume is that
     /// of its cells as far as they are filled, each at most once: where strands are compressed into each
     /// other's rest volume, it is lost.
-    pub share: f64,
+    pub volume_ratio: f64,
 }
 
 /// State at the start of an interval: the anchor, and the fraction of their motion in the frame that roots
@@ -233,7 +234,7 @@ impl Volume {
     /// no step allocates.
     fn reserve(&mut self) {
         let nodes = self.most_nodes();
-        let grids = rayon::current_num_threads().clamp(1, MOST_GRIDS);
+        let grids = crate::parallel::current_num_threads().clamp(1, MOST_GRIDS);
         if self.sums.len() < grids {
             self.sums.resize_with(grids, Sums::default);
             self.sums.iter_mut().for_each(|sums| sums.reserve(nodes));
@@ -249,7 +250,12 @@ impl Volume {
     /// Returns the report, see [`VolumeReport`].
     pub fn report(&self) -> VolumeReport {
         let nodes = self.field.bounds.nodes();
-        VolumeReport { cell: self.cell, grown: self.grown, nodes, share: self.taken_up[1] / self.taken_up[0] }
+        VolumeReport {
+            cell: self.cell,
+            cell_enlarged: self.grown,
+            nodes,
+            volume_ratio: self.taken_up[1] / self.taken_up[0],
+        }
     }
 
     /// Returns the memory used for the points, in bytes, without the grid.
@@ -301,7 +307,7 @@ impl Volume {
         self.reserve();
         let transform = now.transform(self.cell);
         let tiles = Tiles { firsts: &self.firsts, roots, state, own: &self.own };
-        let parts = rayon::current_num_threads().clamp(1, self.sums.len());
+        let parts = crate::parallel::current_num_threads().clamp(1, self.sums.len());
         let carried = splat::root_velocity(&tiles);
         let extent = (0..parts)
             .into_par_iter()

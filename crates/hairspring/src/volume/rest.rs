@@ -5,13 +5,13 @@ use super::{
     grid_bounds::{GridBounds, GridTransform, Placed},
     splat::{Extent, OwnRows, ROOM, Sums, Tiles, Units, own},
 };
+use crate::parallel::prelude::*;
 use crate::{
     math::RigidTransform,
     simd::lanes::LANES,
     strand::tile::{RootRows, StateRows},
 };
 use glam::{IVec3, Vec3};
-use rayon::prelude::*;
 
 /// Mean number of points that an occupied cell should hold at rest. A cell and its neighbors then contain
 /// about 150 points, whose number varies by 8 % if they are placed at random.

@@ -27,6 +27,13 @@ impl<'a> Density<'a> {
         self.field.bounds.nodes()
     }
 
+    /// Returns the lowest and the highest node in the anchor's space [m]; `None` if there are none.
+    pub fn bounds(&self) -> Option<[Vec3; 2]> {
+        let bounds = &self.field.bounds;
+        let corners = [bounds.lo, bounds.end() - 1].map(|node| node.as_vec3() * self.cell);
+        (bounds.nodes() > 0).then_some(corners)
+    }
+
     /// Returns the number of nodes in a slab of constant z.
     pub fn slab(&self) -> usize {
         self.field.bounds.slab()

@@ -195,7 +195,7 @@ fn what_is_squeezed_is_pressed_apart() {
         let mut volume = bundle.volume(method);
         bundle.set(|p| (p * Vec3::new(0.6, 1.0, 1.0), Vec3::ZERO), &RigidTransform::default());
         let push = bundle.compute_accelerations(&mut volume, &RigidTransform::default());
-        let share = volume.report().share;
+        let share = volume.report().volume_ratio;
         assert!((0.55..0.75).contains(&share), "{method:?}: {share} of the volume at 0.6 of the width");
         for (side, outward) in [(0..SIDE / 4, -1.0), (3 * SIDE / 4..SIDE, 1.0)] {
             let of = |k: usize| side.contains(&((k / (POINTS * LANES) * LANES + k % LANES) % SIDE));

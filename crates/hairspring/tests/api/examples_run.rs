@@ -4,6 +4,8 @@
 mod custom_collider;
 #[path = "../../examples/custom_force.rs"]
 mod custom_force;
+#[path = "../../examples/debug_lines.rs"]
+mod debug_lines;
 #[path = "../../examples/engine_loop.rs"]
 mod engine_loop;
 #[path = "../../examples/follow_hairs.rs"]
@@ -17,9 +19,10 @@ mod snapshot_and_rollback;
 
 #[test]
 fn examples_run() {
-    let examples: [(&str, fn()); 7] = [
+    let examples: [(&str, fn()); 8] = [
         ("custom_collider", custom_collider::main),
         ("custom_force", custom_force::main),
+        ("debug_lines", debug_lines::main),
         ("engine_loop", engine_loop::main),
         ("follow_hairs", follow_hairs::main),
         ("many_characters", many_characters::main),

@@ -5,6 +5,7 @@ use crate::support::{points, shake, simulation, velocities};
 use hairspring::{
     material::{Material, Model},
     settings::Solver,
+    simulation::PointsError,
 };
 
 #[test]
@@ -20,7 +21,7 @@ fn set_states_are_read_back() {
             translation: at[0] - points(&hair)[0],
             ..Default::default()
         });
-        hair.set_points(&at, &moving);
+        hair.set_points(&at, &moving).unwrap();
         let off = points(&hair).iter().zip(&at).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         assert!(off < 1e-6, "{model:?}: the difference is {off} m");
         assert_eq!(velocities(&hair), moving, "{model:?}");
@@ -32,7 +33,7 @@ fn the_simulation_continues_from_a_set_state() {
     let mut source = simulation(10, Material::default(), Solver::default());
     (0..25).for_each(|frame| shake(&mut source, frame, &[]));
     let mut hair = source.instance();
-    hair.set_points(&points(&source), &velocities(&source));
+    hair.set_points(&points(&source), &velocities(&source)).unwrap();
     (25..35).for_each(|frame| {
         shake(&mut source, frame, &[]);
         shake(&mut hair, frame, &[]);
@@ -42,7 +43,13 @@ fn the_simulation_continues_from_a_set_state() {
 }
 
 #[test]
-#[should_panic(expected = "one entry for each simulated point")]
-fn arrays_of_another_length_are_refused() {
-    simulation(3, Material::default(), Solver::default()).set_points(&[], &[]);
+fn invalid_arrays_are_refused_and_change_nothing() {
+    let mut hair = simulation(3, Material::default(), Solver::default());
+    let before = points(&hair);
+    let error = hair.set_points(&[], &[]).unwrap_err();
+    assert_eq!(error, PointsError::Count { points: 0, velocities: 0, expected: 48 });
+    let mut broken = velocities(&hair);
+    broken[20].y = f32::NAN;
+    assert_eq!(hair.set_points(&before, &broken), Err(PointsError::NotFinite(20)));
+    assert_eq!(points(&hair), before);
 }

@@ -93,7 +93,7 @@ fn a_shape_swept_through_a_curtain_keeps_hair_out() {
         let (mut deepest, mut longest, mut pushed) = (0.0f32, 0.0f64, 0.0f32);
         let mut points = vec![Vec3::ZERO; simulation.point_count()];
         for frame in 0..400 {
-            let obstacles = [MovingCollider { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
+            let obstacles = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
             simulation.step(&StepInput {
                 dt: FRAME,
                 anchor: RigidTransform::default(),
@@ -153,7 +153,7 @@ fn play(
         .colliders_at_rest(&[rest])
         .build()
         .unwrap();
-    let obstacles = [MovingCollider { shape: shape.clone(), start: anchor, end: anchor }];
+    let obstacles = [MovingCollider::at_rest(shape.clone(), anchor)];
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
     for _ in 0..frames {
         simulation.step(&StepInput {

@@ -65,7 +65,7 @@ impl Slope {
         let start = RigidTransform::default();
         let end = RigidTransform { translation: by, ..start };
         let shape = ColliderShape::Plane { point: Vec3::ZERO, normal: Vec3::Y };
-        let obstacles = [MovingCollider { shape, start, end }];
+        let obstacles = [MovingCollider::new(shape, start, end)];
         for _ in 0..frames {
             let air = Air::default();
             self.simulation.step(&StepInput {

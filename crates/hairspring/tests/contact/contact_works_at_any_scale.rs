@@ -76,7 +76,7 @@ fn fall(shape: &ColliderShape, s: f32) -> (Vec<Vec3>, f32) {
             let phase = 0.1 * frame as f32;
             RigidTransform { translation: Vec3::Z * (0.01 * s * (1.0 - phase.cos())), ..anchor }
         };
-        let obstacles = [MovingCollider { shape: shape.clone(), start: at(frame), end: at(frame + 1) }];
+        let obstacles = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
         simulation.step(&StepInput {
             dt: FRAME,
             anchor,

@@ -81,7 +81,7 @@ fn hair_stays_in_front_of_a_fast_collider() {
                 let (mut z, end) = (-0.06f32, 0.14);
                 while z < end {
                     let next = (z + speed * dt).min(end);
-                    let obstacles = [MovingCollider { shape: rod(radius), start: at(z), end: at(next) }];
+                    let obstacles = [MovingCollider::new(rod(radius), at(z), at(next))];
                     let (anchor, air) = (RigidTransform::default(), Air::default());
                     simulation.step(&StepInput { dt, anchor, roots: &roots, obstacles: &obstacles, air });
                     z = next;
@@ -100,7 +100,7 @@ fn only_fast_thin_colliders_near_hair_shorten_substeps() {
         // Hair is at rest, because fast hair near a thin body also causes shorter substeps.
         let (mut simulation, mut roots) = curtain(Model::Auto);
         let place = |translation| RigidTransform { translation, rotation: turned };
-        let obstacles = [MovingCollider { shape, start: place(start), end: place(end) }];
+        let obstacles = [MovingCollider::new(shape, place(start), place(end))];
         for root in &mut roots {
             root.translation = anchor.point(Vec3::new(root.translation.x, 0.0, 0.0));
         }

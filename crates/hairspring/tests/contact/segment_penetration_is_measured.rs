@@ -37,7 +37,7 @@ fn measure(model: Model, shape: &ColliderShape, told: bool) -> Measure {
         .colliders_at_rest(if told { std::slice::from_ref(&rest) } else { &[] })
         .build()
         .unwrap();
-    simulation.measure(&[MovingCollider { shape: shape.clone(), start: still, end: still }])
+    simulation.measure(&[MovingCollider::at_rest(shape.clone(), still)])
 }
 
 /// Shapes that reach `depth` [m] above the middle of the fifth segment from below, and touch nothing else.

@@ -63,11 +63,7 @@ fn step(simulation: &mut Simulation, roots: &[RigidTransform], obstacles: &[Movi
 }
 
 fn still(shape: &ColliderShape) -> [MovingCollider; 1] {
-    [MovingCollider {
-        shape: shape.clone(),
-        start: RigidTransform::default(),
-        end: RigidTransform::default(),
-    }]
+    [MovingCollider::at_rest(shape.clone(), RigidTransform::default())]
 }
 
 fn points(simulation: &Simulation) -> Vec<Vec3> {
@@ -78,13 +74,12 @@ fn points(simulation: &Simulation) -> Vec<Vec3> {
 
 /// The worse values of two measurements.
 fn worst(a: Measure, b: Measure) -> Measure {
-    Measure {
-        segment_depth: a.segment_depth.max(b.segment_depth),
-        max_depth: a.max_depth.max(b.max_depth),
-        stretch_max: a.stretch_max.max(b.stretch_max),
-        speed_max: a.speed_max.max(b.speed_max),
-        ..a
-    }
+    let mut worst = a;
+    worst.segment_depth = a.segment_depth.max(b.segment_depth);
+    worst.max_depth = a.max_depth.max(b.max_depth);
+    worst.stretch_max = a.stretch_max.max(b.stretch_max);
+    worst.speed_max = a.speed_max.max(b.speed_max);
+    worst
 }
 
 fn shapes() -> [(&'static str, ColliderShape); 5] {
@@ -259,10 +254,8 @@ fn hair_between_facing_walls_moves_out_sideways() {
         let mut all = Measure::default();
         for frame in 0..120 {
             let (start, end) = (sway(frame), sway(frame + 1));
-            all = worst(
-                all,
-                step(&mut simulation, &roots, &[MovingCollider { shape: shape.clone(), start, end }]),
-            );
+            all =
+                worst(all, step(&mut simulation, &roots, &[MovingCollider::new(shape.clone(), start, end)]));
         }
         if all.segment_depth >= 1e-3 || all.max_depth >= 3e-4 || all.stretch_max >= 0.011 {
             let (segment, point, longer) = (all.segment_depth * 1e3, all.max_depth * 1e3, all.stretch_max);
@@ -296,7 +289,7 @@ fn distant_colliders_change_nothing() {
     for (name, shape) in shapes() {
         for model in Model::ALL {
             let far = RigidTransform { translation: Vec3::Y * 3.0, ..RigidTransform::default() };
-            let obstacles = [MovingCollider { shape: shape.clone(), start: far, end: far }];
+            let obstacles = [MovingCollider::at_rest(shape.clone(), far)];
             let (mut simulation, roots) = hair(model, &[]);
             let (mut free, _) = hair(model, &[]);
             for _ in 0..30 {

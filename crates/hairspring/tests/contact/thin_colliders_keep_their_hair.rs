@@ -88,7 +88,7 @@ fn drag(shape: &ColliderShape, speed: f32, frames: usize, strands: usize) -> usi
     let moving = (0.15 / (speed * FRAME)).ceil() as usize;
     for _ in 0..moving + frames {
         let next = (z + speed * FRAME).min(end);
-        step(&mut simulation, &roots, MovingCollider { shape: shape.clone(), start: at(z), end: at(next) });
+        step(&mut simulation, &roots, MovingCollider::new(shape.clone(), at(z), at(next)));
         z = next;
     }
     caught(&simulation, y, z)

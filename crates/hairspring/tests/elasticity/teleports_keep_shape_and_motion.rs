@@ -83,7 +83,7 @@ impl Head {
             dt: FRAME,
             anchor: pose,
             roots: &roots,
-            obstacles: &[MovingCollider { shape: ball(), start: self.pose, end: pose }],
+            obstacles: &[MovingCollider::new(ball(), self.pose, pose)],
             air: Air::default(),
         });
         assert_eq!(report.reset_strands, 0);

@@ -139,7 +139,7 @@ fn a_fan_moves_only_hair_in_front_of_it() {
 /// A ball in a wind along z.
 fn ball() -> MovingCollider {
     let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.06 };
-    MovingCollider { shape, start: RigidTransform::default(), end: RigidTransform::default() }
+    MovingCollider::at_rest(shape, RigidTransform::default())
 }
 
 #[test]
