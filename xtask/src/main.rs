@@ -89,8 +89,9 @@ fn monkey(minutes: &str) -> Result<(), String> {
 
 /// Packages every crate that is not private. The packages are not compiled again: `test` compiles the same files.
 fn package() -> Result<(), String> {
-    // Private: the developer commands, the scalar build of the library's files, and the program that may link it.
-    let private = ["xtask", "hairspring-scalar", "hairspring-one-lane", "hairspring-cli"];
+    // Private: the developer commands, the helpers of the tests, the scalar build of the library's files, and the
+    // program that may link it.
+    let private = ["xtask", "hairspring-test", "hairspring-scalar", "hairspring-one-lane", "hairspring-cli"];
     let exclude = private.iter().flat_map(|name| ["--exclude", name]);
     let package = ["package", "--quiet", "--workspace", "--no-verify", "--allow-dirty"];
     run::cargo(&package.into_iter().chain(exclude).collect::<Vec<_>>(), &[])

@@ -13,6 +13,7 @@ use hairspring_scene::{
     Scene,
     builtin::{BuiltinOptions, Style, scene},
 };
+use hairspring_test::on_threads;
 use std::collections::HashMap;
 
 /// A scene that is small enough for a test.
@@ -159,11 +160,9 @@ fn roots_are_evenly_spread() {
 #[test]
 fn the_same_options_give_the_same_bits_on_any_number_of_threads() {
     let options = BuiltinOptions { strands: 3_000, ..BuiltinOptions::default() };
-    let on = |threads: usize| {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| scene(&options))
-    };
-    let one = on(1);
-    assert!(one == on(3), "one and three threads differ");
+    let made = |threads| on_threads(threads, || scene(&options));
+    let one = made(1);
+    assert!(one == made(3), "one and three threads differ");
     let other = scene(&BuiltinOptions { seed: 2, ..options });
     assert!(one.grooms[0].groom != other.grooms[0].groom, "the seed has no effect");
 }

@@ -4,6 +4,7 @@
 //! balances its weight. Bent strands report their turn, moving points their speed, and points in a volume
 //! their density. Follow hairs report the values of their first guide.
 
+use crate::support::play;
 use glam::{Quat, Vec3};
 use hairspring::{
     groom::{Groom, GuideWeights},
@@ -14,9 +15,9 @@ use hairspring_scene::{
     Collider, Guides, Scene, SceneGroom, Shape,
     stage::{Stage, Value},
 };
+use hairspring_test::FRAME;
 use std::f32::consts::PI;
 
-const FRAME: f32 = 1.0 / 60.0;
 const G: f32 = 9.81;
 const RADIUS: f32 = 40e-6;
 const POINTS: usize = 21;
@@ -56,7 +57,7 @@ fn values(stage: &Stage, what: Value) -> Vec<f32> {
 #[test]
 fn tension_of_a_hanging_strand_follows_the_closed_form() {
     let mut stage = Stage::new(scene(rail(Vec3::NEG_Y))).unwrap();
-    (0..60).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 60);
     let weight = Material::default().density * PI * RADIUS * RADIUS * SEGMENT * G;
     let tension = values(&stage, Value::Tension);
     for s in 0..4 {
@@ -93,7 +94,7 @@ fn falling_strands_report_speed_and_turn() {
     falling.solver = Solver { sag_free: false, ..Solver::default() };
     falling.grooms[0].materials[0].bend = 1e-3;
     let mut stage = Stage::new(falling).unwrap();
-    (0..4).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 4);
     let here = stage.strands().next().unwrap().points.to_vec();
     stage.step(FRAME);
     let next = stage.strands().next().unwrap().points;
@@ -128,7 +129,7 @@ fn contact_force_on_a_floor_balances_the_weight() {
     let floor = Shape::Plane { point: Vec3::NEG_Y * 0.002, normal: Vec3::Y };
     lying.colliders = vec![Collider { joint: None, shape: floor }];
     let mut stage = Stage::new(lying).unwrap();
-    (0..180).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 180);
     let contact = values(&stage, Value::Contact);
     let weight = Material::default().density * PI * RADIUS * RADIUS * SEGMENT * G;
     let held: f32 = contact[..POINTS].iter().sum();
@@ -148,7 +149,7 @@ fn density_at_rest_is_one() {
     dense.grooms[0].guides = Guides::All;
     dense.volume = Volume { method: VolumeMethod::Density, ..Volume::default() };
     let mut stage = Stage::new(dense).unwrap();
-    (0..5).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 5);
     let density = values(&stage, Value::Density);
     let middle = density[(10 * 20 + 10) * POINTS + 10];
     assert!((middle - 1.0).abs() < 0.2, "the density in the middle is {middle}");

@@ -5,13 +5,13 @@
 //! velocity, and no value is non-finite. Gravity, stiffness, wind, colliders and hands can be added and
 //! removed. Refused settings change nothing.
 
+use crate::support::{play, points};
 use glam::Vec3;
 use hairspring::{
     air::{Air, Flow, Turbulence, WindOcclusion, WindSource},
     forces::{Manipulator, grab::Grab},
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
     settings::{Effects, Integrator, Solver, Volume, VolumeMethod, Wind},
     simulation::{Simulation, StepInput},
 };
@@ -20,9 +20,9 @@ use hairspring_scene::{
     builtin::{self, BuiltinOptions},
     stage::{Stage, StageError},
 };
+use hairspring_test::{FRAME, REST, farthest, roots, translation};
 use std::sync::Arc;
 
-const FRAME: f32 = 1.0 / 60.0;
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
 /// The argument of `update_settings`: the settings without geometry.
@@ -35,21 +35,6 @@ fn settings_of(scene: &Scene) -> Scene {
         sheets: Vec::new(),
         clip: None,
         ..scene.clone()
-    }
-}
-
-fn points(stage: &Stage) -> Vec<Vec3> {
-    stage.strands().flat_map(|strands| strands.points.to_vec()).collect()
-}
-
-fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
-}
-
-fn play(stage: &mut Stage, frames: u32) {
-    for _ in 0..frames {
-        let report = stage.step(FRAME);
-        assert_eq!(report.step.reset_strands, 0);
     }
 }
 
@@ -84,11 +69,8 @@ fn the_same_settings_change_nothing() {
     });
     for stage in &mut stages {
         play(stage, 20);
-        let id = stage.add_manipulator(hold, RigidTransform::default());
-        stage.set_manipulator_pose(
-            id,
-            RigidTransform { translation: Vec3::X * 0.01, ..RigidTransform::default() },
-        );
+        let id = stage.add_manipulator(hold, REST);
+        stage.set_manipulator_pose(id, translation(Vec3::X * 0.01));
         play(stage, 5);
     }
     let [untouched, same, fresh] = &mut stages;
@@ -108,8 +90,6 @@ fn the_same_settings_change_nothing() {
         );
     }
 }
-
-const ROOT: RigidTransform = RigidTransform { rotation: glam::Quat::IDENTITY, translation: Vec3::ZERO };
 
 /// Strands that extend to the side: straight ones, and curls of two sizes.
 fn stuck_out() -> Groom {
@@ -134,29 +114,13 @@ fn falling(groom: &Arc<Groom>, model: Model, integrator: Integrator) -> Simulati
     let substeps = if explicit { 400 } else { 4 };
     let solver = Solver { integrator, substeps, sag_free: false, ..Solver::default() };
     let material = Material { model, drag: 0.1, ..Material::default() };
-    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    Simulation::builder(groom.clone())
-        .strands(&all)
-        .materials(&[material])
-        .solver(solver)
-        .gravity(GRAVITY)
-        .anchor(ROOT)
-        .build()
-        .unwrap()
+    Simulation::builder(groom.clone()).materials(&[material]).solver(solver).build().unwrap()
 }
 
 /// Simulates a frame; returns how many strands were reset because they were not finite.
 fn fall(simulation: &mut Simulation, groom: &Groom) -> usize {
-    let root = |s: usize| RigidTransform { translation: groom.strand(s)[0], ..ROOT };
-    let roots: Vec<RigidTransform> = (0..groom.strand_count()).map(root).collect();
-    let air = Air::default();
-    simulation.step(&StepInput { dt: FRAME, anchor: ROOT, roots: &roots, obstacles: &[], air }).reset_strands
-}
-
-fn places(simulation: &Simulation) -> Vec<Vec3> {
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    points
+    let (roots, air) = (roots(groom, REST), Air::default());
+    simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles: &[], air }).reset_strands
 }
 
 #[test]
@@ -173,11 +137,11 @@ fn every_model_and_integrator_takes_over_from_every_other() {
     for from in &ways {
         let mut old = falling(&groom, from.0, from.1);
         let mut before = Vec::new();
-        let mut here = places(&old);
+        let mut here = hairspring_test::points(&old);
         for _ in 0..12 {
             let lost = fall(&mut old, &groom);
             assert!(lost == 0 || !bears(from), "{from:?}");
-            before = std::mem::replace(&mut here, places(&old));
+            before = std::mem::replace(&mut here, hairspring_test::points(&old));
         }
         // Tips moved from `before` to `here` in the last frame. The jump is the distance in the next frame
         // from the position extrapolated at constant velocity.
@@ -188,7 +152,7 @@ fn every_model_and_integrator_takes_over_from_every_other() {
         for to in std::iter::once(from).chain(&ways) {
             let mut new = falling(&groom, to.0, to.1);
             new.take_over(&old);
-            let moved = farthest(&places(&new), &here);
+            let moved = farthest(&hairspring_test::points(&new), &here);
             assert!(moved < 1e-6, "{from:?} to {to:?}: {moved} m at the switch");
             for frame in 0..4 {
                 let lost = fall(&mut new, &groom);
@@ -197,7 +161,7 @@ fn every_model_and_integrator_takes_over_from_every_other() {
                 if frame > 0 || !bears(from) || !bears(to) {
                     continue;
                 }
-                let jump = jump(&places(&new));
+                let jump = jump(&hairspring_test::points(&new));
                 // The jump without a change of model or integrator.
                 let own = *own.get_or_insert(jump);
                 println!("{from:?} to {to:?}: {jump} m, {own} m without a change");

@@ -9,12 +9,11 @@ use hairspring::{
     air::Air,
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
     settings::{Integrator, Solver, Wind},
     simulation::{Simulation, StepInput},
 };
+use hairspring_test::{FRAME, REST, line};
 use hairspring_validate::{Method, case, drag_coefficient};
-use std::sync::Arc;
 
 #[test]
 fn the_drag_coefficient_matches_the_literature() {
@@ -71,12 +70,10 @@ fn other_integrators_hang_at_the_same_angle() {
 fn drag_along_a_hair_is_smaller() {
     let radius = 35e-6_f64;
     let along = {
-        let points: Vec<Vec3> = (0..16).map(|i| Vec3::X * (0.01 * i as f32)).collect();
-        let groom = Arc::new(Groom::from_strands([points], radius as f32));
+        let groom = Groom::from_strands([line(Vec3::ZERO, Vec3::X * 0.15, 16)], radius as f32);
         let material = Material { bend: 0.0, damping: 0.0, drag: 1.0, ..Material::default() };
         let solver = Solver { sag_free: false, ..Solver::default() };
         let mut simulation = Simulation::builder(groom)
-            .strands(&[0])
             .materials(&[material])
             .solver(solver)
             .gravity(Vec3::ZERO)
@@ -84,13 +81,8 @@ fn drag_along_a_hair_is_smaller() {
             .unwrap();
         let wind = Wind { velocity: Vec3::X, ..Wind::default() };
         for _ in 0..60 {
-            simulation.step(&StepInput {
-                dt: 1.0 / 60.0,
-                anchor: RigidTransform::default(),
-                roots: &[RigidTransform::default()],
-                obstacles: &[],
-                air: Air { wind, ..Air::default() },
-            });
+            let air = Air { wind, ..Air::default() };
+            simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &[REST], obstacles: &[], air });
         }
         f64::from(simulation.tension_at(0, 1))
     };

@@ -4,6 +4,7 @@
 //! work items. Ties in depth are broken by order.
 
 use hairspring_scene::HairLook;
+use hairspring_test::on_threads;
 use hairspring_view::{Frame, HairDraw, Image, Quality, Renderer};
 
 #[test]
@@ -17,8 +18,7 @@ fn one_two_and_seven_threads() {
     let draw = |threads: usize, warm: bool, wisp: u32| -> Image {
         let quality = Quality { wisp, ..Quality::default() };
         let frame = Frame { quality, ..crate::support::frame(&hair, &bodies) };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
+        on_threads(threads, || {
             let mut renderer = Renderer::new(321, 203);
             if warm {
                 let other = crate::support::frame(&hair, &[]);

@@ -7,13 +7,12 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    collide::{ColliderPose, ColliderShape, MovingCollider, voxelize},
+    collide::{ColliderShape, MovingCollider, voxelize},
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
-    settings::Solver,
     simulation::{Measure, Simulation},
 };
+use hairspring_test::REST;
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -22,22 +21,19 @@ const SEGMENT: f32 = 0.02;
 /// The middle of the fifth segment.
 const MIDDLE: Vec3 = Vec3::new(4.5 * SEGMENT, 0.0, 0.0);
 
-/// Measures the strand as authored against `shape`, which is a collider at rest if `told`.
-fn measure(model: Model, shape: &ColliderShape, told: bool) -> Measure {
+/// Measures the strand as authored against `shape`. The penetration is authored if `at_rest`: then the shape is
+/// one of the colliders at rest.
+fn measure(model: Model, shape: &ColliderShape, at_rest: bool) -> Measure {
     let points = (0..12).map(|i| Vec3::X * (SEGMENT * i as f32));
-    let groom = Arc::new(Groom::from_strands([points.collect::<Vec<_>>()], 40e-6));
-    let still = RigidTransform::default();
-    let rest = ColliderPose::new(shape.clone(), still.matrix(), still.matrix(), 1.0);
+    let groom = Groom::from_strands([points.collect::<Vec<_>>()], 40e-6);
+    let collider = MovingCollider::at_rest(shape.clone(), REST);
+    let rest = collider.now();
     let simulation = Simulation::builder(groom)
-        .strands(&[0])
         .materials(&[Material { model, ..Material::default() }])
-        .solver(Solver::default())
-        .gravity(Vec3::NEG_Y * 9.81)
-        .anchor(still)
-        .colliders_at_rest(if told { std::slice::from_ref(&rest) } else { &[] })
+        .colliders_at_rest(if at_rest { std::slice::from_ref(&rest) } else { &[] })
         .build()
         .unwrap();
-    simulation.measure(&[MovingCollider { shape: shape.clone(), start: still, end: still }])
+    simulation.measure(&[collider])
 }
 
 /// Shapes that reach `depth` [m] above the middle of the fifth segment from below, and touch nothing else.

@@ -4,23 +4,23 @@
 //! Laws are tested by their conserved quantity: the momentum of a fan's jet, the volume flow of a point
 //! source. Sheltered hair is compared with the same hair in the open.
 
-use glam::{Mat3, Quat, Vec3};
+use glam::{Quat, Vec3};
 use hairspring::{
     air::{Air, Flow, Source, Turbulence, WindOcclusion},
     collide::{ColliderPose, ColliderShape, MovingCollider},
     groom::Groom,
-    material::Material,
     math::RigidTransform,
-    settings::{Solver, Wind},
+    settings::Wind,
     simulation::{Simulation, StepInput},
 };
+use hairspring_test::{FRAME, REST, line, on_threads, points, roots};
 use std::{f32::consts::PI, sync::Arc};
 
 const FAN: Flow = Flow::Fan { center: Vec3::ZERO, axis: Vec3::Z, radius: 0.1, speed: 4.0, spread: 11.8 };
 
 /// A source at rest, without gusts.
 fn still(flow: Flow) -> Source {
-    Source { flow, pose: RigidTransform::default(), factor: 1.0 }
+    Source { flow, pose: REST, factor: 1.0 }
 }
 
 /// The integral of `f` over a disc of `radius` across the z axis at `z`.
@@ -71,9 +71,7 @@ fn a_point_conserves_volume_and_a_vortex_rotates() {
 
 /// Strands that hang down from `roots`.
 fn hanging(roots: &[Vec3]) -> Arc<Groom> {
-    let strand =
-        |root: &Vec3| (0..16).map(|i| *root + Vec3::NEG_Y * (0.2 * i as f32 / 15.0)).collect::<Vec<_>>();
-    Arc::new(Groom::from_strands(roots.iter().map(strand), 4e-5))
+    Arc::new(Groom::from_strands(roots.iter().map(|root| line(*root, *root - Vec3::Y * 0.2, 16)), 4e-5))
 }
 
 /// The points of these strands after `frames` in moving air.
@@ -84,36 +82,15 @@ fn blown(
     obstacles: &[MovingCollider],
     frames: u32,
 ) -> Vec<Vec3> {
-    let strands: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let rest = (Mat3::IDENTITY, Vec3::ZERO);
-    let poses: Vec<_> =
-        obstacles.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();
-    let mut simulation = Simulation::builder(groom.clone())
-        .strands(&strands)
-        .materials(&[Material::default()])
-        .solver(Solver::default())
-        .gravity(Vec3::NEG_Y * 9.81)
-        .colliders_at_rest(&poses)
-        .build()
-        .unwrap();
+    let poses: Vec<ColliderPose> = obstacles.iter().map(MovingCollider::now).collect();
+    let mut simulation = Simulation::builder(groom.clone()).colliders_at_rest(&poses).build().unwrap();
     simulation.set_wind_occlusion(occlusion);
-    let roots: Vec<RigidTransform> = strands
-        .iter()
-        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
-        .collect();
+    let roots = roots(groom, REST);
     for frame in 0..frames {
         let air = Air { time: frame as f64 / 60.0, ..air };
-        simulation.step(&StepInput {
-            dt: 1.0 / 60.0,
-            anchor: RigidTransform::default(),
-            roots: &roots,
-            obstacles,
-            air,
-        });
+        simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles, air });
     }
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    points
+    points(&simulation)
 }
 
 /// How far along z the tip of strand `s` was blown [m].
@@ -139,7 +116,7 @@ fn a_fan_moves_only_hair_in_front_of_it() {
 /// A ball in a wind along z.
 fn ball() -> MovingCollider {
     let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.06 };
-    MovingCollider { shape, start: RigidTransform::default(), end: RigidTransform::default() }
+    MovingCollider::at_rest(shape, REST)
 }
 
 #[test]
@@ -188,10 +165,7 @@ fn hair_in_moving_air_is_independent_of_threads() {
         ..Air::default()
     };
     let occlusion = WindOcclusion { body: 100.0, hair: 50.0, ..WindOcclusion::default() };
-    let play = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| blown(&groom, air, &occlusion, &[ball()], 30))
-    };
+    let play = |threads| on_threads(threads, || blown(&groom, air, &occlusion, &[ball()], 30));
     let one = play(1);
     assert!(one.iter().all(|p| p.is_finite()));
     assert!(one == play(2), "two threads give other bits than one");
