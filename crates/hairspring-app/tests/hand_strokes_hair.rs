@@ -7,6 +7,7 @@ mod support;
 use glam::Vec3;
 use hairspring::math::RigidTransform;
 use hairspring_app::{Action, Document, Push, Pushed, Session};
+use hairspring_test::farthest;
 use support::SMALL;
 
 const LENGTH: f32 = hairspring_scene::builtin::Hand::LENGTH;
@@ -71,8 +72,7 @@ fn hair_gives_way_to_the_hand_without_penetration() {
         }
         deepest = deepest.max(seen.depth);
         if let Some(other) = other {
-            let off = seen.points.iter().zip(&other.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-            moved = moved.max(off);
+            moved = moved.max(farthest(&seen.points, &other.points));
         }
         last = Some(pose);
     }

@@ -34,7 +34,7 @@ fn a_prop_and_everything_attached_move_by_its_keys() {
         };
         let before = [0, 1].map(|groom| roots(&stage, groom));
         for _ in 0..60 {
-            stage.step(1.0 / 60.0);
+            stage.step(hairspring_test::FRAME);
         }
         let up = Vec3::Y * 2.0;
         let now = stage.body().unwrap().positions;

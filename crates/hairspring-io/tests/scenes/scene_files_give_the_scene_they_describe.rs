@@ -3,7 +3,6 @@
 //! This includes the files that it refers to, some of them real data. Invalid combinations are refused with
 //! a one-sentence error.
 
-use crate::common::data;
 use crate::scenes::{folder, message, read};
 use glam::Vec3;
 use hairspring::{
@@ -14,6 +13,7 @@ use hairspring::{
 };
 use hairspring_io::Loaded;
 use hairspring_scene::{Guides, Hand, Shape};
+use hairspring_test::data;
 use std::fs;
 
 #[test]
@@ -305,6 +305,7 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
                 [[sheet]]\nfile = \"head.obj\"\nscale = 2\nparts = [\"neck\"]\nthickness = 0.01\n\
                 [[sheet]]\nfile = \"head.obj\"\nscale = 1\n";
     let scene = read(folder.path(), text).unwrap().value;
+    assert_eq!(scene.colliders.len(), 2);
     for (collider, size) in scene.colliders.iter().zip([0.5, 1.0]) {
         let hull = collider.shape.obstacle().unwrap();
         let (slope, corner) = (hull.distance(Vec3::splat(size)), hull.distance(Vec3::Y * (2.0 * size)));
@@ -317,7 +318,7 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
     let wrong = |more: &str| {
         message(&format!("[body]\nfile = \"head.obj\"\nscale = 1\n[[groom]]\nfile = \"hair.data\"\n{more}\n"))
     };
-    for (more, says) in [
+    for (more, part) in [
         (
             "[[collider]]\nshape.hull = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]] }",
             "line 7: `shape` must be",
@@ -335,6 +336,6 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
         ("[[sheet]]\nfile = \"none.obj\"", "scene.toml, line 7, names it as the sheet"),
     ] {
         let message = wrong(more);
-        assert!(message.contains(says), "{more}: {message}");
+        assert!(message.contains(part), "{more}: {message}");
     }
 }
