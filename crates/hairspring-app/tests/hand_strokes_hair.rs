@@ -41,8 +41,8 @@ fn step(session: &mut Session, number: u64, push: Option<Push>) -> Seen {
             continue;
         };
         let stage = &now.stages[0];
-        let own = stage.pushed.map_or(0, |(what, _)| what.shapes().len());
-        let hand: Vec<_> = stage.obstacles[stage.obstacles.len() - own..].iter().map(|o| o.now()).collect();
+        let count = stage.pushed.map_or(0, |(what, _)| what.shapes().len());
+        let hand: Vec<_> = stage.obstacles[stage.obstacles.len() - count..].iter().map(|o| o.now()).collect();
         let points: Vec<Vec3> = stage.points().flatten().copied().collect();
         let deep = |p: &Vec3| hand.iter().map(|s| -s.distance(*p)).fold(0.0, f32::max);
         let depth = points.iter().map(deep).fold(0.0, f32::max);

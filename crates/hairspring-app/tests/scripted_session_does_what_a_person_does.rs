@@ -73,10 +73,10 @@ fn still_of_a_comparison_shows_both_scenes_and_captions() {
         "the gap between the two pictures is missing"
     );
     let red = |columns: std::ops::Range<u32>| -> u64 {
-        let of = |x: u32| {
+        let column = |x: u32| {
             (0..692).map(|y| image.pixel(x, y)).map(|[r, g, _]| u64::from(r.saturating_sub(g))).sum::<u64>()
         };
-        columns.map(of).sum()
+        columns.map(column).sum()
     };
     let (brown, dyed) = (red(left.clone()), red(right.clone()));
     assert!(dyed > 2 * brown && brown > 0, "the sides do not show their own scenes: {brown}, {dyed}");

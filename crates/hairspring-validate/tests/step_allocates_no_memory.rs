@@ -83,7 +83,7 @@ fn hair_on_hair_allocates_nothing() {
             global_shape: GlobalShape { pull: 2.0, ..GlobalShape::default() },
             ..Material::default()
         };
-        let mut bench = Bench::of(200, 16, material, Solver::default());
+        let mut bench = Bench::with_material(200, 16, material, Solver::default());
         let center = Vec3::Y * 0.2;
         let (axis, half) = (Vec3::Y, Vec3::X * 0.1);
         for tool in [

@@ -92,7 +92,9 @@ fn all_effects_keep_the_bounds() {
     let calm = json(&succeed(Path::new("."), &small));
     let world = ["--hair-hair", "--head", "sdf", "--wind", "3"];
     let found = json(&succeed(Path::new("."), &[&small[..], &world].concat()));
-    let number = |of: &Value, key: &str| of[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", of[key]));
+    let number = |report: &Value, key: &str| {
+        report[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", report[key]))
+    };
     assert_eq!((&found["head"], number(&found, "wind_m_s")), (&"sdf".into(), 3.0));
     assert_eq!((&calm["head"], number(&calm, "wind_m_s")), (&"sphere".into(), 0.0));
     assert!(number(&found, "stretch_max_ever") < 0.011, "{found}");
@@ -130,9 +132,9 @@ fn a_table_has_every_model_on_every_instruction_set() {
     for cell in cells {
         named.push((cell["simd"].as_str().unwrap(), cell["model"].as_str().unwrap()));
         // The keys are those of a single bench, and four more.
-        let own = ["speedup", "speedup_over", "frames_in_turn", "compiled_for"];
+        let table_only = ["speedup", "speedup_over", "frames_in_turn", "compiled_for"];
         let mut keys = cell.as_object().unwrap().keys().map(String::as_str);
-        assert_eq!(keys.find(|key| !KEYS.contains(key) && !own.contains(key)), None);
+        assert_eq!(keys.find(|key| !KEYS.contains(key) && !table_only.contains(key)), None);
         let number = |key: &str| cell[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", cell[key]));
         for (key, want) in
             [("threads", 2.0), ("strands", 16.0), ("points", 8.0), ("substeps", 2.0), ("frames", 7.0)]

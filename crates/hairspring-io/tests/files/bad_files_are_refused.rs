@@ -150,15 +150,15 @@ fn the_error_has_file_place_and_remedy() {
 fn a_groom_too_far_from_the_origin_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("far.data");
-    let write = |away: f32| {
-        let points: Vec<Vec3> = (0..16).map(|i| Vec3::new(away, 0.005 * i as f32, 0.0)).collect();
+    let write = |x: f32| {
+        let points: Vec<Vec3> = (0..16).map(|i| Vec3::new(x, 0.005 * i as f32, 0.0)).collect();
         let strands = Strands { points: &points, offsets: &[0, 16], radii: &[], colors: &[], root_uvs: &[] };
         write_strands(&path, strands).unwrap();
         points
     };
     let options = ReadOptions { scale: Some(1.0), up: None };
-    for away in [5e3, 1e7, 1e30] {
-        write(away);
+    for x in [5e3, 1e7, 1e30] {
+        write(x);
         let error = read_groom(&path, &options).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Malformed);
         assert!(error.to_string().contains("from the origin"), "{error}");

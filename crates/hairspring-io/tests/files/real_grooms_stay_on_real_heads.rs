@@ -98,8 +98,8 @@ fn check_motion(scene: Scene, bounds: &Bounds) {
         worst.max_depth = worst.max_depth.max(measure.max_depth);
         worst.surface_depth = worst.surface_depth.max(measure.surface_depth);
         inside = inside.max(measure.inside_points);
-        let off = root_error(&stage);
-        assert!(off < 1e-4, "at {} s a root is {off} m from its place on the body", stage.time());
+        let error = root_error(&stage);
+        assert!(error < 1e-4, "at {} s a root is {error} m from its place on the body", stage.time());
     }
     let share = inside as f64 / points;
     println!(

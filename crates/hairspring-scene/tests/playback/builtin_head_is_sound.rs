@@ -86,11 +86,15 @@ fn roots_are_on_the_skin_and_other_points_outside() {
         let surface = Surface::new(&scene.body.as_ref().unwrap().mesh);
         // Roots on the scalp are taken from the mesh; those of brows and lashes from the smooth shape that
         // it approximates.
-        for (groom, off) in scene.grooms.iter().map(|g| &g.groom).zip([1e-5, 6e-4]) {
+        for (groom, tolerance) in scene.grooms.iter().map(|g| &g.groom).zip([1e-5, 6e-4]) {
             for s in 0..groom.strand_count() {
                 let strand = groom.strand(s);
                 let root = surface.signed_distance(strand[0]);
-                assert!(root.abs() < off, "{} strand {s}: the root is {root} m from the skin", style.name());
+                assert!(
+                    root.abs() < tolerance,
+                    "{} strand {s}: the root is {root} m from the skin",
+                    style.name()
+                );
                 for (k, p) in strand.iter().enumerate().skip(1) {
                     let d = surface.signed_distance(*p);
                     assert!(d > 1e-4, "{} strand {s} point {k} at {p}: {d} m outside", style.name());
@@ -249,8 +253,8 @@ impl<'a> Surface<'a> {
                     // The interpolated normal gives the correct side also where the nearest point is on an
                     // edge or a corner.
                     let n = self.mesh.triangles[*t as usize].map(|i| self.mesh.normals[i as usize]);
-                    let out = n[0] * weights.x + n[1] * weights.y + n[2] * weights.z;
-                    best = (d, (p - q).dot(out).signum());
+                    let normal = n[0] * weights.x + n[1] * weights.y + n[2] * weights.z;
+                    best = (d, (p - q).dot(normal).signum());
                 }
             }
         }

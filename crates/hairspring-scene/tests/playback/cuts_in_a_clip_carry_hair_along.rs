@@ -76,7 +76,7 @@ fn cut(from: usize, to: Trs) -> impl Fn(usize) -> Trs {
     move |frame| if frame < from { Trs::default() } else { to }
 }
 
-fn away() -> Trs {
+fn moved() -> Trs {
     Trs { translation: Vec3::new(5.0, 0.0, 0.0), ..Trs::default() }
 }
 
@@ -86,9 +86,9 @@ fn turned() -> Trs {
 
 #[test]
 fn hair_stays_with_its_body_at_any_frame_rate() {
-    let both = Trs { rotation: turned().rotation, ..away() };
+    let both = Trs { rotation: turned().rotation, ..moved() };
     for rate in RATES {
-        for (what, to) in [("away", away()), ("turned", turned()), ("both", both)] {
+        for (what, to) in [("away", moved()), ("turned", turned()), ("both", both)] {
             // A frame that coincides with a frame of most rates, and one between frames.
             for from in [30, 31] {
                 let offset = largest_offset(scene(cut(from, to)), rate);
@@ -101,7 +101,7 @@ fn hair_stays_with_its_body_at_any_frame_rate() {
 #[test]
 fn single_frame_and_resampled_cuts_are_detected() {
     // There and back, and a cut between keys of 24 Hz that were resampled.
-    let blink = |frame: usize| if frame == 30 { away() } else { Trs::default() };
+    let blink = |frame: usize| if frame == 30 { moved() } else { Trs::default() };
     for rate in RATES {
         let offset = largest_offset(scene(blink), rate);
         assert!(offset < 1e-4, "there and back at {rate} Hz: {offset} m");
@@ -148,9 +148,9 @@ fn attached_colliders_follow_the_cut_and_others_do_not() {
     for rate in RATES {
         let mut scene = scene(|_| Trs::default());
         let mut mesh = plate(Vec3::ZERO);
-        let apart = plate(Vec3::Z * 40.0);
-        mesh.positions.extend(apart.positions);
-        mesh.normals.extend(apart.normals);
+        let second_plate = plate(Vec3::Z * 40.0);
+        mesh.positions.extend(second_plate.positions);
+        mesh.normals.extend(second_plate.normals);
         mesh.triangles.extend([[4, 5, 6], [4, 6, 7]]);
         let skin = Skin {
             joints: (0..8).map(|v| [v / 4, 0, 0, 0]).collect(),
@@ -159,7 +159,7 @@ fn attached_colliders_follow_the_cut_and_others_do_not() {
         };
         scene.body = Some(Body { mesh, joints: vec![joint("head"), joint("prop")], skin: Some(skin) });
         let frame = |k: usize| {
-            let head = if k < 30 { Trs::default() } else { away() };
+            let head = if k < 30 { Trs::default() } else { moved() };
             // The prop jumps across the hair, from one side to the other.
             let prop = Trs { translation: Vec3::Z * if k < 20 { -4.0 } else { 4.0 }, ..Trs::default() };
             [head, prop]
@@ -176,7 +176,7 @@ fn attached_colliders_follow_the_cut_and_others_do_not() {
 #[test]
 fn cuts_work_on_a_body_moved_by_the_app() {
     for rate in RATES {
-        let mut stage = Stage::new(scene(cut(30, away()))).unwrap();
+        let mut stage = Stage::new(scene(cut(30, moved()))).unwrap();
         stage.move_body(RigidTransform {
             rotation: Quat::from_rotation_y(1.0),
             translation: Vec3::new(0.0, 0.0, 20.0),

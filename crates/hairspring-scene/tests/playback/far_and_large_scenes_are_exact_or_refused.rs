@@ -69,8 +69,11 @@ fn hair_at_a_hundred_meters_moves_as_at_the_origin() {
 #[test]
 fn hair_too_far_from_the_origin_is_refused() {
     for away in [5e3, 1e5, 1e7, 1e30] {
-        let why = refused(scene(vec![groom(Vec3::ZERO, 0.005), groom(Vec3::X * away, 0.005)]));
-        assert!(why.starts_with("groom 1: strand 0 is ") && why.contains("nearer to the origin"), "{why}");
+        let message = refused(scene(vec![groom(Vec3::ZERO, 0.005), groom(Vec3::X * away, 0.005)]));
+        assert!(
+            message.starts_with("groom 1: strand 0 is ") && message.contains("nearer to the origin"),
+            "{message}"
+        );
     }
 }
 

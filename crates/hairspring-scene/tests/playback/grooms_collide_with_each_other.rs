@@ -81,8 +81,8 @@ fn hair_divided_into_grooms_moves_as_in_one() {
         // The interaction has an effect: the left groom alone moves differently.
         let mut alone = scene(vec![groom(left)]);
         meet(&mut alone);
-        let apart = farthest(&played(&alone, 20), &one);
-        assert!(apart > 1e-4, "{name}: the other patch moves it by {apart} m");
+        let difference = farthest(&played(&alone, 20), &one);
+        assert!(difference > 1e-4, "{name}: the other patch moves it by {difference} m");
     }
 }
 
@@ -154,9 +154,9 @@ fn hair_on_a_second_body_is_initialized_at_its_start_pose() {
     // The second plate rests inside the first, or already at its start position.
     let [moved, made] = [Vec3::ZERO, Vec3::new(0.06, 0.0, 0.0)].map(plates);
     for frames in [0, 15] {
-        let apart = farthest(&played(&moved, frames), &played(&made, frames));
-        println!("{frames} frames: {apart:.1e} m apart");
-        assert!(apart < if frames == 0 { 1e-7 } else { 1e-4 }, "{apart} m after {frames} frames");
+        let difference = farthest(&played(&moved, frames), &played(&made, frames));
+        println!("{frames} frames: {difference:.1e} m apart");
+        assert!(difference < if frames == 0 { 1e-7 } else { 1e-4 }, "{difference} m after {frames} frames");
     }
     let mut stage = Stage::new(moved).unwrap();
     stage.step(FRAME);

@@ -170,11 +170,11 @@ fn a_pinned_lock_is_held_while_its_roots_move() {
         });
         lock.step();
     }
-    let off = |(s, i): &(u32, u32)| {
+    let offset_of = |(s, i): &(u32, u32)| {
         let k = *s as usize * POINTS + *i as usize;
         lock.points[k].distance(homes[k])
     };
-    let worst = held.iter().map(off).fold(0.0, f32::max);
+    let worst = held.iter().map(offset_of).fold(0.0, f32::max);
     println!("the largest offset is {worst} m");
     assert!(worst < 0.003, "the largest offset is {worst} m");
 }

@@ -19,7 +19,7 @@ fn roots_stay_on_a_body_moved_by_the_app() {
     let options = BuiltinOptions { strands: 200, guides: Guides::Count(40), ..BuiltinOptions::default() };
     let scene = builtin::scene(&options);
     let [mut here, mut carried] = [0; 2].map(|_| Stage::new(scene.clone()).unwrap());
-    let way = |frame: u32| RigidTransform {
+    let motion = |frame: u32| RigidTransform {
         rotation: Quat::from_rotation_y(0.02 * frame as f32),
         translation: Vec3::new(0.01 * frame as f32, 0.0, -0.005 * frame as f32),
     };
@@ -32,14 +32,14 @@ fn roots_stay_on_a_body_moved_by_the_app() {
             .collect()
     };
     for frame in 1..30 {
-        carried.move_body(way(frame));
+        carried.move_body(motion(frame));
         here.step(FRAME);
         carried.step(FRAME);
         let (still, moved) = (roots(&here), roots(&carried));
-        let expected: Vec<Vec3> = still.iter().map(|root| way(frame).point(*root)).collect();
+        let expected: Vec<Vec3> = still.iter().map(|root| motion(frame).point(*root)).collect();
         let error = farthest(&expected, &moved);
         assert!(error < 2e-6, "frame {frame}: a root is {error} m from its place on the body");
-        let anchor = way(frame).after(&here.body_anchor());
+        let anchor = motion(frame).after(&here.body_anchor());
         assert!(anchor.translation.distance(carried.body_anchor().translation) < 1e-6);
         // The head's distance field moves with the body.
         let end = carried.obstacles()[0].end;
@@ -47,7 +47,7 @@ fn roots_stay_on_a_body_moved_by_the_app() {
     }
     // The motion has an effect: hair lags behind.
     let tips = |stage: &Stage| stage.strands().next().unwrap().points[31];
-    let lag = way(29).point(tips(&here)).distance(tips(&carried));
+    let lag = motion(29).point(tips(&here)).distance(tips(&carried));
     assert!(lag > 1e-3, "{lag} m");
     carried.reset();
     here.reset();

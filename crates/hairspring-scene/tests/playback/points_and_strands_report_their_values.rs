@@ -31,8 +31,8 @@ fn rail(way: Vec3) -> Groom {
         (0..POINTS).map(|i| root + way * (SEGMENT * i as f32)).collect::<Vec<_>>()
     };
     let mut groom = Groom::from_strands((0..4).map(strand), RADIUS);
-    let of = |guide: u32| GuideWeights { guides: [guide; 3], weights: [1.0, 0.0, 0.0] };
-    groom.guides = [0, 0, 3, 3].map(of).to_vec();
+    let follows = |guide: u32| GuideWeights { guides: [guide; 3], weights: [1.0, 0.0, 0.0] };
+    groom.guides = [0, 0, 3, 3].map(follows).to_vec();
     groom
 }
 
@@ -169,8 +169,8 @@ fn a_ray_finds_the_strand_it_points_at() {
     assert_eq!((hit.groom, hit.strand, hit.point), (0, 1, 10));
     assert!((hit.distance - eye.distance(Vec3::new(0.05, -0.1, 0.0))).abs() < 1e-5);
     // Between two strands, closer in angle to the left one.
-    let near = at(Vec3::new(0.06, -0.102, 0.0)).unwrap();
-    assert_eq!((near.groom, near.strand, near.point), (0, 1, 10));
+    let between = at(Vec3::new(0.06, -0.102, 0.0)).unwrap();
+    assert_eq!((between.groom, between.strand, between.point), (0, 1, 10));
     // Both strands are within 0.2° of the ray: the nearer one is found although the ray passes through the
     // other.
     let behind = at(Vec3::new(0.0, -0.11, -0.1)).unwrap();

@@ -83,10 +83,10 @@ fn the_same_settings_change_nothing() {
         [&mut *untouched, &mut *same, &mut *fresh].into_iter().for_each(|stage| play(stage, 1));
         let expected = points(untouched);
         assert!(expected == points(same), "frame {frame}: the same settings changed the result");
-        let apart = farthest(&expected, &points(fresh));
+        let difference = farthest(&expected, &points(fresh));
         assert!(
             expected == points(fresh),
-            "frame {frame}: {apart} m apart after rest shapes were solved again"
+            "frame {frame}: {difference} m apart after rest shapes were solved again"
         );
     }
 }
@@ -148,7 +148,7 @@ fn every_model_and_integrator_takes_over_from_every_other() {
         let tips = || groom.offsets[1..].iter().map(|end| *end as usize - 1);
         let jump =
             |next: &[Vec3]| tips().map(|i| next[i].distance(2.0 * here[i] - before[i])).fold(0.0, f32::max);
-        let mut own = None;
+        let mut unchanged = None;
         for to in std::iter::once(from).chain(&ways) {
             let mut new = falling(&groom, to.0, to.1);
             new.take_over(&old);
@@ -163,10 +163,10 @@ fn every_model_and_integrator_takes_over_from_every_other() {
                 }
                 let jump = jump(&hairspring_test::points(&new));
                 // The jump without a change of model or integrator.
-                let own = *own.get_or_insert(jump);
-                println!("{from:?} to {to:?}: {jump} m, {own} m without a change");
-                if jump - own > most {
-                    (most, worst) = (jump - own, Some((*from, *to)));
+                let unchanged = *unchanged.get_or_insert(jump);
+                println!("{from:?} to {to:?}: {jump} m, {unchanged} m without a change");
+                if jump - unchanged > most {
+                    (most, worst) = (jump - unchanged, Some((*from, *to)));
                 }
             }
         }
@@ -245,8 +245,8 @@ fn gravity_and_stiffness_change_smoothly() {
     let still = Scene { wind: Wind::default(), ..settings };
     stage.update_settings(still).unwrap();
     play(&mut stage, 600);
-    let apart = farthest(&points(&stage), &lock().grooms[0].groom.points);
-    assert!(apart < 2e-3, "the final offset is {apart} m");
+    let difference = farthest(&points(&stage), &lock().grooms[0].groom.points);
+    assert!(difference < 2e-3, "the final offset is {difference} m");
 }
 
 #[test]
@@ -287,8 +287,8 @@ fn colliders_can_be_added_and_removed() {
     stage.update_settings(settings).unwrap();
     assert!(stage.obstacles().is_empty());
     play(&mut stage, 600);
-    let apart = farthest(&points(&stage), &scene.grooms[0].groom.points);
-    assert!(apart < 2e-3, "the final offset is {apart} m");
+    let difference = farthest(&points(&stage), &scene.grooms[0].groom.points);
+    assert!(difference < 2e-3, "the final offset is {difference} m");
 }
 
 #[test]
@@ -310,8 +310,8 @@ fn a_hand_persists_while_its_settings_exist() {
     settings.hands.clear();
     stage.update_settings(settings).unwrap();
     play(&mut stage, 300);
-    let apart = farthest(&points(&stage), &scene.grooms[0].groom.points);
-    assert!(apart < 0.01, "the offset after the release is {apart} m");
+    let difference = farthest(&points(&stage), &scene.grooms[0].groom.points);
+    assert!(difference < 0.01, "the offset after the release is {difference} m");
 }
 
 #[test]

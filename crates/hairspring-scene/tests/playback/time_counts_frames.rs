@@ -56,8 +56,8 @@ fn after_ten_minutes_the_body_matches_its_clip() {
         stage.update_render_points();
         let time = rate.time_of(count);
         assert_eq!(stage.time(), time, "at {rate} Hz");
-        let off = (f64::from(root(&stage)) - 0.1 * time).abs();
-        assert!(off < 1e-5, "at {rate} Hz the root is {off} m from its place after {count} frames");
+        let error = (f64::from(root(&stage)) - 0.1 * time).abs();
+        assert!(error < 1e-5, "at {rate} Hz the root is {error} m from its place after {count} frames");
     }
 }
 

@@ -35,7 +35,7 @@ fn standard_scene_of_springs_keeps_its_bounds() {
 }
 
 fn standard_scene(material: Material, strands: u32, mean: f64) -> Bench {
-    let mut bench = Bench::of(strands, 32, material, Solver::default());
+    let mut bench = Bench::with_material(strands, 32, material, Solver::default());
     for frame in 0..300 {
         let report = bench.step();
         assert_eq!(report.reset_strands, 0, "a strand turned non-finite in frame {frame}");
@@ -157,8 +157,8 @@ const HEAD: f32 = 0.1;
 fn violent_motion_leaves_no_trace() {
     let all = cases(&[1e-4, 1.0, 1e4]);
     // Materials of one model share tiles of eight strands, which takes a third of the time.
-    let of = |model: Model| all.iter().filter(|material| material.model == model).cloned().collect();
-    violence(Model::ALL.map(|model| (of(model), VolumeMethod::Off)).into());
+    let with_model = |model: Model| all.iter().filter(|material| material.model == model).cloned().collect();
+    violence(Model::ALL.map(|model| (with_model(model), VolumeMethod::Off)).into());
 }
 
 #[test]

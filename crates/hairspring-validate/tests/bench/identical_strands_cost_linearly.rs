@@ -46,18 +46,18 @@ fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursRepor
 fn coincident_strands_touch_others_as_one() {
     let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
     let rope = line(Vec3::new(-0.05, 0.01, 0.0), Vec3::new(0.20, 0.01, 0.0), 26);
-    let over = |count: usize| {
+    let over_bar = |count: usize| {
         let strands: Vec<_> = std::iter::once(bar.clone()).chain(vec![rope.clone(); count]).collect();
         fallen(1, &strands, 90)
     };
-    let (one, lone) = over(1);
-    let (many, tips) = over(1000);
+    let (one, lone) = over_bar(1);
+    let (many, tips) = over_bar(1000);
     println!("one: {one:?}\n1000: {many:?}");
     assert!(lone[1].y > -0.3 && one.pressing > 0, "the strand does not lie over the bar: {}", lone[1]);
     assert_eq!((one.same, many.same), (0, 999));
     assert_eq!(one.looked_at, many.looked_at, "the numbers of tested pairs differ");
-    let apart = tips[1..].iter().map(|tip| tip.distance(lone[1])).fold(0.0, f32::max);
-    assert!(apart < 1e-3, "the tips of a thousand strands are {apart} m from the tip of one");
+    let difference = tips[1..].iter().map(|tip| tip.distance(lone[1])).fold(0.0, f32::max);
+    assert!(difference < 1e-3, "the tips of a thousand strands are {difference} m from the tip of one");
 }
 
 #[test]

@@ -148,7 +148,7 @@ fn instruction_sets_agree() {
 fn instruction_sets_agree_for(model: Model) {
     let material = || Material { model, ..Material::default() };
     let run = |set: &str| {
-        let mut bench = Bench::of(64, 20, material(), Solver::default());
+        let mut bench = Bench::with_material(64, 20, material(), Solver::default());
         if !bench.simulation.use_instruction_set(set) {
             println!("skipped: this processor does not support {set}");
             return None;

@@ -36,7 +36,7 @@ const GOLDEN: [(Model, Integrator, [u64; 2]); 7] = [
 fn hash(set: &str, model: Model, integrator: Integrator, threads: usize) -> Option<u64> {
     on_threads(threads, || {
         let material = Material { model, ..Material::default() };
-        let mut bench = Bench::of(150, 17, material, Solver { integrator, ..Solver::default() });
+        let mut bench = Bench::with_material(150, 17, material, Solver { integrator, ..Solver::default() });
         if !bench.simulation.use_instruction_set(set) {
             return None;
         }

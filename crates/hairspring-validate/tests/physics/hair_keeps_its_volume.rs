@@ -49,20 +49,20 @@ fn a_start_at_rest_is_not_disturbed() {
     let (start, first, last) = played(VolumeMethod::Off);
     println!("off: moved by {} m in the mean after a second", mean_distance(&last, &start));
     for method in METHODS {
-        let (own_start, own_first, own_last) = played(method);
-        assert!(own_start == start, "{method:?}: the start differs");
+        let (volume_start, volume_first, volume_last) = played(method);
+        assert!(volume_start == start, "{method:?}: the start differs");
         // Within the frame, strands interact where residual rounding errors of their balance move them.
-        let pushed = farthest(&own_first, &first);
+        let pushed = farthest(&volume_first, &first);
         println!("{method:?}: {pushed} m from the result without it after a frame");
         assert!(pushed < 1e-7, "{method:?}: hair at rest was pushed by {pushed} m");
         println!(
             "{method:?}: moved by {} m in the mean after a second, {} m from the result without it",
-            mean_distance(&own_last, &start),
-            mean_distance(&own_last, &last)
+            mean_distance(&volume_last, &start),
+            mean_distance(&volume_last, &last)
         );
         // Without a volume method the wavy head creeps by 0.6 mm. Creeping hair takes other hair along, and
         // an incompressible volume makes way for it.
-        let moved = mean_distance(&own_last, &start);
+        let moved = mean_distance(&volume_last, &start);
         assert!(moved < 2e-3, "{method:?}: points moved by {moved} m in the mean in a second at rest");
     }
 }

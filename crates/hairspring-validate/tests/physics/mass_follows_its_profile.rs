@@ -214,7 +214,7 @@ fn a_shaken_strand_with_any_profile_keeps_its_length() {
             vec![1.0, 1.0, 1.0, 100.0],
         ] {
             let material = Material { model, mass_profile: profile.clone(), ..Material::default() };
-            let mut bench = Bench::of(64, 32, material, Solver::default());
+            let mut bench = Bench::with_material(64, 32, material, Solver::default());
             for frame in 0..120 {
                 let report = bench.step();
                 let measure = bench.measure();

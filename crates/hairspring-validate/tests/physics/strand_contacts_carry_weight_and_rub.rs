@@ -178,8 +178,8 @@ fn a_bond_breaks_at_its_force() {
     let stiction = 1e-5;
     let (held, bonds) = torn(stiction, 0.93 * stiction);
     assert!(held < 1e-4 && bonds == 1, "below its force the bond: {held} m away, {bonds} bonds");
-    let (off, bonds) = torn(stiction, 1.07 * stiction);
-    assert!(off > 1e-3 && bonds == 0, "above its force the bond: {off} m away, {bonds} bonds");
+    let (distance, bonds) = torn(stiction, 1.07 * stiction);
+    assert!(distance > 1e-3 && bonds == 0, "above its force the bond: {distance} m away, {bonds} bonds");
     assert!(torn(0.0, 0.1 * stiction).0 > 1e-3, "the strand was held without stiction");
 }
 
@@ -256,10 +256,11 @@ fn contacts_do_not_disturb_hair_at_rest() {
             (first, points(&simulation))
         };
         let (first, last) = played(Neighbours::default());
-        let (own_first, own_last) = played(Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
-        let difference = farthest(&own_last, &last);
+        let (contact_first, contact_last) =
+            played(Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
+        let difference = farthest(&contact_last, &last);
         println!("{name}: {difference} m from the result without contact after a second");
-        assert!(own_first == first, "{name}: contact moved hair at rest");
+        assert!(contact_first == first, "{name}: contact moved hair at rest");
         assert!(difference < 1e-4, "{name}: {difference} m from the result without contact");
     }
 }
@@ -347,9 +348,9 @@ fn strand_contact_keeps_volume_of_a_shaken_head() {
         }
         sum
     };
-    let off = Neighbours::default();
-    let without = kept(measured, off);
-    let strands = kept(measured, Neighbours { on: true, ..off });
+    let none = Neighbours::default();
+    let without = kept(measured, none);
+    let strands = kept(measured, Neighbours { on: true, ..none });
     println!("kept: without {without}, strands {strands}");
     assert!(
         strands > without + 0.1,

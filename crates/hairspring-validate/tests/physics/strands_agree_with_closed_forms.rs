@@ -22,9 +22,9 @@ fn run_all(method: impl Fn(&Case) -> Method + Sync) -> Vec<Outcome> {
 fn check(outcomes: &[Outcome]) {
     let mut wrong = Vec::new();
     for case in CASES {
-        let own: Vec<&Outcome> = outcomes.iter().filter(|o| o.case == case.name).collect();
-        let reason = (case.out_of_reach)(own[0].method);
-        let failed: Vec<&&Outcome> = own.iter().filter(|o| !o.pass()).collect();
+        let of_case: Vec<&Outcome> = outcomes.iter().filter(|o| o.case == case.name).collect();
+        let reason = (case.out_of_reach)(of_case[0].method);
+        let failed: Vec<&&Outcome> = of_case.iter().filter(|o| !o.pass()).collect();
         assert!(failed.iter().all(|o| o.reason() == reason));
         match reason {
             None => wrong.extend(failed.iter().map(|o| format!("{o:?}"))),

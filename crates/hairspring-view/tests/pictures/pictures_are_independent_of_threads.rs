@@ -46,10 +46,10 @@ fn draw_on_reuses_the_shadows_of_the_previous_frame() {
     let frame = crate::support::frame(&hair, &bodies);
     let dark = Frame { hair: &[HairDraw { width_scale: 40.0, ..hair[0] }], ..frame };
     let mut renderer = Renderer::new(160, 120);
-    let own = renderer.draw(&frame).clone();
-    assert!(*renderer.draw_on(&frame) == own);
+    let lit = renderer.draw(&frame).clone();
+    assert!(*renderer.draw_on(&frame) == lit);
     renderer.draw(&dark);
-    assert!(*renderer.draw_on(&frame) != own, "the shadows are not those of the previous frame");
-    assert!(*renderer.draw(&frame) == own);
-    assert!(*Renderer::new(160, 120).draw_on(&frame) == own, "a first frame does not use its own shadows");
+    assert!(*renderer.draw_on(&frame) != lit, "the shadows are not those of the previous frame");
+    assert!(*renderer.draw(&frame) == lit);
+    assert!(*Renderer::new(160, 120).draw_on(&frame) == lit, "a first frame does not use its own shadows");
 }

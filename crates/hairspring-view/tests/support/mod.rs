@@ -65,9 +65,9 @@ fn noise(p: Vec3, seed: u32) -> f32 {
 pub fn groom(style: Style) -> Groom {
     let strands = (0..).map(spread).enumerate().filter_map(|(i, uv)| {
         let y = 1.0 - 1.35 * uv.y;
-        let around = std::f32::consts::TAU * uv.x;
+        let azimuth = std::f32::consts::TAU * uv.x;
         let r = (1.0 - y * y).max(0.0).sqrt();
-        let n = Vec3::new(r * around.sin(), y, r * around.cos());
+        let n = Vec3::new(r * azimuth.sin(), y, r * azimuth.cos());
         // The hairline: higher in front.
         let line = -0.25 + 0.75 * ((n.z + 0.1).max(0.0) / r.max(0.05)).min(1.0).powf(1.5);
         (n.y > line).then(|| strand(style, i as u32, n))

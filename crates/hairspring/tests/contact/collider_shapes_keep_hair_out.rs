@@ -174,8 +174,8 @@ fn hair_that_begins_inside_gets_no_deeper() {
             for (strand, authored) in points.chunks(32).zip(groom.points.chunks(32)) {
                 let root = strand[0].distance(authored[0]);
                 assert!(root < 1e-6, "{name}: a root moved by {root} m");
-                let over = strand[4..].iter().fold(f32::MAX, |least, p| least.min(p.y));
-                assert!(over > -1e-5, "{name}: a free point is {over} m above the top");
+                let lowest = strand[4..].iter().fold(f32::MAX, |least, p| least.min(p.y));
+                assert!(lowest > -1e-5, "{name}: a free point is {lowest} m above the top");
             }
         });
     }

@@ -66,8 +66,8 @@ fn penetration_at_the_middle_of_a_segment_is_measured() {
                 assert_eq!(found.inside_points, 0, "{name}, {model:?}: {found:?}");
                 let counts = (found.inside_segments, found.deep_segments);
                 assert_eq!(counts, (1, deep), "{name}, {model:?}, {depth} m: {found:?}");
-                let off = (found.segment_depth - f64::from(depth)).abs();
-                assert!(off < 2e-7, "{name}, {model:?}: {} m instead of {depth}", found.segment_depth);
+                let error = (found.segment_depth - f64::from(depth)).abs();
+                assert!(error < 2e-7, "{name}, {model:?}: {} m instead of {depth}", found.segment_depth);
             }
         }
     }

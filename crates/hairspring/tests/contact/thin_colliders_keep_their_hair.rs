@@ -116,12 +116,12 @@ fn hair_that_falls_on_a_thin_rod_lies_over_it() {
         for _ in 0..300 {
             step(&mut simulation, &roots, MovingCollider::at_rest(shape.clone(), REST));
         }
-        let over = |strand: &&[Vec3]| {
+        let lies_over = |strand: &&[Vec3]| {
             let crosses = |pair: &&[Vec3]| (pair[0].x < 0.0) != (pair[1].x < 0.0);
             let above = |pair: &[Vec3]| pair[0].lerp(pair[1], pair[0].x / (pair[0].x - pair[1].x)).y > y;
             strand.windows(2).any(|pair| crosses(&pair)) && strand.windows(2).filter(crosses).all(above)
         };
-        let count = points(&simulation).chunks(POINTS).filter(over).count();
+        let count = points(&simulation).chunks(POINTS).filter(lies_over).count();
         assert_eq!(count, 200, "from {height} m");
     }
 }

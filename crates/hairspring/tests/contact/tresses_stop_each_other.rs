@@ -129,20 +129,20 @@ fn tresses_stop_as_with_strand_contact_at_any_frame_rate_and_cell() {
     );
     for method in METHODS {
         let interaction = Interaction::volume(method);
-        let by = |cell: Option<f32>, fps: f32| {
+        let position = |cell: Option<f32>, fps: f32| {
             TRESSES.farthest(Interaction { cell, ..interaction }, fps, 0.5, false)
         };
-        let at_60 = by(None, 60.0);
+        let at_60 = position(None, 60.0);
         println!("{method:?}: {:.1} mm past the middle", 1e3 * at_60);
         assert!((at_60 - strands).abs() < bound, "{method:?}: {at_60} m, with strand contact {strands} m");
         for fps in [24.0, 30.0, 240.0] {
-            let other = by(None, fps);
+            let other = position(None, fps);
             println!("{method:?}: {:.1} mm at {fps} Hz", 1e3 * other);
             assert!(other < 0.0 && (other - at_60).abs() < 0.5 * bound, "{method:?}: {other} m at {fps} Hz");
         }
         // The default cell is 8.7 mm.
         for cell in [0.006, 0.0174] {
-            let other = by(Some(cell), 60.0);
+            let other = position(Some(cell), 60.0);
             println!("{method:?}: {:.1} mm in cells of {cell} m", 1e3 * other);
             assert!(
                 other < 0.0 && (other - at_60).abs() < bound,

@@ -29,14 +29,14 @@ fn bessel(z: f64) -> f64 {
 /// A strand of `points` points in the first mode of a hanging chain, x = A J₀(2.405 √(s/L)) with s from the
 /// tip.
 fn mode(points: usize) -> Vec<Vec3> {
-    let aside = |i: usize| {
+    let deflection = |i: usize| {
         let along = i as f64 / (points - 1) as f64;
         ASIDE * bessel(2.404826 * (1.0 - along).sqrt()) as f32
     };
     let segment = LENGTH / (points - 1) as f32;
     let mut strand = vec![Vec3::ZERO];
     for i in 1..points {
-        let x = aside(i) - aside(i - 1);
+        let x = deflection(i) - deflection(i - 1);
         strand.push(strand[i - 1] + Vec3::new(x, -(segment * segment - x * x).sqrt(), 0.0));
     }
     strand
@@ -84,21 +84,21 @@ fn no_model_gains_energy() {
             let mut swing = Swing::new(34, model, integrator);
             let start = swing.energy();
             let seconds = if integrator == Integrator::Bdf2 { 240 } else { 30 };
-            let (mut most, mut off) = (0f64, 0f32);
+            let (mut most, mut out_of_plane) = (0f64, 0f32);
             for frame in 0..seconds * 60 {
-                let out = swing.frame().iter().map(|p| p.z.abs()).fold(0.0, f32::max);
+                let z = swing.frame().iter().map(|p| p.z.abs()).fold(0.0, f32::max);
                 // The springs model, a truss that is not axially symmetric, leaves the plane later.
                 if frame < 1800 {
-                    off = off.max(out);
+                    out_of_plane = out_of_plane.max(z);
                 }
                 most = most.max(swing.energy() / start);
             }
             let end = swing.energy() / start;
             println!(
-                "{model:?}, {integrator:?}: at most {most:.4} of the energy, {end:.4} at the end, {off:.6} m out of the plane"
+                "{model:?}, {integrator:?}: at most {most:.4} of the energy, {end:.4} at the end, {out_of_plane:.6} m out of the plane"
             );
-            if most > 1.01 || off > 1e-3 {
-                gaining.push((model, integrator, most, off));
+            if most > 1.01 || out_of_plane > 1e-3 {
+                gaining.push((model, integrator, most, out_of_plane));
             }
         }
     }

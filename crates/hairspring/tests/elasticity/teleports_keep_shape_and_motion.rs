@@ -25,8 +25,8 @@ const POINTS: usize = 16;
 fn groom() -> Groom {
     Groom::from_strands(
         (0..24).map(|k| {
-            let around = Quat::from_rotation_y(k as f32 * 0.7);
-            let out = around * Vec3::new(0.8, 0.6, 0.0);
+            let rotation_of_strand = Quat::from_rotation_y(k as f32 * 0.7);
+            let out = rotation_of_strand * Vec3::new(0.8, 0.6, 0.0);
             (0..POINTS)
                 .map(|i| {
                     let s = i as f32 / (POINTS - 1) as f32;
@@ -85,7 +85,7 @@ fn sway(frame: u32) -> RigidTransform {
 }
 
 /// A rotation about the vertical, which does not change the effect of gravity.
-fn elsewhere() -> RigidTransform {
+fn other_place() -> RigidTransform {
     RigidTransform { rotation: Quat::from_rotation_y(2.0), translation: Vec3::new(5.0, 1.0, -3.0) }
 }
 
@@ -105,7 +105,7 @@ fn motion_continues_after_a_teleport() {
         let mut moved = REST;
         for frame in 1..60 {
             if frame == 30 {
-                moved = elsewhere();
+                moved = other_place();
                 there.simulation.teleport(moved);
                 there.pose = moved.after(&there.pose);
             }
@@ -113,8 +113,8 @@ fn motion_continues_after_a_teleport() {
             there.step(moved.after(&sway(frame)));
         }
         // Rounding changes hair that makes and breaks contact by less than 0.1 mm in half a second.
-        let apart = farthest(&here.local_points(), &there.local_points());
-        assert!(apart < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {apart} m");
+        let difference = farthest(&here.local_points(), &there.local_points());
+        assert!(difference < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {difference} m");
     }
 }
 
@@ -129,9 +129,9 @@ fn a_jump_is_teleported_automatically() {
         }
         // Hair continues to swing, as if the head had stopped.
         here.step(sway(29));
-        there.step(elsewhere().after(&sway(29)));
-        let apart = farthest(&here.local_points(), &there.local_points());
-        assert!(apart < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {apart} m in the jump");
+        there.step(other_place().after(&sway(29)));
+        let difference = farthest(&here.local_points(), &there.local_points());
+        assert!(difference < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {difference} m in the jump");
     }
 }
 

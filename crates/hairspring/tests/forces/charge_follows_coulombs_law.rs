@@ -67,8 +67,8 @@ fn hair_with_the_charge_of_its_head_stands_on_end() {
     let ways = (0..200).map(|k| {
         // Evenly spread over a sphere (a spiral of golden angles).
         let y = 1.0 - (k as f32 + 0.5) / 100.0;
-        let around = 2.399_963 * k as f32;
-        Vec3::new(around.cos(), 0.0, around.sin()) * (1.0 - y * y).sqrt() + Vec3::Y * y
+        let azimuth = 2.399_963 * k as f32;
+        Vec3::new(azimuth.cos(), 0.0, azimuth.sin()) * (1.0 - y * y).sqrt() + Vec3::Y * y
     });
     let ways: Vec<Vec3> = ways.filter(|way| way.y > -0.3).collect();
     let strands: Vec<Vec<Vec3>> = ways.iter().map(|way| strand(*way * 0.1, *way)).collect();

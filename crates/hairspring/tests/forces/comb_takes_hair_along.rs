@@ -48,9 +48,9 @@ impl Curtain {
 
     /// The mean position of point `i` over all strands, and its velocity in the last frame.
     fn mean(&self, i: usize) -> (Vec3, Vec3) {
-        let of =
+        let mean =
             |points: &[Vec3]| (0..STRANDS).map(|s| points[s * POINTS + i]).sum::<Vec3>() / STRANDS as f32;
-        (of(&self.points), (of(&self.points) - of(&self.before)) / FRAME)
+        (mean(&self.points), (mean(&self.points) - mean(&self.before)) / FRAME)
     }
 }
 

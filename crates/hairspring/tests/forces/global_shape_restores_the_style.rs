@@ -93,13 +93,13 @@ fn hair_returns_with_the_offset_of_the_closed_form() {
         }
     }
     // With its fiber hair sags less; without a global shape it hangs down.
-    let with = |global_shape: GlobalShape| {
+    let sag_with = |global_shape: GlobalShape| {
         let mut brush =
             Brush::new(Material { global_shape, ..Material::default() }, Solver::default(), Vec::new());
         brush.shake(240);
         (6..POINTS).map(|i| brush.sag(0, i)).fold(0.0, f32::max)
     };
-    let (held, hangs) = (with(global_shape(10.0, 1.0)), with(GlobalShape::default()));
+    let (held, hangs) = (sag_with(global_shape(10.0, 1.0)), sag_with(GlobalShape::default()));
     println!("sags by {held} m, bound {}; without a global shape by {hangs} m", closed_form(10.0));
     assert!(
         held < 1.05 * closed_form(10.0) && hangs > 0.1,

@@ -102,11 +102,11 @@ fn bound_hair_stays_in_the_ring() {
             curtain.simulation.set_manipulator_pose(id, pose);
             curtain.step(pose);
             longest = longest.max(curtain.simulation.measure(&[]).stretch_max);
-            let out = |(s, i): &(u32, u32)| {
+            let distance_out = |(s, i): &(u32, u32)| {
                 let p = pose.inverse_point(curtain.points[*s as usize * POINTS + *i as usize]) - RING.center;
                 p.reject_from_normalized(Vec3::Y).length() - RING.radius
             };
-            let worst = held.iter().map(out).fold(f32::MIN, f32::max);
+            let worst = held.iter().map(distance_out).fold(f32::MIN, f32::max);
             let most = if time < 2.0 { &mut shaken } else { &mut hopped };
             *most = most.max(worst);
         }
@@ -123,11 +123,11 @@ fn bound_hair_stays_in_the_ring() {
             curtain.step(away);
             assert_eq!(curtain.simulation.measure(&[]).non_finite, 0);
         }
-        let out = |(s, i): &(u32, u32)| {
+        let distance_out = |(s, i): &(u32, u32)| {
             let p = away.inverse_point(curtain.points[*s as usize * POINTS + *i as usize]) - RING.center;
             p.reject_from_normalized(Vec3::Y).length() - RING.radius
         };
-        let worst = held.iter().map(out).fold(f32::MIN, f32::max);
+        let worst = held.iter().map(distance_out).fold(f32::MIN, f32::max);
         println!("{model:?}: {worst} m out of the ring a second after a jump of 5 m");
         assert!(worst < bound, "{model:?}: {worst} m out of the ring after a jump");
     }
@@ -146,11 +146,11 @@ fn short_hair_slips_through_the_ring_until_it_reaches() {
     let after: Vec<_> = curtain.simulation.attached_points(id).collect();
     assert_eq!(before.len(), after.len(), "strands were lost although all are long enough");
     assert!(after.iter().zip(&before).any(|(a, b)| a.1 > b.1), "no strand slipped");
-    let off = |(s, i): &(u32, u32)| {
+    let distance_out = |(s, i): &(u32, u32)| {
         let p = curtain.points[*s as usize * POINTS + *i as usize] - ring.center;
         (p.reject_from_normalized(Vec3::X).length() - ring.radius).max(p.x.abs() - SEGMENT)
     };
-    let worst = after.iter().map(off).fold(f32::MIN, f32::max);
+    let worst = after.iter().map(distance_out).fold(f32::MIN, f32::max);
     println!("{worst} m out of the ring");
     assert!(worst < 0.5 * SEGMENT, "{worst} m out of the ring");
     // A ring out of reach of every strand holds nothing and stretches nothing.

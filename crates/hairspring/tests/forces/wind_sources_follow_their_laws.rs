@@ -131,9 +131,9 @@ fn a_body_shelters_only_hair_behind_it() {
     assert!(open[groom.range(2)] == lee[groom.range(2)], "beside the ball: {:?} m", tips[2]);
     assert!(tips[1][1] < 0.7 * tips[1][0], "behind the ball: {:?} m", tips[1]);
     // A shorter reach ends the wake. Gravity and drag are the same, so the damping in the lee is too.
-    let far = WindOcclusion { body: 200.0, reach: 0.05, ..WindOcclusion::default() };
-    let out = blown(&groom, air, &far, &[ball()], 120);
-    assert!((tip(&groom, &out, 1) / tips[1][0] - 1.0).abs() < 0.02, "the wake does not end");
+    let short_reach = WindOcclusion { body: 200.0, reach: 0.05, ..WindOcclusion::default() };
+    let past_the_wake = blown(&groom, air, &short_reach, &[ball()], 120);
+    assert!((tip(&groom, &past_the_wake, 1) / tips[1][0] - 1.0).abs() < 0.02, "the wake does not end");
 }
 
 #[test]
