@@ -88,7 +88,7 @@ fn scene_files_give_the_scene_they_describe() {
     assert_eq!((groom.materials[0].bend, groom.materials[0].friction), (curly.bend, 0.5));
     assert_eq!(groom.materials[0].mass_profile, [1.0, 1.5, 4.0]);
     assert_eq!(groom.materials[1], hairspring::material::preset("coily").unwrap());
-    assert!(matches!(scene.colliders[0].shape, Shape::Sphere { radius: 0.5, .. }));
+    assert_eq!(scene.colliders[0].shape, Shape::Sphere { center: Vec3::ZERO, radius: 0.5 });
     let floor = Shape::Plane { point: Vec3::NEG_Y, normal: Vec3::Y * 2.0 };
     assert_eq!(scene.colliders[1].shape, floor);
     // The box is rotated by 90° about Y, so its edge of 0.6 m lies along x.

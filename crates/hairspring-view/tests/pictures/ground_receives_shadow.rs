@@ -232,13 +232,19 @@ fn empty_and_broken_scenes_with_a_ground_are_drawn() {
         triangles: vec![[0, 1, 2], [1, 3, 4], [7, 8, 9]],
         ..Mesh::default()
     };
-    let none = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
-    for bodies in [vec![], vec![none], vec![crate::support::body(&broken)]] {
-        for color in [None, Some(Vec3::NAN), Some(Vec3::splat(-1.0))] {
-            for height in [0.0, -1e30, 1e-3] {
-                let ground = Some(Ground { height, color });
-                draw(&Frame { camera: above(), ground, ..crate::support::frame(&[], &bodies) });
+    let non_finite = Mesh { triangles: vec![[0, 1, 2], [7, 8, 9]], ..broken.clone() };
+    for color in [None, Some(Vec3::NAN), Some(Vec3::splat(-1.0))] {
+        for height in [0.0, -1e30, 1e-3] {
+            let ground = Some(Ground { height, color });
+            let picture = |bodies: &[MeshDraw]| {
+                draw(&Frame { camera: above(), ground, ..crate::support::frame(&[], bodies) })
+            };
+            let alone = picture(&[]);
+            for nothing in [crate::support::NO_BODY, crate::support::body(&non_finite)] {
+                assert!(picture(&[nothing]) == alone, "a body without a valid triangle is visible");
             }
+            let huge = picture(&[crate::support::body(&broken)]);
+            assert_eq!((huge.width, huge.height), (SIZE[0], SIZE[1]));
         }
     }
 }
