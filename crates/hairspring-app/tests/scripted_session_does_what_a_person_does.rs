@@ -48,7 +48,7 @@ fn a_session_opens_plays_changes_records_saves_and_opens_again() {
     let dark = still.rgb.iter().filter(|b| **b < 8).count();
     assert!(dark < still.rgb.len() / 2, "the picture is mostly black");
     for clip in ["clip.mp4", "turn.mp4"] {
-        assert!(std::fs::metadata(file(clip)).unwrap().len() > 2000, "{clip}");
+        assert!(std::fs::metadata(file(clip)).unwrap().len() > 2000, "{clip} is nearly empty");
     }
     for k in 1..=3 {
         assert!(file(&format!("p.{k:02}.png")).exists());
@@ -123,7 +123,7 @@ fn refused_commands_report_an_error_and_change_nothing() {
         assert!(until(&mut window, |app| app.is_idle()));
         let (message, wrong) = window.state().message().expect("there is no message");
         assert!(wrong && message.contains(word), "{line}: {message:?}");
-        assert_eq!(window.state().session().document().text(), SMALL, "{line}");
+        assert_eq!(window.state().session().document().text(), SMALL, "'{line}' changed the scene");
     }
 }
 
@@ -176,7 +176,10 @@ fn settings_change_during_playback() {
         panic!("a roughness of {roughness} was not shown");
     };
     let (first, second) = (seen(0.875), seen(0.75));
-    assert!(second.0 > first.0 && second.1 == first.1, "{first:?}, {second:?}");
+    assert!(
+        second.0 > first.0 && second.1 == first.1,
+        "expected a newer snapshot at the same time: {first:?}, then {second:?}"
+    );
 }
 
 #[test]
@@ -215,7 +218,10 @@ fn a_failed_undo_step_stays_available() {
         session.act(step).unwrap();
         seen.push(now(&session));
     }
-    assert_eq!((&*seen[0], &*seen[3]), (SMALL, &*text), "{seen:?}");
-    assert!(seen[1].contains("2.0") && seen[2].contains("1.0"), "{seen:?}");
+    assert_eq!((&*seen[0], &*seen[3]), (SMALL, &*text), "undo does not return to the other scene: {seen:?}");
+    assert!(
+        seen[1].contains("2.0") && seen[2].contains("1.0"),
+        "undo does not return to the earlier wind: {seen:?}"
+    );
     assert!(seen.iter().eq(seen.iter().rev()), "redo does not mirror undo: {seen:?}");
 }

@@ -73,7 +73,7 @@ fn hair_on_hair_allocates_nothing() {
             bench.step();
         }
         let report = bench.simulation.neighbours().unwrap();
-        assert!(report.pressing > 50, "{report:?}");
+        assert!(report.pressing > 50, "too few strands are in contact: {report:?}");
         COUNT.get() - before
     });
     assert_eq!(counted, 0, "{counted} allocations in 40 steps with strand contact");

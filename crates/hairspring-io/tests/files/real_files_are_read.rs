@@ -51,8 +51,8 @@ fn bounds_and_lengths_match_the_files() {
     };
     let straight = read_groom(&path, &RAW).unwrap().value;
     let (lo, hi) = straight.bounds().unwrap();
-    assert!(lo.distance(Vec3::new(-32.5, -33.9, -22.7)) < 0.1, "{lo}");
-    assert!(hi.distance(Vec3::new(30.9, 24.1, 63.7)) < 0.1, "{hi}");
+    assert!(lo.distance(Vec3::new(-32.5, -33.9, -22.7)) < 0.1, "the lowest corner is {lo}");
+    assert!(hi.distance(Vec3::new(30.9, 24.1, 63.7)) < 0.1, "the highest corner is {hi}");
     let l = lengths(&straight);
     for (at, want) in [(0, 55.0), (l.len() / 2, 77.0), (l.len() - 1, 107.0)] {
         assert_near(l[at], want, 0.5);
@@ -84,7 +84,7 @@ fn mohawk_has_uvs_bones_and_near_zero_segments() {
     let mohawk = read_groom(&path, &ReadOptions::default()).unwrap();
     assert_eq!(mohawk.scale, 1.0);
     assert_eq!(mohawk.value.root_uvs.len(), 2_228);
-    assert!(mohawk.repairs.zero_segments > 0, "{:?}", mohawk.repairs);
+    assert!(mohawk.repairs.zero_segments > 0, "no segment of zero length was repaired: {:?}", mohawk.repairs);
     assert_eq!(mohawk.repairs.non_finite_points, 0);
     let bones = read_bones(&data("grooms/tressfx_mohawk/Ratboy_mohawk.tfxbone").unwrap()).unwrap();
     assert_eq!((bones.names.len(), bones.bones.len()), (105, 2_228));
@@ -151,7 +151,11 @@ fn the_robot_is_4_5_m_tall_and_bounded_in_every_clip() {
             })
             .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), (a, b)| (lo.min(a), hi.max(b)));
         println!("{}: {duration:.2} s, {lo} {hi}", clip.name);
-        assert!((hi - lo).max_element() < 9.0 && lo.y > -1.0, "{}: {lo} {hi}", clip.name);
+        assert!(
+            (hi - lo).max_element() < 9.0 && lo.y > -1.0,
+            "{}: the body extends from {lo} to {hi}",
+            clip.name
+        );
     }
     let head = body.joint("Head").unwrap();
     let top = body.world(&body.rest_pose())[head].translation.y;

@@ -128,7 +128,11 @@ fn a_head_joint_drives_a_bust() {
     // of channels.
     let want = glam::Quat::from_rotation_x(10f32.to_radians());
     assert!(clip.samples[0].rotation.dot(glam::Quat::IDENTITY).abs() > 0.999999);
-    assert!(clip.samples[1].rotation.dot(want).abs() > 0.999999, "{}", clip.samples[1].rotation);
+    assert!(
+        clip.samples[1].rotation.dot(want).abs() > 0.999999,
+        "the head turns by {}",
+        clip.samples[1].rotation
+    );
     let body: &Body = scene.body.as_ref().unwrap();
     assert_eq!(body.joints.len(), 1);
 }
@@ -215,7 +219,7 @@ fn mohawk_roots_bind_to_the_skin() {
         bones = groom.with_file_name("Ratboy_mohawk.tfxbone"),
     );
     let Loaded { value: scene, repairs, .. } = read(folder.path(), &text).unwrap();
-    assert!(repairs.zero_segments > 0, "{repairs:?}");
+    assert!(repairs.zero_segments > 0, "no segment of zero length was repaired: {repairs:?}");
     let (groom, body) = (&scene.grooms[0].groom, scene.body.as_ref().unwrap());
     assert_eq!(groom.roots.len(), 2_228);
     let mut off: Vec<f32> = groom.roots.iter().map(|r| r.offset.length()).collect();
@@ -273,7 +277,7 @@ fn the_cmu_rig_walks() {
     let (body, clip) = (scene.body.unwrap(), scene.clip.unwrap());
     assert_eq!((body.mesh.positions.len(), body.joints.len()), (13_380, 31));
     let (lo, hi) = body.mesh.bounds().unwrap();
-    assert!((1.5..1.9).contains(&(hi.y - lo.y)), "{lo} {hi}");
+    assert!((1.5..1.9).contains(&(hi.y - lo.y)), "the body extends from {lo} to {hi}");
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     let head = body.joint("Head").unwrap();
     let mut last = None;
@@ -291,7 +295,7 @@ fn the_cmu_rig_walks() {
         last = Some(world[head].translation);
     }
     // The body walks along +Z, as in the capture.
-    assert!(last.unwrap().z > 1.0, "{}", last.unwrap());
+    assert!(last.unwrap().z > 1.0, "the head ends at {}", last.unwrap());
 }
 
 #[test]

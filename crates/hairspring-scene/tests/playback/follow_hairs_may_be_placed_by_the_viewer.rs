@@ -53,7 +53,7 @@ fn skipped_follow_hairs_are_interpolated_on_request() {
     for value in Value::ALL {
         here.values(value, 0, &mut a);
         left.values(value, 0, &mut b);
-        assert_eq!(a, b, "{value:?}");
+        assert_eq!(a, b, "{value:?} differs");
     }
 
     left.place_follow_hairs();

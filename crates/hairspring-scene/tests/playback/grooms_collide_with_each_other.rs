@@ -104,8 +104,8 @@ fn a_guide_has_the_weight_of_its_follow_hairs() {
     println!(
         "the right patch moves the left one by {braked:.4} m; with guides only, the result differs by {differs:.4} m"
     );
-    assert!(braked > 5e-3, "{braked} m");
-    assert!(differs < 0.5 * braked, "{differs} m of {braked} m");
+    assert!(braked > 5e-3, "the right patch moves the left one by only {braked} m");
+    assert!(differs < 0.5 * braked, "with guides only, the result differs by {differs} m of {braked} m");
 }
 
 /// Adds a plate of 4 cm at `middle`, of two triangles.
@@ -156,7 +156,10 @@ fn hair_on_a_second_body_is_initialized_at_its_start_pose() {
     for frames in [0, 15] {
         let difference = farthest(&played(&moved, frames), &played(&made, frames));
         println!("{frames} frames: {difference:.1e} m apart");
-        assert!(difference < if frames == 0 { 1e-7 } else { 1e-4 }, "{difference} m after {frames} frames");
+        assert!(
+            difference < if frames == 0 { 1e-7 } else { 1e-4 },
+            "points differ by {difference} m after {frames} frames"
+        );
     }
     let mut stage = Stage::new(moved).unwrap();
     stage.step(FRAME);

@@ -68,7 +68,7 @@ fn a_grabbed_lock_lags_by_the_closed_form() {
         let mut lock = Lock::new(Material { model, ..chain() }, Solver::default());
         let id = lock.simulation.add_manipulator(grab(pull), REST);
         let held: Vec<_> = lock.simulation.attached_points(id).collect();
-        assert_eq!(held.len(), 12 * 5, "{model:?}");
+        assert_eq!(held.len(), 12 * 5, "{model:?}: the grab does not hold five points of each strand");
         // The hand moves up by 6 cm and out by 3 cm, so that it carries the held hair, and then sideways at
         // 0.3 m/s.
         let lift = |frame: u32| 0.06 * (frame as f32 / 60.0).min(1.0);
@@ -192,7 +192,11 @@ fn a_jumping_hand_keeps_the_simulation_stable() {
             let measure = lock.simulation.measure(&[]);
             assert_eq!(measure.non_finite, 0, "{integrator:?}, frame {frame}");
             if matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2) {
-                assert!(measure.stretch_max < 0.011, "{integrator:?}: {}", measure.stretch_max);
+                assert!(
+                    measure.stretch_max < 0.011,
+                    "{integrator:?}: the stretch is {}",
+                    measure.stretch_max
+                );
             }
         }
         lock.simulation.remove_manipulator(id);
@@ -201,7 +205,7 @@ fn a_jumping_hand_keeps_the_simulation_stable() {
         }
         let measure = lock.simulation.measure(&[]);
         println!("{integrator:?}: {measure:?} five seconds after the release");
-        assert!(measure.speed_max < 3.0, "{integrator:?}: {measure:?}");
+        assert!(measure.speed_max < 3.0, "{integrator:?}: hair does not come to rest: {measure:?}");
     }
 }
 
@@ -250,6 +254,10 @@ fn hands_of_a_scene_follow_their_timing_and_path() {
         stage.set_manipulator_pose(id, translation(Vec3::new(0.004, 0.0015, 0.0) * frame as f32));
         stage.step(FRAME);
     }
-    assert!(held(&stage).distance(home + Vec3::new(0.08, 0.03, 0.0)) < 2e-3, "{}", held(&stage));
+    assert!(
+        held(&stage).distance(home + Vec3::new(0.08, 0.03, 0.0)) < 2e-3,
+        "the held point is at {}",
+        held(&stage)
+    );
     stage.remove_manipulator(id);
 }

@@ -49,8 +49,12 @@ fn scene(groom: Groom) -> Scene {
 fn values(stage: &Stage, what: Value) -> Vec<f32> {
     let mut out = vec![7.0];
     stage.values(what, 0, &mut out);
-    assert_eq!(out.len(), stage.strands().next().unwrap().points.len(), "{what:?}");
-    assert!(out.iter().all(|x| x.is_finite()), "{what:?}");
+    assert_eq!(
+        out.len(),
+        stage.strands().next().unwrap().points.len(),
+        "{what:?} has no value for some points"
+    );
+    assert!(out.iter().all(|x| x.is_finite()), "{what:?} is not finite");
     out
 }
 

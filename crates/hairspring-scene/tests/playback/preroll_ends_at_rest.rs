@@ -81,7 +81,11 @@ fn hair_is_at_rest_after_preroll() {
         println!("{name}: moves by at most {moved:.1e} m in half a second");
         assert!(moved < 1e-3, "{name}: hair moves by {moved} m in half a second");
         let measure = stage.measure();
-        assert_eq!((measure.inside_points, measure.non_finite), (0, 0), "{name}");
+        assert_eq!(
+            (measure.inside_points, measure.non_finite),
+            (0, 0),
+            "{name}: points are inside or not finite"
+        );
         stage.reset();
         assert!(points(&stage) == start, "{name}: a reset does not restore the start");
     }

@@ -140,7 +140,7 @@ fn every_model_and_integrator_takes_over_from_every_other() {
         let mut here = hairspring_test::points(&old);
         for _ in 0..12 {
             let lost = fall(&mut old, &groom);
-            assert!(lost == 0 || !bears(from), "{from:?}");
+            assert!(lost == 0 || !bears(from), "{from:?}: {lost} strands lost");
             before = std::mem::replace(&mut here, hairspring_test::points(&old));
         }
         // Tips moved from `before` to `here` in the last frame. The jump is the distance in the next frame

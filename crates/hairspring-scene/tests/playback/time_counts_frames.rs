@@ -68,7 +68,7 @@ fn steps_of_any_length_add_up_without_error() {
     stage.update_render_points();
     // 1/60 s in single precision, 36,000 times.
     assert!((stage.time() - 36_000.0 * f64::from(1.0_f32 / 60.0)).abs() < 1e-9);
-    assert!((root(&stage) - 60.0).abs() < 1e-4, "{}", root(&stage));
+    assert!((root(&stage) - 60.0).abs() < 1e-4, "the root is at {} m instead of 60 m", root(&stage));
 }
 
 #[test]

@@ -281,7 +281,7 @@ fn contacts_are_independent_of_threads() {
     let (one, bench) = shaken(neighbours, 1, 60);
     let report = bench.simulation.neighbours().unwrap();
     println!("{report:?}");
-    assert!(report.pressing > 50, "{report:?}");
+    assert!(report.pressing > 50, "too few strands are in contact: {report:?}");
     for threads in [2, 7] {
         assert!(shaken(neighbours, threads, 60).0 == one, "other bits on {threads} threads");
     }

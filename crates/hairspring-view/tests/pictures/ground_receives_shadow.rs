@@ -87,7 +87,7 @@ fn the_ground_is_dark_in_shadows_only() {
         }
         // All changed pixels are darker, up to rounding.
         let brighter = with.rgb.iter().zip(&without.rgb).map(|(with, without)| with.saturating_sub(*without));
-        assert!(brighter.max().unwrap() <= 1, "{name}");
+        assert!(brighter.max().unwrap() <= 1, "{name}: the ground brightens pixels");
     }
 }
 
@@ -157,7 +157,7 @@ fn the_ground_is_invisible_from_below() {
     };
     let without = draw(&frame);
     for ground in [0.5, f32::NAN, f32::INFINITY].map(ground_at) {
-        assert!(draw(&Frame { ground, ..frame }) == without, "{ground:?}");
+        assert!(draw(&Frame { ground, ..frame }) == without, "{ground:?} is visible");
     }
 }
 
@@ -206,7 +206,7 @@ fn the_ground_is_dark_where_bodies_touch_it() {
     };
     let ([near, a_little_away, far], hovering) = (brightness_beside(0.001), brightness_beside(0.07));
     assert!(near < far - 5, "{near} beside a plate on the ground, {far} far from it");
-    assert!((a_little_away - far).abs() <= 1, "{a_little_away}, {far}");
+    assert!((a_little_away - far).abs() <= 1, "{a_little_away} a little away, {far} far from the plate");
     assert!(
         hovering.iter().all(|code| (code - far).abs() <= 1),
         "{hovering:?} under a hovering plate, {far} far from one"

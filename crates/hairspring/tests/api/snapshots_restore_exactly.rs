@@ -28,11 +28,11 @@ fn assert_repeats(what: &str, mut simulation: Simulation) {
         out
     };
     let (first, again) = (play(), play());
-    assert_eq!(first, again, "{what}");
+    assert_eq!(first, again, "{what}: the repetition differs");
     let mut other = simulation.instance();
     if simulation.volume().is_none() && simulation.neighbours().is_none() {
         (20..50).for_each(|frame| shake(&mut other, frame, &ball()));
-        assert_eq!((points(&other), velocities(&other)), first, "{what}: another instance");
+        assert_eq!((points(&other), velocities(&other)), first, "{what}: another instance differs");
     }
 }
 

@@ -21,7 +21,7 @@ fn set_states_are_read_back() {
         hair.set_points(&positions, &moving);
         let difference = farthest(&points(&hair), &positions);
         assert!(difference < 1e-6, "{model:?}: the difference is {difference} m");
-        assert_eq!(velocities(&hair), moving, "{model:?}");
+        assert_eq!(velocities(&hair), moving, "{model:?}: velocities differ");
     }
 }
 

@@ -40,7 +40,7 @@ fn land(model: Model, contact: Response) -> [f32; 3] {
         step(&mut simulation, REST, &roots, &obstacles);
         let measure = simulation.measure(&obstacles);
         assert_eq!(measure.non_finite, 0);
-        assert!(measure.stretch_max < 0.011, "{model:?}, {contact:?}: {measure:?}");
+        assert!(measure.stretch_max < 0.011, "{model:?}, {contact:?}: a segment is too long: {measure:?}");
         deepest = deepest.max(measure.max_depth as f32);
         last[0] = measure.max_depth as f32;
         if frame >= FRAMES[0] - FRAMES[1] {
@@ -55,14 +55,20 @@ fn every_contact_method_keeps_hair_out() {
     for model in Model::ALL {
         let [both, penalty, projection] = Response::ALL.map(|contact| land(model, contact));
         println!("{model:?}: both {both:?}, penalty {penalty:?}, projection {projection:?}");
-        assert!(both[0] < 2e-5 && both[1] < 2e-6, "{model:?}: {both:?}");
-        assert!(projection[0] < 2e-5, "{model:?}: {projection:?}");
+        assert!(both[0] < 2e-5 && both[1] < 2e-6, "{model:?}, both: a point is too deep: {both:?}");
+        assert!(projection[0] < 2e-5, "{model:?}, projection: a point is too deep: {projection:?}");
         // At most the distance of a substep at the landing speed of 1.5 m/s; at rest, points are on the
         // surface.
-        assert!(penalty[0] > 1e-4 && penalty[0] < 7e-3, "{model:?}: {penalty:?}");
-        assert!(penalty[1] < 5e-5, "{model:?}: {penalty:?}");
+        assert!(
+            penalty[0] > 1e-4 && penalty[0] < 7e-3,
+            "{model:?}, penalty: unexpected depth of landing: {penalty:?}"
+        );
+        assert!(penalty[1] < 5e-5, "{model:?}, penalty: a point is too deep at rest: {penalty:?}");
         // The speed at rest. Joints of the springs model tremble under contact.
         let still = if model == Model::Springs { 0.1 } else { 0.01 };
-        assert!(both[2] < still && penalty[2] < still, "{model:?}: {both:?} {penalty:?}");
+        assert!(
+            both[2] < still && penalty[2] < still,
+            "{model:?}: hair is not at rest: both {both:?}, penalty {penalty:?}"
+        );
     }
 }

@@ -63,7 +63,7 @@ fn penetration_at_the_middle_of_a_segment_is_measured() {
         for (depth, deep) in [(4e-4, 0), (1.5e-3, 1), (3e-3, 1)] {
             for (name, shape) in shapes(depth) {
                 let found = measure(model, &shape, false);
-                assert_eq!(found.inside_points, 0, "{name}, {model:?}: {found:?}");
+                assert_eq!(found.inside_points, 0, "{name}, {model:?}: points are inside: {found:?}");
                 let counts = (found.inside_segments, found.deep_segments);
                 assert_eq!(counts, (1, deep), "{name}, {model:?}, {depth} m: {found:?}");
                 let error = (found.segment_depth - f64::from(depth)).abs();
@@ -79,7 +79,7 @@ fn authored_penetration_is_not_counted() {
         for (name, shape) in shapes(3e-3) {
             let found = measure(model, &shape, true);
             let counts = (found.inside_segments, found.deep_segments, found.segment_depth);
-            assert_eq!(counts, (0, 0, 0.0), "{name}, {model:?}");
+            assert_eq!(counts, (0, 0, 0.0), "{name}, {model:?}: authored penetration is counted");
         }
     }
 }
@@ -88,7 +88,11 @@ fn authored_penetration_is_not_counted() {
 fn separate_shapes_are_not_counted() {
     for (name, shape) in shapes(-1e-4) {
         let found = measure(Model::Auto, &shape, false);
-        assert_eq!((found.inside_segments, found.segment_depth), (0, 0.0), "{name}");
+        assert_eq!(
+            (found.inside_segments, found.segment_depth),
+            (0, 0.0),
+            "{name}: a separate shape is counted"
+        );
     }
 }
 
@@ -101,16 +105,16 @@ fn penetration_held_by_the_root_is_counted_separately() {
         // √(5² + 2.5²) mm.
         let found = measure(model, &ball(0.0, -0.005), false);
         let counts = (found.inside_segments, found.deep_segments, found.held_segments);
-        assert_eq!(counts, (0, 0, 1), "{model:?}: {found:?}");
-        assert!((found.held_depth - 0.002_409_8).abs() < 1e-6, "{model:?}: {found:?}");
+        assert_eq!(counts, (0, 0, 1), "{model:?}: wrong counts: {found:?}");
+        assert!((found.held_depth - 0.002_409_8).abs() < 1e-6, "{model:?}: wrong depth: {found:?}");
         // The point at a quarter is 6 mm deep, and the start is √(5² + 2²) mm from the center. Only the
         // penetration beyond that of the start can be corrected.
         let found = measure(model, &ball(0.005, -0.002), false);
-        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: {found:?}");
-        assert!((found.segment_depth - 0.003_385_2).abs() < 1e-6, "{model:?}: {found:?}");
+        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: wrong counts: {found:?}");
+        assert!((found.segment_depth - 0.003_385_2).abs() < 1e-6, "{model:?}: wrong depth: {found:?}");
         // If a segment begins outside, none of its penetration is due to the fixed end.
         let found = measure(model, &ball(0.01, -0.005), false);
-        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: {found:?}");
+        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: wrong counts: {found:?}");
     }
 }
 

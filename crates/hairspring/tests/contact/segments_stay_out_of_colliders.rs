@@ -280,7 +280,11 @@ fn distant_colliders_change_nothing() {
                 step(&mut simulation, &roots, &obstacles);
                 step(&mut free, &roots, &[]);
             }
-            assert_eq!(points(&simulation), points(&free), "{name}, {model:?}");
+            assert_eq!(
+                points(&simulation),
+                points(&free),
+                "{name}, {model:?}: a distant collider changed hair"
+            );
         }
     }
 }

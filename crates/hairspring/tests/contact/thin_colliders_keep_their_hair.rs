@@ -81,7 +81,11 @@ fn rod(radius: f32) -> ColliderShape {
 #[test]
 fn a_rod_of_1_mm_radius_holds_back_hair() {
     for speed in [0.02, 0.0533, 0.2, 1.0] {
-        assert_eq!(drag(&rod(0.001), speed, 20, 200), 200, "{speed} m/s");
+        assert_eq!(
+            drag(&rod(0.001), speed, 20, 200),
+            200,
+            "at {speed} m/s the rod does not hold back all strands"
+        );
     }
     let fast = drag(&rod(0.001), 3.0, 20, 200);
     assert!(fast >= 199, "3 m/s: {fast} of 200");
@@ -92,7 +96,7 @@ fn a_thin_box_holds_back_hair() {
     for thickness in [0.002, 0.001] {
         let half = Vec3::new(0.2, 0.005, 0.5 * thickness);
         let shape = ColliderShape::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY };
-        assert_eq!(drag(&shape, 0.5, 20, 200), 200, "{thickness} m thick");
+        assert_eq!(drag(&shape, 0.5, 20, 200), 200, "a box of {thickness} m does not hold back all strands");
         let slowly = drag(&shape, 0.0533, 20, 200);
         assert!(slowly >= 195, "{thickness} m thick, slowly: {slowly} of 200");
     }
@@ -101,7 +105,7 @@ fn a_thin_box_holds_back_hair() {
 #[test]
 fn a_rod_that_stops_holds_back_hair() {
     for radius in [0.002, 0.005, 0.01] {
-        assert_eq!(drag(&rod(radius), 9.0, 90, 21), 21, "{radius} m");
+        assert_eq!(drag(&rod(radius), 9.0, 90, 21), 21, "a rod of {radius} m does not hold back all strands");
     }
 }
 
@@ -122,6 +126,6 @@ fn hair_that_falls_on_a_thin_rod_lies_over_it() {
             strand.windows(2).any(|pair| crosses(&pair)) && strand.windows(2).filter(crosses).all(above)
         };
         let count = points(&simulation).chunks(POINTS).filter(lies_over).count();
-        assert_eq!(count, 200, "from {height} m");
+        assert_eq!(count, 200, "from {height} m some strands do not lie over the rod");
     }
 }

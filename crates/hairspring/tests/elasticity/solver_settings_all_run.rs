@@ -43,7 +43,7 @@ fn with_every_model_and_quality() {
                 }
                 let m = simulation.measure(&[]);
                 println!("{integrator:?}, {quality:?}, {model:?}: {m:?}");
-                assert_eq!(m.non_finite, 0, "{integrator:?}, {quality:?}, {model:?}");
+                assert_eq!(m.non_finite, 0, "{integrator:?}, {quality:?}, {model:?}: points are not finite");
                 if matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2) {
                     assert!(
                         m.stretch_max < 0.011,

@@ -102,7 +102,7 @@ fn no_model_gains_energy() {
             }
         }
     }
-    assert!(gaining.is_empty(), "{gaining:?}");
+    assert!(gaining.is_empty(), "energy grows or the swing leaves its plane: {gaining:?}");
 }
 
 /// The share of its amplitude that a swing loses in a period, as the mean of the first eight [1].
@@ -148,7 +148,7 @@ fn a_stiff_fiber_gains_no_amplitude() {
             wrong.push((model, most));
         }
     }
-    assert!(wrong.is_empty(), "{wrong:?}");
+    assert!(wrong.is_empty(), "the amplitude grows or the swing leaves its plane: {wrong:?}");
 }
 
 #[test]

@@ -114,7 +114,7 @@ fn motion_continues_after_a_teleport() {
         }
         // Rounding changes hair that makes and breaks contact by less than 0.1 mm in half a second.
         let difference = farthest(&here.local_points(), &there.local_points());
-        assert!(difference < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {difference} m");
+        assert!(difference < 1e-4, "{model:?}, {integrator:?}, {volume:?}: hair differs by {difference} m");
     }
 }
 
@@ -157,7 +157,7 @@ fn fast_motion_is_not_mistaken_for_a_jump() {
     }
     // After the other head's hair has settled from the start, both sway alike.
     let most = farthest(&carried.local_points(), &felt.local_points());
-    assert!(most < 0.02, "{most} m");
+    assert!(most < 0.02, "the two heads differ by {most} m");
 }
 
 #[test]
@@ -200,10 +200,17 @@ fn a_reset_restores_the_start() {
             head.local_points()
         };
         let [first, again] = [run(&mut head), run(&mut head)];
-        assert!(first == again, "{model:?}, {integrator:?}, {volume:?}: {} m", farthest(&first, &again));
+        assert!(
+            first == again,
+            "{model:?}, {integrator:?}, {volume:?}: the second run differs by {} m",
+            farthest(&first, &again)
+        );
         // A reset without new poses puts every strand in its authored place.
         head.simulation.reset();
         let authored = farthest(&head.local_points(), &head.groom.points);
-        assert!(authored < 1e-6, "{model:?}, {integrator:?}: {authored} m");
+        assert!(
+            authored < 1e-6,
+            "{model:?}, {integrator:?}: points are {authored} m from their authored place"
+        );
     }
 }

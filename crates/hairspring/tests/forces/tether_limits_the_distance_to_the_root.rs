@@ -56,8 +56,8 @@ fn fall(model: Model, tether: f32, g: f32, seconds: usize) -> Fall {
     for _ in 0..60 * seconds {
         step(&mut simulation, REST, &roots, &[]);
         let measure = simulation.measure(&[]);
-        assert_eq!(measure.non_finite, 0, "{model:?}");
-        assert!(measure.stretch_max < 0.011, "{model:?}: {measure:?}");
+        assert_eq!(measure.non_finite, 0, "{model:?}: points are not finite");
+        assert!(measure.stretch_max < 0.011, "{model:?}: a segment is too long: {measure:?}");
         speed = measure.speed_max;
         simulation.write_points(&mut points);
         for (now, rest) in points.chunks(POINTS).zip(groom.points.chunks(POINTS)) {
@@ -91,7 +91,11 @@ fn heavy_coils_fall_to_the_limit() {
 #[test]
 fn a_tether_changes_nothing_at_rest() {
     for model in Model::ALL {
-        assert_eq!(fall(model, 1.01, 1.0, 2).points, fall(model, 0.0, 1.0, 2).points, "{model:?}");
+        assert_eq!(
+            fall(model, 1.01, 1.0, 2).points,
+            fall(model, 0.0, 1.0, 2).points,
+            "{model:?}: the tether moved hair at rest"
+        );
     }
 }
 

@@ -88,7 +88,7 @@ fn bound_hair_stays_in_the_ring() {
         println!("{model:?}: gathered with at most {fastest} m/s");
         assert!(fastest < 0.5, "{model:?}: gathered too fast, at {fastest} m/s");
         let held: Vec<_> = curtain.simulation.attached_points(id).collect();
-        assert_eq!(held.len(), 2 * STRANDS, "{model:?}");
+        assert_eq!(held.len(), 2 * STRANDS, "{model:?}: the tie lost strands");
         // Two held points carry twenty, and the shake has an acceleration of 8 m/s².
         let omega = std::f32::consts::TAU * RING.pull;
         let bound = 20.0 / 2.0 * (9.81 + 8.0) / (omega * omega);

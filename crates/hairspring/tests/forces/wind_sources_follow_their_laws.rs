@@ -65,7 +65,7 @@ fn a_point_conserves_volume_and_a_vortex_rotates() {
     assert_eq!(point(3.0).velocity(Vec3::X), Vec3::ZERO);
     let vortex = Flow::Vortex { center: Vec3::ZERO, axis: Vec3::Y * 7.0, radius: 0.2, speed: 2.0 };
     let at = |r: f32| vortex.velocity(Vec3::new(r, 3.0, 0.0));
-    assert!(at(0.2).distance(Vec3::NEG_Z * 2.0) < 1e-5, "{}", at(0.2));
+    assert!(at(0.2).distance(Vec3::NEG_Z * 2.0) < 1e-5, "the velocity at the radius is {}", at(0.2));
     assert!(at(0.19).length() < 2.0 && at(0.21).length() < 2.0 && at(0.0) == Vec3::ZERO);
 }
 
