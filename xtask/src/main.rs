@@ -4,14 +4,16 @@ mod consumer;
 mod fuzz;
 mod layers;
 mod pictures;
+mod promises;
 mod run;
 mod test;
 
 const HELP: &str = "cargo xtask NAME
 
   test           all tests, in release; closes on one line with the sum
-  lint           layers, formatting, clippy with warnings refused (the library also without its features), the docs, and where all dependencies come from and under which licence
+  lint           layers, promises, formatting, clippy with warnings refused (the library also without its features), the docs, and where all dependencies come from and under which licence
   layers         modules of the library import each other in one direction only
+  promises       every promise names a test that exists, and every test of a promise is named
   package        every crate that is not private can be packaged for publication
   consumer       a crate outside of the workspace links the library, builds it without optimization and steps 100 strands
   fuzz [SECONDS] every fuzz target, so long each (default 60), two at a time
@@ -30,6 +32,7 @@ fn main() {
         ["test"] => test::all(),
         ["lint"] => lint(),
         ["layers"] => layers::check(),
+        ["promises"] => promises::check(),
         ["package"] => package(),
         ["consumer"] => consumer::run(),
         ["fuzz"] => fuzz::all(60, None),
@@ -89,8 +92,9 @@ fn monkey(minutes: &str) -> Result<(), String> {
 
 /// Packages every crate that is not private. The packages are not compiled again: `test` compiles the same files.
 fn package() -> Result<(), String> {
-    // Private: the developer commands, the scalar build of the library's files, and the program that may link it.
-    let private = ["xtask", "hairspring-scalar", "hairspring-one-lane", "hairspring-cli"];
+    // Private: the developer commands, the helpers of the tests, the scalar build of the library's files, and the
+    // program that may link it.
+    let private = ["xtask", "hairspring-test", "hairspring-scalar", "hairspring-one-lane", "hairspring-cli"];
     let exclude = private.iter().flat_map(|name| ["--exclude", name]);
     let package = ["package", "--quiet", "--workspace", "--no-verify", "--allow-dirty"];
     run::cargo(&package.into_iter().chain(exclude).collect::<Vec<_>>(), &[])
@@ -98,6 +102,7 @@ fn package() -> Result<(), String> {
 
 fn lint() -> Result<(), String> {
     layers::check()?;
+    promises::check()?;
     run::cargo(&["fmt", "--all", "--check"], &[])?;
     run::cargo(
         &["clippy", "--release", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"],

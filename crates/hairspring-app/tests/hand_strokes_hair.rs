@@ -7,6 +7,7 @@ mod support;
 use glam::Vec3;
 use hairspring::math::RigidTransform;
 use hairspring_app::{Action, Document, Push, Pushed, Session};
+use hairspring_test::farthest;
 use support::SMALL;
 
 const LENGTH: f32 = hairspring_scene::builtin::Hand::LENGTH;
@@ -40,9 +41,9 @@ fn step(session: &mut Session, number: u64, push: Option<Push>) -> Seen {
             continue;
         };
         let stage = &now.stages[0];
-        let own = stage.pushed.map_or(0, |(what, _)| what.shapes().len());
+        let count = stage.pushed.map_or(0, |(what, _)| what.shapes().len());
         let hand: Vec<_> =
-            stage.obstacles[stage.obstacles.len() - own..].iter().map(|o| o.end_pose()).collect();
+            stage.obstacles[stage.obstacles.len() - count..].iter().map(|o| o.end_pose()).collect();
         let points: Vec<Vec3> = stage.points().flatten().copied().collect();
         let deep = |p: &Vec3| hand.iter().map(|s| -s.distance(*p)).fold(0.0, f32::max);
         let depth = points.iter().map(deep).fold(0.0, f32::max);
@@ -72,8 +73,7 @@ fn hair_gives_way_to_the_hand_without_penetration() {
         }
         deepest = deepest.max(seen.depth);
         if let Some(other) = other {
-            let off = seen.points.iter().zip(&other.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-            moved = moved.max(off);
+            moved = moved.max(farthest(&seen.points, &other.points));
         }
         last = Some(pose);
     }

@@ -20,7 +20,7 @@ fn height() -> f64 {
 }
 
 /// Returns the scene's text after this script.
-fn after(script: &str) -> String {
+fn text_after(script: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let mut window = window(folder.path(), SCENE, script);
     assert!(until(&mut window, |app| app.is_idle()));
@@ -42,37 +42,37 @@ fn vector(text: &str, key: &[&str]) -> [f64; 3] {
     std::array::from_fn(|k| list.get(k).unwrap().as_float().unwrap())
 }
 
-fn near(a: [f64; 3], b: [f64; 3], within: f64) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() < within)
+fn is_near(a: [f64; 3], b: [f64; 3], tolerance: f64) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < tolerance)
 }
 
 #[test]
 fn dragged_ball_follows_the_pointer() {
     let center = &["collider", "shape", "sphere", "center"];
     for hand in ["look", "grab", "head"] {
-        let text = after(&format!("pause\nhand {hand}\nwait 1\ndrag 0.5 0.5 0.5 0.4 10"));
-        let up = 1.5 + 0.1 * height();
-        assert!(near(vector(&text, center), [0.0, up, 0.0], 3e-4), "{hand}: {text}");
+        let text = text_after(&format!("pause\nhand {hand}\nwait 1\ndrag 0.5 0.5 0.5 0.4 10"));
+        let height_of_ball = 1.5 + 0.1 * height();
+        assert!(is_near(vector(&text, center), [0.0, height_of_ball, 0.0], 3e-4), "{hand}: {text}");
         assert!(text.contains("radius = 0.05 } # mine"), "the rest of the text changed: {text}");
     }
-    let back = after("pause\nwait 1\ndrag 0.5 0.5 0.5 0.4 10\ndrag 0.5 0.4 0.5 0.5 10");
-    assert!(near(vector(&back, center), [0.0, 1.5, 0.0], 5e-4), "the camera turned: {back}");
+    let back = text_after("pause\nwait 1\ndrag 0.5 0.5 0.5 0.4 10\ndrag 0.5 0.4 0.5 0.5 10");
+    assert!(is_near(vector(&back, center), [0.0, 1.5, 0.0], 5e-4), "the camera turned: {back}");
 }
 
 #[test]
 fn dragging_the_wind_arrow_sets_the_velocity() {
-    let text = after("pause\nwait 1\ndrag 0.8 0.7 0.8 0.6 10");
+    let text = text_after("pause\nwait 1\ndrag 0.8 0.7 0.8 0.6 10");
     // The arrow has two fifths of its maximum length, and the speed is quadratic in the length.
-    assert!(near(vector(&text, &["wind", "velocity"]), [0.0, 20.0 * 0.16, 0.0], 0.02), "{text}");
+    assert!(is_near(vector(&text, &["wind", "velocity"]), [0.0, 20.0 * 0.16, 0.0], 0.02), "{text}");
 }
 
 #[test]
 fn a_drag_is_one_undo_step() {
-    assert_eq!(after("pause\nwait 1\ndrag 0.5 0.5 0.6 0.4 10\nundo"), SCENE);
-    assert_eq!(after("pause\nwait 1\ndrag 0.8 0.7 0.7 0.6 10\nundo"), SCENE);
+    assert_eq!(text_after("pause\nwait 1\ndrag 0.5 0.5 0.6 0.4 10\nundo"), SCENE);
+    assert_eq!(text_after("pause\nwait 1\ndrag 0.8 0.7 0.7 0.6 10\nundo"), SCENE);
 }
 
 #[test]
 fn without_handles_the_same_drag_turns_the_view() {
-    assert_eq!(after("pause\noverlay handles off\nwait 1\ndrag 0.5 0.5 0.6 0.4 10"), SCENE);
+    assert_eq!(text_after("pause\noverlay handles off\nwait 1\ndrag 0.5 0.5 0.6 0.4 10"), SCENE);
 }

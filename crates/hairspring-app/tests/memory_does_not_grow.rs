@@ -19,7 +19,7 @@ fn reopening_a_scene_does_not_increase_memory() {
     let open = format!("open {}\nwait 3\n", file.display());
     // Memory in use, and memory held beyond that, after this number of openings, once the window is idle
     // [bytes].
-    let after = |openings: usize| {
+    let memory_after = |openings: usize| {
         let script = format!("wait 3\n{}pause\nwait 1\n", open.repeat(openings));
         let mut window = window(folder.path(), SMALL, &script);
         assert!(until(&mut window, |app| app.is_idle()));
@@ -30,8 +30,8 @@ fn reopening_a_scene_does_not_increase_memory() {
         assert!(until(&mut window, |_| began.elapsed().as_secs() >= 3));
         (memory::in_use(), kept())
     };
-    let (one, first) = after(1);
-    let (many, last) = after(8);
+    let (one, first) = memory_after(1);
+    let (many, last) = memory_after(8);
     // Snapshots are allocated on demand, so their number varies a little.
     assert!(many < one + (24 << 20), "in use: {many} bytes after 8 openings, {one} after one");
     assert!(last < first + KEPT, "held beyond use: {last} bytes after 8 openings, {first} after one");

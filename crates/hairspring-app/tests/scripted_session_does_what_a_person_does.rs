@@ -42,13 +42,13 @@ fn a_session_opens_plays_changes_records_saves_and_opens_again() {
         assert!(text.contains(line), "{line} is missing in the file:\n{text}");
     }
     assert!(!text.contains("inertia"), "an undone change is in the file:\n{text}");
-    assert!(Document::open(&file("saved.toml")).is_ok());
+    assert_eq!(Document::open(&file("saved.toml")).unwrap().text(), text);
     let still = hairspring_view::read_png(&file("still.png")).unwrap();
     assert_eq!((still.width, still.height), (1280, 720));
     let dark = still.rgb.iter().filter(|b| **b < 8).count();
     assert!(dark < still.rgb.len() / 2, "the picture is mostly black");
     for clip in ["clip.mp4", "turn.mp4"] {
-        assert!(std::fs::metadata(file(clip)).unwrap().len() > 2000, "{clip}");
+        assert!(std::fs::metadata(file(clip)).unwrap().len() > 2000, "{clip} is nearly empty");
     }
     for k in 1..=3 {
         assert!(file(&format!("p.{k:02}.png")).exists());
@@ -73,10 +73,10 @@ fn still_of_a_comparison_shows_both_scenes_and_captions() {
         "the gap between the two pictures is missing"
     );
     let red = |columns: std::ops::Range<u32>| -> u64 {
-        let of = |x: u32| {
+        let column = |x: u32| {
             (0..692).map(|y| image.pixel(x, y)).map(|[r, g, _]| u64::from(r.saturating_sub(g))).sum::<u64>()
         };
-        columns.map(of).sum()
+        columns.map(column).sum()
     };
     let (brown, dyed) = (red(left.clone()), red(right.clone()));
     assert!(dyed > 2 * brown && brown > 0, "the sides do not show their own scenes: {brown}, {dyed}");
@@ -100,13 +100,13 @@ fn refused_commands_report_an_error_and_change_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut window = window(folder.path(), SMALL, "pause\nset solver.substeps 0\nwait 1");
     assert!(until(&mut window, |app| app.is_idle()));
-    let (said, wrong) = window.state().message().expect("there is no message");
-    assert!(wrong && said.contains("substeps"), "{said}");
+    let (message, wrong) = window.state().message().expect("there is no message");
+    assert!(wrong && message.contains("substeps"), "{message}");
     assert_eq!(window.state().session().document().text(), SMALL);
     // A click on the message dismisses it.
-    let said = said.to_owned();
-    let at = window.get_by_label(&said).rect().center();
-    for event in [PointerMoved(at), press(at, true), press(at, false)] {
+    let message = message.to_owned();
+    let center = window.get_by_label(&message).rect().center();
+    for event in [PointerMoved(center), press(center, true), press(center, false)] {
         window.event(event);
         window.step();
     }
@@ -121,9 +121,9 @@ fn refused_commands_report_an_error_and_change_nothing() {
     ] {
         let mut window = self::window(folder.path(), SMALL, &format!("pause\n{line}"));
         assert!(until(&mut window, |app| app.is_idle()));
-        let said = window.state().message().map(|(text, _)| text.to_owned()).unwrap_or_default();
-        assert!(said.contains(word), "{line}: {said:?}");
-        assert_eq!(window.state().session().document().text(), SMALL, "{line}");
+        let (message, wrong) = window.state().message().expect("there is no message");
+        assert!(wrong && message.contains(word), "{line}: {message:?}");
+        assert_eq!(window.state().session().document().text(), SMALL, "'{line}' changed the scene");
     }
 }
 
@@ -176,7 +176,10 @@ fn settings_change_during_playback() {
         panic!("a roughness of {roughness} was not shown");
     };
     let (first, second) = (seen(0.875), seen(0.75));
-    assert!(second.0 > first.0 && second.1 == first.1, "{first:?}, {second:?}");
+    assert!(
+        second.0 > first.0 && second.1 == first.1,
+        "expected a newer snapshot at the same time: {first:?}, then {second:?}"
+    );
 }
 
 #[test]
@@ -215,7 +218,10 @@ fn a_failed_undo_step_stays_available() {
         session.act(step).unwrap();
         seen.push(now(&session));
     }
-    assert_eq!((&*seen[0], &*seen[3]), (SMALL, &*text), "{seen:?}");
-    assert!(seen[1].contains("2.0") && seen[2].contains("1.0"), "{seen:?}");
+    assert_eq!((&*seen[0], &*seen[3]), (SMALL, &*text), "undo does not return to the other scene: {seen:?}");
+    assert!(
+        seen[1].contains("2.0") && seen[2].contains("1.0"),
+        "undo does not return to the earlier wind: {seen:?}"
+    );
     assert!(seen.iter().eq(seen.iter().rev()), "redo does not mirror undo: {seen:?}");
 }

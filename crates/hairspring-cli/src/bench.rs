@@ -172,7 +172,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if options.table {
         return table::run(options, console);
     }
-    let mut bench = Bench::on(
+    let mut bench = Bench::with_head(
         head,
         strands,
         points,

@@ -5,6 +5,7 @@
 //! a processor without SSE2.
 
 use glam::Vec3;
+use hairspring::material::Model;
 
 /// Positions after a tenth of a second of the bench scene, for each model, in one of the two builds of the
 /// library.
@@ -21,7 +22,8 @@ macro_rules! positions {
             .chain([(Model::Rod, Integrator::Bdf2), (Model::Curvature, Integrator::LocalGlobal)])
             .map(|(model, integrator)| {
                 let material = Material { model, ..Material::default() };
-                let mut bench = Bench::of(60, 17, material, Solver { integrator, ..Solver::default() });
+                let mut bench =
+                    Bench::with_material(60, 17, material, Solver { integrator, ..Solver::default() });
                 $prepare(&mut bench);
                 (0..6).for_each(|_| _ = bench.step());
                 let mut points = vec![Vec3::ZERO; bench.simulation.point_count()];
@@ -34,12 +36,12 @@ macro_rules! positions {
 
 #[test]
 fn scalar_has_the_bits_of_sse2() {
-    let mut there = true;
+    let mut supported = true;
     let mut set = |bench: &mut hairspring_validate::bench::Bench| {
-        there &= bench.simulation.use_instruction_set("sse2");
+        supported &= bench.simulation.use_instruction_set("sse2");
     };
     let simd = positions!(hairspring, hairspring_validate, set);
-    if !there {
+    if !supported {
         println!("skipped: this processor has no SSE2");
         return;
     }
@@ -47,8 +49,10 @@ fn scalar_has_the_bits_of_sse2() {
         assert_eq!(bench.simulation.instruction_set(), "scalar");
     };
     let scalar = positions!(hairspring_scalar, hairspring_scalar, is_scalar);
+    assert_eq!(simd.len(), Model::ALL.len() + 2);
     for ((name, simd), (_, scalar)) in simd.iter().zip(&scalar) {
-        let apart = simd.iter().zip(scalar).filter(|(a, b)| a != b).count();
-        assert!(apart == 0, "{name}: {apart} of {} points differ", simd.len());
+        assert_eq!(simd.len(), scalar.len(), "{name}");
+        let different = simd.iter().zip(scalar).filter(|(a, b)| a != b).count();
+        assert!(different == 0, "{name}: {different} of {} points differ", simd.len());
     }
 }

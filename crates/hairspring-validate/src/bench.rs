@@ -120,16 +120,16 @@ pub fn groom(strands: u32, points: u32) -> Groom {
 impl Bench {
     /// Creates the scene at rest with the hair standing out; `points` per strand, 3 or more.
     pub fn new(strands: u32, points: u32, solver: Solver) -> Self {
-        Self::of(strands, points, Material::default(), solver)
+        Self::with_material(strands, points, Material::default(), solver)
     }
 
     /// Creates the scene with this hair material.
-    pub fn of(strands: u32, points: u32, material: Material, solver: Solver) -> Self {
-        Self::on(Head::Sphere, strands, points, material, solver)
+    pub fn with_material(strands: u32, points: u32, material: Material, solver: Solver) -> Self {
+        Self::with_head(Head::Sphere, strands, points, material, solver)
     }
 
     /// Creates the scene with this hair material and head.
-    pub fn on(head: Head, strands: u32, points: u32, material: Material, solver: Solver) -> Self {
+    pub fn with_head(head: Head, strands: u32, points: u32, material: Material, solver: Solver) -> Self {
         let groom = Arc::new(groom(strands, points));
         let shape = head.shape();
         let rest = (Mat3::IDENTITY, Vec3::ZERO);

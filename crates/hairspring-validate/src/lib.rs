@@ -188,11 +188,11 @@ impl Outcome {
     /// Returns why the case fails, if that is a known limitation of the elastic model or of the number of
     /// points.
     pub fn reason(&self) -> Option<&'static str> {
-        let of = |case: &Case| (case.out_of_reach)(self.method);
+        let reason_of = |case: &Case| (case.out_of_reach)(self.method);
         // Applies to all cases, at more points than each has by default.
         let held_back = self.method.model == Model::Springs && self.method.points >= 128;
         let any = held_back.then_some(cases::HELD_BACK);
-        if self.pass() { None } else { case(self.case).and_then(of).or(any) }
+        if self.pass() { None } else { case(self.case).and_then(reason_of).or(any) }
     }
 
     /// Returns whether the error is within the tolerance. A failed measurement does not pass.

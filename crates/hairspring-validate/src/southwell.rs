@@ -39,7 +39,7 @@ pub fn threshold(
     stiffness: impl Fn(f64) -> Result<Option<f64>, Failure>,
 ) -> Result<f64, Failure> {
     let toward = (end - start).signum();
-    let beyond = |a: f64, b: f64| (a - b) * toward > 0.0;
+    let exceeds = |a: f64, b: f64| (a - b) * toward > 0.0;
     // The strand's own imperfection makes it buckle a little early, with a stiffness above 0. An interval
     // this narrow determines the threshold.
     let enclosed = |held: f64, given: f64| (given - held).abs() < ENCLOSED * given;
@@ -73,24 +73,24 @@ pub fn threshold(
         };
         let mut next = at * factor;
         // A line that does not decrease gives no prediction yet.
-        if zero.is_finite() && beyond(zero, at) {
+        if zero.is_finite() && exceeds(zero, at) {
             let agree = (zero - foreseen).abs() < AGREEMENT * zero.abs();
             foreseen = zero;
-            if agree && (zero - at).abs() < NEAR * zero.abs() && !wall.is_some_and(|wall| beyond(zero, wall))
+            if agree && (zero - at).abs() < NEAR * zero.abs() && !wall.is_some_and(|wall| exceeds(zero, wall))
             {
                 return Ok(zero);
             }
             let stride = at + STRIDE * (zero - at);
-            next = if beyond(stride, next) { next } else { stride };
+            next = if exceeds(stride, next) { next } else { stride };
         }
         if let Some(wall) = wall {
             if enclosed(at, wall) {
                 return Ok(0.5 * (at + wall));
             }
             let half = 0.5 * (at + wall);
-            next = if beyond(next, half) { half } else { next };
+            next = if exceeds(next, half) { half } else { next };
         }
-        if beyond(next, end) {
+        if exceeds(next, end) {
             break;
         }
         at = next;

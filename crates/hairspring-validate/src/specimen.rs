@@ -75,6 +75,18 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// A strand with [`RADIUS`], [`DENSITY`] and these properties, under [`GRAVITY`].
+    fn new(points: Vec<Vec3>, material: Material) -> Self {
+        Self {
+            points,
+            material: Material { radius: Some(RADIUS as f32), density: DENSITY as f32, ..material },
+            gravity: DVec3::NEG_Y * GRAVITY,
+            obstacle: None,
+            wind: DVec3::ZERO,
+            in_balance: false,
+        }
+    }
+
     /// A strand of natural shape `points` with the weight `gamma` = ρgAL³/EI under [`GRAVITY`], and `ratio` =
     /// GJ/EI.
     ///
@@ -85,22 +97,13 @@ impl Setup {
         // Γ = ρ g πr² L³ / (E πr⁴/4), and GJ/EI = 2G/E of a round fiber.
         let young = 4.0 * DENSITY * GRAVITY * length.powi(3) / (gamma * RADIUS * RADIUS);
         let material = Material {
-            radius: Some(RADIUS as f32),
-            density: DENSITY as f32,
             young: young as f32,
             shear: (0.5 * ratio * young) as f32,
             damping: 0.0,
             drag: 2.5,
             ..Material::default()
         };
-        Self {
-            points,
-            material,
-            gravity: DVec3::NEG_Y * GRAVITY,
-            obstacle: None,
-            wind: DVec3::ZERO,
-            in_balance: false,
-        }
+        Self::new(points, material)
     }
 
     /// A strand with human hair's Young's modulus and `ratio` = GJ/EI, without gravity.
@@ -114,22 +117,7 @@ impl Setup {
 
     /// A chain: a strand without bending stiffness, damping or drag.
     pub fn chain(points: Vec<Vec3>) -> Self {
-        let material = Material {
-            radius: Some(RADIUS as f32),
-            density: DENSITY as f32,
-            bend: 0.0,
-            damping: 0.0,
-            drag: 0.0,
-            ..Material::default()
-        };
-        Self {
-            points,
-            material,
-            gravity: DVec3::NEG_Y * GRAVITY,
-            obstacle: None,
-            wind: DVec3::ZERO,
-            in_balance: false,
-        }
+        Self::new(points, Material { bend: 0.0, damping: 0.0, drag: 0.0, ..Material::default() })
     }
 
     /// A chain with [`LIMP`] times the bending stiffness of hair.

@@ -54,8 +54,8 @@ impl Sample {
             .min_by(|a, b| a.0.total_cmp(&b.0));
         for (g, from) in scene.grooms.iter().enumerate() {
             let strands = from.groom.strand_count();
-            let own = (count * strands).div_ceil(all.max(1)).min(strands);
-            let mut chosen: Vec<usize> = (0..own).map(|k| (2 * k + 1) * strands / (2 * own)).collect();
+            let share = (count * strands).div_ceil(all.max(1)).min(strands);
+            let mut chosen: Vec<usize> = (0..share).map(|k| (2 * k + 1) * strands / (2 * share)).collect();
             if let Some((_, _, s)) = stiffest.filter(|(_, at, s)| *at == g && !chosen.contains(s)) {
                 chosen.pop();
                 chosen.push(s);
@@ -67,8 +67,8 @@ impl Sample {
                 sample.offsets.push(sample.points.len() as u32);
                 sample.groups.push(materials.len() as u16);
                 sample.scales.push(from.groom.scale(s));
-                let own = from.materials.get(from.groom.group(s) as usize).or(from.materials.last());
-                materials.push(own.cloned().unwrap_or_default());
+                let material = from.materials.get(from.groom.group(s) as usize).or(from.materials.last());
+                materials.push(material.cloned().unwrap_or_default());
             }
         }
         let gravity = if scene.gravity == Vec3::ZERO { EARTH } else { scene.gravity };

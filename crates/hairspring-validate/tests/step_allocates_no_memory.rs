@@ -8,15 +8,14 @@ use hairspring::{
     air::{Air, Flow, Source, Turbulence, WindOcclusion},
     forces::{Manipulator, charge::ChargedBall, comb::Comb, grab::Grab, tie::Tie},
     material::{GlobalShape, Material},
-    math::RigidTransform,
     settings::{Neighbours, Solver, Volume, VolumeMethod, Wind},
     simulation::{Simulation, StepInput},
 };
+use hairspring_test::{REST, on_threads, roots};
 use hairspring_validate::bench::{self, Bench};
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     cell::Cell,
-    sync::Arc,
 };
 
 struct Counting;
@@ -51,9 +50,8 @@ fn steps_after_the_first_do_not_allocate() {
 }
 
 fn hair_on_hair_allocates_nothing() {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     for method in VolumeMethod::ALL {
-        let counted = pool.install(|| {
+        let counted = on_threads(1, || {
             let mut bench = Bench::new(200, 16, Solver::default());
             bench.simulation.set_volume(&Volume { method, ..Volume::default() });
             bench.step();
@@ -66,7 +64,7 @@ fn hair_on_hair_allocates_nothing() {
         assert_eq!(counted, 0, "{counted} allocations in 20 steps with the volume method {}", method.name());
     }
     // Strand contact.
-    let counted = pool.install(|| {
+    let counted = on_threads(1, || {
         let mut bench = Bench::new(200, 16, Solver::default());
         bench.simulation.set_neighbours(&Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
         bench.step();
@@ -75,17 +73,17 @@ fn hair_on_hair_allocates_nothing() {
             bench.step();
         }
         let report = bench.simulation.neighbours().unwrap();
-        assert!(report.touching_pairs > 50, "{report:?}");
+        assert!(report.touching_pairs > 50, "too few strands are in contact: {report:?}");
         COUNT.get() - before
     });
     assert_eq!(counted, 0, "{counted} allocations in 40 steps with strand contact");
     // Manipulators and a global shape, while a tie is still gathering.
-    let counted = pool.install(|| {
+    let counted = on_threads(1, || {
         let material = Material {
             global_shape: GlobalShape { pull: 2.0, ..GlobalShape::default() },
             ..Material::default()
         };
-        let mut bench = Bench::of(200, 16, material, Solver::default());
+        let mut bench = Bench::with_material(200, 16, material, Solver::default());
         let center = Vec3::Y * 0.2;
         let (axis, half) = (Vec3::Y, Vec3::X * 0.1);
         for tool in [
@@ -107,7 +105,7 @@ fn hair_on_hair_allocates_nothing() {
                 damping: 1.0,
             }),
         ] {
-            let id = bench.simulation.add_manipulator(tool, RigidTransform::default());
+            let id = bench.simulation.add_manipulator(tool, REST);
             let holds = bench.simulation.attached_points(id).count();
             assert!(matches!(tool, Manipulator::Comb(_)) || holds > 10, "{tool:?} holds only {holds} points");
         }
@@ -122,31 +120,20 @@ fn hair_on_hair_allocates_nothing() {
 }
 
 fn wind_and_charge_allocate_nothing() {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let counted = pool.install(|| {
-        let groom = Arc::new(bench::groom(200, 16));
-        let strands: Vec<u32> = (0..200).collect();
-        let roots: Vec<RigidTransform> = (0..200)
-            .map(|s| RigidTransform { translation: groom.strand(s)[0], ..RigidTransform::default() })
-            .collect();
+    let counted = on_threads(1, || {
+        let groom = bench::groom(200, 16);
+        let roots = roots(&groom, REST);
         let material = Material { charge: 1e-9, ..Material::default() };
-        let gravity = Vec3::NEG_Y * 9.81;
-        let mut simulation = Simulation::builder(groom)
-            .strands(&strands)
-            .materials(&[material])
-            .solver(Solver::default())
-            .gravity(gravity)
-            .build()
-            .unwrap();
+        let mut simulation = Simulation::builder(groom).materials(&[material]).build().unwrap();
         simulation.set_wind_occlusion(&WindOcclusion { hair: 50.0, ..WindOcclusion::default() });
         let flow = Flow::Point { center: Vec3::ZERO, radius: 0.1, speed: 1.0 };
-        let sources = [Source { flow, pose: RigidTransform::default(), factor: 1.0 }];
+        let sources = [Source { flow, pose: REST, factor: 1.0 }];
         let ball = ChargedBall { centers: [Vec3::Z; 2], radius: 0.1, charge: 1e-7 };
         let mut step = |frame: u32| {
             simulation.set_charged([ball]);
             simulation.step(&StepInput {
                 dt: bench::FRAME,
-                anchor: RigidTransform::default(),
+                anchor: REST,
                 roots: &roots,
                 obstacles: &[],
                 air: Air {

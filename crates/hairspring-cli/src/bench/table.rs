@@ -119,7 +119,7 @@ macro_rules! bench {
             Model::ALL.into_iter().find(|model| model.name() == $cell.model.name()).unwrap_or_default();
         let material = Material { model, ..Material::default() };
         let solver = Solver { substeps: $options.substeps, ..Solver::default() };
-        Bench::of($options.strands, $options.points, material, solver)
+        Bench::with_material($options.strands, $options.points, material, solver)
     }};
 }
 

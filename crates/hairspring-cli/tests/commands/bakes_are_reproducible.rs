@@ -81,9 +81,9 @@ fn stopped_by_ctrl_c_and_resumed() {
     }
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("--resume"), "{told}");
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(130), "{stderr}");
+    assert!(stderr.contains("--resume"), "{stderr}");
     let written = names(&stopped);
     assert!(written.iter().all(|n| n.starts_with("hair.")), "{written:?}");
     // All written frames are complete, including the last.

@@ -21,8 +21,8 @@ fn a_round_trip_through_all_formats_is_exact() {
     let groom = even(100);
     write_groom(&at("a.hair"), &groom).unwrap();
     for (from, to) in [("a.hair", "b.tfx"), ("b.tfx", "c.data"), ("c.data", "d.hair")] {
-        let told = succeed(folder.path(), &["convert", from, to, "--scale", "1"]);
-        assert!(told.contains(to) && told.contains("100 strands"), "{told}");
+        let stdout = succeed(folder.path(), &["convert", from, to, "--scale", "1"]);
+        assert!(stdout.contains(to) && stdout.contains("100 strands"), "{stdout}");
     }
     let back = read_groom(&at("d.hair"), &ReadOptions::default()).unwrap().value;
     assert_eq!(back.offsets, groom.offsets);

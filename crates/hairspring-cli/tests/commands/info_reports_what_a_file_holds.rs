@@ -24,13 +24,15 @@ fn json_of_a_groom() {
     assert_eq!(found["repaired"], 0);
     let mut lengths: Vec<f32> = (0..50).map(|s| groom.strand_length(s)).collect();
     lengths.sort_by(f32::total_cmp);
-    for (got, want) in
-        found["length_m"].as_array().unwrap().iter().zip([lengths[0], lengths[25], lengths[49]])
-    {
+    let found_lengths = found["length_m"].as_array().unwrap();
+    assert_eq!(found_lengths.len(), 3, "expected the shortest, the median and the longest");
+    for (got, want) in found_lengths.iter().zip([lengths[0], lengths[25], lengths[49]]) {
         assert!((got.as_f64().unwrap() - f64::from(want)).abs() < 1e-6, "{got} instead of {want}");
     }
     let (low, high) = groom.bounds().unwrap();
-    for (got, want) in found["bounds_m"].as_array().unwrap().iter().zip([low, high]) {
+    let found_bounds = found["bounds_m"].as_array().unwrap();
+    assert_eq!(found_bounds.len(), 2, "expected two corners");
+    for (got, want) in found_bounds.iter().zip([low, high]) {
         let got: Vec<f32> = got.as_array().unwrap().iter().map(|n| n.as_f64().unwrap() as f32).collect();
         assert!(Vec3::from_slice(&got).distance(want) < 1e-6, "{got:?} instead of {want}");
     }

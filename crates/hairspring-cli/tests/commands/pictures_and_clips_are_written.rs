@@ -4,7 +4,8 @@
 //! a demuxer and a decoder that share no code with the writer, and has every frame. A resumed sequence
 //! equals an uninterrupted one, and a still equals the frame of the same number.
 
-use crate::common::{contents, names, succeed, text, write_groom, write_scene};
+use crate::common::{contents, fail, names, succeed, text, write_groom, write_scene};
+use hairspring_test::{data, farthest};
 use hairspring_view::{Image, read_png};
 use openh264::{decoder::Decoder, formats::YUVSource};
 use std::{fs::File, io::BufReader, path::Path};
@@ -71,8 +72,8 @@ fn a_still_is_rendered_on_the_graphics_card() {
     assert!(drawn.status.success() && still("cpu.png", &[]).status.success());
     let [card, cpu] = ["card.png", "cpu.png"].map(|name| read_png(&f.join(name)).unwrap());
     assert_eq!((card.width, card.height), (160, 96));
-    let apart = card.rgb.iter().zip(&cpu.rgb).filter(|(a, b)| a.abs_diff(**b) > 8).count();
-    assert!(drawn_pixels(&card) > 100 && apart < card.rgb.len() / 100, "{apart} values differ");
+    let different = card.rgb.iter().zip(&cpu.rgb).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+    assert!(drawn_pixels(&card) > 100 && different < card.rgb.len() / 100, "{different} values differ");
 }
 
 #[test]
@@ -103,16 +104,16 @@ fn a_scene_renders_as_numbered_pictures_that_resume() {
     std::fs::create_dir(&frames).unwrap();
     let render =
         [&["render", "scene.toml", "-o", "frames/f.##.png", "--frames", "2-6", "--json"], &SIZE[..]].concat();
-    let told = crate::common::json(&succeed(folder.path(), &render));
-    assert_eq!((&told["frames"], &told["strands"]), (&5.into(), &300.into()));
+    let report = crate::common::json(&succeed(folder.path(), &render));
+    assert_eq!((&report["frames"], &report["strands"]), (&5.into(), &300.into()));
     assert_eq!(names(&frames), ["f.02.png", "f.03.png", "f.04.png", "f.05.png", "f.06.png"]);
     let whole = contents(&frames);
     assert!(whole[0].1 != whole[4].1, "nothing moved");
 
     std::fs::remove_file(frames.join("f.04.png")).unwrap();
     std::fs::write(frames.join("f.05.png"), &whole[3].1[..200]).unwrap();
-    let told = crate::common::json(&succeed(folder.path(), &[&render[..], &["--resume"]].concat()));
-    assert_eq!((&told["frames"], &told["skipped"]), (&2.into(), &3.into()));
+    let report = crate::common::json(&succeed(folder.path(), &[&render[..], &["--resume"]].concat()));
+    assert_eq!((&report["frames"], &report["skipped"]), (&2.into(), &3.into()));
     assert!(contents(&frames) == whole);
 
     succeed(
@@ -143,13 +144,13 @@ fn a_turntable_is_one_full_turn() {
     // The scene plays during the turn, so frame 3 is compared with frame 3 from behind.
     draw("back.png", &["--frames", "3", "--camera", "0.1,0.2,-0.7"]);
     let [turned, still] = ["turn.3.png", "back.png"].map(|name| read_png(&f.join(name)).unwrap());
-    let apart = turned.rgb.iter().zip(&still.rgb).filter(|(a, b)| a.abs_diff(**b) > 8).count();
-    assert!(drawn_pixels(&still) > 100 && apart < turned.rgb.len() / 100, "{apart} values differ");
+    let different = turned.rgb.iter().zip(&still.rgb).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+    assert!(drawn_pixels(&still) > 100 && different < turned.rgb.len() / 100, "{different} values differ");
     std::fs::remove_file(f.join("turn.2.png")).unwrap();
     draw("turn.#.png", &["--turntable", "--frames", "1-4", "--resume", "--camera", "0.1,0.2,0.9"]);
     assert!(turn(2) == second);
-    let refused = crate::common::run(f, &["render", "groom.hair", "-o", "still.png", "--turntable"]);
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("--turntable needs a clip"));
+    let stderr = fail(f, &["render", "groom.hair", "-o", "still.png", "--turntable"], 2);
+    assert!(stderr.contains("--turntable needs a clip"), "{stderr}");
 }
 
 #[test]
@@ -166,7 +167,7 @@ fn a_scene_renders_as_a_clip() {
 fn demo_writes_a_clip_and_a_still() {
     let folder = tempfile::tempdir().unwrap();
     let small = ["demo", "--strands", "3000", "--guides", "100", "--seconds", "0.25"];
-    let told = succeed(folder.path(), &[&small[..], &SIZE[..]].concat());
+    let stdout = succeed(folder.path(), &[&small[..], &SIZE[..]].concat());
     let out = folder.path().join("out");
     assert_eq!(names(&out), ["hairspring.mp4", "hairspring.png"]);
     assert_eq!(play(&out.join("hairspring.mp4")), (6, (160, 96)));
@@ -182,18 +183,16 @@ fn demo_writes_a_clip_and_a_still() {
         "simulate",
         "draw",
     ] {
-        assert!(told.contains(word), "{word} is missing: {told}");
+        assert!(stdout.contains(word), "{word} is missing: {stdout}");
     }
 }
 
 #[test]
 fn a_real_head_is_rendered_and_baked() {
     let file = "grooms/sintel/SintelHairOriginal-sintel_hair.16points.tfx";
-    let (Some(groom), Some(body), Some(collider)) = (
-        crate::common::data(file),
-        crate::common::data("grooms/sintel/sintel.obj"),
-        crate::common::data("grooms/sintel/sintel-collider.obj"),
-    ) else {
+    let (Some(groom), Some(body), Some(collider)) =
+        (data(file), data("grooms/sintel/sintel.obj"), data("grooms/sintel/sintel-collider.obj"))
+    else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
@@ -210,13 +209,13 @@ fn a_real_head_is_rendered_and_baked() {
         &["render", "sintel.toml", "-o", "sintel.png", "--frames", "3", "--size", "320x180"],
     );
     assert!(drawn_pixels(&read_png(&folder.path().join("sintel.png")).unwrap()) > 4000);
-    let told = crate::common::json(&succeed(
+    let report = crate::common::json(&succeed(
         folder.path(),
         &["bake", "sintel.toml", "-o", "s.#.tfx", "--frames", "1-3", "--json"],
     ));
-    assert_eq!((&told["strands"], &told["reset_strands"]), (&11_400.into(), &0.into()));
+    assert_eq!((&report["strands"], &report["reset_strands"]), (&11_400.into(), &0.into()));
     let rest = hairspring_io::read_groom(&folder.path().join("s.1.tfx"), &Default::default()).unwrap().value;
     let authored = hairspring_io::read_groom(&groom, &Default::default()).unwrap().value;
-    let far = rest.points.iter().zip(&authored.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-    assert!(far < 1e-5, "frame 1 differs from the file by {far} m");
+    let error = farthest(&rest.points, &authored.points);
+    assert!(error < 1e-5, "frame 1 differs from the file by {error} m");
 }

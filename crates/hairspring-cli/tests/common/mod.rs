@@ -23,6 +23,14 @@ pub fn run(folder: &Path, arguments: &[&str]) -> Output {
     program(folder, arguments).output().unwrap()
 }
 
+/// Runs the program in `folder`; it must fail with this exit code. Returns its standard error.
+pub fn fail(folder: &Path, arguments: &[&str], code: i32) -> String {
+    let output = run(folder, arguments);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+    stderr
+}
+
 /// Runs the program in `folder`; it must succeed. Returns what it prints.
 pub fn succeed(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
@@ -94,18 +102,4 @@ pub fn json(text: &str) -> serde_json::Value {
 /// A path as text.
 pub fn text(path: &impl AsRef<OsStr>) -> &str {
     path.as_ref().to_str().unwrap()
-}
-
-/// The path of a real data file, or `None` after printing the reason where the data is missing.
-pub fn data(relative: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("HAIRSPRING_DATA").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
-        PathBuf::from,
-    );
-    let path = root.join(relative);
-    if path.exists() {
-        return Some(path);
-    }
-    println!("skipped: {relative} is not under {} (set HAIRSPRING_DATA)", root.display());
-    None
 }

@@ -8,11 +8,18 @@
 
 use glam::Vec3;
 use hairspring_io::{
-    ErrorKind, Place, ReadOptions, Strands, read_body, read_groom, read_motion, write_strands,
+    ErrorKind, Place, Problem, ReadOptions, Strands, read_body, read_groom, read_motion, write_strands,
 };
 use proptest::prelude::*;
 use rayon::prelude::*;
 use std::fs;
+
+/// A file may be read or refused; the error is one line of text.
+fn check_error(name: &str, result: Result<(), Problem>) {
+    if let Err(problem) = result {
+        assert!(!problem.text.is_empty() && !problem.text.contains('\n'), "{name}: {problem}");
+    }
+}
 
 #[test]
 fn valid_files_are_read() {
@@ -41,9 +48,7 @@ fn binary_files_cut_at_any_length_are_refused() {
 fn readers_of_cut_text_files_return() {
     for (name, file, read) in crate::samples::all() {
         for length in 0..file.len() {
-            if let Err(problem) = read(&file[..length]) {
-                assert!(!problem.text.contains('\n'), "{name} cut at {length}: {problem}");
-            }
+            check_error(name, read(&file[..length]));
         }
     }
 }
@@ -57,7 +62,7 @@ fn every_changed_byte_and_word_is_handled() {
             |lying, at| {
                 for value in [0, 1, 0x7f, 0x80, 0xff, b'-', b'9', b' ', b'\n'] {
                     lying[at] = value;
-                    let _ = read(lying);
+                    check_error(name, read(lying));
                     lying[at] = file[at];
                 }
                 if at % 4 == 0 && at + 4 <= file.len() {
@@ -71,7 +76,7 @@ fn every_changed_byte_and_word_is_handled() {
                         f32::MAX.to_bits(),
                     ] {
                         lying[at..at + 4].copy_from_slice(&value.to_le_bytes());
-                        let _ = read(lying);
+                        check_error(name, read(lying));
                         lying[at..at + 4].copy_from_slice(&file[at..at + 4]);
                     }
                 }
@@ -98,9 +103,7 @@ fn extreme_numbers_in_text_are_handled() {
         for (a, b) in numbers {
             for number in ["99999999999999999999", "4294967295", "1000000", "-1", "nan", "inf", "1e38", ""] {
                 let lying = format!("{}{number}{}", &text[..a], &text[b..]);
-                if let Err(problem) = read(lying.as_bytes()) {
-                    assert!(!problem.text.contains('\n'), "{name}: {problem}");
-                }
+                check_error(name, read(lying.as_bytes()));
             }
         }
     }
@@ -150,15 +153,15 @@ fn the_error_has_file_place_and_remedy() {
 fn a_groom_too_far_from_the_origin_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("far.data");
-    let write = |away: f32| {
-        let points: Vec<Vec3> = (0..16).map(|i| Vec3::new(away, 0.005 * i as f32, 0.0)).collect();
+    let write = |x: f32| {
+        let points: Vec<Vec3> = (0..16).map(|i| Vec3::new(x, 0.005 * i as f32, 0.0)).collect();
         let strands = Strands { points: &points, offsets: &[0, 16], radii: &[], colors: &[], root_uvs: &[] };
         write_strands(&path, strands).unwrap();
         points
     };
     let options = ReadOptions { scale: Some(1.0), up: None };
-    for away in [5e3, 1e7, 1e30] {
-        write(away);
+    for x in [5e3, 1e7, 1e30] {
+        write(x);
         let error = read_groom(&path, &options).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Malformed);
         assert!(error.to_string().contains("from the origin"), "{error}");
@@ -204,13 +207,13 @@ static SAMPLES: std::sync::LazyLock<Vec<crate::samples::Sample>> =
 
 proptest! {
     #[test]
-    fn noise_is_refused(noise in prop::collection::vec(any::<u8>(), 0..400)) {
-        for (_, file, read) in SAMPLES.iter() {
-            let _ = read(&noise);
+    fn readers_of_noise_return(noise in prop::collection::vec(any::<u8>(), 0..400)) {
+        for (name, file, read) in SAMPLES.iter() {
+            check_error(name, read(&noise));
             // Noise after a valid beginning.
             let mut half = file[..file.len() / 2].to_vec();
             half.extend(&noise);
-            let _ = read(&half);
+            check_error(name, read(&half));
         }
     }
 }

@@ -115,7 +115,7 @@ impl Obj {
     }
 
     /// Checks that the file equals this mesh, or writes it.
-    fn is(self, file: &str, what: &str) {
+    fn assert_equals_file(self, file: &str, what: &str) {
         let lines = [format!("# {what}; in meters. Made by `cargo xtask meshes`.")];
         let text = [&lines[..], &self.vertices, &self.faces].concat().join("\n") + "\n";
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes").join(file);
@@ -132,7 +132,7 @@ impl Obj {
 fn the_head() {
     let mut obj = Obj::default();
     obj.mesh(&head(), |p| p);
-    obj.is("meshes/head.obj", "A head asleep on its neck");
+    obj.assert_equals_file("meshes/head.obj", "A head asleep on its neck");
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn the_hand() {
     let mut obj = Obj::default();
     // The palm faces the head, and the fingers point forward.
     obj.mesh(&hand(0.005).mesh, |p| vec3(-0.26 - p.z, 0.06 - p.x, -0.09 + p.y));
-    obj.is("meshes/hand.obj", "An open right hand beside a head");
+    obj.assert_equals_file("meshes/hand.obj", "An open right hand beside a head");
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn the_comb() {
         let half = if tine % 22 == 0 { 0.0011 } else { 0.0006 };
         obj.frustum((at(-0.2), [half, 0.0008]), (at(-0.242), [2.0 * half, 0.0016]));
     }
-    obj.is(
+    obj.assert_equals_file(
         "meshes/comb.obj",
         "A comb behind a head: its spine of 13 cm along x, and 23 tines that point forward",
     );
@@ -175,7 +175,7 @@ fn the_rail() {
     for corners in [[f, e, h, g], [e, a, d, h], [b, f, g, c], [d, c, g, h], [e, f, b, a]] {
         obj.face(&corners);
     }
-    obj.is("meshes/rail.obj", "A rail of 26 cm with a front that hair grows on");
+    obj.assert_equals_file("meshes/rail.obj", "A rail of 26 cm with a front that hair grows on");
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn the_stone() {
     obj.part("stone");
     let (middle, turn) = (vec3(0.0, -0.13, 0.07), Quat::from_rotation_z(0.35));
     obj.ellipsoid(5, 9, true, |n| middle + turn * (n * vec3(0.11, 0.065, 0.075)));
-    obj.is("meshes/stone.obj", "A convex stone");
+    obj.assert_equals_file("meshes/stone.obj", "A convex stone");
 }
 
 #[test]
@@ -200,7 +200,7 @@ fn the_leaf() {
         vec3(0.15 * u, height, 0.075 + half * v)
     };
     obj.grid(17, 9, false, at);
-    obj.is("meshes/leaf.obj", "A leaf: one open surface");
+    obj.assert_equals_file("meshes/leaf.obj", "A leaf: one open surface");
 }
 
 #[test]
@@ -212,7 +212,7 @@ fn the_balloon() {
         obj.part(name);
         obj.ellipsoid(16, 24, false, |n| middle + radius * n);
     }
-    obj.is("balloon.obj", "A ball for a head and a balloon over it");
+    obj.assert_equals_file("balloon.obj", "A ball for a head and a balloon over it");
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn the_curtain() {
         vec3(radius * cos, 0.85 + radius * sin, -0.35 + 0.024 * along)
     };
     obj.grid(24, 8, true, ring);
-    obj.is(
+    obj.assert_equals_file(
         "curtain.obj",
         "A rail 36 cm long, hair grows on its underside; and the ring of a fan, 12 cm in radius, which faces +z",
     );

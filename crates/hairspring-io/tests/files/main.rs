@@ -1,7 +1,5 @@
 //! Promises of the readers and writers of grooms, bodies and motions. Each file is one promise.
 
-#[path = "../common/mod.rs"]
-mod common;
 #[path = "../common/samples.rs"]
 mod samples;
 

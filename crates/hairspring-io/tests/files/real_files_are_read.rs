@@ -5,9 +5,9 @@
 //! measured in the files by other means (the table in the data's README). A test is skipped, with a reason
 //! printed, where its data is missing.
 
-use crate::common::data;
 use glam::Vec3;
 use hairspring_io::{ReadOptions, read_body, read_bones, read_groom, read_motion};
+use hairspring_test::{data, farthest};
 
 /// Length of each strand [m], sorted.
 fn lengths(groom: &hairspring::groom::Groom) -> Vec<f32> {
@@ -16,7 +16,7 @@ fn lengths(groom: &hairspring::groom::Groom) -> Vec<f32> {
     lengths
 }
 
-fn near(a: f32, b: f32, tolerance: f32) {
+fn assert_near(a: f32, b: f32, tolerance: f32) {
     assert!((a - b).abs() <= tolerance, "{a} is not within {tolerance} of {b}");
 }
 
@@ -51,11 +51,11 @@ fn bounds_and_lengths_match_the_files() {
     };
     let straight = read_groom(&path, &RAW).unwrap().value;
     let (lo, hi) = straight.bounds().unwrap();
-    assert!(lo.distance(Vec3::new(-32.5, -33.9, -22.7)) < 0.1, "{lo}");
-    assert!(hi.distance(Vec3::new(30.9, 24.1, 63.7)) < 0.1, "{hi}");
+    assert!(lo.distance(Vec3::new(-32.5, -33.9, -22.7)) < 0.1, "the lowest corner is {lo}");
+    assert!(hi.distance(Vec3::new(30.9, 24.1, 63.7)) < 0.1, "the highest corner is {hi}");
     let l = lengths(&straight);
     for (at, want) in [(0, 55.0), (l.len() / 2, 77.0), (l.len() - 1, 107.0)] {
-        near(l[at], want, 0.5);
+        assert_near(l[at], want, 0.5);
     }
     assert_eq!(straight.colors.len(), straight.point_count());
 
@@ -65,15 +65,15 @@ fn bounds_and_lengths_match_the_files() {
             .value;
     let l = lengths(&sintel);
     for (at, want) in [(0, 0.025), (l.len() / 2, 0.102), (l.len() - 1, 0.248)] {
-        near(l[at], want, 0.001);
+        assert_near(l[at], want, 0.001);
     }
     let tail = read_groom(&data("grooms/tressfx_ponytail/tail.tfx").unwrap(), &RAW).unwrap().value;
     let l = lengths(&tail);
     for (at, want) in [(0, 28.0), (l.len() / 2, 66.0), (l.len() - 1, 92.0)] {
-        near(l[at], want, 0.5);
+        assert_near(l[at], want, 0.5);
     }
     let fuzz = read_groom(&data("grooms/tressfx_testhair/TestHair1.tfx").unwrap(), &RAW).unwrap().value;
-    lengths(&fuzz).iter().for_each(|l| near(*l, 11.0, 0.01));
+    lengths(&fuzz).iter().for_each(|l| assert_near(*l, 11.0, 0.01));
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn mohawk_has_uvs_bones_and_near_zero_segments() {
     let mohawk = read_groom(&path, &ReadOptions::default()).unwrap();
     assert_eq!(mohawk.scale, 1.0);
     assert_eq!(mohawk.value.root_uvs.len(), 2_228);
-    assert!(mohawk.repairs.zero_segments > 0, "{:?}", mohawk.repairs);
+    assert!(mohawk.repairs.zero_segments > 0, "no segment of zero length was repaired: {:?}", mohawk.repairs);
     assert_eq!(mohawk.repairs.non_finite_points, 0);
     let bones = read_bones(&data("grooms/tressfx_mohawk/Ratboy_mohawk.tfxbone").unwrap()).unwrap();
     assert_eq!((bones.names.len(), bones.bones.len()), (105, 2_228));
@@ -114,7 +114,7 @@ fn bodies_have_their_vertices_and_faces() {
     assert!(head.mesh.parts.iter().any(|p| p.name == "Mesh_hairBands_pTorus3"));
     let man = read_body(&data("characters/makehuman/base.obj").unwrap(), &ReadOptions::default()).unwrap();
     assert_eq!(man.value.body.mesh.positions.len(), 19_158);
-    near(man.scale, 0.1, 0.0);
+    assert_near(man.scale, 0.1, 0.0);
 }
 
 #[test]
@@ -126,14 +126,14 @@ fn the_robot_is_4_5_m_tall_and_bounded_in_every_clip() {
     let body = &robot.value.body;
     let (lo, hi) = body.mesh.bounds().unwrap();
     println!("robot: {lo} {hi}, {} joints, {} triangles", body.joints.len(), body.mesh.triangles.len());
-    near(hi.y - lo.y, 4.5, 0.1);
-    near(lo.y, 0.0, 0.1);
+    assert_near(hi.y - lo.y, 4.5, 0.1);
+    assert_near(lo.y, 0.0, 0.1);
     assert_eq!(robot.value.clips.len(), 14);
     assert!(body.joints.iter().enumerate().all(|(j, joint)| joint.parent.is_none_or(|p| (p as usize) < j)));
     // Skinning the rest pose reproduces the mesh.
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     body.skinned(&body.world(&body.rest_pose()), &mut positions, &mut normals);
-    let worst = positions.iter().zip(&body.mesh.positions).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    let worst = farthest(&positions, &body.mesh.positions);
     assert!(worst < 1e-3, "skinning the rest pose moved a vertex by {worst} m");
     for clip in &robot.value.clips {
         assert_eq!(clip.joint_count, body.joints.len());
@@ -151,7 +151,11 @@ fn the_robot_is_4_5_m_tall_and_bounded_in_every_clip() {
             })
             .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), (a, b)| (lo.min(a), hi.max(b)));
         println!("{}: {duration:.2} s, {lo} {hi}", clip.name);
-        assert!((hi - lo).max_element() < 9.0 && lo.y > -1.0, "{}: {lo} {hi}", clip.name);
+        assert!(
+            (hi - lo).max_element() < 9.0 && lo.y > -1.0,
+            "{}: the body extends from {lo} to {hi}",
+            clip.name
+        );
     }
     let head = body.joint("Head").unwrap();
     let top = body.world(&body.rest_pose())[head].translation.y;
@@ -174,7 +178,7 @@ fn motions_have_their_frames_and_height() {
         let motion = read_motion(&path, None, &ReadOptions::default()).unwrap();
         println!("{file}: {} joints, scale {}, {:?}", motion.value.joints.len(), motion.scale, motion.notes);
         assert_eq!(motion.value.clip.frame_count(), frames, "{file}");
-        near(motion.value.clip.rate as f32, rate, 0.2);
+        assert_near(motion.value.clip.rate as f32, rate, 0.2);
         let body = hairspring::body::Body { joints: motion.value.joints.clone(), ..Default::default() };
         let head = body.joint("Head").expect("a head joint");
         let middle = body.world(&motion.value.clip.sample(motion.value.clip.duration() * 0.5));
@@ -183,5 +187,5 @@ fn motions_have_their_frames_and_height() {
         assert!((1.0..2.0).contains(&height), "{file}: the head is {height} m above the lowest joint");
     }
     let cmu = read_motion(&data("motion/cmu/02_01.bvh").unwrap(), None, &ReadOptions::default()).unwrap();
-    near(cmu.scale, 0.05644, 1e-4);
+    assert_near(cmu.scale, 0.05644, 1e-4);
 }

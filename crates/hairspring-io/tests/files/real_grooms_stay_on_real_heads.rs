@@ -8,29 +8,38 @@
 //! (with a margin). Hair on a body at rest stays at rest. A scene is skipped, with a reason printed, where
 //! its data is missing.
 
-use crate::common::data;
 use glam::Vec3;
 use hairspring::{groom::RootBinding, simulation::Measure};
 use hairspring_io::read_scene;
-use hairspring_scene::{Guides, Scene, stage::Stage};
+use hairspring_scene::{
+    Guides, Scene,
+    stage::{Stage, Strands},
+};
+use hairspring_test::{FRAME, data, farthest};
 use std::path::Path;
 
-/// Length of a frame [s].
-const FRAME: f32 = 1.0 / 60.0;
-
-/// The bounds of a scene.
+/// The bounds of a scene: the measured values and a quarter. The values were measured with AVX-512. Other
+/// instruction sets round differently, so every scene is allowed at least [`ROUNDING`].
+///
+/// docs/contact.md lists the penetration of more strands over whole motions.
 struct Bounds {
     /// The longest simulated time [s].
     seconds: f64,
     /// The largest share of the simulated points, in any frame, that are deeper in a collider than they
     /// were authored.
     inside: f64,
-    /// The largest penetration of these points [m].
+    /// The largest penetration of these points into the colliders that the solver uses [m].
     depth: f64,
+    /// The largest penetration of a segment into the triangles of the mesh [m]. It is deeper than that into the
+    /// colliders, because a distance field rounds off edges and thin parts by up to a third of its cell.
+    depth_in_mesh: f64,
 }
 
+/// One point of ten thousand, and the depth to which every contact method keeps hair out [m].
+const ROUNDING: (f64, f64) = (1e-4, 0.02e-3);
+
 /// Simulates the scene file `name`; it is skipped where the file `needs` is missing.
-fn plays(name: &str, needs: &str, bounds: Bounds) {
+fn check_scene(name: &str, needs: &str, bounds: Bounds) {
     if data(needs).is_none() {
         return;
     }
@@ -40,12 +49,12 @@ fn plays(name: &str, needs: &str, bounds: Bounds) {
         let few = (groom.groom.strand_count() / 4).clamp(1, 600) as u32;
         groom.guides = Guides::Count(few);
     }
-    rests(scene.clone());
-    moves(scene, &bounds);
+    check_rest(scene.clone());
+    check_motion(scene, &bounds);
 }
 
 /// Without motion, the first frame equals the file and stays so for a second.
-fn rests(scene: Scene) {
+fn check_rest(scene: Scene) {
     let mut stage = Stage::new(Scene { clip: None, ..scene }).unwrap();
     let error = |stage: &Stage| {
         let (mut sum, mut count) = (0.0, 0);
@@ -71,7 +80,7 @@ fn rests(scene: Scene) {
 }
 
 /// In motion, the bounds hold in every frame.
-fn moves(scene: Scene, bounds: &Bounds) {
+fn check_motion(scene: Scene, bounds: &Bounds) {
     let seconds = scene.clip.as_ref().map_or(1.0, |c| c.duration()).min(bounds.seconds);
     let mut stage = Stage::new(scene).unwrap();
     let points = stage.simulated_points().0 as f64;
@@ -89,8 +98,8 @@ fn moves(scene: Scene, bounds: &Bounds) {
         worst.max_depth = worst.max_depth.max(measure.max_depth);
         worst.surface_depth = worst.surface_depth.max(measure.surface_depth);
         inside = inside.max(measure.inside_points);
-        let off = root_error(&stage);
-        assert!(off < 1e-4, "at {} s a root is {off} m from its place on the body", stage.time());
+        let error = root_error(&stage);
+        assert!(error < 1e-4, "at {} s a root is {error} m from its place on the body", stage.time());
     }
     let share = inside as f64 / points;
     println!(
@@ -100,66 +109,68 @@ fn moves(scene: Scene, bounds: &Bounds) {
         worst.max_depth * 1e3,
         worst.surface_depth * 1e3
     );
+    let (share_bound, depth_bound) = (bounds.inside.max(ROUNDING.0), bounds.depth.max(ROUNDING.1));
     assert!(worst.stretch_max < 0.011, "a segment changed its length by {} of it", worst.stretch_max);
-    assert!(share <= bounds.inside, "{inside} points, a share of {share}, are inside");
-    assert!(worst.max_depth <= bounds.depth, "a point is {} m deep", worst.max_depth);
+    assert!(share <= share_bound, "{inside} points, a share of {share}, are inside");
+    assert!(worst.max_depth <= depth_bound, "a point is {} m deep", worst.max_depth);
+    let in_mesh = worst.surface_depth;
+    assert!(in_mesh <= bounds.depth_in_mesh, "a segment is {in_mesh} m deep in the mesh");
 }
 
 /// The largest distance of a root from its place on its triangle [m].
 fn root_error(stage: &Stage) -> f32 {
     let body = stage.body().expect("these scenes have a body");
-    let mut worst = 0.0_f32;
-    for strands in stage.strands() {
+    let error = |strands: Strands| {
         let at = |root: &RootBinding| {
             root.position(body.mesh.triangles[root.triangle as usize].map(|v| body.positions[v as usize]))
         };
         let roots: Vec<Vec3> = strands.groom.roots.iter().map(at).collect();
         assert_eq!(roots.len(), strands.groom.strand_count());
-        for (s, root) in roots.iter().enumerate() {
-            worst = worst.max(strands.points[strands.groom.offsets[s] as usize].distance(*root));
-        }
-    }
-    worst
+        let first = |s| strands.points[strands.groom.range(s).start];
+        let now: Vec<Vec3> = (0..roots.len()).map(first).collect();
+        farthest(&roots, &now)
+    };
+    stage.strands().map(error).fold(0.0, f32::max)
 }
 
 #[test]
 fn sintel_walks() {
-    let bounds = Bounds { seconds: 2.8, inside: 1e-3, depth: 0.5e-3 };
-    plays("sintel-walk.toml", "grooms/sintel/sintel.obj", bounds);
+    let bounds = Bounds { seconds: 2.8, inside: 0.0, depth: 0.0, depth_in_mesh: 0.48e-3 };
+    check_scene("sintel-walk.toml", "grooms/sintel/sintel.obj", bounds);
 }
 
 #[test]
 fn sintel_dabs_at_600_degrees_a_second() {
-    let bounds = Bounds { seconds: 3.0, inside: 1e-3, depth: 0.5e-3 };
-    plays("sintel-dab.toml", "grooms/sintel/sintel.obj", bounds);
+    let bounds = Bounds { seconds: 3.0, inside: 0.0, depth: 0.0, depth_in_mesh: 0.63e-3 };
+    check_scene("sintel-dab.toml", "grooms/sintel/sintel.obj", bounds);
 }
 
 #[test]
 fn mohawk_jumps() {
-    let bounds = Bounds { seconds: 2.0, inside: 3e-3, depth: 1e-3 };
-    plays("mohawk.toml", "grooms/tressfx_mohawk/Ratboy_mohawk.tfx", bounds);
+    let bounds = Bounds { seconds: 2.0, inside: 0.0, depth: 0.0, depth_in_mesh: 0.30e-3 };
+    check_scene("mohawk.toml", "grooms/tressfx_mohawk/Ratboy_mohawk.tfx", bounds);
 }
 
-/// The jacket and the mouth are open shells, thinner than the distance a tip moves in a substep. A few tips
-/// are caught in them for a moment.
+/// The jacket and the mouth are open shells, thinner than the distance a tip moves in a substep. One tip is
+/// caught in them for a moment.
 #[test]
 fn ponytail_swings() {
-    let bounds = Bounds { seconds: 3.0, inside: 5e-3, depth: 9e-3 };
-    plays("ponytail.toml", "grooms/tressfx_ponytail/tail.tfx", bounds);
+    let bounds = Bounds { seconds: 3.0, inside: 3.3e-5, depth: 1.3e-6, depth_in_mesh: 1.95e-3 };
+    check_scene("ponytail.toml", "grooms/tressfx_ponytail/tail.tfx", bounds);
 }
 
-/// The robot is 4.5 m tall, so 1 mm on a human head corresponds to 12 mm on its head. Its dome and body are
-/// open shells that overlap.
+/// The robot is 4.5 m tall, so 1 mm on a human head corresponds to 12 mm on its head, and the cells of its
+/// distance field are 2 cm. Its dome and body are open shells that overlap.
 #[test]
 fn robot_dances() {
-    let bounds = Bounds { seconds: 2.0, inside: 2e-2, depth: 40e-3 };
-    plays("robot.toml", "characters/robot/robot.glb", bounds);
+    let bounds = Bounds { seconds: 2.0, inside: 0.0, depth: 0.0, depth_in_mesh: 12.3e-3 };
+    check_scene("robot.toml", "characters/robot/robot.glb", bounds);
 }
 
-/// Segments of 3.5 cm hang around the chin, and the mouth is an open pocket in the mesh. A few tips are
-/// caught in the thin layer between.
+/// Segments of 3.5 cm hang around the chin, and the mouth is an open pocket in the mesh. One tip is caught in
+/// the thin layer between.
 #[test]
 fn long_straight_hair_on_a_walking_skinned_human() {
-    let bounds = Bounds { seconds: 1.5, inside: 5e-3, depth: 15e-3 };
-    plays("straight-walk.toml", "grooms/straight/straight.hair", bounds);
+    let bounds = Bounds { seconds: 1.5, inside: 1.3e-4, depth: 0.083e-3, depth_in_mesh: 5.2e-3 };
+    check_scene("straight-walk.toml", "grooms/straight/straight.hair", bounds);
 }

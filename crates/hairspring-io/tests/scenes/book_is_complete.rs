@@ -95,11 +95,11 @@ fn every_parameter_has_a_page() {
         .map(|name| ELSEWHERE.iter().find(|(a, _)| *a == name).map_or(name, |(_, b)| (*b).into()))
         .collect();
     let begins = |name: &str| STRUCTS.iter().any(|(prefix, ..)| prefix.starts_with(&format!("{name}.")));
-    let said = parameters();
+    let pages = parameters();
     for name in &known {
-        assert!(said.contains_key(name) || begins(name), "docs/parameters has no page `{name}`");
+        assert!(pages.contains_key(name) || begins(name), "docs/parameters has no page `{name}`");
     }
-    for name in said.keys() {
+    for name in pages.keys() {
         let there = known.contains(name) || begins(name) || name == "material.preset";
         assert!(there, "docs/parameters has a page `{name}`, which is not a parameter of a scene file");
     }
@@ -114,8 +114,8 @@ fn every_parameter_has_a_page() {
 #[test]
 fn every_parameter_has_unit_range_and_default() {
     let defaults = defaults();
-    let said = parameters();
-    for (name, text) in &said {
+    let pages = parameters();
+    for (name, text) in &pages {
         let facts =
             text.lines().find(|l| l.starts_with("Unit: ")).unwrap_or_else(|| panic!("{name}: no unit"));
         assert!(facts.contains(" Range: "), "{name}: no range");
@@ -125,7 +125,7 @@ fn every_parameter_has_unit_range_and_default() {
         assert!(same(&value_of(default), right), "{name}: the default is {right}, not {default}");
     }
     assert!(
-        defaults.keys().filter(|name| said.contains_key(*name)).count() > 60,
+        defaults.keys().filter(|name| pages.contains_key(*name)).count() > 60,
         "defaults are not compared"
     );
 }
@@ -133,10 +133,10 @@ fn every_parameter_has_unit_range_and_default() {
 #[test]
 fn every_parameter_has_pictures_or_a_reason() {
     let table: Table = read(&docs().join("pictures.toml")).parse().unwrap();
-    let mut said = parameters();
+    let mut pages = parameters();
     for entry in table["parameter"].as_array().unwrap() {
         let name = entry["name"].as_str().unwrap();
-        let text = said.remove(name).unwrap_or_else(|| panic!("pictures.toml: unknown parameter `{name}`"));
+        let text = pages.remove(name).unwrap_or_else(|| panic!("pictures.toml: unknown parameter `{name}`"));
         let (low, high) = (&entry["low"], &entry["high"]);
         // Values are compared, because the order of a table's fields is unspecified.
         let heads = text.lines().find(|l| l.starts_with("| `")).unwrap_or_default();
@@ -154,7 +154,7 @@ fn every_parameter_has_pictures_or_a_reason() {
         assert!(text.contains(&format!("(../scenes/{scene}.toml)")), "{name}: the scene {scene} is missing");
         assert!(text.contains(&format!("frame {frame}.")), "{name}: the frame {frame} is missing");
     }
-    for (name, text) in said {
+    for (name, text) in pages {
         assert!(text.contains("*No picture.*"), "{name} has neither a picture nor a reason");
     }
     for picture in files(&docs().join("pictures/parameters"), "jpg") {
@@ -165,7 +165,7 @@ fn every_parameter_has_pictures_or_a_reason() {
 
 #[test]
 fn group_pages_list_their_parameters() {
-    let said = parameters();
+    let pages = parameters();
     let summary = read(&docs().join("SUMMARY.md"));
     let mut listed = BTreeSet::new();
     for page in files(&docs().join("parameters"), "md").iter().filter(|p| is_a_group(p)) {
@@ -176,7 +176,7 @@ fn group_pages_list_their_parameters() {
         let mut entries = format!("](parameters/{group}.md)\n");
         for row in rows {
             let name = row.trim_start_matches("| [`").split('`').next().unwrap();
-            let text = said.get(name).unwrap_or_else(|| panic!("{group}: the page `{name}` is missing"));
+            let text = pages.get(name).unwrap_or_else(|| panic!("{group}: the page `{name}` is missing"));
             // The links of a page are relative to its own folder.
             let [row, text] = [row, text].map(without_links);
             let mut parts = text.lines().filter(|l| !l.is_empty());
@@ -192,9 +192,9 @@ fn group_pages_list_their_parameters() {
         assert!(summary.contains(&entries), "docs/SUMMARY.md does not list, in this order: {entries}");
     }
     assert!(
-        said.keys().eq(&listed),
+        pages.keys().eq(&listed),
         "missing on the page of their group: {:?}",
-        said.keys().filter(|n| !listed.contains(*n))
+        pages.keys().filter(|n| !listed.contains(*n))
     );
 }
 
@@ -251,11 +251,11 @@ fn every_scene_of_the_book_can_be_read() {
     for scene in files(&docs().join("parameters/scenes"), "toml") {
         check_text(&read(&scene)).unwrap_or_else(|why| panic!("{}: {why}", scene.display()));
     }
-    let pages: String = files(&docs().join("tutorial"), "md").iter().map(|page| read(page)).collect();
+    let tutorials: String = files(&docs().join("tutorial"), "md").iter().map(|page| read(page)).collect();
     for scene in files(&docs().join("tutorial"), "toml") {
         let text = read(&scene);
         check_text(&text).unwrap_or_else(|why| panic!("{}: {why}", scene.display()));
-        assert!(pages.contains(&text), "no tutorial shows {} as it is", scene.display());
+        assert!(tutorials.contains(&text), "no tutorial shows {} as it is", scene.display());
     }
 }
 
@@ -409,17 +409,21 @@ fn read(file: &Path) -> String {
     fs::read_to_string(file).unwrap_or_else(|why| panic!("{}: {why}", file.display()))
 }
 
-/// All files with this extension in a folder and its subfolders, in order.
+/// All files with this extension in a folder and its subfolders, in order; there must be one.
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
-    for entry in fs::read_dir(folder).unwrap_or_else(|why| panic!("{}: {why}", folder.display())) {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(files(&path, extension));
-        } else if path.extension().is_some_and(|e| e == extension) {
-            found.push(path);
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).unwrap_or_else(|why| panic!("{}: {why}", folder.display())) {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == extension) {
+                found.push(path);
+            }
         }
     }
+    assert!(!found.is_empty(), "{} has no .{extension} file", folder.display());
     found.sort();
     found
 }

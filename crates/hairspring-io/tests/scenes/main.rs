@@ -1,7 +1,5 @@
 //! Promises of scene files and of the book that documents them. Each file is one promise.
 
-#[path = "../common/mod.rs"]
-mod common;
 #[path = "../common/scenes.rs"]
 mod scenes;
 

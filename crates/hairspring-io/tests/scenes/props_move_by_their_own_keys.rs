@@ -34,7 +34,7 @@ fn a_prop_and_everything_attached_move_by_its_keys() {
         };
         let before = [0, 1].map(|groom| roots(&stage, groom));
         for _ in 0..60 {
-            stage.step(1.0 / 60.0);
+            stage.step(hairspring_test::FRAME);
         }
         let up = Vec3::Y * 2.0;
         let now = stage.body().unwrap().positions;
@@ -42,7 +42,10 @@ fn a_prop_and_everything_attached_move_by_its_keys() {
         for (now, rest) in now[3..].iter().zip(&rest[3..]) {
             assert!(now.distance(*rest + up) < 1e-5, "{motion}: {now} of {rest}");
         }
-        assert!(now[..3].iter().zip(&rest).all(|(now, rest)| (now.y - rest.y).abs() < 0.5), "{motion}");
+        assert!(
+            now[..3].iter().zip(&rest).all(|(now, rest)| (now.y - rest.y).abs() < 0.5),
+            "{motion}: the body moves with the prop"
+        );
         for (now, before) in roots(&stage, 1).iter().zip(&before[1]) {
             assert!(now.distance(*before + up) < 1e-4, "{motion}: hair of the lid, {now} of {before}");
         }
@@ -68,7 +71,7 @@ fn a_prop_can_be_added_to_the_built_in_scene() {
     let (clip, body) = (scene.clip.as_ref().unwrap(), scene.body.as_ref().unwrap());
     // The built-in clip lasts 5 s; afterwards the head rests until the prop's last key.
     assert_eq!((clip.joint_count, body.joints.len()), (4, 4));
-    assert!((clip.duration() - 8.0).abs() < 0.02, "{} s", clip.duration());
+    assert!((clip.duration() - 8.0).abs() < 0.02, "the clip lasts {} s", clip.duration());
     assert_eq!(clip.sample(6.0)[..3], clip.sample(7.0)[..3]);
     assert_eq!(body.skin.as_ref().unwrap().inverse_bind.len(), 4);
     Stage::new(scene).unwrap();

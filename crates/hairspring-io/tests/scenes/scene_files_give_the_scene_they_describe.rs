@@ -3,7 +3,6 @@
 //! This includes the files that it refers to, some of them real data. Invalid combinations are refused with
 //! a one-sentence error.
 
-use crate::common::data;
 use crate::scenes::{folder, message, read};
 use glam::Vec3;
 use hairspring::{
@@ -14,6 +13,7 @@ use hairspring::{
 };
 use hairspring_io::Loaded;
 use hairspring_scene::{Guides, Hand, Shape};
+use hairspring_test::data;
 use std::fs;
 
 #[test]
@@ -88,7 +88,7 @@ fn scene_files_give_the_scene_they_describe() {
     assert_eq!((groom.materials[0].bend, groom.materials[0].friction), (curly.bend, 0.5));
     assert_eq!(groom.materials[0].mass_profile, [1.0, 1.5, 4.0]);
     assert_eq!(groom.materials[1], hairspring::material::preset("coily").unwrap());
-    assert!(matches!(scene.colliders[0].shape, Shape::Sphere { radius: 0.5, .. }));
+    assert_eq!(scene.colliders[0].shape, Shape::Sphere { center: Vec3::ZERO, radius: 0.5 });
     let floor = Shape::Plane { point: Vec3::NEG_Y, normal: Vec3::Y * 2.0 };
     assert_eq!(scene.colliders[1].shape, floor);
     // The box is rotated by 90° about Y, so its edge of 0.6 m lies along x.
@@ -128,7 +128,11 @@ fn a_head_joint_drives_a_bust() {
     // of channels.
     let want = glam::Quat::from_rotation_x(10f32.to_radians());
     assert!(clip.samples[0].rotation.dot(glam::Quat::IDENTITY).abs() > 0.999999);
-    assert!(clip.samples[1].rotation.dot(want).abs() > 0.999999, "{}", clip.samples[1].rotation);
+    assert!(
+        clip.samples[1].rotation.dot(want).abs() > 0.999999,
+        "the head turns by {}",
+        clip.samples[1].rotation
+    );
     let body: &Body = scene.body.as_ref().unwrap();
     assert_eq!(body.joints.len(), 1);
 }
@@ -215,7 +219,7 @@ fn mohawk_roots_bind_to_the_skin() {
         bones = groom.with_file_name("Ratboy_mohawk.tfxbone"),
     );
     let Loaded { value: scene, repairs, .. } = read(folder.path(), &text).unwrap();
-    assert!(repairs.zero_segments > 0, "{repairs:?}");
+    assert!(repairs.zero_segments > 0, "no segment of zero length was repaired: {repairs:?}");
     let (groom, body) = (&scene.grooms[0].groom, scene.body.as_ref().unwrap());
     assert_eq!(groom.roots.len(), 2_228);
     let mut off: Vec<f32> = groom.roots.iter().map(|r| r.offset.length()).collect();
@@ -273,7 +277,7 @@ fn the_cmu_rig_walks() {
     let (body, clip) = (scene.body.unwrap(), scene.clip.unwrap());
     assert_eq!((body.mesh.positions.len(), body.joints.len()), (13_380, 31));
     let (lo, hi) = body.mesh.bounds().unwrap();
-    assert!((1.5..1.9).contains(&(hi.y - lo.y)), "{lo} {hi}");
+    assert!((1.5..1.9).contains(&(hi.y - lo.y)), "the body extends from {lo} to {hi}");
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     let head = body.joint("Head").unwrap();
     let mut last = None;
@@ -291,7 +295,7 @@ fn the_cmu_rig_walks() {
         last = Some(world[head].translation);
     }
     // The body walks along +Z, as in the capture.
-    assert!(last.unwrap().z > 1.0, "{}", last.unwrap());
+    assert!(last.unwrap().z > 1.0, "the head ends at {}", last.unwrap());
 }
 
 #[test]
@@ -305,6 +309,7 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
                 [[sheet]]\nfile = \"head.obj\"\nscale = 2\nparts = [\"neck\"]\nthickness = 0.01\n\
                 [[sheet]]\nfile = \"head.obj\"\nscale = 1\n";
     let scene = read(folder.path(), text).unwrap().value;
+    assert_eq!(scene.colliders.len(), 2);
     for (collider, size) in scene.colliders.iter().zip([0.5, 1.0]) {
         let hull = collider.shape.obstacle().unwrap();
         let (slope, corner) = (hull.distance(Vec3::splat(size)), hull.distance(Vec3::Y * (2.0 * size)));
@@ -317,7 +322,7 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
     let wrong = |more: &str| {
         message(&format!("[body]\nfile = \"head.obj\"\nscale = 1\n[[groom]]\nfile = \"hair.data\"\n{more}\n"))
     };
-    for (more, says) in [
+    for (more, part) in [
         (
             "[[collider]]\nshape.hull = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]] }",
             "line 7: `shape` must be",
@@ -335,6 +340,6 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
         ("[[sheet]]\nfile = \"none.obj\"", "scene.toml, line 7, names it as the sheet"),
     ] {
         let message = wrong(more);
-        assert!(message.contains(says), "{more}: {message}");
+        assert!(message.contains(part), "{more}: {message}");
     }
 }

@@ -15,13 +15,13 @@ fn the_example_of_the_page_is_valid() {
             .replace("# bones =", "bones ="),
     )
     .unwrap();
-    let said = |keys: &[&str]| -> String {
+    let commented_lines = |keys: &[&str]| -> String {
         let line = |k: &&str| {
             example.lines().filter_map(|l| l.strip_prefix("# ")).find(|l| l.starts_with(*k)).unwrap()
         };
         keys.iter().map(|k| format!("{}\n", line(k))).collect()
     };
-    let builtin = said(&[
+    let builtin = commented_lines(&[
         "[builtin]",
         "style =",
         "strands =",
@@ -31,7 +31,7 @@ fn the_example_of_the_page_is_valid() {
         "look =",
         "effects =",
     ]);
-    check_text(&format!("{builtin}[clip]\n{}", said(&["keys ="]))).unwrap();
+    check_text(&format!("{builtin}[clip]\n{}", commented_lines(&["keys ="]))).unwrap();
 }
 
 #[test]

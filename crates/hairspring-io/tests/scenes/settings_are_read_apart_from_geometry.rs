@@ -103,7 +103,7 @@ fn built_in_hair_accepts_look_and_effects() {
     assert_eq!(hair.look, HairLook { variation: 0.9, ..style.look });
     assert_eq!(hair.effects, Effects { clump: 0.4, ..Effects::default() });
     assert_eq!(settings("[builtin]\nlook = {}").grooms[1], builtin::settings(&Default::default()).grooms[1]);
-    for (text, said) in [
+    for (text, part) in [
         ("[builtin]\n[builtin.look]\nvariation = 2", "scene.toml, line 3: `variation` must be 0 to 1"),
         (
             "[builtin]\n[builtin.look]\nvarition = 0",
@@ -112,8 +112,10 @@ fn built_in_hair_accepts_look_and_effects() {
         ("[builtin]\n[builtin.effects]\nclump = -1", "line 3: `clump` must be 0 to 1"),
         ("[builtin]\nstyle = \"wvy\"", "line 2: the style `wvy` is unknown; did you mean `wavy`?"),
     ] {
-        assert!(message(text).contains(said), "{}", message(text));
-        assert!(read_settings(Path::new("x.toml"), text).is_err());
+        let of_settings = read_settings(Path::new("scene.toml"), text).unwrap_err().to_string();
+        for error in [message(text), of_settings] {
+            assert!(error.contains(part), "{error}");
+        }
     }
 }
 
@@ -189,8 +191,9 @@ fn same_geometry_ignores_settings_only() {
     }
     // A radius from a preset counts like a radius in the text.
     let radius = "[builtin]\n[material.mine]\nradius = 25e-6\n";
-    let of = |material: &str| radius.replace("[builtin]", &format!("[builtin]\nmaterial = {material}"));
-    assert!(same_geometry(&of("\"mine\""), &of("[\"short-fur\", \"mine\"]")));
+    let with_material =
+        |material: &str| radius.replace("[builtin]", &format!("[builtin]\nmaterial = {material}"));
+    assert!(same_geometry(&with_material("\"mine\""), &with_material("[\"short-fur\", \"mine\"]")));
 }
 
 #[test]
@@ -199,12 +202,12 @@ fn a_stage_accepts_the_settings_that_are_read() {
     let path = folder.path().join("scene.toml");
     let mut stage =
         hairspring_scene::stage::Stage::new(read_scene_text(&path, BUILTIN).unwrap().value).unwrap();
-    stage.step(1.0 / 60.0);
+    stage.step(hairspring_test::FRAME);
     let text =
         format!("gravity = [0, -1.6, 0]\n{BUILTIN}[wind]\nvelocity = [0, 0, 3]\n[ground]\non = true\n");
     assert!(same_geometry(BUILTIN, &text));
     stage.update_settings(read_settings(&path, &text).unwrap()).unwrap();
     assert_eq!((stage.scene().gravity, stage.scene().wind.velocity), (Vec3::Y * -1.6, Vec3::Z * 3.0));
     assert!(stage.body().is_some() && stage.scene().ground.on);
-    stage.step(1.0 / 60.0);
+    stage.step(hairspring_test::FRAME);
 }

@@ -13,6 +13,7 @@ use hairspring_scene::{
     Scene,
     builtin::{BuiltinOptions, Style, scene},
 };
+use hairspring_test::on_threads;
 use std::collections::HashMap;
 
 /// A scene that is small enough for a test.
@@ -85,11 +86,15 @@ fn roots_are_on_the_skin_and_other_points_outside() {
         let surface = Surface::new(&scene.body.as_ref().unwrap().mesh);
         // Roots on the scalp are taken from the mesh; those of brows and lashes from the smooth shape that
         // it approximates.
-        for (groom, off) in scene.grooms.iter().map(|g| &g.groom).zip([1e-5, 6e-4]) {
+        for (groom, tolerance) in scene.grooms.iter().map(|g| &g.groom).zip([1e-5, 6e-4]) {
             for s in 0..groom.strand_count() {
                 let strand = groom.strand(s);
                 let root = surface.signed_distance(strand[0]);
-                assert!(root.abs() < off, "{} strand {s}: the root is {root} m from the skin", style.name());
+                assert!(
+                    root.abs() < tolerance,
+                    "{} strand {s}: the root is {root} m from the skin",
+                    style.name()
+                );
                 for (k, p) in strand.iter().enumerate().skip(1) {
                     let d = surface.signed_distance(*p);
                     assert!(d > 1e-4, "{} strand {s} point {k} at {p}: {d} m outside", style.name());
@@ -159,11 +164,9 @@ fn roots_are_evenly_spread() {
 #[test]
 fn the_same_options_give_the_same_bits_on_any_number_of_threads() {
     let options = BuiltinOptions { strands: 3_000, ..BuiltinOptions::default() };
-    let on = |threads: usize| {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| scene(&options))
-    };
-    let one = on(1);
-    assert!(one == on(3), "one and three threads differ");
+    let made = |threads| on_threads(threads, || scene(&options));
+    let one = made(1);
+    assert!(one == made(3), "one and three threads differ");
     let other = scene(&BuiltinOptions { seed: 2, ..options });
     assert!(one.grooms[0].groom != other.grooms[0].groom, "the seed has no effect");
 }
@@ -250,8 +253,8 @@ impl<'a> Surface<'a> {
                     // The interpolated normal gives the correct side also where the nearest point is on an
                     // edge or a corner.
                     let n = self.mesh.triangles[*t as usize].map(|i| self.mesh.normals[i as usize]);
-                    let out = n[0] * weights.x + n[1] * weights.y + n[2] * weights.z;
-                    best = (d, (p - q).dot(out).signum());
+                    let normal = n[0] * weights.x + n[1] * weights.y + n[2] * weights.z;
+                    best = (d, (p - q).dot(normal).signum());
                 }
             }
         }

@@ -15,6 +15,7 @@ use hairspring_scene::{
     Collider, Guides, Scene, SceneGroom, Shape,
     stage::{FrameRate, Stage},
 };
+use hairspring_test::farthest;
 
 const RATES: [u32; 7] = [24, 25, 30, 48, 60, 120, 240];
 
@@ -32,7 +33,7 @@ fn plate(middle: Vec3) -> Mesh {
     }
 }
 
-/// Strands that stand off a plate, which has the pose `pose(frame)`.
+/// Strands that stand offset a plate, which has the pose `pose(frame)`.
 fn scene(pose: impl Fn(usize) -> Trs) -> Scene {
     let strand = |k: usize| -> Vec<Vec3> {
         let out = Quat::from_rotation_y(k as f32) * Vec3::new(0.8, 0.6, 0.0);
@@ -53,18 +54,21 @@ fn scene(pose: impl Fn(usize) -> Trs) -> Scene {
     }
 }
 
-/// The largest distance of any point, in any frame, from its authored place on the moving body [m].
-fn farthest(scene: Scene, rate: u32) -> f32 {
+/// The largest distance of any point from its authored place on the moving body [m].
+fn offset(stage: &Stage) -> f32 {
+    let (anchor, strands) = (stage.body_anchor(), stage.strands().next().unwrap());
+    let local: Vec<Vec3> = strands.points.iter().map(|p| anchor.inverse_point(*p)).collect();
+    farthest(&local, &strands.groom.points)
+}
+
+/// The largest offset in any frame of two seconds [m].
+fn largest_offset(scene: Scene, rate: u32) -> f32 {
     let mut stage = Stage::new(scene).unwrap();
-    let mut most = 0.0f32;
-    for _ in 0..2 * rate {
+    let mut offset_of_next_frame = || {
         stage.step_frame(FrameRate::new(rate, 1).unwrap());
-        let anchor = stage.body_anchor();
-        let strands = stage.strands().next().unwrap();
-        let off = |(p, rest): (&Vec3, &Vec3)| anchor.inverse_point(*p).distance(*rest);
-        most = strands.points.iter().zip(&strands.groom.points).map(off).fold(most, f32::max);
-    }
-    most
+        offset(&stage)
+    };
+    (0..2 * rate).map(|_| offset_of_next_frame()).fold(0.0, f32::max)
 }
 
 /// The pose of a cut: the rest pose before frame `from`, and `to` from that frame on.
@@ -72,7 +76,7 @@ fn cut(from: usize, to: Trs) -> impl Fn(usize) -> Trs {
     move |frame| if frame < from { Trs::default() } else { to }
 }
 
-fn away() -> Trs {
+fn moved() -> Trs {
     Trs { translation: Vec3::new(5.0, 0.0, 0.0), ..Trs::default() }
 }
 
@@ -82,13 +86,13 @@ fn turned() -> Trs {
 
 #[test]
 fn hair_stays_with_its_body_at_any_frame_rate() {
-    let both = Trs { rotation: turned().rotation, ..away() };
+    let both = Trs { rotation: turned().rotation, ..moved() };
     for rate in RATES {
-        for (what, to) in [("away", away()), ("turned", turned()), ("both", both)] {
+        for (what, to) in [("away", moved()), ("turned", turned()), ("both", both)] {
             // A frame that coincides with a frame of most rates, and one between frames.
             for from in [30, 31] {
-                let off = farthest(scene(cut(from, to)), rate);
-                assert!(off < 1e-4, "{what} in frame {from} at {rate} Hz: {off} m");
+                let offset = largest_offset(scene(cut(from, to)), rate);
+                assert!(offset < 1e-4, "{what} in frame {from} at {rate} Hz: {offset} m");
             }
         }
     }
@@ -97,16 +101,16 @@ fn hair_stays_with_its_body_at_any_frame_rate() {
 #[test]
 fn single_frame_and_resampled_cuts_are_detected() {
     // There and back, and a cut between keys of 24 Hz that were resampled.
-    let blink = |frame: usize| if frame == 30 { away() } else { Trs::default() };
+    let blink = |frame: usize| if frame == 30 { moved() } else { Trs::default() };
     for rate in RATES {
-        let off = farthest(scene(blink), rate);
-        assert!(off < 1e-4, "there and back at {rate} Hz: {off} m");
+        let offset = largest_offset(scene(blink), rate);
+        assert!(offset < 1e-4, "there and back at {rate} Hz: {offset} m");
         let mut resampled = scene(|_| Trs::default());
         let at = |k: usize| ((k as f32 / 2.5 - 8.3).clamp(0.0, 1.0) * 5.0) * Vec3::X;
         let samples = (0..FRAMES).map(|k| Trs { translation: at(k), ..Trs::default() }).collect();
         resampled.clip = Some(Clip { name: "resampled".into(), rate: 60.0, joint_count: 1, samples });
-        let off = farthest(resampled, rate);
-        assert!(off < 1e-4, "resampled at {rate} Hz: {off} m");
+        let offset = largest_offset(resampled, rate);
+        assert!(offset < 1e-4, "resampled at {rate} Hz: {offset} m");
     }
 }
 
@@ -124,7 +128,7 @@ fn a_continuous_motion_moves_hair_at_any_frame_rate() {
             let [watched, never] = [1.0, f32::MAX].map(|jump| {
                 let mut scene = scene(motion);
                 scene.solver.teleport_distance = jump;
-                farthest(scene, rate)
+                largest_offset(scene, rate)
             });
             assert!(watched > 0.02, "motion {number} at {rate} Hz moves hair by only {watched} m");
             assert_eq!(watched, never, "motion {number} at {rate} Hz");
@@ -144,9 +148,9 @@ fn attached_colliders_follow_the_cut_and_others_do_not() {
     for rate in RATES {
         let mut scene = scene(|_| Trs::default());
         let mut mesh = plate(Vec3::ZERO);
-        let apart = plate(Vec3::Z * 40.0);
-        mesh.positions.extend(apart.positions);
-        mesh.normals.extend(apart.normals);
+        let second_plate = plate(Vec3::Z * 40.0);
+        mesh.positions.extend(second_plate.positions);
+        mesh.normals.extend(second_plate.normals);
         mesh.triangles.extend([[4, 5, 6], [4, 6, 7]]);
         let skin = Skin {
             joints: (0..8).map(|v| [v / 4, 0, 0, 0]).collect(),
@@ -155,7 +159,7 @@ fn attached_colliders_follow_the_cut_and_others_do_not() {
         };
         scene.body = Some(Body { mesh, joints: vec![joint("head"), joint("prop")], skin: Some(skin) });
         let frame = |k: usize| {
-            let head = if k < 30 { Trs::default() } else { away() };
+            let head = if k < 30 { Trs::default() } else { moved() };
             // The prop jumps across the hair, from one side to the other.
             let prop = Trs { translation: Vec3::Z * if k < 20 { -4.0 } else { 4.0 }, ..Trs::default() };
             [head, prop]
@@ -164,30 +168,23 @@ fn attached_colliders_follow_the_cut_and_others_do_not() {
         scene.clip = Some(Clip { name: "cuts".into(), rate: 30.0, joint_count: 2, samples });
         scene.colliders =
             vec![ball("head", Vec3::new(0.0, 0.5, 0.0)), ball("prop", Vec3::new(0.08, 0.06, 0.0))];
-        let off = farthest(scene, rate);
-        assert!(off < 1e-4, "at {rate} Hz: {off} m");
+        let offset = largest_offset(scene, rate);
+        assert!(offset < 1e-4, "at {rate} Hz: {offset} m");
     }
 }
 
 #[test]
 fn cuts_work_on_a_body_moved_by_the_app() {
     for rate in RATES {
-        let mut stage = Stage::new(scene(cut(30, away()))).unwrap();
+        let mut stage = Stage::new(scene(cut(30, moved()))).unwrap();
         stage.move_body(RigidTransform {
             rotation: Quat::from_rotation_y(1.0),
             translation: Vec3::new(0.0, 0.0, 20.0),
         });
-        let rest = stage.strands().next().unwrap().groom.points.clone();
         for frame in 0..2 * rate {
             stage.step_frame(FrameRate::new(rate, 1).unwrap());
-            let anchor = stage.body_anchor();
-            let points = stage.strands().next().unwrap().points;
-            let off = points
-                .iter()
-                .zip(&rest)
-                .map(|(p, r)| anchor.inverse_point(*p).distance(*r))
-                .fold(0.0, f32::max);
-            assert!(off < 1e-4, "frame {frame} at {rate} Hz: {off} m");
+            let offset = offset(&stage);
+            assert!(offset < 1e-4, "frame {frame} at {rate} Hz: {offset} m");
         }
     }
 }

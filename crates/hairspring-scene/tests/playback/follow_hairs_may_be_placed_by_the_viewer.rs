@@ -10,6 +10,7 @@ use hairspring_scene::{
     builtin::{BuiltinOptions, scene},
     stage::{Stage, Value},
 };
+use hairspring_test::FRAME;
 
 fn stage() -> Stage {
     let options =
@@ -31,8 +32,8 @@ fn skipped_follow_hairs_are_interpolated_on_request() {
     left.set_external_interpolation(true);
     let before = points(&left);
     for _ in 0..20 {
-        here.step(1.0 / 60.0);
-        left.step(1.0 / 60.0);
+        here.step(FRAME);
+        left.step(FRAME);
     }
     let head = |stage: &Stage| stage.strands().next().unwrap().follow.is_some();
     assert!(left.strands().len() > 1 && head(&left) && here.strands().all(|s| s.follow.is_none()));
@@ -52,13 +53,13 @@ fn skipped_follow_hairs_are_interpolated_on_request() {
     for value in Value::ALL {
         here.values(value, 0, &mut a);
         left.values(value, 0, &mut b);
-        assert_eq!(a, b, "{value:?}");
+        assert_eq!(a, b, "{value:?} differs");
     }
 
     left.place_follow_hairs();
     assert_eq!(points(&left), points(&here));
-    left.step(1.0 / 60.0);
-    here.step(1.0 / 60.0);
+    left.step(FRAME);
+    here.step(FRAME);
     left.set_external_interpolation(false);
     assert_eq!(points(&left), points(&here));
     assert!(left.strands().all(|s| s.follow.is_none()));

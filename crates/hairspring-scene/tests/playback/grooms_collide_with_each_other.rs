@@ -10,6 +10,7 @@
 //! first head. Its hair is initialized where the head is when the scene begins, as if its mesh had been
 //! authored there.
 
+use crate::support::{play, points};
 use glam::Vec3;
 use hairspring::{
     body::{Body, Clip, Joint, Mesh, Skin, Trs},
@@ -18,13 +19,14 @@ use hairspring::{
     settings::{Solver, Volume, VolumeMethod},
 };
 use hairspring_scene::{Collider, Guides, Scene, SceneGroom, Shape, stage::Stage};
+use hairspring_test::{FRAME, farthest, line};
 
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 const POINTS: usize = 12;
 
 /// A strand of 12 cm from `root` along `direction`.
 fn strand(root: Vec3, direction: Vec3) -> Vec<Vec3> {
-    (0..POINTS).map(|i| root + direction * (0.12 * i as f32 / (POINTS - 1) as f32)).collect()
+    line(root, root + direction * 0.12, POINTS)
 }
 
 /// Two patches of hair, 4 cm apart, that fall toward each other.
@@ -53,16 +55,10 @@ fn scene(grooms: Vec<SceneGroom>) -> Scene {
 }
 
 /// All points of a scene after `frames` frames.
-fn after(scene: &Scene, frames: usize) -> Vec<Vec3> {
+fn played(scene: &Scene, frames: usize) -> Vec<Vec3> {
     let mut stage = Stage::new(scene.clone()).unwrap();
-    for _ in 0..frames {
-        stage.step(1.0 / 60.0);
-    }
-    stage.strands().flat_map(|strands| strands.points.to_vec()).collect()
-}
-
-fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+    play(&mut stage, frames);
+    points(&stage)
 }
 
 #[test]
@@ -80,13 +76,13 @@ fn hair_divided_into_grooms_moves_as_in_one() {
     for (name, meet) in meetings {
         let (mut one, mut two) = (scene(vec![groom(&strands)]), scene(vec![groom(left), groom(right)]));
         [&mut one, &mut two].into_iter().for_each(meet);
-        let (one, two) = (after(&one, 20), after(&two, 20));
+        let (one, two) = (played(&one, 20), played(&two, 20));
         assert!(one == two, "{name}: {} m apart", farthest(&one, &two));
         // The interaction has an effect: the left groom alone moves differently.
         let mut alone = scene(vec![groom(left)]);
         meet(&mut alone);
-        let apart = farthest(&after(&alone, 20), &one);
-        assert!(apart > 1e-4, "{name}: the other patch moves it by {apart} m");
+        let difference = farthest(&played(&alone, 20), &one);
+        assert!(difference > 1e-4, "{name}: the other patch moves it by {difference} m");
     }
 }
 
@@ -99,7 +95,7 @@ fn a_guide_has_the_weight_of_its_follow_hairs() {
     let left_after = |guides: Guides, volume: VolumeMethod| {
         let mut two = scene(vec![groom(left), SceneGroom { guides, ..groom(right) }]);
         two.volume = Volume { method: volume, cell: Some(0.01), friction: 60.0, ..Volume::default() };
-        after(&two, 12)[..64 * POINTS].to_vec()
+        played(&two, 12)[..64 * POINTS].to_vec()
     };
     let free = left_after(Guides::All, VolumeMethod::Off);
     let all = left_after(Guides::All, VolumeMethod::Density);
@@ -108,8 +104,8 @@ fn a_guide_has_the_weight_of_its_follow_hairs() {
     println!(
         "the right patch moves the left one by {braked:.4} m; with guides only, the result differs by {differs:.4} m"
     );
-    assert!(braked > 5e-3, "{braked} m");
-    assert!(differs < 0.5 * braked, "{differs} m of {braked} m");
+    assert!(braked > 5e-3, "the right patch moves the left one by only {braked} m");
+    assert!(differs < 0.5 * braked, "with guides only, the result differs by {differs} m of {braked} m");
 }
 
 /// Adds a plate of 4 cm at `middle`, of two triangles.
@@ -158,12 +154,15 @@ fn hair_on_a_second_body_is_initialized_at_its_start_pose() {
     // The second plate rests inside the first, or already at its start position.
     let [moved, made] = [Vec3::ZERO, Vec3::new(0.06, 0.0, 0.0)].map(plates);
     for frames in [0, 15] {
-        let apart = farthest(&after(&moved, frames), &after(&made, frames));
-        println!("{frames} frames: {apart:.1e} m apart");
-        assert!(apart < if frames == 0 { 1e-7 } else { 1e-4 }, "{apart} m after {frames} frames");
+        let difference = farthest(&played(&moved, frames), &played(&made, frames));
+        println!("{frames} frames: {difference:.1e} m apart");
+        assert!(
+            difference < if frames == 0 { 1e-7 } else { 1e-4 },
+            "points differ by {difference} m after {frames} frames"
+        );
     }
     let mut stage = Stage::new(moved).unwrap();
-    stage.step(1.0 / 60.0);
+    stage.step(FRAME);
     let share = stage.volume().unwrap().volume_ratio;
     assert!((share - 1.0).abs() < 0.05, "hair does not start at rest density: {share}");
 }

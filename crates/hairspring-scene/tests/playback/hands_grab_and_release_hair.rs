@@ -8,18 +8,16 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    air::Air,
     forces::{Manipulator, grab::Grab},
     groom::Groom,
     material::{Material, Model},
     math::RigidTransform,
     settings::{Integrator, Solver},
-    simulation::{ManipulatorId, Simulation, StepInput},
+    simulation::{ManipulatorId, Simulation},
 };
 use hairspring_scene::{Guides, Hand, Scene, SceneGroom, stage::Stage};
-use std::sync::Arc;
+use hairspring_test::{FRAME, REST, farthest, points, roots, step, translation};
 
-const FRAME: f32 = 1.0 / 60.0;
 const POINTS: usize = 32;
 const SEGMENT: f32 = 0.01;
 const GRAVITY: f32 = 9.81;
@@ -37,37 +35,19 @@ impl Lock {
             let x = (s as f32 - 5.5) * 0.002;
             (0..POINTS).map(move |i| Vec3::new(x, -SEGMENT * i as f32, 0.0)).collect::<Vec<_>>()
         });
-        let groom = Arc::new(Groom::from_strands(strands, 40e-6));
-        let all: Vec<u32> = (0..12).collect();
-        let root =
-            |s: &u32| RigidTransform { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY };
-        let roots = all.iter().map(root).collect();
-        let gravity = Vec3::NEG_Y * GRAVITY;
-        let simulation = Simulation::builder(groom.clone())
-            .strands(&all)
-            .materials(&[material])
-            .solver(solver)
-            .gravity(gravity)
-            .build()
-            .unwrap();
-        Self { simulation, roots, points: groom.points.clone() }
+        let groom = Groom::from_strands(strands, 40e-6);
+        let (roots, points) = (roots(&groom, REST), groom.points.clone());
+        let simulation = Simulation::builder(groom).materials(&[material]).solver(solver).build().unwrap();
+        Self { simulation, roots, points }
     }
 
     fn step(&mut self) {
-        let report = self.simulation.step(&StepInput {
-            dt: FRAME,
-            anchor: RigidTransform::default(),
-            roots: &self.roots,
-            obstacles: &[],
-            air: Air::default(),
-        });
-        assert_eq!(report.reset_strands, 0);
-        self.simulation.write_points(&mut self.points);
+        step(&mut self.simulation, REST, &self.roots, &[]);
+        self.points = points(&self.simulation);
     }
 
-    fn carry(&mut self, id: ManipulatorId, way: Vec3) {
-        self.simulation
-            .set_manipulator_pose(id, RigidTransform { translation: way, ..RigidTransform::default() });
+    fn step_with_hand(&mut self, id: ManipulatorId, hand: Vec3) {
+        self.simulation.set_manipulator_pose(id, translation(hand));
         self.step();
     }
 }
@@ -86,9 +66,9 @@ fn grab(pull: f32) -> Manipulator {
 fn a_grabbed_lock_lags_by_the_closed_form() {
     for (pull, model) in [(60.0, Model::Curvature), (30.0, Model::Rod), (60.0, Model::Springs)] {
         let mut lock = Lock::new(Material { model, ..chain() }, Solver::default());
-        let id = lock.simulation.add_manipulator(grab(pull), RigidTransform::default());
+        let id = lock.simulation.add_manipulator(grab(pull), REST);
         let held: Vec<_> = lock.simulation.attached_points(id).collect();
-        assert_eq!(held.len(), 12 * 5, "{model:?}");
+        assert_eq!(held.len(), 12 * 5, "{model:?}: the grab does not hold five points of each strand");
         // The hand moves up by 6 cm and out by 3 cm, so that it carries the held hair, and then sideways at
         // 0.3 m/s.
         let lift = |frame: u32| 0.06 * (frame as f32 / 60.0).min(1.0);
@@ -101,7 +81,7 @@ fn a_grabbed_lock_lags_by_the_closed_form() {
         let mut worst = 0.0f32;
         for frame in 1..=195u32 {
             let way = Vec3::new(side(frame), lift(frame), 0.5 * lift(frame));
-            lock.carry(id, way);
+            lock.step_with_hand(id, way);
             let lag = |(s, i): &(u32, u32)| {
                 let at = lock.points[*s as usize * POINTS + *i as usize];
                 let home = Vec3::new((*s as f32 - 5.5) * 0.002, -SEGMENT * *i as f32, 0.0) + way;
@@ -127,7 +107,7 @@ fn a_grabbed_lock_lags_by_the_closed_form() {
 #[test]
 fn a_released_lock_has_the_speed_of_the_hand() {
     let mut lock = Lock::new(Material { damping: 0.02, drag: 0.0, ..Material::default() }, Solver::default());
-    let id = lock.simulation.add_manipulator(grab(60.0), RigidTransform::default());
+    let id = lock.simulation.add_manipulator(grab(60.0), REST);
     // The hand moves like a pendulum about the rail, so that hair is neither slack nor stretched: slowly
     // aside, then back to the lowest point at 0.25 m/s.
     let turn = 0.03;
@@ -163,24 +143,24 @@ fn a_released_lock_has_the_speed_of_the_hand() {
 fn a_released_lock_returns_to_rest() {
     let mut lock = Lock::new(Material { damping: 0.02, ..Material::default() }, Solver::default());
     let rest = lock.points.clone();
-    let id = lock.simulation.add_manipulator(grab(60.0), RigidTransform::default());
+    let id = lock.simulation.add_manipulator(grab(60.0), REST);
     for frame in 1..=60 {
-        lock.carry(id, Vec3::new(0.05, 0.06, 0.08) * (frame as f32 / 60.0));
+        lock.step_with_hand(id, Vec3::new(0.05, 0.06, 0.08) * (frame as f32 / 60.0));
     }
-    let off = |lock: &Lock| lock.points.iter().zip(&rest).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-    let held = off(&lock);
+    let offset = |lock: &Lock| farthest(&lock.points, &rest);
+    let held = offset(&lock);
     lock.simulation.remove_manipulator(id);
     for _ in 0..600 {
         lock.step();
     }
-    println!("offset while held: {held} m, ten seconds after the release: {} m", off(&lock));
-    assert!(held > 0.05 && off(&lock) < 0.002, "the lock is {} m from its old place", off(&lock));
+    println!("offset while held: {held} m, ten seconds after the release: {} m", offset(&lock));
+    assert!(held > 0.05 && offset(&lock) < 0.002, "the lock is {} m from its old place", offset(&lock));
 }
 
 #[test]
 fn a_pinned_lock_is_held_while_its_roots_move() {
     let mut lock = Lock::new(chain(), Solver::default());
-    let id = lock.simulation.add_manipulator(grab(60.0), RigidTransform::default());
+    let id = lock.simulation.add_manipulator(grab(60.0), REST);
     let held: Vec<_> = lock.simulation.attached_points(id).collect();
     let homes = lock.points.clone();
     for frame in 0..120 {
@@ -190,11 +170,11 @@ fn a_pinned_lock_is_held_while_its_roots_move() {
         });
         lock.step();
     }
-    let off = |(s, i): &(u32, u32)| {
+    let offset_of = |(s, i): &(u32, u32)| {
         let k = *s as usize * POINTS + *i as usize;
         lock.points[k].distance(homes[k])
     };
-    let worst = held.iter().map(off).fold(0.0, f32::max);
+    let worst = held.iter().map(offset_of).fold(0.0, f32::max);
     println!("the largest offset is {worst} m");
     assert!(worst < 0.003, "the largest offset is {worst} m");
 }
@@ -205,14 +185,18 @@ fn a_jumping_hand_keeps_the_simulation_stable() {
     for integrator in &Integrator::ALL[2..] {
         let mut lock =
             Lock::new(Material::default(), Solver { integrator: *integrator, ..Solver::default() });
-        let id = lock.simulation.add_manipulator(grab(1000.0), RigidTransform::default());
+        let id = lock.simulation.add_manipulator(grab(1000.0), REST);
         for frame in 0..60 {
             let away = if frame / 10 % 2 == 0 { 0.0 } else { 5.0 };
-            lock.carry(id, Vec3::new(away, away, 0.0));
+            lock.step_with_hand(id, Vec3::new(away, away, 0.0));
             let measure = lock.simulation.measure(&[]);
             assert_eq!(measure.non_finite, 0, "{integrator:?}, frame {frame}");
             if matches!(integrator, Integrator::BackwardEuler | Integrator::Bdf2) {
-                assert!(measure.stretch_max < 0.011, "{integrator:?}: {}", measure.stretch_max);
+                assert!(
+                    measure.stretch_max < 0.011,
+                    "{integrator:?}: the stretch is {}",
+                    measure.stretch_max
+                );
             }
         }
         lock.simulation.remove_manipulator(id);
@@ -221,7 +205,7 @@ fn a_jumping_hand_keeps_the_simulation_stable() {
         }
         let measure = lock.simulation.measure(&[]);
         println!("{integrator:?}: {measure:?} five seconds after the release");
-        assert!(measure.speed_max < 3.0, "{integrator:?}: {measure:?}");
+        assert!(measure.speed_max < 3.0, "{integrator:?}: hair does not come to rest: {measure:?}");
     }
 }
 
@@ -261,21 +245,19 @@ fn hands_of_a_scene_follow_their_timing_and_path() {
         assert!(places[179].distance(end) > 0.03, "round {round}: the hand did not release");
         played.push(places);
     }
-    let apart = played[0].iter().zip(&played[1]).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-    assert!(apart < 1e-5, "after a reset the motion differs by {apart} m");
+    let difference = farthest(&played[0], &played[1]);
+    assert!(difference < 1e-5, "after a reset the motion differs by {difference} m");
     // A hand that an app moves gives the same result.
     stage.reset();
-    let id = stage.add_manipulator(Manipulator::Grab(ball), RigidTransform::default());
+    let id = stage.add_manipulator(Manipulator::Grab(ball), REST);
     for frame in 1..=20 {
-        stage.set_manipulator_pose(
-            id,
-            RigidTransform {
-                translation: Vec3::new(0.004, 0.0015, 0.0) * frame as f32,
-                ..RigidTransform::default()
-            },
-        );
+        stage.set_manipulator_pose(id, translation(Vec3::new(0.004, 0.0015, 0.0) * frame as f32));
         stage.step(FRAME);
     }
-    assert!(held(&stage).distance(home + Vec3::new(0.08, 0.03, 0.0)) < 2e-3, "{}", held(&stage));
+    assert!(
+        held(&stage).distance(home + Vec3::new(0.08, 0.03, 0.0)) < 2e-3,
+        "the held point is at {}",
+        held(&stage)
+    );
     stage.remove_manipulator(id);
 }

@@ -4,6 +4,7 @@
 //! follow hairs. It passes on its velocity, but a new ball starts with zero velocity. Frames that are
 //! advanced without updating the render points give the same result.
 
+use crate::support::play;
 use glam::{Quat, Vec3};
 use hairspring::{collide::ColliderShape, groom::Groom, material::Material, math::RigidTransform};
 use hairspring_scene::{
@@ -11,15 +12,14 @@ use hairspring_scene::{
     builtin::{self, BuiltinOptions},
     stage::Stage,
 };
-
-const FRAME: f32 = 1.0 / 60.0;
+use hairspring_test::{FRAME, REST, farthest, line, translation};
 
 #[test]
 fn roots_stay_on_a_body_moved_by_the_app() {
     let options = BuiltinOptions { strands: 200, guides: Guides::Count(40), ..BuiltinOptions::default() };
     let scene = builtin::scene(&options);
     let [mut here, mut carried] = [0; 2].map(|_| Stage::new(scene.clone()).unwrap());
-    let way = |frame: u32| RigidTransform {
+    let motion = |frame: u32| RigidTransform {
         rotation: Quat::from_rotation_y(0.02 * frame as f32),
         translation: Vec3::new(0.01 * frame as f32, 0.0, -0.005 * frame as f32),
     };
@@ -32,14 +32,14 @@ fn roots_stay_on_a_body_moved_by_the_app() {
             .collect()
     };
     for frame in 1..30 {
-        carried.move_body(way(frame));
+        carried.move_body(motion(frame));
         here.step(FRAME);
         carried.step(FRAME);
         let (still, moved) = (roots(&here), roots(&carried));
-        let off =
-            still.iter().zip(&moved).map(|(a, b)| way(frame).point(*a).distance(*b)).fold(0.0, f32::max);
-        assert!(off < 2e-6, "frame {frame}: a root is {off} m from its place on the body");
-        let anchor = way(frame).after(&here.body_anchor());
+        let expected: Vec<Vec3> = still.iter().map(|root| motion(frame).point(*root)).collect();
+        let error = farthest(&expected, &moved);
+        assert!(error < 2e-6, "frame {frame}: a root is {error} m from its place on the body");
+        let anchor = motion(frame).after(&here.body_anchor());
         assert!(anchor.translation.distance(carried.body_anchor().translation) < 1e-6);
         // The head's distance field moves with the body.
         let end = carried.obstacles()[0].end;
@@ -47,8 +47,8 @@ fn roots_stay_on_a_body_moved_by_the_app() {
     }
     // The motion has an effect: hair lags behind.
     let tips = |stage: &Stage| stage.strands().next().unwrap().points[31];
-    let lag = way(29).point(tips(&here)).distance(tips(&carried));
-    assert!(lag > 1e-3, "{lag} m");
+    let lag = motion(29).point(tips(&here)).distance(tips(&carried));
+    assert!(lag > 1e-3, "hair lags by only {lag} m");
     carried.reset();
     here.reset();
     assert_eq!(carried.body_anchor(), here.body_anchor());
@@ -60,8 +60,8 @@ fn roots_stay_on_a_body_moved_by_the_app() {
 /// A curtain of strands that hang from a rail along X; one in six is simulated.
 fn curtain() -> Stage {
     let strands = (0..48).map(|s| {
-        let x = (s as f32 - 23.5) * 0.004;
-        (0..32).map(move |i| Vec3::new(x, -0.5 * i as f32 / 31.0, 0.0)).collect::<Vec<_>>()
+        let root = Vec3::X * ((s as f32 - 23.5) * 0.004);
+        line(root, root - Vec3::Y * 0.5, 32)
     });
     let groom = SceneGroom {
         groom: Groom::from_strands(strands, 40e-6),
@@ -76,17 +76,13 @@ fn sphere(radius: f32) -> ColliderShape {
     ColliderShape::Sphere { center: Vec3::ZERO, radius }
 }
 
-fn at(place: Vec3) -> RigidTransform {
-    RigidTransform { translation: place, ..RigidTransform::default() }
-}
-
 #[test]
 fn a_ball_takes_hair_along_without_penetration() {
     let mut stage = curtain();
     let radius = 0.05;
     let ball = |frame: u32| Vec3::new(0.0, -0.35, 0.15 - (frame as f32 * FRAME).min(0.3));
     for frame in 0..40 {
-        stage.set_user_colliders(&[sphere(radius)], at(ball(frame)));
+        stage.set_user_colliders(&[sphere(radius)], translation(ball(frame)));
         stage.step(FRAME);
         let obstacle = stage.obstacles().last().unwrap();
         assert!(matches!(obstacle.shape, ColliderShape::Sphere { radius: r, .. } if r == radius));
@@ -101,13 +97,13 @@ fn a_ball_takes_hair_along_without_penetration() {
     }
     let pushed = stage.strands().next().unwrap().points.iter().map(|p| -p.z).fold(0.0, f32::max);
     assert!(pushed > 0.1, "the ball moved hair by only {pushed} m");
-    stage.set_user_colliders(&[], RigidTransform::default());
+    stage.set_user_colliders(&[], REST);
     assert!(stage.obstacles().is_empty());
     for wrong in [f32::NAN, 0.0, -1.0] {
-        stage.set_user_colliders(&[sphere(wrong)], RigidTransform::default());
+        stage.set_user_colliders(&[sphere(wrong)], REST);
         assert!(stage.obstacles().is_empty(), "a radius of {wrong} was accepted");
     }
-    (0..300).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 300);
     let left = stage.strands().next().unwrap().points.iter().map(|p| p.z.abs()).fold(0.0, f32::max);
     assert!(left < 0.01, "hair is {left} m from its old place after the ball was removed");
 }
@@ -116,7 +112,7 @@ fn a_ball_takes_hair_along_without_penetration() {
 fn a_ball_stays_when_settings_change() {
     let mut stage = curtain();
     let center = Vec3::new(0.0, -0.35, 0.03);
-    stage.set_user_colliders(&[sphere(0.05)], at(center));
+    stage.set_user_colliders(&[sphere(0.05)], translation(center));
     let sphere = hairspring_scene::Shape::Sphere { center: Vec3::X, radius: 0.1 };
     let colliders = vec![hairspring_scene::Collider { joint: None, shape: sphere }];
     let grooms = vec![SceneGroom { materials: vec![Material::default()], ..SceneGroom::default() }];
@@ -124,7 +120,7 @@ fn a_ball_stays_when_settings_change() {
     stage.update_settings(settings).unwrap();
     assert_eq!(stage.obstacles().len(), 2);
     assert_eq!(stage.obstacles()[1].end.translation, center);
-    (0..60).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 60);
     let strands = stage.strands().next().unwrap();
     let depth = strands.points.iter().map(|p| 0.05 - p.distance(center)).fold(0.0, f32::max);
     assert!(depth < 1e-4, "hair penetrates the ball by {depth} m");

@@ -4,6 +4,7 @@
 //! balances its weight. Bent strands report their turn, moving points their speed, and points in a volume
 //! their density. Follow hairs report the values of their first guide.
 
+use crate::support::play;
 use glam::{Quat, Vec3};
 use hairspring::{
     groom::{Groom, GuideWeights},
@@ -14,9 +15,9 @@ use hairspring_scene::{
     Collider, Guides, Scene, SceneGroom, Shape,
     stage::{Stage, Value},
 };
+use hairspring_test::FRAME;
 use std::f32::consts::PI;
 
-const FRAME: f32 = 1.0 / 60.0;
 const G: f32 = 9.81;
 const RADIUS: f32 = 40e-6;
 const POINTS: usize = 21;
@@ -30,8 +31,8 @@ fn rail(way: Vec3) -> Groom {
         (0..POINTS).map(|i| root + way * (SEGMENT * i as f32)).collect::<Vec<_>>()
     };
     let mut groom = Groom::from_strands((0..4).map(strand), RADIUS);
-    let of = |guide: u32| GuideWeights { guides: [guide; 3], weights: [1.0, 0.0, 0.0] };
-    groom.guides = [0, 0, 3, 3].map(of).to_vec();
+    let follows = |guide: u32| GuideWeights { guides: [guide; 3], weights: [1.0, 0.0, 0.0] };
+    groom.guides = [0, 0, 3, 3].map(follows).to_vec();
     groom
 }
 
@@ -48,15 +49,19 @@ fn scene(groom: Groom) -> Scene {
 fn values(stage: &Stage, what: Value) -> Vec<f32> {
     let mut out = vec![7.0];
     stage.values(what, 0, &mut out);
-    assert_eq!(out.len(), stage.strands().next().unwrap().points.len(), "{what:?}");
-    assert!(out.iter().all(|x| x.is_finite()), "{what:?}");
+    assert_eq!(
+        out.len(),
+        stage.strands().next().unwrap().points.len(),
+        "{what:?} has no value for some points"
+    );
+    assert!(out.iter().all(|x| x.is_finite()), "{what:?} is not finite");
     out
 }
 
 #[test]
 fn tension_of_a_hanging_strand_follows_the_closed_form() {
     let mut stage = Stage::new(scene(rail(Vec3::NEG_Y))).unwrap();
-    (0..60).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 60);
     let weight = Material::default().density * PI * RADIUS * RADIUS * SEGMENT * G;
     let tension = values(&stage, Value::Tension);
     for s in 0..4 {
@@ -93,7 +98,7 @@ fn falling_strands_report_speed_and_turn() {
     falling.solver = Solver { sag_free: false, ..Solver::default() };
     falling.grooms[0].materials[0].bend = 1e-3;
     let mut stage = Stage::new(falling).unwrap();
-    (0..4).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 4);
     let here = stage.strands().next().unwrap().points.to_vec();
     stage.step(FRAME);
     let next = stage.strands().next().unwrap().points;
@@ -128,7 +133,7 @@ fn contact_force_on_a_floor_balances_the_weight() {
     let floor = Shape::Plane { point: Vec3::NEG_Y * 0.002, normal: Vec3::Y };
     lying.colliders = vec![Collider { joint: None, shape: floor }];
     let mut stage = Stage::new(lying).unwrap();
-    (0..180).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 180);
     let contact = values(&stage, Value::Contact);
     let weight = Material::default().density * PI * RADIUS * RADIUS * SEGMENT * G;
     let held: f32 = contact[..POINTS].iter().sum();
@@ -148,7 +153,7 @@ fn density_at_rest_is_one() {
     dense.grooms[0].guides = Guides::All;
     dense.volume = Volume { method: VolumeMethod::Density, ..Volume::default() };
     let mut stage = Stage::new(dense).unwrap();
-    (0..5).for_each(|_| _ = stage.step(FRAME));
+    play(&mut stage, 5);
     let density = values(&stage, Value::Density);
     let middle = density[(10 * 20 + 10) * POINTS + 10];
     assert!((middle - 1.0).abs() < 0.2, "the density in the middle is {middle}");
@@ -168,8 +173,8 @@ fn a_ray_finds_the_strand_it_points_at() {
     assert_eq!((hit.groom, hit.strand, hit.point), (0, 1, 10));
     assert!((hit.distance - eye.distance(Vec3::new(0.05, -0.1, 0.0))).abs() < 1e-5);
     // Between two strands, closer in angle to the left one.
-    let near = at(Vec3::new(0.06, -0.102, 0.0)).unwrap();
-    assert_eq!((near.groom, near.strand, near.point), (0, 1, 10));
+    let between = at(Vec3::new(0.06, -0.102, 0.0)).unwrap();
+    assert_eq!((between.groom, between.strand, between.point), (0, 1, 10));
     // Both strands are within 0.2° of the ray: the nearer one is found although the ray passes through the
     // other.
     let behind = at(Vec3::new(0.0, -0.11, -0.1)).unwrap();

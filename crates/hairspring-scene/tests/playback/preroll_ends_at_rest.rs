@@ -6,6 +6,7 @@
 //! of the pre-roll becomes the groom. The first frame shows it, the sag-free start keeps it in balance,
 //! follow hairs rest with their guides, and every reset returns to it.
 
+use crate::support::{play, points};
 use glam::{Quat, Vec3};
 use hairspring::{
     groom::{Groom, Growth, grow},
@@ -16,8 +17,8 @@ use hairspring_scene::{
     builtin::{BuiltinOptions, scene as builtin},
     stage::Stage,
 };
+use hairspring_test::farthest;
 
-const FRAME: f32 = 1.0 / 60.0;
 const HEAD: f32 = 0.09;
 
 /// Hair of 12 cm that stands straight off a ball.
@@ -49,55 +50,46 @@ fn head() -> Scene {
     scene
 }
 
-fn with(scene: &Scene, settle: f32, sag_free: bool) -> Stage {
-    let solver = Solver { preroll: settle, sag_free, ..Solver::default() };
+/// A stage of this scene with a pre-roll of `preroll` [s].
+fn stage(scene: &Scene, preroll: f32, sag_free: bool) -> Stage {
+    let solver = Solver { preroll, sag_free, ..Solver::default() };
     Stage::new(Scene { solver, ..scene.clone() }).unwrap()
-}
-
-fn points(stage: &Stage) -> Vec<Vec3> {
-    stage.strands().flat_map(|strands| strands.points.to_vec()).collect()
-}
-
-fn play(stage: &mut Stage, frames: usize) {
-    for _ in 0..frames {
-        stage.step(FRAME);
-    }
-}
-
-fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
 }
 
 #[test]
 fn preroll_gives_the_result_of_falling_in_the_scene() {
     for (name, scene) in [("ball", ball(Guides::All)), ("head", head())] {
-        let mut falling = with(&scene, 0.0, false);
+        let mut falling = stage(&scene, 0.0, false);
         let start = points(&falling);
         play(&mut falling, 60);
-        let way = farthest(&start, &points(&falling));
-        let apart = farthest(&points(&falling), &points(&with(&scene, 1.0, true)));
-        println!("{name}: falls by {way:.3} m in a second; the pre-roll differs by {apart:.1e} m");
-        assert!(way > 0.05, "{name}: {way} m");
+        let moved = farthest(&start, &points(&falling));
+        let difference = farthest(&points(&falling), &points(&stage(&scene, 1.0, true)));
+        println!("{name}: falls by {moved:.3} m in a second; the pre-roll differs by {difference:.1e} m");
+        assert!(moved > 0.05, "{name}: hair falls by only {moved} m");
         // Contact amplifies differences in rounding.
-        assert!(apart < 1e-3, "{name}: {apart} m");
+        assert!(difference < 1e-3, "{name}: the pre-roll differs by {difference} m");
     }
 }
 
 #[test]
 fn hair_is_at_rest_after_preroll() {
     for (name, scene) in [("all", ball(Guides::All)), ("guides", ball(Guides::Count(20))), ("head", head())] {
-        let mut stage = with(&scene, 3.0, true);
+        let mut stage = stage(&scene, 3.0, true);
         let start = points(&stage);
         play(&mut stage, 30);
-        let lies = farthest(&start, &points(&stage));
-        println!("{name}: moves by at most {lies:.1e} m in half a second");
-        assert!(lies < 1e-3, "{name}: {lies} m");
+        let moved = farthest(&start, &points(&stage));
+        println!("{name}: moves by at most {moved:.1e} m in half a second");
+        assert!(moved < 1e-3, "{name}: hair moves by {moved} m in half a second");
         let measure = stage.measure();
-        assert_eq!((measure.inside_points, measure.non_finite), (0, 0), "{name}");
+        assert_eq!(
+            (measure.inside_points, measure.non_finite),
+            (0, 0),
+            "{name}: points are inside or not finite"
+        );
         stage.reset();
         assert!(points(&stage) == start, "{name}: a reset does not restore the start");
     }
     let inside = |stage: Stage| points(&stage).iter().map(|p| HEAD - p.length()).fold(0.0, f32::max);
-    let deepest = inside(with(&ball(Guides::All), 3.0, true));
+    let deepest = inside(stage(&ball(Guides::All), 3.0, true));
     assert!(deepest < 1e-4, "hair penetrates the ball by {deepest} m");
 }

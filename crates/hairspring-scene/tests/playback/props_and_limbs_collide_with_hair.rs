@@ -6,6 +6,7 @@
 //! part of the deforming surface of the body: the same bar as an arm of the board must give the same
 //! result. So must a sheet of 2 mm that the arm waves at 5 m/s.
 
+use crate::support::points;
 use glam::{Affine3A, Vec3};
 use hairspring::{
     body::{Body, Clip, Joint, Mesh, Skin, Trs},
@@ -14,6 +15,7 @@ use hairspring::{
     settings::Solver,
 };
 use hairspring_scene::{Guides, Scene, SceneGroom, SceneSheet, stage::Stage};
+use hairspring_test::line;
 
 const POINTS: usize = 16;
 const LENGTH: f32 = 0.16;
@@ -55,9 +57,7 @@ fn scene(parent: Option<u32>, stride: f32) -> Scene {
     let clip = Clip { name: "throw".into(), rate: 60.0, joint_count: 2, samples };
     let strand = |k: usize| {
         let root = Vec3::new(0.0, 0.0, 0.003 * k as f32 - 0.045);
-        (0..POINTS)
-            .map(move |i| root - Vec3::Y * (LENGTH * i as f32 / (POINTS - 1) as f32))
-            .collect::<Vec<_>>()
+        line(root, root - Vec3::Y * LENGTH, POINTS)
     };
     let mut groom = Groom::from_strands((0..31).map(strand), 35e-6);
     bind_roots(&mut groom, &body.mesh);
@@ -124,10 +124,9 @@ fn throw(parent: Option<u32>) {
 
 fn play(scene: Scene) {
     let mut stage = Stage::new(scene).unwrap();
-    for _ in 0..FRAMES {
-        stage.step(1.0 / 60.0);
-    }
-    let points: Vec<Vec3> = stage.strands().flat_map(|strands| strands.points.to_vec()).collect();
+    crate::support::play(&mut stage, FRAMES as usize);
+    let points = points(&stage);
+    assert!(points.iter().all(|p| p.is_finite()), "a point is not finite");
     let depth =
         |p: &Vec3| stage.obstacles().iter().map(|o| -o.end_pose().distance(*p)).fold(f32::MIN, f32::max);
     let deepest = points.chunks(POINTS).flat_map(|strand| &strand[1..]).map(depth).fold(f32::MIN, f32::max);

@@ -37,12 +37,15 @@ fn every_part_of_a_scene_is_checked() {
         ),
     ];
     let good = scene(&BuiltinOptions { strands: 50, ..Default::default() });
-    assert!(good.validate().is_ok());
-    for (change, said) in faults {
+    good.validate().unwrap();
+    for (change, message) in faults {
         let mut bad = good.clone();
         change(&mut bad);
-        let error = Stage::new(bad).err().expect(said);
-        assert!(matches!(error, StageError::Settings(_)) && error.to_string().starts_with(said), "{error}");
+        let error = Stage::new(bad).err().expect(message);
+        assert!(
+            matches!(error, StageError::Settings(_)) && error.to_string().starts_with(message),
+            "{error}"
+        );
     }
     let mut stage = Stage::new(good.clone()).unwrap();
     let bad = Scene { solver: Solver { inertia: 2.0, ..good.solver }, ..good };

@@ -5,13 +5,13 @@
 //! velocity, and no value is non-finite. Gravity, stiffness, wind, colliders and hands can be added and
 //! removed. Refused settings change nothing.
 
+use crate::support::{play, points};
 use glam::Vec3;
 use hairspring::{
     air::{Air, Flow, Turbulence, WindOcclusion, WindSource},
     forces::{Manipulator, grab::Grab},
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
     settings::{Effects, Integrator, Solver, Volume, VolumeMethod, Wind},
     simulation::{Simulation, StepInput},
 };
@@ -20,9 +20,9 @@ use hairspring_scene::{
     builtin::{self, BuiltinOptions},
     stage::{Stage, StageError},
 };
+use hairspring_test::{FRAME, REST, farthest, roots, translation};
 use std::sync::Arc;
 
-const FRAME: f32 = 1.0 / 60.0;
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
 
 /// The argument of `update_settings`: the settings without geometry.
@@ -35,21 +35,6 @@ fn settings_of(scene: &Scene) -> Scene {
         sheets: Vec::new(),
         clip: None,
         ..scene.clone()
-    }
-}
-
-fn points(stage: &Stage) -> Vec<Vec3> {
-    stage.strands().flat_map(|strands| strands.points.to_vec()).collect()
-}
-
-fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
-}
-
-fn play(stage: &mut Stage, frames: u32) {
-    for _ in 0..frames {
-        let report = stage.step(FRAME);
-        assert_eq!(report.step.reset_strands, 0);
     }
 }
 
@@ -84,11 +69,8 @@ fn the_same_settings_change_nothing() {
     });
     for stage in &mut stages {
         play(stage, 20);
-        let id = stage.add_manipulator(hold, RigidTransform::default());
-        stage.set_manipulator_pose(
-            id,
-            RigidTransform { translation: Vec3::X * 0.01, ..RigidTransform::default() },
-        );
+        let id = stage.add_manipulator(hold, REST);
+        stage.set_manipulator_pose(id, translation(Vec3::X * 0.01));
         play(stage, 5);
     }
     let [untouched, same, fresh] = &mut stages;
@@ -101,15 +83,13 @@ fn the_same_settings_change_nothing() {
         [&mut *untouched, &mut *same, &mut *fresh].into_iter().for_each(|stage| play(stage, 1));
         let expected = points(untouched);
         assert!(expected == points(same), "frame {frame}: the same settings changed the result");
-        let apart = farthest(&expected, &points(fresh));
+        let difference = farthest(&expected, &points(fresh));
         assert!(
             expected == points(fresh),
-            "frame {frame}: {apart} m apart after rest shapes were solved again"
+            "frame {frame}: {difference} m apart after rest shapes were solved again"
         );
     }
 }
-
-const ROOT: RigidTransform = RigidTransform { rotation: glam::Quat::IDENTITY, translation: Vec3::ZERO };
 
 /// Strands that extend to the side: straight ones, and curls of two sizes.
 fn stuck_out() -> Groom {
@@ -134,29 +114,13 @@ fn falling(groom: &Arc<Groom>, model: Model, integrator: Integrator) -> Simulati
     let substeps = if explicit { 400 } else { 4 };
     let solver = Solver { integrator, substeps, sag_free: false, ..Solver::default() };
     let material = Material { model, drag: 0.1, ..Material::default() };
-    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    Simulation::builder(groom.clone())
-        .strands(&all)
-        .materials(&[material])
-        .solver(solver)
-        .gravity(GRAVITY)
-        .anchor(ROOT)
-        .build()
-        .unwrap()
+    Simulation::builder(groom.clone()).materials(&[material]).solver(solver).build().unwrap()
 }
 
 /// Simulates a frame; returns how many strands were reset because they were not finite.
 fn fall(simulation: &mut Simulation, groom: &Groom) -> usize {
-    let root = |s: usize| RigidTransform { translation: groom.strand(s)[0], ..ROOT };
-    let roots: Vec<RigidTransform> = (0..groom.strand_count()).map(root).collect();
-    let air = Air::default();
-    simulation.step(&StepInput { dt: FRAME, anchor: ROOT, roots: &roots, obstacles: &[], air }).reset_strands
-}
-
-fn places(simulation: &Simulation) -> Vec<Vec3> {
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    points
+    let (roots, air) = (roots(groom, REST), Air::default());
+    simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles: &[], air }).reset_strands
 }
 
 #[test]
@@ -173,22 +137,22 @@ fn every_model_and_integrator_takes_over_from_every_other() {
     for from in &ways {
         let mut old = falling(&groom, from.0, from.1);
         let mut before = Vec::new();
-        let mut here = places(&old);
+        let mut here = hairspring_test::points(&old);
         for _ in 0..12 {
             let lost = fall(&mut old, &groom);
-            assert!(lost == 0 || !bears(from), "{from:?}");
-            before = std::mem::replace(&mut here, places(&old));
+            assert!(lost == 0 || !bears(from), "{from:?}: {lost} strands lost");
+            before = std::mem::replace(&mut here, hairspring_test::points(&old));
         }
         // Tips moved from `before` to `here` in the last frame. The jump is the distance in the next frame
         // from the position extrapolated at constant velocity.
         let tips = || groom.offsets[1..].iter().map(|end| *end as usize - 1);
         let jump =
             |next: &[Vec3]| tips().map(|i| next[i].distance(2.0 * here[i] - before[i])).fold(0.0, f32::max);
-        let mut own = None;
+        let mut unchanged = None;
         for to in std::iter::once(from).chain(&ways) {
             let mut new = falling(&groom, to.0, to.1);
             new.take_over(&old);
-            let moved = farthest(&places(&new), &here);
+            let moved = farthest(&hairspring_test::points(&new), &here);
             assert!(moved < 1e-6, "{from:?} to {to:?}: {moved} m at the switch");
             for frame in 0..4 {
                 let lost = fall(&mut new, &groom);
@@ -197,12 +161,12 @@ fn every_model_and_integrator_takes_over_from_every_other() {
                 if frame > 0 || !bears(from) || !bears(to) {
                     continue;
                 }
-                let jump = jump(&places(&new));
+                let jump = jump(&hairspring_test::points(&new));
                 // The jump without a change of model or integrator.
-                let own = *own.get_or_insert(jump);
-                println!("{from:?} to {to:?}: {jump} m, {own} m without a change");
-                if jump - own > most {
-                    (most, worst) = (jump - own, Some((*from, *to)));
+                let unchanged = *unchanged.get_or_insert(jump);
+                println!("{from:?} to {to:?}: {jump} m, {unchanged} m without a change");
+                if jump - unchanged > most {
+                    (most, worst) = (jump - unchanged, Some((*from, *to)));
                 }
             }
         }
@@ -281,8 +245,8 @@ fn gravity_and_stiffness_change_smoothly() {
     let still = Scene { wind: Wind::default(), ..settings };
     stage.update_settings(still).unwrap();
     play(&mut stage, 600);
-    let apart = farthest(&points(&stage), &lock().grooms[0].groom.points);
-    assert!(apart < 2e-3, "the final offset is {apart} m");
+    let difference = farthest(&points(&stage), &lock().grooms[0].groom.points);
+    assert!(difference < 2e-3, "the final offset is {difference} m");
 }
 
 #[test]
@@ -323,8 +287,8 @@ fn colliders_can_be_added_and_removed() {
     stage.update_settings(settings).unwrap();
     assert!(stage.obstacles().is_empty());
     play(&mut stage, 600);
-    let apart = farthest(&points(&stage), &scene.grooms[0].groom.points);
-    assert!(apart < 2e-3, "the final offset is {apart} m");
+    let difference = farthest(&points(&stage), &scene.grooms[0].groom.points);
+    assert!(difference < 2e-3, "the final offset is {difference} m");
 }
 
 #[test]
@@ -346,8 +310,8 @@ fn a_hand_persists_while_its_settings_exist() {
     settings.hands.clear();
     stage.update_settings(settings).unwrap();
     play(&mut stage, 300);
-    let apart = farthest(&points(&stage), &scene.grooms[0].groom.points);
-    assert!(apart < 0.01, "the offset after the release is {apart} m");
+    let difference = farthest(&points(&stage), &scene.grooms[0].groom.points);
+    assert!(difference < 0.01, "the offset after the release is {difference} m");
 }
 
 #[test]

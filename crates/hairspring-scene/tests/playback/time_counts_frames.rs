@@ -56,8 +56,8 @@ fn after_ten_minutes_the_body_matches_its_clip() {
         stage.update_render_points();
         let time = rate.time_of(count);
         assert_eq!(stage.time(), time, "at {rate} Hz");
-        let off = (f64::from(root(&stage)) - 0.1 * time).abs();
-        assert!(off < 1e-5, "at {rate} Hz the root is {off} m from its place after {count} frames");
+        let error = (f64::from(root(&stage)) - 0.1 * time).abs();
+        assert!(error < 1e-5, "at {rate} Hz the root is {error} m from its place after {count} frames");
     }
 }
 
@@ -68,7 +68,7 @@ fn steps_of_any_length_add_up_without_error() {
     stage.update_render_points();
     // 1/60 s in single precision, 36,000 times.
     assert!((stage.time() - 36_000.0 * f64::from(1.0_f32 / 60.0)).abs() < 1e-9);
-    assert!((root(&stage) - 60.0).abs() < 1e-4, "{}", root(&stage));
+    assert!((root(&stage) - 60.0).abs() < 1e-4, "the root is at {} m instead of 60 m", root(&stage));
 }
 
 #[test]

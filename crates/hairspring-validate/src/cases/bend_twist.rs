@@ -58,6 +58,6 @@ fn stiffness(curl: f64, ratio: f64, gamma: f64, method: Method) -> Result<Option
     let mut specimen = Specimen::new(Setup::heavy(points, gamma, ratio), method);
     let rest = specimen.settle()?;
     let squares: f64 = rest.iter().map(|p| p.z * p.z).sum();
-    let aside = (squares / rest.len() as f64).sqrt() / LENGTH;
-    Ok((aside < LEFT / curl).then_some(TWIST / aside))
+    let deflection = (squares / rest.len() as f64).sqrt() / LENGTH;
+    Ok((deflection < LEFT / curl).then_some(TWIST / deflection))
 }

@@ -22,9 +22,9 @@ pub const CASE: Case = Case {
     reference: |_| Ok(vec![greenhill()]),
     measure: |_, method| {
         let stiffness = |gamma| {
-            let aside = deflection(gamma, method)? * TILT;
+            let deflected = deflection(gamma, method)? * TILT;
             // The load grows with the weight, so it is scaled to units of EI/L².
-            Ok((aside.abs() < southwell::SMALL).then_some(gamma * TILT / aside))
+            Ok((deflected.abs() < southwell::SMALL).then_some(gamma * TILT / deflected))
         };
         Ok(vec![southwell::threshold(1.0, 40.0, stiffness)?])
     },

@@ -36,17 +36,17 @@ pub const CASE: Case = Case {
         // With the strand's own flatness. Its in-plane deflection before buckling adds less than a percent.
         let strand = flat(1.0, FLATNESS.powi(-2), values[0]);
         let unit = values[0].sqrt();
-        let of =
+        let load =
             |weight, tip| lateral(&strand, weight, tip).map(|load| load / unit).ok_or(Failure::NoThreshold);
-        Ok(vec![of(1.0, 0.0)?, of(0.0, 1.0)?])
+        Ok(vec![load(1.0, 0.0)?, load(0.0, 1.0)?])
     },
     measure: |values, method| {
         let ratio = values[0];
-        let of = |hung, from: f64| {
-            let (start, end) = (0.4 * from, 4.0 * from);
+        let threshold = |hung, expected: f64| {
+            let (start, end) = (0.4 * expected, 4.0 * expected);
             southwell::threshold(start, end, |load| stiffness(hung, load, ratio, method))
         };
-        let (weight, tip) = rayon::join(|| of(Hung::Along, 10.0), || of(Hung::AtTip, 4.0));
+        let (weight, tip) = rayon::join(|| threshold(Hung::Along, 10.0), || threshold(Hung::AtTip, 4.0));
         Ok(vec![weight?, tip?])
     },
     sweep: Sweep::Parameter { index: 0, from: 0.3, to: 1.5, log: false },
@@ -86,7 +86,7 @@ fn stiffness(hung: Hung, load: f64, ratio: f64, method: Method) -> Result<Option
         let force = (down * weight).as_vec3();
         specimen.hold(&[Hold { point: method.points - 1, force, ..Hold::default() }]);
     }
-    let aside = specimen.settle()?[method.points as usize - 1].z / LENGTH;
+    let deflection = specimen.settle()?[method.points as usize - 1].z / LENGTH;
     // The sideways load grows with the load, so it is scaled to units of the stiffness.
-    Ok((aside.abs() < southwell::SMALL).then_some(load * TILT / aside))
+    Ok((deflection.abs() < southwell::SMALL).then_some(load * TILT / deflection))
 }

@@ -89,17 +89,17 @@ fn stiffness(twist: f64, ratio: f64, method: Method) -> Result<Option<f64>, Fail
     let mut holds: Vec<Hold> = (2..n - 2).map(pull).collect();
     holds.extend(ends(n, TAU));
     specimen.hold(&holds);
-    let aside = |points: &[DVec3]| {
+    let deflection = |points: &[DVec3]| {
         let projection: f64 = points.iter().zip(0..n).map(|(p, i)| p.z * wave(i)).sum();
         2.0 * projection / (n - 1) as f64 / LENGTH
     };
     // A ring of few points still rotates about its tangent, by a few micrometers a second. Only the mode has
     // to come to rest.
-    let rest = specimen.settle_where(|a, b| (aside(a) - aside(b)).abs() < STILL * PULL)?;
-    let aside = aside(&rest);
+    let rest = specimen.settle_where(|a, b| (deflection(a) - deflection(b)).abs() < STILL * PULL)?;
+    let deflection = deflection(&rest);
     // A ring that has writhed passes through itself (there is no self-collision), loses two turns, and lies
     // flat again with the opposite twist.
-    Ok((aside > 0.0 && aside < southwell::SMALL).then_some(PULL / aside))
+    Ok((deflection > 0.0 && deflection < southwell::SMALL).then_some(PULL / deflection))
 }
 
 /// Holds for the last two points of a strand that starts at the origin along X, is bent to an arc of `angle`

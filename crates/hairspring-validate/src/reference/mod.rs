@@ -70,13 +70,13 @@ pub fn integrate<const N: usize>(
     stop: impl Fn(&[f64; N]) -> bool,
 ) -> [f64; N] {
     let h = 1.0 / steps as f64;
-    let along = |y: &[f64; N], k: &[f64; N], t: f64| std::array::from_fn(|i| y[i] + t * k[i]);
+    let advanced = |y: &[f64; N], k: &[f64; N], t: f64| std::array::from_fn(|i| y[i] + t * k[i]);
     for step in 0..steps {
         let s = step as f64 * h;
         let k1 = f(s, &y);
-        let k2 = f(s + 0.5 * h, &along(&y, &k1, 0.5 * h));
-        let k3 = f(s + 0.5 * h, &along(&y, &k2, 0.5 * h));
-        let k4 = f(s + h, &along(&y, &k3, h));
+        let k2 = f(s + 0.5 * h, &advanced(&y, &k1, 0.5 * h));
+        let k3 = f(s + 0.5 * h, &advanced(&y, &k2, 0.5 * h));
+        let k4 = f(s + h, &advanced(&y, &k3, h));
         y = std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
         if stop(&y) {
             break;

@@ -8,13 +8,14 @@
 use glam::{Quat, Vec3};
 use hairspring::{
     air::Air,
-    collide::{ColliderPose, ColliderShape, MovingCollider},
+    collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model, PRESETS, preset},
     math::RigidTransform,
     settings::{Solver, Volume, VolumeMethod},
     simulation::{Simulation, StepInput},
 };
+use hairspring_test::{FRAME, REST, line, points, step, translation};
 use hairspring_validate::bench::Bench;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -34,7 +35,7 @@ fn standard_scene_of_springs_keeps_its_bounds() {
 }
 
 fn standard_scene(material: Material, strands: u32, mean: f64) -> Bench {
-    let mut bench = Bench::of(strands, 32, material, Solver::default());
+    let mut bench = Bench::with_material(strands, 32, material, Solver::default());
     for frame in 0..300 {
         let report = bench.step();
         assert_eq!(report.reset_strands, 0, "a strand turned non-finite in frame {frame}");
@@ -57,30 +58,16 @@ fn standard_scene(material: Material, strands: u32, mean: f64) -> Bench {
 #[test]
 fn limp_hair_keeps_its_length() {
     let root = Vec3::new(0.0, 1.0, 0.0);
-    let strand: Vec<Vec3> = (0..64).map(|i| root + Vec3::X * (0.2 * i as f32 / 63.0)).collect();
-    let groom = Arc::new(Groom::from_strands([strand.clone()], 35e-6));
+    let strand = line(root, root + Vec3::X * 0.2, 64);
+    let groom = Arc::new(Groom::from_strands([strand], 35e-6));
     for model in Model::ALL {
         let material = Material { model, bend: 0.0, ..Material::default() };
         let solver = Solver { sag_free: false, ..Solver::default() };
-        let gravity = Vec3::NEG_Y * 9.81;
-        let mut simulation = Simulation::builder(groom.clone())
-            .strands(&[0])
-            .materials(&[material])
-            .solver(solver)
-            .gravity(gravity)
-            .build()
-            .unwrap();
-        let drive = StepInput {
-            dt: 1.0 / 60.0,
-            anchor: RigidTransform::default(),
-            roots: &[RigidTransform { translation: root, ..RigidTransform::default() }],
-            obstacles: &[],
-            air: Air::default(),
-        };
-        let mut points = strand.clone();
+        let mut simulation =
+            Simulation::builder(groom.clone()).materials(&[material]).solver(solver).build().unwrap();
         for frame in 0..300 {
-            simulation.step(&drive);
-            simulation.write_points(&mut points);
+            step(&mut simulation, REST, &[translation(root)], &[]);
+            let points = points(&simulation);
             // Compares the stretch of the output points with the stretch that the simulation reports.
             let worst = points.windows(2).map(|w| (w[0].distance(w[1]) * 63.0 / 0.2 - 1.0).abs());
             let worst = worst.fold(0.0, f32::max);
@@ -121,9 +108,8 @@ fn shaken(
     frames: impl Fn(u32) -> f32,
     motion: impl Fn(f32) -> RigidTransform,
 ) -> Simulation {
-    let line = |n: usize, length: f32| -> Vec<Vec3> {
-        (0..n).map(|i| Vec3::new(0.3, 1.0 + length * i as f32 / (n - 1) as f32, 0.0)).collect()
-    };
+    let root = Vec3::new(0.3, 1.0, 0.0);
+    let line = |count: usize, length: f32| line(root, root + Vec3::Y * length, count);
     let mut folded = line(12, 0.2);
     folded.extend(line(12, 0.2).into_iter().rev().skip(1));
     let mut uneven = line(16, 0.2);
@@ -133,21 +119,15 @@ fn shaken(
     let mut groom = Groom::from_strands(materials.iter().flat_map(|_| strands.clone()), 35e-6);
     groom.groups = (0..materials.len() as u16).flat_map(|group| strands.each_ref().map(|_| group)).collect();
     let count = groom.strand_count();
-    let groom = Arc::new(groom);
-    let root = groom.strand(0)[0];
-    let gravity = Vec3::new(0.0, -gravity, 0.0);
     let head = ColliderShape::Sphere { center: Vec3::Y * -HEAD, radius: HEAD };
-    let at_rest = RigidTransform { translation: root, ..RigidTransform::default() };
+    let at_rest = translation(root);
     let alone = method == VolumeMethod::Off;
-    let rest = ColliderPose::new(head.clone(), at_rest.matrix(), at_rest.matrix(), 1.0);
+    let rest = MovingCollider::at_rest(head.clone(), at_rest).end_pose();
     let mut simulation = Simulation::builder(groom)
-        .strands(&(0..count as u32).collect::<Vec<_>>())
         .materials(materials)
-        .solver(
-            // The solver itself must survive the jump, so teleports are disabled.
-            Solver { teleport_distance: f32::MAX, ..Solver::default() },
-        )
-        .gravity(gravity)
+        // The solver itself must survive the jump, so teleports are disabled.
+        .solver(Solver { teleport_distance: f32::MAX, ..Solver::default() })
+        .gravity(Vec3::NEG_Y * gravity)
         .colliders_at_rest(if alone { &[] } else { std::slice::from_ref(&rest) })
         .build()
         .unwrap();
@@ -155,20 +135,16 @@ fn shaken(
     let mut before = at_rest;
     let (mut time, mut frame) = (0.0, 0);
     while time < VIOLENCE + FORGOTTEN {
-        let dt = if time < VIOLENCE { frames(frame) } else { 1.0 / 60.0 };
+        let dt = if time < VIOLENCE { frames(frame) } else { FRAME };
         time += dt;
         frame += 1;
         let pose = motion(time.min(VIOLENCE));
         let pose = RigidTransform { translation: pose.translation + root, rotation: pose.rotation };
         let body = [MovingCollider::new(head.clone(), before, pose)];
         before = pose;
-        let report = simulation.step(&StepInput {
-            dt,
-            anchor: pose,
-            roots: &vec![pose; count],
-            obstacles: if alone { &[] } else { &body },
-            air: Air::default(),
-        });
+        let (roots, air) = (vec![pose; count], Air::default());
+        let obstacles: &[MovingCollider] = if alone { &[] } else { &body };
+        let report = simulation.step(&StepInput { dt, anchor: pose, roots: &roots, obstacles, air });
         assert_eq!(report.reset_strands, 0, "{what}, {method:?}, {time} s: one of {materials:?}");
     }
     simulation
@@ -181,8 +157,8 @@ const HEAD: f32 = 0.1;
 fn violent_motion_leaves_no_trace() {
     let all = cases(&[1e-4, 1.0, 1e4]);
     // Materials of one model share tiles of eight strands, which takes a third of the time.
-    let of = |model: Model| all.iter().filter(|material| material.model == model).cloned().collect();
-    violence(Model::ALL.map(|model| (of(model), VolumeMethod::Off)).into());
+    let with_model = |model: Model| all.iter().filter(|material| material.model == model).cloned().collect();
+    violence(Model::ALL.map(|model| (with_model(model), VolumeMethod::Off)).into());
 }
 
 #[test]
@@ -202,17 +178,14 @@ fn cases(stiffnesses: &[f32]) -> Vec<Material> {
 }
 
 fn violence(cases: Vec<(Vec<Material>, VolumeMethod)>) {
-    let even = |_: u32| 1.0 / 60.0;
+    let even = |_: u32| FRAME;
     // From 1 to 100 ms.
     let uneven = |f: u32| 0.001 + 0.099 * ((f.wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32);
-    let at = |translation: Vec3| RigidTransform { translation, ..RigidTransform::default() };
     // 5 m in one frame, there and back.
-    let teleport = |t: f32| at(Vec3::X * if t.fract() < 0.5 { 5.0 } else { 0.0 });
-    let spin = |t: f32| RigidTransform {
-        rotation: Quat::from_rotation_y((t * 720.0 % 360.0).to_radians()),
-        ..RigidTransform::default()
-    };
-    let shake = |t: f32| at(Vec3::X * (0.2 * (std::f32::consts::TAU * 2.0 * t).sin()));
+    let teleport = |t: f32| translation(Vec3::X * if t.fract() < 0.5 { 5.0 } else { 0.0 });
+    let spin =
+        |t: f32| RigidTransform { rotation: Quat::from_rotation_y((t * 720.0 % 360.0).to_radians()), ..REST };
+    let shake = |t: f32| translation(Vec3::X * (0.2 * (std::f32::consts::TAU * 2.0 * t).sin()));
     cases.into_par_iter().for_each(|(materials, method)| {
         let check = |what, gravity, frames: &dyn Fn(u32) -> f32, motion: &dyn Fn(f32) -> RigidTransform| {
             let end = shaken(what, (&materials, method), gravity, frames, motion).measure(&[]);
@@ -232,30 +205,22 @@ fn a_non_finite_strand_is_reset_and_counted_without_affecting_others() {
     let groom = Arc::new(Groom::from_strands([strand(0.0), strand(0.1)], 35e-6));
     let start = || {
         Simulation::builder(groom.clone())
-            .strands(&[0, 1])
             .solver(Solver { sag_free: false, ..Solver::default() })
             .build()
             .unwrap()
     };
-    let pose = |x: f32| RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() };
+    let pose = |x: f32| translation(Vec3::X * x);
     let run = |poisoned: Option<u32>| {
         let mut simulation = start();
         let mut resets = 0;
         for frame in 0..60 {
             let bad = if Some(frame) == poisoned { f32::NAN } else { 0.1 };
-            let report = simulation.step(&StepInput {
-                dt: 1.0 / 60.0,
-                anchor: RigidTransform::default(),
-                roots: &[pose(0.0), pose(bad)],
-                obstacles: &[],
-                air: Air::default(),
-            });
-            resets += report.reset_strands;
+            let (roots, air) = ([pose(0.0), pose(bad)], Air::default());
+            let input = StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles: &[], air };
+            resets += simulation.step(&input).reset_strands;
         }
-        let mut points = vec![Vec3::ZERO; simulation.point_count()];
-        simulation.write_points(&mut points);
         assert_eq!(simulation.measure(&[]).non_finite, 0);
-        (points, resets)
+        (points(&simulation), resets)
     };
     let (clean, none) = run(None);
     let (poisoned, some) = run(Some(20));

@@ -8,35 +8,22 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::Air,
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
     settings::{Neighbours, Solver},
-    simulation::{Hold, NeighboursReport, Simulation, StepInput},
+    simulation::{Hold, NeighboursReport, Simulation},
 };
-use hairspring_validate::bench;
+use hairspring_test::{REST, line, points, roots, step};
 use std::sync::Arc;
-
-fn line(from: Vec3, to: Vec3, points: usize) -> Vec<Vec3> {
-    (0..points).map(|i| from.lerp(to, i as f32 / (points - 1) as f32)).collect()
-}
 
 /// Simulates falling strands and held bars for `frames` frames; returns the report and the positions of the
 /// tips.
 fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursReport, Vec<Vec3>) {
     let groom = Arc::new(Groom::from_strands(strands, 4e-5));
-    let all: Vec<u32> = (0..strands.len() as u32).collect();
     let solver = Solver { sag_free: false, ..Solver::default() };
     let material = Material { bend: 0.01, drag: 1.0, model: Model::Curvature, ..Material::default() };
-    let gravity = Vec3::NEG_Y * 9.81;
-    let mut simulation = Simulation::builder(groom.clone())
-        .strands(&all)
-        .materials(&[material])
-        .solver(solver)
-        .gravity(gravity)
-        .build()
-        .unwrap();
+    let mut simulation =
+        Simulation::builder(groom.clone()).materials(&[material]).solver(solver).build().unwrap();
     let radius = Some(0.001);
     simulation.set_neighbours(&Neighbours { on: true, radius, friction: 0.0, ..Neighbours::default() });
     let hold = |strand: usize, point: usize| Hold {
@@ -48,20 +35,9 @@ fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursRepor
     let holds: Vec<Hold> =
         (0..bars).flat_map(|bar| (2..strands[bar].len()).map(move |i| hold(bar, i))).collect();
     simulation.set_holds(&holds);
-    let roots: Vec<RigidTransform> =
-        strands.iter().map(|s| RigidTransform { translation: s[0], ..RigidTransform::default() }).collect();
-    for _ in 0..frames {
-        let drive = StepInput {
-            dt: bench::FRAME,
-            anchor: RigidTransform::default(),
-            roots: &roots,
-            obstacles: &[],
-            air: Air::default(),
-        };
-        assert_eq!(simulation.step(&drive).reset_strands, 0);
-    }
-    let mut now = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut now);
+    let roots = roots(&groom, REST);
+    (0..frames).for_each(|_| _ = step(&mut simulation, REST, &roots, &[]));
+    let now = points(&simulation);
     let tips = (0..strands.len()).map(|s| now[groom.range(s).end - 1]).collect();
     (simulation.neighbours().unwrap(), tips)
 }
@@ -70,18 +46,18 @@ fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursRepor
 fn coincident_strands_touch_others_as_one() {
     let bar = line(Vec3::new(0.0, 0.0, -0.035), Vec3::new(0.0, 0.0, 0.035), 8);
     let rope = line(Vec3::new(-0.05, 0.01, 0.0), Vec3::new(0.20, 0.01, 0.0), 26);
-    let over = |count: usize| {
+    let over_bar = |count: usize| {
         let strands: Vec<_> = std::iter::once(bar.clone()).chain(vec![rope.clone(); count]).collect();
         fallen(1, &strands, 90)
     };
-    let (one, lone) = over(1);
-    let (many, tips) = over(1000);
+    let (one, lone) = over_bar(1);
+    let (many, tips) = over_bar(1000);
     println!("one: {one:?}\n1000: {many:?}");
     assert!(lone[1].y > -0.3 && one.touching_pairs > 0, "the strand does not lie over the bar: {}", lone[1]);
     assert_eq!((one.merged_strands, many.merged_strands), (0, 999));
     assert_eq!(one.tested_pairs, many.tested_pairs, "the numbers of tested pairs differ");
-    let apart = tips[1..].iter().map(|tip| tip.distance(lone[1])).fold(0.0, f32::max);
-    assert!(apart < 1e-3, "the tips of a thousand strands are {apart} m from the tip of one");
+    let difference = tips[1..].iter().map(|tip| tip.distance(lone[1])).fold(0.0, f32::max);
+    assert!(difference < 1e-3, "the tips of a thousand strands are {difference} m from the tip of one");
 }
 
 #[test]

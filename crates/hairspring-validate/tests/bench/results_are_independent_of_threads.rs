@@ -8,31 +8,28 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::Air,
     collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
     math::RigidTransform,
     settings::{Solver, Volume, VolumeMethod},
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
 use hairspring_scene::{
     Guides,
     builtin::{BuiltinOptions, Style, scene},
     stage::Stage,
 };
+use hairspring_test::{REST, on_threads, points, step, translation};
 use hairspring_validate::bench::{self, Bench};
 use std::sync::Arc;
 
 fn shaken(threads: usize, method: VolumeMethod) -> Vec<Vec3> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| {
+    on_threads(threads, || {
         let mut bench = Bench::new(333, 20, Solver::default());
         bench.simulation.set_volume(&Volume { method, ..Volume::default() });
         (0..60).for_each(|_| _ = bench.step());
-        let mut points = vec![Vec3::ZERO; bench.simulation.point_count()];
-        bench.simulation.write_points(&mut points);
-        points
+        points(&bench.simulation)
     })
 }
 
@@ -47,9 +44,8 @@ fn the_simulation_is_independent_of_threads() {
 
 #[test]
 fn a_whole_scene_is_independent_of_threads() {
-    let play = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
+    let play = |threads| {
+        on_threads(threads, || {
             let options = BuiltinOptions {
                 strands: 600,
                 guides: Guides::Count(60),
@@ -70,10 +66,8 @@ fn a_whole_scene_is_independent_of_threads() {
 #[test]
 fn strands_in_contact_are_independent_of_their_tile() {
     let groom = Arc::new(bench::groom(8, 24));
-    let obstacle = MovingCollider::at_rest(
-        ColliderShape::Sphere { center: Vec3::ZERO, radius: bench::RADIUS },
-        RigidTransform::default(),
-    );
+    let ball = ColliderShape::Sphere { center: Vec3::ZERO, radius: bench::RADIUS };
+    let collider = MovingCollider::at_rest(ball, REST);
     let fall = |strands: &[u32]| {
         let mut simulation = Simulation::builder(groom.clone())
             .strands(strands)
@@ -81,25 +75,12 @@ fn strands_in_contact_are_independent_of_their_tile() {
             .solver(Solver { sag_free: false, ..Solver::default() })
             .build()
             .unwrap();
-        let roots: Vec<RigidTransform> = strands
-            .iter()
-            .map(|s| RigidTransform {
-                translation: groom.strand(*s as usize)[0],
-                ..RigidTransform::default()
-            })
-            .collect();
+        let roots: Vec<RigidTransform> =
+            strands.iter().map(|s| translation(groom.strand(*s as usize)[0])).collect();
         for _ in 0..90 {
-            simulation.step(&StepInput {
-                dt: bench::FRAME,
-                anchor: RigidTransform::default(),
-                roots: &roots,
-                obstacles: std::slice::from_ref(&obstacle),
-                air: Air::default(),
-            });
+            step(&mut simulation, REST, &roots, std::slice::from_ref(&collider));
         }
-        let mut points = vec![Vec3::ZERO; simulation.point_count()];
-        simulation.write_points(&mut points);
-        points
+        points(&simulation)
     };
     let all = fall(&[0, 1, 2, 3, 4, 5, 6, 7]);
     let lying = all.iter().filter(|p| p.length() < bench::RADIUS + 1e-5).count();
@@ -135,35 +116,19 @@ fn neighbours_do_not_show_in(groom: Arc<Groom>) {
         let run = |strands: &[u32]| {
             let material = Material { model, ..Material::default() };
             let solver = Solver { sag_free: false, ..Solver::default() };
-            let gravity = Vec3::NEG_Y * 9.81;
             let mut simulation = Simulation::builder(groom.clone())
                 .strands(strands)
                 .materials(&[material])
                 .solver(solver)
-                .gravity(gravity)
                 .build()
                 .unwrap();
-            let root = |s: &u32| RigidTransform {
-                translation: groom.strand(*s as usize)[0],
-                ..RigidTransform::default()
-            };
-            let roots: Vec<RigidTransform> = strands.iter().map(root).collect();
+            let roots: Vec<RigidTransform> =
+                strands.iter().map(|s| translation(groom.strand(*s as usize)[0])).collect();
             for frame in 0..60 {
-                let anchor = RigidTransform {
-                    translation: Vec3::X * (0.05 * (frame as f32).sin()),
-                    ..RigidTransform::default()
-                };
-                simulation.step(&StepInput {
-                    dt: 1.0 / 60.0,
-                    anchor,
-                    roots: &roots,
-                    obstacles: &[],
-                    air: Air::default(),
-                });
+                let head = translation(Vec3::X * (0.05 * (frame as f32).sin()));
+                step(&mut simulation, head, &roots, &[]);
             }
-            let mut points = vec![Vec3::ZERO; simulation.point_count()];
-            simulation.write_points(&mut points);
-            points
+            points(&simulation)
         };
         let all = run(&[0, 1, 2, 3, 4, 5, 6, 7]);
         for s in 0..8 {
@@ -183,26 +148,25 @@ fn instruction_sets_agree() {
 fn instruction_sets_agree_for(model: Model) {
     let material = || Material { model, ..Material::default() };
     let run = |set: &str| {
-        let mut bench = Bench::of(64, 20, material(), Solver::default());
+        let mut bench = Bench::with_material(64, 20, material(), Solver::default());
         if !bench.simulation.use_instruction_set(set) {
             println!("skipped: this processor does not support {set}");
             return None;
         }
         (0..6).for_each(|_| _ = bench.step());
-        let mut points = vec![Vec3::ZERO; bench.simulation.point_count()];
-        bench.simulation.write_points(&mut points);
-        Some(points)
+        Some(points(&bench.simulation))
     };
     let best = Bench::new(8, 20, Solver::default()).simulation.instruction_set();
     let reference = run(&best).unwrap();
     for set in ["sse2", "avx2", "avx512"] {
         if let Some(points) = run(set) {
-            let mut apart: Vec<f32> = points.iter().zip(&reference).map(|(a, b)| a.distance(*b)).collect();
-            apart.sort_by(f32::total_cmp);
-            let median = apart[apart.len() / 2];
+            let mut distances: Vec<f32> =
+                points.iter().zip(&reference).map(|(a, b)| a.distance(*b)).collect();
+            distances.sort_by(f32::total_cmp);
+            let median = distances[distances.len() / 2];
             println!(
                 "{model:?}, {set} and {best}: median distance {median} m, worst {}",
-                apart[apart.len() - 1]
+                distances[distances.len() - 1]
             );
             assert!(median < 2e-5, "{model:?}: {set} and {best} differ by {median} m in the median");
         }

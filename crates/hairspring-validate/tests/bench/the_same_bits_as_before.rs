@@ -7,11 +7,11 @@
 //! the table by the one that the failing test prints, in the same commit. The table is valid for x86-64 and
 //! glibc, whose sine drives the scene; elsewhere the test is skipped.
 
-use glam::Vec3;
 use hairspring::{
     material::{Material, Model},
     settings::{Integrator, Solver},
 };
+use hairspring_test::{on_threads, points};
 use hairspring_validate::bench::Bench;
 
 /// Model, integrator, and hash without and with fused multiplication.
@@ -34,17 +34,17 @@ const GOLDEN: [(Model, Integrator, [u64; 2]); 7] = [
 ];
 
 fn hash(set: &str, model: Model, integrator: Integrator, threads: usize) -> Option<u64> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| {
+    on_threads(threads, || {
         let material = Material { model, ..Material::default() };
-        let mut bench = Bench::of(150, 17, material, Solver { integrator, ..Solver::default() });
+        let mut bench = Bench::with_material(150, 17, material, Solver { integrator, ..Solver::default() });
         if !bench.simulation.use_instruction_set(set) {
             return None;
         }
         (0..6).for_each(|_| _ = bench.step());
-        let mut points = vec![Vec3::ZERO; bench.simulation.point_count()];
-        bench.simulation.write_points(&mut points);
-        let bytes = points.iter().flat_map(|p| p.to_array()).flat_map(|c| c.to_bits().to_le_bytes());
+        let bytes = points(&bench.simulation)
+            .into_iter()
+            .flat_map(|p| p.to_array())
+            .flat_map(|c| c.to_bits().to_le_bytes());
         Some(bytes.fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3)))
     })
 }

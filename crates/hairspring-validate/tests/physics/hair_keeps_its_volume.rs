@@ -9,20 +9,18 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::Air,
     groom::Groom,
-    material::Material,
     math::RigidTransform,
     settings::{Solver, Volume, VolumeMethod},
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
 use hairspring_scene::{
     Guides, Scene,
     builtin::{BuiltinOptions, Style, scene},
     stage::Stage,
 };
+use hairspring_test::{REST, farthest, points, step, translation};
 use hairspring_validate::bench::{self, Bench};
-use std::sync::Arc;
 
 const METHODS: [VolumeMethod; 2] = [VolumeMethod::Density, VolumeMethod::Incompressible];
 
@@ -37,7 +35,7 @@ fn a_start_at_rest_is_not_disturbed() {
         BuiltinOptions { strands: 600, guides: Guides::Count(300), ..BuiltinOptions::new(Style::Wavy) };
     let rest = Scene { clip: None, ..scene(&options) };
     let points = |stage: &Stage| -> Vec<Vec3> { stage.strands().flat_map(|s| s.points.to_vec()).collect() };
-    let apart =
+    let mean_distance =
         |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum::<f32>() / a.len() as f32;
     let played = |method: VolumeMethod| {
         let volume = Volume { method, ..Volume::default() };
@@ -49,22 +47,22 @@ fn a_start_at_rest_is_not_disturbed() {
         (start, first, points(&stage))
     };
     let (start, first, last) = played(VolumeMethod::Off);
-    println!("off: moved by {} m in the mean after a second", apart(&last, &start));
+    println!("off: moved by {} m in the mean after a second", mean_distance(&last, &start));
     for method in METHODS {
-        let (own_start, own_first, own_last) = played(method);
-        assert!(own_start == start, "{method:?}: the start differs");
+        let (volume_start, volume_first, volume_last) = played(method);
+        assert!(volume_start == start, "{method:?}: the start differs");
         // Within the frame, strands interact where residual rounding errors of their balance move them.
-        let pushed = own_first.iter().zip(&first).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        let pushed = farthest(&volume_first, &first);
         println!("{method:?}: {pushed} m from the result without it after a frame");
         assert!(pushed < 1e-7, "{method:?}: hair at rest was pushed by {pushed} m");
         println!(
             "{method:?}: moved by {} m in the mean after a second, {} m from the result without it",
-            apart(&own_last, &start),
-            apart(&own_last, &last)
+            mean_distance(&volume_last, &start),
+            mean_distance(&volume_last, &last)
         );
         // Without a volume method the wavy head creeps by 0.6 mm. Creeping hair takes other hair along, and
         // an incompressible volume makes way for it.
-        let moved = apart(&own_last, &start);
+        let moved = mean_distance(&volume_last, &start);
         assert!(moved < 2e-3, "{method:?}: points moved by {moved} m in the mean in a second at rest");
     }
 }
@@ -72,46 +70,27 @@ fn a_start_at_rest_is_not_disturbed() {
 /// The mean distance of a bundle's tips from its axis one second after its roots were drawn together by
 /// `pinch`, relative to that before.
 fn opened(volume: Volume, pinch: f32) -> f32 {
-    let (side, points) = (20, 16);
+    let (side, count) = (20, 16);
     let place = |k: usize| (k as f32 - 0.5 * (side - 1) as f32) * 0.003;
     let strand = |s: usize| {
         let root = Vec3::new(place(s % side), 0.0, place(s / side));
-        (0..points).map(move |i| root + Vec3::NEG_Y * (0.01 * i as f32)).collect::<Vec<_>>()
+        (0..count).map(move |i| root + Vec3::NEG_Y * (0.01 * i as f32)).collect::<Vec<_>>()
     };
-    let groom = Arc::new(Groom::from_strands((0..side * side).map(strand), 4e-5));
-    let all: Vec<u32> = (0..(side * side) as u32).collect();
-    let solver = Solver { collide_body: false, ..Solver::default() };
-    let gravity = Vec3::NEG_Y * 9.81;
-    let mut simulation = Simulation::builder(groom.clone())
-        .strands(&all)
-        .materials(&[Material::default()])
-        .solver(solver)
-        .gravity(gravity)
-        .build()
-        .unwrap();
-    simulation.set_volume(&volume);
+    let groom = Groom::from_strands((0..side * side).map(strand), 4e-5);
     let pinched = Vec3::new(pinch, 1.0, pinch);
-    let roots: Vec<RigidTransform> = (0..side * side)
-        .map(|s| RigidTransform { translation: groom.strand(s)[0] * pinched, ..RigidTransform::default() })
-        .collect();
-    simulation.place(RigidTransform::default(), &roots);
+    let roots: Vec<RigidTransform> =
+        (0..side * side).map(|s| translation(groom.strand(s)[0] * pinched)).collect();
+    let solver = Solver { collide_body: false, ..Solver::default() };
+    let mut simulation = Simulation::builder(groom).solver(solver).build().unwrap();
+    simulation.set_volume(&volume);
+    simulation.place(REST, &roots);
     let spread = |simulation: &Simulation| {
-        let mut now = vec![Vec3::ZERO; simulation.point_count()];
-        simulation.write_points(&mut now);
-        let tips = now.chunks(points).map(|strand| strand[points - 1].with_y(0.0).length());
+        let now = points(simulation);
+        let tips = now.chunks(count).map(|strand| strand[count - 1].with_y(0.0).length());
         tips.sum::<f32>() / (side * side) as f32
     };
     let before = spread(&simulation);
-    for _ in 0..60 {
-        let drive = StepInput {
-            dt: bench::FRAME,
-            anchor: RigidTransform::default(),
-            roots: &roots,
-            obstacles: &[],
-            air: Air::default(),
-        };
-        simulation.step(&drive);
-    }
+    (0..60).for_each(|_| _ = step(&mut simulation, REST, &roots, &[]));
     spread(&simulation) / before
 }
 

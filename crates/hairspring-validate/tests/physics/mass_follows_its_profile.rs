@@ -9,12 +9,12 @@ use hairspring::{
     air::Air,
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
     settings::{Integrator, Solver, Wind},
     simulation::{Simulation, StepInput},
 };
+use hairspring_test::{REST, line, points};
 use hairspring_validate::bench::Bench;
-use std::{f64::consts::PI, sync::Arc};
+use std::f64::consts::PI;
 
 const RADIUS: f64 = 40e-6;
 const LENGTH: f64 = 0.2;
@@ -23,28 +23,14 @@ const MODELS: [Model; 3] = [Model::Curvature, Model::Rod, Model::Springs];
 
 fn strand(points: Vec<Vec3>, material: Material, solver: Solver, gravity: Vec3) -> Simulation {
     let groom = Groom::from_strands([points], RADIUS as f32);
-    Simulation::builder(Arc::new(groom))
-        .strands(&[0])
-        .materials(&[material])
-        .solver(solver)
-        .gravity(gravity)
-        .build()
-        .unwrap()
+    Simulation::builder(groom).materials(&[material]).solver(solver).gravity(gravity).build().unwrap()
 }
 
 /// Steps a strand with its root at the origin.
 fn step(simulation: &mut Simulation, dt: f64, wind: Vec3) -> Vec<Vec3> {
-    let wind = Wind { velocity: wind, ..Wind::default() };
-    simulation.step(&StepInput {
-        dt: dt as f32,
-        anchor: RigidTransform::default(),
-        roots: &[RigidTransform::default()],
-        obstacles: &[],
-        air: Air { wind, ..Air::default() },
-    });
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    points
+    let air = Air { wind: Wind { velocity: wind, ..Wind::default() }, ..Air::default() };
+    simulation.step(&StepInput { dt: dt as f32, anchor: REST, roots: &[REST], obstacles: &[], air });
+    points(simulation)
 }
 
 /// A chain of `n` points below a fixed segment that is a thousandth of its length.
@@ -81,8 +67,7 @@ fn bead() -> Vec<f32> {
 #[test]
 fn the_moment_of_weight_follows_the_profile() {
     let n = 33;
-    let points: Vec<Vec3> =
-        (0..n).map(|i| Vec3::NEG_Y * (LENGTH as f32 * i as f32 / (n - 1) as f32)).collect();
+    let points = line(Vec3::ZERO, Vec3::NEG_Y * LENGTH as f32, n);
     for model in MODELS {
         for profile in [vec![1.0], vec![1.0, 3.0], vec![3.0, 1.0], bead()] {
             let material = Material { model, mass_profile: profile.clone(), ..Material::default() };
@@ -138,7 +123,7 @@ fn a_strand_swings_as_a_double_pendulum_with_its_bobs() {
 #[test]
 fn a_bead_at_the_tip_lowers_the_frequency_of_a_cantilever() {
     let (n, length, bending) = (33, 0.1, 3.9e9 * PI / 4.0 * RADIUS.powi(4));
-    let points: Vec<Vec3> = (0..n).map(|i| Vec3::X * (length as f32 * i as f32 / (n - 1) as f32)).collect();
+    let points = line(Vec3::ZERO, Vec3::X * length as f32, n);
     for model in MODELS {
         for profile in [bead(), bead().into_iter().rev().collect()] {
             // Rayleigh's quotient for the shape under a load at the tip: exact for a bead, 1.5 % high for a
@@ -229,7 +214,7 @@ fn a_shaken_strand_with_any_profile_keeps_its_length() {
             vec![1.0, 1.0, 1.0, 100.0],
         ] {
             let material = Material { model, mass_profile: profile.clone(), ..Material::default() };
-            let mut bench = Bench::of(64, 32, material, Solver::default());
+            let mut bench = Bench::with_material(64, 32, material, Solver::default());
             for frame in 0..120 {
                 let report = bench.step();
                 let measure = bench.measure();

@@ -9,15 +9,15 @@
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    air::Air,
-    collide::ColliderShape,
+    collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
     math::RigidTransform,
     settings::{Neighbours, Solver, Volume, VolumeMethod},
-    simulation::{Hold, Simulation, StepInput},
+    simulation::{Hold, Simulation},
 };
-use hairspring_validate::bench::{self, Bench};
+use hairspring_test::{FRAME, REST, farthest, line, on_threads, points, roots, step, translation};
+use hairspring_validate::bench::Bench;
 use std::sync::Arc;
 
 const ON: Neighbours = Neighbours { on: true, radius: Some(0.001), friction: 0.0, stiction: 0.0 };
@@ -27,45 +27,32 @@ struct Strands {
     groom: Arc<Groom>,
     simulation: Simulation,
     roots: Vec<RigidTransform>,
-    bodies: Vec<hairspring::collide::MovingCollider>,
+    colliders: Vec<MovingCollider>,
 }
 
 impl Strands {
     fn new(strands: &[Vec<Vec3>], material: Material, gravity: Vec3, neighbours: Neighbours) -> Self {
         let groom = Arc::new(Groom::from_strands(strands, 4e-5));
-        let all: Vec<u32> = (0..strands.len() as u32).collect();
         let solver = Solver { sag_free: false, ..Solver::default() };
         let mut simulation = Simulation::builder(groom.clone())
-            .strands(&all)
             .materials(&[material])
             .solver(solver)
             .gravity(gravity)
             .build()
             .unwrap();
         simulation.set_neighbours(&neighbours);
-        let roots = strands
-            .iter()
-            .map(|s| RigidTransform { translation: s[0], ..RigidTransform::default() })
-            .collect();
-        Self { groom, simulation, roots, bodies: Vec::new() }
+        let roots = roots(&groom, REST);
+        Self { groom, simulation, roots, colliders: Vec::new() }
     }
 
     fn play(&mut self, seconds: f32) {
         for _ in 0..(seconds * 60.0).round() as u32 {
-            let report = self.simulation.step(&StepInput {
-                dt: bench::FRAME,
-                anchor: RigidTransform::default(),
-                roots: &self.roots,
-                obstacles: &self.bodies,
-                air: Air::default(),
-            });
-            assert_eq!(report.reset_strands, 0);
+            step(&mut self.simulation, REST, &self.roots, &self.colliders);
         }
     }
 
     fn points(&self) -> Vec<Vec<Vec3>> {
-        let mut now = vec![Vec3::ZERO; self.simulation.point_count()];
-        self.simulation.write_points(&mut now);
+        let now = points(&self.simulation);
         (0..self.groom.strand_count()).map(|s| now[self.groom.range(s)].to_vec()).collect()
     }
 
@@ -80,10 +67,6 @@ impl Strands {
         };
         (2..points.len()).map(hold).collect()
     }
-}
-
-fn line(from: Vec3, to: Vec3, points: usize) -> Vec<Vec3> {
-    (0..points).map(|i| from.lerp(to, i as f32 / (points - 1) as f32)).collect()
 }
 
 /// Hair with very little bending stiffness and little drag in still air.
@@ -132,7 +115,7 @@ fn rubbed(press: f32, pull: f32, friction: f32) -> f32 {
     let rope = line(Vec3::new(-0.105, 0.002, 0.0), Vec3::new(0.105, 0.002, 0.0), 22);
     let mut strands = Strands::new(&[bar, rope], hair(), Vec3::ZERO, Neighbours { friction, ..ON });
     let bar = strands.bar(0);
-    let pulled = |pull: f32| {
+    let loads = |pull: f32| {
         let at = |point: u32| Hold {
             strand: 1,
             point,
@@ -141,12 +124,12 @@ fn rubbed(press: f32, pull: f32, friction: f32) -> f32 {
         };
         [&bar[..], &[at(10), at(11)]].concat()
     };
-    strands.simulation.set_holds(&pulled(0.0));
+    strands.simulation.set_holds(&loads(0.0));
     strands.play(0.5);
     // The force grows slowly, so that it does not act as an impact.
     for k in 1..=60 {
-        strands.simulation.set_holds(&pulled(pull * k as f32 / 60.0));
-        strands.play(bench::FRAME);
+        strands.simulation.set_holds(&loads(pull * k as f32 / 60.0));
+        strands.play(FRAME);
     }
     strands.play(0.5);
     let before = strands.points()[1][10].z;
@@ -170,11 +153,11 @@ fn torn(stiction: f32, pull: f32) -> (f32, usize) {
     let rope = line(Vec3::new(-0.105, 0.0021, 0.0), Vec3::new(0.105, 0.0021, 0.0), 22);
     let mut strands = Strands::new(&[bar, rope], hair(), Vec3::ZERO, Neighbours { stiction, ..ON });
     let bar = strands.bar(0);
-    let pulled = |force: f32| {
+    let loads = |force: f32| {
         let at = |point: u32| Hold { strand: 1, point, force: Vec3::Y * (0.5 * force), ..Hold::default() };
         [&bar[..], &[at(10), at(11)]].concat()
     };
-    strands.simulation.set_holds(&pulled(-5e-6));
+    strands.simulation.set_holds(&loads(-5e-6));
     strands.play(0.5);
     assert!(
         stiction == 0.0 || strands.simulation.neighbours().unwrap().stuck_pairs > 0,
@@ -183,8 +166,8 @@ fn torn(stiction: f32, pull: f32) -> (f32, usize) {
     );
     // The force grows slowly, so that it does not act as an impact.
     for k in 1..=60 {
-        strands.simulation.set_holds(&pulled(pull * k as f32 / 60.0));
-        strands.play(bench::FRAME);
+        strands.simulation.set_holds(&loads(pull * k as f32 / 60.0));
+        strands.play(FRAME);
     }
     strands.play(0.25);
     (strands.points()[1][10].y - 0.002, strands.simulation.neighbours().unwrap().stuck_pairs)
@@ -195,8 +178,8 @@ fn a_bond_breaks_at_its_force() {
     let stiction = 1e-5;
     let (held, bonds) = torn(stiction, 0.93 * stiction);
     assert!(held < 1e-4 && bonds == 1, "below its force the bond: {held} m away, {bonds} bonds");
-    let (off, bonds) = torn(stiction, 1.07 * stiction);
-    assert!(off > 1e-3 && bonds == 0, "above its force the bond: {off} m away, {bonds} bonds");
+    let (distance, bonds) = torn(stiction, 1.07 * stiction);
+    assert!(distance > 1e-3 && bonds == 0, "above its force the bond: {distance} m away, {bonds} bonds");
     assert!(torn(0.0, 0.1 * stiction).0 > 1e-3, "the strand was held without stiction");
 }
 
@@ -214,21 +197,18 @@ fn squeezed(neighbours: Neighbours) -> f32 {
     for frame in 0..120 {
         let wall = |side: f32| {
             let at = |frame: i32| {
-                let in_by = 0.003 * (frame as f32 / 60.0).min(1.0);
-                RigidTransform {
-                    translation: Vec3::X * (side * (0.009 - in_by)),
-                    ..RigidTransform::default()
-                }
+                let inward = 0.003 * (frame as f32 / 60.0).min(1.0);
+                translation(Vec3::X * (side * (0.009 - inward)))
             };
             let (center, half) = (Vec3::new(side * 0.02, -0.13, 0.0), Vec3::new(0.02, 0.04, 0.1));
-            hairspring::collide::MovingCollider::new(
+            MovingCollider::new(
                 ColliderShape::Cuboid { center, half, axes: Mat3::IDENTITY },
                 at(frame),
                 at(frame + 1),
             )
         };
-        strands.bodies = vec![wall(-1.0), wall(1.0)];
-        strands.play(bench::FRAME);
+        strands.colliders = vec![wall(-1.0), wall(1.0)];
+        strands.play(FRAME);
     }
     let tips: Vec<Vec3> = strands.points().iter().map(|s| s[15]).collect();
     let nearest = |a: usize| {
@@ -266,52 +246,32 @@ fn contacts_do_not_disturb_hair_at_rest() {
         ("curls", (0..25).map(curl).collect::<Vec<_>>()),
     ] {
         let groom = Arc::new(Groom::from_strands(&all, 4e-5));
-        let names: Vec<u32> = (0..25).collect();
-        let roots: Vec<RigidTransform> =
-            all.iter().map(|s| RigidTransform { translation: s[0], ..RigidTransform::default() }).collect();
+        let roots = roots(&groom, REST);
         let played = |neighbours: Neighbours| {
-            let mut simulation = Simulation::builder(groom.clone())
-                .strands(&names)
-                .materials(&[Material::default()])
-                .solver(Solver::default())
-                .gravity(GRAVITY)
-                .build()
-                .unwrap();
+            let mut simulation = Simulation::builder(groom.clone()).build().unwrap();
             simulation.set_neighbours(&neighbours);
-            let mut step = || {
-                let air = Air::default();
-                simulation.step(&StepInput {
-                    dt: bench::FRAME,
-                    anchor: RigidTransform::default(),
-                    roots: &roots,
-                    obstacles: &[],
-                    air,
-                });
-                let mut points = vec![Vec3::ZERO; simulation.point_count()];
-                simulation.write_points(&mut points);
-                points
-            };
-            (step(), (1..60).map(|_| step()).last().unwrap())
+            step(&mut simulation, REST, &roots, &[]);
+            let first = points(&simulation);
+            (1..60).for_each(|_| _ = step(&mut simulation, REST, &roots, &[]));
+            (first, points(&simulation))
         };
         let (first, last) = played(Neighbours::default());
-        let (own_first, own_last) = played(Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
-        let far = own_last.iter().zip(&last).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-        println!("{name}: {far} m from the result without contact after a second");
-        assert!(own_first == first, "{name}: contact moved hair at rest");
-        assert!(far < 1e-4, "{name}: {far} m from the result without contact");
+        let (contact_first, contact_last) =
+            played(Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
+        let difference = farthest(&contact_last, &last);
+        println!("{name}: {difference} m from the result without contact after a second");
+        assert!(contact_first == first, "{name}: contact moved hair at rest");
+        assert!(difference < 1e-4, "{name}: {difference} m from the result without contact");
     }
 }
 
 /// Shaken hair on a ball, with many contacts.
 fn shaken(neighbours: Neighbours, threads: usize, frames: u32) -> (Vec<Vec3>, Bench) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| {
+    on_threads(threads, || {
         let mut bench = Bench::new(150, 16, Solver::default());
         bench.simulation.set_neighbours(&neighbours);
         (0..frames).for_each(|_| assert_eq!(bench.step().reset_strands, 0));
-        let mut points = vec![Vec3::ZERO; bench.simulation.point_count()];
-        bench.simulation.write_points(&mut points);
-        (points, bench)
+        (points(&bench.simulation), bench)
     })
 }
 
@@ -321,7 +281,7 @@ fn contacts_are_independent_of_threads() {
     let (one, bench) = shaken(neighbours, 1, 60);
     let report = bench.simulation.neighbours().unwrap();
     println!("{report:?}");
-    assert!(report.touching_pairs > 50, "{report:?}");
+    assert!(report.touching_pairs > 50, "too few strands are in contact: {report:?}");
     for threads in [2, 7] {
         assert!(shaken(neighbours, threads, 60).0 == one, "other bits on {threads} threads");
     }
@@ -356,7 +316,7 @@ fn folded_strands_in_a_heap_stay_finite_and_keep_their_lengths() {
         for (root, at) in strands.roots.iter_mut().zip(&rest) {
             root.translation = *at + Vec3::X * shift;
         }
-        strands.play(bench::FRAME);
+        strands.play(FRAME);
         for s in 0..40 {
             for i in 0..19 {
                 worst = worst.max(strands.simulation.stretch_at(s, i).abs());
@@ -388,12 +348,10 @@ fn strand_contact_keeps_volume_of_a_shaken_head() {
         }
         sum
     };
-    let off = Neighbours::default();
-    let without = kept(measured, off);
-    let strands = kept(measured, Neighbours { on: true, ..off });
-    let lattice = kept(Volume { method: VolumeMethod::Incompressible, ..Volume::default() }, off);
-    let soft = kept(Volume { method: VolumeMethod::Density, ..Volume::default() }, off);
-    println!("kept: without {without}, strands {strands}, incompressible {lattice}, density {soft}");
+    let none = Neighbours::default();
+    let without = kept(measured, none);
+    let strands = kept(measured, Neighbours { on: true, ..none });
+    println!("kept: without {without}, strands {strands}");
     assert!(
         strands > without + 0.1,
         "strand contact keeps {strands} of the volume, and {without} is left without it"

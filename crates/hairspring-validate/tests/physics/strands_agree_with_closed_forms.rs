@@ -22,9 +22,9 @@ fn run_all(method: impl Fn(&Case) -> Method + Sync) -> Vec<Outcome> {
 fn check(outcomes: &[Outcome]) {
     let mut wrong = Vec::new();
     for case in CASES {
-        let own: Vec<&Outcome> = outcomes.iter().filter(|o| o.case == case.name).collect();
-        let reason = (case.out_of_reach)(own[0].method);
-        let failed: Vec<&&Outcome> = own.iter().filter(|o| !o.pass()).collect();
+        let of_case: Vec<&Outcome> = outcomes.iter().filter(|o| o.case == case.name).collect();
+        let reason = (case.out_of_reach)(of_case[0].method);
+        let failed: Vec<&&Outcome> = of_case.iter().filter(|o| !o.pass()).collect();
         assert!(failed.iter().all(|o| o.reason() == reason));
         match reason {
             None => wrong.extend(failed.iter().map(|o| format!("{o:?}"))),
@@ -51,18 +51,18 @@ fn is_on_the_page(after: &str, outcomes: &[Outcome]) {
     let mut rows = table.lines().skip(2);
     for outcome in outcomes {
         let row = rows.next().expect("a row is missing");
-        let said = row.split_once(outcome.quantity).and_then(|(_, rest)| rest.split_whitespace().next());
-        let said = said
+        let cell = row.split_once(outcome.quantity).and_then(|(_, rest)| rest.split_whitespace().next());
+        let documented = cell
             .unwrap_or_else(|| panic!("'{row}' is not a row of {}", outcome.quantity))
             .parse::<f64>()
             .ok();
         assert!(row.starts_with(outcome.case), "'{row}' is not a row of {}", outcome.case);
-        let same = match (said, outcome.measured.as_ref().ok(), outcome.reference.as_ref().ok()) {
-            (Some(said), Some(measured), Some(reference)) => {
+        let same = match (documented, outcome.measured.as_ref().ok(), outcome.reference.as_ref().ok()) {
+            (Some(documented), Some(measured), Some(reference)) => {
                 let scale = if *reference == 0.0 { 1.0 } else { reference.abs() };
-                (said - measured).abs() < SAME * outcome.tolerance * scale
+                (documented - measured).abs() < SAME * outcome.tolerance * scale
             }
-            (said, measured, _) => said.is_none() && measured.is_none(),
+            (documented, measured, _) => documented.is_none() && measured.is_none(),
         };
         assert!(same, "docs/validation.md has '{row}', but measured is {:?}", outcome.measured);
     }

@@ -1,29 +1,24 @@
 //! Promise: any input gives a picture, including non-finite strands, a mesh with an invalid index, and an
 //! empty scene.
 
+use crate::support::{
+    BROKEN_BODY, BROKEN_QUALITY, NO_BODY, break_points, broken_cameras, broken_hair, broken_look, frame,
+    no_hair,
+};
 use glam::Vec3;
 use hairspring_scene::{Camera, HairLook};
-use hairspring_view::{Frame, HairDraw, Light, Lighting, MeshDraw, Quality, Renderer, frame_camera};
+use hairspring_view::{Frame, HairDraw, Light, Lighting, Renderer, frame_camera};
 
 #[test]
 fn an_empty_scene_is_the_backdrop() {
     let mut renderer = Renderer::new(64, 36);
-    let image = renderer.draw(&crate::support::frame(&[], &[]));
+    let image = renderer.draw(&frame(&[], &[]));
     assert!(image.rgb.iter().all(|c| *c > 5));
     let look = HairLook::default();
-    let nothing = HairDraw {
-        points: &[],
-        offsets: &[],
-        radii: &[],
-        colors: &[],
-        look: &look,
-        width_scale: 1.0,
-        follow: None,
-    };
+    let nothing = no_hair(&look);
     let zero = HairDraw { offsets: &[0], ..nothing };
-    let body = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
     let before = renderer.image().clone();
-    assert_eq!(*renderer.draw(&crate::support::frame(&[nothing, zero], &[body])), before);
+    assert_eq!(*renderer.draw(&frame(&[nothing, zero], &[NO_BODY])), before);
 }
 
 #[test]
@@ -33,15 +28,12 @@ fn non_finite_points_affect_nothing_else() {
     let look = HairLook::default();
     let draw = |groom: &hairspring::groom::Groom| {
         let hair = [crate::support::hair(groom, &look)];
-        Renderer::new(160, 90).draw(&crate::support::frame(&hair, &[])).clone()
+        Renderer::new(160, 90).draw(&frame(&hair, &[])).clone()
     };
     let good = draw(&groom);
     let mut broken = groom.clone();
-    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, 1e8].into_iter().enumerate() {
-        broken.points[12 * 100 * (i + 1) + i] = Vec3::new(bad, 0.1, bad);
-    }
-    broken.radii[7] = f32::NAN;
-    broken.radii[80] = -1.0;
+    break_points(&mut broken);
+    broken.points[12 * 600 + 5] = Vec3::new(1e8, 0.1, 1e8);
     let seen = draw(&broken);
     let different = good
         .rgb
@@ -56,52 +48,15 @@ fn non_finite_points_affect_nothing_else() {
 
 #[test]
 fn arrays_of_different_lengths_are_truncated() {
-    let points = [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2];
-    let look = HairLook { root_color: Vec3::NAN, roughness: f32::NAN, ..HairLook::default() };
-    let hair = [
-        HairDraw {
-            points: &points,
-            offsets: &[0, 3, 900, 2, u32::MAX],
-            radii: &[1e-3; 2],
-            colors: &[Vec3::NAN],
-            look: &look,
-            width_scale: 1.0,
-            follow: None,
-        },
-        HairDraw {
-            points: &points,
-            offsets: &[0, 3],
-            radii: &[1e-3; 3],
-            colors: &[],
-            look: &look,
-            width_scale: f32::INFINITY,
-            follow: None,
-        },
-    ];
-    let bodies = [MeshDraw {
-        positions: &[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NAN],
-        normals: &[Vec3::Z],
-        triangles: &[[0, 1, 2], [0, 1, 3], [0, 1, 77], [1, 1, 1]],
-        parts: &[],
-    }];
+    let look = broken_look();
+    let hair = broken_hair(&look);
     let dark = Light { direction: Vec3::ZERO, color: Vec3::NAN };
-    for camera in [
-        Camera::default(),
-        Camera { position: Vec3::ZERO, target: Vec3::ZERO, fov: f32::NAN },
-        Camera { position: Vec3::NAN, target: Vec3::INFINITY, fov: -3.0 },
-        Camera { position: Vec3::Y * 0.1001, target: Vec3::ZERO, fov: 170.0 },
-    ] {
-        let quality = Quality { shadow_voxels: 0, shadow_texels: 0, smoothness: f32::NAN, wisp: u32::MAX };
-        for lighting in [
-            Lighting::default(),
-            Lighting { key: dark, fill: dark, rim: dark, exposure: f32::NAN, ..Lighting::default() },
-        ] {
-            Renderer::new(70, 40).draw(&Frame {
-                camera,
-                quality,
-                lighting,
-                ..crate::support::frame(&hair, &bodies)
-            });
+    let broken = Lighting { key: dark, fill: dark, rim: dark, exposure: f32::NAN, ..Lighting::default() };
+    for camera in broken_cameras() {
+        for lighting in [Lighting::default(), broken] {
+            let frame = Frame { camera, lighting, quality: BROKEN_QUALITY, ..frame(&hair, &[BROKEN_BODY]) };
+            let picture = Renderer::new(70, 40).draw(&frame).clone();
+            assert_eq!((picture.width, picture.height, picture.rgb.len()), (70, 40, 70 * 40 * 3));
         }
     }
 }

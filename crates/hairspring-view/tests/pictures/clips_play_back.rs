@@ -71,7 +71,7 @@ fn clip_has_the_requested_frames_size_and_rate() {
     assert_eq!(track.sample_count(), FRAMES);
     assert!((track.frame_rate() - FPS).abs() < 0.01, "{} frames a second", track.frame_rate());
     let seconds = track.duration().as_secs_f64();
-    assert!((seconds - FRAMES as f64 / FPS).abs() < 2e-3, "{seconds} s");
+    assert!((seconds - FRAMES as f64 / FPS).abs() < 2e-3, "the clip lasts {seconds} s");
 
     let mut decoder = Decoder::new().unwrap();
     let mut shown = 0;

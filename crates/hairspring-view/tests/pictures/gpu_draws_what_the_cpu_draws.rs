@@ -14,7 +14,7 @@ use hairspring_scene::{
     builtin::{BuiltinOptions, scene},
     stage::Stage,
 };
-use hairspring_view::{Frame, Ground, HairDraw, Lighting, MeshDraw, Quality, gpu::GpuRenderer};
+use hairspring_view::{Frame, Ground, HairDraw, Lighting, MeshDraw, gpu::GpuRenderer};
 
 /// Strands with their points in one array.
 struct Few {
@@ -289,16 +289,8 @@ fn changed_arrays_are_uploaded_again() {
 fn an_empty_scene_is_the_backdrop() {
     let Some(mut gpu) = crate::support::card() else { return };
     let look = HairLook::default();
-    let nothing = HairDraw {
-        points: &[],
-        offsets: &[],
-        radii: &[],
-        colors: &[],
-        look: &look,
-        width_scale: 1.0,
-        follow: None,
-    };
-    let body = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
+    let nothing = crate::support::no_hair(&look);
+    let body = crate::support::NO_BODY;
     compare(&mut gpu, "empty", &crate::support::frame(&[], &[]), 64, 36);
     compare(
         &mut gpu,
@@ -318,11 +310,7 @@ fn broken_input_is_skipped() {
         ..crate::support::STRAIGHT
     });
     let look = HairLook::default();
-    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30].into_iter().enumerate() {
-        groom.points[12 * 100 * (i + 1) + i] = Vec3::new(bad, 0.1, bad);
-    }
-    groom.radii[7] = f32::NAN;
-    groom.radii[80] = -1.0;
+    crate::support::break_points(&mut groom);
     let hair = [HairDraw { width_scale: 3.0, ..crate::support::hair(&groom, &look) }];
     compare(&mut gpu, "broken", &crate::support::frame(&hair, &[]), 160, 90);
     // Points too far apart for a shadow volume: the hair is still drawn.
@@ -334,32 +322,12 @@ fn broken_input_is_skipped() {
     };
     assert!(seen(&mut gpu, &hair)[0] > seen(&mut gpu, &[])[0] + 2.0);
 
-    let points = [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2];
-    let look = HairLook { root_color: Vec3::NAN, roughness: f32::NAN, ..HairLook::default() };
-    let short = HairDraw {
-        points: &points,
-        offsets: &[0, 3, 900, 2, u32::MAX],
-        radii: &[1e-3; 2],
-        colors: &[Vec3::NAN],
-        look: &look,
-        width_scale: 1.0,
-        follow: None,
-    };
-    let hair = [short, HairDraw { offsets: &[0, 3], radii: &[1e-3; 3], width_scale: f32::INFINITY, ..short }];
-    let bodies = [MeshDraw {
-        positions: &[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NAN],
-        normals: &[Vec3::Z],
-        triangles: &[[0, 1, 2], [0, 1, 3], [0, 1, 77], [1, 1, 1]],
-        parts: &[],
-    }];
-    for camera in [
-        Camera::default(),
-        Camera { position: Vec3::ZERO, target: Vec3::ZERO, fov: f32::NAN },
-        Camera { position: Vec3::NAN, target: Vec3::INFINITY, fov: -3.0 },
-        Camera { position: Vec3::Y * 0.1001, target: Vec3::ZERO, fov: 170.0 },
-    ] {
-        let quality = Quality { shadow_voxels: 0, shadow_texels: 0, smoothness: f32::NAN, wisp: u32::MAX };
+    let look = crate::support::broken_look();
+    let hair = crate::support::broken_hair(&look);
+    let bodies = [crate::support::BROKEN_BODY];
+    let quality = crate::support::BROKEN_QUALITY;
+    for camera in crate::support::broken_cameras() {
         gpu.draw(&Frame { camera, quality, ..crate::support::frame(&hair, &bodies) }, 70, 40);
-        gpu.read().unwrap();
+        assert_eq!(gpu.read().unwrap().rgb.len(), 70 * 40 * 3);
     }
 }

@@ -74,8 +74,8 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
         stage.place_follow_hairs();
         let cpu: Vec<Vec3> = stage.strands().flat_map(|s| s.points.to_vec()).collect();
         assert_eq!(card.len(), cpu.len());
-        let apart: Vec<f32> = cpu.iter().zip(&card).map(|(a, b)| a.distance(*b)).collect();
-        let most = apart.iter().copied().fold(0.0, f32::max);
+        let distances: Vec<f32> = cpu.iter().zip(&card).map(|(a, b)| a.distance(*b)).collect();
+        let most = distances.iter().copied().fold(0.0, f32::max);
         let moved = cpu.iter().zip(&free).filter(|(a, b)| a.distance(**b) > 1e-4).count();
         let (mut first, mut strands, mut folded) = (0, 0, 0);
         for s in stage.strands() {
@@ -86,13 +86,13 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
             }
             for k in 0..s.groom.strand_count() {
                 let range = s.groom.range(k);
-                let off = apart[first..][range.clone()].iter().copied().fold(0.0, f32::max);
-                if off.is_nan() || off > BOUND {
+                let error = distances[first..][range.clone()].iter().copied().fold(0.0, f32::max);
+                if error.is_nan() || error > BOUND {
                     folded += 1;
                     let left = kept(&bare[range]);
                     assert!(
-                        left < FOLDED.1 && off <= FOLDED.0,
-                        "{name}: strand {k} differs by {off} m and keeps {left} of its normal"
+                        left < FOLDED.1 && error <= FOLDED.0,
+                        "{name}: strand {k} differs by {error} m and keeps {left} of its normal"
                     );
                 }
             }

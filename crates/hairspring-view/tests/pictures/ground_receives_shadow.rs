@@ -22,7 +22,7 @@ fn above() -> Camera {
     Camera { position: Vec3::new(0.0, 1.2, 1.6), target: Vec3::ZERO, fov: 40.0 }
 }
 
-fn on(height: f32) -> Option<Ground> {
+fn ground_at(height: f32) -> Option<Ground> {
     Some(Ground { height, color: None })
 }
 
@@ -45,7 +45,7 @@ fn mat(half: f32, height: f32) -> Groom {
 }
 
 /// Projects a point into the picture [pixels].
-fn seen(camera: &Camera, p: Vec3) -> [u32; 2] {
+fn pixel_of(camera: &Camera, p: Vec3) -> [u32; 2] {
     let forward = (camera.target - camera.position).normalize();
     let right = forward.cross(Vec3::Y).normalize();
     let (way, focal) = (p - camera.position, 0.5 * SIZE[1] as f32 / (0.5 * camera.fov.to_radians()).tan());
@@ -57,7 +57,7 @@ fn seen(camera: &Camera, p: Vec3) -> [u32; 2] {
 
 /// The brightness of a point of the ground [codes], and that of the picture without the ground.
 fn codes(with: &Image, without: &Image, p: Vec3) -> (i32, i32) {
-    let [x, y] = seen(&above(), p);
+    let [x, y] = pixel_of(&above(), p);
     let sum = |image: &Image| image.pixel(x, y).iter().map(|c| i32::from(*c)).sum();
     (sum(with), sum(without))
 }
@@ -78,16 +78,16 @@ fn the_ground_is_dark_in_shadows_only() {
         ("body", vec![], vec![crate::support::body(&body)]),
     ] {
         let frame = Frame { camera: above(), ..crate::support::frame(&hair, &bodies) };
-        let (without, with) = (draw(&frame), draw(&Frame { ground: on(0.0), ..frame }));
+        let (without, with) = (draw(&frame), draw(&Frame { ground: ground_at(0.0), ..frame }));
         let (dark, wall) = codes(&with, &without, cast(Vec3::Y * 0.25));
         assert!(dark < wall * 2 / 3, "{name}: {dark} in the shadow, {wall} without ground");
-        for beside in [Vec3::new(0.6, 0.0, 0.5), Vec3::new(-0.8, 0.0, -0.3), Vec3::new(0.0, 0.0, 0.75)] {
-            let (lit, wall) = codes(&with, &without, beside);
-            assert_eq!(lit, wall, "{name}: outside the shadow, at {beside}");
+        for place in [Vec3::new(0.6, 0.0, 0.5), Vec3::new(-0.8, 0.0, -0.3), Vec3::new(0.0, 0.0, 0.75)] {
+            let (lit, wall) = codes(&with, &without, place);
+            assert_eq!(lit, wall, "{name}: outside the shadow, at {place}");
         }
         // All changed pixels are darker, up to rounding.
         let brighter = with.rgb.iter().zip(&without.rgb).map(|(with, without)| with.saturating_sub(*without));
-        assert!(brighter.max().unwrap() <= 1, "{name}");
+        assert!(brighter.max().unwrap() <= 1, "{name}: the ground brightens pixels");
     }
 }
 
@@ -109,7 +109,7 @@ fn a_shadow_has_a_soft_edge_on_all_sides() {
     let middle = cast(Vec3::Y * 0.4);
     let background = Background { center: Vec3::splat(0.3), edge: Vec3::splat(0.3) };
     let camera = Camera { position: middle + Vec3::new(0.0, 1.0, 0.01), target: middle, fov: 30.0 };
-    let ground = on(0.0);
+    let ground = ground_at(0.0);
     let image = draw(&Frame { camera, ground, quality, background, ..crate::support::frame(&[], &bodies) });
     let code = |x: u32, y: u32| i32::from(image.pixel(x, y)[1]);
     let steps = (0..SIZE[1]).flat_map(|y| (1..SIZE[0]).map(move |x| (code(x, y) - code(x - 1, y)).abs()));
@@ -156,8 +156,8 @@ fn the_ground_is_invisible_from_below() {
         ..crate::support::frame(&hair, &bodies)
     };
     let without = draw(&frame);
-    for ground in [0.5, f32::NAN, f32::INFINITY].map(on) {
-        assert!(draw(&Frame { ground, ..frame }) == without, "{ground:?}");
+    for ground in [0.5, f32::NAN, f32::INFINITY].map(ground_at) {
+        assert!(draw(&Frame { ground, ..frame }) == without, "{ground:?} is visible");
     }
 }
 
@@ -169,13 +169,13 @@ fn the_ground_hides_objects_under_it() {
     let (hair, bodies) = ([crate::support::hair(&groom, &look)], [crate::support::body(&ball)]);
     // If the ground is above all objects, only the ground is visible.
     let empty = draw(&Frame { camera: above(), ..crate::support::frame(&[], &[]) });
-    let frame = Frame { camera: above(), ground: on(0.2), ..crate::support::frame(&hair, &bodies) };
-    let under = draw(&frame);
-    assert!(under.rgb.iter().zip(&empty.rgb).all(|(a, b)| a <= b));
+    let frame = Frame { camera: above(), ground: ground_at(0.2), ..crate::support::frame(&hair, &bodies) };
+    let buried = draw(&frame);
+    assert!(buried.rgb.iter().zip(&empty.rgb).all(|(a, b)| a <= b));
     // A ball that is half under the ground is cut in a clean line; its upper half is visible.
-    let half = draw(&Frame { hair: &[], ground: on(0.0), ..frame });
+    let half = draw(&Frame { hair: &[], ground: ground_at(0.0), ..frame });
     let whole = draw(&Frame { hair: &[], ground: None, ..frame });
-    let [x, y] = seen(&above(), Vec3::new(0.0, 0.08, 0.0));
+    let [x, y] = pixel_of(&above(), Vec3::new(0.0, 0.08, 0.0));
     assert_eq!(half.pixel(x, y), whole.pixel(x, y));
     let red = |image: &Image| image.rgb.chunks(3).filter(|p| p[0] > p[2] + 20).count();
     assert!(red(&half) < red(&whole) * 9 / 10, "{} of {}", red(&half), red(&whole));
@@ -188,25 +188,25 @@ fn the_ground_is_dark_where_bodies_touch_it() {
     let dark = hairspring_view::Light { color: Vec3::ZERO, ..Lighting::default().key };
     let lighting = Lighting { key: dark, fill: dark, rim: dark, sky: Vec3::ONE, ..Lighting::default() };
     let background = Background { center: Vec3::splat(0.3), edge: Vec3::splat(0.3) };
-    let beside = |height: f32| {
+    let brightness_beside = |height: f32| {
         let mesh = plate(0.2, height);
         let bodies = [crate::support::body(&mesh)];
         let frame = Frame {
             camera: above(),
             lighting,
             background,
-            ground: on(0.0),
+            ground: ground_at(0.0),
             ..crate::support::frame(&[], &bodies)
         };
         let image = draw(&frame);
         [0.22, 0.3, 0.6].map(|z| {
-            let [x, y] = seen(&above(), Vec3::new(0.0, 0.0, z));
+            let [x, y] = pixel_of(&above(), Vec3::new(0.0, 0.0, z));
             i32::from(image.pixel(x, y)[1])
         })
     };
-    let ([near, off, far], hovering) = (beside(0.001), beside(0.07));
+    let ([near, a_little_away, far], hovering) = (brightness_beside(0.001), brightness_beside(0.07));
     assert!(near < far - 5, "{near} beside a plate on the ground, {far} far from it");
-    assert!((off - far).abs() <= 1, "{off}, {far}");
+    assert!((a_little_away - far).abs() <= 1, "{a_little_away} a little away, {far} far from the plate");
     assert!(
         hovering.iter().all(|code| (code - far).abs() <= 1),
         "{hovering:?} under a hovering plate, {far} far from one"
@@ -217,12 +217,12 @@ fn the_ground_is_dark_where_bodies_touch_it() {
 fn the_ground_of_a_scene_is_under_its_body() {
     let body = |height| Some(Body { mesh: plate(1.0, height), ..Body::default() });
     let scene = |ground, body| Scene { ground, body, ..Scene::default() };
-    let on = hairspring_scene::Ground { on: true, ..hairspring_scene::Ground::default() };
+    let visible = hairspring_scene::Ground { on: true, ..hairspring_scene::Ground::default() };
     assert_eq!(Ground::of(&scene(hairspring_scene::Ground::default(), body(1.0))), None);
     let height = |scene: Scene| Ground::of(&scene).unwrap().height;
-    assert_eq!(height(scene(on, body(-0.3))), -0.3);
-    assert_eq!(height(scene(on, None)), 0.0);
-    assert_eq!(height(scene(hairspring_scene::Ground { height: Some(0.5), ..on }, body(-0.3))), 0.5);
+    assert_eq!(height(scene(visible, body(-0.3))), -0.3);
+    assert_eq!(height(scene(visible, None)), 0.0);
+    assert_eq!(height(scene(hairspring_scene::Ground { height: Some(0.5), ..visible }, body(-0.3))), 0.5);
 }
 
 #[test]
@@ -232,13 +232,19 @@ fn empty_and_broken_scenes_with_a_ground_are_drawn() {
         triangles: vec![[0, 1, 2], [1, 3, 4], [7, 8, 9]],
         ..Mesh::default()
     };
-    let none = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
-    for bodies in [vec![], vec![none], vec![crate::support::body(&broken)]] {
-        for color in [None, Some(Vec3::NAN), Some(Vec3::splat(-1.0))] {
-            for height in [0.0, -1e30, 1e-3] {
-                let ground = Some(Ground { height, color });
-                draw(&Frame { camera: above(), ground, ..crate::support::frame(&[], &bodies) });
+    let non_finite = Mesh { triangles: vec![[0, 1, 2], [7, 8, 9]], ..broken.clone() };
+    for color in [None, Some(Vec3::NAN), Some(Vec3::splat(-1.0))] {
+        for height in [0.0, -1e30, 1e-3] {
+            let ground = Some(Ground { height, color });
+            let picture = |bodies: &[MeshDraw]| {
+                draw(&Frame { camera: above(), ground, ..crate::support::frame(&[], bodies) })
+            };
+            let alone = picture(&[]);
+            for nothing in [crate::support::NO_BODY, crate::support::body(&non_finite)] {
+                assert!(picture(&[nothing]) == alone, "a body without a valid triangle is visible");
             }
+            let huge = picture(&[crate::support::body(&broken)]);
+            assert_eq!((huge.width, huge.height), (SIZE[0], SIZE[1]));
         }
     }
 }

@@ -174,7 +174,7 @@ fn a_bent_strand_is_drawn_as_a_smooth_curve() {
     };
     let (coarse, fine) = (draw(&circle(9), 1.2, WALL), draw(&circle(400), 1.2, WALL));
     let curve = Curve::measure();
-    let apart: f32 = coarse
+    let difference: f32 = coarse
         .rgb
         .iter()
         .zip(&fine.rgb)
@@ -182,7 +182,7 @@ fn a_bent_strand_is_drawn_as_a_smooth_curve() {
         .sum::<f32>()
         / 3.0;
     let area = curve.area(&fine);
-    assert!(apart < 0.35 * area, "{apart} of {area} pixels differ");
+    assert!(difference < 0.35 * area, "{difference} of {area} pixels differ");
     let polygon = draw(&circle(400).chunks(50).map(|c| c[0]).collect::<Vec<_>>(), 1.2, WALL);
     assert_ne!(polygon.rgb, fine.rgb);
 }

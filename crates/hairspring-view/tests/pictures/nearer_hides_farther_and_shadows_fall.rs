@@ -54,7 +54,10 @@ fn nearer_hair_hides_farther_hair_in_any_order_of_the_input() {
     for hair in [[front, back], [back, front]] {
         let both = middle(&draw(&hair, &[]));
         assert!(both[0] > 3.0 * both[2], "the red curtain is not in front: {both:?}");
-        assert!((both[0] - alone[0]).abs() < 0.25 * alone[0], "{both:?} {alone:?}");
+        assert!(
+            (both[0] - alone[0]).abs() < 0.25 * alone[0],
+            "the back curtain shines through: {both:?}, alone {alone:?}"
+        );
     }
 }
 
@@ -76,12 +79,13 @@ fn strands_on_the_skin_are_visible() {
     // Strands that lie exactly on the front of the ball must not flicker with its triangles: every pixel
     // that they cover changes.
     let ball = crate::support::ball();
-    let on = |a: f32, b: f32| {
+    let on_skin = |a: f32, b: f32| {
         Vec3::new(b.sin() * a.cos() * 0.93, a.sin(), a.cos() * b.cos() * 0.98) * crate::support::RADIUS
     };
     let groom = Groom::from_strands(
-        (0..40)
-            .map(|s| (0..24).map(|k| on(0.04 * k as f32 - 0.5, 0.02 * s as f32 - 0.4)).collect::<Vec<_>>()),
+        (0..40).map(|s| {
+            (0..24).map(|k| on_skin(0.04 * k as f32 - 0.5, 0.02 * s as f32 - 0.4)).collect::<Vec<_>>()
+        }),
         1e-3,
     );
     let look = flat([0.05, 0.6, 0.05]);

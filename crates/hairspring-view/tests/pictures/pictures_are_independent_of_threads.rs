@@ -4,6 +4,7 @@
 //! work items. Ties in depth are broken by order.
 
 use hairspring_scene::HairLook;
+use hairspring_test::on_threads;
 use hairspring_view::{Frame, HairDraw, Image, Quality, Renderer};
 
 #[test]
@@ -17,8 +18,7 @@ fn one_two_and_seven_threads() {
     let draw = |threads: usize, warm: bool, wisp: u32| -> Image {
         let quality = Quality { wisp, ..Quality::default() };
         let frame = Frame { quality, ..crate::support::frame(&hair, &bodies) };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
+        on_threads(threads, || {
             let mut renderer = Renderer::new(321, 203);
             if warm {
                 let other = crate::support::frame(&hair, &[]);
@@ -46,10 +46,10 @@ fn draw_on_reuses_the_shadows_of_the_previous_frame() {
     let frame = crate::support::frame(&hair, &bodies);
     let dark = Frame { hair: &[HairDraw { width_scale: 40.0, ..hair[0] }], ..frame };
     let mut renderer = Renderer::new(160, 120);
-    let own = renderer.draw(&frame).clone();
-    assert!(*renderer.draw_on(&frame) == own);
+    let lit = renderer.draw(&frame).clone();
+    assert!(*renderer.draw_on(&frame) == lit);
     renderer.draw(&dark);
-    assert!(*renderer.draw_on(&frame) != own, "the shadows are not those of the previous frame");
-    assert!(*renderer.draw(&frame) == own);
-    assert!(*Renderer::new(160, 120).draw_on(&frame) == own, "a first frame does not use its own shadows");
+    assert!(*renderer.draw_on(&frame) != lit, "the shadows are not those of the previous frame");
+    assert!(*renderer.draw(&frame) == lit);
+    assert!(*Renderer::new(160, 120).draw_on(&frame) == lit, "a first frame does not use its own shadows");
 }

@@ -37,12 +37,12 @@ pub fn compare(gpu: &mut GpuRenderer, name: &str, frame: &Frame, width: u32, hei
     let card = gpu.read().unwrap();
     assert_eq!((card.width, card.height), (width, height));
     let score = similarity(&cpu, &card);
-    let apart = mean(&cpu).into_iter().zip(mean(&card)).map(|(a, b)| b - a);
-    let apart: Vec<f64> = apart.collect();
-    println!("{name}: similarity {score:.4}, means differ by {apart:.2?}");
+    let difference = mean(&cpu).into_iter().zip(mean(&card)).map(|(a, b)| b - a);
+    let difference: Vec<f64> = difference.collect();
+    println!("{name}: similarity {score:.4}, means differ by {difference:.2?}");
     if std::env::var_os("HAIRSPRING_KEEP").is_some()
         || score < ALIKE
-        || apart.iter().any(|a| a.abs() > BRIGHTNESS)
+        || difference.iter().any(|a| a.abs() > BRIGHTNESS)
     {
         let mut both = Image::new(2 * width, height);
         let rows = cpu.rgb.chunks(3 * width as usize).zip(card.rgb.chunks(3 * width as usize));
@@ -55,7 +55,7 @@ pub fn compare(gpu: &mut GpuRenderer, name: &str, frame: &Frame, width: u32, hei
         println!("{name}: both pictures, CPU and card, are in {}", seen.display());
     }
     assert!(score >= ALIKE, "{name}: the similarity is {score:.4}, but {ALIKE} is needed");
-    assert!(apart.iter().all(|a| a.abs() <= BRIGHTNESS), "{name}: the means differ by {apart:?}");
+    assert!(difference.iter().all(|a| a.abs() <= BRIGHTNESS), "{name}: the means differ by {difference:?}");
 }
 
 /// Renders bodies with both renderers and compares pixel by pixel. No channel of the card's picture may
@@ -70,13 +70,14 @@ pub fn compare_everywhere(gpu: &mut GpuRenderer, name: &str, frame: &Frame, widt
         let rows = y.saturating_sub(1)..(y + 2).min(height);
         let columns = x.saturating_sub(1)..(x + 2).min(width);
         for c in 0..3 {
-            let around = rows.clone().flat_map(|y| columns.clone().map(move |x| 3 * (y * width + x) + c));
-            let codes = around.map(|i| cpu.rgb[i] as i32);
+            let neighborhood =
+                rows.clone().flat_map(|y| columns.clone().map(move |x| 3 * (y * width + x) + c));
+            let codes = neighborhood.map(|i| cpu.rgb[i] as i32);
             let (low, high) = codes.fold((255, 0), |b, v| (b.0.min(v), b.1.max(v)));
             let here = card.rgb[3 * (y * width + x) + c] as i32;
-            let over = (low - here).max(here - high);
-            if over > worst {
-                (worst, place) = (over, [x, y]);
+            let excess = (low - here).max(here - high);
+            if excess > worst {
+                (worst, place) = (excess, [x, y]);
             }
         }
     }

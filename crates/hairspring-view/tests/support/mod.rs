@@ -65,9 +65,9 @@ fn noise(p: Vec3, seed: u32) -> f32 {
 pub fn groom(style: Style) -> Groom {
     let strands = (0..).map(spread).enumerate().filter_map(|(i, uv)| {
         let y = 1.0 - 1.35 * uv.y;
-        let around = std::f32::consts::TAU * uv.x;
+        let azimuth = std::f32::consts::TAU * uv.x;
         let r = (1.0 - y * y).max(0.0).sqrt();
-        let n = Vec3::new(r * around.sin(), y, r * around.cos());
+        let n = Vec3::new(r * azimuth.sin(), y, r * azimuth.cos());
         // The hairline: higher in front.
         let line = -0.25 + 0.75 * ((n.z + 0.1).max(0.0) / r.max(0.05)).min(1.0).powf(1.5);
         (n.y > line).then(|| strand(style, i as u32, n))
@@ -152,6 +152,70 @@ pub fn hair<'a>(groom: &'a Groom, look: &'a HairLook) -> HairDraw<'a> {
         width_scale: 1.0,
         follow: None,
     }
+}
+
+/// A draw call without strands.
+pub fn no_hair(look: &HairLook) -> HairDraw<'_> {
+    HairDraw { points: &[], offsets: &[], radii: &[], colors: &[], look, width_scale: 1.0, follow: None }
+}
+
+/// A look with values that are not numbers.
+pub fn broken_look() -> HairLook {
+    HairLook { root_color: Vec3::NAN, roughness: f32::NAN, ..HairLook::default() }
+}
+
+/// Draw calls whose arrays have different lengths and whose offsets are invalid.
+pub fn broken_hair(look: &HairLook) -> [HairDraw<'_>; 2] {
+    const POINTS: [Vec3; 3] = [Vec3::ZERO, Vec3::new(0.0, 0.1, 0.0), Vec3::new(0.0, 0.2, 0.0)];
+    let short = HairDraw {
+        points: &POINTS,
+        offsets: &[0, 3, 900, 2, u32::MAX],
+        radii: &[1e-3; 2],
+        colors: &[Vec3::NAN],
+        ..no_hair(look)
+    };
+    let wide = HairDraw {
+        points: &POINTS,
+        offsets: &[0, 3],
+        radii: &[1e-3; 3],
+        width_scale: f32::INFINITY,
+        ..no_hair(look)
+    };
+    [short, wide]
+}
+
+/// A mesh with a non-finite vertex, too few normals and invalid triangles.
+pub const BROKEN_BODY: MeshDraw<'static> = MeshDraw {
+    positions: &[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NAN],
+    normals: &[Vec3::Z],
+    triangles: &[[0, 1, 2], [0, 1, 3], [0, 1, 77], [1, 1, 1]],
+    parts: &[],
+};
+
+/// A mesh without triangles.
+pub const NO_BODY: MeshDraw<'static> = MeshDraw { positions: &[], normals: &[], triangles: &[], parts: &[] };
+
+/// A valid camera and invalid ones.
+pub fn broken_cameras() -> [Camera; 4] {
+    [
+        Camera::default(),
+        Camera { position: Vec3::ZERO, target: Vec3::ZERO, fov: f32::NAN },
+        Camera { position: Vec3::NAN, target: Vec3::INFINITY, fov: -3.0 },
+        Camera { position: Vec3::Y * 0.1001, target: Vec3::ZERO, fov: 170.0 },
+    ]
+}
+
+/// Qualities out of range.
+pub const BROKEN_QUALITY: Quality =
+    Quality { shadow_voxels: 0, shadow_texels: 0, smoothness: f32::NAN, wisp: u32::MAX };
+
+/// Makes some points of a groom of 12 points a strand non-finite or very large, and some radii invalid.
+pub fn break_points(groom: &mut Groom) {
+    for (i, value) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30].into_iter().enumerate() {
+        groom.points[12 * 100 * (i + 1) + i] = Vec3::new(value, 0.1, value);
+    }
+    groom.radii[7] = f32::NAN;
+    groom.radii[80] = -1.0;
 }
 
 /// The mesh as a draw call.

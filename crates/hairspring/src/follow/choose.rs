@@ -50,6 +50,9 @@ fn farthest_points(groom: &Groom, group: Vec<u32>, count: usize) -> Vec<u32> {
     /// Roots processed by one task. The size is fixed, so that ties are resolved alike for any number of
     /// threads.
     const CHUNK: usize = 4096;
+    /// Squared distance of a chosen strand. It is less than that of every other strand, so that none is chosen
+    /// twice where the remaining strands have the roots of chosen ones.
+    const CHOSEN: f32 = -1.0;
     if count >= group.len() {
         return group;
     }
@@ -59,6 +62,7 @@ fn farthest_points(groom: &Groom, group: Vec<u32>, count: usize) -> Vec<u32> {
     let mut next = 0;
     for _ in 0..count {
         chosen.push(group[next]);
+        distances[next] = CHOSEN;
         let p = roots[next];
         let farther = |a: (f32, usize), b: (f32, usize)| {
             if b.0 > a.0 || (b.0 == a.0 && b.1 < a.1) { b } else { a }
@@ -91,10 +95,16 @@ fn farthest_points(groom: &Groom, group: Vec<u32>, count: usize) -> Vec<u32> {
 /// If `guides` is empty, names a strand that does not exist, or a strand has no points.
 pub fn assign_guides(groom: &Groom, guides: &[u32]) -> Vec<GuideWeights> {
     let grid = RootGrid::new(groom, guides);
+    let mut is_guide = vec![false; groom.strand_count()];
+    guides.iter().for_each(|g| is_guide[*g as usize] = true);
     (0..groom.strand_count())
         .into_par_iter()
         .with_min_len(256)
         .map(|s| {
+            // Other guides with the same root and shape are just as near.
+            if is_guide[s] {
+                return weights(&[(0.0, s as u32)]);
+            }
             let near = grid.nearest(groom, groom.strand(s)[0], groom.group(s));
             let mut scored: Vec<(f32, u32)> =
                 near.into_iter().map(|g| (difference(groom, s, g as usize), g)).collect();
@@ -224,6 +234,38 @@ mod tests {
                 let d = groom.strand(*a as usize)[0].distance(groom.strand(*b as usize)[0]);
                 assert!(a == b || groom.group(*a as usize) != groom.group(*b as usize) || d > 0.003);
             }
+        }
+    }
+
+    /// Strands of equal shape, `strands` at each of three roots.
+    fn tufts(strands: usize) -> Groom {
+        let strand = |k: usize| {
+            let root = Vec3::X * (0.01 * (k / strands) as f32);
+            [root, root + Vec3::Y * 0.01, root + Vec3::Y * 0.02]
+        };
+        Groom::from_strands((0..3 * strands).map(strand), 35e-6)
+    }
+
+    #[test]
+    fn no_strand_is_chosen_twice_if_roots_coincide() {
+        let groom = tufts(12);
+        for count in [1, 2, 3, 4, 20, 35] {
+            let guides = choose_guides(&groom, count);
+            assert_eq!(guides.len(), count);
+            assert!(guides.is_sorted_by(|a, b| a < b), "a strand is chosen twice: {guides:?}");
+        }
+        // All three roots have a guide before any has two.
+        assert_eq!(choose_guides(&groom, 3), [0, 12, 24]);
+    }
+
+    #[test]
+    fn a_guide_follows_itself_if_roots_coincide() {
+        let groom = tufts(12);
+        let guides: Vec<u32> = (0..30).collect();
+        let weights = assign_guides(&groom, &guides);
+        for g in guides {
+            let of_guide = &weights[g as usize];
+            assert_eq!((of_guide.guides[0], of_guide.weights[0]), (g, 1.0));
         }
     }
 

@@ -1,17 +1,17 @@
 //! Promise: user-defined forces match their built-in counterparts: a global shape with the same bits, and
 //! wind to rounding.
 
-use crate::support::{FRAME, groom, points, shake, simulation};
+use crate::support::{groom, shake, simulation};
 use glam::Vec3;
 use hairspring::{
     air::Air,
     forces::{ForceField, StrandView},
     groom::Groom,
     material::{GlobalShape, Material},
-    math::RigidTransform,
     settings::{Solver, Wind},
-    simulation::StepInput,
+    simulation::{Simulation, StepInput},
 };
+use hairspring_test::{FRAME, REST, farthest, points, roots};
 use std::{f32::consts::TAU, sync::Arc};
 
 /// The global shape, implemented outside of the library.
@@ -70,14 +70,10 @@ impl ForceField for Breeze {
 #[test]
 fn a_custom_wind_agrees() {
     let velocity = Vec3::new(1.0, 0.0, 0.5);
-    let step = |hair: &mut hairspring::simulation::Simulation, wind: Wind| {
-        let groom = groom(10);
-        let roots: Vec<_> = (0..10)
-            .map(|s| RigidTransform { translation: groom.strand(s)[0], ..RigidTransform::default() })
-            .collect();
+    let step = |hair: &mut Simulation, wind: Wind| {
+        let roots = roots(&groom(10), REST);
         let air = Air { wind, ..Air::default() };
-        let anchor = RigidTransform::default();
-        hair.step(&StepInput { dt: FRAME, anchor, roots: &roots, obstacles: &[], air });
+        hair.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles: &[], air });
     };
     let mut built_in = simulation(10, Material::default(), Solver::default());
     let mut custom = simulation(10, Material::default(), Solver::default());
@@ -86,7 +82,6 @@ fn a_custom_wind_agrees() {
         step(&mut built_in, Wind { velocity, ..Wind::default() });
         step(&mut custom, Wind::default());
     }
-    let [a, b] = [&custom, &built_in].map(points);
-    let off = a.iter().zip(&b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-    assert!(off < 1e-6, "{off} m apart");
+    let difference = farthest(&points(&custom), &points(&built_in));
+    assert!(difference < 1e-6, "{difference} m apart");
 }

@@ -1,6 +1,6 @@
 //! Promise: debug lines have the counts that follow from the scene, are finite, and lie on what they show.
 
-use crate::support::{FRAME, groom, points, simulation};
+use crate::support::{groom, simulation};
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
     air::Air,
@@ -10,6 +10,7 @@ use hairspring::{
     settings::{Solver, Volume, VolumeMethod, Wind},
     simulation::{DebugLine, DebugLineKind, DebugRenderMode, Simulation, StepInput},
 };
+use hairspring_test::{FRAME, points};
 use std::sync::Arc;
 
 /// A tetrahedron.

@@ -1,7 +1,7 @@
 //! Promise: input that is not finite or out of range does not panic. It is refused with an error, or strands
 //! that become non-finite are reset and counted.
 
-use crate::support::{FRAME, groom, points, simulation};
+use crate::support::{groom, simulation};
 use glam::{Quat, Vec3};
 use hairspring::{
     air::{Air, Flow, Source, Turbulence, WindOcclusion},
@@ -12,6 +12,7 @@ use hairspring::{
     settings::{Neighbours, Solver, Volume, VolumeMethod, Wind},
     simulation::{DebugRenderMode, Simulation, StepError, StepInput},
 };
+use hairspring_test::{FRAME, points};
 
 const BAD: [f32; 6] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 0.0, 1e30];
 

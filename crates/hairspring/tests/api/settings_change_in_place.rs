@@ -1,7 +1,7 @@
 //! Promise: settings on which rest shapes do not depend change in place, with the same bits as a simulation that
 //! is built with them and takes over the state. Other changes are refused without effect.
 
-use crate::support::{points, shake, simulation, velocities};
+use crate::support::{shake, simulation, velocities};
 use glam::Vec3;
 use hairspring::{
     collide::{ColliderShape, MovingCollider},
@@ -10,6 +10,7 @@ use hairspring::{
     settings::{Integrator, Quality, Response, Solver},
     simulation::Simulation,
 };
+use hairspring_test::points;
 
 const STRANDS: usize = 10;
 

@@ -2,20 +2,20 @@
 //! elastic model, with either implicit integrator, with contact, with volume and strand contact, and with
 //! manipulators. Simulations that share one model give the same bits as simulations with a model each.
 
-use crate::support::{groom, points, shake, simulation, velocities};
+use crate::support::{groom, shake, simulation, velocities};
 use glam::Vec3;
 use hairspring::{
     collide::{ColliderShape, MovingCollider},
     forces::{Manipulator, grab::Grab},
     material::{Material, Model},
-    math::RigidTransform,
     settings::{Integrator, Neighbours, Solver, Volume, VolumeMethod},
     simulation::{Simulation, SnapshotMismatch},
 };
+use hairspring_test::{REST, points};
 
 fn ball() -> [MovingCollider; 1] {
     let shape = ColliderShape::Sphere { center: Vec3::new(0.03, -0.06, 0.04), radius: 0.03 };
-    [MovingCollider::at_rest(shape, RigidTransform::default())]
+    [MovingCollider::at_rest(shape, REST)]
 }
 
 fn assert_repeats(what: &str, mut simulation: Simulation) {
@@ -28,11 +28,11 @@ fn assert_repeats(what: &str, mut simulation: Simulation) {
         out
     };
     let (first, again) = (play(), play());
-    assert_eq!(first, again, "{what}");
+    assert_eq!(first, again, "{what}: the repetition differs");
     let mut other = simulation.instance();
     if simulation.volume().is_none() && simulation.neighbours().is_none() {
         (20..50).for_each(|frame| shake(&mut other, frame, &ball()));
-        assert_eq!((points(&other), velocities(&other)), first, "{what}: another instance");
+        assert_eq!((points(&other), velocities(&other)), first, "{what}: another instance differs");
     }
 }
 
@@ -63,7 +63,7 @@ fn with_volume_and_strand_contact() {
 fn with_a_manipulator() {
     let mut hair = simulation(10, Material::default(), Solver::default());
     let grab = Grab { center: Vec3::new(0.0, -0.1, 0.03), radius: 0.05, pull: 60.0, damping: 1.0 };
-    hair.add_manipulator(Manipulator::Grab(grab), RigidTransform::default());
+    hair.add_manipulator(Manipulator::Grab(grab), REST);
     assert_repeats("a grab", hair);
 }
 

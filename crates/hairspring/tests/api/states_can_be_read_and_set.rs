@@ -1,12 +1,13 @@
 //! Promise: positions and velocities can be read and set as plain arrays, with every elastic model, and the
 //! simulation continues from them.
 
-use crate::support::{points, shake, simulation, velocities};
+use crate::support::{shake, simulation, velocities};
 use hairspring::{
     material::{Material, Model},
     settings::Solver,
     simulation::PointsError,
 };
+use hairspring_test::{farthest, points, translation};
 
 #[test]
 fn set_states_are_read_back() {
@@ -14,17 +15,14 @@ fn set_states_are_read_back() {
         let material = Material { model, ..Material::default() };
         let mut source = simulation(10, material.clone(), Solver::default());
         (0..25).for_each(|frame| shake(&mut source, frame, &[]));
-        let (at, moving) = (points(&source), velocities(&source));
+        let (positions, moving) = (points(&source), velocities(&source));
         let mut hair = simulation(10, material, Solver::default());
         // Roots are driven, so the strands must have the same place as those of the source.
-        hair.teleport(hairspring::math::RigidTransform {
-            translation: at[0] - points(&hair)[0],
-            ..Default::default()
-        });
-        hair.set_points(&at, &moving).unwrap();
-        let off = points(&hair).iter().zip(&at).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-        assert!(off < 1e-6, "{model:?}: the difference is {off} m");
-        assert_eq!(velocities(&hair), moving, "{model:?}");
+        hair.teleport(translation(positions[0] - points(&hair)[0]));
+        hair.set_points(&positions, &moving).unwrap();
+        let difference = farthest(&points(&hair), &positions);
+        assert!(difference < 1e-6, "{model:?}: the difference is {difference} m");
+        assert_eq!(velocities(&hair), moving, "{model:?}: velocities differ");
     }
 }
 
@@ -38,8 +36,8 @@ fn the_simulation_continues_from_a_set_state() {
         shake(&mut source, frame, &[]);
         shake(&mut hair, frame, &[]);
     });
-    let off = points(&hair).iter().zip(points(&source)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
-    assert!(off < 1e-4, "{off} m apart after ten frames");
+    let difference = farthest(&points(&hair), &points(&source));
+    assert!(difference < 1e-4, "{difference} m apart after ten frames");
 }
 
 #[test]

@@ -1,17 +1,10 @@
 //! A curtain of strands that is shaken, shared by the tests of the interface.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use hairspring::{
-    air::Air,
-    collide::MovingCollider,
-    groom::Groom,
-    material::Material,
-    math::RigidTransform,
-    settings::Solver,
-    simulation::{Simulation, StepInput},
+    collide::MovingCollider, groom::Groom, material::Material, settings::Solver, simulation::Simulation,
 };
-
-pub const FRAME: f32 = 1.0 / 60.0;
+use hairspring_test::{roots, step, translation};
 
 /// Strands of 16 points that bend over, 6 mm apart.
 pub fn groom(strands: usize) -> Groom {
@@ -30,30 +23,20 @@ pub fn simulation(strands: usize, material: Material, solver: Solver) -> Simulat
 
 /// Steps by one frame of a shake along Z.
 pub fn shake(simulation: &mut Simulation, frame: u32, colliders: &[MovingCollider]) {
-    let anchor = RigidTransform {
-        translation: Vec3::Z * (0.04 * (0.2 * frame as f32).sin()),
-        rotation: Quat::IDENTITY,
-    };
-    let groom = groom(simulation.strand_count());
-    let roots: Vec<_> = (0..groom.strand_count())
-        .map(|s| RigidTransform {
-            translation: groom.strand(s)[0] + anchor.translation,
-            rotation: Quat::IDENTITY,
-        })
-        .collect();
-    simulation.step(&StepInput {
-        dt: FRAME,
-        anchor,
-        roots: &roots,
-        obstacles: colliders,
-        air: Air::default(),
-    });
+    let head = translation(Vec3::Z * (0.04 * (0.2 * frame as f32).sin()));
+    let roots = roots(&groom(simulation.strand_count()), head);
+    step(simulation, head, &roots, colliders);
 }
 
-pub fn points(simulation: &Simulation) -> Vec<Vec3> {
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    points
+/// Steps by 60 frames of the shake, and asserts that hair touches the colliders.
+pub fn shake_in_contact(simulation: &mut Simulation, colliders: &[MovingCollider]) {
+    let mut touched = 0;
+    for frame in 0..60 {
+        shake(simulation, frame, colliders);
+        let contacts = simulation.contacts(colliders);
+        touched += contacts.points + contacts.segments;
+    }
+    assert!(touched > 20, "only {touched} contacts");
 }
 
 pub fn velocities(simulation: &Simulation) -> Vec<Vec3> {

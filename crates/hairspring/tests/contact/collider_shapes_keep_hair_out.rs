@@ -10,17 +10,14 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    air::Air,
-    collide::{ColliderPose, ColliderShape, Hull, MovingCollider, ThinShell},
+    collide::{ColliderShape, Hull, MovingCollider, ThinShell},
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
     settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
+use hairspring_test::{FRAME, REST, farthest, line, points, roots, step, translation};
 use std::sync::Arc;
-
-const FRAME: f32 = 1.0 / 60.0;
 
 fn shapes() -> [(&'static str, ColliderShape); 6] {
     // Twelve points on a ball of 6 cm radius, all on the convex hull: a hull of twenty faces.
@@ -66,105 +63,74 @@ fn shapes() -> [(&'static str, ColliderShape); 6] {
 #[test]
 fn a_shape_swept_through_a_curtain_keeps_hair_out() {
     let strands = (0..48).map(|s| {
-        let x = (s as f32 - 23.5) * 0.004;
-        (0..32).map(move |i| Vec3::new(x, 0.3 - 0.6 * i as f32 / 31.0, 0.0)).collect::<Vec<_>>()
+        let root = Vec3::new((s as f32 - 23.5) * 0.004, 0.3, 0.0);
+        line(root, root - Vec3::Y * 0.6, 32)
     });
     let groom = Arc::new(Groom::from_strands(strands, 40e-6));
-    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots: Vec<RigidTransform> = all
-        .iter()
-        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
-        .collect();
+    let roots = roots(&groom, REST);
     for ((name, shape), model) in
         shapes().into_iter().flat_map(|s| Model::ALL.map(|model| (s.clone(), model)))
     {
         let mut simulation = Simulation::builder(groom.clone())
-            .strands(&all)
             .materials(&[Material { model, ..Material::default() }])
-            .solver(Solver::default())
             .build()
             .unwrap();
         // The shape enters at 1 m/s, stays in the hair for a second, and leaves the reach of all strands.
         let at = |frame: u32| {
             let t = frame as f32 * FRAME;
             let z = if t < 1.3 { (t - 0.3).min(0.15) } else { 0.15 + 10.0 * (t - 1.3) };
-            RigidTransform { translation: Vec3::Z * z, ..RigidTransform::default() }
+            translation(Vec3::Z * z)
         };
         let (mut deepest, mut longest, mut pushed) = (0.0f32, 0.0f64, 0.0f32);
-        let mut points = vec![Vec3::ZERO; simulation.point_count()];
         for frame in 0..400 {
             let obstacles = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
-            simulation.step(&StepInput {
-                dt: FRAME,
-                anchor: RigidTransform::default(),
-                roots: &roots,
-                obstacles: &obstacles,
-                air: Air::default(),
-            });
+            step(&mut simulation, REST, &roots, &obstacles);
             let measure = simulation.measure(&obstacles);
             assert_eq!(measure.non_finite, 0, "{name}, {model:?}, frame {frame}");
             deepest = deepest.max(measure.max_depth as f32);
             longest = longest.max(measure.stretch_max);
-            simulation.write_points(&mut points);
-            pushed = points.iter().fold(pushed, |most, p| most.max(p.z));
+            pushed = points(&simulation).iter().fold(pushed, |most, p| most.max(p.z));
         }
-        let off = points.iter().zip(&groom.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        let offset = farthest(&points(&simulation), &groom.points);
         println!(
-            "{name}, {model:?}: {deepest} m deep, stretch {longest}, pushed {pushed} m, final offset {off} m"
+            "{name}, {model:?}: {deepest} m deep, stretch {longest}, pushed {pushed} m, final offset {offset} m"
         );
         assert!(deepest < 1e-4, "{name}, {model:?}: a point is {deepest} m deep");
         assert!(longest < 0.011, "{name}, {model:?}: the stretch of a segment is {longest}");
         assert!(pushed > 0.1, "{name}, {model:?}: the shape passed through the hair");
-        assert!(off < 0.02, "{name}, {model:?}: the offset after five seconds is {off} m");
+        assert!(offset < 0.02, "{name}, {model:?}: the offset after five seconds is {offset} m");
     }
 }
 
-/// 24 strands of `length` [m] from `root`, 2 mm apart along X, that extend along `way`.
-fn row(root: Vec3, way: Vec3, length: f32) -> Arc<Groom> {
+/// 24 strands of `length` [m] from `root`, 2 mm apart along X, that extend in `direction`.
+fn row(root: Vec3, direction: Vec3, length: f32) -> Arc<Groom> {
     let strands = (0..24).map(|s| {
         let root = root + Vec3::X * (0.002 * s as f32);
-        (0..32).map(move |i| root + way * (length * i as f32 / 31.0)).collect::<Vec<_>>()
+        line(root, root + direction * length, 32)
     });
     Arc::new(Groom::from_strands(strands, 40e-6))
 }
 
-/// Simulates `frames` frames of hair that is not in balance, with one fixed collider. `look` receives the
+/// Simulates `frames` frames of hair that is not in balance, with one fixed collider. `check` receives the
 /// points of every frame and the largest penetration.
 fn play(
     groom: &Arc<Groom>,
     shape: &ColliderShape,
     gravity: Vec3,
     frames: u32,
-    mut look: impl FnMut(&[Vec3], f64),
+    mut check: impl FnMut(&[Vec3], f64),
 ) {
-    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let rigid =
-        |s: u32| RigidTransform { translation: groom.strand(s as usize)[0], rotation: Quat::IDENTITY };
-    let roots: Vec<RigidTransform> = all.iter().map(|s| rigid(*s)).collect();
-    let (anchor, materials) = (RigidTransform::default(), [Material::default()]);
-    let solver = Solver { sag_free: false, ..Solver::default() };
-    let rest = ColliderPose::new(shape.clone(), anchor.matrix(), anchor.matrix(), 1.0);
+    let roots = roots(groom, REST);
+    let obstacles = [MovingCollider::at_rest(shape.clone(), REST)];
     let mut simulation = Simulation::builder(groom.clone())
-        .strands(&all)
-        .materials(&materials)
-        .solver(solver)
+        .solver(Solver { sag_free: false, ..Solver::default() })
         .gravity(gravity)
-        .anchor(anchor)
-        .colliders_at_rest(&[rest])
+        .colliders_at_rest(&[obstacles[0].end_pose()])
         .build()
         .unwrap();
-    let obstacles = [MovingCollider::at_rest(shape.clone(), anchor)];
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
     for _ in 0..frames {
-        simulation.step(&StepInput {
-            dt: FRAME,
-            anchor,
-            roots: &roots,
-            obstacles: &obstacles,
-            air: Air::default(),
-        });
-        simulation.write_points(&mut points);
-        look(&points, simulation.measure(&obstacles).max_depth);
+        step(&mut simulation, REST, &roots, &obstacles);
+        check(&points(&simulation), simulation.measure(&obstacles).max_depth);
     }
 }
 
@@ -208,8 +174,8 @@ fn hair_that_begins_inside_gets_no_deeper() {
             for (strand, authored) in points.chunks(32).zip(groom.points.chunks(32)) {
                 let root = strand[0].distance(authored[0]);
                 assert!(root < 1e-6, "{name}: a root moved by {root} m");
-                let over = strand[4..].iter().fold(f32::MAX, |least, p| least.min(p.y));
-                assert!(over > -1e-5, "{name}: a free point is {over} m above the top");
+                let lowest = strand[4..].iter().fold(f32::MAX, |least, p| least.min(p.y));
+                assert!(lowest > -1e-5, "{name}: a free point is {lowest} m above the top");
             }
         });
     }

@@ -7,18 +7,14 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::Air,
     collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
     math::RigidTransform,
     settings::{Response, Solver},
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
-use std::sync::Arc;
-
-/// Duration of a frame [s].
-const DT: f32 = 1.0 / 60.0;
+use hairspring_test::{FRAME, REST, farthest, points, roots, step, translation};
 
 /// Gravity [m/s²].
 const GRAVITY: f32 = 9.81;
@@ -38,60 +34,32 @@ impl Slope {
             let root = Vec3::Z * (0.02 * s as f32);
             (0..25).map(move |i| root + Vec3::X * (spacing * i as f32)).collect::<Vec<_>>()
         });
-        let groom = Arc::new(Groom::from_strands(strands, 40e-6));
-        let all: Vec<u32> = (0..8).collect();
-        let roots = all
-            .iter()
-            .map(|s| RigidTransform {
-                translation: groom.strand(*s as usize)[0],
-                ..RigidTransform::default()
-            })
-            .collect();
-        let solver = Solver { sag_free: false, contact: response, ..Solver::default() };
-        let angle = SLOPE.to_radians();
-        let gravity = Vec3::new(0.0, -angle.cos(), angle.sin()) * GRAVITY;
+        let groom = Groom::from_strands(strands, 40e-6);
+        let roots = roots(&groom, REST);
+        let (sin, cos) = SLOPE.to_radians().sin_cos();
         let simulation = Simulation::builder(groom)
-            .strands(&all)
             .materials(&[material])
-            .solver(solver)
-            .gravity(gravity)
+            .solver(Solver { sag_free: false, contact: response, ..Solver::default() })
+            .gravity(Vec3::new(0.0, -cos, sin) * GRAVITY)
             .build()
             .unwrap();
         Self { simulation, roots }
     }
 
-    /// Simulates `frames` frames while the slope moves by `by` in each [m]; returns all points.
-    fn after(&mut self, frames: usize, by: Vec3) -> Vec<Vec3> {
-        let start = RigidTransform::default();
-        let end = RigidTransform { translation: by, ..start };
+    /// Simulates `frames` frames while the slope moves by `motion` in each [m]; returns all points.
+    fn play(&mut self, frames: usize, motion: Vec3) -> Vec<Vec3> {
         let shape = ColliderShape::Plane { point: Vec3::ZERO, normal: Vec3::Y };
-        let obstacles = [MovingCollider::new(shape, start, end)];
-        for _ in 0..frames {
-            let air = Air::default();
-            self.simulation.step(&StepInput {
-                dt: DT,
-                anchor: start,
-                roots: &self.roots,
-                obstacles: &obstacles,
-                air,
-            });
-        }
-        let mut points = vec![Vec3::ZERO; self.simulation.point_count()];
-        self.simulation.write_points(&mut points);
-        points
+        let obstacles = [MovingCollider::new(shape, REST, translation(motion))];
+        (0..frames).for_each(|_| _ = step(&mut self.simulation, REST, &self.roots, &obstacles));
+        points(&self.simulation)
     }
-}
-
-/// The largest distance of corresponding points [m].
-fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
 }
 
 /// The largest motion of a point in the first two seconds, and in the ten seconds after [m].
 fn moved(model: Model, friction: f32, bend: f32) -> [f32; 2] {
     let material = Material { model, friction, bend, drag: 0.1, ..Material::default() };
     let mut slope = Slope::new(material, Response::default(), 0.01);
-    let [start, before, after] = [0, 120, 600].map(|frames| slope.after(frames, Vec3::ZERO));
+    let [start, before, after] = [0, 120, 600].map(|frames| slope.play(frames, Vec3::ZERO));
     [farthest(&start, &before), farthest(&before, &after)]
 }
 
@@ -115,8 +83,8 @@ fn kinetic_friction(model: Model, response: Response, friction_kinetic: f32) -> 
     let material =
         Material { model, friction: 0.3, friction_kinetic, bend: 0.01, drag: 0.0, ..Material::default() };
     let mut slope = Slope::new(material, response, 0.1);
-    let [a, b, c] = [9, 3, 3].map(|frames| slope.after(frames, Vec3::ZERO)[17].z);
-    let acceleration = (a - 2.0 * b + c) / (3.0 * DT).powi(2);
+    let [a, b, c] = [9, 3, 3].map(|frames| slope.play(frames, Vec3::ZERO)[17].z);
+    let acceleration = (a - 2.0 * b + c) / (3.0 * FRAME).powi(2);
     let (sin, cos) = SLOPE.to_radians().sin_cos();
     (sin - acceleration / GRAVITY) / cos
 }
@@ -143,9 +111,9 @@ fn jerked(model: Model, friction_kinetic: f32) -> [f32; 2] {
     let material =
         Material { model, friction: 0.4, friction_kinetic, bend: 0.01, drag: 0.3, ..Material::default() };
     let mut slope = Slope::new(material, Response::default(), 0.04);
-    let [start, still] = [0, 60].map(|frames| slope.after(frames, Vec3::ZERO));
-    slope.after(1, Vec3::Z * 0.01);
-    let [before, after] = [12, 12].map(|frames| slope.after(frames, Vec3::ZERO));
+    let [start, still] = [0, 60].map(|frames| slope.play(frames, Vec3::ZERO));
+    slope.play(1, Vec3::Z * 0.01);
+    let [before, after] = [12, 12].map(|frames| slope.play(frames, Vec3::ZERO));
     [farthest(&start, &still), farthest(&before, &after)]
 }
 

@@ -5,19 +5,17 @@
 //! any scale, no point is deeper than a hundred-thousandth of the strand's length. A second later, every
 //! point is where it is at the size of a head, within half a hundredth of that length.
 
-use glam::{Mat3, Quat, Vec3};
+use glam::{Mat3, Vec3};
 use hairspring::{
-    air::Air,
     collide::{ColliderShape, Hull, MovingCollider, ThinShell, voxelize},
     groom::Groom,
     material::Material,
-    math::RigidTransform,
     settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
+use hairspring_test::{REST, farthest, points, roots, step, translation};
 use std::sync::Arc;
 
-const FRAME: f32 = 1.0 / 60.0;
 const LENGTH: f32 = 0.2;
 
 /// Corners of a box around the origin, and its triangles.
@@ -51,46 +49,30 @@ fn fall(shape: &ColliderShape, s: f32) -> (Vec<Vec3>, f32) {
         let way = Vec3::new(0.0, 0.3, 0.95).normalize() * (LENGTH * s / 19.0);
         (0..20).map(move |i| root + way * i as f32).collect::<Vec<_>>()
     });
-    let groom = Arc::new(Groom::from_strands(strands, 40e-6 * s));
-    let all: Vec<u32> = (0..16).collect();
-    let roots: Vec<RigidTransform> = (0..16)
-        .map(|k| RigidTransform { translation: groom.strand(k)[0], rotation: Quat::IDENTITY })
-        .collect();
+    let groom = Groom::from_strands(strands, 40e-6 * s);
+    let roots = roots(&groom, REST);
     let material = Material::default();
     let material =
         Material { young: material.young * s * s, shear: material.shear * s * s, drag: 0.0, ..material };
-    let solver = Solver { sag_free: false, ..Solver::default() };
-    let gravity = Vec3::Y * -9.81 * s;
-    let anchor = RigidTransform::default();
     let mut simulation = Simulation::builder(groom)
-        .strands(&all)
         .materials(&[material])
-        .solver(solver)
-        .gravity(gravity)
-        .anchor(anchor)
+        .solver(Solver { sag_free: false, ..Solver::default() })
+        .gravity(Vec3::Y * -9.81 * s)
         .build()
         .unwrap();
     let mut deepest = 0.0f32;
     for frame in 0..60 {
         let at = |frame: u32| {
             let phase = 0.1 * frame as f32;
-            RigidTransform { translation: Vec3::Z * (0.01 * s * (1.0 - phase.cos())), ..anchor }
+            translation(Vec3::Z * (0.01 * s * (1.0 - phase.cos())))
         };
         let obstacles = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
-        simulation.step(&StepInput {
-            dt: FRAME,
-            anchor,
-            roots: &roots,
-            obstacles: &obstacles,
-            air: Air::default(),
-        });
+        step(&mut simulation, REST, &roots, &obstacles);
         let measure = simulation.measure(&obstacles);
         assert_eq!(measure.non_finite, 0);
         deepest = deepest.max(measure.max_depth as f32);
     }
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    (points.iter().map(|p| *p / s).collect(), deepest / s)
+    (points(&simulation).iter().map(|p| *p / s).collect(), deepest / s)
 }
 
 #[test]
@@ -100,10 +82,10 @@ fn every_shape_works_at_a_tenth_and_ten_times_the_size() {
         assert!(depth < 1e-5 * LENGTH, "{name}: {depth} m deep");
         for s in [0.1, 10.0] {
             let (points, depth) = fall(&shapes(s)[k].1, s);
-            let off = points.iter().zip(&usual).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-            println!("{name} at scale {s}: penetration {depth}, offset {off}");
+            let offset = farthest(&points, &usual);
+            println!("{name} at scale {s}: penetration {depth}, offset {offset}");
             assert!(depth < 1e-5 * LENGTH, "{name} at scale {s}: the penetration is {depth}");
-            assert!(off < 0.005 * LENGTH, "{name} at scale {s}: the offset is {off}");
+            assert!(offset < 0.005 * LENGTH, "{name} at scale {s}: the offset is {offset}");
         }
     }
 }

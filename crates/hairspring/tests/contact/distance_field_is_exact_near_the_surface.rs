@@ -44,7 +44,7 @@ fn nodes_near_the_surface_have_exact_distance_and_motion() {
     triangles.push([40, 40, 40]);
     let (mut grid, cell) = (SignedDistanceField::default(), 0.011);
     Voxelizer::default().update(&mut grid, &mesh.positions, Some(&before), &triangles, None, cell);
-    let mut near = 0;
+    let mut count = 0;
     for (i, d) in grid.distances().iter().enumerate() {
         let (i, size) = (i as u32, grid.size());
         let at = [i % size.x, i / size.x % size.y, i / size.x / size.y];
@@ -55,12 +55,12 @@ fn nodes_near_the_surface_have_exact_distance_and_motion() {
             assert!(d.abs() > 0.97 * BAND * cell, "at {p}: {d} instead of {exact}");
             continue;
         }
-        near += 1;
+        count += 1;
         assert!((d.abs() - exact).abs() < 1e-6, "at {p}: {d} instead of {exact}");
         let corners = mesh.corners(nearest.triangle as usize);
         let foot: Vec3 = corners.iter().zip(nearest.barycentric.to_array()).map(|(c, w)| *c * w).sum();
         let found = grid.displacement(p);
         assert!((found - moved(foot)).length() < 1e-5, "at {p}: {found} instead of {}", moved(foot));
     }
-    assert!(near > 1000, "only {near} nodes");
+    assert!(count > 1000, "only {count} nodes");
 }

@@ -7,15 +7,13 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    air::Air,
     collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
     math::RigidTransform,
-    settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
-use std::sync::Arc;
+use hairspring_test::{REST, points, roots, step, step_by, translation};
 
 const STRANDS: u32 = 16;
 const LENGTH: f32 = 0.3;
@@ -26,22 +24,10 @@ fn curtain(model: Model) -> (Simulation, Vec<RigidTransform>) {
         let x = 0.005 * (s as f32 - 7.5);
         (0..31).map(move |i| Vec3::new(x, -LENGTH * i as f32 / 30.0, 0.0)).collect::<Vec<_>>()
     });
-    let groom = Arc::new(Groom::from_strands(strands, 40e-6));
-    let all: Vec<u32> = (0..STRANDS).collect();
-    let roots = all
-        .iter()
-        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
-        .collect();
-    let materials = [Material { model, ..Material::default() }];
-    let gravity = Vec3::NEG_Y * 9.81;
-    let simulation = Simulation::builder(groom)
-        .strands(&all)
-        .materials(&materials)
-        .solver(Solver::default())
-        .gravity(gravity)
-        .build()
-        .unwrap();
-    (simulation, roots)
+    let groom = Groom::from_strands(strands, 40e-6);
+    let roots = roots(&groom, REST);
+    let material = Material { model, ..Material::default() };
+    (Simulation::builder(groom).materials(&[material]).build().unwrap(), roots)
 }
 
 /// A rod along X, at the origin.
@@ -53,8 +39,6 @@ fn rod(radius: f32) -> ColliderShape {
 /// they are behind it and nowhere in front. (A tail that is flung up behind the rod crosses its height
 /// there too.)
 fn passed(simulation: &Simulation, y: f32, z: f32) -> usize {
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
     let crossing = |pair: &[Vec3]| {
         let t = (y - pair[0].y) / (pair[1].y - pair[0].y);
         (0.0..1.0).contains(&t).then(|| pair[0].lerp(pair[1], t).z)
@@ -63,7 +47,7 @@ fn passed(simulation: &Simulation, y: f32, z: f32) -> usize {
         let mut places = strand.windows(2).filter_map(crossing).peekable();
         places.peek().is_some() && places.all(|place| place < z)
     };
-    points.chunks(31).filter(behind).count()
+    points(simulation).chunks(31).filter(behind).count()
 }
 
 #[test]
@@ -73,17 +57,13 @@ fn hair_stays_in_front_of_a_fast_collider() {
             for dt in [1.0 / 60.0, 1.0 / 240.0] {
                 let (mut simulation, roots) = curtain(model);
                 let y = -0.1;
-                let at = |z: f32| RigidTransform {
-                    translation: Vec3::new(0.0, y, z),
-                    ..RigidTransform::default()
-                };
+                let at = |z: f32| translation(Vec3::new(0.0, y, z));
                 // From 6 cm behind to 14 cm in front: a strand of 30 cm reaches around that.
                 let (mut z, end) = (-0.06f32, 0.14);
                 while z < end {
                     let next = (z + speed * dt).min(end);
                     let obstacles = [MovingCollider::new(rod(radius), at(z), at(next))];
-                    let (anchor, air) = (RigidTransform::default(), Air::default());
-                    simulation.step(&StepInput { dt, anchor, roots: &roots, obstacles: &obstacles, air });
+                    step_by(&mut simulation, dt, REST, &roots, &obstacles);
                     z = next;
                     let through = if z > radius { passed(&simulation, y, z) } else { 0 };
                     assert_eq!(through, 0, "{what}, {model:?}, {dt} s: strands are behind it at {z} m");
@@ -104,17 +84,15 @@ fn only_fast_thin_colliders_near_hair_shorten_substeps() {
         for root in &mut roots {
             root.translation = anchor.point(Vec3::new(root.translation.x, 0.0, 0.0));
         }
-        let air = Air::default();
-        let drive = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &obstacles, air };
-        simulation.step(&drive).substeps
+        step(&mut simulation, anchor, &roots, &obstacles).substeps
     };
-    let (here, still) = (RigidTransform::default(), Quat::IDENTITY);
+    let still = Quat::IDENTITY;
     let below = Vec3::NEG_Y * 0.1;
     // 333 mm in substeps of 2.5 mm.
-    assert_eq!(substeps(here, still, rod(0.005), below - Vec3::Z * 0.1, below + Vec3::Z * 0.2333), 134);
-    assert_eq!(substeps(here, still, rod(0.005), below + Vec3::Y * 2.0, below + Vec3::new(0.0, 2.0, 0.3)), 4);
+    assert_eq!(substeps(REST, still, rod(0.005), below - Vec3::Z * 0.1, below + Vec3::Z * 0.2333), 134);
+    assert_eq!(substeps(REST, still, rod(0.005), below + Vec3::Y * 2.0, below + Vec3::new(0.0, 2.0, 0.3)), 4);
     let ball = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };
-    assert_eq!(substeps(here, still, ball, below - Vec3::Z * 0.2, below - Vec3::Z * 0.15), 4);
-    let moved = RigidTransform { translation: Vec3::Z * 0.2, ..here };
+    assert_eq!(substeps(REST, still, ball, below - Vec3::Z * 0.2, below - Vec3::Z * 0.15), 4);
+    let moved = translation(Vec3::Z * 0.2);
     assert_eq!(substeps(moved, still, rod(0.005), below, below + Vec3::Z * 0.2), 4);
 }

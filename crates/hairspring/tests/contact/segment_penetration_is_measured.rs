@@ -7,13 +7,12 @@
 
 use glam::{Mat3, Quat, Vec3};
 use hairspring::{
-    collide::{ColliderPose, ColliderShape, MovingCollider, voxelize},
+    collide::{ColliderShape, MovingCollider, voxelize},
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
-    settings::Solver,
     simulation::{Measure, Simulation},
 };
+use hairspring_test::REST;
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -22,22 +21,19 @@ const SEGMENT: f32 = 0.02;
 /// The middle of the fifth segment.
 const MIDDLE: Vec3 = Vec3::new(4.5 * SEGMENT, 0.0, 0.0);
 
-/// Measures the strand as authored against `shape`, which is a collider at rest if `told`.
-fn measure(model: Model, shape: &ColliderShape, told: bool) -> Measure {
+/// Measures the strand as authored against `shape`. The penetration is authored if `at_rest`: then the shape is
+/// one of the colliders at rest.
+fn measure(model: Model, shape: &ColliderShape, at_rest: bool) -> Measure {
     let points = (0..12).map(|i| Vec3::X * (SEGMENT * i as f32));
-    let groom = Arc::new(Groom::from_strands([points.collect::<Vec<_>>()], 40e-6));
-    let still = RigidTransform::default();
-    let rest = ColliderPose::new(shape.clone(), still.matrix(), still.matrix(), 1.0);
+    let groom = Groom::from_strands([points.collect::<Vec<_>>()], 40e-6);
+    let collider = MovingCollider::at_rest(shape.clone(), REST);
+    let rest = collider.end_pose();
     let simulation = Simulation::builder(groom)
-        .strands(&[0])
         .materials(&[Material { model, ..Material::default() }])
-        .solver(Solver::default())
-        .gravity(Vec3::NEG_Y * 9.81)
-        .anchor(still)
-        .colliders_at_rest(if told { std::slice::from_ref(&rest) } else { &[] })
+        .colliders_at_rest(if at_rest { std::slice::from_ref(&rest) } else { &[] })
         .build()
         .unwrap();
-    simulation.measure(&[MovingCollider::at_rest(shape.clone(), still)])
+    simulation.measure(&[collider])
 }
 
 /// Shapes that reach `depth` [m] above the middle of the fifth segment from below, and touch nothing else.
@@ -67,11 +63,11 @@ fn penetration_at_the_middle_of_a_segment_is_measured() {
         for (depth, deep) in [(4e-4, 0), (1.5e-3, 1), (3e-3, 1)] {
             for (name, shape) in shapes(depth) {
                 let found = measure(model, &shape, false);
-                assert_eq!(found.inside_points, 0, "{name}, {model:?}: {found:?}");
+                assert_eq!(found.inside_points, 0, "{name}, {model:?}: points are inside: {found:?}");
                 let counts = (found.inside_segments, found.deep_segments);
                 assert_eq!(counts, (1, deep), "{name}, {model:?}, {depth} m: {found:?}");
-                let off = (found.segment_depth - f64::from(depth)).abs();
-                assert!(off < 2e-7, "{name}, {model:?}: {} m instead of {depth}", found.segment_depth);
+                let error = (found.segment_depth - f64::from(depth)).abs();
+                assert!(error < 2e-7, "{name}, {model:?}: {} m instead of {depth}", found.segment_depth);
             }
         }
     }
@@ -83,7 +79,7 @@ fn authored_penetration_is_not_counted() {
         for (name, shape) in shapes(3e-3) {
             let found = measure(model, &shape, true);
             let counts = (found.inside_segments, found.deep_segments, found.segment_depth);
-            assert_eq!(counts, (0, 0, 0.0), "{name}, {model:?}");
+            assert_eq!(counts, (0, 0, 0.0), "{name}, {model:?}: authored penetration is counted");
         }
     }
 }
@@ -92,7 +88,11 @@ fn authored_penetration_is_not_counted() {
 fn separate_shapes_are_not_counted() {
     for (name, shape) in shapes(-1e-4) {
         let found = measure(Model::Auto, &shape, false);
-        assert_eq!((found.inside_segments, found.segment_depth), (0, 0.0), "{name}");
+        assert_eq!(
+            (found.inside_segments, found.segment_depth),
+            (0, 0.0),
+            "{name}: a separate shape is counted"
+        );
     }
 }
 
@@ -105,16 +105,16 @@ fn penetration_held_by_the_root_is_counted_separately() {
         // √(5² + 2.5²) mm.
         let found = measure(model, &ball(0.0, -0.005), false);
         let counts = (found.inside_segments, found.deep_segments, found.held_segments);
-        assert_eq!(counts, (0, 0, 1), "{model:?}: {found:?}");
-        assert!((found.held_depth - 0.002_409_8).abs() < 1e-6, "{model:?}: {found:?}");
+        assert_eq!(counts, (0, 0, 1), "{model:?}: wrong counts: {found:?}");
+        assert!((found.held_depth - 0.002_409_8).abs() < 1e-6, "{model:?}: wrong depth: {found:?}");
         // The point at a quarter is 6 mm deep, and the start is √(5² + 2²) mm from the center. Only the
         // penetration beyond that of the start can be corrected.
         let found = measure(model, &ball(0.005, -0.002), false);
-        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: {found:?}");
-        assert!((found.segment_depth - 0.003_385_2).abs() < 1e-6, "{model:?}: {found:?}");
+        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: wrong counts: {found:?}");
+        assert!((found.segment_depth - 0.003_385_2).abs() < 1e-6, "{model:?}: wrong depth: {found:?}");
         // If a segment begins outside, none of its penetration is due to the fixed end.
         let found = measure(model, &ball(0.01, -0.005), false);
-        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: {found:?}");
+        assert_eq!((found.deep_segments, found.held_segments), (1, 0), "{model:?}: wrong counts: {found:?}");
     }
 }
 

@@ -11,17 +11,16 @@
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    air::Air,
     collide::{ColliderPose, ColliderShape, Hull, MovingCollider, ThinShell, voxelize},
     groom::Groom,
     material::{Material, Model},
     math::RigidTransform,
     settings::{Integrator, Solver},
-    simulation::{Measure, Simulation, StepInput},
+    simulation::{Measure, Simulation},
 };
+use hairspring_test::{REST, farthest, points, roots, translation};
 use std::sync::Arc;
 
-const FRAME: f32 = 1.0 / 60.0;
 const SEGMENT: f32 = 0.02;
 const STRANDS: u32 = 10;
 
@@ -38,16 +37,10 @@ fn hair_of(material: &Material, solver: Solver, rest: &[ColliderPose]) -> (Simul
         (0..16).map(move |i| root + Vec3::X * (SEGMENT * i as f32)).collect::<Vec<_>>()
     });
     let groom = Arc::new(Groom::from_strands(strands, 40e-6));
-    let all: Vec<u32> = (0..STRANDS).collect();
-    let roots = all
-        .iter()
-        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
-        .collect();
+    let roots = roots(&groom, REST);
     let simulation = Simulation::builder(groom)
-        .strands(&all)
         .materials(std::slice::from_ref(material))
         .solver(Solver { sag_free: false, ..solver })
-        .gravity(Vec3::NEG_Y * 9.81)
         .colliders_at_rest(rest)
         .build()
         .unwrap();
@@ -55,21 +48,14 @@ fn hair_of(material: &Material, solver: Solver, rest: &[ColliderPose]) -> (Simul
 }
 
 fn step(simulation: &mut Simulation, roots: &[RigidTransform], obstacles: &[MovingCollider]) -> Measure {
-    let (anchor, air) = (RigidTransform::default(), Air::default());
-    simulation.step(&StepInput { dt: FRAME, anchor, roots, obstacles, air });
+    hairspring_test::step(simulation, REST, roots, obstacles);
     let measure = simulation.measure(obstacles);
     assert_eq!(measure.non_finite, 0);
     measure
 }
 
 fn still(shape: &ColliderShape) -> [MovingCollider; 1] {
-    [MovingCollider::at_rest(shape.clone(), RigidTransform::default())]
-}
-
-fn points(simulation: &Simulation) -> Vec<Vec3> {
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    points
+    [MovingCollider::at_rest(shape.clone(), REST)]
 }
 
 /// The worse values of two measurements.
@@ -119,7 +105,7 @@ fn hair_rests_on_edges() {
                 settled = worst(settled, step(&mut simulation, &roots, &obstacles));
             }
             let after = points(&simulation);
-            let crept = after.iter().zip(&before).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+            let crept = farthest(&after, &before);
             let lowest = after.iter().map(|p| p.y).fold(0.0, f32::min);
             println!(
                 "{name}, {model:?}: segments {:.3} mm deep, {:.3} at rest, points {:.3} mm; stretch {:.4}; crept {:.3} mm, {:.4} m/s; lowest point {lowest}",
@@ -247,10 +233,7 @@ fn hair_between_facing_walls_moves_out_sideways() {
     for (seed, model) in cases {
         let shape = heap(seed);
         let (mut simulation, roots) = hair(model, &[]);
-        let sway = |frame: i32| {
-            let translation = Vec3::new(0.02, 0.0, 0.04) * (frame as f32 * 0.3).sin();
-            RigidTransform { translation, ..RigidTransform::default() }
-        };
+        let sway = |frame: i32| translation(Vec3::new(0.02, 0.0, 0.04) * (frame as f32 * 0.3).sin());
         let mut all = Measure::default();
         for frame in 0..120 {
             let (start, end) = (sway(frame), sway(frame + 1));
@@ -272,14 +255,13 @@ fn hair_authored_across_a_shape_stays_in_place() {
     for model in Model::ALL {
         // A ball in the middle of a segment of each strand, whose ends are outside.
         let shape = ColliderShape::Sphere { center: Vec3::new(0.05, -0.003, 0.0), radius: 0.006 };
-        let rigid = RigidTransform::default().matrix();
+        let rigid = REST.matrix();
         let (mut simulation, roots) = hair(model, &[ColliderPose::new(shape.clone(), rigid, rigid, 1.0)]);
         let (mut free, _) = hair(model, &[]);
         let obstacles = still(&shape);
         step(&mut simulation, &roots, &obstacles);
         step(&mut free, &roots, &[]);
-        let moved =
-            points(&simulation).iter().zip(points(&free)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
+        let moved = farthest(&points(&simulation), &points(&free));
         assert!(moved < 1e-3, "{model:?}: the shape moved hair by {moved} m");
     }
 }
@@ -288,15 +270,18 @@ fn hair_authored_across_a_shape_stays_in_place() {
 fn distant_colliders_change_nothing() {
     for (name, shape) in shapes() {
         for model in Model::ALL {
-            let far = RigidTransform { translation: Vec3::Y * 3.0, ..RigidTransform::default() };
-            let obstacles = [MovingCollider::at_rest(shape.clone(), far)];
+            let obstacles = [MovingCollider::at_rest(shape.clone(), translation(Vec3::Y * 3.0))];
             let (mut simulation, roots) = hair(model, &[]);
             let (mut free, _) = hair(model, &[]);
             for _ in 0..30 {
                 step(&mut simulation, &roots, &obstacles);
                 step(&mut free, &roots, &[]);
             }
-            assert_eq!(points(&simulation), points(&free), "{name}, {model:?}");
+            assert_eq!(
+                points(&simulation),
+                points(&free),
+                "{name}, {model:?}: a distant collider changed hair"
+            );
         }
     }
 }
@@ -319,10 +304,10 @@ fn segments_are_not_tested_at_large_round_bodies() {
             };
             (lie(true), lie(false))
         };
-        let (looked, left) = lie(&ball(0.2));
-        assert_eq!(looked, left, "{model:?}: the large ball");
-        let (looked, left) = lie(&ball(0.05));
-        assert_ne!(looked, left, "{model:?}: the small ball");
+        let (with, without) = lie(&ball(0.2));
+        assert_eq!(with, without, "{model:?}: segment contacts act at the large ball");
+        let (with, without) = lie(&ball(0.05));
+        assert_ne!(with, without, "{model:?}: segment contacts do not act at the small ball");
     }
 }
 
@@ -339,10 +324,10 @@ fn stretchable_segments_are_tested_at_any_ball() {
         let longest = (0..60).map(longer).fold(0.0, f64::max);
         (points(&simulation), longest)
     };
-    for (integrator, looks) in [(Integrator::Verlet, true), (Integrator::BackwardEuler, false)] {
-        let [(looked, longest), (left, _)] = [true, false].map(|segments| fall(integrator, segments));
+    for (integrator, tested) in [(Integrator::Verlet, true), (Integrator::BackwardEuler, false)] {
+        let [(with, longest), (without, _)] = [true, false].map(|segments| fall(integrator, segments));
         println!("{integrator:?}: stretch {longest}");
-        assert_eq!(looked != left, looks, "{integrator:?}, stretch {longest}");
+        assert_eq!(with != without, tested, "{integrator:?}, stretch {longest}");
     }
 }
 
@@ -371,8 +356,8 @@ fn segment_contacts_are_reset_without_colliders_nearby() {
             points(&simulation)
         };
         for taken_over in [false, true] {
-            let [left, looked] = [1.0, 0.01].map(|radius| meet_again(&away(radius), taken_over));
-            assert_eq!(left, looked, "{model:?}, taken over: {taken_over}");
+            let [untested, tested] = [1.0, 0.01].map(|radius| meet_again(&away(radius), taken_over));
+            assert_eq!(untested, tested, "{model:?}, taken over: {taken_over}");
         }
     }
 }

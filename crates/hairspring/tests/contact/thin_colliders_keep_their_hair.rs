@@ -5,41 +5,27 @@
 
 use glam::{Mat3, Vec3};
 use hairspring::{
-    air::Air,
     collide::{ColliderShape, MovingCollider},
     groom::Groom,
-    material::Material,
     math::RigidTransform,
     settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
-use std::sync::Arc;
+use hairspring_test::{FRAME, REST, line, points, roots, translation};
 
-const FRAME: f32 = 1.0 / 60.0;
 const POINTS: usize = 32;
 const LENGTH: f32 = 0.25;
 
-/// A simulation of strands that start at `roots` and extend in the direction `along`.
-fn hair(roots: impl Iterator<Item = Vec3>, along: Vec3, sag_free: bool) -> (Simulation, Vec<RigidTransform>) {
-    let strands = roots.map(|root| {
-        (0..POINTS).map(move |i| root + along * (LENGTH * i as f32 / (POINTS - 1) as f32)).collect::<Vec<_>>()
-    });
-    let groom = Arc::new(Groom::from_strands(strands, 40e-6));
-    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots = all
-        .iter()
-        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
-        .collect();
+/// A simulation of strands that start at `starts` and extend in `direction`.
+fn hair(
+    starts: impl Iterator<Item = Vec3>,
+    direction: Vec3,
+    sag_free: bool,
+) -> (Simulation, Vec<RigidTransform>) {
+    let groom = Groom::from_strands(starts.map(|root| line(root, root + direction * LENGTH, POINTS)), 40e-6);
+    let roots = roots(&groom, REST);
     let solver = Solver { sag_free, ..Solver::default() };
-    let gravity = Vec3::NEG_Y * 9.81;
-    let simulation = Simulation::builder(groom)
-        .strands(&all)
-        .materials(&[Material::default()])
-        .solver(solver)
-        .gravity(gravity)
-        .build()
-        .unwrap();
-    (simulation, roots)
+    (Simulation::builder(groom).solver(solver).build().unwrap(), roots)
 }
 
 /// Hanging strands whose roots are scattered by up to 8 mm in height and 9 mm in depth.
@@ -53,15 +39,9 @@ fn curtain(strands: usize) -> (Simulation, Vec<RigidTransform>) {
 }
 
 fn step(simulation: &mut Simulation, roots: &[RigidTransform], obstacle: MovingCollider) {
-    let (anchor, air, obstacles) = (RigidTransform::default(), Air::default(), [obstacle]);
-    simulation.step(&StepInput { dt: FRAME, anchor, roots, obstacles: &obstacles, air });
+    let obstacles = [obstacle];
+    hairspring_test::step(simulation, REST, roots, &obstacles);
     assert_eq!(simulation.measure(&obstacles).non_finite, 0);
-}
-
-fn points(simulation: &Simulation) -> Vec<Vec3> {
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    points
 }
 
 /// Counts the strands that a body at height `y` and position `z` holds back: from the root on, they first
@@ -83,7 +63,7 @@ fn caught(simulation: &Simulation, y: f32, z: f32) -> usize {
 fn drag(shape: &ColliderShape, speed: f32, frames: usize, strands: usize) -> usize {
     let (mut simulation, roots) = curtain(strands);
     let y = -0.05;
-    let at = |z: f32| RigidTransform { translation: Vec3::new(0.0, y, z), ..RigidTransform::default() };
+    let at = |z: f32| translation(Vec3::new(0.0, y, z));
     let (mut z, end) = (-0.1f32, 0.05);
     let moving = (0.15 / (speed * FRAME)).ceil() as usize;
     for _ in 0..moving + frames {
@@ -101,7 +81,11 @@ fn rod(radius: f32) -> ColliderShape {
 #[test]
 fn a_rod_of_1_mm_radius_holds_back_hair() {
     for speed in [0.02, 0.0533, 0.2, 1.0] {
-        assert_eq!(drag(&rod(0.001), speed, 20, 200), 200, "{speed} m/s");
+        assert_eq!(
+            drag(&rod(0.001), speed, 20, 200),
+            200,
+            "at {speed} m/s the rod does not hold back all strands"
+        );
     }
     let fast = drag(&rod(0.001), 3.0, 20, 200);
     assert!(fast >= 199, "3 m/s: {fast} of 200");
@@ -112,7 +96,7 @@ fn a_thin_box_holds_back_hair() {
     for thickness in [0.002, 0.001] {
         let half = Vec3::new(0.2, 0.005, 0.5 * thickness);
         let shape = ColliderShape::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY };
-        assert_eq!(drag(&shape, 0.5, 20, 200), 200, "{thickness} m thick");
+        assert_eq!(drag(&shape, 0.5, 20, 200), 200, "a box of {thickness} m does not hold back all strands");
         let slowly = drag(&shape, 0.0533, 20, 200);
         assert!(slowly >= 195, "{thickness} m thick, slowly: {slowly} of 200");
     }
@@ -121,7 +105,7 @@ fn a_thin_box_holds_back_hair() {
 #[test]
 fn a_rod_that_stops_holds_back_hair() {
     for radius in [0.002, 0.005, 0.01] {
-        assert_eq!(drag(&rod(radius), 9.0, 90, 21), 21, "{radius} m");
+        assert_eq!(drag(&rod(radius), 9.0, 90, 21), 21, "a rod of {radius} m does not hold back all strands");
     }
 }
 
@@ -134,14 +118,14 @@ fn hair_that_falls_on_a_thin_rod_lies_over_it() {
         let y = -height - radius;
         let shape = ColliderShape::Capsule { a: Vec3::new(0.0, y, -0.2), b: Vec3::new(0.0, y, 0.2), radius };
         for _ in 0..300 {
-            step(&mut simulation, &roots, MovingCollider::at_rest(shape.clone(), RigidTransform::default()));
+            step(&mut simulation, &roots, MovingCollider::at_rest(shape.clone(), REST));
         }
-        let over = |strand: &&[Vec3]| {
+        let lies_over = |strand: &&[Vec3]| {
             let crosses = |pair: &&[Vec3]| (pair[0].x < 0.0) != (pair[1].x < 0.0);
             let above = |pair: &[Vec3]| pair[0].lerp(pair[1], pair[0].x / (pair[0].x - pair[1].x)).y > y;
             strand.windows(2).any(|pair| crosses(&pair)) && strand.windows(2).filter(crosses).all(above)
         };
-        let count = points(&simulation).chunks(POINTS).filter(over).count();
-        assert_eq!(count, 200, "from {height} m");
+        let count = points(&simulation).chunks(POINTS).filter(lies_over).count();
+        assert_eq!(count, 200, "from {height} m some strands do not lie over the rod");
     }
 }

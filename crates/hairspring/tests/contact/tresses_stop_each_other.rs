@@ -7,15 +7,14 @@
 //! twice the size, and with strand contact. Common motion is not slowed: a single tress swings as far as
 //! without a volume method.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use hairspring::{
-    air::Air,
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
     settings::{Neighbours, Solver, Volume, VolumeMethod},
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
+use hairspring_test::{REST, line, points, roots, step_by, translation};
 use std::sync::Arc;
 
 const METHODS: [VolumeMethod; 2] = [VolumeMethod::Density, VolumeMethod::Incompressible];
@@ -25,7 +24,7 @@ const TURN: f32 = 2.399_963;
 
 /// How strands interact.
 #[derive(Clone, Copy, Debug, Default)]
-struct Meets {
+struct Interaction {
     method: VolumeMethod,
     /// Edge of a cell [m].
     cell: Option<f32>,
@@ -33,8 +32,8 @@ struct Meets {
     neighbours: bool,
 }
 
-impl Meets {
-    fn by(method: VolumeMethod) -> Self {
+impl Interaction {
+    fn volume(method: VolumeMethod) -> Self {
         Self { method, ..Self::default() }
     }
 
@@ -56,26 +55,12 @@ fn disc(count: usize, radius: f32) -> impl Iterator<Item = (f32, f32)> {
 /// A straight strand of about `length`; lengths of adjacent strands differ.
 fn strand(k: usize, root: Vec3, direction: Vec3, length: f32, points: usize) -> Vec<Vec3> {
     let length = length * (0.95 + 0.1 * (k * 7919 % 1000) as f32 / 1000.0);
-    (0..points).map(|i| root + direction * (length * i as f32 / (points - 1) as f32)).collect()
+    line(root, root + direction * length, points)
 }
 
-fn simulation(strands: &[Vec<Vec3>], material: Material, sag_free: bool) -> Simulation {
-    let groom = Arc::new(Groom::from_strands(strands, 35e-6));
-    let all: Vec<u32> = (0..strands.len() as u32).collect();
+fn simulation(groom: &Arc<Groom>, material: Material, sag_free: bool) -> Simulation {
     let solver = Solver { sag_free, ..Solver::default() };
-    Simulation::builder(groom)
-        .strands(&all)
-        .materials(&[material])
-        .solver(solver)
-        .gravity(Vec3::NEG_Y * 9.81)
-        .build()
-        .unwrap()
-}
-
-fn points(simulation: &Simulation) -> Vec<Vec3> {
-    let mut now = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut now);
-    now
+    Simulation::builder(groom.clone()).materials(&[material]).solver(solver).build().unwrap()
 }
 
 /// Two tresses side by side. They hang from discs that touch, and are released far apart.
@@ -106,28 +91,19 @@ impl Tresses {
 
     /// The farthest position of the left tress's center in `seconds` [m]; a positive value is past the
     /// middle.
-    fn farthest(&self, meets: Meets, fps: f32, seconds: f32, alone: bool) -> f32 {
+    fn farthest(&self, interaction: Interaction, fps: f32, seconds: f32, alone: bool) -> f32 {
         let mut strands = self.strands(-1.0);
         if !alone {
             strands.extend(self.strands(1.0));
         }
         let material = Material { bend: 0.05, drag: 0.1, ..Material::default() };
-        let mut simulation = simulation(&strands, material, false);
-        meets.set(&mut simulation);
-        let roots: Vec<RigidTransform> = strands
-            .iter()
-            .map(|s| RigidTransform { translation: s[0], ..RigidTransform::default() })
-            .collect();
+        let groom = Arc::new(Groom::from_strands(&strands, 35e-6));
+        let mut simulation = simulation(&groom, material, false);
+        interaction.set(&mut simulation);
+        let roots = roots(&groom, REST);
         let mut farthest = f32::NEG_INFINITY;
         for _ in 0..(seconds * fps).round() as u32 {
-            let drive = StepInput {
-                dt: 1.0 / fps,
-                anchor: RigidTransform::default(),
-                roots: &roots,
-                obstacles: &[],
-                air: Air::default(),
-            };
-            assert_eq!(simulation.step(&drive).reset_strands, 0);
+            step_by(&mut simulation, 1.0 / fps, REST, &roots, &[]);
             let now = points(&simulation);
             let left = &now[..self.strands * self.points];
             farthest = farthest.max(left.iter().map(|p| p.x).sum::<f32>() / left.len() as f32);
@@ -139,8 +115,9 @@ impl Tresses {
 #[test]
 fn tresses_stop_as_with_strand_contact_at_any_frame_rate_and_cell() {
     let bound = 0.1 * 2.0 * TRESSES.radius;
-    let through = TRESSES.farthest(Meets::default(), 60.0, 0.5, false);
-    let strands = TRESSES.farthest(Meets { neighbours: true, ..Meets::default() }, 60.0, 0.5, false);
+    let through = TRESSES.farthest(Interaction::default(), 60.0, 0.5, false);
+    let strands =
+        TRESSES.farthest(Interaction { neighbours: true, ..Interaction::default() }, 60.0, 0.5, false);
     println!(
         "{:.1} mm past the middle without interaction, {:.1} mm with strand contact",
         1e3 * through,
@@ -151,19 +128,21 @@ fn tresses_stop_as_with_strand_contact_at_any_frame_rate_and_cell() {
         "{through} m past the middle without interaction, {strands} m with strand contact"
     );
     for method in METHODS {
-        let meets = Meets::by(method);
-        let by = |cell: Option<f32>, fps: f32| TRESSES.farthest(Meets { cell, ..meets }, fps, 0.5, false);
-        let at_60 = by(None, 60.0);
+        let interaction = Interaction::volume(method);
+        let position = |cell: Option<f32>, fps: f32| {
+            TRESSES.farthest(Interaction { cell, ..interaction }, fps, 0.5, false)
+        };
+        let at_60 = position(None, 60.0);
         println!("{method:?}: {:.1} mm past the middle", 1e3 * at_60);
         assert!((at_60 - strands).abs() < bound, "{method:?}: {at_60} m, with strand contact {strands} m");
         for fps in [24.0, 30.0, 240.0] {
-            let other = by(None, fps);
+            let other = position(None, fps);
             println!("{method:?}: {:.1} mm at {fps} Hz", 1e3 * other);
             assert!(other < 0.0 && (other - at_60).abs() < 0.5 * bound, "{method:?}: {other} m at {fps} Hz");
         }
         // The default cell is 8.7 mm.
         for cell in [0.006, 0.0174] {
-            let other = by(Some(cell), 60.0);
+            let other = position(Some(cell), 60.0);
             println!("{method:?}: {:.1} mm in cells of {cell} m", 1e3 * other);
             assert!(
                 other < 0.0 && (other - at_60).abs() < bound,
@@ -183,7 +162,7 @@ fn tresses_do_not_pass_through_each_other() {
     for (name, tresses) in [("thin", thin), ("few", few), ("wide", wide), ("fast", fast), ("dense", dense)] {
         for method in METHODS {
             for fps in [24.0, 240.0] {
-                let farthest = tresses.farthest(Meets::by(method), fps, 0.7, false);
+                let farthest = tresses.farthest(Interaction::volume(method), fps, 0.7, false);
                 println!("{name}, {method:?}, {fps} Hz: {:.1} mm past the middle", 1e3 * farthest);
                 assert!(farthest < 0.0, "{name}, {method:?}, {fps} Hz: {farthest} m past the middle");
             }
@@ -193,9 +172,9 @@ fn tresses_do_not_pass_through_each_other() {
 
 #[test]
 fn a_single_tress_is_not_slowed() {
-    let free = TRESSES.farthest(Meets::default(), 60.0, 0.5, true);
+    let free = TRESSES.farthest(Interaction::default(), 60.0, 0.5, true);
     for method in METHODS {
-        let braked = TRESSES.farthest(Meets::by(method), 60.0, 0.5, true);
+        let braked = TRESSES.farthest(Interaction::volume(method), 60.0, 0.5, true);
         println!(
             "{method:?}: {:.1} mm past the middle, {:.1} mm without interaction",
             1e3 * braked,
@@ -206,27 +185,21 @@ fn a_single_tress_is_not_slowed() {
 }
 
 /// Mean distance of the points of a hanging bundle from its axis after three seconds of shaking [m].
-fn shaken(strands: usize, meets: Meets, fps: f32) -> f32 {
+fn shaken(strands: usize, interaction: Interaction, fps: f32) -> f32 {
     let (count, radius) = (24, 0.02 * (strands as f32 / 300.0).sqrt());
-    let strands: Vec<Vec<Vec3>> = disc(strands, radius)
+    let strands = disc(strands, radius)
         .enumerate()
-        .map(|(k, (x, z))| strand(k, Vec3::new(x, 0.0, z), Vec3::NEG_Y, 0.2, count))
-        .collect();
+        .map(|(k, (x, z))| strand(k, Vec3::new(x, 0.0, z), Vec3::NEG_Y, 0.2, count));
+    let groom = Arc::new(Groom::from_strands(strands, 35e-6));
     let material = Material { model: Model::Curvature, ..Material::default() };
-    let mut simulation = simulation(&strands, material, true);
-    meets.set(&mut simulation);
+    let mut simulation = simulation(&groom, material, true);
+    interaction.set(&mut simulation);
     for frame in 1..=(3.0 * fps).round() as u32 {
         let t = frame as f32 / fps;
         // 5 cm to each side at 2.5 Hz, from rest.
-        let aside = 0.05 * (2.0 * t).min(1.0).powi(2) * (std::f32::consts::TAU * 2.5 * t).sin();
-        let shift = Vec3::X * aside;
-        let roots: Vec<RigidTransform> = strands
-            .iter()
-            .map(|s| RigidTransform { translation: s[0] + shift, ..RigidTransform::default() })
-            .collect();
-        let anchor = RigidTransform { translation: shift, rotation: Quat::IDENTITY };
-        let drive = StepInput { dt: 1.0 / fps, anchor, roots: &roots, obstacles: &[], air: Air::default() };
-        assert_eq!(simulation.step(&drive).reset_strands, 0);
+        let offset = 0.05 * (2.0 * t).min(1.0).powi(2) * (std::f32::consts::TAU * 2.5 * t).sin();
+        let head = translation(Vec3::X * offset);
+        step_by(&mut simulation, 1.0 / fps, head, &roots(&groom, head), &[]);
     }
     let now = points(&simulation);
     let mut sum = 0.0;
@@ -241,11 +214,11 @@ fn shaken(strands: usize, meets: Meets, fps: f32) -> f32 {
 #[test]
 fn width_of_a_shaken_bundle_is_independent_of_frame_rate_and_cell() {
     for method in METHODS {
-        let meets = Meets::by(method);
-        let at_60 = shaken(300, meets, 60.0);
+        let interaction = Interaction::volume(method);
+        let at_60 = shaken(300, interaction, 60.0);
         println!("{method:?}: {:.2} mm at 60 Hz", 1e3 * at_60);
         for fps in [24.0, 240.0] {
-            let other = shaken(300, meets, fps);
+            let other = shaken(300, interaction, fps);
             println!("{method:?}: {:.2} mm at {fps} Hz", 1e3 * other);
             assert!(
                 (other / at_60 - 1.0).abs() < 0.05,
@@ -254,7 +227,7 @@ fn width_of_a_shaken_bundle_is_independent_of_frame_rate_and_cell() {
         }
         // The default cell is 8.7 mm.
         for cell in [0.006, 0.0174] {
-            let other = shaken(300, Meets { cell: Some(cell), ..meets }, 60.0);
+            let other = shaken(300, Interaction { cell: Some(cell), ..interaction }, 60.0);
             println!("{method:?}: {:.2} mm in cells of {cell} m", 1e3 * other);
             assert!(
                 (other / at_60 - 1.0).abs() < 0.1,
@@ -266,14 +239,11 @@ fn width_of_a_shaken_bundle_is_independent_of_frame_rate_and_cell() {
 
 #[test]
 fn width_of_a_shaken_bundle_matches_strand_contact() {
-    let strands = shaken(100, Meets { neighbours: true, ..Meets::default() }, 60.0);
+    let strands = shaken(100, Interaction { neighbours: true, ..Interaction::default() }, 60.0);
     println!("{:.2} mm with strand contact", 1e3 * strands);
     for method in METHODS {
-        let lattice = shaken(100, Meets::by(method), 60.0);
-        println!("{method:?}: {:.2} mm", 1e3 * lattice);
-        assert!(
-            (lattice / strands - 1.0).abs() < 0.1,
-            "{method:?}: {lattice} m, {strands} m with strand contact"
-        );
+        let grid = shaken(100, Interaction::volume(method), 60.0);
+        println!("{method:?}: {:.2} mm", 1e3 * grid);
+        assert!((grid / strands - 1.0).abs() < 0.1, "{method:?}: {grid} m, {strands} m with strand contact");
     }
 }

@@ -6,16 +6,14 @@
 //! strand must come to rest there, within 1 or 2 %. Joints of the springs model are not axially symmetric,
 //! so its strands are also tested rotated about their axis by quarter turns.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use hairspring::{
-    air::Air,
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
     settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
-use std::sync::Arc;
+use hairspring_test::{REST, line, points, step_by};
 
 const LENGTH: f32 = 0.25;
 
@@ -29,39 +27,26 @@ fn cantilever_toward(
     down: Vec3,
     model: Model,
     gamma: f32,
-    points: usize,
+    count: usize,
     substeps: u32,
     rate: f32,
 ) -> (f32, f32) {
-    let points: Vec<Vec3> =
-        (0..points).map(|i| Vec3::X * (LENGTH * i as f32 / (points - 1) as f32)).collect();
-    let root = RigidTransform { translation: points[0], rotation: Quat::IDENTITY };
-    let groom = Groom::from_strands([points], 40e-6);
+    let groom = Groom::from_strands([line(Vec3::ZERO, Vec3::X * LENGTH, count)], 40e-6);
     let base = Material::default();
     // Γ = ρ g π r² L³ / (E π r⁴/4)
     let young = 4.0 * base.density * 9.81 * LENGTH.powi(3) / (gamma * 40e-6f32.powi(2));
     let material = Material { model, young, drag: 0.5, ..base };
     let solver = Solver { sag_free: false, substeps, ..Solver::default() };
-    let gravity = down * 9.81;
-    let mut simulation = Simulation::builder(Arc::new(groom))
-        .strands(&[0])
+    let mut simulation = Simulation::builder(groom)
         .materials(&[material])
         .solver(solver)
-        .gravity(gravity)
+        .gravity(down * 9.81)
         .build()
         .unwrap();
     for _ in 0..(8.0 * rate) as u32 {
-        simulation.step(&StepInput {
-            dt: 1.0 / rate,
-            anchor: RigidTransform::default(),
-            roots: &[root],
-            obstacles: &[],
-            air: Air::default(),
-        });
+        step_by(&mut simulation, 1.0 / rate, REST, &[REST], &[]);
     }
-    let mut at = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut at);
-    let tip = *at.last().unwrap();
+    let tip = points(&simulation)[count - 1];
     (tip.dot(down) / LENGTH, tip.x / LENGTH)
 }
 

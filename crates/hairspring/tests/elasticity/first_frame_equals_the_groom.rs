@@ -10,15 +10,14 @@
 //! sag by millimeters, and some long soft fur falls over. The curvature model has no twist, so curls that
 //! are not planar start in balance but do not stay at rest; it preserves planar strands.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use hairspring::{
-    air::Air,
     groom::Groom,
     material::{Material, Model, PRESETS, preset},
-    math::RigidTransform,
     settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
+use hairspring_test::{REST, points, roots, step};
 use std::sync::Arc;
 
 /// Strands in all directions: arcs, helices of several radii, waves.
@@ -63,42 +62,26 @@ fn a_groom_with_a_mass_profile_stays_where_it_was_authored() {
 
 fn stays_where_it_was_authored(mass_profile: &[f32]) {
     let groom = Arc::new(groom());
-    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots: Vec<RigidTransform> = all
-        .iter()
-        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], rotation: Quat::IDENTITY })
-        .collect();
+    let roots = roots(&groom, REST);
     for (name, model) in PRESETS.iter().flat_map(|name| Model::ALL.map(|model| (*name, model))) {
         let planar = model == Model::Curvature;
         let mut simulation = Simulation::builder(groom.clone())
-            .strands(&all)
             .materials(&[Material { model, mass_profile: mass_profile.to_vec(), ..preset(name).unwrap() }])
-            .solver(Solver::default())
             .build()
             .unwrap();
-        let mut out = vec![Vec3::ZERO; simulation.point_count()];
-        simulation.write_points(&mut out);
-        let error = |out: &[Vec3]| {
-            let d: Vec<f32> = all
-                .iter()
-                .filter(|s| !planar || *s % 4 == 0)
-                .flat_map(|s| groom.range(*s as usize))
-                .map(|i| out[i].distance(groom.points[i]))
+        // The mean and the largest distance of points from their authored place.
+        let error = |simulation: &Simulation| {
+            let points = points(simulation);
+            let d: Vec<f32> = (0..groom.strand_count())
+                .filter(|s| !planar || s % 4 == 0)
+                .flat_map(|s| groom.range(s))
+                .map(|i| points[i].distance(groom.points[i]))
                 .collect();
             (d.iter().sum::<f32>() / d.len() as f32, d.into_iter().fold(0.0, f32::max))
         };
-        assert!(error(&out).1 < 1e-6, "{name}, {model:?}: the first frame differs from the groom");
-        for _ in 0..60 {
-            simulation.step(&StepInput {
-                dt: 1.0 / 60.0,
-                anchor: RigidTransform::default(),
-                roots: &roots,
-                obstacles: &[],
-                air: Air::default(),
-            });
-        }
-        simulation.write_points(&mut out);
-        let (mean, worst) = error(&out);
+        assert!(error(&simulation).1 < 1e-6, "{name}, {model:?}: the first frame differs from the groom");
+        (0..60).for_each(|_| _ = step(&mut simulation, REST, &roots, &[]));
+        let (mean, worst) = error(&simulation);
         println!(
             "{name}, {model:?}: mean {mean}, worst {worst}, {} joints stiffened",
             simulation.start().stiffened
@@ -119,8 +102,7 @@ fn changes_by_the_start_are_reported() {
     let start = |points: usize, young: f32, substeps: u32, model: Model| {
         let step = Vec3::new(1.0, 0.2, 0.0).normalize() * (1.0 / (points - 1) as f32);
         let strand: Vec<Vec3> = (0..points).map(|i| step * i as f32).collect();
-        let simulation = Simulation::builder(Arc::new(Groom::from_strands([strand], 35e-6)))
-            .strands(&[0])
+        let simulation = Simulation::builder(Groom::from_strands([strand], 35e-6))
             .materials(&[Material { model, young, ..Material::default() }])
             .solver(Solver { substeps, ..Solver::default() })
             .build()
@@ -130,12 +112,15 @@ fn changes_by_the_start_are_reported() {
     for model in [Model::Curvature, Model::Rod, Model::Springs] {
         // A meter held out nearly level is more than a hair can carry, at any number of substeps.
         let coarse = start(33, Material::default().young, 4, model);
-        assert!(coarse.stiffened > 20 && coarse.held_back == 0, "{model:?}: {coarse:?}");
+        assert!(
+            coarse.stiffened > 20 && coarse.held_back == 0,
+            "{model:?}: expected stiffened joints only: {coarse:?}"
+        );
         let [fine, finer] = [2, 64].map(|substeps| start(1024, Material::default().young, substeps, model));
         let springs = model == Model::Springs;
         if springs {
-            assert!(fine.held_back > 500, "{model:?}: {fine:?}");
-            assert!(finer.held_back < fine.held_back / 2, "{model:?}: {finer:?}");
+            assert!(fine.held_back > 500, "{model:?}: the limit of precision is not reported: {fine:?}");
+            assert!(finer.held_back < fine.held_back / 2, "{model:?}: more substeps do not help: {finer:?}");
         } else {
             // These models are solved in double precision, which suffices.
             assert_eq!([fine.held_back, finer.held_back], [0, 0], "{model:?}");

@@ -6,14 +6,14 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    air::Air,
     groom::Groom,
     material::{Material, Model},
     math::RigidTransform,
     settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
-use std::sync::Arc;
+use hairspring_test::{REST, points, translation};
+use std::{f32::consts::TAU, sync::Arc};
 
 /// A strand of `points` points that hangs down by `length` [m] in an open coil.
 fn coil(points: usize, length: f32) -> Vec<Vec3> {
@@ -48,52 +48,36 @@ fn mixed() -> Groom {
     Groom::from_strands(strands, 40e-6)
 }
 
-fn step(simulation: &mut Simulation, strands: usize, pose: RigidTransform) {
-    let report = simulation.step(&StepInput {
-        dt: 1.0 / 60.0,
-        anchor: pose,
-        roots: &vec![pose; strands],
-        obstacles: &[],
-        air: Air::default(),
-    });
-    assert_eq!(report.reset_strands, 0);
+/// Steps by a frame, at the end of which the common root of all strands has this pose.
+fn step(simulation: &mut Simulation, pose: RigidTransform) {
+    let roots = vec![pose; simulation.strand_count()];
+    hairspring_test::step(simulation, pose, &roots, &[]);
+}
+
+/// Shakes the root by 5 cm at 2 Hz.
+fn shaken(frame: u32) -> RigidTransform {
+    translation(Vec3::X * (0.05 * (TAU * 2.0 * frame as f32 / 60.0).sin()))
 }
 
 #[test]
 fn mixed_strands_are_stable_in_one_groom() {
     let groom = Arc::new(mixed());
-    let count = groom.strand_count();
-    let all: Vec<u32> = (0..count as u32).collect();
     for model in Model::ALL {
         let material = Material { model, bend: 4.0, ..Material::default() };
-        let mut simulation = Simulation::builder(groom.clone())
-            .strands(&all)
-            .materials(&[material])
-            .solver(Solver::default())
-            .gravity(Vec3::NEG_Y * 9.81)
-            .build()
-            .unwrap();
+        let mut simulation = Simulation::builder(groom.clone()).materials(&[material]).build().unwrap();
         assert_eq!(simulation.point_count(), groom.points.len(), "points are missing");
-        let mut points = vec![Vec3::ZERO; groom.points.len()];
-        (0..120).for_each(|_| step(&mut simulation, count, RigidTransform::default()));
-        simulation.write_points(&mut points);
+        (0..120).for_each(|_| step(&mut simulation, REST));
+        let points = points(&simulation);
         let moved: f32 =
             points.iter().zip(&groom.points).map(|(a, b)| a.distance(*b)).sum::<f32>() / points.len() as f32;
         assert!(moved < 1e-3, "{model:?}: points move by {moved} m in the mean in two seconds at rest");
 
         for frame in 0..60 {
-            let x = 0.05 * (std::f32::consts::TAU * 2.0 * frame as f32 / 60.0).sin();
-            step(
-                &mut simulation,
-                count,
-                RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() },
-            );
+            step(&mut simulation, shaken(frame));
             let m = simulation.measure(&[]);
             assert_eq!(m.non_finite, 0, "{model:?}, frame {frame}");
         }
-        for _ in 0..30 {
-            step(&mut simulation, count, RigidTransform::default());
-        }
+        (0..30).for_each(|_| step(&mut simulation, REST));
         let m = simulation.measure(&[]);
         println!("{model:?}: {moved:e} m at rest, after the shake {m:?}");
         assert!(
@@ -111,57 +95,39 @@ fn long_strands_come_to_rest() {
     let strands: [(usize, f32); 7] =
         [(64, 2.0), (256, 0.6), (512, 2.0), (1024, 1.0), (1024, 1.5), (1024, 3.0), (1024, 6.0)];
     let groom = Arc::new(Groom::from_strands(strands.map(|(points, length)| coil(points, length)), 40e-6));
-    let all: Vec<u32> = (0..strands.len() as u32).collect();
     for model in Model::ALL {
         for substeps in [4, 10] {
             let material = Material { model, bend: 4.0, ..Material::default() };
             let solver = Solver { substeps, ..Solver::default() };
-            let gravity = Vec3::NEG_Y * 9.81;
-            let mut simulation = Simulation::builder(groom.clone())
-                .strands(&all)
-                .materials(&[material])
-                .solver(solver)
-                .gravity(gravity)
-                .build()
-                .unwrap();
+            let mut simulation =
+                Simulation::builder(groom.clone()).materials(&[material]).solver(solver).build().unwrap();
             // The mean speed of the fastest strand [m/s].
             let speed = |simulation: &mut Simulation| {
-                let [mut before, mut after] = [(); 2].map(|()| vec![Vec3::ZERO; groom.points.len()]);
-                simulation.write_points(&mut before);
-                step(simulation, strands.len(), RigidTransform::default());
-                simulation.write_points(&mut after);
-                let (mut at, mut fastest) = (0, 0.0f32);
-                for (points, _) in strands {
-                    let range = at..at + points;
-                    let way: f32 =
-                        before[range.clone()].iter().zip(&after[range]).map(|(a, b)| a.distance(*b)).sum();
-                    fastest = fastest.max(60.0 * way / points as f32);
-                    at += points;
-                }
-                fastest
+                let before = points(simulation);
+                step(simulation, REST);
+                let after = points(simulation);
+                let mean = |s: usize| {
+                    let range = groom.range(s);
+                    let count = range.len() as f32;
+                    60.0 * range.map(|i| before[i].distance(after[i])).sum::<f32>() / count
+                };
+                (0..groom.strand_count()).map(mean).fold(0.0, f32::max)
             };
-            (0..120).for_each(|_| step(&mut simulation, strands.len(), RigidTransform::default()));
+            (0..120).for_each(|_| step(&mut simulation, REST));
             let at_rest = speed(&mut simulation);
-            for frame in 0..60 {
-                let x = 0.05 * (std::f32::consts::TAU * 2.0 * frame as f32 / 60.0).sin();
-                step(
-                    &mut simulation,
-                    strands.len(),
-                    RigidTransform { translation: Vec3::X * x, ..RigidTransform::default() },
-                );
-            }
+            (0..60).for_each(|frame| step(&mut simulation, shaken(frame)));
             // With four substeps, segments of 1 mm are too soft to hold the style, and take longer to come
             // to rest.
             let seconds = if substeps == 4 { 8 } else { 2 };
-            (0..60 * seconds).for_each(|_| step(&mut simulation, strands.len(), RigidTransform::default()));
-            let shaken = speed(&mut simulation);
+            (0..60 * seconds).for_each(|_| step(&mut simulation, REST));
+            let after_shake = speed(&mut simulation);
             println!(
-                "{model:?}, {substeps} substeps: {at_rest} m/s at rest, {shaken} m/s {seconds} seconds after a shake"
+                "{model:?}, {substeps} substeps: {at_rest} m/s at rest, {after_shake} m/s {seconds} seconds after a shake"
             );
             assert!(at_rest < 0.01, "{model:?}, {substeps} substeps: {at_rest} m/s at rest");
             assert!(
-                shaken < 0.02,
-                "{model:?}, {substeps} substeps: {shaken} m/s {seconds} seconds after a shake"
+                after_shake < 0.02,
+                "{model:?}, {substeps} substeps: {after_shake} m/s {seconds} seconds after a shake"
             );
         }
     }
@@ -187,9 +153,7 @@ fn the_root_transfers_position_direction_and_twist() {
             let material = Material { model, bend: 20.0, ..Material::default() };
             // Without gravity the strand rests in its own shape, whatever the rotation of its root.
             let mut simulation = Simulation::builder(groom.clone())
-                .strands(&[0])
                 .materials(&[material])
-                .solver(Solver::default())
                 .gravity(Vec3::ZERO)
                 .build()
                 .unwrap();
@@ -199,13 +163,11 @@ fn the_root_transfers_position_direction_and_twist() {
                     translation: pose.translation * share,
                     rotation: Quat::IDENTITY.slerp(pose.rotation, share),
                 };
-                step(&mut simulation, 1, on_the_way);
+                step(&mut simulation, on_the_way);
             }
-            let mut points = vec![Vec3::ZERO; strand.len()];
-            simulation.write_points(&mut points);
-            for (now, drawn) in points.iter().zip(&strand) {
-                let right = pose.translation + pose.rotation * *drawn;
-                assert!(now.distance(right) < 2e-4, "{model:?}: {now} instead of {right}");
+            for (now, authored) in points(&simulation).iter().zip(&strand) {
+                let expected = pose.translation + pose.rotation * *authored;
+                assert!(now.distance(expected) < 2e-4, "{model:?}: {now} instead of {expected}");
             }
         }
     }

@@ -7,17 +7,16 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    air::Air,
-    collide::{ColliderPose, ColliderShape, MovingCollider},
+    collide::{ColliderShape, MovingCollider},
     groom::Groom,
     material::{Material, Model},
     math::RigidTransform,
     settings::{Integrator, Solver, Volume, VolumeMethod},
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
+use hairspring_test::{FRAME, REST, farthest, points, roots, step, translation};
 use std::sync::Arc;
 
-const FRAME: f32 = 1.0 / 60.0;
 /// Radius of the head [m].
 const HEAD: f32 = 0.09;
 const POINTS: usize = 16;
@@ -26,8 +25,8 @@ const POINTS: usize = 16;
 fn groom() -> Groom {
     Groom::from_strands(
         (0..24).map(|k| {
-            let around = Quat::from_rotation_y(k as f32 * 0.7);
-            let out = around * Vec3::new(0.8, 0.6, 0.0);
+            let rotation_of_strand = Quat::from_rotation_y(k as f32 * 0.7);
+            let out = rotation_of_strand * Vec3::new(0.8, 0.6, 0.0);
             (0..POINTS)
                 .map(|i| {
                     let s = i as f32 / (POINTS - 1) as f32;
@@ -49,52 +48,26 @@ struct Head {
 impl Head {
     fn new(model: Model, solver: Solver, volume: VolumeMethod) -> Self {
         let groom = Arc::new(groom());
-        let rest = RigidTransform::default();
-        let obstacle = ColliderPose::new(ball(), rest.matrix(), rest.matrix(), 1.0);
-        let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-        let material = Material { model, drag: 0.1, ..Material::default() };
-        let gravity = Vec3::new(0.0, -9.81, 0.0);
         let mut simulation = Simulation::builder(groom.clone())
-            .strands(&all)
-            .materials(&[material])
+            .materials(&[Material { model, drag: 0.1, ..Material::default() }])
             .solver(solver)
-            .gravity(gravity)
-            .anchor(rest)
-            .colliders_at_rest(&[obstacle])
+            .colliders_at_rest(&[MovingCollider::at_rest(ball(), REST).end_pose()])
             .build()
             .unwrap();
         simulation.set_volume(&Volume { method: volume, ..Volume::default() });
-        Self { groom, simulation, pose: rest }
-    }
-
-    fn roots(&self, pose: &RigidTransform) -> Vec<RigidTransform> {
-        (0..self.groom.strand_count())
-            .map(|s| RigidTransform {
-                translation: pose.point(self.groom.strand(s)[0]),
-                rotation: pose.rotation,
-            })
-            .collect()
+        Self { groom, simulation, pose: REST }
     }
 
     /// Simulates a frame in which the head moves to `pose`.
     fn step(&mut self, pose: RigidTransform) {
-        let roots = self.roots(&pose);
-        let report = self.simulation.step(&StepInput {
-            dt: FRAME,
-            anchor: pose,
-            roots: &roots,
-            obstacles: &[MovingCollider::new(ball(), self.pose, pose)],
-            air: Air::default(),
-        });
-        assert_eq!(report.reset_strands, 0);
+        let collider = MovingCollider::new(ball(), self.pose, pose);
+        step(&mut self.simulation, pose, &roots(&self.groom, pose), &[collider]);
         self.pose = pose;
     }
 
     /// The points in the frame of the head [m].
-    fn seen(&self) -> Vec<Vec3> {
-        let mut points = vec![Vec3::ZERO; self.simulation.point_count()];
-        self.simulation.write_points(&mut points);
-        points.iter().map(|p| self.pose.inverse_point(*p)).collect()
+    fn local_points(&self) -> Vec<Vec3> {
+        points(&self.simulation).iter().map(|p| self.pose.inverse_point(*p)).collect()
     }
 }
 
@@ -111,12 +84,8 @@ fn sway(frame: u32) -> RigidTransform {
     }
 }
 
-fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
-}
-
 /// A rotation about the vertical, which does not change the effect of gravity.
-fn elsewhere() -> RigidTransform {
+fn other_place() -> RigidTransform {
     RigidTransform { rotation: Quat::from_rotation_y(2.0), translation: Vec3::new(5.0, 1.0, -3.0) }
 }
 
@@ -133,10 +102,10 @@ fn motion_continues_after_a_teleport() {
     for (model, integrator, volume) in CASES {
         let solver = Solver { integrator, ..Solver::default() };
         let [mut here, mut there] = [0; 2].map(|_| Head::new(model, solver, volume));
-        let mut moved = RigidTransform::default();
+        let mut moved = REST;
         for frame in 1..60 {
             if frame == 30 {
-                moved = elsewhere();
+                moved = other_place();
                 there.simulation.teleport(moved);
                 there.pose = moved.after(&there.pose);
             }
@@ -144,8 +113,8 @@ fn motion_continues_after_a_teleport() {
             there.step(moved.after(&sway(frame)));
         }
         // Rounding changes hair that makes and breaks contact by less than 0.1 mm in half a second.
-        let apart = farthest(&here.seen(), &there.seen());
-        assert!(apart < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {apart} m");
+        let difference = farthest(&here.local_points(), &there.local_points());
+        assert!(difference < 1e-4, "{model:?}, {integrator:?}, {volume:?}: hair differs by {difference} m");
     }
 }
 
@@ -160,9 +129,9 @@ fn a_jump_is_teleported_automatically() {
         }
         // Hair continues to swing, as if the head had stopped.
         here.step(sway(29));
-        there.step(elsewhere().after(&sway(29)));
-        let apart = farthest(&here.seen(), &there.seen());
-        assert!(apart < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {apart} m in the jump");
+        there.step(other_place().after(&sway(29)));
+        let difference = farthest(&here.local_points(), &there.local_points());
+        assert!(difference < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {difference} m in the jump");
     }
 }
 
@@ -173,38 +142,35 @@ fn fast_motion_is_not_mistaken_for_a_jump() {
     let [mut carried, mut felt] = [1.0, f32::MAX].map(|jump| {
         Head::new(Model::Rod, Solver { teleport_distance: jump, ..Solver::default() }, VolumeMethod::Off)
     });
-    let ride = |frame: u32| RigidTransform {
-        translation: Vec3::Z * (50.0 / 24.0 * frame as f32),
-        ..RigidTransform::default()
-    };
+    let ride = |frame: u32| translation(Vec3::Z * (50.0 / 24.0 * frame as f32));
     for head in [&mut carried, &mut felt] {
         head.step(ride(1));
     }
-    assert!(farthest(&carried.seen(), &felt.seen()) > 0.05, "hair was not carried along in the jump");
+    assert!(
+        farthest(&carried.local_points(), &felt.local_points()) > 0.05,
+        "hair was not carried along in the jump"
+    );
     let swaying = |frame: u32| ride(frame).after(&sway(frame));
     for frame in 2..120 {
         carried.step(swaying(frame));
         felt.step(swaying(frame));
     }
     // After the other head's hair has settled from the start, both sway alike.
-    let most = farthest(&carried.seen(), &felt.seen());
-    assert!(most < 0.02, "{most} m");
+    let most = farthest(&carried.local_points(), &felt.local_points());
+    assert!(most < 0.02, "the two heads differ by {most} m");
 }
 
 #[test]
 fn inertia_scales_the_effect_of_head_motion() {
     let swing = |inertia: f32| {
         let mut head = Head::new(Model::Rod, Solver { inertia, ..Solver::default() }, VolumeMethod::Off);
-        let rest = head.seen();
+        let rest = head.local_points();
         let mut most = 0.0f32;
         for frame in 1..120 {
             let t = frame as f32 * FRAME;
             // A small motion, so that the response of hair is linear.
-            head.step(RigidTransform {
-                translation: Vec3::X * (0.004 * (8.0 * t).sin()),
-                ..RigidTransform::default()
-            });
-            most = most.max(farthest(&rest, &head.seen()));
+            head.step(translation(Vec3::X * (0.004 * (8.0 * t).sin())));
+            most = most.max(farthest(&rest, &head.local_points()));
         }
         most
     };
@@ -213,14 +179,11 @@ fn inertia_scales_the_effect_of_head_motion() {
     assert!((half / all - 0.5).abs() < 0.1, "half: {half} m of {all} m");
     // The same holds for a rotation.
     let mut head = Head::new(Model::Rod, Solver { inertia: 0.0, ..Solver::default() }, VolumeMethod::Off);
-    let rest = head.seen();
+    let rest = head.local_points();
     for frame in 1..60 {
-        head.step(RigidTransform {
-            rotation: Quat::from_rotation_y(0.1 * frame as f32),
-            ..RigidTransform::default()
-        });
+        head.step(RigidTransform { rotation: Quat::from_rotation_y(0.1 * frame as f32), ..REST });
     }
-    let turned = farthest(&rest, &head.seen());
+    let turned = farthest(&rest, &head.local_points());
     assert!(turned < 1e-4, "{turned} m after turning");
 }
 
@@ -229,18 +192,25 @@ fn a_reset_restores_the_start() {
     for (model, integrator, volume) in CASES {
         let solver = Solver { integrator, ..Solver::default() };
         let mut head = Head::new(model, solver, volume);
-        let (anchor, roots) = (RigidTransform::default(), head.roots(&RigidTransform::default()));
+        let roots = roots(&head.groom, REST);
         let run = |head: &mut Head| {
-            head.simulation.place(anchor, &roots);
-            head.pose = anchor;
+            head.simulation.place(REST, &roots);
+            head.pose = REST;
             (1..30).for_each(|frame| head.step(sway(frame)));
-            head.seen()
+            head.local_points()
         };
         let [first, again] = [run(&mut head), run(&mut head)];
-        assert!(first == again, "{model:?}, {integrator:?}, {volume:?}: {} m", farthest(&first, &again));
+        assert!(
+            first == again,
+            "{model:?}, {integrator:?}, {volume:?}: the second run differs by {} m",
+            farthest(&first, &again)
+        );
         // A reset without new poses puts every strand in its authored place.
         head.simulation.reset();
-        let authored = farthest(&head.seen(), &head.groom.points);
-        assert!(authored < 1e-6, "{model:?}, {integrator:?}: {authored} m");
+        let authored = farthest(&head.local_points(), &head.groom.points);
+        assert!(
+            authored < 1e-6,
+            "{model:?}, {integrator:?}: points are {authored} m from their authored place"
+        );
     }
 }

@@ -5,17 +5,16 @@
 //! tangent of its angle is λE divided by its weight per length. Hair with the same sign of charge as its
 //! head stands on end. Without the head's charge, its own charge spreads it.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use hairspring::{
-    air::Air,
     forces::charge::{Charged, ChargedBall, Waypoint},
     groom::Groom,
     material::Material,
-    math::RigidTransform,
     settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
-use std::{f32::consts::PI, sync::Arc};
+use hairspring_test::{REST, line, on_threads, points, roots, step};
+use std::f32::consts::PI;
 
 const COULOMB: f32 = 8.99e9;
 const RADIUS: f32 = 4e-5;
@@ -26,45 +25,22 @@ fn resting(center: Vec3, radius: f32, charge: f32) -> ChargedBall {
 }
 
 /// Limp strands with `charge` [C/m], after `frames` near charged balls.
-fn charged(
-    strands: &[Vec<Vec3>],
-    charge: f32,
-    gravity: Vec3,
-    balls: &[ChargedBall],
-    frames: u32,
-) -> Vec<Vec3> {
-    let groom = Arc::new(Groom::from_strands(strands, RADIUS));
-    let all: Vec<u32> = (0..strands.len() as u32).collect();
-    let material = Material { bend: 0.01, drag: 4.0, charge, ..Material::default() };
-    let solver = Solver { sag_free: false, ..Solver::default() };
+fn charged(strands: &[Vec<Vec3>], charge: f32, balls: &[ChargedBall], frames: u32) -> Vec<Vec3> {
+    let groom = Groom::from_strands(strands, RADIUS);
+    let roots = roots(&groom, REST);
     let mut simulation = Simulation::builder(groom)
-        .strands(&all)
-        .materials(&[material])
-        .solver(solver)
-        .gravity(gravity)
+        .materials(&[Material { bend: 0.01, drag: 4.0, charge, ..Material::default() }])
+        .solver(Solver { sag_free: false, ..Solver::default() })
         .build()
         .unwrap();
-    let roots: Vec<RigidTransform> =
-        strands.iter().map(|s| RigidTransform { translation: s[0], rotation: Quat::IDENTITY }).collect();
     simulation.set_charged(balls.iter().copied());
-    for _ in 0..frames {
-        let report = simulation.step(&StepInput {
-            dt: 1.0 / 60.0,
-            anchor: RigidTransform::default(),
-            roots: &roots,
-            obstacles: &[],
-            air: Air::default(),
-        });
-        assert_eq!(report.reset_strands, 0);
-    }
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    points
+    (0..frames).for_each(|_| _ = step(&mut simulation, REST, &roots, &[]));
+    points(&simulation)
 }
 
-/// A strand of 20 cm from `root` along `way`.
-fn strand(root: Vec3, way: Vec3) -> Vec<Vec3> {
-    (0..32).map(|i| root + way * (0.2 * i as f32 / 31.0)).collect()
+/// A strand of 20 cm from `root` in `direction`.
+fn strand(root: Vec3, direction: Vec3) -> Vec<Vec3> {
+    line(root, root + direction * 0.2, 32)
 }
 
 #[test]
@@ -77,12 +53,12 @@ fn a_charged_strand_hangs_like_a_charged_pendulum() {
         // One body attracts and the other repels. This makes the field more uniform and tests both signs.
         let body = 0.5 * field * distance * distance / COULOMB;
         let balls = [resting(Vec3::X * distance, 0.5, -body), resting(Vec3::X * -distance, 0.5, body)];
-        let points = charged(&[strand(Vec3::ZERO, Vec3::NEG_Y)], charge, Vec3::NEG_Y * 9.81, &balls, 900);
-        let way = points[31] - points[12];
-        let angle = (way.x / -way.y).atan();
+        let points = charged(&[strand(Vec3::ZERO, Vec3::NEG_Y)], charge, &balls, 900);
+        let chord = points[31] - points[12];
+        let angle = (chord.x / -chord.y).atan();
         println!("{} degrees, {} by the closed form", angle.to_degrees(), tangent.atan().to_degrees());
         assert!((angle / tangent.atan() - 1.0).abs() < 0.02, "{} instead of {} rad", angle, tangent.atan());
-        assert!(way.z.abs() < 1e-3, "{way}");
+        assert!(chord.z.abs() < 1e-3, "the strand leaves its plane: {chord}");
     }
 }
 
@@ -91,14 +67,14 @@ fn hair_with_the_charge_of_its_head_stands_on_end() {
     let ways = (0..200).map(|k| {
         // Evenly spread over a sphere (a spiral of golden angles).
         let y = 1.0 - (k as f32 + 0.5) / 100.0;
-        let around = 2.399_963 * k as f32;
-        Vec3::new(around.cos(), 0.0, around.sin()) * (1.0 - y * y).sqrt() + Vec3::Y * y
+        let azimuth = 2.399_963 * k as f32;
+        Vec3::new(azimuth.cos(), 0.0, azimuth.sin()) * (1.0 - y * y).sqrt() + Vec3::Y * y
     });
     let ways: Vec<Vec3> = ways.filter(|way| way.y > -0.3).collect();
     let strands: Vec<Vec<Vec3>> = ways.iter().map(|way| strand(*way * 0.1, *way)).collect();
     // Mean distance of the tips from the center, and their mean height.
     let tips = |charge: f32, balls: &[ChargedBall]| {
-        let points = charged(&strands, charge, Vec3::NEG_Y * 9.81, balls, 240);
+        let points = charged(&strands, charge, balls, 240);
         let tips = || points.chunks(32).map(|s| s[31]);
         (
             tips().map(|p| p.length()).sum::<f32>() / ways.len() as f32,
@@ -128,7 +104,7 @@ fn hair_at_the_center_of_a_strong_charge_stays_finite() {
             let through = strand(Vec3::new(0.0, 0.1, 0.0), Vec3::NEG_Y);
             let centers = [through[15], Vec3::ZERO, through[31]];
             let balls = centers.map(|center| resting(center, 0.01, body));
-            let points = charged(&[through.clone(), through], charge, Vec3::NEG_Y * 9.81, &balls, 120);
+            let points = charged(&[through.clone(), through], charge, &balls, 120);
             assert!(points.iter().all(|p| p.is_finite() && p.length() < 0.35), "{body} C, {charge} C/m");
         }
     }
@@ -139,12 +115,8 @@ fn charged_hair_is_independent_of_threads() {
     let strands: Vec<Vec<Vec3>> = (0..600)
         .map(|k| strand(Vec3::new((k % 20) as f32, 0.0, (k / 20) as f32) * 0.01, Vec3::NEG_Y))
         .collect();
-    let play = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            charged(&strands, 1e-9, Vec3::NEG_Y * 9.81, &[resting(Vec3::Z * 0.5, 0.1, -1e-7)], 20)
-        })
-    };
+    let balls = [resting(Vec3::Z * 0.5, 0.1, -1e-7)];
+    let play = |threads| on_threads(threads, || charged(&strands, 1e-9, &balls, 20));
     let one = play(1);
     assert!(one == play(2), "two threads give other bits than one");
     assert!(one == play(7), "seven threads give other bits than one");

@@ -6,11 +6,10 @@ use glam::Vec3;
 use hairspring::{
     air::Air,
     groom::Groom,
-    material::Material,
-    math::RigidTransform,
-    settings::{Solver, Wind},
+    settings::Wind,
     simulation::{Simulation, StepInput},
 };
+use hairspring_test::{FRAME, REST, points, roots};
 use std::sync::Arc;
 
 /// The mean motion of the strands' middles in a square bundle of `side`² strands in a second of wind from
@@ -23,35 +22,18 @@ fn blown(side: usize, spacing: f32, hairs: f32, sheltered: bool) -> [f32; 2] {
         (0..17).map(|i| root - Vec3::Y * (0.01 * i as f32)).collect::<Vec<_>>()
     });
     let groom = Arc::new(Groom::from_strands(strands, 35e-6));
-    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots: Vec<RigidTransform> = (0..groom.strand_count())
-        .map(|s| RigidTransform { translation: groom.strand(s)[0], ..RigidTransform::default() })
-        .collect();
-    let gravity = Vec3::NEG_Y * 9.81;
-    let (solver, material) = (Solver::default(), Material::default());
-    let mut simulation = Simulation::builder(groom.clone())
-        .strands(&all)
-        .materials(&[material])
-        .solver(solver)
-        .gravity(gravity)
-        .build()
-        .unwrap();
+    let roots = roots(&groom, REST);
+    let mut simulation = Simulation::builder(groom.clone()).build().unwrap();
     simulation.set_hair_multiplicity(vec![hairs; groom.strand_count()]);
     if sheltered {
         simulation.set_self_occlusion(&[]);
     }
     let wind = Wind { velocity: Vec3::X, ..Wind::default() };
     for _ in 0..60 {
-        simulation.step(&StepInput {
-            dt: 1.0 / 60.0,
-            anchor: RigidTransform::default(),
-            roots: &roots,
-            obstacles: &[],
-            air: Air { wind, ..Air::default() },
-        });
+        let air = Air { wind, ..Air::default() };
+        simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles: &[], air });
     }
-    let mut points = vec![Vec3::ZERO; groom.point_count()];
-    simulation.write_points(&mut points);
+    let points = points(&simulation);
     let mut sums = [(0.0, 0.0f32); 2];
     for s in 0..groom.strand_count() {
         let root = groom.strand(s)[0];

@@ -7,16 +7,15 @@
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    air::Air,
     groom::{Groom, StrandScale},
     material::{GlobalShape, Material, Model},
     math::RigidTransform,
     settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
+use hairspring_test::{FRAME, farthest, points, roots, step, translation};
 use std::{f32::consts::TAU, sync::Arc};
 
-const FRAME: f32 = 1.0 / 60.0;
 const POINTS: usize = 24;
 const SEGMENT: f32 = 0.01;
 const GRAVITY: f32 = 9.81;
@@ -36,38 +35,24 @@ impl Brush {
         let mut groom = Groom::from_strands(strands, 40e-6);
         groom.scales = scales;
         let groom = Arc::new(groom);
-        let solver = Solver { sag_free: false, ..solver };
-        let gravity = Vec3::NEG_Y * GRAVITY;
         let simulation = Simulation::builder(groom.clone())
-            .strands(&[0, 1, 2, 3])
             .materials(&[material])
-            .solver(solver)
-            .gravity(gravity)
+            .solver(Solver { sag_free: false, ..solver })
             .build()
             .unwrap();
         Self { simulation, points: groom.points.clone(), groom }
     }
 
-    fn step(&mut self, pose: RigidTransform) {
-        let root =
-            |s| RigidTransform { translation: pose.point(self.groom.strand(s)[0]), rotation: pose.rotation };
-        let roots: Vec<RigidTransform> = (0..4).map(root).collect();
-        let report = self.simulation.step(&StepInput {
-            dt: FRAME,
-            anchor: pose,
-            roots: &roots,
-            obstacles: &[],
-            air: Air::default(),
-        });
-        assert_eq!(report.reset_strands, 0);
-        self.simulation.write_points(&mut self.points);
+    fn step(&mut self, head: RigidTransform) {
+        step(&mut self.simulation, head, &roots(&self.groom, head), &[]);
+        self.points = points(&self.simulation);
     }
 
     /// Half a second of shaking by 5 cm at 2 Hz, then rest for `rest` frames.
     fn shake(&mut self, rest: u32) {
         for frame in 1..=30 + rest {
             let x = if frame <= 30 { 0.05 * (TAU * 2.0 * frame as f32 * FRAME).sin() } else { 0.0 };
-            self.step(RigidTransform { translation: Vec3::new(0.0, x, x), ..RigidTransform::default() });
+            self.step(translation(Vec3::new(0.0, x, x)));
         }
     }
 
@@ -108,13 +93,13 @@ fn hair_returns_with_the_offset_of_the_closed_form() {
         }
     }
     // With its fiber hair sags less; without a global shape it hangs down.
-    let with = |global_shape: GlobalShape| {
+    let sag_with = |global_shape: GlobalShape| {
         let mut brush =
             Brush::new(Material { global_shape, ..Material::default() }, Solver::default(), Vec::new());
         brush.shake(240);
         (6..POINTS).map(|i| brush.sag(0, i)).fold(0.0, f32::max)
     };
-    let (held, hangs) = (with(global_shape(10.0, 1.0)), with(GlobalShape::default()));
+    let (held, hangs) = (sag_with(global_shape(10.0, 1.0)), sag_with(GlobalShape::default()));
     println!("sags by {held} m, bound {}; without a global shape by {hangs} m", closed_form(10.0));
     assert!(
         held < 1.05 * closed_form(10.0) && hangs > 0.1,
@@ -184,8 +169,8 @@ fn the_global_shape_moves_with_the_head() {
     let (mut worst, mut last) = (0.0f32, 0.0f32);
     for frame in 1..=180 {
         brush.step(at(frame));
-        let off = |k: usize| at(frame).point(brush.groom.points[k]).distance(brush.points[k]);
-        last = (0..brush.points.len()).map(off).fold(0.0, f32::max);
+        let style: Vec<Vec3> = brush.groom.points.iter().map(|p| at(frame).point(*p)).collect();
+        last = farthest(&style, &brush.points);
         worst = worst.max(last);
     }
     println!("offset in motion {worst} m, at rest {last} m, closed form {}", closed_form(20.0));

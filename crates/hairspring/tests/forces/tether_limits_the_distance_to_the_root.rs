@@ -8,13 +8,12 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::Air,
     groom::Groom,
     material::{Material, Model},
-    math::RigidTransform,
     settings::Solver,
-    simulation::{Simulation, StepInput},
+    simulation::Simulation,
 };
+use hairspring_test::{REST, roots, step};
 use std::sync::Arc;
 
 const POINTS: usize = 49;
@@ -37,7 +36,7 @@ fn coils() -> Arc<Groom> {
 struct Fall {
     /// The largest distance of a point from its root, relative to the largest rest distance of it and those
     /// before it.
-    far: f32,
+    distance: f32,
     /// Speed of the fastest point at the end [m/s].
     speed: f64,
     points: Vec<Vec3>,
@@ -45,31 +44,20 @@ struct Fall {
 
 fn fall(model: Model, tether: f32, g: f32, seconds: usize) -> Fall {
     let groom = coils();
-    let all: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let roots: Vec<RigidTransform> = all
-        .iter()
-        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
-        .collect();
-    let materials = [Material { model, tether, ..Material::default() }];
-    let solver = Solver { sag_free: g == 1.0, ..Solver::default() };
-    let gravity = Vec3::NEG_Y * 9.81 * g;
-    let anchor = RigidTransform::default();
+    let roots = roots(&groom, REST);
     let mut simulation = Simulation::builder(groom.clone())
-        .strands(&all)
-        .materials(&materials)
-        .solver(solver)
-        .gravity(gravity)
-        .anchor(anchor)
+        .materials(&[Material { model, tether, ..Material::default() }])
+        .solver(Solver { sag_free: g == 1.0, ..Solver::default() })
+        .gravity(Vec3::NEG_Y * 9.81 * g)
         .build()
         .unwrap();
     let mut points = vec![Vec3::ZERO; simulation.point_count()];
     let (mut most, mut speed) = (0.0f32, 0.0);
     for _ in 0..60 * seconds {
-        let (dt, air) = (1.0 / 60.0, Air::default());
-        simulation.step(&StepInput { dt, anchor, roots: &roots, obstacles: &[], air });
+        step(&mut simulation, REST, &roots, &[]);
         let measure = simulation.measure(&[]);
-        assert_eq!(measure.non_finite, 0, "{model:?}");
-        assert!(measure.stretch_max < 0.011, "{model:?}: {measure:?}");
+        assert_eq!(measure.non_finite, 0, "{model:?}: points are not finite");
+        assert!(measure.stretch_max < 0.011, "{model:?}: a segment is too long: {measure:?}");
         speed = measure.speed_max;
         simulation.write_points(&mut points);
         for (now, rest) in points.chunks(POINTS).zip(groom.points.chunks(POINTS)) {
@@ -80,16 +68,16 @@ fn fall(model: Model, tether: f32, g: f32, seconds: usize) -> Fall {
             }
         }
     }
-    Fall { far: most, speed, points }
+    Fall { distance: most, speed, points }
 }
 
 #[test]
 fn heavy_coils_fall_to_the_limit() {
     for model in Model::ALL {
-        let free = fall(model, 0.0, 20.0, 2).far;
+        let free = fall(model, 0.0, 20.0, 2).distance;
         assert!(free > 1.5, "{model:?}: without a tether {free}");
         for tether in [1.05, 1.3] {
-            let held = fall(model, tether, 20.0, 2).far;
+            let held = fall(model, tether, 20.0, 2).distance;
             println!("{model:?}: {free} without a tether, {held} with one of {tether}");
             assert!(held < tether * 1.0011, "{model:?}: {held} with a tether of {tether}");
             assert!(
@@ -103,7 +91,11 @@ fn heavy_coils_fall_to_the_limit() {
 #[test]
 fn a_tether_changes_nothing_at_rest() {
     for model in Model::ALL {
-        assert_eq!(fall(model, 1.01, 1.0, 2).points, fall(model, 0.0, 1.0, 2).points, "{model:?}");
+        assert_eq!(
+            fall(model, 1.01, 1.0, 2).points,
+            fall(model, 0.0, 1.0, 2).points,
+            "{model:?}: the tether moved hair at rest"
+        );
     }
 }
 

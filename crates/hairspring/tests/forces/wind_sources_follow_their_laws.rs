@@ -4,23 +4,23 @@
 //! Laws are tested by their conserved quantity: the momentum of a fan's jet, the volume flow of a point
 //! source. Sheltered hair is compared with the same hair in the open.
 
-use glam::{Mat3, Quat, Vec3};
+use glam::{Quat, Vec3};
 use hairspring::{
     air::{Air, Flow, Source, Turbulence, WindOcclusion},
     collide::{ColliderPose, ColliderShape, MovingCollider},
     groom::Groom,
-    material::Material,
     math::RigidTransform,
-    settings::{Solver, Wind},
+    settings::Wind,
     simulation::{Simulation, StepInput},
 };
+use hairspring_test::{FRAME, REST, line, on_threads, points, roots};
 use std::{f32::consts::PI, sync::Arc};
 
 const FAN: Flow = Flow::Fan { center: Vec3::ZERO, axis: Vec3::Z, radius: 0.1, speed: 4.0, spread: 11.8 };
 
 /// A source at rest, without gusts.
 fn still(flow: Flow) -> Source {
-    Source { flow, pose: RigidTransform::default(), factor: 1.0 }
+    Source { flow, pose: REST, factor: 1.0 }
 }
 
 /// The integral of `f` over a disc of `radius` across the z axis at `z`.
@@ -65,15 +65,13 @@ fn a_point_conserves_volume_and_a_vortex_rotates() {
     assert_eq!(point(3.0).velocity(Vec3::X), Vec3::ZERO);
     let vortex = Flow::Vortex { center: Vec3::ZERO, axis: Vec3::Y * 7.0, radius: 0.2, speed: 2.0 };
     let at = |r: f32| vortex.velocity(Vec3::new(r, 3.0, 0.0));
-    assert!(at(0.2).distance(Vec3::NEG_Z * 2.0) < 1e-5, "{}", at(0.2));
+    assert!(at(0.2).distance(Vec3::NEG_Z * 2.0) < 1e-5, "the velocity at the radius is {}", at(0.2));
     assert!(at(0.19).length() < 2.0 && at(0.21).length() < 2.0 && at(0.0) == Vec3::ZERO);
 }
 
 /// Strands that hang down from `roots`.
 fn hanging(roots: &[Vec3]) -> Arc<Groom> {
-    let strand =
-        |root: &Vec3| (0..16).map(|i| *root + Vec3::NEG_Y * (0.2 * i as f32 / 15.0)).collect::<Vec<_>>();
-    Arc::new(Groom::from_strands(roots.iter().map(strand), 4e-5))
+    Arc::new(Groom::from_strands(roots.iter().map(|root| line(*root, *root - Vec3::Y * 0.2, 16)), 4e-5))
 }
 
 /// The points of these strands after `frames` in moving air.
@@ -84,36 +82,15 @@ fn blown(
     obstacles: &[MovingCollider],
     frames: u32,
 ) -> Vec<Vec3> {
-    let strands: Vec<u32> = (0..groom.strand_count() as u32).collect();
-    let rest = (Mat3::IDENTITY, Vec3::ZERO);
-    let poses: Vec<_> =
-        obstacles.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();
-    let mut simulation = Simulation::builder(groom.clone())
-        .strands(&strands)
-        .materials(&[Material::default()])
-        .solver(Solver::default())
-        .gravity(Vec3::NEG_Y * 9.81)
-        .colliders_at_rest(&poses)
-        .build()
-        .unwrap();
+    let poses: Vec<ColliderPose> = obstacles.iter().map(MovingCollider::now).collect();
+    let mut simulation = Simulation::builder(groom.clone()).colliders_at_rest(&poses).build().unwrap();
     simulation.set_wind_occlusion(occlusion);
-    let roots: Vec<RigidTransform> = strands
-        .iter()
-        .map(|s| RigidTransform { translation: groom.strand(*s as usize)[0], ..RigidTransform::default() })
-        .collect();
+    let roots = roots(groom, REST);
     for frame in 0..frames {
         let air = Air { time: frame as f64 / 60.0, ..air };
-        simulation.step(&StepInput {
-            dt: 1.0 / 60.0,
-            anchor: RigidTransform::default(),
-            roots: &roots,
-            obstacles,
-            air,
-        });
+        simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles, air });
     }
-    let mut points = vec![Vec3::ZERO; simulation.point_count()];
-    simulation.write_points(&mut points);
-    points
+    points(&simulation)
 }
 
 /// How far along z the tip of strand `s` was blown [m].
@@ -139,7 +116,7 @@ fn a_fan_moves_only_hair_in_front_of_it() {
 /// A ball in a wind along z.
 fn ball() -> MovingCollider {
     let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.06 };
-    MovingCollider::at_rest(shape, RigidTransform::default())
+    MovingCollider::at_rest(shape, REST)
 }
 
 #[test]
@@ -154,9 +131,9 @@ fn a_body_shelters_only_hair_behind_it() {
     assert!(open[groom.range(2)] == lee[groom.range(2)], "beside the ball: {:?} m", tips[2]);
     assert!(tips[1][1] < 0.7 * tips[1][0], "behind the ball: {:?} m", tips[1]);
     // A shorter reach ends the wake. Gravity and drag are the same, so the damping in the lee is too.
-    let far = WindOcclusion { body: 200.0, reach: 0.05, ..WindOcclusion::default() };
-    let out = blown(&groom, air, &far, &[ball()], 120);
-    assert!((tip(&groom, &out, 1) / tips[1][0] - 1.0).abs() < 0.02, "the wake does not end");
+    let short_reach = WindOcclusion { body: 200.0, reach: 0.05, ..WindOcclusion::default() };
+    let past_the_wake = blown(&groom, air, &short_reach, &[ball()], 120);
+    assert!((tip(&groom, &past_the_wake, 1) / tips[1][0] - 1.0).abs() < 0.02, "the wake does not end");
 }
 
 #[test]
@@ -188,10 +165,7 @@ fn hair_in_moving_air_is_independent_of_threads() {
         ..Air::default()
     };
     let occlusion = WindOcclusion { body: 100.0, hair: 50.0, ..WindOcclusion::default() };
-    let play = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| blown(&groom, air, &occlusion, &[ball()], 30))
-    };
+    let play = |threads| on_threads(threads, || blown(&groom, air, &occlusion, &[ball()], 30));
     let one = play(1);
     assert!(one.iter().all(|p| p.is_finite()));
     assert!(one == play(2), "two threads give other bits than one");
