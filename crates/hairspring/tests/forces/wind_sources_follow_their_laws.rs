@@ -82,7 +82,7 @@ fn blown(
     obstacles: &[MovingCollider],
     frames: u32,
 ) -> Vec<Vec3> {
-    let poses: Vec<ColliderPose> = obstacles.iter().map(MovingCollider::now).collect();
+    let poses: Vec<ColliderPose> = obstacles.iter().map(MovingCollider::end_pose).collect();
     let mut simulation = Simulation::builder(groom.clone()).colliders_at_rest(&poses).build().unwrap();
     simulation.set_wind_occlusion(occlusion);
     let roots = roots(groom, REST);
