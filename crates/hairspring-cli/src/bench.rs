@@ -32,7 +32,9 @@ use std::{path::PathBuf, time::Instant};
 ///
 /// `--scene` runs a scene instead and prints medians over its frames: the time of each stage, the time of the
 /// solve per point and substep, the number of points and segments that colliders push out, and the number of
-/// points that need a collider distance.
+/// points that need a collider distance. At the end it measures the speed of the fastest point. With `--rest`,
+/// the scene stays in the pose of its first frame, without wind or hands: after 600 frames, hair should rest
+/// below 1 mm/s.
 ///
 /// `--table` steps the scene with every elastic model on every instruction set of this processor. All of them
 /// run in turn in one process, so that other load on the machine affects all of them alike. Built with
@@ -44,7 +46,8 @@ Examples:
   hairspring bench --strands 100000 --frames 60
   hairspring --threads 1 bench --simd sse2 --json
   hairspring bench --table --frames 60
-  hairspring bench --scene shot.toml --frames 120")]
+  hairspring bench --scene shot.toml --frames 120
+  hairspring bench --scene shot.toml --rest --frames 600")]
 pub struct Options {
     /// Number of strands
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
@@ -105,6 +108,10 @@ pub struct Options {
     /// contacts of its hair
     #[arg(long, value_name = "FILE", conflicts_with_all = ["table", "strands", "points", "substeps", "simd", "model", "integrator", "high_quality", "device", "hair_hair", "head", "wind"])]
     scene: Option<PathBuf>,
+
+    /// Hold the scene in the pose of its first frame, without wind or hands
+    #[arg(long, requires = "scene")]
+    rest: bool,
 
     /// Print the figures as JSON
     #[arg(long)]
@@ -167,7 +174,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     interrupt::listen();
     if let Some(path) = &options.scene {
-        return scene::run(path, frames, options.json, console);
+        return scene::run(path, (frames, options.rest), options.json, console);
     }
     if options.table {
         return table::run(options, console);

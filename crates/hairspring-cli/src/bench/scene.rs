@@ -7,7 +7,10 @@ use crate::{
     input::{Input, Units},
     totals::grouped,
 };
-use hairspring_scene::stage::{FrameRate, FrameReport, Stage};
+use hairspring_scene::{
+    Scene,
+    stage::{FrameRate, FrameReport, Stage},
+};
 use serde_json::{Map, Value, json};
 use std::{path::Path, time::Duration};
 
@@ -40,11 +43,32 @@ impl Counts {
     }
 }
 
-/// Runs the scene in `path` for `frames` of 1/60 s and prints medians over its frames.
-pub(super) fn run(path: &Path, frames: u32, as_json: bool, console: Console) -> Result<(), Fault> {
+/// Removes all that moves from a scene: motion, wind and hands.
+fn hold(scene: &mut Scene) {
+    if let Some(clip) = &mut scene.clip {
+        clip.samples.truncate(clip.joint_count);
+    }
+    (scene.wind, scene.turbulence) = Default::default();
+    scene.wind_sources.clear();
+    scene.hands.clear();
+    scene.charged.iter_mut().for_each(|ball| ball.path.clear());
+}
+
+/// Runs the scene in `path` for `frames` of 1/60 s, held in its first pose if `rest`, and prints medians over
+/// its frames.
+pub(super) fn run(
+    path: &Path,
+    (frames, rest): (u32, bool),
+    as_json: bool,
+    console: Console,
+) -> Result<(), Fault> {
     let units = Units { scale: None, up: None };
     let input = Input { path: path.into(), units, guides: None, substeps: None };
-    let mut stage = Stage::new(input.scene(console)?)?;
+    let mut scene = input.scene(console)?;
+    if rest {
+        hold(&mut scene);
+    }
+    let mut stage = Stage::new(scene)?;
     let mut stages: [Times; STAGES.len()] = std::array::from_fn(|_| Times(Vec::new()));
     let (mut whole, mut per_point) = (Times(Vec::new()), Times(Vec::new()));
     let (mut points, mut segments, mut looked_up) = Default::default();
@@ -87,6 +111,7 @@ pub(super) fn run(path: &Path, frames: u32, as_json: bool, console: Console) -> 
             "simulated_points": simulated.0,
             "substeps": solver.substeps,
             "most_substeps": substeps,
+            "rest": rest,
             "frames": frames,
             "ms_per_frame_median": whole.rank(0.5),
             "ms_per_frame_p95": whole.rank(0.95),
@@ -95,6 +120,7 @@ pub(super) fn run(path: &Path, frames: u32, as_json: bool, console: Console) -> 
             "points_in_contact": points,
             "segments_in_contact": segments,
             "points_looked_up": looked_up,
+            "speed_max_m_s": measure.speed_max,
             "non_finite": measure.non_finite,
             "reset_strands": reset,
         }));
@@ -130,6 +156,10 @@ pub(super) fn run(path: &Path, frames: u32, as_json: bool, console: Console) -> 
         grouped(segments)
     ));
     say(format_args!("         {} points that need a collider distance", grouped(looked_up)));
+    say(format_args!(
+        "speed    {:.2} mm/s: the fastest simulated point at the end of the last frame",
+        measure.speed_max * 1e3
+    ));
     say(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
     Ok(())
 }

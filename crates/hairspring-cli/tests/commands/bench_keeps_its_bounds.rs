@@ -212,7 +212,11 @@ fn a_scene_reports_stage_times_and_contacts() {
     assert_eq!(stage("neighbours"), 0.0, "strand contact is off, but took time");
     assert!(number("points_in_contact") > 0.0, "no hair touches the head: {found}");
     assert!(number("points_looked_up") > 0.0, "{found}");
+    assert!((0.0..5.0).contains(&number("speed_max_m_s")), "{found}");
     assert!(number("ns_per_point_substep") > 0.0);
+    let still = ["bench", "--scene", "head.toml", "--rest", "--frames", "5", "--json"];
+    let still = json(&succeed(folder.path(), &still));
+    assert!(still["speed_max_m_s"].as_f64().unwrap() < number("speed_max_m_s"), "{still}");
     let output = succeed(folder.path(), &arguments);
     assert!(stages.iter().all(|name| output.contains(name)) && output.contains("pushed out"), "{output}");
 }
