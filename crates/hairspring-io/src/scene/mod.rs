@@ -11,6 +11,7 @@ mod groom;
 mod grow;
 mod material;
 mod motion;
+pub mod parameters;
 mod props;
 mod sentence;
 mod settings;

@@ -26,6 +26,38 @@ pub(super) fn problem_in_table(text: &str, start: usize, error: &toml::de::Error
     Problem::line(line, reworded(error.message()))
 }
 
+/// The line that sets the setting `path`, such as `shape.fan.radius`, in the table that line `from` belongs to;
+/// if it is in an inline table, the line of that table. Without such a line, the first one after the table.
+pub(super) fn line_of_setting(text: &str, from: usize, path: &str) -> Option<usize> {
+    let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
+    let name = |line: &str| line.trim_start_matches('[').split(']').next().unwrap_or_default().to_owned();
+    let table = lines
+        .iter()
+        .take(from)
+        .rev()
+        .find(|line| line.starts_with('['))
+        .map_or_else(String::new, |l| name(l));
+    let leaves = |line: &&str| {
+        line.starts_with("[[") || (line.starts_with('[') && !name(line).starts_with(&format!("{table}.")))
+    };
+    let end = lines.iter().skip(from).position(leaves).map_or(lines.len(), |k| from + k);
+    let own = lines[..end].join("\n");
+    let (parent, key) = path.rsplit_once('.').unwrap_or(("", path));
+    // The header of a nested table, and the key below it.
+    let header = |line: &&str| line.starts_with('[') && name(line).ends_with(&format!(".{parent}"));
+    let below = lines[..end].iter().skip(from).position(header).map(|k| from + k + 1);
+    below
+        .filter(|_| !parent.is_empty())
+        .and_then(|below| line_of_key(&own, below, key))
+        .or_else(|| prefixes(path).find_map(|path| line_of_key(&own, from, path)))
+        .or_else(|| line_of_key(text, from, path))
+}
+
+/// A path, then the paths of the tables around it.
+fn prefixes(path: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(Some(path), |path| path.rsplit_once('.').map(|(table, _)| table))
+}
+
 /// The first line from `from` on that sets `key`.
 pub(super) fn line_of_key(text: &str, from: usize, key: &str) -> Option<usize> {
     let sets = |line: &str| {
