@@ -91,9 +91,9 @@ pub fn parameter(name: &str) -> Option<&'static Parameter> {
 /// Returns what a list or table of the scene file contains, for the conditions of parameters.
 pub fn contents(table: &str) -> Option<&'static str> {
     Some(match table {
-        "charged" => "charged body",
-        "clip" => "motion of its own",
-        "wind_source" => "wind source",
+        "charged" => "a charged body",
+        "clip" => "a motion of its own",
+        "wind_source" => "a wind source",
         _ => return None,
     })
 }
