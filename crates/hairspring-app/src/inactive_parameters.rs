@@ -97,7 +97,7 @@ mod tests {
     }
 
     /// Parameters without effect in the built-in scene, and text that activates them.
-    const WOKEN: [(&str, &str); 23] = [
+    const WOKEN: [(&str, &str); 22] = [
         ("effects.curl_length", "[builtin.effects]\ncurl_radius = 0.004\n"),
         ("global_shape.tip", "[material.m]\nglobal_shape = { pull = 2.0 }\n"),
         ("global_shape.damping", "[material.m]\nglobal_shape = { pull = 2.0 }\n"),
@@ -111,7 +111,6 @@ mod tests {
             "[[wind_source]]\nshape.point = { center = [0.2, 1.5, 0.0], radius = 0.05, speed = 2.0 }\n",
         ),
         ("wind_occlusion.reach", "[wind]\nvelocity = [0.0, 0.0, 2.0]\n[wind_occlusion]\nhair = 20.0\n"),
-        ("charge", "[[charged]]\ncenter = [0.0, 1.8, 0.0]\nradius = 0.1\ncharge = 1e-7\n"),
         ("volume.friction", "[volume]\nmethod = \"density\"\n"),
         ("volume.pressure", "[volume]\nmethod = \"density\"\n"),
         ("volume.recovery_rate", "[volume]\nmethod = \"incompressible\"\n"),
@@ -155,6 +154,8 @@ mod tests {
             assert!(!idle(HEAD, name), "{name} counts by default");
             assert!(idle(&format!("{HEAD}{text}"), name), "{name} with {text}");
         }
+        // Charged hair also repels itself.
+        assert!(!idle(HEAD, "charge"), "a charge acts without charged bodies");
         // Values that replace others.
         assert!(idle(&format!("{HEAD}[builtin.look]\nmelanin = 0.5\n"), "look.root_color"));
     }

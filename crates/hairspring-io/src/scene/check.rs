@@ -2,7 +2,8 @@
 
 use super::{
     air::{self, lines},
-    file::{BodyFile, BuiltinFile, ClipFile, GroomFile, KeyFile, Placement, PropFile, SceneFile},
+    file::{BodyFile, BuiltinFile, ClipFile, KeyFile, PropFile, SceneFile},
+    groom_file::{GroomFile, Placement},
     props,
     sentence::{line_at, line_of_key, line_of_setting},
 };

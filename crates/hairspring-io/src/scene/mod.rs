@@ -8,6 +8,7 @@ mod check;
 mod file;
 mod geometry;
 mod groom;
+mod groom_file;
 mod grow;
 mod material;
 mod motion;

@@ -1,7 +1,8 @@
 //! Every parameter of a scene file under its full name, from the definitions of the settings.
 
-use super::file::{
-    BodyFile, BuiltinFile, ClipFile, GroomFile, GrowFile, KeyFile, Placement, PropFile, SceneFile,
+use super::{
+    file::{BodyFile, BuiltinFile, ClipFile, KeyFile, PropFile, SceneFile},
+    groom_file::{GroomFile, GrowFile, Placement},
 };
 use hairspring::{
     air::{Turbulence, WindOcclusion, WindSource},
@@ -18,7 +19,7 @@ const PRESET: Parameter = Parameter {
     name: "preset",
     unit: "none",
     range: Range::Words,
-    expected: "one of its words",
+    expected: "one of its values",
     default: None,
     default_text: "none: a single human hair",
     doc: "Preset that gives the values which the material does not set. Without a preset, they are those of a\n single human hair.",
@@ -91,7 +92,6 @@ pub fn parameter(name: &str) -> Option<&'static Parameter> {
 /// Returns what a list or table of the scene file contains, for the conditions of parameters.
 pub fn contents(table: &str) -> Option<&'static str> {
     Some(match table {
-        "charged" => "a charged body",
         "clip" => "a motion of its own",
         "wind_source" => "a wind source",
         _ => return None,
@@ -190,6 +190,16 @@ mod tests {
             let word = value.get("x").and_then(toml::Value::as_str);
             assert!(word.is_none_or(|word| parameter.words.contains(&word)), "{name}: {text}");
         }
+    }
+
+    #[test]
+    fn defaults_of_the_built_in_scene_are_those_of_its_code() {
+        use hairspring_scene::{Guides, builtin::BuiltinOptions};
+        let default = |name: &str| parameter(name).unwrap().default.unwrap()();
+        let options = BuiltinOptions::default();
+        assert_eq!(default("builtin.style"), format!("{:?}", options.style.name()));
+        assert_eq!(default("builtin.strands"), options.strands.to_string());
+        assert_eq!(options.guides, Guides::Count(default("builtin.guides").parse().unwrap()));
     }
 
     fn number(value: &toml::Value) -> Option<f32> {

@@ -72,10 +72,10 @@ define_settings! {
         /// Maximum distance of a point from its root, relative to that at rest (long-range attachment). 0: no
         /// limit. It is not physical, and limits how far hair falls. From 1.01 on it has no effect at rest.
         tether: f32 = 0.0, "factor", {0 or 1 to 10};
-        /// Static charge per length of hair. Charged bodies attract and repel it. Hair of 35 µm holds at most
+        /// Static charge per length of hair. Charged bodies attract and repel it, and it repels itself. Hair of 35 µm holds at most
         /// 6e-9, where the air at its surface breaks down. From 5e-10 on, a field of 100 kV/m lifts it against
         /// gravity.
-        charge: f32 = 0.0, ["C/m"], {-1e-6 to 1e-6}, when When::Has("charged");
+        charge: f32 = 0.0, ["C/m"], {-1e-6 to 1e-6};
     }
 }
 

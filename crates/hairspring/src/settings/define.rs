@@ -345,7 +345,7 @@ macro_rules! define_settings {
         concat!($crate::define_settings!(@text "" {$($range)*}), " [", $unit, "]")
     };
     (@text $unit:literal {switch}) => { "`true`, `false`" };
-    (@text $unit:literal {words $($words:expr)?}) => { "one of its words" };
+    (@text $unit:literal {words $($words:expr)?}) => { "one of its values" };
     (@text $unit:literal {table}) => { "a table" };
     (@text $unit:literal {text $text:literal}) => { $text };
     (@text $unit:literal {check $rule:expr => $text:literal}) => { $text };
