@@ -51,7 +51,7 @@ fn agree(page: &Path, text: &str) {
 fn stated(text: &str, name: &str, parameter: &Parameter, pages: &BTreeMap<String, PathBuf>) -> String {
     let written = |line: &&str| line.starts_with("Unit: ") || line.starts_with("Applies only if ");
     let rest: Vec<&str> = text.lines().skip(1).filter(|line| !written(line)).collect();
-    let range = parameter.range_text();
+    let range = grouped(&parameter.range_text());
     let facts =
         format!("Unit: {}. Range: {range}. Default: {}.", parameter.unit, parameter.default_or_required());
     let mut page = format!("# `{name}`\n\n{}\n\n", linked(&facts, name, pages));
@@ -66,12 +66,30 @@ fn stated(text: &str, name: &str, parameter: &Parameter, pages: &BTreeMap<String
     page + rest.join("\n").trim_start() + "\n"
 }
 
+/// The text with commas in whole numbers of five digits and more.
+fn grouped(text: &str) -> String {
+    let is_long = |word: &str| word.len() > 4 && word.bytes().all(|b| b.is_ascii_digit());
+    let commas = |word: &str| {
+        let digit = |(k, digit): (usize, char)| match (word.len() - k) % 3 {
+            0 if k > 0 => format!(",{digit}"),
+            _ => digit.to_string(),
+        };
+        word.chars().enumerate().map(digit).collect::<String>()
+    };
+    let words = text.split(' ').map(|word| if is_long(word) { commas(word) } else { word.to_owned() });
+    words.collect::<Vec<_>>().join(" ")
+}
+
 /// The text with a link for each name in backticks that is a parameter: by its full name, or in the same
-/// table as the parameter `from`, or in it.
+/// table as the parameter `from`, or in it. A table in brackets leads to the page of its group.
 fn linked(text: &str, from: &str, pages: &BTreeMap<String, PathBuf>) -> String {
     let table = from.rsplit_once('.').map_or(String::new(), |(table, _)| format!("{table}."));
     let folder = pages[from].parent();
     let link = |word: &str| {
+        if let Some(group) = word.strip_prefix('[').and_then(|word| word.strip_suffix(']')) {
+            let page = docs().join(format!("parameters/{group}.md"));
+            return page.is_file().then(|| format!("[`{word}`](../{group}.md)"));
+        }
         let names = [word.to_owned(), format!("{table}{word}"), format!("{from}.{word}")];
         let name = names.into_iter().find(|name| name != from && pages.contains_key(name))?;
         let page = &pages[&name];

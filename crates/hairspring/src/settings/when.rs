@@ -34,7 +34,10 @@ impl When {
     /// Returns the condition in words, such as `"Curl radius" is above 0`. `label` returns what a parameter or
     /// table is called.
     pub fn phrase(&self, label: &dyn Fn(&str) -> String) -> String {
-        let words = |words: &[&str]| words.join(" or ");
+        let words = |words: &[&str]| match words {
+            [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+            words => words.concat(),
+        };
         match *self {
             Self::Always => "always".into(),
             Self::On(name) => format!("{} is on", label(name)),
@@ -47,7 +50,7 @@ impl When {
             Self::Has(name) => format!("the scene has {}", label(name)),
             Self::HasNot(name) => format!("the scene does not have {}", label(name)),
             Self::All(parts) => joined(parts, ", and ", label),
-            Self::Any(parts) => joined(parts, ", or ", label),
+            Self::Any(parts) => joined(parts, " or ", label),
         }
     }
 
@@ -79,8 +82,11 @@ mod tests {
 
     #[test]
     fn a_condition_is_a_phrase() {
-        let when = When::All(&[When::On("a"), When::Is("b", &["x", "y"])]);
-        assert_eq!(when.phrase(&|name| format!("`{name}`")), "`a` is on, and `b` is x or y");
+        let label = |name: &str| format!("`{name}`");
+        let when = When::All(&[When::On("a"), When::Is("b", &["x", "y", "z"])]);
+        assert_eq!(when.phrase(&label), "`a` is on, and `b` is x, y or z");
         assert_eq!(when.names(), ["a", "b"]);
+        let when = When::Any(&[When::IsNot("a", &["x"]), When::Has("b")]);
+        assert_eq!(when.phrase(&label), "`a` is not x or the scene has `b`");
     }
 }
